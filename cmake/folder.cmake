@@ -1,0 +1,55 @@
+# One static library per folder of src/. A folder sees the headers of exactly the folders that it links:
+# its public include directory holds nothing but a link to itself, so a wrong #include does not build.
+
+add_library(lacquer_warnings INTERFACE)
+target_compile_options(lacquer_warnings INTERFACE
+  $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall -Wextra -Werror>
+  $<$<CXX_COMPILER_ID:MSVC>:/W4 /WX>)
+# GCC 12 sees overlapping copies in std::string's operator+ where there are none (its bug 105651).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(lacquer_warnings INTERFACE -Wno-restrict)
+endif()
+# The double evaluation is a reference: no contraction, so that every machine computes the same bits.
+target_compile_options(lacquer_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
+
+# lacquer_folder(NAME public links... [PRIVATE private links...])
+function(lacquer_folder name)
+  cmake_parse_arguments(arg "" "" "PRIVATE" ${ARGN})
+  set(source "${PROJECT_SOURCE_DIR}/src/${name}")
+  file(GLOB files CONFIGURE_DEPENDS "${source}/*.cpp" "${source}/*.h" "${source}/*.def" "${source}/*/*.cpp"
+       "${source}/*/*.h")
+  set(view "${PROJECT_BINARY_DIR}/include/${name}")
+  file(MAKE_DIRECTORY "${view}")
+  if(NOT EXISTS "${view}/${name}")
+    file(CREATE_LINK "${source}" "${view}/${name}" SYMBOLIC COPY_ON_ERROR)
+  endif()
+  add_library(lacquer_${name} STATIC ${files})
+  set_property(GLOBAL APPEND PROPERTY LACQUER_FOLDERS lacquer_${name})
+  set_target_properties(lacquer_${name} PROPERTIES LINKER_LANGUAGE CXX)
+  target_include_directories(lacquer_${name} PUBLIC "$<BUILD_INTERFACE:${view}>")
+  target_link_libraries(lacquer_${name} PUBLIC ${arg_UNPARSED_ARGUMENTS}
+                        PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:lacquer_warnings>)
+endfunction()
+
+# The one public header, by itself.
+set(public_view "${PROJECT_BINARY_DIR}/include/public")
+file(MAKE_DIRECTORY "${public_view}")
+if(NOT EXISTS "${public_view}/lacquer.h")
+  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/src/lacquer.h" "${public_view}/lacquer.h" SYMBOLIC COPY_ON_ERROR)
+endif()
+add_library(lacquer_public INTERFACE)
+target_include_directories(lacquer_public INTERFACE "$<BUILD_INTERFACE:${public_view}>")
+
+# lacquer_program(TARGET FOLDER links...): an executable from the .cpp files of a folder.
+function(lacquer_program name folder)
+  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp" "${PROJECT_SOURCE_DIR}/${folder}/*.h")
+  add_executable(${name} ${files})
+  get_filename_component(base "${folder}" NAME)
+  set(view "${PROJECT_BINARY_DIR}/include/${base}")
+  file(MAKE_DIRECTORY "${view}")
+  if(NOT EXISTS "${view}/${base}")
+    file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${folder}" "${view}/${base}" SYMBOLIC COPY_ON_ERROR)
+  endif()
+  target_include_directories(${name} PRIVATE "${view}")
+  target_link_libraries(${name} PRIVATE ${ARGN} lacquer_warnings)
+endfunction()
