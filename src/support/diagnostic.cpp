@@ -1,0 +1,79 @@
+#include "diagnostic.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lacquer {
+
+tl::unexpected<Diagnostics> fail(std::string code, Place place, std::string message, std::string help) {
+  Diagnostics list;
+  list.push_back(
+      {std::move(code), Severity::Error, std::move(place), std::move(message), std::move(help), {}});
+  return tl::make_unexpected(std::move(list));
+}
+
+std::string_view severityName(Severity severity) {
+  switch (severity) {
+    case Severity::Note: return "note";
+    case Severity::Warning: return "warning";
+    case Severity::Error: return "error";
+  }
+  return "";
+}
+
+/// Bytes that would act on a terminal are shown, not sent.
+static std::string printable(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 && c != '\n' && c != '\t')
+      safe += fmt::format("\\x{:02x}", byte);
+    else if (byte == 0x7F)
+      safe += "\\x7f";
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+std::string format(const Diagnostic& diagnostic) {
+  const Place& place = diagnostic.place;
+  std::string where = place.file;
+  if (place.line != 0) {
+    where += fmt::format("{}{}:{}", where.empty() ? "" : ":", place.line, place.column);
+  } else if (!place.pointer.empty()) {
+    where += (where.empty() ? "" : ":") + place.pointer;
+  }
+  std::string text = where.empty() ? "" : where + ": ";
+  text += fmt::format("{}: {} [{}]", severityName(diagnostic.severity), diagnostic.message, diagnostic.code);
+  if (!diagnostic.excerpt.empty()) text += "\n" + diagnostic.excerpt;
+  if (!diagnostic.help.empty()) text += "\n  help: " + diagnostic.help;
+  return printable(text);
+}
+
+bool hasError(const Diagnostics& diagnostics) {
+  return std::any_of(diagnostics.begin(), diagnostics.end(),
+                     [](const Diagnostic& d) { return d.severity == Severity::Error; });
+}
+
+void locate(Diagnostic& diagnostic, std::string_view text, size_t offset, size_t length) {
+  offset = std::min(offset, text.size());
+  const size_t before = offset == 0 ? std::string_view::npos : text.rfind('\n', offset - 1);
+  const size_t begin = before == std::string_view::npos ? 0 : before + 1;
+  size_t end = text.find('\n', offset);
+  if (end == std::string_view::npos) end = text.size();
+  std::string_view line = text.substr(begin, end - begin);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  diagnostic.place.line =
+      static_cast<uint32_t>(std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(begin), '\n') + 1);
+  diagnostic.place.column = static_cast<uint32_t>(offset - begin + 1);
+  std::string caret;
+  for (size_t i = begin; i < offset; ++i) caret += i < begin + line.size() && text[i] == '\t' ? '\t' : ' ';
+  const size_t room = std::max<size_t>(1, begin + line.size() > offset ? begin + line.size() - offset : 1);
+  caret += '^';
+  caret.append(std::min(std::max<size_t>(1, length), room) - 1, '~');
+  diagnostic.excerpt = fmt::format("  {}\n  {}", line, caret);
+}
+
+}  // namespace lacquer
