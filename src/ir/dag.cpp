@@ -1,0 +1,301 @@
+#include "ir/dag.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstring>
+
+#include "ir/simplify.h"
+
+namespace lacquer::ir {
+
+static constexpr std::array<OpInfo, kOpCount> kOps{{
+#define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) \
+  {name, arity, Signature::signature, glsl, hlsl, SpirvSet::set, prose},
+#include "ir/ops.def"
+#undef OP
+}};
+
+const OpInfo& info(Op op) { return kOps[static_cast<size_t>(op)]; }
+
+std::optional<Op> findOp(std::string_view name) {
+  for (int i = 0; i < kOpCount; ++i) {
+    if (kOps[static_cast<size_t>(i)].name == name) return static_cast<Op>(i);
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+std::optional<Type> mapType(std::span<const Type> operands) {
+  Type result = Type::Float;
+  for (const Type t : operands) {
+    if (!isFloating(t)) return std::nullopt;
+    if (t == Type::Float) continue;
+    if (result != Type::Float && result != t) return std::nullopt;
+    result = t;
+  }
+  return result;
+}
+
+std::optional<Type> specialType(Op op, std::span<const Type> operands) {
+  if (op == Op::MatMul && operands[0] == Type::Mat4 && operands[1] == Type::Vec4) return Type::Vec4;
+  const bool flat = operands.size() > 1 && operands[0] == Type::Texture2D && operands[1] == Type::Vec2;
+  const bool cube = operands.size() > 1 && operands[0] == Type::TextureCube && operands[1] == Type::Vec3;
+  if (op == Op::Texture && (flat || cube)) return Type::Vec4;
+  if (op == Op::TextureLod && (flat || cube) && operands[2] == Type::Float) return Type::Vec4;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Type> resultType(Op op, std::span<const Type> operands) {
+  const OpInfo& row = info(op);
+  if (static_cast<int>(operands.size()) != row.arity) return std::nullopt;
+  switch (row.signature) {
+    case Signature::Special: return specialType(op, operands);
+    case Signature::Map: return mapType(operands);
+    case Signature::Reduce2:
+      if (!isFloating(operands[0]) || operands[0] != operands[1]) return std::nullopt;
+      return Type::Float;
+    case Signature::Cross:
+      if (operands[0] != Type::Vec3 || operands[1] != Type::Vec3) return std::nullopt;
+      return Type::Vec3;
+    case Signature::Length:
+      if (!isFloating(operands[0])) return std::nullopt;
+      return Type::Float;
+    case Signature::Same:
+      if (!isFloating(operands[0])) return std::nullopt;
+      return operands[0];
+    case Signature::Compare:
+      if (operands[0] != operands[1]) return std::nullopt;
+      if (operands[0] != Type::Float && operands[0] != Type::Int) return std::nullopt;
+      return Type::Bool;
+    case Signature::Logic:
+      for (const Type t : operands) {
+        if (t != Type::Bool) return std::nullopt;
+      }
+      return Type::Bool;
+    case Signature::Select:
+      if (operands[0] != Type::Bool || operands[1] != operands[2]) return std::nullopt;
+      if (!isFloating(operands[1]) && operands[1] != Type::Bool) return std::nullopt;
+      return operands[1];
+  }
+  return std::nullopt;
+}
+
+uint32_t packSwizzle(std::span<const int> components) {
+  uint32_t payload = 0;
+  for (size_t i = 0; i < components.size(); ++i) payload |= static_cast<uint32_t>(components[i]) << (2 * i);
+  return payload;
+}
+
+int swizzleComponent(uint32_t payload, int index) { return static_cast<int>(payload >> (2 * index) & 3U); }
+
+Dag::Dag() : table_(256, kNoValue) { terms_.push_back({}); }
+
+namespace {
+
+/// Commutative ops are looked up in either order but keep the order of their first making, which reads best.
+bool commutes(Op op) {
+  return op == Op::Add || op == Op::Mul || op == Op::Min || op == Op::Max || op == Op::Dot ||
+         op == Op::Equal || op == Op::And || op == Op::Or;
+}
+
+bool sameContent(const Value& a, const Value& b) {
+  if (a.op != b.op || a.type != b.type || a.count != b.count || a.payload != b.payload) return false;
+  if (a.args == b.args) return true;
+  return commutes(a.op) && a.args[0] == b.args[1] && a.args[1] == b.args[0];
+}
+
+size_t hashOf(const Value& value) {
+  Value key = value;
+  key.rate = Rate::Constant;
+  if (commutes(key.op) && key.args[0] > key.args[1]) std::swap(key.args[0], key.args[1]);
+  static_assert(sizeof(Value) == 24, "no padding: the bytes are hashed");
+  const auto words = std::bit_cast<std::array<uint64_t, 3>>(key);
+  // Odd multipliers with bits all over (those of xxHash): enough for a table that is compared anyway.
+  uint64_t hash = words[0] * 0x9E3779B185EBCA87U;
+  hash = (std::rotl(hash, 31) ^ words[1]) * 0xC2B2AE3D27D4EB4FU;
+  hash = (std::rotl(hash, 31) ^ words[2]) * 0x165667B19E3779F9U;
+  return hash ^ hash >> 32;
+}
+
+}  // namespace
+
+ValueId Dag::intern(const Value& value) {
+  if (used_ * 2 >= table_.size()) {
+    std::vector<ValueId> larger(table_.size() * 2, kNoValue);
+    for (ValueId id = 0; id < values_.size(); ++id) {
+      size_t slot = hashOf(values_[id]) & (larger.size() - 1);
+      while (larger[slot] != kNoValue) slot = (slot + 1) & (larger.size() - 1);
+      larger[slot] = id;
+    }
+    table_ = std::move(larger);
+  }
+  size_t slot = hashOf(value) & (table_.size() - 1);
+  while (table_[slot] != kNoValue) {
+    if (sameContent(values_[table_[slot]], value)) return table_[slot];
+    slot = (slot + 1) & (table_.size() - 1);
+  }
+  const auto id = static_cast<ValueId>(values_.size());
+  table_[slot] = id;
+  ++used_;
+  values_.push_back(value);
+  term_of_.push_back(current_term_);
+  name_of_.push_back(0);
+  return id;
+}
+
+namespace {
+
+Rate rateOf(const Dag& dag, Op op, std::span<const ValueId> operands) {
+  Rate rate = Rate::Constant;
+  for (const ValueId id : operands) rate = std::max(rate, dag[id].rate);
+  if (op == Op::Interpolate || op == Op::SumOverLights) return Rate::Fragment;
+  if (op == Op::DFdx || op == Op::DFdy) return std::max(rate, Rate::Fragment);
+  return rate;
+}
+
+}  // namespace
+
+ValueId Dag::makeRaw(Op op, Type type, std::span<const ValueId> operands, uint32_t payload) {
+  Value value{op, type, rateOf(*this, op, operands), static_cast<uint8_t>(operands.size()), payload, {}};
+  std::copy(operands.begin(), operands.end(), value.args.begin());
+  return intern(value);
+}
+
+ValueId Dag::make(Op op, std::span<const ValueId> operands, uint32_t payload) {
+  assert(op != Op::Construct && op != Op::Swizzle && op != Op::Constant && op != Op::Input);
+  std::array<Type, 4> types{};
+  for (size_t i = 0; i < operands.size(); ++i) types[i] = values_[operands[i]].type;
+  const std::optional<Type> type = resultType(op, {types.data(), operands.size()});
+  assert(type);
+  if (const ValueId simpler = Simplifier(*this).simplify(op, *type, operands, payload); simpler != kNoValue) {
+    return simpler;
+  }
+  return makeRaw(op, *type, operands, payload);
+}
+
+ValueId Dag::construct(Type type, std::span<const ValueId> parts) {
+  if (const ValueId simpler = Simplifier(*this).construct(type, parts); simpler != kNoValue) return simpler;
+  return makeRaw(Op::Construct, type, parts, 0);
+}
+
+ValueId Dag::swizzle(ValueId value, std::span<const int> components) {
+  if (const ValueId simpler = Simplifier(*this).swizzle(value, components); simpler != kNoValue)
+    return simpler;
+  return makeRaw(Op::Swizzle, floatType(static_cast<int>(components.size())), {{value}},
+                 packSwizzle(components));
+}
+
+ValueId Dag::component(ValueId value, int index) { return swizzle(value, {{index}}); }
+
+ValueId Dag::remake(const Dag& from, ValueId id, std::span<const ValueId> operands) {
+  const Value& value = from[id];
+  switch (value.op) {
+    case Op::Constant: return constant(value.type, from.constantOf(id));
+    case Op::Input: return input(from.inputOf(id));
+    case Op::Construct: return construct(value.type, operands);
+    case Op::Swizzle: {
+      std::array<int, 4> picks{};
+      const int n = componentCount(value.type);
+      for (int i = 0; i < n; ++i) picks[static_cast<size_t>(i)] = swizzleComponent(value.payload, i);
+      return swizzle(operands[0], {picks.data(), static_cast<size_t>(n)});
+    }
+    default: return make(value.op, operands, value.payload);
+  }
+}
+
+ValueId Dag::constant(double x) { return constant(Type::Float, {x}); }
+
+ValueId Dag::constant(Type type, const Components& components) {
+  Components key{};
+  // +0 and -0 are one constant: no rule here tells them apart and the text would.
+  for (int i = 0; i < componentCount(type); ++i) {
+    const auto k = static_cast<size_t>(i);
+    key[k] = components[k] == 0 ? 0 : components[k];
+  }
+  uint32_t index = 0;
+  const size_t hash = XXH3_64bits(key.data(), sizeof key);
+  const auto [begin, end] = constant_index_.equal_range(hash);
+  for (auto it = begin; it != end; ++it) {
+    if (std::memcmp(&constants_[it->second], &key, sizeof key) == 0) {
+      return intern({Op::Constant, type, Rate::Constant, 0, it->second, {}});
+    }
+  }
+  index = static_cast<uint32_t>(constants_.size());
+  constants_.push_back(key);
+  constant_index_.emplace(hash, index);
+  return intern({Op::Constant, type, Rate::Constant, 0, index, {}});
+}
+
+ValueId Dag::input(const Input& input) {
+  for (uint32_t i = 0; i < inputs_.size(); ++i) {
+    const Input& other = inputs_[i];
+    // Names last: numbers differ first.
+    if (other.kind == input.kind && other.field == input.field && other.block == input.block &&
+        other.element == input.element && other.group == input.group && other.name == input.name) {
+      return intern({Op::Input, other.type, other.rate, 0, i, {}});
+    }
+  }
+  inputs_.push_back(input);
+  return intern({Op::Input, input.type, input.rate, 0, static_cast<uint32_t>(inputs_.size() - 1), {}});
+}
+
+bool Dag::isConstant(ValueId id, double x) const {
+  if (!isConstant(id)) return false;
+  const Components& c = constantOf(id);
+  for (int i = 0; i < componentCount(values_[id].type); ++i) {
+    if (c[static_cast<size_t>(i)] != x) return false;
+  }
+  return true;
+}
+
+TermId Dag::addTerm(Term term) {
+  terms_.push_back(std::move(term));
+  return static_cast<TermId>(terms_.size() - 1);
+}
+
+void Dag::name(ValueId id, std::string_view name) {
+  const Op op = values_[id].op;
+  if (op == Op::Constant || op == Op::Input || name_of_[id] != 0 || name.empty()) return;
+  names_.emplace_back(name);
+  name_of_[id] = static_cast<uint32_t>(names_.size());
+}
+
+std::string_view Dag::nameOf(ValueId id) const {
+  return name_of_[id] == 0 ? std::string_view{} : std::string_view(names_[name_of_[id] - 1]);
+}
+
+void Dag::assume(ValueId id, Interval range) {
+  const auto [it, fresh] = assumed_.try_emplace(id, range);
+  if (fresh) return;
+  it->second.lo = std::max(it->second.lo, range.lo);
+  it->second.hi = std::min(it->second.hi, range.hi);
+}
+
+std::optional<Interval> Dag::assumed(ValueId id) const {
+  const auto it = assumed_.find(id);
+  if (it == assumed_.end()) return std::nullopt;
+  return it->second;
+}
+
+std::vector<ValueId> reachable(const Dag& dag, std::span<const ValueId> roots) {
+  std::vector<bool> seen(dag.size(), false);
+  for (const ValueId root : roots) seen[root] = true;
+  std::vector<ValueId> result;
+  // Operands have smaller ids, so one descending sweep finds everything.
+  for (size_t i = dag.size(); i-- > 0;) {
+    if (!seen[i]) continue;
+    result.push_back(static_cast<ValueId>(i));
+    for (const ValueId operand : dag[static_cast<ValueId>(i)].operands()) seen[operand] = true;
+  }
+  std::reverse(result.begin(), result.end());
+  return result;
+}
+
+}  // namespace lacquer::ir

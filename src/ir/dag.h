@@ -1,0 +1,188 @@
+// The DAG: pure, hash-consed, typed, with rates. Values are made through Dag::make alone, which folds
+// constants, applies the algebraic rules (simplify.cpp) and returns the existing value if there is one. A
+// value's id is larger than its operands', so ascending ids are an evaluation order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "ir/types.h"
+
+namespace lacquer::ir {
+
+enum class Op : uint8_t {
+#define OP(e, ...) e,
+#include "ir/ops.def"
+#undef OP
+};
+
+enum class Signature : uint8_t { Special, Map, Reduce2, Cross, Length, Same, Compare, Logic, Select };
+enum class SpirvSet : uint8_t { None, Core, Ext };
+
+/// One row of ops.def without its fold.
+struct OpInfo {
+  std::string_view name;
+  int arity;  ///< Construct: the maximum
+  Signature signature;
+  std::string_view glsl, hlsl;
+  SpirvSet spirv_set;
+  std::string_view prose;
+};
+
+constexpr int kOpCount = 0
+#define OP(...) +1
+#include "ir/ops.def"
+#undef OP
+    ;
+
+const OpInfo& info(Op op);
+
+/// The op of that name in the node language or a dump.
+std::optional<Op> findOp(std::string_view name);
+
+/// The result type, or nothing when the operand types do not fit. Not for Constant, Input, Construct and
+/// Swizzle.
+std::optional<Type> resultType(Op op, std::span<const Type> operands);
+
+using ValueId = uint32_t;
+inline constexpr ValueId kNoValue = ~ValueId{0};
+
+enum class InputKind : uint8_t {
+  Parameter,     ///< of the material, editable: rate Material (the preshader reads it)
+  BlockField,    ///< a member of a uniform block (Module::blocks): rate Frame, Light for an array of lights,
+                 ///< Material for the material block that the place pass makes, Vertex for the object block
+  Attribute,     ///< of the vertex: rate Vertex
+  Texture,       ///< a texture with its sampler: rate Frame
+  FrontFacing,   ///< Bool, rate Fragment
+  LightIndex,    ///< Int, rate Light
+  Varying,       ///< what the place pass puts in for Interpolate: rate Fragment
+  SpecConstant,  ///< a parameter whose value the pipeline gets (Module::spec_constants), put in by the place
+                 ///< pass: rate Frame
+};
+
+/// What an Input value stands for. Two inputs are one value when kind, name, block and field are equal.
+struct Input {
+  InputKind kind;
+  std::string name;  ///< unique within its kind, e.g. "coat_roughness", "TEXCOORD_0", "light.position"
+  Type type;
+  Rate rate;
+  Interval range;        ///< every component
+  uint32_t block = 0;    ///< BlockField: index into Module::blocks
+  uint32_t field = 0;    ///< BlockField: index into the block's fields; Parameter, SpecConstant, Texture,
+                         ///< Attribute, Varying: index into the module's table of that kind
+  int32_t element = -1;  ///< light array: a fixed element, or -1 for the loop's index
+  int32_t group = 0;     ///< light array: which SumOverLights (its payload) it belongs to
+};
+
+struct Value {
+  Op op;
+  Type type;
+  Rate rate;
+  uint8_t count;     ///< number of operands
+  uint32_t payload;  ///< Constant: into constants; Input: into inputs; Swizzle: two bits a component, first
+                     ///< lowest; SumOverLights: the light group
+  std::array<ValueId, 4> args;
+  std::span<const ValueId> operands() const { return {args.data(), count}; }
+};
+
+using Components = std::array<double, 4>;
+
+using TermId = uint32_t;
+
+/// A term of the specification: one node of the graph. Printed as a section of the generated code.
+struct Term {
+  std::string name;    ///< the graph node's id, "coat.absorption"
+  std::string source;  ///< the node's source line, `KHR_materials_coat, "Colored Absorption"`
+};
+
+class Dag {
+public:
+  Dag();
+
+  size_t size() const { return values_.size(); }
+  const Value& operator[](ValueId id) const { return values_[id]; }
+
+  /// The one constructor of values. Operand types must fit (asserted).
+  ValueId make(Op op, std::span<const ValueId> operands, uint32_t payload = 0);
+  ValueId make(Op op, std::initializer_list<ValueId> operands, uint32_t payload = 0) {
+    return make(op, std::span<const ValueId>(operands.begin(), operands.size()), payload);
+  }
+
+  /// A vector from scalars and vectors whose components add up, or a splat of one Float.
+  ValueId construct(Type type, std::span<const ValueId> parts);
+  ValueId construct(Type type, std::initializer_list<ValueId> parts) {
+    return construct(type, std::span<const ValueId>(parts.begin(), parts.size()));
+  }
+  /// `components` names positions 0 to 3, one to four of them.
+  ValueId swizzle(ValueId value, std::span<const int> components);
+  ValueId component(ValueId value, int index);
+
+  /// A value of another DAG made here, on operands that are of this one.
+  ValueId remake(const Dag& from, ValueId id, std::span<const ValueId> operands);
+
+  ValueId constant(double x);
+  ValueId constant(Type type, const Components& components);
+  ValueId boolean(bool b) { return constant(Type::Bool, {b ? 1.0 : 0.0}); }
+  ValueId input(const Input& input);
+
+  bool isConstant(ValueId id) const { return values_[id].op == Op::Constant; }
+  const Components& constantOf(ValueId id) const { return constants_[values_[id].payload]; }
+  /// True when every component of a constant equals x.
+  bool isConstant(ValueId id, double x) const;
+  const Input& inputOf(ValueId id) const { return inputs_[values_[id].payload]; }
+
+  // Sugar for C++ callers; each is make().
+  ValueId add(ValueId a, ValueId b) { return make(Op::Add, {a, b}); }
+  ValueId sub(ValueId a, ValueId b) { return make(Op::Sub, {a, b}); }
+  ValueId mul(ValueId a, ValueId b) { return make(Op::Mul, {a, b}); }
+  ValueId div(ValueId a, ValueId b) { return make(Op::Div, {a, b}); }
+
+  // Provenance. It never takes part in identity: a value keeps the term and the name of its first making.
+  TermId addTerm(Term term);
+  void setTerm(TermId term) { current_term_ = term; }
+  TermId currentTerm() const { return current_term_; }
+  const std::vector<Term>& terms() const { return terms_; }
+  TermId termOf(ValueId id) const { return term_of_[id]; }
+  /// Names a value if it has no name yet. Constants and inputs are never named.
+  void name(ValueId id, std::string_view name);
+  std::string_view nameOf(ValueId id) const;
+
+  /// States a fact that the operations cannot show (a node's declared range, an `assume`): every component
+  /// lies in the range. Facts about one value are intersected.
+  void assume(ValueId id, Interval range);
+  std::optional<Interval> assumed(ValueId id) const;
+
+private:
+  friend class Simplifier;
+  ValueId intern(const Value& value);
+  ValueId makeRaw(Op op, Type type, std::span<const ValueId> operands, uint32_t payload);
+
+  std::vector<Value> values_;
+  std::vector<Components> constants_;
+  std::vector<Input> inputs_;
+  std::vector<TermId> term_of_;
+  std::vector<Term> terms_;
+  std::vector<uint32_t> name_of_;  ///< 1 + index into names_, 0 for none
+  std::vector<std::string> names_;
+  std::unordered_multimap<size_t, uint32_t> constant_index_;
+  std::unordered_map<ValueId, Interval> assumed_;
+  std::vector<ValueId> table_;  ///< open addressing over values_, by content; a power of two
+  size_t used_ = 0;
+  TermId current_term_ = 0;
+};
+
+/// Swizzle payloads.
+uint32_t packSwizzle(std::span<const int> components);
+int swizzleComponent(uint32_t payload, int index);
+
+/// The values reachable from `roots`, ascending.
+std::vector<ValueId> reachable(const Dag& dag, std::span<const ValueId> roots);
+
+}  // namespace lacquer::ir

@@ -1,0 +1,232 @@
+#include "ir/module.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+
+namespace lacquer::ir {
+
+uint32_t layout(std::vector<BlockField>& fields) {
+  uint32_t offset = 0;
+  for (BlockField& field : fields) {
+    const auto bytes = static_cast<uint32_t>(componentCount(field.type)) * 4;
+    const uint32_t alignment = bytes >= 12 ? 16 : bytes;
+    offset = (offset + alignment - 1) / alignment * alignment;
+    field.offset = offset;
+    offset += bytes;
+    assert(field.offset / 16 == (offset - 1) / 16 || field.type == Type::Mat4);
+  }
+  return (offset + 15) / 16 * 16;
+}
+
+std::vector<ValueId> reachable(const Module& module, Stage stage) {
+  std::vector<ValueId> roots;
+  for (const Output& output : module.outputs) {
+    if (output.stage == stage) roots.push_back(output.value);
+  }
+  return reachable(module.dag, roots);
+}
+
+std::vector<uint32_t> usedParameters(const Module& module) {
+  std::vector<ValueId> roots;
+  for (const Output& output : module.outputs) roots.push_back(output.value);
+  for (const PreshaderField& field : module.preshader) roots.push_back(field.value);
+  std::map<std::string_view, uint32_t> used;
+  for (const ValueId id : reachable(module.dag, roots)) {
+    if (module.dag[id].op != Op::Input) continue;
+    const Input& input = module.dag.inputOf(id);
+    if (input.kind != InputKind::Parameter && input.kind != InputKind::SpecConstant) continue;
+    used.emplace(module.parameters[input.field].name, input.field);
+  }
+  std::vector<uint32_t> indices;
+  for (const auto& [name, index] : used) indices.push_back(index);
+  return indices;
+}
+
+namespace {
+
+class Verifier {
+public:
+  explicit Verifier(const Module& module) : module_(module), dag_(module.dag) {}
+
+  std::vector<std::string> run() {
+    for (ValueId id = 0; id < dag_.size(); ++id) checkValue(id);
+    for (const Output& output : module_.outputs) checkOutput(output);
+    for (const Varying& varying : module_.varyings) {
+      // Without a vertex stage the varyings come from outside.
+      if (varying.source == kNoValue) continue;
+      if (varying.source >= dag_.size() || dag_[varying.source].rate > Rate::Vertex) {
+        complain("varying {} is not computed at vertex rate", varying.name);
+      }
+    }
+    for (const PreshaderField& field : module_.preshader) {
+      if (field.value >= dag_.size() || dag_[field.value].rate > Rate::Material) {
+        complain("preshader field {} is not of material rate", field.field);
+      }
+    }
+    return std::move(wrong_);
+  }
+
+private:
+  template <class... Args>
+  void complain(fmt::format_string<Args...> text, Args&&... args) {
+    wrong_.push_back(fmt::format(text, std::forward<Args>(args)...));
+  }
+
+  void checkValue(ValueId id) {
+    const Value& value = dag_[id];
+    for (const ValueId operand : value.operands()) {
+      if (operand >= id) return complain("value {} uses {}, which is not made before it", id, operand);
+    }
+    if (value.op == Op::Input) return checkInput(id);
+    if (value.op == Op::Constant) return;
+    if (value.op == Op::Swizzle) {
+      for (int i = 0; i < componentCount(value.type); ++i) {
+        if (swizzleComponent(value.payload, i) >= componentCount(dag_[value.args[0]].type)) {
+          complain("value {} picks a component that is not there", id);
+        }
+      }
+      return;
+    }
+    if (value.op == Op::Construct) {
+      int width = 0;
+      for (const ValueId operand : value.operands()) width += componentCount(dag_[operand].type);
+      const bool splat = value.count == 1 && width == 1;
+      if (!splat && width != componentCount(value.type))
+        complain("value {} is built from {} parts", id, width);
+      return;
+    }
+    std::array<Type, 4> types{};
+    for (size_t i = 0; i < value.count; ++i) types[i] = dag_[value.args[i]].type;
+    if (resultType(value.op, {types.data(), value.count}) != value.type) {
+      complain("value {} ({}) has operands that do not fit", id, info(value.op).name);
+    }
+    if (value.op == Op::SumOverLights && value.payload >= module_.light_groups.size()) {
+      complain("value {} sums over light group {}, which is not there", id, value.payload);
+    }
+  }
+
+  void checkInput(ValueId id) {
+    const Input& input = dag_.inputOf(id);
+    if (input.kind == InputKind::BlockField &&
+        (input.block >= module_.blocks.size() || input.field >= module_.blocks[input.block].fields.size() ||
+         module_.blocks[input.block].fields[input.field].type != input.type)) {
+      complain("input {} names a block field that is not there", input.name);
+    }
+    if (input.kind == InputKind::Texture && input.field >= module_.textures.size()) {
+      complain("input {} names a texture that is not there", input.name);
+    }
+    if (input.kind == InputKind::Varying && input.field >= module_.varyings.size()) {
+      complain("input {} names a varying that is not there", input.name);
+    }
+    if (input.kind == InputKind::SpecConstant &&
+        (input.field >= module_.parameters.size() || module_.parameters[input.field].type != input.type ||
+         module_.parameters[input.field].constant_id < 0)) {
+      complain("input {} names a specialization constant that is not there", input.name);
+    }
+  }
+
+  void checkOutput(const Output& output) {
+    if (output.value >= dag_.size()) return complain("output {} has no value", output.name);
+    const Value& value = dag_[output.value];
+    const bool vec4 = output.kind == OutputKind::Position || output.kind == OutputKind::Color;
+    if (vec4 && value.type != Type::Vec4) complain("output {} is not a vec4", output.name);
+    if (output.kind == OutputKind::Discard && value.type != Type::Bool) {
+      complain("output {} is not a bool", output.name);
+    }
+    if (value.rate == Rate::Light)
+      complain("output {} has light rate: a sum_over_lights is missing", output.name);
+    if (output.stage == Stage::Vertex && value.rate > Rate::Vertex) {
+      complain("output {} of the vertex stage has {} rate", output.name, rateName(value.rate));
+    }
+  }
+
+  const Module& module_;
+  const Dag& dag_;
+  std::vector<std::string> wrong_;
+};
+
+/// Values are numbered densely, so that a dump does not depend on what else the DAG ever held.
+using Numbers = std::vector<uint32_t>;
+
+std::string spell(const Module& module, const Numbers& numbers, ValueId id) {
+  const Dag& dag = module.dag;
+  const Value& value = dag[id];
+  if (value.op == Op::Constant) {
+    const Components& c = dag.constantOf(id);
+    if (value.type == Type::Bool) return c[0] != 0 ? "true" : "false";
+    std::string text;
+    for (int i = 0; i < componentCount(value.type); ++i) {
+      text += fmt::format("{}{}", i == 0 ? "" : ", ", c[static_cast<size_t>(i)]);
+    }
+    return value.type == Type::Float || value.type == Type::Int ? text : "(" + text + ")";
+  }
+  if (value.op == Op::Input) {
+    const Input& input = dag.inputOf(id);
+    return input.element < 0 ? input.name : fmt::format("{}[{}]", input.name, input.element);
+  }
+  std::string text(info(value.op).name);
+  if (value.op == Op::Swizzle) {
+    text += '.';
+    for (int i = 0; i < componentCount(value.type); ++i) text += "xyzw"[swizzleComponent(value.payload, i)];
+  }
+  if (value.op == Op::SumOverLights) text += fmt::format("[{}]", value.payload);
+  for (const ValueId operand : value.operands()) {
+    const Value& o = dag[operand];
+    const bool leaf = o.op == Op::Constant || o.op == Op::Input;
+    text += leaf ? " " + spell(module, numbers, operand) : fmt::format(" %{}", numbers[operand]);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> verify(const Module& module) { return Verifier(module).run(); }
+
+std::string dump(const Module& module) {
+  const Dag& dag = module.dag;
+  std::vector<ValueId> roots;
+  for (const Output& output : module.outputs) roots.push_back(output.value);
+  for (const PreshaderField& field : module.preshader) roots.push_back(field.value);
+  std::string text;
+  TermId term = ~TermId{0};
+  Numbers numbers(dag.size(), 0);
+  uint32_t next = 0;
+  for (const ValueId id : reachable(dag, roots)) {
+    const Value& value = dag[id];
+    if (value.op == Op::Constant || value.op == Op::Input) continue;
+    numbers[id] = next++;
+    if (dag.termOf(id) != term) {
+      term = dag.termOf(id);
+      const Term& t = dag.terms()[term];
+      if (!t.name.empty()) text += fmt::format("; {}{}{}\n", t.name, t.source.empty() ? "" : ": ", t.source);
+    }
+    const std::string_view name = dag.nameOf(id);
+    text += fmt::format(
+        "{:<44} ; {} {}\n",
+        fmt::format("  %{} = {} {}", numbers[id], typeName(value.type), spell(module, numbers, id)),
+        rateName(value.rate), name);
+    while (text.size() >= 2 && text[text.size() - 2] == ' ') text.erase(text.size() - 2, 1);
+  }
+  const auto refer = [&](ValueId id) {
+    const bool leaf = dag[id].op == Op::Constant || dag[id].op == Op::Input;
+    return leaf ? spell(module, numbers, id) : fmt::format("%{}", numbers[id]);
+  };
+  for (const PreshaderField& field : module.preshader) {
+    for (const Block& block : module.blocks) {
+      if (block.role != BlockRole::Material) continue;
+      const BlockField& f = block.fields[field.field];
+      text +=
+          fmt::format("preshader {} {} @{} = {}\n", typeName(f.type), f.name, f.offset, refer(field.value));
+    }
+  }
+  for (const Output& output : module.outputs) {
+    text += fmt::format("{} output {} = {}\n", output.stage == Stage::Vertex ? "vertex" : "fragment",
+                        output.name, refer(output.value));
+  }
+  return text;
+}
+
+}  // namespace lacquer::ir

@@ -1,0 +1,131 @@
+// A shader as data: the DAG, what it must deliver, and what it is given. Lowering makes it, passes reshape
+// it, printers print it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ir/dag.h"
+
+namespace lacquer::ir {
+
+enum class Stage : uint8_t { Vertex, Fragment };
+
+enum class OutputKind : uint8_t {
+  Position,  ///< Vec4, clip space; vertex stage
+  Color,     ///< a fragment output at `location`
+  Discard,   ///< Bool: the fragment is dropped when true
+  Varying,   ///< vertex stage: the value of varyings[location]; made by the place pass
+};
+
+struct Output {
+  OutputKind kind;
+  Stage stage;
+  std::string name;
+  uint32_t location = 0;
+  ValueId value = kNoValue;
+};
+
+struct BlockField {
+  std::string name;
+  Type type;
+  uint32_t offset = 0;  ///< bytes; std140 and HLSL packing agree (asserted by layout())
+  Interval range;
+  std::string prose;  ///< one line for the documentation
+};
+
+/// Who fills a block, and how often; also its place in the binding contract (docs/bindings.md).
+enum class BlockRole : uint8_t { Frame, Lights, Material, Object };
+
+struct Block {
+  BlockRole role;
+  std::string name;      ///< the type's name, "Frame"
+  std::string instance;  ///< "frame"
+  std::vector<BlockField> fields;
+  uint32_t array = 0;  ///< 0, or the number of elements: the block holds `Light lights[16]`
+  uint32_t size = 0;   ///< bytes of one element, a multiple of 16
+};
+
+/// An editable number of the material. Only those that the DAG reaches matter.
+struct Parameter {
+  std::string name;  ///< "coat_roughness"
+  Type type;
+  Components value{};  ///< today's value
+  Interval range;
+  std::string pointer;   ///< JSON pointer of the glTF property
+  Components neutral{};  ///< what stands for no material in particular: defaults in code that materials share
+  int32_t constant_id =
+      -1;  ///< with Module::spec_constants: SpecId of the first component, the others follow
+  std::string constant_name{};  ///< what the code calls it then
+};
+
+struct TextureSlot {
+  std::string name;  ///< "coat_roughness_texture"
+  Type type = Type::Texture2D;
+  bool srgb = false;         ///< to be given an sRGB format (the sampler decodes)
+  bool environment = false;  ///< given by the template (per frame), not by the material
+  int texture = -1;          ///< glTF texture index, -1 when none
+  std::string pointer;       ///< JSON pointer of the textureInfo
+  uint32_t binding = 0;      ///< within its set; filled by the bind pass
+};
+
+struct Attribute {
+  std::string name;  ///< glTF semantic, "TEXCOORD_0"
+  Type type;
+  uint32_t location;
+};
+
+struct Varying {
+  std::string name;
+  Type type;
+  uint32_t location = 0;
+  ValueId source = kNoValue;  ///< the vertex value; none when the template has no vertex stage
+};
+
+/// A field of the material block with the expression that gives it (rate Material).
+struct PreshaderField {
+  uint32_t field;
+  ValueId value;
+};
+
+/// A set of lights that one SumOverLights runs over.
+struct LightGroup {
+  int32_t first = 0;   ///< element of the light array
+  int32_t count = -1;  ///< -1: a run-time count (frame.light_count)
+};
+
+struct Module {
+  std::string template_name;
+  Dag dag;
+  std::vector<Output> outputs;
+  std::vector<Block> blocks;
+  std::vector<Parameter> parameters;
+  std::vector<TextureSlot> textures;
+  std::vector<Attribute> attributes;  ///< all that the template knows, whether used or not
+  std::vector<Varying> varyings;
+  std::vector<PreshaderField> preshader;
+  std::vector<LightGroup> light_groups;
+  bool spec_constants =
+      false;  ///< parameters are specialization constants: there is no material block and no preshader
+};
+
+/// Gives the fields offsets that std140 and HLSL's constant buffer packing agree on, in the order given: a
+/// field never straddles 16 bytes, Vec3 and Vec4 start at 16, Vec2 at 8. Returns the size, a multiple of 16.
+uint32_t layout(std::vector<BlockField>& fields);
+
+/// The values that the outputs of a stage reach (both stages when none is given), ascending.
+std::vector<ValueId> reachable(const Module& module, Stage stage);
+
+/// The parameters that the outputs or the preshader read, as indices into Module::parameters, in the order of
+/// their names: an order that depends on nothing but the shader.
+std::vector<uint32_t> usedParameters(const Module& module);
+
+/// Checks everything that later code relies on: types, rates, operand order, input tables, outputs' types and
+/// stages. The one gate: behind it there are only asserts. Returns what is wrong, one line each; empty when
+/// good.
+std::vector<std::string> verify(const Module& module);
+
+/// A readable dump: each reachable value with its type, rate, term and name, then the outputs.
+std::string dump(const Module& module);
+
+}  // namespace lacquer::ir

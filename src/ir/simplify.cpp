@@ -1,0 +1,341 @@
+#include "ir/simplify.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ir/fold.h"
+
+namespace lacquer::ir {
+
+ValueId Simplifier::splatted(ValueId id) {
+  const Value& value = dag_[id];
+  if (!isFloatVector(value.type)) return kNoValue;
+  if (value.op == Op::Construct && value.count == 1) return value.args[0];
+  if (value.op == Op::Constant && dag_.isConstant(id, dag_.constantOf(id)[0])) {
+    return dag_.constant(dag_.constantOf(id)[0]);
+  }
+  return kNoValue;
+}
+
+ValueId Simplifier::as(Type type, ValueId id) {
+  if (dag_[id].type == type) return id;
+  return dag_.construct(type, {id});
+}
+
+ValueId Simplifier::simplify(Op op, Type type, std::span<const ValueId> operands, uint32_t) {
+  if (const ValueId folded = fold(op, type, operands); folded != kNoValue) return folded;
+  if (info(op).signature == Signature::Map) {
+    if (const ValueId scalar = unsplat(op, type, operands); scalar != kNoValue) return scalar;
+  }
+  if (operands.size() == 1) return unary(op, operands[0]);
+  if (operands.size() == 2) return binary(op, type, operands[0], operands[1]);
+  return ternary(op, type, operands[0], operands[1], operands[2]);
+}
+
+ValueId Simplifier::fold(Op op, Type type, std::span<const ValueId> operands) {
+  if (!std::all_of(operands.begin(), operands.end(), [&](ValueId id) { return dag_.isConstant(id); })) {
+    return kNoValue;
+  }
+  const Signature signature = info(op).signature;
+  if (signature != Signature::Map && signature != Signature::Compare && signature != Signature::Logic) {
+    return foldVector(op, type, operands);
+  }
+  Components result{};
+  for (int i = 0; i < componentCount(type); ++i) {
+    std::array<double, 3> x{};
+    for (size_t k = 0; k < operands.size(); ++k) {
+      const bool scalar = componentCount(dag_[operands[k]].type) == 1;
+      x[k] = dag_.constantOf(operands[k])[scalar ? 0 : static_cast<size_t>(i)];
+    }
+    const double y = foldComponent<double>(op, x[0], x[1], x[2]);
+    // What is not a number stays an expression: a printed literal must be finite.
+    if (!std::isfinite(y)) return kNoValue;
+    result[static_cast<size_t>(i)] = y;
+  }
+  return dag_.constant(type, result);
+}
+
+ValueId Simplifier::foldVector(Op op, Type type, std::span<const ValueId> operands) {
+  const Components a = dag_.constantOf(operands[0]);
+  const int n = componentCount(dag_[operands[0]].type);
+  const auto dotOf = [n](const Components& x, const Components& y) {
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += x[static_cast<size_t>(i)] * y[static_cast<size_t>(i)];
+    return sum;
+  };
+  switch (op) {
+    case Op::Dot: return dag_.constant(dotOf(a, dag_.constantOf(operands[1])));
+    case Op::Length: return dag_.constant(std::sqrt(dotOf(a, a)));
+    case Op::Normalize: {
+      const double length = std::sqrt(dotOf(a, a));
+      if (!(length > 0)) return kNoValue;
+      return dag_.constant(type, {a[0] / length, a[1] / length, a[2] / length, a[3] / length});
+    }
+    case Op::Cross: {
+      const Components b = dag_.constantOf(operands[1]);
+      return dag_.constant(type,
+                           {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]});
+    }
+    case Op::Select: return a[0] != 0 ? operands[1] : operands[2];
+    case Op::DFdx:
+    case Op::DFdy: return zero(type);
+    case Op::Interpolate: return operands[0];
+    default: return kNoValue;
+  }
+}
+
+ValueId Simplifier::unsplat(Op op, Type type, std::span<const ValueId> operands) {
+  if (type == Type::Float) return kNoValue;
+  std::array<ValueId, 4> parts{};
+  bool changed = false;
+  bool vector_left = false;
+  for (size_t i = 0; i < operands.size(); ++i) {
+    const ValueId scalar = splatted(operands[i]);
+    parts[i] = scalar == kNoValue ? operands[i] : scalar;
+    changed |= scalar != kNoValue;
+    vector_left |= dag_[parts[i]].type != Type::Float;
+  }
+  if (!changed) return kNoValue;
+  const ValueId value = dag_.make(op, {parts.data(), operands.size()});
+  return vector_left ? value : dag_.construct(type, {value});
+}
+
+ValueId Simplifier::unary(Op op, ValueId a) {
+  const Value value = dag_[a];
+  switch (op) {
+    case Op::Neg:
+      if (value.op == Op::Neg) return value.args[0];
+      if (value.op == Op::Sub && dag_[value.args[0]].type == dag_[value.args[1]].type) {
+        return dag_.sub(value.args[1], value.args[0]);
+      }
+      return kNoValue;
+    case Op::Abs:
+      if (value.op == Op::Abs) return a;
+      if (value.op == Op::Neg) return dag_.make(Op::Abs, {value.args[0]});
+      return kNoValue;
+    case Op::Not: return value.op == Op::Not ? value.args[0] : kNoValue;
+    case Op::Normalize: return value.op == Op::Normalize ? a : kNoValue;
+    case Op::Interpolate: return value.rate < Rate::Vertex ? a : kNoValue;
+    case Op::DFdx:
+    case Op::DFdy: return value.rate < Rate::Vertex ? zero(value.type) : kNoValue;
+    case Op::SumOverLights: return dag_.isConstant(a, 0) ? a : kNoValue;
+    default: return kNoValue;
+  }
+}
+
+ValueId Simplifier::binary(Op op, Type type, ValueId a, ValueId b) {
+  switch (op) {
+    case Op::Add:
+    case Op::Sub: return sum(op, type, a, b);
+    case Op::Mul: return product(type, a, b);
+    case Op::Div: return quotient(type, a, b);
+    case Op::Min:
+    case Op::Max: return extremum(op, type, a, b);
+    case Op::Pow: return power(type, a, b);
+    case Op::And:
+    case Op::Or: return logic(op, a, b);
+    case Op::Dot: return dot(a, b);
+    default: return kNoValue;
+  }
+}
+
+ValueId Simplifier::sum(Op op, Type type, ValueId a, ValueId b) {
+  if (dag_.isConstant(b, 0)) return as(type, a);
+  if (dag_.isConstant(a, 0)) return op == Op::Add ? as(type, b) : dag_.make(Op::Neg, {as(type, b)});
+  if (op == Op::Sub && a == b) return zero(type);
+  const Value vb = dag_[b];
+  if (vb.op == Op::Neg) return dag_.make(op == Op::Add ? Op::Sub : Op::Add, {a, vb.args[0]});
+  const Value va = dag_[a];
+  if (op == Op::Add && va.op == Op::Neg) return dag_.sub(b, va.args[0]);
+  // (v + a) + b for a vector and two Floats: v + (a + b), one vector sum less.
+  if (op == Op::Add && type != Type::Float) {
+    const auto isFloat = [this](ValueId id) { return dag_[id].type == Type::Float; };
+    if (isFloat(a)) std::swap(a, b);
+    const Value inner = dag_[a];
+    if (isFloat(b) && inner.op == Op::Add && isFloat(inner.args[1])) {
+      return dag_.add(inner.args[0], dag_.add(inner.args[1], b));
+    }
+    if (isFloat(b) && inner.op == Op::Add && isFloat(inner.args[0])) {
+      return dag_.add(inner.args[1], dag_.add(inner.args[0], b));
+    }
+  }
+  // 1 - (1 - x): the complement of a complement.
+  if (op == Op::Sub && vb.op == Op::Sub && dag_.isConstant(a) && vb.args[0] == a) return as(type, vb.args[1]);
+  return kNoValue;
+}
+
+ValueId Simplifier::product(Type type, ValueId a, ValueId b) {
+  if (dag_.isConstant(a, 0) || dag_.isConstant(b, 0)) return zero(type);
+  if (dag_.isConstant(a, 1)) return as(type, b);
+  if (dag_.isConstant(b, 1)) return as(type, a);
+  if (dag_.isConstant(a, -1)) return dag_.make(Op::Neg, {as(type, b)});
+  if (dag_.isConstant(b, -1)) return dag_.make(Op::Neg, {as(type, a)});
+  if (is(a, Op::Neg) && is(b, Op::Neg)) return dag_.mul(dag_[a].args[0], dag_[b].args[0]);
+  // c1 * (c2 * x) = (c1 * c2) * x
+  if (dag_.isConstant(b)) std::swap(a, b);
+  if (dag_.isConstant(a) && is(b, Op::Mul)) {
+    const Value inner = dag_[b];
+    for (const size_t k : {size_t{0}, size_t{1}}) {
+      if (dag_.isConstant(inner.args[k])) return dag_.mul(dag_.mul(a, inner.args[k]), inner.args[1 - k]);
+    }
+  }
+  return kNoValue;
+}
+
+ValueId Simplifier::quotient(Type type, ValueId a, ValueId b) {
+  if (dag_.isConstant(b, 1)) return as(type, a);
+  if (dag_.isConstant(a, 0)) return zero(type);
+  return kNoValue;
+}
+
+ValueId Simplifier::extremum(Op op, Type type, ValueId a, ValueId b) {
+  if (a == b) return as(type, a);
+  // max(max(x, c1), c2) = max(x, max(c1, c2))
+  if (dag_.isConstant(a)) std::swap(a, b);
+  if (dag_.isConstant(b) && is(a, op) && dag_.isConstant(dag_[a].args[1])) {
+    return dag_.make(op, {dag_[a].args[0], dag_.make(op, {dag_[a].args[1], b})});
+  }
+  return kNoValue;
+}
+
+ValueId Simplifier::power(Type type, ValueId a, ValueId b) {
+  if (dag_.isConstant(b, 1)) return as(type, a);
+  if (dag_.isConstant(b, 0) || dag_.isConstant(a, 1)) return dag_.constant(type, {1, 1, 1, 1});
+  if (dag_.isConstant(b, 2)) return dag_.mul(as(type, a), as(type, a));
+  return kNoValue;
+}
+
+ValueId Simplifier::logic(Op op, ValueId a, ValueId b) {
+  if (a == b) return a;
+  if (dag_.isConstant(a)) std::swap(a, b);
+  if (!dag_.isConstant(b)) return kNoValue;
+  const bool truth = dag_.constantOf(b)[0] != 0;
+  if (op == Op::And) return truth ? a : b;
+  return truth ? b : a;
+}
+
+ValueId Simplifier::dot(ValueId a, ValueId b) {
+  if (dag_[a].type == Type::Float) return dag_.mul(a, b);
+  if (dag_.isConstant(a)) std::swap(a, b);
+  if (!dag_.isConstant(b)) return kNoValue;
+  if (dag_.isConstant(b, 0)) return dag_.constant(0);
+  return kNoValue;
+}
+
+ValueId Simplifier::ternary(Op op, Type type, ValueId a, ValueId b, ValueId c) {
+  if (op == Op::Select) {
+    if (dag_.isConstant(a)) return dag_.constantOf(a)[0] != 0 ? b : c;
+    if (b == c) return b;
+    if (is(a, Op::Not)) return dag_.make(Op::Select, {dag_[a].args[0], c, b});
+    if (type == Type::Bool && dag_.isConstant(b, 1) && dag_.isConstant(c, 0)) return a;
+    return kNoValue;
+  }
+  if (op == Op::Mix) {
+    if (dag_.isConstant(c, 0) || a == b) return as(type, a);
+    if (dag_.isConstant(c, 1)) return as(type, b);
+    if (dag_.isConstant(a, 0)) return as(type, dag_.mul(b, c));
+    if (dag_.isConstant(b, 0)) return as(type, dag_.mul(a, dag_.sub(dag_.constant(1), c)));
+    return kNoValue;
+  }
+  if (op == Op::Clamp && is(a, Op::Clamp) && dag_[a].args[1] == b && dag_[a].args[2] == c) return as(type, a);
+  return kNoValue;
+}
+
+ValueId Simplifier::construct(Type type, std::span<const ValueId> parts) {
+  if (parts.size() == 1 && dag_[parts[0]].type == type) return parts[0];
+  const bool splat = parts.size() == 1;
+  if (splat && dag_.isConstant(parts[0])) {
+    const double x = dag_.constantOf(parts[0])[0];
+    return dag_.constant(type, {x, x, x, x});
+  }
+  if (splat) return kNoValue;
+
+  // Per component: the vector (or Float) it comes from and its position there.
+  struct Pick {
+    ValueId source;
+    int index;
+  };
+  std::vector<Pick> picks;
+  for (const ValueId part : parts) {
+    const Value value = dag_[part];
+    for (int i = 0; i < componentCount(value.type); ++i) {
+      const ValueId scalar = value.type == Type::Float ? part : dag_.component(part, i);
+      const Value s = dag_[scalar];
+      if (s.op == Op::Swizzle)
+        picks.push_back({s.args[0], swizzleComponent(s.payload, 0)});
+      else
+        picks.push_back({scalar, 0});
+    }
+  }
+  const auto constantAt = [&](const Pick& p) { return dag_.isConstant(p.source); };
+  if (std::all_of(picks.begin(), picks.end(), constantAt)) {
+    Components c{};
+    for (size_t i = 0; i < picks.size(); ++i) {
+      c[i] = dag_.constantOf(picks[i].source)[static_cast<size_t>(picks[i].index)];
+    }
+    return dag_.constant(type, c);
+  }
+  const bool one =
+      std::all_of(picks.begin(), picks.end(), [&](const Pick& p) { return p.source == picks[0].source; });
+  if (one && dag_[picks[0].source].type != Type::Float) {
+    std::vector<int> order;
+    for (const Pick& p : picks) order.push_back(p.index);
+    return dag_.swizzle(picks[0].source, order);
+  }
+  if (one) return dag_.construct(type, {picks[0].source});
+  // A part that is itself a Construct of scalars opens up, so that equal vectors built in two ways are one
+  // value.
+  for (size_t k = 0; k < parts.size(); ++k) {
+    const Value value = dag_[parts[k]];
+    if (value.op != Op::Construct || value.count == 1) continue;
+    std::vector<ValueId> opened(parts.begin(), parts.end());
+    opened.erase(opened.begin() + static_cast<ptrdiff_t>(k));
+    opened.insert(opened.begin() + static_cast<ptrdiff_t>(k), value.args.begin(),
+                  value.args.begin() + value.count);
+    return dag_.construct(type, opened);
+  }
+  return kNoValue;
+}
+
+ValueId Simplifier::swizzle(ValueId id, std::span<const int> components) {
+  const Value value = dag_[id];
+  const auto n = static_cast<int>(components.size());
+  if (value.type == Type::Float) return n == 1 ? id : dag_.construct(floatType(n), {id});
+  bool identity = n == componentCount(value.type);
+  for (int i = 0; i < n; ++i) identity &= components[static_cast<size_t>(i)] == i;
+  if (identity) return id;
+  if (value.op == Op::Constant) {
+    Components c{};
+    for (int i = 0; i < n; ++i) {
+      c[static_cast<size_t>(i)] =
+          dag_.constantOf(id)[static_cast<size_t>(components[static_cast<size_t>(i)])];
+    }
+    return dag_.constant(floatType(n), c);
+  }
+  if (value.op == Op::Swizzle) {
+    std::array<int, 4> composed{};
+    for (int i = 0; i < n; ++i) {
+      composed[static_cast<size_t>(i)] = swizzleComponent(value.payload, components[static_cast<size_t>(i)]);
+    }
+    return dag_.swizzle(value.args[0], {composed.data(), static_cast<size_t>(n)});
+  }
+  if (value.op != Op::Construct) return kNoValue;
+  if (value.count == 1) return n == 1 ? value.args[0] : dag_.construct(floatType(n), {value.args[0]});
+  // From a Construct: the part that holds all of it, or one component.
+  int first = 0;
+  for (int k = 0; k < value.count; ++k) {
+    const ValueId part = value.args[static_cast<size_t>(k)];
+    const int width = componentCount(dag_[part].type);
+    const bool inside = std::all_of(components.begin(), components.end(),
+                                    [&](int c) { return c >= first && c < first + width; });
+    if (inside) {
+      std::array<int, 4> local{};
+      for (int i = 0; i < n; ++i) local[static_cast<size_t>(i)] = components[static_cast<size_t>(i)] - first;
+      return dag_.swizzle(part, {local.data(), static_cast<size_t>(n)});
+    }
+    first += width;
+  }
+  return kNoValue;
+}
+
+}  // namespace lacquer::ir

@@ -1,0 +1,49 @@
+#include "ir/types.h"
+
+namespace lacquer::ir {
+
+std::string_view typeName(Type type) {
+  switch (type) {
+    case Type::Bool: return "bool";
+    case Type::Int: return "int";
+    case Type::Float: return "float";
+    case Type::Vec2: return "vec2";
+    case Type::Vec3: return "vec3";
+    case Type::Vec4: return "vec4";
+    case Type::Mat4: return "mat4";
+    case Type::Texture2D: return "sampler2D";
+    case Type::TextureCube: return "samplerCube";
+  }
+  return "";
+}
+
+int componentCount(Type type) {
+  switch (type) {
+    case Type::Bool:
+    case Type::Int:
+    case Type::Float: return 1;
+    case Type::Vec2: return 2;
+    case Type::Vec3: return 3;
+    case Type::Vec4: return 4;
+    case Type::Mat4: return 16;
+    case Type::Texture2D:
+    case Type::TextureCube: return 0;
+  }
+  return 0;
+}
+
+Type floatType(int components) { return static_cast<Type>(static_cast<int>(Type::Float) + components - 1); }
+
+std::string_view rateName(Rate rate) {
+  switch (rate) {
+    case Rate::Constant: return "constant";
+    case Rate::Material: return "material";
+    case Rate::Frame: return "frame";
+    case Rate::Vertex: return "vertex";
+    case Rate::Fragment: return "fragment";
+    case Rate::Light: return "light";
+  }
+  return "";
+}
+
+}  // namespace lacquer::ir

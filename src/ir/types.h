@@ -1,0 +1,41 @@
+// The few types, rates and intervals that every later folder speaks of.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+namespace lacquer::ir {
+
+enum class Type : uint8_t { Bool, Int, Float, Vec2, Vec3, Vec4, Mat4, Texture2D, TextureCube };
+
+/// GLSL's name: "bool", "int", "float", "vec2", …, "mat4", "sampler2D", "samplerCube".
+std::string_view typeName(Type type);
+
+/// Number of float components: 1 for Float, 2 to 4 for vectors, 16 for Mat4, 1 for Bool and Int, 0 for
+/// textures.
+int componentCount(Type type);
+
+inline bool isFloatVector(Type t) { return t == Type::Vec2 || t == Type::Vec3 || t == Type::Vec4; }
+inline bool isFloating(Type t) { return t == Type::Float || isFloatVector(t); }
+inline bool isTexture(Type t) { return t == Type::Texture2D || t == Type::TextureCube; }
+
+/// Float, Vec2, Vec3 or Vec4 for 1 to 4 components.
+Type floatType(int components);
+
+/// How often a value can change, lowest first. A value has the highest rate among its operands, except that
+/// Interpolate lifts Vertex to Fragment and SumOverLights lowers Light to Fragment.
+enum class Rate : uint8_t { Constant, Material, Frame, Vertex, Fragment, Light };
+
+/// "constant", "material", …
+std::string_view rateName(Rate rate);
+
+/// A closed range of floats; the default is unbounded.
+struct Interval {
+  double lo = -std::numeric_limits<double>::infinity();
+  double hi = std::numeric_limits<double>::infinity();
+  bool operator==(const Interval&) const = default;
+  bool bounded() const { return lo > -1e300 && hi < 1e300; }
+};
+
+}  // namespace lacquer::ir
