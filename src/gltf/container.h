@@ -1,0 +1,18 @@
+// From a file's bytes to its JSON text.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "support/diagnostic.h"
+
+namespace lacquer::gltf {
+
+/// The bytes of a file. Fails on what is no file, such as a folder or an endless device.
+Result<std::string> readBytes(const std::string& path);
+
+/// The JSON in `bytes`, which are a .gltf or a .glb (told apart by the GLB's magic, not by a file name). The
+/// view is into `bytes`. Fails when a GLB is truncated or its chunks do not fit.
+Result<std::string_view> jsonText(std::string_view bytes, const std::string& file);
+
+}  // namespace lacquer::gltf

@@ -1,0 +1,252 @@
+#include "gltf/json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "gltf/text.h"
+
+namespace lacquer::gltf {
+
+namespace {
+
+// No glTF nests deeper than a dozen levels outside `extras`. The tree is copied and written recursively.
+constexpr size_t kDeepest = 512;
+
+/// Offset of the bracket that opens one level too many, npos when there is none.
+size_t tooDeep(std::string_view text) {
+  size_t depth = 0;
+  bool inString = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (inString) {
+      if (c == '\\') ++i;
+      if (c == '"') inString = false;
+    } else if (c == '"') {
+      inString = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kDeepest) return i;
+    } else if ((c == ']' || c == '}') && depth > 0) {
+      --depth;
+    }
+  }
+  return std::string_view::npos;
+}
+
+/// Builds the tree from the parser's events. The library's own builder looks for each new member among those
+/// before it, which takes quadratic time in a large object; here doubles are dropped once, at the end.
+class TreeBuilder : public nlohmann::json_sax<Json> {
+public:
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t&) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t& value) override { return add(std::move(value)); }
+  bool start_object(std::size_t) override { return open(Json::object()); }
+  bool start_array(std::size_t) override { return open(Json::array()); }
+  bool key(string_t& value) override {
+    key_ = std::move(value);
+    return true;
+  }
+  bool end_object() override {
+    dropDoubles(open_.back()->get_ref<Json::object_t&>());
+    open_.pop_back();
+    return true;
+  }
+  bool end_array() override {
+    open_.pop_back();
+    return true;
+  }
+  bool parse_error(std::size_t position, const std::string& token,
+                   const nlohmann::detail::exception& e) override {
+    errorId = e.id;
+    errorText = e.what();
+    errorToken = token;
+    errorPosition = position;
+    return false;
+  }
+
+  Json root;
+  int errorId = 0;  ///< the library's number of the error
+  std::string errorText;
+  std::string errorToken;
+  size_t errorPosition = 0;  ///< bytes read until then
+
+private:
+  template <class T>
+  bool add(T&& value) {
+    place(Json(std::forward<T>(value)));
+    return true;
+  }
+
+  bool open(Json container) {
+    open_.push_back(place(std::move(container)));
+    return true;
+  }
+
+  /// Puts a value where the parser stands. Pointers in `open_` stay valid: what is open is the last of its
+  /// parent.
+  Json* place(Json value) {
+    if (open_.empty()) {
+      root = std::move(value);
+      return &root;
+    }
+    if (open_.back()->is_array()) {
+      auto& elements = open_.back()->get_ref<Json::array_t&>();
+      elements.push_back(std::move(value));
+      return &elements.back();
+    }
+    auto& members = open_.back()->get_ref<Json::object_t&>();
+    members.emplace_back(std::move(key_), std::move(value));
+    return &members.back().second;
+  }
+
+  static void dropDoubles(Json::object_t& object) {
+    Json::object_t::Container& members = object;  // the library's operator[] is for names only
+    std::vector<size_t> order(members.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+      const int compared = members[a].first.compare(members[b].first);
+      return compared < 0 || (compared == 0 && a < b);
+    });
+    std::vector<bool> dropped(members.size());
+    bool any = false;
+    for (size_t i = 1; i < order.size(); ++i) {
+      if (members[order[i - 1]].first != members[order[i]].first) continue;
+      dropped[order[i - 1]] = any = true;
+    }
+    if (!any) return;
+    Json::object_t kept;
+    for (size_t i = 0; i < members.size(); ++i) {
+      if (!dropped[i]) kept.emplace_back(members[i].first, std::move(members[i].second));
+    }
+    object = std::move(kept);
+  }
+
+  std::vector<Json*> open_;
+  std::string key_;
+};
+
+/// As locate(), but shows only a window of a long line (files without line breaks are common) and nothing
+/// that would upset a terminal.
+void locateInWindow(Diagnostic& diagnostic, std::string_view text, size_t offset, size_t length) {
+  constexpr size_t kBefore = 60;
+  constexpr size_t kAfter = 60;
+  offset = std::min(offset, text.size());
+  const size_t before = offset == 0 ? std::string_view::npos : text.rfind('\n', offset - 1);
+  const size_t begin = before == std::string_view::npos ? 0 : before + 1;
+  const size_t end = std::min(text.find('\n', offset), text.size());
+  size_t from = offset - begin > kBefore ? offset - kBefore : begin;
+  size_t to = end - offset > kAfter ? offset + kAfter : end;
+  const auto inSequence = [&](size_t at) {
+    return at < end && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+  };
+  while (from < offset && inSequence(from)) ++from;
+  while (to > offset && inSequence(to)) --to;
+
+  std::string shown(text.substr(from, to - from));
+  if (to == end && offset < end && shown.ends_with('\r')) shown.pop_back();
+  std::replace(shown.begin(), shown.end(), '\t', ' ');
+  std::string window = from > begin ? "..." : "";
+  const size_t lead = window.size() + (offset - from);
+  window += printable(shown, shown.size());
+  if (to < end) window += "...";
+  locate(diagnostic, window, std::min(lead, window.size()), length);
+  diagnostic.place.line =
+      static_cast<uint32_t>(std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(begin), '\n') + 1);
+  diagnostic.place.column = static_cast<uint32_t>(offset - begin + 1);
+}
+
+/// The parser's words without its prefix "[json.exception.…] parse error at line 1, column 2: ".
+std::string parserMessage(const std::string& what) {
+  constexpr std::string_view kColumn = ", column ";
+  const size_t column = what.find(kColumn);
+  const size_t colon = column == std::string::npos ? std::string::npos : what.find(": ", column);
+  const size_t bracket = what.find("] ");
+  std::string text = what.substr(colon != std::string::npos     ? colon + 2
+                                 : bracket != std::string::npos ? bracket + 2
+                                                                : 0);
+  return printable(text, 200);
+}
+
+bool startsWithNoNumber(std::string_view text) {
+  constexpr std::string_view kWords[] = {"NaN", "nan", "Infinity", "inf", "Inf"};
+  return std::any_of(std::begin(kWords), std::end(kWords),
+                     [&](std::string_view w) { return text.starts_with(w); });
+}
+
+Diagnostic syntaxError(const TreeBuilder& builder, std::string_view text, const std::string& file) {
+  constexpr int kOutOfRange = 406;  // the library's number for a number that is too large for a double
+  Diagnostic diagnostic{"json-syntax", Severity::Error, {file, 0, 0, {}}, {}, {}, {}};
+  size_t offset = builder.errorPosition == 0 ? 0 : builder.errorPosition - 1;
+  size_t length = 1;
+  if (builder.errorId == kOutOfRange) {
+    length = builder.errorToken.size();
+    offset = builder.errorPosition >= length ? builder.errorPosition - length : 0;
+    diagnostic.code = "json-number-range";
+    diagnostic.message = fmt::format("the number {} is out of range", printable(builder.errorToken));
+    diagnostic.help = "a number must fit a double: at most about 1.8e308";
+  } else {
+    diagnostic.message = "not valid JSON: " + parserMessage(builder.errorText);
+    const size_t back = std::min<size_t>(offset, 1);
+    if (offset < text.size() &&
+        (startsWithNoNumber(text.substr(offset)) || startsWithNoNumber(text.substr(offset - back)))) {
+      diagnostic.help = "JSON has no NaN and no infinity";
+    }
+  }
+  locateInWindow(diagnostic, text, offset, length);
+  return diagnostic;
+}
+
+}  // namespace
+
+Result<Json> parseJson(std::string_view text, const std::string& file) {
+  if (const size_t offset = tooDeep(text); offset != std::string_view::npos) {
+    Diagnostic diagnostic{"json-too-deep", Severity::Error, {file, 0, 0, {}}, {}, {}, {}};
+    diagnostic.message = fmt::format("nested more than {} levels deep", kDeepest);
+    diagnostic.help = "no glTF needs that: the file is damaged or made to do harm";
+    locateInWindow(diagnostic, text, offset, 1);
+    return tl::make_unexpected(Diagnostics{diagnostic});
+  }
+  TreeBuilder builder;
+  if (!Json::sax_parse(text.begin(), text.end(), &builder)) {
+    return tl::make_unexpected(Diagnostics{syntaxError(builder, text, file)});
+  }
+  return std::move(builder.root);
+}
+
+const Json* member(const Json& object, std::string_view key) {
+  if (!object.is_object()) return nullptr;
+  for (const auto& [name, value] : object.get_ref<const Json::object_t&>()) {
+    if (name == key) return &value;
+  }
+  return nullptr;
+}
+
+std::string_view describe(const Json& value) {
+  switch (value.type()) {
+    case Json::value_t::null: return "null";
+    case Json::value_t::object: return "an object";
+    case Json::value_t::array: return "an array";
+    case Json::value_t::string: return "a string";
+    case Json::value_t::boolean: return "a boolean";
+    case Json::value_t::number_integer:
+    case Json::value_t::number_unsigned:
+    case Json::value_t::number_float: return "a number";
+    case Json::value_t::binary:
+    case Json::value_t::discarded: return "not JSON";
+  }
+  return "";
+}
+
+size_t arraySize(const Json& object, std::string_view key) {
+  const Json* array = member(object, key);
+  return array != nullptr && array->is_array() ? array->size() : 0;
+}
+
+}  // namespace lacquer::gltf

@@ -1,0 +1,107 @@
+#include "gltf/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <vector>
+
+namespace lacquer::gltf {
+
+namespace {
+
+/// Bytes of the well-formed UTF-8 sequence that `text` starts with; 0 when it starts with none.
+size_t sequenceLength(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text[0]);
+  const size_t length = lead < 0x80   ? 1
+                        : lead < 0xC2 ? 0
+                        : lead < 0xE0 ? 2
+                        : lead < 0xF0 ? 3
+                        : lead < 0xF5 ? 4
+                                      : 0;
+  if (length > text.size()) return 0;
+  for (size_t i = 1; i < length; ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return 0;
+  }
+  return length;
+}
+
+char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+
+/// Levenshtein's distance, letter case aside.
+size_t editDistance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t changed = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, size_t longest) {
+  std::string out;
+  for (size_t at = 0; at < text.size();) {
+    const size_t length = sequenceLength(text.substr(at));
+    if (out.size() + std::max<size_t>(1, length) > longest) return out + "...";
+    const auto byte = static_cast<unsigned char>(text[at]);
+    if (length == 0 || byte < 0x20 || byte == 0x7F) {
+      out += '?';
+      at += 1;
+    } else {
+      out += text.substr(at, length);
+      at += length;
+    }
+  }
+  return out;
+}
+
+std::string quote(std::string_view text) { return '"' + printable(text) + '"'; }
+
+std::string_view closest(std::string_view name, std::span<const std::string_view> candidates) {
+  constexpr size_t kLongest = 64;  // longer names are no misspellings, and the distance costs their square
+  constexpr size_t kShortestStem = 3;
+  if (name.empty() || name.size() > kLongest) return {};
+  std::string_view best;
+  size_t bestDistance = std::max<size_t>(1, std::min<size_t>(4, name.size() / 3)) + 1;
+  for (const std::string_view candidate : candidates) {
+    const size_t distance = editDistance(name, candidate);
+    if (distance < bestDistance) {
+      bestDistance = distance;
+      best = candidate;
+    }
+  }
+  if (!best.empty() || name.size() < kShortestStem) return best;
+  const auto extended = std::find_if(candidates.begin(), candidates.end(), [&](std::string_view candidate) {
+    return candidate.size() > name.size() && editDistance(name, candidate.substr(0, name.size())) == 0;
+  });
+  return extended == candidates.end() ? best : *extended;
+}
+
+std::string listOf(std::span<const std::string_view> names, std::string_view last) {
+  std::string out;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i != 0) out += i + 1 == names.size() ? fmt::format(" {} ", last) : ", ";
+    out += names[i];
+  }
+  return out;
+}
+
+std::string pluralOf(std::string_view noun) {
+  return std::string(noun) + (noun.ends_with("sh") ? "es" : "s");
+}
+
+std::string countOf(size_t count, std::string_view noun) {
+  if (count == 0) return "no " + pluralOf(noun);
+  return fmt::format("{} {}", count, count == 1 ? std::string(noun) : pluralOf(noun));
+}
+
+}  // namespace lacquer::gltf

@@ -1,0 +1,197 @@
+#include "gltf/texture_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "gltf/container.h"
+#include "gltf/text.h"
+
+namespace lacquer::gltf {
+
+namespace {
+
+constexpr uint32_t kBinaryChunk = 0x004E4942;  // "BIN\0"
+
+uint32_t word(std::string_view bytes, size_t offset) {
+  uint32_t value = 0;
+  for (size_t i = 0; i < 4; ++i) {
+    value |= static_cast<uint32_t>(static_cast<unsigned char>(bytes[offset + i])) << (8 * i);
+  }
+  return value;
+}
+
+/// The binary chunk of a GLB that jsonText() has accepted; empty when there is none.
+std::string binaryChunk(std::string_view bytes) {
+  if (!bytes.starts_with("glTF")) return {};
+  const std::string_view glb = bytes.substr(0, word(bytes, 8));
+  for (size_t at = 12; at + 8 <= glb.size(); at += 8 + word(glb, at)) {
+    if (word(glb, at + 4) == kBinaryChunk) return std::string(glb.substr(at + 8, word(glb, at)));
+  }
+  return {};
+}
+
+std::optional<std::string> fromBase64(std::string_view text) {
+  std::string bytes;
+  uint32_t bits = 0;
+  int count = 0;
+  while (text.ends_with('=')) text.remove_suffix(1);
+  for (const char c : text) {
+    uint32_t six = 0;
+    if (c >= 'A' && c <= 'Z')
+      six = static_cast<uint32_t>(c - 'A');
+    else if (c >= 'a' && c <= 'z')
+      six = static_cast<uint32_t>(c - 'a') + 26;
+    else if (c >= '0' && c <= '9')
+      six = static_cast<uint32_t>(c - '0') + 52;
+    else if (c == '+')
+      six = 62;
+    else if (c == '/')
+      six = 63;
+    else
+      return std::nullopt;
+    bits = (bits << 6 | six) & 0xFFFFFF;
+    if (++count % 4 != 1) bytes += static_cast<char>(bits >> (6 - 2 * ((count - 1) % 4)) & 0xFF);
+  }
+  if (count % 4 == 1) return std::nullopt;
+  return bytes;
+}
+
+/// "%20" to " ". A percent sign that starts no such code stands for itself.
+std::string percentDecoded(std::string_view uri) {
+  const auto digit = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    c = static_cast<char>(c | 0x20);
+    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+  };
+  std::string text;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    const bool code = uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0;
+    text += code ? static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2])) : uri[i];
+    if (code) i += 2;
+  }
+  return text;
+}
+
+/// "http:", "file:"; a drive letter is one, too.
+bool hasScheme(std::string_view uri) {
+  const size_t colon = uri.find(':');
+  return colon != std::string_view::npos && uri.find_first_of("/?#") > colon;
+}
+
+/// A whole number in [0, 2^53), or nothing.
+std::optional<size_t> wholeMember(const Json& object, std::string_view key) {
+  const Json* value = member(object, key);
+  if (value == nullptr || !value->is_number()) return std::nullopt;
+  const double x = value->get<double>();
+  if (!(x >= 0 && x < 9007199254740992.0) || x != static_cast<double>(static_cast<size_t>(x)))
+    return std::nullopt;
+  return static_cast<size_t>(x);
+}
+
+const Json* element(const Json& root, std::string_view array, std::optional<size_t> index) {
+  const Json* all = member(root, array);
+  if (all == nullptr || !all->is_array() || !index || *index >= all->size()) return nullptr;
+  const Json& found = (*all)[*index];
+  return found.is_object() ? &found : nullptr;
+}
+
+}  // namespace
+
+Result<TextureFile> TextureFile::open(const std::string& path) {
+  const Result<std::string> bytes = readBytes(path);
+  if (!bytes) return tl::make_unexpected(bytes.error());
+  const Result<std::string_view> text = jsonText(*bytes, path);
+  if (!text) return tl::make_unexpected(text.error());
+  Result<Json> root = parseJson(*text, path);
+  if (!root) return tl::make_unexpected(std::move(root.error()));
+  TextureFile file;
+  file.path_ = path;
+  file.binary_ = binaryChunk(*bytes);
+  file.root_ = std::move(*root);
+  return file;
+}
+
+Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& place) const {
+  const auto missing = [&](std::string message, std::string help) {
+    return fail("image-missing", place, std::move(message), std::move(help));
+  };
+  if (uri.size() > 5 && std::equal(uri.begin(), uri.begin() + 5,
+                                   "data:", [](char a, char b) { return (a | 0x20) == b || a == b; })) {
+    const size_t comma = uri.find(',');
+    const bool base64 =
+        comma != std::string::npos && std::string_view(uri).substr(0, comma).ends_with(";base64");
+    std::optional<std::string> bytes;
+    if (base64) bytes = fromBase64(std::string_view(uri).substr(comma + 1));
+    if (!bytes) return missing("the data URI cannot be decoded", "it must be base64");
+    return *bytes;
+  }
+  const std::filesystem::path relative = percentDecoded(uri);
+  if (hasScheme(uri) || relative.is_absolute()) {
+    return missing(fmt::format("{} is no relative path", quote(uri)),
+                   "images are looked for beside the file");
+  }
+  const std::string file = (std::filesystem::path(path_).parent_path() / relative).string();
+  Result<std::string> bytes = readBytes(file);
+  if (!bytes) return missing(fmt::format("{} cannot be read: {}", quote(file), bytes.error()[0].message), {});
+  return bytes;
+}
+
+Result<std::string> TextureFile::viewBytes(size_t index, const Place& place) const {
+  const auto broken = [&](std::string message) { return fail("image-missing", place, std::move(message)); };
+  const Json* view = element(root_, "bufferViews", index);
+  if (view == nullptr) return broken(fmt::format("there is no bufferView {}", index));
+  const std::optional<size_t> buffer_index = wholeMember(*view, "buffer");
+  const Json* buffer = element(root_, "buffers", buffer_index);
+  if (buffer == nullptr) return broken("the image's bufferView has no buffer");
+  const Json* uri = member(*buffer, "uri");
+  Result<std::string> bytes = binary_;
+  if (uri != nullptr) {
+    if (!uri->is_string()) return broken("the buffer's uri is no string");
+    bytes = uriBytes(uri->get<std::string>(), place);
+    if (!bytes) return bytes;
+  }
+  const size_t offset = wholeMember(*view, "byteOffset").value_or(0);
+  const size_t length = wholeMember(*view, "byteLength").value_or(0);
+  if (length == 0 || offset > bytes->size() || length > bytes->size() - offset) {
+    return broken("the image's bufferView lies outside of its buffer");
+  }
+  return bytes->substr(offset, length);
+}
+
+Result<std::string> TextureFile::imageBytes(const Json& image, const Place& place) const {
+  const Json* uri = member(image, "uri");
+  if (uri != nullptr && uri->is_string()) return uriBytes(uri->get<std::string>(), place);
+  const std::optional<size_t> view = wholeMember(image, "bufferView");
+  if (!view) return fail("image-missing", place, "the image has neither a uri nor a bufferView");
+  return viewBytes(*view, place);
+}
+
+Result<TextureSource> TextureFile::texture(int index) const {
+  const Place place{path_, 0, 0, fmt::format("/textures/{}", index)};
+  const Json* texture = index < 0 ? nullptr : element(root_, "textures", static_cast<size_t>(index));
+  if (texture == nullptr) return fail("image-missing", place, "there is no such texture");
+  TextureSource source;
+  const std::optional<size_t> image_index = wholeMember(*texture, "source");
+  const Json* image = element(root_, "images", image_index);
+  if (image == nullptr) return fail("image-missing", place, "the texture has no image");
+  source.place = {path_, 0, 0, fmt::format("/images/{}", *image_index)};
+  if (const Json* sampler = element(root_, "samplers", wholeMember(*texture, "sampler"))) {
+    const auto number = [&](std::string_view key, int& to) {
+      const std::optional<size_t> value = wholeMember(*sampler, key);
+      if (value && *value < 65536) to = static_cast<int>(*value);
+    };
+    number("wrapS", source.wrapS);
+    number("wrapT", source.wrapT);
+    number("magFilter", source.magFilter);
+  }
+  Result<std::string> bytes = imageBytes(*image, source.place);
+  if (!bytes) return tl::make_unexpected(std::move(bytes.error()));
+  source.bytes = std::move(*bytes);
+  return source;
+}
+
+}  // namespace lacquer::gltf
