@@ -1,0 +1,252 @@
+// What the node language says, after checking: declarations, statements and expressions with their types
+// resolved. Names and prose are views into the library's source text, which lives as long as the library.
+//
+// Every value that a body or a template can name has a slot, a small number: parameters first, then locals in
+// the order of their declaration. A multi-output value takes one slot for each of its results. An evaluator
+// therefore needs one vector of values and no names.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ir/dag.h"
+
+namespace lacquer::lang {
+
+struct Builtin;
+struct NodeDecl;
+struct ConstDecl;
+struct Expr;
+using ExprPtr = std::unique_ptr<Expr>;
+
+/// Bytes of a source file.
+struct Span {
+  uint32_t offset = 0;
+  uint32_t length = 0;
+};
+
+/// Where a declaration stands.
+struct Origin {
+  std::string_view file;
+  uint32_t line = 0;
+};
+
+struct Expr {
+  enum class Kind : uint8_t {
+    Literal,    ///< `number`: a Float, an Int or a Bool
+    Name,       ///< as parsed; the checker makes it a Slot or a Constant
+    Slot,       ///< `slot`: a parameter, a local, or what a template declares
+    Constant,   ///< `constant`
+    Operation,  ///< `builtin` of args: an operator or a builtin function
+    Construct,  ///< a value of `type` from args: vec3(a, b), float(i)
+    Swizzle,    ///< components of args[0]
+    Member,     ///< as parsed; the checker makes it a Slot, a Swizzle or a Field
+    Field,      ///< result `slot` of args[0], which is a Call
+    Call,       ///< of `node`; args in the order of its parameters, null where the default is meant
+    Select,     ///< args[0] ? args[1] : args[2]
+  };
+
+  Kind kind = Kind::Literal;
+  ir::Type type = ir::Type::Float;  ///< of a Call with several results: of the first
+  bool untyped = false;  ///< an Int made of literals alone, which becomes a Float where one is needed
+  bool counted = false;  ///< an Int that is known when loops are unrolled
+  uint16_t depth = 1;    ///< of the tree
+  uint32_t slot = 0;
+  Span span;
+  double number = 0;
+  std::string_view name;     ///< Name, Member, Call, Operation and Construct: as written
+  std::string_view variant;  ///< Call: empty for the reference body
+  const Builtin* builtin = nullptr;
+  const NodeDecl* node = nullptr;
+  const ConstDecl* constant = nullptr;
+  std::vector<ExprPtr> args;
+  std::vector<std::string_view> labels;  ///< Call, as parsed: `name =` of each argument, or empty
+  std::vector<int> components;           ///< Swizzle
+};
+
+/// `in [lo, hi]`, as written.
+struct RangeSyntax {
+  ExprPtr lo, hi;
+  Span span;
+  explicit operator bool() const { return lo != nullptr; }
+};
+
+struct Statement {
+  enum class Kind : uint8_t {
+    Let,     ///< a new local `slot` (or several, `results` of them) = values[0]
+    Assign,  ///< the local `slot` = values[0]; compound assignments are parsed into plain ones
+    If,      ///< values[0] ? body : otherwise; locals from `slot` on are of one arm alone
+    For,     ///< `slot` counts from `first` up to, not including, `last`
+    Return,  ///< values, one for each result, or one Call with all of them
+    Assume,  ///< values[0] lies in `range`
+  };
+
+  Kind kind = Kind::Let;
+  bool inferred = false;  ///< `let`
+  ir::Type type = ir::Type::Float;
+  uint32_t slot = 0;
+  uint32_t results = 1;
+  int first = 0, last = 0;
+  std::string_view name;
+  Span span, name_span;
+  std::vector<ExprPtr> values;
+  std::vector<Statement> body, otherwise;
+  RangeSyntax range_syntax;
+  ir::Interval range;
+  std::string_view reason;
+};
+
+/// A parameter, a result, or another typed name with a range.
+struct Param {
+  ir::Type type = ir::Type::Float;
+  std::string_view name;  ///< empty for the result of a node that has one
+  bool has_range = false;
+  ir::Interval range;
+  std::optional<ir::Components> default_value;
+  std::string_view prose;
+  Span span;
+  RangeSyntax range_syntax;
+  ExprPtr default_syntax;
+};
+
+struct Body {
+  std::vector<Statement> statements;
+  std::vector<std::string_view> slots;  ///< what they are called, parameters first
+};
+
+struct Variant {
+  std::string_view name;
+  std::string doc;
+  Span span;
+  Body body;
+};
+
+/// A stated fact, for the listing of what the numbers rest on.
+struct Assumption {
+  std::string_view variant;  ///< empty: in the reference body
+  std::string_view value;    ///< the expression, as written
+  ir::Interval range;
+  std::string_view reason;
+  uint32_t line = 0;
+};
+
+struct ConstDecl {
+  std::string_view name;
+  std::string doc;  ///< the doc lines, or the comment behind it
+  ir::Type type = ir::Type::Float;
+  ir::Components value{};
+  Origin origin;
+  Span span;
+  ExprPtr syntax;
+};
+
+struct NodeDecl {
+  std::string_view name;
+  std::string doc;     ///< its lines joined by newlines, without the source
+  std::string source;  ///< `KHR_materials_coat, "Colored Absorption"`
+  std::vector<Param> params;
+  std::vector<Param> results;  ///< at least one
+  Body body;                   ///< the reference
+  std::vector<Variant> variants;
+  std::vector<Assumption> assumptions;
+  Origin origin;
+  Span span;
+  uint32_t weight = 0;  ///< expressions to evaluate for the heaviest body, calls included
+  uint32_t height = 0;  ///< how deep an evaluator nests
+
+  /// The body of that variant, the reference for an empty name, null when there is none.
+  const Body* find(std::string_view variant) const {
+    if (variant.empty()) return &body;
+    for (const Variant& v : variants) {
+      if (v.name == variant) return &v.body;
+    }
+    return nullptr;
+  }
+};
+
+enum class BlockRole : uint8_t { Frame, Lights, Object };
+
+struct BlockFieldDecl : Param {
+  uint32_t slot = 0;
+};
+
+struct BlockDecl {
+  BlockRole role = BlockRole::Frame;
+  std::string_view type_name;  ///< "Light"
+  std::string_view instance;   ///< "light"
+  uint32_t array = 0;          ///< 0: not an array
+  std::vector<BlockFieldDecl> fields;
+  std::string_view prose;
+  Span span;
+  ExprPtr array_syntax;
+};
+
+struct AttributeDecl {
+  ir::Type type = ir::Type::Float;
+  std::string_view name;
+  uint32_t location = 0;
+  uint32_t slot = 0;
+  std::string_view prose;
+  Span span;
+};
+
+/// A texture that the application gives once per frame.
+struct EnvironmentDecl {
+  ir::Type type = ir::Type::TextureCube;
+  std::string_view name;
+  uint32_t slot = 0;
+  std::string_view prose;
+  Span span;
+};
+
+/// What a graph may refer to.
+struct GivenDecl {
+  std::string_view name;
+  std::vector<Param> results;  ///< one without a name, or those of the node whose call `value` is
+  bool multiple = false;       ///< a graph writes `name.result`
+  bool has_type = false;
+  uint32_t slot = 0;  ///< of the first result; the others follow
+  std::string_view prose;
+  Span span;
+  ExprPtr value;
+};
+
+/// What a graph must deliver, or may where there is a default.
+struct PortDecl {
+  Param param;
+  uint32_t slot = 0;
+  ExprPtr default_value;  ///< any expression over what the template declares before it; null: must deliver
+};
+
+enum class OutputRole : uint8_t { Position, Color, Discard };
+
+struct OutputDecl {
+  OutputRole role = OutputRole::Color;
+  ir::Type type = ir::Type::Vec4;
+  std::string_view name;
+  std::string_view prose;
+  Span span;
+  ExprPtr value;
+};
+
+struct TemplateDecl {
+  std::string_view name;
+  std::string_view base;  ///< `extends`: its parts come first in the lists below; empty for none
+  std::string doc;
+  std::vector<BlockDecl> blocks;
+  std::vector<AttributeDecl> attributes;
+  std::vector<EnvironmentDecl> environments;
+  std::vector<GivenDecl> givens;
+  std::vector<PortDecl> ports;
+  std::vector<OutputDecl> outputs;
+  uint32_t slots = 0;
+  std::optional<uint32_t> front_facing;  ///< the slot of gl_FrontFacing, where an expression uses it
+  Origin origin;
+  Span span;
+};
+
+}  // namespace lacquer::lang

@@ -1,0 +1,521 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "lang/builtins.h"
+#include "lang/checker.h"
+#include "lang/parser.h"
+#include "lang/suggest.h"
+
+namespace lacquer::lang {
+
+using ir::Type;
+using ir::typeName;
+
+namespace {
+
+const ConstDecl& piDecl() {
+  static const ConstDecl kPi = [] {
+    ConstDecl decl;
+    decl.name = "PI";
+    decl.doc = "the ratio of a circle's circumference to its diameter";
+    decl.value = {3.14159265358979323846};
+    return decl;
+  }();
+  return kPi;
+}
+
+std::string list(const std::vector<ExprPtr>& args) {
+  std::string text;
+  for (size_t i = 0; i < args.size(); ++i) {
+    text += i == 0 ? "" : i + 1 == args.size() ? " and " : ", ";
+    text += typeName(args[i]->type);
+  }
+  return text;
+}
+
+}  // namespace
+
+Checker::Name* Checker::find(std::string_view name) {
+  const auto found =
+      std::find_if(names_.begin(), names_.end(), [&](const Name& n) { return n.name == name; });
+  return found == names_.end() ? nullptr : &*found;
+}
+
+bool Checker::unknown(std::string_view name, std::string_view what, std::vector<std::string_view> candidates,
+                      std::string otherwise) {
+  if (reporter_.full()) return false;
+  std::sort(candidates.begin(), candidates.end());
+  reporter_.error(fmt::format("unknown-{}", what), spanOf(name),
+                  fmt::format("there is no {} '{}'", what, name),
+                  didYouMean(name, candidates, std::move(otherwise)));
+  return false;
+}
+
+bool Checker::expression(ExprPtr& expr) {
+  weight_ += trips_;
+  deepest_expression_ = std::max<uint32_t>(deepest_expression_, expr->depth);
+  switch (expr->kind) {
+    case Expr::Kind::Literal: return true;
+    case Expr::Kind::Name: return name(*expr);
+    case Expr::Kind::Member: return member(expr);
+    case Expr::Kind::Operation: return operation(*expr);
+    case Expr::Kind::Construct: return construct(*expr);
+    case Expr::Kind::Select: return select(*expr);
+    case Expr::Kind::Call: return call(*expr);
+    case Expr::Kind::Slot:
+    case Expr::Kind::Constant:
+    case Expr::Kind::Swizzle:
+    case Expr::Kind::Field: break;  // the checker's own
+  }
+  return true;
+}
+
+bool Checker::checkAll(std::vector<ExprPtr>& args) {
+  bool good = true;
+  for (ExprPtr& arg : args) good = expression(arg) && good;
+  return good;
+}
+
+void Checker::makeFloat(Expr& expr) {
+  if (!expr.untyped) return;
+  expr.untyped = expr.counted = false;
+  expr.type = Type::Float;
+  for (ExprPtr& arg : expr.args) makeFloat(*arg);
+}
+
+/// Of an untyped number that stays an Int.
+bool Checker::keepInt(const Expr& expr) {
+  constexpr double kLargest = 2147483647;
+  if (expr.kind == Expr::Kind::Literal && expr.number > kLargest) {
+    reporter_.error("number-out-of-range", expr.span, fmt::format("'{}' does not fit an int", expr.name));
+    return false;
+  }
+  return std::all_of(expr.args.begin(), expr.args.end(), [&](const ExprPtr& arg) { return keepInt(*arg); });
+}
+
+bool Checker::typed(ExprPtr& expr, Type type, std::string_view what) {
+  return expression(expr) && fits(*expr, type, what);
+}
+
+bool Checker::fits(Expr& expr, Type type, std::string_view what) {
+  if (type == Type::Int && expr.untyped) {
+    expr.untyped = false;
+    return keepInt(expr);
+  }
+  makeFloat(expr);
+  if (expr.kind == Expr::Kind::Call && expr.node->results.size() > 1) {
+    reporter_.error(
+        "wrong-type", expr.span,
+        fmt::format("{} is one value, and '{}' gives {}", what, expr.name, expr.node->results.size()),
+        fmt::format("name one: `.{}`", expr.node->results[0].name));
+    return false;
+  }
+  if (expr.type == type) return true;
+  std::string help;
+  if (expr.type == Type::Float && ir::isFloatVector(type))
+    help = fmt::format("write {}(...) around it", typeName(type));
+  if (expr.type == Type::Int && type == Type::Float) help = "write float(...) around it";
+  reporter_.error("wrong-type", expr.span,
+                  fmt::format("{} is {}, and this is {}", what, aType(type), aType(expr.type)),
+                  std::move(help));
+  return false;
+}
+
+bool Checker::name(Expr& expr) {
+  if (Name* found = find(expr.name)) {
+    found->used = true;
+    if (constants_only_) {
+      reporter_.error("not-constant", expr.span, fmt::format("'{}' is not a constant", expr.name),
+                      "constants, literals and builtin functions are possible here");
+      return false;
+    }
+    if (found->broken) return false;
+    if (found->multiple) {
+      std::string help;
+      if (!found->members.empty())
+        help = fmt::format("name one: `{}.{}`", expr.name, found->members[0].first);
+      reporter_.error("wrong-type", expr.span, fmt::format("'{}' is several values", expr.name),
+                      std::move(help));
+      return false;
+    }
+    if (found->kind == Name::Kind::Port && !ports_allowed_) {
+      reporter_.error("port-in-given", expr.span, fmt::format("'{}' is a port", expr.name),
+                      "a graph delivers it from what is given, so only outputs can use it");
+      return false;
+    }
+    if (found->kind == Name::Kind::Builtin) template_->front_facing = found->slot;
+    expr.kind = Expr::Kind::Slot;
+    expr.type = found->type;
+    expr.slot = found->slot;
+    expr.counted = found->kind == Name::Kind::Counter;
+    return true;
+  }
+  const auto found = around_.find(expr.name);
+  if (expr.name == "PI" || (found && found->kind == DeclKind::Const)) {
+    if (found && found->open) {
+      reporter_.error("recursion", expr.span,
+                      fmt::format("'{}' is made from itself: {}", expr.name, around_.cycle(expr.name)));
+    }
+    expr.constant = found ? found->constant : &piDecl();
+    if (expr.constant == nullptr) return false;
+    expr.kind = Expr::Kind::Constant;
+    expr.type = expr.constant->type;
+    expr.counted = expr.type == Type::Int;
+    return true;
+  }
+  if (found && found->kind == DeclKind::Template) {
+    reporter_.error("wrong-type", expr.span, fmt::format("'{}' is a template, not a value", expr.name));
+    return false;
+  }
+  if (found || findFunction(expr.name) != nullptr) {
+    reporter_.error("wrong-type", expr.span, fmt::format("'{}' is a function, not a value", expr.name),
+                    fmt::format("call it: `{}(...)`", expr.name));
+    return false;
+  }
+  std::vector<std::string_view> candidates = around_.names(DeclKind::Const);
+  candidates.push_back("PI");
+  for (const Name& n : names_) candidates.push_back(n.name);
+  return unknown(expr.name, "value", std::move(candidates));
+}
+
+bool Checker::member(ExprPtr& expr) {
+  Expr& base = *expr->args[0];
+  Name* found = base.kind == Expr::Kind::Name ? find(base.name) : nullptr;
+  if (found != nullptr && found->multiple) {
+    found->used = true;
+    if (found->broken) return false;
+    for (size_t i = 0; i < found->members.size(); ++i) {
+      if (found->members[i].first != expr->name) continue;
+      expr->kind = Expr::Kind::Slot;
+      expr->type = found->members[i].second;
+      expr->slot = found->slot + static_cast<uint32_t>(i);
+      expr->args.clear();
+      return true;
+    }
+    std::vector<std::string_view> candidates;
+    for (const auto& [name, type] : found->members) candidates.push_back(name);
+    std::string all = fmt::format("it has {}", fmt::join(candidates, ", "));
+    return unknown(expr->name, "field", std::move(candidates), std::move(all));
+  }
+  if (!expression(expr->args[0])) return false;
+  makeFloat(base);
+  if (base.kind == Expr::Kind::Call && base.node->results.size() > 1) {
+    const std::vector<Param>& results = base.node->results;
+    std::vector<std::string_view> candidates;
+    for (size_t i = 0; i < results.size(); ++i) {
+      candidates.push_back(results[i].name);
+      if (results[i].name != expr->name) continue;
+      expr->kind = Expr::Kind::Field;
+      expr->type = results[i].type;
+      expr->slot = static_cast<uint32_t>(i);
+      return true;
+    }
+    std::string all = fmt::format("it has {}", fmt::join(candidates, ", "));
+    return unknown(expr->name, "field", std::move(candidates), std::move(all));
+  }
+  return swizzle(*expr);
+}
+
+bool Checker::swizzle(Expr& expr) {
+  constexpr std::array<std::string_view, 3> kSets = {"xyzw", "rgba", "stpq"};
+  const Type type = expr.args[0]->type;
+  const Span span = spanOf(expr.name);
+  if (!ir::isFloatVector(type)) {
+    reporter_.error(
+        "wrong-swizzle", span, fmt::format("{} has no component '{}'", aType(type), expr.name),
+        type == Type::Float ? "a vector is made from a float by vec2(x), vec3(x) or vec4(x)" : "");
+    return false;
+  }
+  const auto size = static_cast<size_t>(ir::componentCount(type));
+  const auto set = std::find_if(kSets.begin(), kSets.end(), [&](std::string_view s) {
+    return s.find(expr.name[0]) != std::string_view::npos;
+  });
+  bool good = set != kSets.end() && expr.name.size() <= 4;
+  for (const char c : expr.name) {
+    const size_t index = good ? set->find(c) : std::string_view::npos;
+    good = good && index < size;
+    expr.components.push_back(static_cast<int>(index));
+  }
+  if (!good) {
+    reporter_.error("wrong-swizzle", span, fmt::format("{} has no components '{}'", aType(type), expr.name),
+                    fmt::format("one to four of {}, {} or {}, not mixed", kSets[0].substr(0, size),
+                                kSets[1].substr(0, size), kSets[2].substr(0, size)));
+    return false;
+  }
+  expr.kind = Expr::Kind::Swizzle;
+  expr.type = ir::floatType(static_cast<int>(expr.components.size()));
+  return true;
+}
+
+/// Ints. They are counted at generation time and compared; `done` when nothing else is to be checked.
+bool Checker::integers(Expr& expr, bool& done) {
+  const bool ordering = expr.name == "<" || expr.name == "<=" || expr.name == ">" || expr.name == ">=" ||
+                        expr.name == "==" || expr.name == "!=";
+  const bool arithmetic = expr.name == "+" || expr.name == "-" || expr.name == "*";
+  bool all = true, untyped = true, counted = true, some_int = false;
+  for (const ExprPtr& arg : expr.args) {
+    all = all && arg->type == Type::Int;
+    untyped = untyped && arg->untyped;
+    counted = counted && arg->counted;
+    some_int = some_int || (arg->type == Type::Int && !arg->untyped);
+  }
+  done = true;
+  if (all && arithmetic && untyped) {
+    expr.untyped = expr.counted = true;
+    expr.type = Type::Int;
+    return true;
+  }
+  if (all && some_int && (arithmetic || ordering)) {
+    for (ExprPtr& arg : expr.args) {
+      if (arg->untyped && !keepInt(*arg)) return false;
+      arg->untyped = false;
+    }
+    expr.type = ordering ? Type::Bool : Type::Int;
+    expr.counted = counted && arithmetic;
+    if (counted || ordering) return true;
+    reporter_.error("int-arithmetic", expr.span, "ints that come from outside can only be compared",
+                    "compute with floats");
+    return false;
+  }
+  if (some_int) {
+    const bool known = std::all_of(expr.args.begin(), expr.args.end(),
+                                   [](const ExprPtr& arg) { return arg->type != Type::Int || arg->counted; });
+    reporter_.error("wrong-type", expr.span,
+                    fmt::format("no operator '{}' takes {}", expr.name, list(expr.args)),
+                    known ? "an int becomes a float by float(...)" : "");
+    return false;
+  }
+  done = false;
+  for (ExprPtr& arg : expr.args) makeFloat(*arg);
+  return true;
+}
+
+bool Checker::operation(Expr& expr) {
+  if (!checkAll(expr.args)) return false;
+  for (const ExprPtr& arg : expr.args) {
+    if (arg->kind == Expr::Kind::Call && !fits(*arg, arg->type, "an operand")) return false;
+  }
+  expr.builtin = findOperator(expr.name, static_cast<int>(expr.args.size()));
+  bool done = false;
+  if (!integers(expr, done)) return false;
+  if (done) return true;
+  std::array<Type, 2> types{};
+  for (size_t i = 0; i < expr.args.size(); ++i) types[i] = expr.args[i]->type;
+  if (const auto type = expr.builtin->type(*expr.builtin, {types.data(), expr.args.size()})) {
+    expr.type = *type;
+    return true;
+  }
+  reporter_.error("wrong-type", expr.span,
+                  fmt::format("no operator '{}' takes {}", expr.name, list(expr.args)),
+                  fmt::format("it takes {}", expr.builtin->shape));
+  return false;
+}
+
+bool Checker::construct(Expr& expr) {
+  const std::string_view type = typeName(expr.type);
+  for (const std::string_view label : expr.labels) {
+    if (label.empty()) continue;
+    reporter_.error("wrong-argument", spanOf(label), fmt::format("the parts of a {} have no names", type));
+    return false;
+  }
+  if (!expr.variant.empty()) return unknown(expr.variant, "variant", {});
+  if (!ir::isFloating(expr.type)) {
+    reporter_.error("wrong-type", expr.span, fmt::format("a {} cannot be made", type),
+                    "float, vec2, vec3 and vec4 can");
+    return false;
+  }
+  if (!checkAll(expr.args)) return false;
+  if (expr.type == Type::Float && expr.args.size() == 1 && expr.args[0]->type == Type::Int) {
+    makeFloat(*expr.args[0]);
+    if (expr.args[0]->type == Type::Float || expr.args[0]->counted) return true;
+    reporter_.error("int-arithmetic", expr.span, "ints that come from outside can only be compared",
+                    "declare it as a float");
+    return false;
+  }
+  int have = 0;
+  for (ExprPtr& arg : expr.args) {
+    makeFloat(*arg);
+    if (arg->kind == Expr::Kind::Call && !fits(*arg, arg->type, "a part")) return false;
+    if (!ir::isFloating(arg->type)) {
+      reporter_.error(
+          "wrong-type", arg->span,
+          fmt::format("a {} is made from floats and vectors, not from {}", type, aType(arg->type)),
+          arg->type == Type::Int && arg->counted ? "an int becomes a float by float(...)" : "");
+      return false;
+    }
+    have += ir::componentCount(arg->type);
+  }
+  const int want = ir::componentCount(expr.type);
+  const bool splat = expr.args.size() == 1 && expr.args[0]->type == Type::Float;
+  if (have == want || splat) return true;
+  std::string help;
+  if (expr.args.size() == 1 && have > want)
+    help = fmt::format("choose components: `.{}`",
+                       std::string_view("xyzw").substr(0, static_cast<size_t>(want)));
+  reporter_.error(
+      "wrong-count", expr.span,
+      fmt::format("a {} has {} component{}, and here are {}", type, want, want == 1 ? "" : "s", have),
+      std::move(help));
+  return false;
+}
+
+bool Checker::select(Expr& expr) {
+  const bool condition = typed(expr.args[0], Type::Bool, "the condition");
+  const bool yes = expression(expr.args[1]);
+  const bool no = expression(expr.args[2]);
+  if (!condition || !yes || !no) return false;
+  for (const size_t i : {1, 2}) {
+    makeFloat(*expr.args[i]);
+    if (expr.args[i]->kind == Expr::Kind::Call && !fits(*expr.args[i], expr.args[i]->type, "a choice"))
+      return false;
+  }
+  expr.type = expr.args[1]->type;
+  if (expr.args[2]->type != expr.type) {
+    reporter_.error("wrong-type", expr.span,
+                    fmt::format("the two choices are {} and {}", aType(expr.type), aType(expr.args[2]->type)),
+                    "they must be of one type");
+    return false;
+  }
+  if (ir::isFloating(expr.type) || expr.type == Type::Bool) return true;
+  reporter_.error("wrong-type", expr.span,
+                  fmt::format("'?:' cannot choose between values of type {}", typeName(expr.type)),
+                  "it chooses bools, floats and vectors");
+  return false;
+}
+
+bool Checker::function(Expr& expr) {
+  const Builtin* any = findFunction(expr.name);
+  if (!expr.variant.empty()) {
+    reporter_.error("unknown-variant", spanOf(expr.variant),
+                    fmt::format("'{}' is built in and has no variants", expr.name));
+    return false;
+  }
+  for (const std::string_view label : expr.labels) {
+    if (label.empty()) continue;
+    reporter_.error("wrong-argument", spanOf(label),
+                    fmt::format("the operands of '{}' have no names", expr.name));
+    return false;
+  }
+  if (!checkAll(expr.args)) return false;
+  const Builtin* builtin = findFunction(expr.name, static_cast<int>(expr.args.size()));
+  if (builtin == nullptr) {
+    reporter_.error("wrong-count", expr.span,
+                    fmt::format("'{}' takes {} operand{}, not {}", expr.name, any->arity,
+                                any->arity == 1 ? "" : "s", expr.args.size()));
+    return false;
+  }
+  std::array<Type, 4> types{};
+  for (size_t i = 0; i < expr.args.size(); ++i) {
+    makeFloat(*expr.args[i]);
+    if (expr.args[i]->kind == Expr::Kind::Call && !fits(*expr.args[i], expr.args[i]->type, "an operand"))
+      return false;
+    types[i] = expr.args[i]->type;
+  }
+  const auto type = builtin->type(*builtin, {types.data(), expr.args.size()});
+  if (!type) {
+    reporter_.error("wrong-type", expr.span, fmt::format("'{}' does not take {}", expr.name, list(expr.args)),
+                    fmt::format("it takes {}", builtin->shape));
+    return false;
+  }
+  expr.kind = Expr::Kind::Operation;
+  expr.builtin = builtin;
+  expr.type = *type;
+  return true;
+}
+
+bool Checker::call(Expr& expr) {
+  const auto found = around_.find(expr.name);
+  const bool node = found && found->kind == DeclKind::Node;
+  if (!node && findFunction(expr.name) != nullptr) return function(expr);
+  if (!node) {
+    for (ExprPtr& arg : expr.args) expression(arg);
+    if (found || find(expr.name) != nullptr) {
+      reporter_.error("wrong-type", spanOf(expr.name), fmt::format("'{}' is not a function", expr.name));
+      return false;
+    }
+    std::vector<std::string_view> candidates = around_.names(DeclKind::Node);
+    for (const Builtin& builtin : builtins()) {
+      if (!builtin.is_operator) candidates.push_back(builtin.name);
+    }
+    return unknown(expr.name, "function", std::move(candidates));
+  }
+  if (constants_only_) {
+    reporter_.error("not-constant", expr.span, "a constant cannot be made by a node",
+                    "constants, literals and builtin functions are possible here");
+    return false;
+  }
+  if (found->open) {
+    reporter_.error("recursion", spanOf(expr.name),
+                    fmt::format("'{}' calls itself: {}", expr.name, around_.cycle(expr.name)));
+    return false;
+  }
+  expr.node = found->node;
+  if (expr.node == nullptr) {  // it is wrong itself
+    for (ExprPtr& arg : expr.args) expression(arg);
+    return false;
+  }
+  if (expr.node->find(expr.variant) == nullptr) {
+    std::vector<std::string_view> candidates;
+    for (const Variant& variant : expr.node->variants) candidates.push_back(variant.name);
+    std::string has = candidates.empty() ? fmt::format("'{}' has no variants", expr.name)
+                                         : fmt::format("'{}' has {}", expr.name, fmt::join(candidates, ", "));
+    return unknown(expr.variant, "variant", std::move(candidates), std::move(has));
+  }
+  weight_ += trips_ * expr.node->weight;
+  deepest_callee_ = std::max(deepest_callee_, expr.node->height);
+  expr.type = expr.node->results[0].type;
+  return arguments(expr);
+}
+
+/// Brings the arguments of a call into the order of the parameters.
+bool Checker::arguments(Expr& expr) {
+  const std::vector<Param>& params = expr.node->params;
+  std::vector<ExprPtr> ordered(params.size());
+  bool good = true, named = false;
+  for (size_t i = 0; i < expr.args.size(); ++i) {
+    const std::string_view label = expr.labels[i];
+    size_t index = i;
+    if (!label.empty()) {
+      named = true;
+      const auto param =
+          std::find_if(params.begin(), params.end(), [&](const Param& p) { return p.name == label; });
+      index = static_cast<size_t>(param - params.begin());
+      if (param == params.end()) {
+        std::vector<std::string_view> candidates;
+        for (const Param& p : params) candidates.push_back(p.name);
+        good = unknown(label, "parameter", std::move(candidates));
+      }
+    } else if (named) {
+      reporter_.error("wrong-argument", expr.args[i]->span, "arguments without a name come first");
+      return false;
+    } else if (index >= params.size()) {
+      reporter_.error("wrong-count", expr.span,
+                      fmt::format("'{}' takes {} argument{}, not {}", expr.name, params.size(),
+                                  params.size() == 1 ? "" : "s", expr.args.size()));
+      return false;
+    }
+    if (index >= params.size()) {
+      good = expression(expr.args[i]) && good;
+      continue;
+    }
+    if (ordered[index]) {
+      reporter_.error("wrong-argument", spanOf(label), fmt::format("'{}' is given twice", label));
+      return false;
+    }
+    good = typed(expr.args[i], params[index].type, fmt::format("'{}'", params[index].name)) && good;
+    ordered[index] = std::move(expr.args[i]);
+  }
+  for (size_t i = 0; good && i < params.size(); ++i) {
+    if (ordered[i] || params[i].default_value) continue;
+    reporter_.error("wrong-count", expr.span, fmt::format("'{}' needs '{}'", expr.name, params[i].name),
+                    fmt::format("it is {} and has no default", aType(params[i].type)));
+    good = false;
+  }
+  expr.args = std::move(ordered);
+  expr.labels.clear();
+  return good;
+}
+
+}  // namespace lacquer::lang

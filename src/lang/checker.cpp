@@ -1,0 +1,160 @@
+#include "lang/checker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lang/builtins.h"
+#include "lang/evaluate.h"
+
+namespace lacquer::lang {
+
+using ir::Type;
+using ir::typeName;
+
+namespace {
+
+std::string shown(double x) {
+  if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
+  return fmt::format("{}", x);
+}
+
+}  // namespace
+
+std::string aType(Type type) { return (type == Type::Int ? "an " : "a ") + std::string(typeName(type)); }
+
+void Checker::constant(ConstDecl& decl) {
+  nameRules(decl.name, decl.span, "constant");
+  if (decl.type == Type::Mat4 || ir::isTexture(decl.type)) {
+    reporter_.error("wrong-type", decl.span, fmt::format("a constant cannot be {}", aType(decl.type)),
+                    "constants are bools, ints, floats and vectors");
+    return;
+  }
+  if (const Constant value = constantValue(decl.syntax, decl.type, "the constant")) decl.value = *value;
+}
+
+void Checker::nameRules(std::string_view name, Span span, std::string_view what) {
+  if (name == "PI" || findFunction(name) != nullptr) {
+    reporter_.error("duplicate-name", span, fmt::format("'{}' is built in", name),
+                    fmt::format("give the {} another name", what));
+  }
+}
+
+void Checker::docRules(const NodeDecl& decl) {
+  if (decl.doc.empty()) {
+    reporter_.error("missing-doc", decl.span, fmt::format("the node '{}' has no documentation", decl.name),
+                    "say what it is in a line `/// ...` above it");
+  }
+  if (decl.source.empty()) {
+    reporter_.error("missing-source", decl.span, fmt::format("the node '{}' has no source", decl.name),
+                    "say what it implements in a line `/// source: DOCUMENT, \"SECTION\"` above it");
+  }
+}
+
+/// The value of a constant expression. `what` begins the message when it is none.
+Checker::Constant Checker::constantValue(ExprPtr& expr, Type type, std::string_view what) {
+  constants_only_ = true;
+  const bool good = typed(expr, type, what);
+  constants_only_ = false;
+  if (!good) return std::nullopt;
+  if (!scratch_) scratch_.emplace();
+  const Constant value = evaluateConstant(*scratch_, *expr);
+  if (!value) {
+    reporter_.error("not-constant", expr->span, fmt::format("{} does not come to a finite number", what));
+  }
+  return value;
+}
+
+std::optional<int> Checker::constantInt(ExprPtr& expr, std::string_view what) {
+  const Constant value = constantValue(expr, Type::Int, what);
+  if (!value) return std::nullopt;
+  const double x = (*value)[0];
+  if (x < std::numeric_limits<int>::min() || x > std::numeric_limits<int>::max()) return std::nullopt;
+  return static_cast<int>(x);
+}
+
+std::optional<ir::Interval> Checker::interval(RangeSyntax& syntax, Type type) {
+  const auto end = [&](ExprPtr& expr) -> std::optional<double> {
+    if (expr->kind == Expr::Kind::Literal && std::isinf(expr->number)) return expr->number;
+    const Constant value = constantValue(expr, type, "a bound");
+    if (!value) return std::nullopt;
+    return (*value)[0];
+  };
+  const std::optional<double> lo = end(syntax.lo);
+  const std::optional<double> hi = end(syntax.hi);
+  if (!lo || !hi) return std::nullopt;
+  const bool empty = *lo > *hi || (std::isinf(*lo) && *lo > 0) || (std::isinf(*hi) && *hi < 0);
+  if (empty) {
+    reporter_.error("empty-range", syntax.span,
+                    fmt::format("no number lies in [{}, {}]", shown(*lo), shown(*hi)),
+                    "the lower bound comes first");
+    return std::nullopt;
+  }
+  return ir::Interval{*lo, *hi};
+}
+
+void Checker::rangeOf(Param& param) {
+  if (!param.range_syntax) return;
+  if (!ir::isFloating(param.type) && param.type != Type::Int) {
+    reporter_.error("wrong-type", param.range_syntax.span, fmt::format("{} has no range", aType(param.type)),
+                    "ranges are of numbers and vectors");
+    return;
+  }
+  if (const auto range = interval(param.range_syntax, param.type == Type::Int ? Type::Int : Type::Float)) {
+    param.has_range = true;
+    param.range = *range;
+  }
+}
+
+void Checker::defaultOf(Param& param) {
+  if (!param.default_syntax) return;
+  if (param.type == Type::Mat4 || ir::isTexture(param.type)) {
+    reporter_.error("wrong-type", param.span, fmt::format("{} has no default", aType(param.type)));
+    return;
+  }
+  param.default_value =
+      constantValue(param.default_syntax, param.type, fmt::format("the default of '{}'", param.name));
+  if (!param.default_value || !param.has_range) return;
+  for (int i = 0; i < ir::componentCount(param.type); ++i) {
+    const double x = (*param.default_value)[static_cast<size_t>(i)];
+    if (x >= param.range.lo && x <= param.range.hi) continue;
+    reporter_.error("default-out-of-range", param.default_syntax->span,
+                    fmt::format("the default {} lies outside [{}, {}]", shown(x), shown(param.range.lo),
+                                shown(param.range.hi)));
+    return;
+  }
+}
+
+void Checker::node(NodeDecl& decl) {
+  node_ = &decl;
+  nameRules(decl.name, decl.span, "node");
+  docRules(decl);
+  const auto twice = [&](auto& list, std::string_view what) {
+    for (size_t i = 0; i < list.size(); ++i) {
+      const auto same = [&](const auto& other) { return other.name == list[i].name; };
+      if (list[i].name.empty() || std::none_of(list.begin(), list.begin() + static_cast<ptrdiff_t>(i), same))
+        continue;
+      reporter_.error("duplicate-name", list[i].span,
+                      fmt::format("there are two {}s '{}'", what, list[i].name));
+    }
+  };
+  twice(decl.params, "parameter");
+  twice(decl.results, "result");
+  twice(decl.variants, "variant");
+  for (Param& param : decl.params) {
+    rangeOf(param);
+    defaultOf(param);
+  }
+  for (Param& result : decl.results) {
+    rangeOf(result);
+    if (ir::isFloating(result.type) || result.type == Type::Bool) continue;
+    reporter_.error("wrong-type", result.span, fmt::format("a node cannot give {}", aType(result.type)),
+                    "results are bools, floats and vectors");
+  }
+  body(decl, {}, decl.span, decl.body);
+  for (Variant& variant : decl.variants) body(decl, variant.name, variant.span, variant.body);
+}
+
+}  // namespace lacquer::lang

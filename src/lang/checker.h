@@ -1,0 +1,157 @@
+// Names, types and the other static rules; resolves what the parser left open.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lang/ast.h"
+#include "lang/library.h"
+#include "lang/reporter.h"
+
+namespace lacquer::lang {
+
+/// "a float", "an int".
+std::string aType(ir::Type type);
+
+/// What else the library declares, as the checker of one declaration sees it.
+class Surroundings {
+public:
+  struct Found {
+    DeclKind kind = DeclKind::Node;
+    const ConstDecl* constant = nullptr;  ///< null as long as it is not checked, or is wrong
+    const NodeDecl* node = nullptr;
+    bool open = false;  ///< it is being checked: it uses itself
+  };
+  virtual std::optional<Found> find(std::string_view name) const = 0;
+  /// All names of that kind, for suggestions.
+  virtual std::vector<std::string_view> names(DeclKind kind) const = 0;
+  /// How an open declaration came to use itself: "a -> b -> a".
+  virtual std::string cycle(std::string_view name) const = 0;
+
+protected:
+  ~Surroundings() = default;
+};
+
+class Checker {
+public:
+  Checker(Reporter& reporter, const Surroundings& surroundings)
+      : reporter_(reporter), around_(surroundings) {}
+
+  // Each is called once, for a declaration that parsed without an error. What is wrong goes to the reporter.
+  void constant(ConstDecl& decl);
+  void node(NodeDecl& decl);
+  /// `bases` are what it extends, freshly parsed, the farthest first; they checked without an error on their
+  /// own.
+  void templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases);
+
+private:
+  /// What an identifier in scope stands for.
+  struct Name {
+    enum class Kind : uint8_t {
+      Param,
+      Local,
+      Counter,
+      Given,
+      Port,
+      Attribute,
+      Environment,
+      Instance,
+      Builtin
+    };
+    std::string_view name;
+    Kind kind = Kind::Local;
+    ir::Type type = ir::Type::Float;
+    uint32_t slot = 0;
+    Span span;
+    bool used = false;
+    bool multiple = false;  ///< reached as `name.result`
+    std::vector<std::pair<std::string_view, ir::Type>> members;
+    bool broken = false;     ///< its value was wrong: every use of it fails, without another report
+    bool inherited = false;  ///< from a template that this one extends
+  };
+  enum class Flow : uint8_t { Falls, MayReturn, Returns };
+  using Constant = std::optional<ir::Components>;
+
+  // checker.cpp: declarations
+  void docRules(const NodeDecl& decl);
+  void nameRules(std::string_view name, Span span, std::string_view what);
+  void rangeOf(Param& param);
+  std::optional<ir::Interval> interval(RangeSyntax& syntax, ir::Type type);
+  void defaultOf(Param& param);
+  Constant constantValue(ExprPtr& expr, ir::Type type, std::string_view what);
+  std::optional<int> constantInt(ExprPtr& expr, std::string_view what);
+  std::string_view written(Span span) const { return reporter_.text(span); }
+
+  // check_template.cpp
+  void parts(TemplateDecl& decl, uint32_t& slots);
+  void block(BlockDecl& decl, uint32_t& slots);
+  void given(GivenDecl& decl, uint32_t& slots);
+  void port(PortDecl& decl, uint32_t& slots);
+  void output(OutputDecl& decl);
+  bool unlike(const Param& param, const Expr& value, std::string_view what);
+
+  // check_body.cpp
+  void body(NodeDecl& decl, std::string_view variant, Span place, Body& body);
+  Flow block(std::vector<Statement>& statements);
+  Flow statement(Statement& statement);
+  void let(Statement& statement);
+  void assign(Statement& statement);
+  Flow ifElse(Statement& statement);
+  Flow loop(Statement& statement);
+  void returns(Statement& statement);
+  void assume(Statement& statement);
+  uint32_t slotCount() const { return static_cast<uint32_t>(slots_.size()); }
+  void declare(Name name);
+  void leave(size_t scope);
+  void unused();
+
+  // check_expression.cpp
+  /// False when something was wrong (and is reported): the expression has no type then.
+  bool expression(ExprPtr& expr);
+  bool name(Expr& expr);
+  bool member(ExprPtr& expr);
+  bool swizzle(Expr& expr);
+  bool operation(Expr& expr);
+  bool integers(Expr& expr, bool& done);
+  bool construct(Expr& expr);
+  bool select(Expr& expr);
+  bool call(Expr& expr);
+  bool function(Expr& expr);
+  bool arguments(Expr& expr);
+  bool checkAll(std::vector<ExprPtr>& args);
+  /// Checks, and makes the expression's type the one that is wanted.
+  bool typed(ExprPtr& expr, ir::Type type, std::string_view what);
+  bool fits(Expr& expr, ir::Type type, std::string_view what);
+  /// An untyped number becomes a Float.
+  void makeFloat(Expr& expr);
+  bool keepInt(const Expr& expr);
+  bool unknown(std::string_view name, std::string_view what, std::vector<std::string_view> candidates,
+               std::string otherwise = {});
+  Name* find(std::string_view name);
+  Span spanOf(std::string_view text) const {
+    return {static_cast<uint32_t>(text.data() - reporter_.text().data()), static_cast<uint32_t>(text.size())};
+  }
+
+  Reporter& reporter_;
+  const Surroundings& around_;
+  std::optional<ir::Dag> scratch_;  ///< for constants; made when the first is met
+  std::vector<Name> names_;
+  std::vector<std::pair<std::string_view, Span>> unused_;       ///< locals of the body
+  NodeDecl* node_ = nullptr;                                    ///< whose body is checked
+  TemplateDecl* template_ = nullptr;                            ///< whose parts are checked
+  std::vector<std::pair<BlockRole, std::string_view>> blocks_;  ///< of the template, so far
+  std::string_view variant_;
+  bool constants_only_ = false;          ///< the expression must be a constant
+  bool ports_allowed_ = false;           ///< the expression is an output's
+  std::vector<std::string_view> slots_;  ///< of the body, so far
+  uint32_t arms_ = 0;                    ///< enclosing arms of `if`
+  uint32_t block_depth_ = 0;
+  bool may_have_returned_ = false;
+  uint64_t trips_ = 1;   ///< how often the enclosing loops run what is inside
+  uint64_t weight_ = 0;  ///< expressions to evaluate
+  uint32_t deepest_statement_ = 0, deepest_expression_ = 0, deepest_callee_ = 0;
+};
+
+}  // namespace lacquer::lang

@@ -1,0 +1,197 @@
+#include "lang/lexer.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace lacquer::lang {
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+namespace {
+
+/// The length of the symbol that the text begins with; 0 for none.
+uint32_t symbolLength(std::string_view text) {
+  constexpr std::string_view kSingle = "(){}[],;:?=<>+-*/!.%&|^~";
+  constexpr std::string_view kPairs = "-> :: <= >= == != && || ++ -- += -= *= /=";
+  constexpr std::string_view kSecond = ">:=&|+-";
+  if (text.size() > 1 && kSecond.find(text[1]) != std::string_view::npos &&
+      kPairs.find(text.substr(0, 2)) != std::string_view::npos) {
+    return 2;
+  }
+  return !text.empty() && kSingle.find(text[0]) != std::string_view::npos ? 1 : 0;
+}
+
+class Lexer {
+public:
+  Lexer(Reporter& reporter, uint32_t begin, uint32_t end)
+      : reporter_(reporter), text_(reporter.text().substr(0, end)), at_(begin) {}
+
+  std::vector<Token> run() {
+    tokens_.reserve((text_.size() - at_) / 4 + 2);
+    while (skipSpace()) token();
+    tokens_.push_back({});
+    tokens_.back().span = {static_cast<uint32_t>(text_.size()), 0};
+    return std::move(tokens_);
+  }
+
+private:
+  bool ends(uint32_t ahead = 0) const { return at_ + ahead >= text_.size(); }
+  char look(uint32_t ahead = 0) const { return ends(ahead) ? '\0' : text_[at_ + ahead]; }
+  bool starts(std::string_view s) const { return text_.substr(at_).starts_with(s); }
+
+  uint32_t lineEnd() const {
+    const size_t end = text_.find('\n', at_);
+    return static_cast<uint32_t>(end == std::string_view::npos ? text_.size() : end);
+  }
+
+  /// To the next token; false at the end.
+  bool skipSpace() {
+    bool same_line = !tokens_.empty();
+    while (!ends()) {
+      if (isSpace(look())) {
+        same_line = same_line && look() != '\n';
+        ++at_;
+      } else if (starts("/*")) {
+        const size_t end = text_.find("*/", at_ + 2);
+        if (end == std::string_view::npos) {
+          reporter_.error("unterminated-comment", {at_, 2}, "this comment has no end", "close it with '*/'");
+          at_ = static_cast<uint32_t>(text_.size());
+        } else {
+          at_ = static_cast<uint32_t>(end) + 2;
+        }
+      } else if (starts("//") && !isDoc()) {
+        const uint32_t end = lineEnd();
+        if (same_line) tokens_.back().comment = trim(text_.substr(at_ + 2, end - at_ - 2));
+        at_ = end;
+      } else {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// `///` and not a line of slashes.
+  bool isDoc() const { return starts("///") && look(3) != '/'; }
+
+  void token() {
+    const char c = look();
+    if (isDoc()) return doc();
+    if (isNameStart(c)) return name();
+    if (isDigit(c) || (c == '.' && isDigit(look(1)))) return number();
+    if (c == '"') return string();
+    if (const uint32_t length = symbolLength(text_.substr(at_))) return add(Token::Kind::Symbol, length);
+    invalid();
+  }
+
+  void add(Token::Kind kind, uint32_t length) {
+    Token& token = tokens_.emplace_back();
+    token.kind = kind;
+    token.span = {at_, length};
+    token.text = text_.substr(at_, length);
+    at_ += length;
+  }
+
+  void doc() {
+    add(Token::Kind::Doc, lineEnd() - at_);
+    std::string_view& text = tokens_.back().text;
+    text.remove_prefix(3);
+    if (text.starts_with(' ')) text.remove_prefix(1);
+    while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
+  }
+
+  void name() {
+    uint32_t length = 1;
+    while (isNamePart(look(length))) ++length;
+    add(Token::Kind::Name, length);
+  }
+
+  void number() {
+    uint32_t length = 0;
+    bool integer = true;
+    while (isDigit(look(length))) ++length;
+    if (look(length) == '.') {
+      integer = false;
+      do ++length;
+      while (isDigit(look(length)));
+    }
+    const uint32_t sign = look(length + 1) == '+' || look(length + 1) == '-' ? 1 : 0;
+    if ((look(length) == 'e' || look(length) == 'E') && isDigit(look(length + 1 + sign))) {
+      integer = false;
+      length += 1 + sign;
+      while (isDigit(look(length))) ++length;
+    }
+    uint32_t tail = length;
+    while (isNamePart(look(tail))) ++tail;
+    if (tail != length) {
+      const std::string_view digits = text_.substr(at_, length);
+      reporter_.error("invalid-number", {at_, tail},
+                      fmt::format("'{}' is not a number", text_.substr(at_, tail)),
+                      fmt::format("numbers have neither suffix nor base; perhaps '{}' is meant", digits));
+    }
+    const std::string_view digits = text_.substr(at_, length);
+    add(Token::Kind::Number, tail);
+    Token& token = tokens_.back();
+    token.integer = integer;
+    // Some readers want a digit on both sides of the point.
+    std::string padded = digits.starts_with('.') ? "0" : "";
+    padded += digits;
+    const auto parsed = std::from_chars(padded.data(), padded.data() + padded.size(), token.number);
+    const bool zero =
+        digits.substr(0, digits.find_first_of("eE")).find_first_of("123456789") == std::string_view::npos;
+    if (zero) {
+      token.number = 0;
+    } else if (parsed.ec != std::errc{} || token.number > std::numeric_limits<float>::max() ||
+               static_cast<float>(token.number) == 0) {
+      reporter_.error("number-out-of-range", token.span, fmt::format("'{}' does not fit a float", digits),
+                      "numbers lie between 1.4e-45 and 3.4e38");
+      token.number = 1;
+    }
+  }
+
+  void string() {
+    const uint32_t end = lineEnd();
+    const size_t close = text_.substr(0, end).find('"', at_ + 1);
+    if (close == std::string_view::npos) {
+      reporter_.error("unterminated-string", {at_, end - at_}, "this string has no end",
+                      "close it with '\"' on the same line");
+      add(Token::Kind::String, end - at_);
+      tokens_.back().text.remove_prefix(1);
+      return;
+    }
+    add(Token::Kind::String, static_cast<uint32_t>(close) + 1 - at_);
+    tokens_.back().text.remove_prefix(1);
+    tokens_.back().text.remove_suffix(1);
+  }
+
+  void invalid() {
+    const auto byte = static_cast<unsigned char>(look());
+    uint32_t length = 1;
+    while (byte >= 0x80 && (static_cast<unsigned char>(look(length)) & 0xC0U) == 0x80 && length < 4) ++length;
+    // Only what a terminal can show is shown.
+    std::string shown = byte < 0x20 || byte == 0x7F || byte >= 0x80 ? fmt::format("the byte 0x{:02x}", byte)
+                                                                    : fmt::format("'{}'", look());
+    reporter_.error("invalid-character", {at_, length}, fmt::format("{} has no meaning here", shown),
+                    "outside comments and strings, the language is written in ASCII");
+    at_ += length;
+  }
+
+  Reporter& reporter_;
+  std::string_view text_;
+  uint32_t at_;
+  std::vector<Token> tokens_;
+};
+
+}  // namespace
+
+std::vector<Token> tokenize(Reporter& reporter, uint32_t begin, uint32_t end) {
+  return Lexer(reporter, begin, end).run();
+}
+
+}  // namespace lacquer::lang

@@ -1,0 +1,383 @@
+#include "lang/library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <mutex>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+#include "lang/checker.h"
+#include "lang/embedded.h"
+#include "lang/parser.h"
+#include "lang/scan.h"
+#include "lang/suggest.h"
+
+namespace lacquer::lang {
+namespace {
+
+/// How deep declarations may use each other: checking one checks what it uses first.
+constexpr size_t kLongestChain = 256;
+constexpr size_t kLargestFile = size_t{64} << 20U;
+
+std::string_view kindName(DeclKind kind) {
+  switch (kind) {
+    case DeclKind::Const: return "constant";
+    case DeclKind::Node: return "node";
+    case DeclKind::Template: return "template";
+  }
+  return "";
+}
+
+struct File {
+  std::string owned_name, owned_text;  ///< empty for an embedded file
+  std::string_view name, text;
+};
+
+struct Entry {
+  enum class State : uint8_t { Fresh, Open, Done };
+  DeclKind kind = DeclKind::Node;
+  State state = State::Fresh;
+  bool good = false;  ///< it and all that it uses
+  const File* file = nullptr;
+  std::string_view name;
+  uint32_t begin = 0, end = 0, line = 0;
+  std::vector<Entry*> uses;
+  Diagnostics diagnostics;  ///< of itself alone
+  std::unique_ptr<ConstDecl> constant;
+  std::unique_ptr<NodeDecl> node;
+  std::unique_ptr<TemplateDecl> template_decl;
+};
+
+}  // namespace
+
+class Library::Impl final : public Surroundings {
+public:
+  /// Scans the files from `first` on; on an error everything stays as it was.
+  Diagnostics scanFrom(size_t first);
+  Entry* find(DeclKind kind, std::string_view name);
+  void demand(Entry& entry);
+  Diagnostics errorsOf(Entry& entry);
+
+  template <class T>
+  Result<const T*> get(DeclKind kind, std::string_view name, std::unique_ptr<T> Entry::*decl) {
+    const std::lock_guard lock(mutex);
+    Entry* entry = find(kind, name);
+    if (entry == nullptr) return missing(kind, name);
+    demand(*entry);
+    if (!entry->good) return tl::make_unexpected(errorsOf(*entry));
+    return (entry->*decl).get();
+  }
+
+  std::optional<Found> find(std::string_view name) const override;
+  std::vector<std::string_view> names(DeclKind kind) const override;
+  std::string cycle(std::string_view name) const override;
+
+  std::mutex mutex;
+  std::deque<File> files;
+  std::deque<Entry> entries;  ///< by file, then by place
+  Diagnostics scan_errors;    ///< of embedded files
+
+private:
+  tl::unexpected<Diagnostics> missing(DeclKind kind, std::string_view name) const;
+  void parse(Entry& entry, Reporter& reporter);
+  void check(Entry& entry, Reporter& reporter);
+  bool basesOf(const Entry& entry, Reporter& reporter, std::vector<TemplateDecl>& bases);
+  void collect(Entry& entry, std::unordered_set<const Entry*>& seen, Diagnostics& out);
+
+  std::unordered_map<std::string_view, Entry*> index_;
+  std::vector<const Entry*> open_;
+};
+
+Diagnostics Library::Impl::scanFrom(size_t first) {
+  const size_t old_entries = entries.size();
+  Diagnostics errors;
+  for (size_t i = first; i < files.size(); ++i) {
+    const File& file = files[i];
+    if (file.text.size() > kLargestFile) {
+      errors.push_back({"file-too-large",
+                        Severity::Error,
+                        {std::string(file.name), 0, 0, {}},
+                        "this file has more than 64 MiB",
+                        {},
+                        {}});
+      continue;
+    }
+    Reporter reporter(file.name, file.text);
+    uint32_t line = 1;
+    const char* counted = file.text.data();
+    for (const ScannedDecl& decl : scan(reporter)) {
+      line += static_cast<uint32_t>(std::count(counted, decl.name.data(), '\n'));
+      counted = decl.name.data();
+      const auto [it, fresh] = index_.try_emplace(decl.name, nullptr);
+      if (!fresh) {
+        const Entry& other = *it->second;
+        reporter.error(
+            "duplicate-name",
+            {static_cast<uint32_t>(decl.name.data() - file.text.data()),
+             static_cast<uint32_t>(decl.name.size())},
+            fmt::format("'{}' is declared twice", decl.name),
+            fmt::format("the other, a {}, is at {}:{}", kindName(other.kind), other.file->name, other.line));
+        continue;
+      }
+      Entry& entry = entries.emplace_back();
+      entry.kind = decl.kind;
+      entry.file = &file;
+      entry.name = decl.name;
+      entry.begin = decl.begin;
+      entry.end = decl.end;
+      entry.line = line;
+      it->second = &entry;
+    }
+    Diagnostics found = reporter.take();
+    errors.insert(errors.end(), found.begin(), found.end());
+  }
+  if (errors.empty()) {
+    // What was wrong may be right now.
+    for (Entry& entry : entries) {
+      if (entry.state != Entry::State::Done || entry.good) continue;
+      entry.state = Entry::State::Fresh;
+      entry.uses.clear();
+      entry.diagnostics.clear();
+    }
+    return errors;
+  }
+  while (entries.size() > old_entries) {
+    index_.erase(entries.back().name);
+    entries.pop_back();
+  }
+  while (files.size() > first) files.pop_back();
+  return errors;
+}
+
+Entry* Library::Impl::find(DeclKind kind, std::string_view name) {
+  const auto it = index_.find(name);
+  return it == index_.end() || it->second->kind != kind ? nullptr : it->second;
+}
+
+std::optional<Surroundings::Found> Library::Impl::find(std::string_view name) const {
+  const auto it = index_.find(name);
+  if (it == index_.end()) return std::nullopt;
+  const Entry& entry = *it->second;
+  Found found;
+  found.kind = entry.kind;
+  found.open = entry.state == Entry::State::Open;
+  found.constant = entry.good ? entry.constant.get() : nullptr;
+  found.node = entry.good ? entry.node.get() : nullptr;
+  return found;
+}
+
+std::vector<std::string_view> Library::Impl::names(DeclKind kind) const {
+  std::vector<std::string_view> names;
+  for (const Entry& entry : entries) {
+    if (entry.kind == kind) names.push_back(entry.name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string Library::Impl::cycle(std::string_view name) const {
+  std::string path;
+  for (const Entry* entry : open_) {
+    if (path.empty() && entry->name != name) continue;
+    path += fmt::format("{} -> ", entry->name);
+  }
+  return path + std::string(name);
+}
+
+tl::unexpected<Diagnostics> Library::Impl::missing(DeclKind kind, std::string_view name) const {
+  const std::string_view what = kindName(kind);
+  const auto it = index_.find(name);
+  std::string help = it == index_.end() ? didYouMean(name, names(kind))
+                                        : fmt::format("'{}' is a {}", name, kindName(it->second->kind));
+  return fail(fmt::format("unknown-{}", what), {}, fmt::format("there is no {} '{}'", what, name),
+              std::move(help));
+}
+
+void Library::Impl::check(Entry& entry, Reporter& reporter) {
+  Checker checker(reporter, *this);
+  switch (entry.kind) {
+    case DeclKind::Const: checker.constant(*entry.constant); break;
+    case DeclKind::Node: checker.node(*entry.node); break;
+    case DeclKind::Template: {
+      std::vector<TemplateDecl> bases;
+      if (basesOf(entry, reporter, bases)) checker.templateDecl(*entry.template_decl, std::move(bases));
+      break;
+    }
+  }
+}
+
+/// What the template extends, parsed again: a template has its own copy of the parts, with its own slots.
+/// False when there is no such base, or it is wrong itself.
+bool Library::Impl::basesOf(const Entry& entry, Reporter& reporter, std::vector<TemplateDecl>& bases) {
+  const std::string_view name = entry.template_decl->base;
+  if (name.empty()) return true;
+  const Span span{static_cast<uint32_t>(name.data() - entry.file->text.data()),
+                  static_cast<uint32_t>(name.size())};
+  const Entry* base = find(DeclKind::Template, name);
+  if (base == nullptr) {
+    reporter.error("unknown-template", span, fmt::format("there is no template '{}'", name),
+                   didYouMean(name, names(DeclKind::Template)));
+    return false;
+  }
+  if (base->state == Entry::State::Open) {
+    reporter.error("recursion", span, fmt::format("'{}' extends itself: {}", name, cycle(name)));
+    return false;
+  }
+  if (!base->good) return false;
+  for (; base != nullptr; base = find(DeclKind::Template, bases.front().base)) {
+    Reporter silent(base->file->name, base->file->text);
+    bases.insert(bases.begin(), Parser(silent, base->begin, base->end).templateDecl());
+  }
+  return true;
+}
+
+/// Parses the declaration, and checks what it uses, then itself.
+void Library::Impl::demand(Entry& entry) {
+  if (entry.state != Entry::State::Fresh) return;
+  entry.state = Entry::State::Open;
+  open_.push_back(&entry);
+  Reporter reporter(entry.file->name, entry.file->text);
+  parse(entry, reporter);
+  if (reporter.count() == 0 && open_.size() > kLongestChain) {
+    const auto offset = static_cast<uint32_t>(entry.name.data() - entry.file->text.data());
+    reporter.error("too-deep", {offset, static_cast<uint32_t>(entry.name.size())},
+                   fmt::format("more than {} declarations use each other in a chain", kLongestChain));
+  }
+  bool good = true;
+  if (reporter.count() == 0) {
+    for (Entry* used : entry.uses) {
+      demand(*used);
+      good = good && used->good;
+    }
+    check(entry, reporter);
+  }
+  entry.good = good && reporter.count() == 0;
+  entry.diagnostics = reporter.take();
+  entry.state = Entry::State::Done;
+  open_.pop_back();
+}
+
+void Library::Impl::parse(Entry& entry, Reporter& reporter) {
+  Parser parser(reporter, entry.begin, entry.end);
+  const Origin origin{entry.file->name, entry.line};
+  switch (entry.kind) {
+    case DeclKind::Const:
+      entry.constant = std::make_unique<ConstDecl>(parser.constant());
+      entry.constant->origin = origin;
+      break;
+    case DeclKind::Node:
+      entry.node = std::make_unique<NodeDecl>(parser.node());
+      entry.node->origin = origin;
+      break;
+    case DeclKind::Template:
+      entry.template_decl = std::make_unique<TemplateDecl>(parser.templateDecl());
+      entry.template_decl->origin = origin;
+      break;
+  }
+  const auto use = [&](std::string_view name, DeclKind kind) {
+    Entry* used = find(kind, name);
+    if (used == nullptr || std::find(entry.uses.begin(), entry.uses.end(), used) != entry.uses.end()) return;
+    entry.uses.push_back(used);
+  };
+  if (entry.template_decl && !entry.template_decl->base.empty())
+    use(entry.template_decl->base, DeclKind::Template);
+  for (const std::string_view name : parser.namesRead()) use(name, DeclKind::Const);
+  for (const std::string_view name : parser.namesCalled()) use(name, DeclKind::Node);
+}
+
+void Library::Impl::collect(Entry& entry, std::unordered_set<const Entry*>& seen, Diagnostics& out) {
+  if (!seen.insert(&entry).second) return;
+  out.insert(out.end(), entry.diagnostics.begin(), entry.diagnostics.end());
+  for (Entry* used : entry.uses) collect(*used, seen, out);
+}
+
+namespace {
+
+/// More are not worth reading at once.
+Diagnostics firstOf(Diagnostics diagnostics) {
+  if (diagnostics.size() <= kMostErrors) return diagnostics;
+  diagnostics.resize(kMostErrors);
+  diagnostics.push_back({"more-errors", Severity::Note, {}, "there are more errors", {}, {}});
+  return diagnostics;
+}
+
+}  // namespace
+
+Diagnostics Library::Impl::errorsOf(Entry& entry) {
+  std::unordered_set<const Entry*> seen;
+  Diagnostics diagnostics;
+  collect(entry, seen, diagnostics);
+  return firstOf(std::move(diagnostics));
+}
+
+Library::Library(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Library::Library(Library&&) noexcept = default;
+Library& Library::operator=(Library&&) noexcept = default;
+Library::~Library() = default;
+
+Result<Library> Library::fromFiles(std::vector<SourceFile> files) {
+  Library library(std::make_unique<Impl>());
+  if (auto added = library.add(std::move(files)); !added) return tl::make_unexpected(added.error());
+  return library;
+}
+
+Library Library::embedded() {
+  auto impl = std::make_unique<Impl>();
+  for (const auto& list : {embedded_nodes(), embedded_templates()}) {
+    for (const EmbeddedFile& file : list) impl->files.push_back({{}, {}, file.name, file.text});
+  }
+  impl->scan_errors = impl->scanFrom(0);
+  return Library(std::move(impl));
+}
+
+Result<void> Library::add(std::vector<SourceFile> files) {
+  const std::lock_guard lock(impl_->mutex);
+  const size_t first = impl_->files.size();
+  for (SourceFile& source : files) {
+    File& file = impl_->files.emplace_back();
+    file.owned_name = std::move(source.name);
+    file.owned_text = std::move(source.text);
+    file.name = file.owned_name;
+    file.text = file.owned_text;
+  }
+  Diagnostics errors = impl_->scanFrom(first);
+  if (!errors.empty()) return tl::make_unexpected(firstOf(std::move(errors)));
+  return {};
+}
+
+Result<const ConstDecl*> Library::constant(std::string_view name) const {
+  return impl_->get(DeclKind::Const, name, &Entry::constant);
+}
+
+Result<const NodeDecl*> Library::node(std::string_view name) const {
+  return impl_->get(DeclKind::Node, name, &Entry::node);
+}
+
+Result<const TemplateDecl*> Library::template_(std::string_view name) const {
+  return impl_->get(DeclKind::Template, name, &Entry::template_decl);
+}
+
+bool Library::has(DeclKind kind, std::string_view name) const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->find(kind, name) != nullptr;
+}
+
+std::vector<std::string_view> Library::names(DeclKind kind) const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->names(kind);
+}
+
+Diagnostics Library::checkAll() const {
+  const std::lock_guard lock(impl_->mutex);
+  Diagnostics all = impl_->scan_errors;
+  for (Entry& entry : impl_->entries) {
+    impl_->demand(entry);
+    all.insert(all.end(), entry.diagnostics.begin(), entry.diagnostics.end());
+  }
+  return firstOf(std::move(all));
+}
+
+}  // namespace lacquer::lang

@@ -1,0 +1,58 @@
+// The library of constants, nodes and templates: one namespace over many files.
+//
+// Building it only finds where each declaration stands. A declaration is parsed and checked when it is first
+// asked for, together with what it calls, and kept. Lookups may run on several threads at once; add() may not
+// run beside them. Declarations live, and do not move, as long as the library.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lang/ast.h"
+#include "support/diagnostic.h"
+
+namespace lacquer::lang {
+
+struct SourceFile {
+  std::string name;  ///< as diagnostics show it
+  std::string text;
+};
+
+enum class DeclKind : uint8_t { Const, Node, Template };
+
+class Library {
+public:
+  /// Fails when a declaration's head cannot be found or a name is declared twice.
+  static Result<Library> fromFiles(std::vector<SourceFile> files);
+
+  /// nodes/ and templates/ as they were at build time.
+  static Library embedded();
+
+  Library(Library&&) noexcept;
+  Library& operator=(Library&&) noexcept;
+  ~Library();
+
+  /// More files, as for `--nodes DIR`. On an error the library stays as it was.
+  Result<void> add(std::vector<SourceFile> files);
+
+  Result<const ConstDecl*> constant(std::string_view name) const;
+  Result<const NodeDecl*> node(std::string_view name) const;
+  Result<const TemplateDecl*> template_(std::string_view name) const;
+
+  bool has(DeclKind kind, std::string_view name) const;
+
+  /// The declared names of that kind, sorted.
+  std::vector<std::string_view> names(DeclKind kind) const;
+
+  /// Parses and checks everything; empty when all is well.
+  Diagnostics checkAll() const;
+
+private:
+  class Impl;
+  explicit Library(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lacquer::lang

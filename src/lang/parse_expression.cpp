@@ -1,0 +1,207 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "lang/parser.h"
+
+namespace lacquer::lang {
+
+ExprPtr Parser::make(Expr::Kind kind, uint32_t begin, std::string_view name, std::vector<ExprPtr> args) {
+  auto expr = std::make_unique<Expr>();
+  expr->kind = kind;
+  expr->span = since(begin);
+  expr->name = name;
+  expr->args = std::move(args);
+  for (const ExprPtr& arg : expr->args) expr->depth = std::max<uint16_t>(expr->depth, arg->depth + 1);
+  if (expr->depth <= kDeepest) return expr;
+  tooDeep();
+  return nullptr;
+}
+
+ExprPtr Parser::expression() {
+  if (nesting_ >= kDeepest) {
+    tooDeep();
+    return nullptr;
+  }
+  ++nesting_;
+  ExprPtr result = conditional();
+  --nesting_;
+  return result;
+}
+
+ExprPtr Parser::conditional() {
+  const uint32_t begin = token().span.offset;
+  ExprPtr condition = binary(1);
+  if (!condition || !is("?")) return condition;
+  accept("?");
+  ExprPtr yes = expression();
+  if (!yes || !expect(":", "the value of '?:' where the condition holds")) return nullptr;
+  ExprPtr no = expression();
+  if (!no) return nullptr;
+  std::vector<ExprPtr> args;
+  args.push_back(std::move(condition));
+  args.push_back(std::move(yes));
+  args.push_back(std::move(no));
+  return make(Expr::Kind::Select, begin, "?:", std::move(args));
+}
+
+namespace {
+
+int precedence(const Token& token) {
+  constexpr std::array<std::pair<std::string_view, int>, 12> kOperators = {{{"||", 1},
+                                                                            {"&&", 2},
+                                                                            {"==", 3},
+                                                                            {"!=", 3},
+                                                                            {"<", 4},
+                                                                            {"<=", 4},
+                                                                            {">", 4},
+                                                                            {">=", 4},
+                                                                            {"+", 5},
+                                                                            {"-", 5},
+                                                                            {"*", 6},
+                                                                            {"/", 6}}};
+  if (token.kind != Token::Kind::Symbol) return 0;
+  for (const auto& [spelling, level] : kOperators) {
+    if (token.text == spelling) return level;
+  }
+  return 0;
+}
+
+}  // namespace
+
+ExprPtr Parser::binary(int least) {
+  const uint32_t begin = token().span.offset;
+  ExprPtr left = unary();
+  while (left) {
+    const Token& op = token();
+    if (op.is("%") || op.is("&") || op.is("|") || op.is("^")) {
+      syntax(fmt::format("there is no operator '{}'", op.text),
+             op.is("%") ? "write mod(x, y)" : "on bools there are '&&', '||' and '!='");
+      return nullptr;
+    }
+    const int level = precedence(op);
+    if (level == 0 || level < least) return left;
+    ++at_;
+    ExprPtr right = binary(level + 1);
+    if (!right) return nullptr;
+    std::vector<ExprPtr> args;
+    args.push_back(std::move(left));
+    args.push_back(std::move(right));
+    left = make(Expr::Kind::Operation, begin, op.text, std::move(args));
+  }
+  return left;
+}
+
+ExprPtr Parser::unary() {
+  const Token& op = token();
+  if (!op.is("-") && !op.is("+") && !op.is("!")) return postfix();
+  if (nesting_ >= kDeepest) {
+    tooDeep();
+    return nullptr;
+  }
+  ++at_;
+  ++nesting_;
+  ExprPtr operand = unary();
+  --nesting_;
+  if (!operand) return nullptr;
+  std::vector<ExprPtr> args;
+  args.push_back(std::move(operand));
+  return make(Expr::Kind::Operation, op.span.offset, op.text, std::move(args));
+}
+
+ExprPtr Parser::postfix() {
+  const uint32_t begin = token().span.offset;
+  ExprPtr expr = primary();
+  while (expr && accept(".")) {
+    if (token().kind != Token::Kind::Name) {
+      syntax("expected components or a field behind '.'");
+      return nullptr;
+    }
+    const std::string_view member = token().text;
+    ++at_;
+    std::vector<ExprPtr> args;
+    args.push_back(std::move(expr));
+    expr = make(Expr::Kind::Member, begin, member, std::move(args));
+  }
+  return expr;
+}
+
+ExprPtr Parser::primary() {
+  const Token& first = token();
+  const uint32_t begin = first.span.offset;
+  if (first.kind == Token::Kind::Number) {
+    ++at_;
+    ExprPtr literal = make(Expr::Kind::Literal, begin, first.text);
+    literal->number = first.number;
+    literal->untyped = literal->counted = first.integer;
+    literal->type = first.integer ? ir::Type::Int : ir::Type::Float;
+    return literal;
+  }
+  if (first.is("true") || first.is("false")) {
+    ++at_;
+    ExprPtr literal = make(Expr::Kind::Literal, begin, first.text);
+    literal->number = first.text == "true" ? 1 : 0;
+    literal->type = ir::Type::Bool;
+    return literal;
+  }
+  if (accept("(")) {
+    ExprPtr inner = expression();
+    if (!inner || !expect(")", "the expression")) return nullptr;
+    return inner;
+  }
+  if (isType()) {
+    ++at_;
+    if (!is("(")) {
+      syntax(fmt::format("expected '(' behind the type '{}'", first.text),
+             "a value of it is made by " + std::string(first.text) + "(...)");
+      return nullptr;
+    }
+    return call(first.text, Expr::Kind::Construct);
+  }
+  if (first.kind == Token::Kind::Name && !isReserved(first.text)) {
+    ++at_;
+    if (is("(") || is("::")) {
+      names_called_.push_back(first.text);
+      return call(first.text, Expr::Kind::Call);
+    }
+    names_read_.push_back(first.text);
+    return make(Expr::Kind::Name, begin, first.text);
+  }
+  syntax("expected an expression", first.is("inf") ? "'inf' is a bound of a range, not a number" : "");
+  return nullptr;
+}
+
+ExprPtr Parser::call(std::string_view name, Expr::Kind kind) {
+  const uint32_t begin = last().span.offset;
+  std::string_view variant;
+  if (accept("::")) {
+    Span ignored;
+    if (!this->name(variant, ignored, "a variant's name behind '::'")) return nullptr;
+  }
+  if (!expect("(", "the name of what is called")) return nullptr;
+  std::vector<ExprPtr> args;
+  std::vector<std::string_view> labels;
+  while (!is(")")) {
+    if (!args.empty() && !expect(",", "an argument")) return nullptr;
+    std::string_view label;
+    if (token().kind == Token::Kind::Name && token(1).is("=")) {
+      label = token().text;
+      at_ += 2;
+    }
+    ExprPtr arg = expression();
+    if (!arg) return nullptr;
+    args.push_back(std::move(arg));
+    labels.push_back(label);
+  }
+  accept(")");
+  ExprPtr expr = make(kind, begin, name, std::move(args));
+  if (!expr) return nullptr;
+  if (kind == Expr::Kind::Construct) expr->type = *findType(name);
+  expr->variant = variant;
+  expr->labels = std::move(labels);
+  return expr;
+}
+
+}  // namespace lacquer::lang

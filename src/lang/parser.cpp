@@ -1,0 +1,431 @@
+#include "lang/parser.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace lacquer::lang {
+
+std::optional<ir::Type> findType(std::string_view name) {
+  constexpr std::array kTypes = {ir::Type::Bool, ir::Type::Int,       ir::Type::Float,
+                                 ir::Type::Vec2, ir::Type::Vec3,      ir::Type::Vec4,
+                                 ir::Type::Mat4, ir::Type::Texture2D, ir::Type::TextureCube};
+  constexpr std::string_view kFirstLetters = "bifvms";
+  if (name.empty() || kFirstLetters.find(name[0]) == std::string_view::npos) return std::nullopt;
+  for (const ir::Type type : kTypes) {
+    if (ir::typeName(type) == name) return type;
+  }
+  return std::nullopt;
+}
+
+bool isReserved(std::string_view name) {
+  constexpr std::array<std::string_view, 14> kWords = {"const", "node", "template", "variant", "let",
+                                                       "if",    "else", "for",      "return",  "assume",
+                                                       "in",    "true", "false",    "inf"};
+  return std::find(kWords.begin(), kWords.end(), name) != kWords.end() || findType(name).has_value();
+}
+
+Parser::Parser(Reporter& reporter, uint32_t begin, uint32_t end)
+    : reporter_(reporter), tokens_(tokenize(reporter, begin, end)) {
+  dropStrayDocs();
+}
+
+/// Doc lines belong before the declaration and before its variants. Elsewhere they would be lost without a
+/// word.
+void Parser::dropStrayDocs() {
+  std::vector<Token> kept;
+  kept.reserve(tokens_.size());
+  bool leading = true;
+  for (size_t i = 0; i < tokens_.size(); ++i) {
+    const bool doc = tokens_[i].kind == Token::Kind::Doc;
+    leading = leading && doc;
+    if (doc && !leading) {
+      size_t next = i;
+      while (tokens_[next].kind == Token::Kind::Doc) ++next;
+      if (!tokens_[next].is("variant")) {
+        reporter_.error("misplaced-doc", tokens_[i].span, "this doc line documents nothing",
+                        "'///' goes before a const, a node, a variant or a template; use '//' here");
+        continue;
+      }
+    }
+    kept.push_back(tokens_[i]);
+  }
+  tokens_ = std::move(kept);
+}
+
+bool Parser::accept(std::string_view symbol) {
+  if (!is(symbol)) return false;
+  ++at_;
+  return true;
+}
+
+namespace {
+
+std::string shown(const Token& token) {
+  switch (token.kind) {
+    case Token::Kind::End: return "the end";
+    case Token::Kind::String: return "a string";
+    case Token::Kind::Doc: return "a doc line";
+    case Token::Kind::Name:
+    case Token::Kind::Number:
+    case Token::Kind::Symbol: break;
+  }
+  return fmt::format("'{}'", token.text.substr(0, 40));
+}
+
+}  // namespace
+
+bool Parser::expect(std::string_view symbol, std::string_view after) {
+  if (accept(symbol)) return true;
+  // A missing end of something is best shown where it should have been.
+  if (aborted_) return false;
+  const Span before = last().span;
+  const bool closes = at_ > 0 && (symbol == ";" || symbol == ")" || symbol == "]" || symbol == ",");
+  const Span place = closes ? Span{before.offset + before.length, 1} : token().span;
+  reporter_.error("syntax", place,
+                  fmt::format("expected '{}' after {}, got {}", symbol, after, shown(token())));
+  return false;
+}
+
+bool Parser::syntax(std::string message, std::string help) {
+  if (aborted_) return false;
+  const bool says_what = message.starts_with("expected");
+  if (says_what) message += fmt::format(", got {}", shown(token()));
+  reporter_.error("syntax", token().span, std::move(message), std::move(help));
+  return false;
+}
+
+bool Parser::tooDeep() {
+  if (!aborted_) {
+    reporter_.error("too-deep", token().span, fmt::format("this nests deeper than {} levels", kDeepest),
+                    "name parts of it");
+  }
+  return abort();
+}
+
+bool Parser::unclosed(Span open) {
+  if (!aborted_) reporter_.error("syntax", open, "this '{' has no '}'");
+  return abort();
+}
+
+/// What would follow is not worth reading.
+bool Parser::abort() {
+  aborted_ = true;
+  at_ = tokens_.size() - 1;
+  return false;
+}
+
+bool Parser::name(std::string_view& out, Span& span, std::string_view what) {
+  const Token& t = token();
+  if (t.kind != Token::Kind::Name) return syntax(fmt::format("expected {}", what));
+  if (isReserved(t.text))
+    return syntax(fmt::format("expected {}", what), fmt::format("'{}' is a word of the language", t.text));
+  out = t.text;
+  span = t.span;
+  ++at_;
+  return true;
+}
+
+bool Parser::isType() const {
+  return token().kind == Token::Kind::Name && findType(token().text).has_value();
+}
+
+bool Parser::type(ir::Type& out, std::string_view what) {
+  if (!isType()) {
+    const bool unknown = token().kind == Token::Kind::Name && !isReserved(token().text);
+    if (unknown) {
+      reporter_.error("unknown-type", token().span, fmt::format("there is no type '{}'", token().text),
+                      "types are bool, int, float, vec2, vec3, vec4, mat4, sampler2D and samplerCube");
+      return false;
+    }
+    return syntax(fmt::format("expected {}", what));
+  }
+  out = *findType(token().text);
+  ++at_;
+  return true;
+}
+
+Span Parser::since(uint32_t begin) const {
+  const Span end = last().span;
+  return {begin, std::max(end.offset + end.length, begin + 1) - begin};
+}
+
+void Parser::docs(std::string& doc, std::string* source) {
+  constexpr std::string_view kSource = "source:";
+  for (; token().kind == Token::Kind::Doc; ++at_) {
+    std::string_view line = token().text;
+    if (source != nullptr && trim(line).starts_with(kSource)) {
+      const std::string_view text = trim(trim(line).substr(kSource.size()));
+      *source += (source->empty() ? "" : "; ") + std::string(text);
+    } else {
+      doc += (doc.empty() ? "" : "\n") + std::string(line);
+    }
+  }
+  while (!doc.empty() && doc.back() == '\n') doc.pop_back();
+}
+
+void Parser::end() {
+  if (token().kind == Token::Kind::End) return;
+  syntax("expected a const, a node or a template", is("}") ? "there is a '}' too many" : "");
+}
+
+std::string_view Parser::proseBehind() const { return last().comment; }
+
+ConstDecl Parser::constant() {
+  ConstDecl decl;
+  docs(decl.doc, nullptr);
+  accept("const");
+  if (!type(decl.type, "the constant's type") || !name(decl.name, decl.span, "the constant's name"))
+    return decl;
+  if (!expect("=", "the constant's name")) return decl;
+  decl.syntax = expression();
+  if (!decl.syntax || !expect(";", "the constant's value")) return decl;
+  if (decl.doc.empty()) decl.doc = proseBehind();
+  end();
+  return decl;
+}
+
+ExprPtr Parser::bound() {
+  const uint32_t begin = token().span.offset;
+  const bool minus = is("-") && token(1).is("inf");
+  if (minus || is("inf")) {
+    at_ += minus ? 2 : 1;
+    ExprPtr literal = make(Expr::Kind::Literal, begin, "inf");
+    literal->number = (minus ? -1 : 1) * std::numeric_limits<double>::infinity();
+    return literal;
+  }
+  return expression();
+}
+
+/// `in [lo, hi]`; empty after an error, or when there is none.
+RangeSyntax Parser::range() {
+  RangeSyntax range;
+  if (!accept("in")) return range;
+  const uint32_t begin = token().span.offset;
+  if (!expect("[", "'in'")) return {};
+  range.lo = bound();
+  if (!range.lo || !expect(",", "the lower bound")) return {};
+  range.hi = bound();
+  if (!range.hi || !expect("]", "the upper bound")) return {};
+  range.span = since(begin);
+  return range;
+}
+
+/// `TYPE [name] [in [lo, hi]]`. The name's absence from the result marks an error.
+Param Parser::param(bool named) {
+  Param param;
+  const uint32_t begin = token().span.offset;
+  if (!type(param.type, "a type")) return param;
+  param.span = since(begin);
+  if (named && !name(param.name, param.span, "a name")) return param;
+  if (is("in")) {
+    param.range_syntax = range();
+    if (!param.range_syntax) param.name = {};
+  }
+  return param;
+}
+
+void Parser::params(NodeDecl& node) {
+  while (!is(")")) {
+    Param param = this->param(true);
+    if (param.name.empty()) return;
+    if (accept("=")) {
+      param.default_syntax = expression();
+      if (!param.default_syntax) return;
+    }
+    const bool more = accept(",");
+    param.prose = proseBehind();
+    node.params.push_back(std::move(param));
+    if (more && is(")")) {
+      syntax("expected a parameter");
+      return;
+    }
+    if (!more && !is(")")) {
+      expect(",", "a parameter");
+      return;
+    }
+  }
+}
+
+void Parser::results(NodeDecl& node) {
+  if (!accept("(")) {
+    Param result = param(false);
+    node.results.push_back(std::move(result));
+    return;
+  }
+  do {
+    Param result = param(true);
+    if (result.name.empty()) return;
+    result.prose = is(",") ? token().comment : proseBehind();
+    node.results.push_back(std::move(result));
+  } while (accept(","));
+  expect(")", "the results");
+}
+
+NodeDecl Parser::node() {
+  NodeDecl decl;
+  docs(decl.doc, &decl.source);
+  accept("node");
+  if (!name(decl.name, decl.span, "the node's name")) return decl;
+  size_t errors = reporter_.count();
+  if (!expect("(", "the node's name")) return decl;
+  params(decl);
+  if (reporter_.count() != errors || !expect(")", "the parameters")) return decl;
+  if (!expect("->", "the parameters")) return decl;
+  results(decl);
+  if (reporter_.count() != errors || !body(decl.body.statements)) return decl;
+  while (is("variant") || token().kind == Token::Kind::Doc) {
+    Variant variant;
+    docs(variant.doc, nullptr);
+    accept("variant");
+    if (!name(variant.name, variant.span, "the variant's name")) return decl;
+    if (!body(variant.body.statements)) return decl;
+    decl.variants.push_back(std::move(variant));
+  }
+  end();
+  return decl;
+}
+
+TemplateDecl Parser::templateDecl() {
+  TemplateDecl decl;
+  docs(decl.doc, nullptr);
+  accept("template");
+  if (!name(decl.name, decl.span, "the template's name")) return decl;
+  if (accept("extends")) {
+    Span ignored;
+    if (!name(decl.base, ignored, "the name of the template that it extends")) return decl;
+  }
+  const Span open = token().span;
+  if (!expect("{", "the template's name")) return decl;
+  while (!is("}")) {
+    if (token().kind == Token::Kind::End) {
+      unclosed(open);
+      return decl;
+    }
+    if (!templateItem(decl)) skipStatement();
+  }
+  accept("}");
+  end();
+  return decl;
+}
+
+bool Parser::templateItem(TemplateDecl& decl) {
+  if (accept("block")) return block(decl);
+  if (accept("given")) return given(decl);
+  if (accept("port")) return port(decl);
+  if (accept("output")) return output(decl);
+  if (accept("attribute")) {
+    AttributeDecl item;
+    item.location = static_cast<uint32_t>(decl.attributes.size());
+    if (!type(item.type, "the attribute's type") || !name(item.name, item.span, "the attribute's name"))
+      return false;
+    if (!expect(";", "the attribute's name")) return false;
+    item.prose = proseBehind();
+    decl.attributes.push_back(item);
+    return true;
+  }
+  if (accept("environment")) {
+    EnvironmentDecl item;
+    if (!type(item.type, "the texture's type") || !name(item.name, item.span, "the texture's name"))
+      return false;
+    if (!expect(";", "the texture's name")) return false;
+    item.prose = proseBehind();
+    decl.environments.push_back(item);
+    return true;
+  }
+  return syntax("expected a part of a template",
+                "its parts are block, attribute, environment, given, port and output");
+}
+
+bool Parser::block(TemplateDecl& decl) {
+  constexpr std::array<std::pair<std::string_view, BlockRole>, 3> kRoles = {
+      {{"frame", BlockRole::Frame}, {"lights", BlockRole::Lights}, {"object", BlockRole::Object}}};
+  BlockDecl item;
+  const auto role = std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return is(r.first); });
+  if (role == kRoles.end()) return syntax("expected the block's role", "it is frame, lights or object");
+  ++at_;
+  item.role = role->second;
+  Span ignored;
+  if (!name(item.type_name, ignored, "the block's type name")) return false;
+  if (!name(item.instance, item.span, "the block's own name")) return false;
+  if (accept("[")) {
+    item.array_syntax = expression();
+    if (!item.array_syntax || !expect("]", "the number of elements")) return false;
+  }
+  const Span open = token().span;
+  if (!expect("{", "the block's name")) return false;
+  item.prose = proseBehind();
+  while (!is("}")) {
+    if (token().kind == Token::Kind::End) return unclosed(open);
+    BlockFieldDecl field;
+    static_cast<Param&>(field) = param(true);
+    if (field.name.empty() || !expect(";", "the field")) {
+      skipStatement();
+      continue;
+    }
+    field.prose = proseBehind();
+    item.fields.push_back(std::move(field));
+  }
+  accept("}");
+  decl.blocks.push_back(std::move(item));
+  return true;
+}
+
+bool Parser::given(TemplateDecl& decl) {
+  GivenDecl item;
+  Param result;
+  if (isType()) {
+    result = param(true);
+    if (result.name.empty()) return false;
+    item.has_type = true;
+  } else if (!name(result.name, result.span, "a type or the name of the given")) {
+    return false;
+  } else if (is("in")) {
+    return syntax("a given with a range has a type", fmt::format("write the type before '{}'", result.name));
+  }
+  item.name = std::exchange(result.name, {});
+  item.span = result.span;
+  item.results.push_back(std::move(result));
+  if (!expect("=", "the given's name")) return false;
+  item.value = expression();
+  if (!item.value || !expect(";", "the value")) return false;
+  item.prose = proseBehind();
+  decl.givens.push_back(std::move(item));
+  return true;
+}
+
+bool Parser::port(TemplateDecl& decl) {
+  PortDecl item;
+  item.param = param(true);
+  if (item.param.name.empty()) return false;
+  if (accept("=")) {
+    item.default_value = expression();
+    if (!item.default_value) return false;
+  }
+  if (!expect(";", "the port")) return false;
+  item.param.prose = proseBehind();
+  decl.ports.push_back(std::move(item));
+  return true;
+}
+
+bool Parser::output(TemplateDecl& decl) {
+  constexpr std::array<std::pair<std::string_view, OutputRole>, 3> kRoles = {
+      {{"position", OutputRole::Position}, {"color", OutputRole::Color}, {"discard", OutputRole::Discard}}};
+  OutputDecl item;
+  const auto role = std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return is(r.first); });
+  if (role == kRoles.end()) return syntax("expected what is put out", "it is position, color or discard");
+  ++at_;
+  item.role = role->second;
+  if (!type(item.type, "the output's type") || !name(item.name, item.span, "the output's name")) return false;
+  if (!expect("=", "the output's name")) return false;
+  item.value = expression();
+  if (!item.value || !expect(";", "the value")) return false;
+  item.prose = proseBehind();
+  decl.outputs.push_back(std::move(item));
+  return true;
+}
+
+}  // namespace lacquer::lang

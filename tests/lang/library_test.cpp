@@ -1,0 +1,127 @@
+// The library as a whole: laziness, several files, threads, and what is embedded.
+#include "lang/library.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace lacquer::lang {
+namespace {
+
+std::string node(const std::string& name, const std::string& body) {
+  return "/// D.\n/// source: S\nnode " + name + "(float x) -> float { " + body + " }\n";
+}
+
+TEST(LangLibrary, ChecksOnlyWhatIsAskedFor) {
+  const auto library = Library::fromFiles({{"a.node", node("good", "return x;") + node("bad", "return y;")}});
+  ASSERT_TRUE(library);
+  EXPECT_TRUE(library->node("good"));
+  const auto bad = library->node("bad");
+  ASSERT_FALSE(bad);
+  EXPECT_EQ(bad.error()[0].code, "unknown-value");
+  EXPECT_EQ(library->node("bad").error(), bad.error()) << "it is kept";
+}
+
+TEST(LangLibrary, ErrorsOfWhatIsCalledAreTold) {
+  const auto library =
+      Library::fromFiles({{"a.node", node("outer", "return inner(x);") + node("inner", "return y;")}});
+  ASSERT_TRUE(library);
+  const auto outer = library->node("outer");
+  ASSERT_FALSE(outer);
+  ASSERT_EQ(outer.error().size(), 1U);
+  EXPECT_EQ(outer.error()[0].place.line, 6U);
+}
+
+TEST(LangLibrary, UnknownNames) {
+  const auto library =
+      Library::fromFiles({{"a.node", node("schlick", "return x;") + "const float K = 1;\n"}});
+  ASSERT_TRUE(library);
+  EXPECT_EQ(format(library->node("schlik").error()[0]),
+            "error: there is no node 'schlik' [unknown-node]\n  help: did you mean 'schlick'?");
+  EXPECT_EQ(format(library->node("K").error()[0]),
+            "error: there is no node 'K' [unknown-node]\n  help: 'K' is a constant");
+  EXPECT_EQ(format(library->template_("x").error()[0]), "error: there is no template 'x' [unknown-template]");
+  EXPECT_TRUE(library->has(DeclKind::Const, "K"));
+  EXPECT_FALSE(library->has(DeclKind::Node, "K"));
+}
+
+TEST(LangLibrary, ADuplicateNamesBothPlaces) {
+  const auto library =
+      Library::fromFiles({{"a.node", node("f", "return x;")}, {"b.node", "\nconst float f = 1;\n"}});
+  ASSERT_FALSE(library);
+  EXPECT_EQ(format(library.error()[0]),
+            "b.node:2:13: error: 'f' is declared twice [duplicate-name]\n"
+            "  const float f = 1;\n"
+            "              ^\n"
+            "  help: the other, a node, is at a.node:3");
+}
+
+TEST(LangLibrary, AddKeepsPointersAndMendsErrors) {
+  auto library = Library::fromFiles({{"a.node", node("f", "return x;") + node("g", "return late(x);")}});
+  ASSERT_TRUE(library);
+  const NodeDecl* f = *library->node("f");
+  EXPECT_FALSE(library->node("g"));
+  EXPECT_FALSE(library->add({{"b.node", node("h", "return x;") + node("f", "return x;")}}))
+      << "f is there already";
+  EXPECT_FALSE(library->has(DeclKind::Node, "h")) << "the library stays as it was";
+  ASSERT_TRUE(library->add({{"c.node", node("late", "return x;")}}));
+  EXPECT_TRUE(library->node("g"));
+  EXPECT_EQ(*library->node("f"), f);
+  EXPECT_EQ(f->name, "f");
+}
+
+TEST(LangLibrary, NamesAreSorted) {
+  const auto library = Library::fromFiles({{"a.node", node("b", "return x;") + node("a", "return x;")}});
+  ASSERT_TRUE(library);
+  EXPECT_EQ(library->names(DeclKind::Node), (std::vector<std::string_view>{"a", "b"}));
+  EXPECT_TRUE(library->names(DeclKind::Template).empty());
+}
+
+TEST(LangLibrary, LookupsOnManyThreads) {
+  std::string text;
+  for (int i = 0; i < 100; ++i) {
+    const std::string callee = i == 0 ? "x" : "n" + std::to_string(i - 1) + "(x)";
+    text += node("n" + std::to_string(i), "return " + callee + " * 2;");
+  }
+  const auto library = Library::fromFiles({{"a.node", text}});
+  ASSERT_TRUE(library);
+  std::vector<std::thread> threads;
+  std::vector<int> found(4, 0);
+  for (size_t t = 0; t < found.size(); ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 99; i >= 0; --i) found[t] += library->node("n" + std::to_string(i)).has_value() ? 1 : 0;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(found, (std::vector<int>{100, 100, 100, 100}));
+}
+
+TEST(LangLibrary, ALongChainIsAnError) {
+  std::string text;
+  for (int i = 0; i < 2000; ++i)
+    text += node("n" + std::to_string(i), "return n" + std::to_string(i + 1) + "(x);");
+  text += node("n2000", "return x;");
+  const auto library = Library::fromFiles({{"a.node", text}});
+  ASSERT_TRUE(library);
+  const auto first = library->node("n0");
+  ASSERT_FALSE(first);
+  EXPECT_EQ(first.error()[0].code, "too-deep");
+}
+
+TEST(LangLibrary, ManyErrorsEndInANote) {
+  std::string text;
+  for (int i = 0; i < 50; ++i) text += node("n" + std::to_string(i), "return y;");
+  const auto library = Library::fromFiles({{"a.node", text}});
+  ASSERT_TRUE(library);
+  const Diagnostics found = library->checkAll();
+  ASSERT_EQ(found.size(), 21U);
+  EXPECT_EQ(format(found.back()), "note: there are more errors [more-errors]");
+}
+
+TEST(LangLibrary, EverythingEmbeddedChecks) {
+  const Library library = Library::embedded();
+  for (const Diagnostic& diagnostic : library.checkAll()) ADD_FAILURE() << format(diagnostic);
+}
+
+}  // namespace
+}  // namespace lacquer::lang
