@@ -1,0 +1,250 @@
+#include "graph/build.h"
+
+#include <fmt/format.h>
+
+#include "graph/coat_model.h"
+#include "graph/surface_builder.h"
+
+namespace lacquer::graph {
+
+namespace {
+
+using gltf::AlphaMode;
+
+/// The BRDF terms over a surface, for one light and for the environment.
+class LightingBuilder {
+public:
+  LightingBuilder(Graph& graph, const Surface& surface, const BuildOptions& options)
+      : graph_(graph), surface_(surface), options_(options) {}
+
+  void direct() {
+    add("half", "half_vector", {{"V", given("view")}, {"L", given("light_sample.L")}});
+    const Lobe base = isotropicLobe("base", surface_.normal, surface_.alpha);
+    Node& node = add("base.direct", "base_direct",
+                     {{"diffuse", ref("base.reflectance", "diffuse")},
+                      {"F0", ref("base.reflectance", "F0")},
+                      {"VdotH", ref("half", "VdotH")},
+                      {"NdotL", base.NdotL},
+                      {"lobe", base.lobe}});
+    if (surface_.dielectric_f0) Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
+    Source result = ref("base.direct");
+    if (surface_.coat) result = coatDirect(result);
+    graph_.outputs.emplace_back("direct", result);
+  }
+
+  void indirect() {
+    add("base.reflection", "reflection", {{"V", given("view")}, {"N", surface_.normal}});
+    add("base.radiance", "prefiltered_environment",
+        {{"environment_specular", Source{TextureRef{"environment_specular"}, {}}},
+         {"R", ref("base.reflection")},
+         {"roughness", surface_.roughness},
+         {"max_lod", given("environment_max_lod")}});
+    add("base.irradiance", "irradiance",
+        {{"environment_irradiance", Source{TextureRef{"environment_irradiance"}, {}}},
+         {"N", surface_.normal}});
+    add("base.view_cosine", "view_cosine", {{"N", surface_.normal}, {"V", given("view")}});
+    add("base.albedo", "directional_albedo",
+        {{"NdotV", ref("base.view_cosine")}, {"roughness", surface_.roughness}});
+    add("base.fresnel", "directional_fresnel",
+        {{"NdotV", ref("base.view_cosine")}, {"roughness", surface_.roughness}});
+    const bool compensated = options_.multiple_scattering;
+    Node& node = add("base.indirect", compensated ? "base_indirect_multiple_scattering" : "base_indirect",
+                     {{"diffuse", ref("base.reflectance", "diffuse")},
+                      {"F0", ref("base.reflectance", "F0")},
+                      {"radiance", ref("base.radiance")},
+                      {"irradiance", ref("base.irradiance")},
+                      {"albedo", ref("base.albedo")},
+                      {"fresnel", ref("base.fresnel")}});
+    if (surface_.dielectric_f0 && !compensated)
+      Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
+    Source result = ref("base.indirect");
+    if (surface_.coat) result = coatIndirect(result);
+    if (surface_.occlusion) {
+      add("occlusion.indirect", "occluded", {{"light", result}, {"visible", *surface_.occlusion}});
+      result = ref("occlusion.indirect");
+    }
+    graph_.outputs.emplace_back("indirect", result);
+  }
+
+private:
+  struct Lobe {
+    Source NdotL, lobe;
+  };
+
+  Node& add(std::string id, std::string type, std::vector<std::pair<std::string, Source>> inputs) {
+    Node& node = graph_.add(std::move(id), std::move(type));
+    node.inputs = std::move(inputs);
+    return node;
+  }
+
+  Source cosines(const std::string& layer, const Source& normal) {
+    add(layer + ".cosines", "lobe_cosines",
+        {{"N", normal}, {"V", given("view")}, {"L", given("light_sample.L")}});
+    return ref(layer + ".cosines", "NdotL");
+  }
+
+  /// D and V of a layer, which are there, become its lobe.
+  Lobe lobe(const std::string& layer) {
+    add(layer + ".specular", "specular_lobe",
+        {{"numerator", ref(layer + ".distribution", "numerator")},
+         {"denominator", ref(layer + ".distribution", "denominator")},
+         {"inverse_visibility", ref(layer + ".visibility")}});
+    return {ref(layer + ".cosines", "NdotL"), ref(layer + ".specular")};
+  }
+
+  Lobe isotropicLobe(const std::string& layer, const Source& normal, const Source& alpha) {
+    const Source NdotL = cosines(layer, normal);
+    add(layer + ".distribution", "ggx_distribution",
+        {{"N", normal},
+         {"sum", ref("half", "sum")},
+         {"length2", ref("half", "length2")},
+         {"NdotSum", ref(layer + ".cosines", "NdotSum")},
+         {"alpha", alpha}});
+    add(layer + ".visibility", "smith_visibility",
+        {{"NdotL", NdotL}, {"NdotV", ref(layer + ".cosines", "NdotV")}, {"alpha", alpha}});
+    return lobe(layer);
+  }
+
+  Lobe anisotropicLobe(const CoatSources& coat) {
+    const Anisotropy& a = *coat.anisotropy;
+    const Source NdotL = cosines("coat", coat.normal);
+    add("coat.anisotropy_cosines", "anisotropy_cosines",
+        {{"T", a.T}, {"B", a.B}, {"V", given("view")}, {"L", given("light_sample.L")}});
+    std::vector<std::pair<std::string, Source>> shared;
+    for (const char* name : {"TdotV", "BdotV", "TdotL", "BdotL"}) {
+      shared.emplace_back(name, ref("coat.anisotropy_cosines", name));
+    }
+    shared.emplace_back("alpha_t", a.alpha_t);
+    shared.emplace_back("alpha_b", a.alpha_b);
+    Node& distribution = add("coat.distribution", "ggx_distribution_anisotropic", shared);
+    Graph::connect(distribution, "NdotSum", ref("coat.cosines", "NdotSum"));
+    Graph::connect(distribution, "length2", ref("half", "length2"));
+    Node& visibility = add("coat.visibility", "smith_visibility_anisotropic", shared);
+    Graph::connect(visibility, "NdotL", NdotL);
+    Graph::connect(visibility, "NdotV", ref("coat.cosines", "NdotV"));
+    return lobe("coat");
+  }
+
+  Source coatDirect(const Source& base) {
+    const CoatSources& coat = *surface_.coat;
+    const Lobe own = coat.anisotropy ? anisotropicLobe(coat) : isotropicLobe("coat", coat.normal, coat.alpha);
+    if (coat.darkening) {
+      add("coat.light_cosine", "view_cosine", {{"N", coat.normal}, {"V", given("light_sample.L")}});
+      add("coat.darkening_direct", "coat_darkening_direct",
+          {{"F0", coat.F0},
+           {"fresnel_view", coat.fresnel},
+           {"cosine_light", ref("coat.light_cosine")},
+           {"roughness", coat.roughness},
+           {"amount", *coat.darkening}});
+    }
+    add("coat.lobe", "coat_lobe", {{"lobe", own.lobe}, {"NdotL", own.NdotL}});
+    return layer("direct", base, ref("coat.lobe"));
+  }
+
+  Source coatIndirect(const Source& base) {
+    const CoatSources& coat = *surface_.coat;
+    Source bent = coat.normal;
+    if (coat.anisotropy) {
+      add("coat.bent_normal", "bent_normal",
+          {{"N", coat.normal},
+           {"B", coat.anisotropy->B},
+           {"V", given("view")},
+           {"strength", coat.anisotropy->strength},
+           {"roughness", coat.roughness}});
+      bent = ref("coat.bent_normal");
+    }
+    add("coat.reflection", coat.anisotropy ? "reflection_unnormalized" : "reflection",
+        {{"V", given("view")}, {"N", bent}});
+    add("coat.radiance", "prefiltered_environment",
+        {{"environment_specular", Source{TextureRef{"environment_specular"}, {}}},
+         {"R", ref("coat.reflection")},
+         {"roughness", coat.roughness},
+         {"max_lod", given("environment_max_lod")}});
+    add("coat.albedo", "directional_albedo", {{"NdotV", coat.cosine}, {"roughness", coat.roughness}});
+    add("coat.lobe_indirect", "coat_lobe_indirect",
+        {{"radiance", ref("coat.radiance")}, {"albedo", ref("coat.albedo")}});
+    if (coat.darkening) {
+      add("coat.darkening_ibl", "coat_darkening_ibl",
+          {{"F0", coat.F0},
+           {"fresnel_view", coat.fresnel},
+           {"roughness", coat.roughness},
+           {"amount", *coat.darkening}});
+    }
+    return layer("ibl", base, ref("coat.lobe_indirect"));
+  }
+
+  /// The base under the coat and the coat's own light over it; `light` is "direct" or "ibl".
+  Source layer(const std::string& light, const Source& base, const Source& lobe) {
+    const CoatSources& coat = *surface_.coat;
+    const std::string transmission = "coat.transmission_" + light;
+    const bool clear = !coat.absorption && !coat.darkening;
+    Node& through = add(transmission, clear ? "coat_transmission_clear" : "coat_transmission",
+                        {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
+    if (coat.absorption) Graph::connect(through, "absorption", *coat.absorption);
+    if (coat.darkening) Graph::connect(through, "darkening", ref("coat.darkening_" + light));
+    const std::string id = "coat.layer_" + light;
+    add(id, "coat_layer",
+        {{"base", base},
+         {"transmission", ref(transmission)},
+         {"layer", lobe},
+         {"weight", coat.weight},
+         {"fresnel", coat.fresnel}});
+    return ref(id);
+  }
+
+  Graph& graph_;
+  const Surface& surface_;
+  const BuildOptions& options_;
+};
+
+void surfacePorts(Graph& graph, const Surface& surface) {
+  auto& out = graph.outputs;
+  out.emplace_back("base_color", surface.base_color);
+  out.emplace_back("metallic", surface.metallic);
+  out.emplace_back("roughness", surface.roughness);
+  if (surface.occlusion) out.emplace_back("occlusion", *surface.occlusion);
+  out.emplace_back("surface_normal", surface.normal);
+  if (!surface.coat) return;
+  const CoatSources& coat = *surface.coat;
+  out.emplace_back("coat_weight", coat.weight);
+  out.emplace_back("coat_roughness", coat.roughness);
+  out.emplace_back("coat_f0", coat.F0);
+  out.emplace_back("coat_normal", coat.normal);
+  if (coat.darkening) out.emplace_back("coat_darkening", *coat.darkening);
+  if (coat.color) out.emplace_back("coat_color", *coat.color);
+  if (coat.anisotropy) out.emplace_back("coat_anisotropy", coat.anisotropy->strength);
+}
+
+}  // namespace
+
+std::vector<std::string> liveTerms() {
+  return {"base.f0", "base.normal_map", "coat",      "coat.absorption", "coat.anisotropy", "coat.darkening",
+          "coat.f0", "coat.normal_map", "coat.tint", "emission",        "occlusion"};
+}
+
+Graph build(const gltf::Material& material, const gltf::VertexAttributes& attributes,
+            const BuildOptions& options, Diagnostics& warnings) {
+  Graph graph;
+  graph.name = material.name;
+  graph.template_name = options.template_name;
+  SurfaceBuilder builder(graph, material, attributes, options, warnings);
+  const Surface surface = builder.run();
+  if (options.template_name == "surface") {
+    surfacePorts(graph, surface);
+  } else if (!surface.unlit) {
+    LightingBuilder lighting(graph, surface, options);
+    lighting.direct();
+    if (options.template_name == "forward" && options.ibl) lighting.indirect();
+    if (options.template_name == "forward" && !options.ibl) {
+      graph.skipped.push_back({"base.indirect", "image-based lighting is off"});
+    }
+  }
+  if (surface.emission) graph.outputs.emplace_back("emission", *surface.emission);
+  if (surface.hidden && options.template_name != "bsdf")
+    graph.outputs.emplace_back("hidden", *surface.hidden);
+  if (surface.alpha_out && options.template_name != "surface")
+    graph.outputs.emplace_back("alpha", *surface.alpha_out);
+  return graph;
+}
+
+}  // namespace lacquer::graph

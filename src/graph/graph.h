@@ -1,0 +1,112 @@
+// The typed node graph between a material and the DAG: nodes of the library, wired. This is what an authoring
+// tool edits: add nodes, connect, set values, check, print.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "ir/module.h"
+#include "lang/library.h"
+#include "support/diagnostic.h"
+
+namespace lacquer::graph {
+
+/// A value written into the graph: a Float, a vector, a Bool.
+struct Literal {
+  ir::Type type = ir::Type::Float;
+  ir::Components value{};
+  bool operator==(const Literal&) const = default;
+};
+
+/// An editable number of the material: Graph::parameters by name.
+struct ParameterRef {
+  std::string name;
+  bool operator==(const ParameterRef&) const = default;
+};
+
+/// A texture with its sampler: Graph::textures by name, or one of the template's environment textures.
+struct TextureRef {
+  std::string name;
+  bool operator==(const TextureRef&) const = default;
+};
+
+/// What the template gives: "view", "uv0", "light.direction".
+struct GivenRef {
+  std::string name;
+  bool operator==(const GivenRef&) const = default;
+};
+
+/// An output of another node. `output` is empty for a node with a single result.
+struct NodeRef {
+  std::string node;
+  std::string output;
+  bool operator==(const NodeRef&) const = default;
+};
+
+/// Where an input or a port gets its value from, with an optional swizzle ("rgb", "g") on the way.
+struct Source {
+  std::variant<Literal, ParameterRef, TextureRef, GivenRef, NodeRef> from;
+  std::string swizzle;
+  bool operator==(const Source&) const = default;
+};
+
+/// A use of a library node: one term.
+struct Node {
+  std::string id;       ///< unique in the graph, dotted: "coat.absorption"
+  std::string type;     ///< the library node's name: "coat_absorption"
+  std::string variant;  ///< empty for the reference body
+  std::vector<std::pair<std::string, Source>>
+      inputs;  ///< by parameter name; inputs with defaults may be absent
+  bool operator==(const Node&) const = default;
+};
+
+/// Why a term that the material could have is not in the graph.
+struct Skipped {
+  std::string term;    ///< "coat.darkening"
+  std::string reason;  ///< "coatDarkeningFactor is 0"
+  bool operator==(const Skipped&) const = default;
+};
+
+struct Graph {
+  std::string name;           ///< the material's name
+  std::string template_name;  ///< "forward"
+  std::vector<ir::Parameter> parameters;
+  std::vector<ir::TextureSlot> textures;
+  std::vector<Node> nodes;  ///< in an order in which a node's sources stand before it
+  std::vector<std::pair<std::string, Source>> outputs;  ///< the template's ports
+  std::vector<Skipped> skipped;
+
+  // Editing. Names and ids are checked by check(), not here.
+  Node& add(std::string id, std::string type);
+  /// Connects (or reconnects) an input.
+  static void connect(Node& node, std::string_view input, Source source);
+  Node* find(std::string_view id);
+  const Node* find(std::string_view id) const;
+  ir::Parameter* findParameter(std::string_view name);
+  /// Removes a node; its users keep dangling edges, which check() reports.
+  bool remove(std::string_view id);
+};
+
+/// Everything lowering relies on: node types and variants exist, ids are unique, inputs exist, are connected
+/// once and have the right type, references resolve, swizzles fit, literals lie in the contract's range, no
+/// cycles, the template's ports without default are delivered with the right type. Puts nodes into a valid
+/// order when they are not (stable). `place.pointer` of each diagnostic is a JSON pointer into the graph's
+/// JSON form.
+Diagnostics check(Graph& graph, const lang::Library& library);
+
+/// The JSON form (docs/graph-format.md), two spaces of indent, stable key order, a final newline.
+std::string toJson(const Graph& graph);
+
+/// Reads the JSON form; `name` stands for the file in diagnostics. Does not check() it.
+Result<Graph> fromJson(std::string_view text, const std::string& name);
+
+/// One source in its JSON form, as an edit of a graph is given.
+Result<Source> sourceFromJson(std::string_view text);
+
+/// GraphViz: one box per node with its inputs, parameters and textures as leaves.
+std::string toDot(const Graph& graph);
+
+}  // namespace lacquer::graph

@@ -1,0 +1,76 @@
+#include "graph/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace lacquer::graph {
+
+namespace {
+
+using ir::Type;
+
+bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
+std::optional<Type> oneOf(std::string_view name, std::initializer_list<Type> types) {
+  const auto* const it =
+      std::find_if(types.begin(), types.end(), [&](Type type) { return ir::typeName(type) == name; });
+  return it == types.end() ? std::nullopt : std::optional(*it);
+}
+
+}  // namespace
+
+std::optional<Type> valueType(std::string_view name) {
+  return oneOf(name, {Type::Float, Type::Vec2, Type::Vec3, Type::Vec4, Type::Bool});
+}
+
+std::optional<Type> textureType(std::string_view name) {
+  return oneOf(name, {Type::Texture2D, Type::TextureCube});
+}
+
+bool isName(std::string_view text) {
+  return !text.empty() && isLetter(text[0]) &&
+         std::all_of(text.begin(), text.end(), [](char c) { return isLetter(c) || isDigit(c); });
+}
+
+bool isDottedName(std::string_view text) {
+  while (true) {
+    const size_t dot = text.find('.');
+    if (!isName(text.substr(0, dot))) return false;
+    if (dot == std::string_view::npos) return true;
+    text.remove_prefix(dot + 1);
+  }
+}
+
+std::string swizzleComponents(std::string_view swizzle) {
+  if (swizzle.empty() || swizzle.size() > 4) return {};
+  for (const std::string_view set : {"xyzw", "rgba", "stpq"}) {
+    std::string components;
+    for (const char c : swizzle) {
+      const size_t at = set.find(c);
+      if (at == std::string_view::npos) break;
+      components += static_cast<char>(at);
+    }
+    if (components.size() == swizzle.size()) return components;
+  }
+  return {};
+}
+
+void shorten(Diagnostics& diagnostics) {
+  constexpr size_t kMost = 100;
+  if (diagnostics.size() <= kMost) return;
+  const size_t more = diagnostics.size() - kMost;
+  diagnostics.resize(kMost);
+  diagnostics.push_back({"more-errors",
+                         Severity::Note,
+                         diagnostics[0].place,
+                         fmt::format("{} more errors are not shown", more),
+                         {},
+                         {}});
+  diagnostics.back().place.pointer.clear();
+  diagnostics.back().place.line = diagnostics.back().place.column = 0;
+}
+
+}  // namespace lacquer::graph

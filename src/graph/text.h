@@ -1,0 +1,31 @@
+// What reading, checking and drawing a graph share about names and lists of diagnostics.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ir/types.h"
+#include "support/diagnostic.h"
+
+namespace lacquer::graph {
+
+/// The type of a parameter or a texture from its name in the JSON form: what a graph can hold, not every
+/// type.
+std::optional<ir::Type> valueType(std::string_view name);
+std::optional<ir::Type> textureType(std::string_view name);
+
+/// Letters, digits and underscores, a letter or an underscore first.
+bool isName(std::string_view text);
+
+/// Names joined by dots: a node's id.
+bool isDottedName(std::string_view text);
+
+/// The swizzle's components (0 to 3), none when it is no swizzle: one to four letters of xyzw, rgba or stpq,
+/// not mixed.
+std::string swizzleComponents(std::string_view swizzle);
+
+/// Nobody reads more than the first hundred: the rest becomes one note.
+void shorten(Diagnostics& diagnostics);
+
+}  // namespace lacquer::graph

@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include "graph/sample.h"
+
+namespace lacquer::test {
+namespace {
+
+TEST(GraphEdit, connectsAndReconnects) {
+  graph::Graph graph;
+  graph::Node& node = graph.add("a.b", "f0");
+  EXPECT_EQ(node.id, "a.b");
+  EXPECT_EQ(node.type, "f0");
+  EXPECT_EQ(node.variant, "");
+  graph::Graph::connect(node, "ior", number(1.5));
+  graph::Graph::connect(node, "other", ref("c"));
+  graph::Graph::connect(node, "ior", number(2));
+  ASSERT_EQ(node.inputs.size(), 2U);
+  EXPECT_EQ(node.inputs[0], (std::pair<std::string, graph::Source>("ior", number(2))));
+  EXPECT_EQ(node.inputs[1], (std::pair<std::string, graph::Source>("other", ref("c"))));
+}
+
+TEST(GraphEdit, findsWhatIsThere) {
+  graph::Graph graph;
+  graph.add("a", "f0");
+  graph.add("b", "f0");
+  graph.parameters.push_back({"ior", ir::Type::Float, {1.5}, {}, {}});
+  EXPECT_EQ(graph.find("b"), &graph.nodes[1]);
+  EXPECT_EQ(std::as_const(graph).find("a"), &graph.nodes[0]);
+  EXPECT_EQ(graph.find("c"), nullptr);
+  EXPECT_EQ(graph.findParameter("ior"), &graph.parameters[0]);
+  EXPECT_EQ(graph.findParameter("a"), nullptr);
+}
+
+TEST(GraphEdit, removedNodesLeaveDanglingEdges) {
+  graph::Graph graph;
+  graph.template_name = "lit";
+  graph.add("a", "f0").inputs.emplace_back("ior", number(1.5));
+  graph.outputs.emplace_back("alpha", ref("a"));
+  EXPECT_EQ(formatAll(graph::check(graph, sampleLibrary())), "");
+  EXPECT_FALSE(graph.remove("b"));
+  EXPECT_TRUE(graph.remove("a"));
+  EXPECT_TRUE(graph.nodes.empty());
+  EXPECT_EQ(formatAll(graph::check(graph, sampleLibrary())),
+            "/outputs/alpha: error: there is no node 'a' [unknown-source]\n");
+}
+
+}  // namespace
+}  // namespace lacquer::test
