@@ -1,0 +1,257 @@
+#include "lower/lower.h"
+
+#include <algorithm>
+#include <cassert>
+#include <unordered_map>
+
+#include "graph/neutral.h"
+#include "lower/inline.h"
+
+namespace lacquer::lower {
+
+namespace {
+
+ir::BlockRole roleOf(lang::BlockRole role) {
+  switch (role) {
+    case lang::BlockRole::Frame: return ir::BlockRole::Frame;
+    case lang::BlockRole::Lights: return ir::BlockRole::Lights;
+    case lang::BlockRole::Object: return ir::BlockRole::Object;
+  }
+  return ir::BlockRole::Frame;
+}
+
+ir::Rate rateOf(lang::BlockRole role) {
+  switch (role) {
+    case lang::BlockRole::Frame: return ir::Rate::Frame;
+    case lang::BlockRole::Lights: return ir::Rate::Light;
+    case lang::BlockRole::Object: return ir::Rate::Vertex;
+  }
+  return ir::Rate::Frame;
+}
+
+std::string joined(std::string_view a, std::string_view b) {
+  std::string text(a);
+  text += '.';
+  text += b;
+  return text;
+}
+
+/// Node ids hold dots themselves, so a result's name is set off by another sign.
+std::string resultKey(std::string_view node, std::string_view output) {
+  std::string key(node);
+  key += '/';
+  key += output;
+  return key;
+}
+
+class Lowering {
+public:
+  Lowering(const graph::Graph& graph, const lang::Library& library, const LowerOptions& options)
+      : graph_(graph), library_(library), options_(options), inliner_(module_.dag, options.on_call) {}
+
+  Result<ir::Module> run() {
+    const Result<const lang::TemplateDecl*> found = library_.template_(graph_.template_name);
+    if (!found) return tl::make_unexpected(found.error());
+    template_ = *found;
+    module_.template_name = graph_.template_name;
+    module_.spec_constants = options_.parameters == ParameterMode::Spec;
+    slots_.assign(template_->slots, ir::kNoValue);
+    declareInterface();
+    bindGivens();
+    if (Diagnostics wrong = nodes(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
+    ports();
+    outputs();
+    assert(ir::verify(module_).empty());
+    return std::move(module_);
+  }
+
+private:
+  ir::Dag& dag() { return module_.dag; }
+
+  void declareInterface() {
+    for (const lang::BlockDecl& block : template_->blocks) declareBlock(block);
+    const bool vertex_stage = std::any_of(template_->outputs.begin(), template_->outputs.end(),
+                                          [](const auto& o) { return o.role == lang::OutputRole::Position; });
+    for (const lang::AttributeDecl& attribute : template_->attributes) {
+      const std::string name(attribute.name);
+      if (vertex_stage) {
+        slots_[attribute.slot] = dag().input({ir::InputKind::Attribute,
+                                              name,
+                                              attribute.type,
+                                              ir::Rate::Vertex,
+                                              {},
+                                              0,
+                                              static_cast<uint32_t>(module_.attributes.size())});
+        module_.attributes.push_back({name, attribute.type, attribute.location});
+      } else {
+        // Without a vertex stage the fragment's inputs come from outside as they are.
+        slots_[attribute.slot] = dag().input({ir::InputKind::Varying,
+                                              name,
+                                              attribute.type,
+                                              ir::Rate::Fragment,
+                                              {},
+                                              0,
+                                              static_cast<uint32_t>(module_.varyings.size())});
+        module_.varyings.push_back({name, attribute.type, attribute.location, ir::kNoValue});
+      }
+    }
+    for (const lang::EnvironmentDecl& environment : template_->environments) {
+      ir::TextureSlot slot;
+      slot.name = environment.name;
+      slot.type = environment.type;
+      slot.environment = true;
+      slots_[environment.slot] = addTexture(slot);
+    }
+    for (const ir::TextureSlot& texture : graph_.textures) addTexture(texture);
+    if (template_->front_facing) {
+      slots_[*template_->front_facing] =
+          dag().input({ir::InputKind::FrontFacing, "gl_FrontFacing", ir::Type::Bool, ir::Rate::Fragment, {}});
+    }
+  }
+
+  ir::ValueId addTexture(const ir::TextureSlot& slot) {
+    const auto index = static_cast<uint32_t>(module_.textures.size());
+    module_.textures.push_back(slot);
+    textures_[slot.name] =
+        dag().input({ir::InputKind::Texture, slot.name, slot.type, ir::Rate::Frame, {0, 1}, 0, index});
+    return textures_[slot.name];
+  }
+
+  void declareBlock(const lang::BlockDecl& decl) {
+    ir::Block block{
+        roleOf(decl.role), std::string(decl.type_name), std::string(decl.instance), {}, decl.array, 0};
+    for (const lang::BlockFieldDecl& field : decl.fields) {
+      block.fields.push_back({std::string(field.name), field.type, 0, field.range, std::string(field.prose)});
+    }
+    block.size = ir::layout(block.fields);
+    const auto index = static_cast<uint32_t>(module_.blocks.size());
+    for (uint32_t i = 0; i < decl.fields.size(); ++i) {
+      const lang::BlockFieldDecl& field = decl.fields[i];
+      slots_[field.slot] = dag().input({ir::InputKind::BlockField, joined(decl.instance, field.name),
+                                        field.type, rateOf(decl.role), field.range, index, i});
+    }
+    if (decl.role == lang::BlockRole::Lights) module_.light_groups.push_back({0, -1});
+    module_.blocks.push_back(std::move(block));
+  }
+
+  void bindGivens() {
+    for (const lang::GivenDecl& decl : template_->givens) {
+      const lang::NodeDecl* node = decl.value->kind == lang::Expr::Kind::Call ? decl.value->node : nullptr;
+      dag().setTerm(dag().addTerm({std::string(decl.name), node == nullptr ? "" : node->source}));
+      inliner_.bind(decl, slots_);
+      for (uint32_t i = 0; i < decl.results.size(); ++i) {
+        const std::string name =
+            decl.multiple ? joined(decl.name, decl.results[i].name) : std::string(decl.name);
+        givens_[name] = slots_[decl.slot + i];
+      }
+    }
+  }
+
+  Diagnostics nodes() {
+    for (const graph::Node& node : graph_.nodes) {
+      const Result<const lang::NodeDecl*> found = library_.node(node.type);
+      if (!found) return found.error();
+      const lang::NodeDecl& decl = **found;
+      std::vector<ir::ValueId> args;
+      for (const lang::Param& param : decl.params) {
+        const auto it = std::find_if(node.inputs.begin(), node.inputs.end(),
+                                     [&](const auto& input) { return input.first == param.name; });
+        args.push_back(it == node.inputs.end() ? ir::kNoValue : source(it->second));
+      }
+      dag().setTerm(dag().addTerm({node.id, decl.source}));
+      const std::vector<ir::ValueId> results = inliner_.call(decl, node.variant, args);
+      for (size_t i = 0; i < results.size(); ++i) {
+        const std::string output = decl.results.size() == 1 ? "" : std::string(decl.results[i].name);
+        // A single result is called what the node is in the graph.
+        if (output.empty()) dag().name(results[i], node.id.substr(node.id.rfind('.') + 1));
+        results_[resultKey(node.id, output)] = results[i];
+      }
+    }
+    return {};
+  }
+
+  ir::ValueId source(const graph::Source& source) {
+    const ir::ValueId value = std::visit([this](const auto& from) { return this->from(from); }, source.from);
+    if (source.swizzle.empty()) return value;
+    std::vector<int> components;
+    for (const char c : source.swizzle)
+      components.push_back(static_cast<int>(std::string_view("xyzwrgbastpq").find(c)) % 4);
+    return dag().swizzle(value, components);
+  }
+
+  ir::ValueId from(const graph::Literal& literal) { return dag().constant(literal.type, literal.value); }
+
+  ir::ValueId from(const graph::ParameterRef& reference) {
+    const auto it = std::find_if(graph_.parameters.begin(), graph_.parameters.end(),
+                                 [&](const ir::Parameter& p) { return p.name == reference.name; });
+    assert(it != graph_.parameters.end());
+    if (options_.parameters == ParameterMode::Baked) return dag().constant(it->type, it->value);
+    const auto known = parameters_.find(it->name);
+    if (known != parameters_.end()) return known->second;
+    const ir::ValueId value = dag().input({ir::InputKind::Parameter, it->name, it->type, ir::Rate::Material,
+                                           it->range, 0, static_cast<uint32_t>(module_.parameters.size())});
+    module_.parameters.push_back(*it);
+    module_.parameters.back().neutral = graph::neutralValue(*it);
+    parameters_[it->name] = value;
+    return value;
+  }
+
+  ir::ValueId from(const graph::TextureRef& reference) { return textures_.at(reference.name); }
+  ir::ValueId from(const graph::GivenRef& reference) { return givens_.at(reference.name); }
+
+  ir::ValueId from(const graph::NodeRef& reference) {
+    const auto named = results_.find(resultKey(reference.node, reference.output));
+    // A single result may be referred to by its name too.
+    return named != results_.end() ? named->second : results_.at(resultKey(reference.node, {}));
+  }
+
+  void ports() {
+    for (const lang::PortDecl& port : template_->ports) {
+      const auto it = std::find_if(graph_.outputs.begin(), graph_.outputs.end(),
+                                   [&](const auto& output) { return output.first == port.param.name; });
+      if (it != graph_.outputs.end())
+        slots_[port.slot] = source(it->second);
+      else
+        slots_[port.slot] = inliner_.evaluate(*port.default_value, slots_);
+    }
+  }
+
+  void outputs() {
+    uint32_t color = 0;
+    dag().setTerm(dag().addTerm({"output", ""}));
+    for (const lang::OutputDecl& decl : template_->outputs) {
+      ir::Output output{ir::OutputKind::Color, ir::Stage::Fragment, std::string(decl.name), 0, ir::kNoValue};
+      output.value = inliner_.evaluate(*decl.value, slots_);
+      switch (decl.role) {
+        case lang::OutputRole::Position:
+          output.kind = ir::OutputKind::Position;
+          output.stage = ir::Stage::Vertex;
+          break;
+        case lang::OutputRole::Color: output.location = color++; break;
+        case lang::OutputRole::Discard:
+          output.kind = ir::OutputKind::Discard;
+          if (dag().isConstant(output.value, 0)) continue;
+          break;
+      }
+      module_.outputs.push_back(output);
+    }
+  }
+
+  const graph::Graph& graph_;
+  const lang::Library& library_;
+  const LowerOptions& options_;
+  ir::Module module_;
+  Inliner inliner_;
+  const lang::TemplateDecl* template_ = nullptr;
+  std::vector<ir::ValueId> slots_;
+  std::unordered_map<std::string, ir::ValueId> givens_, results_, textures_, parameters_;
+};
+
+}  // namespace
+
+Result<ir::Module> lower(const graph::Graph& graph, const lang::Library& library,
+                         const LowerOptions& options) {
+  return Lowering(graph, library, options).run();
+}
+
+}  // namespace lacquer::lower

@@ -1,0 +1,27 @@
+// From a checked graph and its template to a module: nodes are inlined, one term each.
+#pragma once
+
+#include "graph/graph.h"
+#include "ir/module.h"
+#include "lang/library.h"
+#include "lower/inline.h"
+
+namespace lacquer::lower {
+
+enum class ParameterMode : uint8_t {
+  Uniform,  ///< parameters stay editable: values of material rate
+  Baked,    ///< parameters are constants
+  Spec,     ///< parameters become specialization constants (Module::spec_constants)
+};
+
+struct LowerOptions {
+  ParameterMode parameters = ParameterMode::Uniform;
+  OnCall on_call = {};  ///< when given, told of the graph's nodes and of what they and the template call
+};
+
+/// The graph must have passed graph::check() with the same library (asserted where it shows). The result is
+/// verified in debug builds. Errors: only those of the library (a node's body that does not check).
+Result<ir::Module> lower(const graph::Graph& graph, const lang::Library& library,
+                         const LowerOptions& options);
+
+}  // namespace lacquer::lower
