@@ -1,0 +1,31 @@
+// The passes in their order.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "passes/passes.h"
+
+namespace lacquer::passes {
+
+struct PipelineOptions {
+  LightFacts lights;
+  /// Called with each pass's name and what it left.
+  std::function<void(std::string_view pass, const ir::Module&)> after;
+};
+
+/// Runs every pass on a lowered module; afterwards it is ready for a target's legalize pass and schedule().
+/// The module is verified after each pass in debug builds.
+void runPipeline(ir::Module& module, const PipelineOptions& options);
+
+/// The names of the passes, in order.
+std::span<const std::string_view> passNames();
+
+/// The content address of a module that went through the pipeline: 16 hexadecimal digits. It covers
+/// everything that reaches a target's text or interface, and nothing else: no material's name, no index, no
+/// pointer into a file.
+std::string contentAddress(const ir::Module& module);
+
+}  // namespace lacquer::passes

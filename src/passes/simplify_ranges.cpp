@@ -1,0 +1,119 @@
+// Operations that do nothing for any input in its range, by interval analysis.
+#include "passes/intervals.h"
+#include "passes/passes.h"
+#include "passes/rewrite.h"
+
+namespace lacquer::passes {
+
+namespace {
+
+using ir::Op;
+using ir::ValueId;
+
+/// What a value is instead of itself.
+struct Decision {
+  enum class Kind : uint8_t { Keep, Operand, NegatedOperand, True, False };
+  Kind kind = Kind::Keep;
+  uint8_t operand = 0;
+};
+
+/// Decisions on one module. Nothing is removed where a number may be no number: clamps hide that on most
+/// GPUs.
+class Decider {
+public:
+  explicit Decider(const ir::Module& module) : dag_(module.dag), intervals_(module) { intervals_.run(); }
+
+  Decision operator()(ValueId id) const {
+    if (!intervals_.known(id)) return {};
+    const ir::Value& value = dag_[id];
+    const int width = ir::componentCount(value.type);
+    switch (value.op) {
+      case Op::Max: return operand(larger(value, width));
+      case Op::Min: {
+        const int larger_one = larger(value, width);
+        return operand(larger_one < 0 ? -1 : 1 - larger_one);
+      }
+      case Op::Clamp: return operand(inside(value, width) ? 0 : -1);
+      case Op::Abs: return sign(value.args[0], width);
+      case Op::Select: {
+        const Range& condition = intervals_.at(value.args[0], 0);
+        return operand(condition.lo == 1 ? 1 : condition.hi == 0 ? 2 : -1);
+      }
+      case Op::Less:
+      case Op::LessEqual:
+      case Op::Equal: {
+        const Range& truth = intervals_.at(id, 0);
+        if (truth.lo != truth.hi) return {};
+        return {truth.lo == 1 ? Decision::Kind::True : Decision::Kind::False};
+      }
+      default: return {};
+    }
+  }
+
+private:
+  static Decision operand(int index) {
+    if (index < 0) return {};
+    return {Decision::Kind::Operand, static_cast<uint8_t>(index)};
+  }
+
+  /// Of two operands the one that is never the smaller, in every component; -1 when that is not known.
+  int larger(const ir::Value& value, int width) const {
+    bool first = true;
+    bool second = true;
+    for (int c = 0; c < width; ++c) {
+      const Range& x = intervals_.at(value.args[0], c);
+      const Range& y = intervals_.at(value.args[1], c);
+      if (x.nan || y.nan) return -1;
+      first &= x.lo >= y.hi;
+      second &= y.lo >= x.hi;
+    }
+    return first ? 0 : second ? 1 : -1;
+  }
+
+  bool inside(const ir::Value& clamp, int width) const {
+    for (int c = 0; c < width; ++c) {
+      const Range& x = intervals_.at(clamp.args[0], c);
+      const Range& lo = intervals_.at(clamp.args[1], c);
+      const Range& hi = intervals_.at(clamp.args[2], c);
+      if (x.nan || lo.nan || hi.nan || x.lo < lo.hi || x.hi > hi.lo) return false;
+    }
+    return true;
+  }
+
+  Decision sign(ValueId a, int width) const {
+    bool up = true;
+    bool down = true;
+    for (int c = 0; c < width; ++c) {
+      const Range& x = intervals_.at(a, c);
+      if (x.nan) return {};
+      up &= x.lo >= 0;
+      down &= x.hi <= 0;
+    }
+    if (up) return operand(0);
+    return down ? Decision{Decision::Kind::NegatedOperand, 0} : Decision{};
+  }
+
+  const ir::Dag& dag_;
+  Intervals intervals_;
+};
+
+}  // namespace
+
+void simplifyRanges(ir::Module& module) {
+  std::vector<Decision> decisions;
+  const Decider decide(module);
+  decisions.reserve(module.dag.size());
+  for (ValueId id = 0; id < module.dag.size(); ++id) decisions.push_back(decide(id));
+  Rewriter(module).run([&](Rewriter& rewriter, ValueId id, std::span<const ValueId> operands) {
+    const Decision& decision = decisions[id];
+    if (decision.kind == Decision::Kind::Keep) return rewriter.copy(id, operands);
+    if (decision.kind == Decision::Kind::True) return rewriter.dag().boolean(true);
+    if (decision.kind == Decision::Kind::False) return rewriter.dag().boolean(false);
+    ValueId result = operands[decision.operand];
+    if (decision.kind == Decision::Kind::NegatedOperand) result = rewriter.dag().make(Op::Neg, {result});
+    const ir::Type type = rewriter.old()[id].type;
+    return rewriter.dag()[result].type == type ? result : rewriter.dag().construct(type, {result});
+  });
+}
+
+}  // namespace lacquer::passes

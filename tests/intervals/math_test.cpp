@@ -1,0 +1,180 @@
+// The arithmetic of intervals: every op against float32 on random operands, and the exactness that proofs
+// rest on.
+#include "passes/interval_math.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "ir/fold.h"
+
+namespace lacquer::test {
+namespace {
+
+using ir::Op;
+using passes::Arithmetic;
+using passes::Range;
+using passes::RangeMath;
+
+const RangeMath kFloat(Arithmetic::Float32);
+const RangeMath kReal(Arithmetic::Real);
+
+Range apply(const RangeMath& m, Op op, const Range& a, const Range& b, const Range& c) {
+  switch (op) {
+    case Op::Abs: return m.abs(a);
+    case Op::Sign: return m.sign(a);
+    case Op::Floor: return m.floor(a);
+    case Op::Fract: return m.fract(a);
+    case Op::Sqrt: return m.sqrt(a);
+    case Op::InverseSqrt: return m.inverseSqrt(a);
+    case Op::Exp2: return m.exp2(a);
+    case Op::Exp: return m.exp(a);
+    case Op::Log2: return m.log2(a);
+    case Op::Log: return m.log(a);
+    case Op::Sin:
+    case Op::Cos: return m.wave(a);
+    case Op::Acos: return m.acos(a);
+    case Op::Add: return m.add(a, b);
+    case Op::Sub: return m.sub(a, b);
+    case Op::Mul: return m.mul(a, b);
+    case Op::Div: return m.div(a, b);
+    case Op::Min: return m.min(a, b);
+    case Op::Max: return m.max(a, b);
+    case Op::Pow: return m.pow(a, b);
+    case Op::Atan2: return m.atan2(a, b);
+    case Op::Clamp: return m.clamp(a, b, c);
+    case Op::Mix: return m.mix(a, b, c);
+    default: return m.whole(true);
+  }
+}
+
+constexpr Op kOps[] = {Op::Abs,  Op::Sign, Op::Floor, Op::Fract, Op::Sqrt, Op::InverseSqrt,
+                       Op::Exp2, Op::Exp,  Op::Log2,  Op::Log,   Op::Sin,  Op::Cos,
+                       Op::Acos, Op::Add,  Op::Sub,   Op::Mul,   Op::Div,  Op::Min,
+                       Op::Max,  Op::Pow,  Op::Atan2, Op::Clamp, Op::Mix};
+
+class Draw {
+public:
+  float number() {
+    switch (random_() % 8) {
+      case 0: return 0;
+      case 1: return random_() % 2 == 0 ? 1.0F : -1.0F;
+      case 2: return std::ldexp(unit(), static_cast<int>(random_() % 250) - 125);
+      case 3: return std::numeric_limits<float>::max() * unit();
+      default: return 4 * unit();
+    }
+  }
+  Range range() {
+    const float a = number();
+    const float b = random_() % 4 == 0 ? a : number();
+    return {std::min(a, b), std::max(a, b), false};
+  }
+  float within(const Range& r) {
+    const double x = r.lo + (r.hi - r.lo) * std::abs(unit());
+    const int edge = static_cast<int>(random_() % 4);
+    return edge == 0 ? static_cast<float>(r.lo)
+           : edge == 1
+               ? static_cast<float>(r.hi)
+               : std::clamp(static_cast<float>(x), static_cast<float>(r.lo), static_cast<float>(r.hi));
+  }
+
+private:
+  float unit() { return static_cast<float>(random_()) / 2147483648.0F - 1; }
+  std::mt19937 random_{7};
+};
+
+TEST(IntervalMath, HoldsEveryFloatResult) {
+  Draw draw;
+  for (const Op op : kOps) {
+    for (int i = 0; i < 40000; ++i) {
+      const Range a = draw.range();
+      const Range b = draw.range();
+      Range c = draw.range();
+      if (op == Op::Clamp) c = {std::max(b.hi, c.lo), std::max(b.hi, c.hi), false};
+      const Range r = apply(kFloat, op, a, b, c);
+      for (int k = 0; k < 4; ++k) {
+        const float y = ir::foldComponent<float>(op, draw.within(a), draw.within(b), draw.within(c));
+        ASSERT_TRUE(std::isnan(y) ? r.nan : r.contains(y))
+            << ir::info(op).name << " of [" << a.lo << ", " << a.hi << "] [" << b.lo << ", " << b.hi << "] ["
+            << c.lo << ", " << c.hi << "]: " << y << " is not in [" << r.lo << ", " << r.hi << "]";
+      }
+    }
+  }
+}
+
+TEST(IntervalMath, HoldsExactResults) {
+  Draw draw;
+  for (const Op op : kOps) {
+    if (op == Op::Fract) continue;
+    for (int i = 0; i < 20000; ++i) {
+      const Range a = draw.range();
+      const Range b = draw.range();
+      Range c = draw.range();
+      if (op == Op::Clamp) c = {std::max(b.hi, c.lo), std::max(b.hi, c.hi), false};
+      const Range r = apply(kReal, op, a, b, c);
+      const float u = draw.within(a);
+      const float v = draw.within(b);
+      const float w = draw.within(c);
+      const double y = ir::foldComponent<double>(op, u, v, w);
+      if (!std::isfinite(y)) continue;
+      // The double's own rounding; a mix may cancel.
+      const double terms = op == Op::Mix
+                               ? (std::abs(double{u}) + std::abs(double{v})) * (1.0 + std::abs(double{w}))
+                               : std::abs(y);
+      const double slack = 1e-15 * terms;
+      ASSERT_TRUE(r.lo <= y + slack && r.hi >= y - slack) << ir::info(op).name << " " << y;
+    }
+  }
+}
+
+TEST(IntervalMath, ExactResultsStayExact) {
+  const Range unit{0, 1, false};
+  for (const RangeMath& m : {kFloat, kReal}) {
+    EXPECT_EQ(m.sub({1, 1, false}, unit), unit);
+    EXPECT_EQ(m.mul(unit, unit), unit);
+    EXPECT_EQ(m.square({-1, 1, false}), unit);
+    EXPECT_EQ(m.constant(0.5), (Range{0.5, 0.5, false}));
+  }
+  EXPECT_EQ(kReal.blend(unit, unit, unit), unit);
+  EXPECT_EQ(kFloat.blend(unit, unit, unit).lo, 0);
+}
+
+TEST(IntervalMath, RoundsOutward) {
+  const Range tenth = kFloat.constant(0.1);
+  EXPECT_LT(tenth.lo, 0.1);
+  EXPECT_GT(tenth.hi, 0.1);
+  EXPECT_EQ(tenth.hi, std::nextafter(static_cast<float>(tenth.lo), 1.0F));
+  // 1 + 2^-30 is no float32: rounded to nearest or towards zero it is 1, rounded up it is the next.
+  const Range sum = kFloat.add({1, 1, false}, {0x1p-30, 0x1p-30, false});
+  EXPECT_EQ(sum.lo, 1);
+  EXPECT_EQ(sum.hi, 1 + 0x1p-23);
+  // A division is only within 2.5 units of the last place, even of 1.
+  EXPECT_LT(kFloat.div({3, 3, false}, {3, 3, false}).lo, 1);
+  // 1 to a large power, by log2 and exp2.
+  EXPECT_GT(kFloat.pow({1, 1, false}, {1000, 1000, false}).hi, 1.0001);
+}
+
+TEST(IntervalMath, SubnormalNumbersMayBeFlushed) {
+  EXPECT_EQ(kFloat.mul({1e-30, 1, false}, {1e-30, 1, false}).lo, 0);
+  EXPECT_GT(kReal.mul({1e-30, 1, false}, {1e-30, 1, false}).lo, 0);
+}
+
+TEST(IntervalMath, KnowsWhereNumbersEnd) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const double most = std::numeric_limits<float>::max();
+  EXPECT_EQ(kFloat.mul({0, most, false}, {2, 2, false}).hi, inf);
+  EXPECT_TRUE(kFloat.mul({0, inf, false}, {0, 1, false}).nan);
+  EXPECT_TRUE(kFloat.add({0, inf, false}, {-inf, 0, false}).nan);
+  EXPECT_FALSE(kFloat.square({-inf, inf, false}).nan);
+  EXPECT_TRUE(kFloat.sqrt({-1, 1, false}).nan);
+  EXPECT_TRUE(kFloat.div({0, 1, false}, {-1, 1, false}).nan);
+  // What is no number may pass a maximum, and the maximum may then give the other operand.
+  const Range r = kFloat.max({5, 6, true}, {1, 1, false});
+  EXPECT_TRUE(r.nan);
+  EXPECT_EQ(r.lo, 1);
+}
+
+}  // namespace
+}  // namespace lacquer::test

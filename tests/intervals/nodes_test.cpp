@@ -1,0 +1,149 @@
+// The library's contracts: every node is proved for the whole of its declared ranges, and every fact that a
+// node assumes is attacked.
+#include <gtest/gtest.h>
+
+#include "api/node_proofs.h"
+#include "intervals/evaluator.h"
+#include "lang/library.h"
+
+namespace lacquer::test {
+namespace {
+
+using ir::ValueId;
+
+const lang::Library& library() {
+  static const lang::Library kLibrary = lang::Library::embedded();
+  return kLibrary;
+}
+
+size_t unproved(const NodeProof& proof, const std::vector<Claim>& claims, std::string_view kind, bool tell) {
+  size_t count = 0;
+  for (const Claim& claim : claims) {
+    if (claim.proved) continue;
+    ++count;
+    if (!tell) continue;
+    ADD_FAILURE() << proof.node << (proof.variant.empty() ? "" : "." + proof.variant) << ", " << kind << " "
+                  << claim.what << ": must be " << claim.need << ", may be in [" << claim.reached.lo << ", "
+                  << claim.reached.hi << "]" << (claim.reached.nan ? " or no number" : "");
+  }
+  return count;
+}
+
+size_t unproved(const NodeProof& proof, bool tell) {
+  return unproved(proof, proof.operations, "operation", tell) +
+         unproved(proof, proof.results, "result", tell) + unproved(proof, proof.calls, "argument", tell);
+}
+
+TEST(IntervalNodes, EveryNodeIsProved) {
+  ASSERT_TRUE(library().checkAll().empty());
+  size_t claims = 0;
+  for (const NodeProof& proof : proveNodes(library())) {
+    claims += proof.operations.size() + proof.results.size() + proof.calls.size();
+    unproved(proof, true);
+  }
+  EXPECT_GT(claims, 100U);
+}
+
+TEST(IntervalNodes, WhatIsNotSoIsNotProved) {
+  const char* const kBodies[] = {
+      "node a(float x in [-1, 1]) -> float { return sqrt(x); }",
+      "node a(float x in [0, 1]) -> float { return 1 / x; }",
+      "node a(float x in [0, 1]) -> float { return inversesqrt(x); }",
+      "node a(float x in [0, 1]) -> float { return log2(x); }",
+      "node a(float x in [0, 1], float y in [0, 1]) -> float { return pow(x, y); }",
+      "node a(vec3 x in [-1, 1]) -> vec3 { return normalize(x); }",
+      "node a(float x in [-2, 1]) -> float { return acos(x); }",
+      "node a(float x in [0, 1]) -> float in [0, 1] { return 2 * x; }",
+      "node a(float x in [0, 1]) -> float in [0, 1] { return x * x - 0.001 * x; }",
+      "node b(float x in [0, 1]) -> float in [0, 1] { return x; }\n/// D.\n/// source: S\n"
+      "node a(float x in [0, 2]) -> float in [0, 2] { return b(x); }",
+      "node a(float x in [0, 1], float y in [0, 1]) -> float { return sqrt(x - y); }",
+  };
+  for (const char* body : kBodies) {
+    const auto made = lang::Library::fromFiles({{"t.node", std::string("/// D.\n/// source: S\n") + body}});
+    ASSERT_TRUE(made) << body;
+    ASSERT_TRUE(made->checkAll().empty()) << body << format(made->checkAll()[0]);
+    EXPECT_GT(unproved(proveNode(**made->node("a"), {}), false), 0U) << body;
+  }
+}
+
+TEST(IntervalNodes, WhatTakesMoreThanOneEvaluationIsProved) {
+  const char* const kBodies[] = {
+      "node a(float x in [0, 1]) -> float in [0, 0.25] { return x - x * x; }",
+      "node a(float x in [0, 1], float y in [0, 1]) -> float in [0, 1] { return x + y - x * y; }",
+      "node a(float x in [0, 4]) -> float in [0, 1] { let r = (x - 1) / (x + 1); return r * r; }",
+      "node a(float x in [0, 1]) -> float { return sqrt(x * x - x + 0.26); }",
+      "node a(vec3 v) -> vec3 in [-1, 1] { return v * inversesqrt(v.x * v.x + (v.y * v.y + (v.z * v.z + "
+      "1e-30))); }",
+      "node a(vec3 v) -> vec3 in [-1, 1] { return v * inversesqrt(max(dot(v, v), 1e-30)); }",
+  };
+  for (const char* body : kBodies) {
+    const auto made = lang::Library::fromFiles({{"t.node", std::string("/// D.\n/// source: S\n") + body}});
+    ASSERT_TRUE(made) << body;
+    ASSERT_TRUE(made->checkAll().empty()) << body << format(made->checkAll()[0]);
+    EXPECT_EQ(unproved(proveNode(**made->node("a"), {}), true), 0U) << body;
+  }
+}
+
+/// Violations of facts by `samples` worlds; the first is described in `what`.
+size_t attack(const lang::NodeDecl& node, std::string_view variant, int samples, std::string& what) {
+  const NodeModule made = nodeModule(node, variant);
+  const ir::Dag& dag = made.module.dag;
+  std::vector<ValueId> ids, facts;
+  for (ValueId id = 0; id < dag.size(); ++id) {
+    ids.push_back(id);
+    if (dag.assumed(id)) facts.push_back(id);
+  }
+  if (facts.empty()) return 0;
+  const passes::RangeMath math(passes::Arithmetic::Float32);
+  size_t violations = 0;
+  std::vector<Floats> values;
+  for (int i = 0; i < samples; ++i) {
+    evaluate(made.module, ids, World(static_cast<uint64_t>(i), passes::kSceneLimit), values);
+    for (const ValueId id : facts) {
+      const passes::Range allowed = math.fact(*dag.assumed(id));
+      for (int c = 0; c < ir::componentCount(dag[id].type); ++c) {
+        const float x = values[id][static_cast<size_t>(c)];
+        if (allowed.contains(x) || ++violations > 1) continue;
+        std::ostringstream text;
+        text.precision(9);
+        text << node.name << ": " << dag.nameOf(id) << " is " << x << ", assumed "
+             << rangeText(*dag.assumed(id)) << " (world " << i << ")";
+        what = text.str();
+      }
+    }
+  }
+  return violations;
+}
+
+TEST(IntervalNodes, AssumedFactsHold) {
+  size_t attacked = 0;
+  for (const std::string_view name : library().names(lang::DeclKind::Node)) {
+    const lang::NodeDecl& node = **library().node(name);
+    attacked += node.assumptions.size();
+    std::string what;
+    EXPECT_EQ(attack(node, {}, 100000, what), 0U) << what;
+    for (const lang::Variant& variant : node.variants) {
+      EXPECT_EQ(attack(node, variant.name, 100000, what), 0U) << what;
+    }
+  }
+  EXPECT_GT(attacked, 10U);
+}
+
+TEST(IntervalNodes, FalseFactsAreFound) {
+  const char* const kBodies[] = {
+      "node a(float x in [0, 1]) -> float { let y = 1 - x; assume(y in [0.00001, 1], \"wrong at an edge\"); "
+      "return y; }",
+      "node a(vec3 N in [-1, 1], vec3 V in [-1, 1]) -> float { let y = dot(N, V); assume(y in [-0.999, 1], "
+      "\"wrong when opposite\"); return y; }",
+  };
+  for (const char* body : kBodies) {
+    const auto made = lang::Library::fromFiles({{"t.node", std::string("/// D.\n/// source: S\n") + body}});
+    ASSERT_TRUE(made && made->checkAll().empty()) << body;
+    std::string what;
+    EXPECT_GT(attack(**made->node("a"), {}, 1000, what), 0U) << body;
+  }
+}
+
+}  // namespace
+}  // namespace lacquer::test

@@ -1,0 +1,235 @@
+// Every value that float32 evaluation gives lies in its interval: of random DAGs, of every node, and of the
+// shaders of all examples.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+#include "api/node_proofs.h"
+#include "gltf/material.h"
+#include "graph/build.h"
+#include "intervals/evaluator.h"
+#include "lower/lower.h"
+#include "passes/pipeline.h"
+#include "support/cases.h"
+
+namespace lacquer::test {
+namespace {
+
+using ir::Op;
+using ir::Type;
+using ir::ValueId;
+using passes::Intervals;
+
+/// Values outside of their intervals; the first is described.
+size_t violations(const ir::Module& module, const Intervals& intervals, int samples, double limit,
+                  std::string& what) {
+  const std::vector<ValueId> ids = everything(module);
+  std::vector<Floats> values;
+  size_t count = 0;
+  for (int i = 0; i < samples; ++i) {
+    evaluate(module, ids, World(static_cast<uint64_t>(i), limit), values);
+    for (const ValueId id : ids) {
+      if (ir::isTexture(module.dag[id].type)) continue;
+      for (int c = 0; c < std::min(ir::componentCount(module.dag[id].type), 4); ++c) {
+        const float x = values[id][static_cast<size_t>(c)];
+        const passes::Range& r = intervals.at(id, c);
+        if (std::isnan(x) ? r.nan : r.contains(x)) continue;
+        if (++count > 1) continue;
+        std::ostringstream text;
+        text.precision(9);
+        text << "%" << id << " " << ir::info(module.dag[id].op).name << " " << module.dag.nameOf(id) << " of "
+             << module.dag.terms()[module.dag.termOf(id)].name << " is " << x << ", not in [" << r.lo << ", "
+             << r.hi << "] (world " << i << ")";
+        what = text.str();
+      }
+    }
+  }
+  return count;
+}
+
+void expectSound(const ir::Module& module, const passes::IntervalOptions& options, int samples,
+                 const std::string& name) {
+  Intervals intervals(module, options);
+  intervals.run();
+  std::string what;
+  EXPECT_EQ(violations(module, intervals, samples, options.unbounded, what), 0U) << name << ": " << what;
+}
+
+/// A random DAG over a few inputs; made through the constructor, so that its rules apply.
+class RandomDag {
+public:
+  explicit RandomDag(uint32_t seed) : random_(seed) {
+    const ir::Interval ranges[] = {{0, 1},  {-1, 1}, {0.25, 3},
+                                   {-2, 0}, {},      {0, std::numeric_limits<double>::infinity()}};
+    for (int i = 0; i < 6; ++i) {
+      const Type type = i % 2 == 0 ? Type::Float : Type::Vec3;
+      values_.push_back(
+          module_.dag.input({ir::InputKind::Parameter, "p" + std::to_string(i), type, ir::Rate::Material,
+                             ranges[pick(6)], 0, static_cast<uint32_t>(i)}));
+    }
+    for (const double x : {0.0, 1.0, 0.5, -0.3, 1e-30}) values_.push_back(module_.dag.constant(x));
+    for (int i = 0; i < 60; ++i) add();
+    for (uint32_t i = 0; i < 4; ++i) {
+      module_.outputs.push_back({ir::OutputKind::Color, ir::Stage::Fragment, "o" + std::to_string(i), i,
+                                 values_[values_.size() - 1 - i]});
+    }
+  }
+  const ir::Module& module() const { return module_; }
+
+private:
+  size_t pick(size_t n) { return random_() % n; }
+
+  ValueId of(Type type) {
+    for (;;) {
+      const ValueId id = values_[pick(values_.size())];
+      if (module_.dag[id].type == type) return id;
+    }
+  }
+
+  void add() {
+    constexpr Op kOps[] = {Op::Neg,         Op::Abs,   Op::Sign,   Op::Floor,     Op::Fract, Op::Sqrt,
+                           Op::InverseSqrt, Op::Exp2,  Op::Log2,   Op::Exp,       Op::Log,   Op::Sin,
+                           Op::Cos,         Op::Acos,  Op::Add,    Op::Sub,       Op::Mul,   Op::Div,
+                           Op::Min,         Op::Max,   Op::Pow,    Op::Atan2,     Op::Mix,   Op::Clamp,
+                           Op::Dot,         Op::Cross, Op::Length, Op::Normalize, Op::Less,  Op::Select,
+                           Op::Mul,         Op::Sub,   Op::Add};
+    const Op op = kOps[pick(std::size(kOps))];
+    ir::Dag& dag = module_.dag;
+    const Type type = pick(2) == 0 ? Type::Float : Type::Vec3;
+    const ValueId a = of(type);
+    // The same operand often: that is where intervals know more.
+    const ValueId b = pick(3) == 0 ? a : of(type);
+    switch (ir::info(op).signature) {
+      case ir::Signature::Map: {
+        const ValueId lo = op == Op::Clamp ? dag.constant(type, {-1, -1, -1}) : of(type);
+        const ValueId args[] = {a, op == Op::Clamp ? lo : b,
+                                op == Op::Clamp ? dag.constant(type, {1, 1, 1}) : of(type)};
+        values_.push_back(dag.make(op, std::span(args, static_cast<size_t>(ir::info(op).arity))));
+        break;
+      }
+      case ir::Signature::Reduce2: values_.push_back(dag.make(op, {a, b})); break;
+      case ir::Signature::Cross: values_.push_back(dag.make(op, {of(Type::Vec3), of(Type::Vec3)})); break;
+      case ir::Signature::Length:
+      case ir::Signature::Same: values_.push_back(dag.make(op, {a})); break;
+      case ir::Signature::Compare:
+      case ir::Signature::Select:
+        values_.push_back(
+            dag.make(Op::Select, {dag.make(Op::Less, {of(Type::Float), of(Type::Float)}), a, b}));
+        break;
+      case ir::Signature::Special:
+      case ir::Signature::Logic: break;
+    }
+    // x + (k - x) * t and its kin.
+    if (pick(6) == 0) values_.push_back(dag.add(a, dag.mul(dag.sub(b, a), of(type))));
+    if (pick(6) == 0) values_.push_back(dag.add(dag.mul(a, of(type)), dag.sub(b, a)));
+    if (pick(6) == 0) values_.push_back(dag.sub(a, dag.mul(a, of(type))));
+  }
+
+  std::mt19937 random_;
+  ir::Module module_;
+  std::vector<ValueId> values_;
+};
+
+TEST(IntervalSoundness, RandomDags) {
+  for (uint32_t seed = 0; seed < 400; ++seed) {
+    const RandomDag random(seed);
+    expectSound(random.module(), {}, 100, "seed " + std::to_string(seed));
+    expectSound(random.module(), {passes::Arithmetic::Float32, 1e4}, 100, "seed " + std::to_string(seed));
+  }
+}
+
+TEST(IntervalSoundness, AWrongIntervalIsFound) {
+  ir::Module module;
+  ir::Dag& dag = module.dag;
+  const ValueId x = dag.input({ir::InputKind::Parameter, "x", Type::Float, ir::Rate::Material, {0, 1}, 0, 0});
+  const ValueId y = dag.sub(dag.constant(1), x);
+  module.outputs.push_back({ir::OutputKind::Color, ir::Stage::Fragment, "o", 0, y});
+  Intervals intervals(module);
+  passes::Ranges wrong;
+  wrong.fill({0, 0.999, false});
+  intervals.fix(y, wrong);
+  intervals.run();
+  std::string what;
+  EXPECT_GT(violations(module, intervals, 100, 1, what), 0U);
+}
+
+TEST(IntervalSoundness, Nodes) {
+  const lang::Library library = lang::Library::embedded();
+  for (const std::string_view name : library.names(lang::DeclKind::Node)) {
+    const NodeModule made = nodeModule(**library.node(name), {});
+    // The geometry's cosines are rounded: inputs that were computed.
+    expectSound(made.module, {passes::Arithmetic::Float32, passes::kSceneLimit, true}, 5000,
+                std::string(name));
+  }
+}
+
+/// The lowered modules of every material of the examples.
+template <class F>
+void eachExample(F f) {
+  const lang::Library library = lang::Library::embedded();
+  size_t count = 0;
+  for (const auto& file : findFiles(sourceFolder() / "examples", ".gltf")) {
+    const Result<gltf::Document> document = gltf::read(file.string(), {});
+    ASSERT_TRUE(document) << file;
+    for (const gltf::Material& material : document->materials) {
+      if (hasError(material.diagnostics)) continue;
+      for (const char* name : {"forward", "surface", "bsdf"}) {
+        gltf::VertexAttributes attributes;
+        attributes.normal = attributes.tangent = true;
+        attributes.texCoord = {true, true, false, false};
+        graph::BuildOptions options;
+        options.template_name = name;
+        Diagnostics warnings;
+        graph::Graph graph = graph::build(material, attributes, options, warnings);
+        ASSERT_FALSE(hasError(graph::check(graph, library))) << file << " " << name;
+        Result<ir::Module> module = lower::lower(graph, library, {});
+        ASSERT_TRUE(module);
+        f(*module, file.filename().string() + " " + material.name + " " + name);
+        ++count;
+      }
+    }
+  }
+  EXPECT_GT(count, 10U);
+}
+
+TEST(IntervalSoundness, Examples) {
+  eachExample([](const ir::Module& module, const std::string& name) {
+    expectSound(module, {passes::Arithmetic::Float32, passes::kSceneLimit}, 1000, name);
+  });
+}
+
+TEST(IntervalSoundness, PlacedModules) {
+  eachExample([](ir::Module& module, const std::string& name) {
+    passes::runPipeline(module, {});
+    // What the preshader gives cannot be drawn at random beside the parameters, so only its own values are
+    // looked at.
+    module.outputs.clear();
+    module.varyings.clear();
+    expectSound(module, {passes::Arithmetic::Float32, passes::kSceneLimit}, 1000, name);
+  });
+}
+
+/// Taking idle operations away changes no output, to the bit.
+TEST(IntervalSoundness, SimplifiedModulesGiveTheSame) {
+  eachExample([](const ir::Module& module, const std::string& name) {
+    ir::Module simpler = module;
+    passes::simplifyRanges(simpler);
+    std::vector<Floats> before, after;
+    for (int i = 0; i < 300; ++i) {
+      const World world(static_cast<uint64_t>(i), passes::kSceneLimit);
+      evaluate(module, everything(module), world, before);
+      evaluate(simpler, everything(simpler), world, after);
+      for (size_t o = 0; o < module.outputs.size(); ++o) {
+        const Floats& x = before[module.outputs[o].value];
+        const Floats& y = after[simpler.outputs[o].value];
+        for (size_t c = 0; c < 4; ++c)
+          ASSERT_TRUE(x[c] == y[c] || (std::isnan(x[c]) && std::isnan(y[c]))) << name;
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace lacquer::test
