@@ -1,0 +1,432 @@
+#include "targets/clike.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+namespace lacquer::targets {
+
+using ir::InputKind;
+using ir::Op;
+using ir::OutputKind;
+using ir::Type;
+using ir::ValueId;
+using passes::Statement;
+using passes::StatementKind;
+
+namespace {
+
+constexpr int kSpacesPerIndent = 4;
+
+Precedence tighter(Precedence p) { return static_cast<Precedence>(static_cast<int>(p) + 1); }
+
+bool isOperator(std::string_view spelling) {
+  return !std::isalpha(static_cast<unsigned char>(spelling.front()));
+}
+
+Precedence binaryPrecedence(std::string_view spelling) {
+  if (spelling == "*" || spelling == "/") return Precedence::Multiplicative;
+  if (spelling == "+" || spelling == "-") return Precedence::Additive;
+  if (spelling == "<" || spelling == "<=") return Precedence::Relational;
+  if (spelling == "==") return Precedence::Equality;
+  if (spelling == "&&") return Precedence::And;
+  assert(spelling == "||");
+  return Precedence::Or;
+}
+
+/// The printer of one stage: expressions and statements.
+class Printer {
+public:
+  Printer(const Dialect& dialect, const ir::Module& module, const passes::Program& program)
+      : dialect_(dialect), module_(module), dag_(module.dag), program_(program) {}
+
+  void statements(Text& text) const;
+  std::string root(ValueId id) const { return use(id).text; }
+
+private:
+  /// The value where it is used: its variable if it has one.
+  Expression use(ValueId id) const;
+  /// The value as it is computed.
+  Expression compute(ValueId id) const;
+  Expression constant(ValueId id) const;
+  Expression input(const ir::Input& input) const;
+  Expression blockField(const ir::Input& input) const;
+  Expression construct(const ir::Value& value) const;
+  Expression swizzle(const ir::Value& value) const;
+  /// The argument list of a function of ops.def.
+  std::string arguments(const ir::Value& value) const;
+  Expression operation(const ir::Value& value) const;
+
+  void statement(Text& text, const Statement& statement) const;
+  void section(Text& text, ir::TermId term) const;
+  void openLoop(Text& text, const Statement& statement) const;
+  std::string lightCount() const;
+  std::string target(const ir::Output& output) const;
+  /// An item of an argument list, where any expression may stand.
+  std::string argument(ValueId id) const { return use(id).text; }
+
+  const Dialect& dialect_;
+  const ir::Module& module_;
+  const ir::Dag& dag_;
+  const passes::Program& program_;
+};
+
+Expression Printer::use(ValueId id) const {
+  const std::string& name = program_.names[id];
+  return name.empty() ? compute(id) : Expression{name};
+}
+
+Expression Printer::compute(ValueId id) const {
+  const ir::Value& value = dag_[id];
+  // Not a switch: an op with a spelling needs nothing but its row in ops.def.
+  if (value.op == Op::Constant) return constant(id);
+  if (value.op == Op::Input) return input(dag_.inputOf(id));
+  if (value.op == Op::Construct) return construct(value);
+  if (value.op == Op::Swizzle) return swizzle(value);
+  if (value.op == Op::Texture) {
+    return {dialect_.texture(argument(value.args[0]), argument(value.args[1]), {})};
+  }
+  if (value.op == Op::TextureLod) {
+    return {dialect_.texture(argument(value.args[0]), argument(value.args[1]), argument(value.args[2]))};
+  }
+  return operation(value);
+}
+
+Expression Printer::constant(ValueId id) const {
+  const Type type = dag_[id].type;
+  const ir::Components& c = dag_.constantOf(id);
+  if (type == Type::Bool) return {c[0] != 0 ? "true" : "false"};
+  if (type == Type::Int) {
+    return {fmt::format("{}", static_cast<int32_t>(c[0])),
+            c[0] < 0 ? Precedence::Unary : Precedence::Postfix};
+  }
+  if (type == Type::Float) return dialect_.literal(c[0]);
+  assert(ir::isFloatVector(type));
+  const auto* end = c.begin() + ir::componentCount(type);
+  std::string list;
+  for (const auto* x = c.begin(); x != end; ++x) {
+    list += (list.empty() ? "" : ", ") + dialect_.literal(*x).text;
+  }
+  // By text: numbers that are one float are one number here.
+  const Expression first = dialect_.literal(c[0]);
+  const bool equal =
+      std::all_of(c.begin(), end, [&](double x) { return dialect_.literal(x).text == first.text; });
+  if (equal) return dialect_.splat(type, first, true);
+  return {fmt::format("{}({})", dialect_.type(type), list)};
+}
+
+Expression Printer::input(const ir::Input& input) const {
+  switch (input.kind) {
+    case InputKind::SpecConstant: return {input.name};
+    case InputKind::Parameter:
+      return {dialect_.parameter(input)};  // in the preshader; in a shader it is a field of a block
+    case InputKind::BlockField: return blockField(input);
+    case InputKind::Attribute: {
+      const auto& all = module_.attributes;
+      const auto found =
+          std::find_if(all.begin(), all.end(), [&](const auto& a) { return a.name == input.name; });
+      assert(found != all.end());
+      return {attributeName(*found)};
+    }
+    case InputKind::Texture: return {module_.textures[input.field].name};
+    case InputKind::FrontFacing: return {std::string(dialect_.frontFacing())};
+    case InputKind::LightIndex: return {passes::kLightIndexName};
+    case InputKind::Varying: return {varyingName(module_.varyings[input.field])};
+  }
+  assert(false && "not a kind of input");
+  return {};
+}
+
+Expression Printer::blockField(const ir::Input& input) const {
+  const ir::Block& block = module_.blocks[input.block];
+  const std::string& field = block.fields[input.field].name;
+  if (block.array == 0) return {fmt::format("{}.{}", block.instance, field)};
+  if (input.element >= 0) return {fmt::format("{}s[{}].{}", block.instance, input.element, field)};
+  return {fmt::format("{}s[{}].{}", block.instance, passes::kLightIndexName, field)};
+}
+
+Expression Printer::construct(const ir::Value& value) const {
+  if (value.count == 1 && dag_[value.args[0]].type == Type::Float) {
+    return dialect_.splat(value.type, use(value.args[0]), dag_.isConstant(value.args[0]));
+  }
+  std::string list;
+  for (ValueId part : value.operands()) list += (list.empty() ? "" : ", ") + argument(part);
+  return {fmt::format("{}({})", dialect_.type(value.type), list)};
+}
+
+Expression Printer::swizzle(const ir::Value& value) const {
+  assert(ir::isFloatVector(dag_[value.args[0]].type));
+  std::string picks;
+  for (int i = 0; i < ir::componentCount(value.type); ++i)
+    picks += "xyzw"[ir::swizzleComponent(value.payload, i)];
+  return {dialect_.swizzle(value.type, parenthesized(use(value.args[0]), Precedence::Postfix), picks)};
+}
+
+std::string Printer::arguments(const ir::Value& value) const {
+  std::array<Type, 4> types{};
+  for (size_t i = 0; i < value.count; ++i) types[i] = dag_[value.args[i]].type;
+  // Only the component-wise functions broadcast.
+  const bool map = ir::info(value.op).signature == ir::Signature::Map;
+  std::string list;
+  for (size_t i = 0; i < value.count; ++i) {
+    const ValueId operand = value.args[i];
+    const bool beside = map && types[i] == Type::Float && value.type != Type::Float;
+    const bool splat = beside && !Dialect::takesFloat(value.op, {types.data(), value.count}, i);
+    list += i == 0 ? "" : ", ";
+    list +=
+        splat ? dialect_.splat(value.type, use(operand), dag_.isConstant(operand)).text : argument(operand);
+  }
+  return list;
+}
+
+Expression Printer::operation(const ir::Value& value) const {
+  const std::string_view spelling = dialect_.spelling(value.op);
+  assert(!spelling.empty() && "not an op that a text can say");
+  const auto& args = value.args;
+  if (value.op == Op::Select) {
+    // A choice in the middle is in parentheses for the reader's sake, one at the end reads as a list of
+    // cases.
+    const Precedence inner = tighter(Precedence::Ternary);
+    return {fmt::format("{} ? {} : {}", parenthesized(use(args[0]), inner),
+                        parenthesized(use(args[1]), inner), use(args[2]).text),
+            Precedence::Ternary};
+  }
+  if (!isOperator(spelling)) return {dialect_.call(value.op, value.type, arguments(value))};
+  if (value.count == 1) {
+    // Postfix, not Unary: `--x` would be a decrement.
+    return {std::string(spelling) + parenthesized(use(args[0]), Precedence::Postfix), Precedence::Unary};
+  }
+  const Precedence precedence = binaryPrecedence(spelling);
+  return {fmt::format("{} {} {}", parenthesized(use(args[0]), precedence), spelling,
+                      parenthesized(use(args[1]), tighter(precedence))),
+          precedence};
+}
+
+void Printer::section(Text& text, ir::TermId id) const {
+  const ir::Term& term = dag_.terms()[id];
+  text.comment(term.source.empty() ? term.name : fmt::format("{}: {}", term.name, term.source));
+}
+
+std::string Printer::lightCount() const {
+  for (const ir::Block& block : module_.blocks) {
+    if (block.role == ir::BlockRole::Frame) return block.instance + ".light_count";
+  }
+  assert(false && "a loop over a run-time number of lights needs the frame block");
+  return {};
+}
+
+void Printer::openLoop(Text& text, const Statement& statement) const {
+  for (ValueId sum : statement.sums) {
+    const Type type = dag_[sum].type;
+    const Expression zero = floatLiteral(0);
+    text.line(fmt::format("{} {} = {};", dialect_.type(type), program_.names[sum],
+                          type == Type::Float ? zero.text : dialect_.splat(type, zero, true).text));
+  }
+  const ir::LightGroup& group = module_.light_groups[statement.group];
+  const std::string end = group.count < 0 ? lightCount() : fmt::format("{}", group.first + group.count);
+  text.line(
+      fmt::format("for (int {0} = {1}; {0} < {2}; ++{0}) {{", passes::kLightIndexName, group.first, end));
+  text.indent();
+}
+
+std::string Printer::target(const ir::Output& output) const {
+  switch (output.kind) {
+    case OutputKind::Position: return std::string(dialect_.position());
+    case OutputKind::Color: return outputName(output);
+    case OutputKind::Varying: return varyingName(module_.varyings[output.location]);
+    case OutputKind::Discard: break;  // a statement of its own
+  }
+  assert(false && "not an output that is assigned");
+  return {};
+}
+
+void Printer::statement(Text& text, const Statement& s) const {
+  switch (s.kind) {
+    case StatementKind::Section: section(text, s.term); return;
+    case StatementKind::Let:
+      text.line(fmt::format("{} {} = {};", dialect_.type(dag_[s.value].type), program_.names[s.value],
+                            compute(s.value).text));
+      return;
+    case StatementKind::LoopBegin: openLoop(text, s); return;
+    case StatementKind::Accumulate:
+      text.line(fmt::format("{} += {};", program_.names[s.value], root(dag_[s.value].args[0])));
+      return;
+    case StatementKind::LoopEnd:
+      text.outdent();
+      text.line("}");
+      return;
+    case StatementKind::Discard:
+      text.line(fmt::format("if ({}) {{", root(s.value)));
+      text.indent();
+      text.line("discard;");
+      text.outdent();
+      text.line("}");
+      return;
+    case StatementKind::Output: {
+      const ir::Output& output = module_.outputs[s.output];
+      text.line(fmt::format("{} = {};", target(output), root(output.value)));
+      return;
+    }
+  }
+}
+
+void Printer::statements(Text& text) const {
+  // A section begins with a blank line, and so do the outputs; not so at the top of a brace.
+  StatementKind before = StatementKind::LoopBegin;
+  for (const Statement& s : program_.statements) {
+    const bool begins = s.kind == StatementKind::Section ||
+                        (s.kind == StatementKind::Output && before != StatementKind::Output &&
+                         before != StatementKind::Section);
+    if (begins && before != StatementKind::LoopBegin) text.blank();
+    statement(text, s);
+    before = s.kind;
+  }
+}
+
+// The packing rules: where a member goes that is declared when `cursor` bytes are taken.
+
+uint32_t roundUp(uint32_t x, uint32_t alignment) { return (x + alignment - 1) / alignment * alignment; }
+
+uint32_t byteSize(Type type) { return 4 * static_cast<uint32_t>(ir::componentCount(type)); }
+
+uint32_t std140Offset(uint32_t cursor, Type type) {
+  const uint32_t size = byteSize(type);
+  return roundUp(cursor, size <= 8 ? size : 16);
+}
+
+uint32_t hlslOffset(uint32_t cursor, Type type) {
+  return cursor % 16 + byteSize(type) > 16 ? roundUp(cursor, 16) : cursor;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+}  // namespace
+
+std::string parenthesized(const Expression& expression, Precedence least) {
+  return expression.precedence < least ? '(' + expression.text + ')' : expression.text;
+}
+
+Expression floatLiteral(double x) {
+  assert(!std::isnan(x));
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  const float rounded = static_cast<float>(std::clamp(x, -kLargest, kLargest));
+  std::string text = fmt::format("{}", rounded);
+  if (const size_t e = text.find('e'); e != std::string::npos) {
+    // fmt writes a sign and at least two digits: 1e-07, 1e+20.
+    const size_t sign = e + 1;
+    size_t digits = sign + 1;
+    while (text[digits] == '0') ++digits;
+    text = text.substr(0, sign) + (text[sign] == '-' ? "-" : "") + text.substr(digits);
+  } else if (text.find('.') == std::string::npos) {
+    text += ".0";
+  }
+  return {text, std::signbit(rounded) ? Precedence::Unary : Precedence::Postfix};
+}
+
+void Text::line(std::string_view text) {
+  text_.append(static_cast<size_t>(depth_ * kSpacesPerIndent), ' ');
+  text_ += text;
+  text_ += '\n';
+}
+
+void Text::comment(std::string_view text) {
+  std::string safe = "// ";
+  for (char c : text) {
+    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    safe += control ? ' ' : c == '\\' ? '/' : c;
+  }
+  safe.erase(safe.find_last_not_of(' ') + 1);
+  line(safe);
+}
+
+void Text::comments(std::string_view text) {
+  while (!text.empty()) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    comment(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+}
+
+bool Dialect::takesFloat(Op op, std::span<const Type> operands, size_t index) {
+  if (op == Op::Min || op == Op::Max) return index == 1;
+  if (op == Op::Mix) return index == 2;
+  if (op == Op::Clamp) return index > 0 && operands[1] == operands[2];
+  return false;
+}
+
+Expression Dialect::literal(double x) const { return floatLiteral(x); }
+
+std::string Dialect::parameter(const ir::Input& input) const { return input.name; }
+
+std::string Dialect::swizzle(Type, std::string_view vector, std::string_view picks) const {
+  return fmt::format("{}.{}", vector, picks);
+}
+
+std::string Dialect::call(Op op, Type, std::string_view arguments) const {
+  return fmt::format("{}({})", spelling(op), arguments);
+}
+
+std::string attributeName(const ir::Attribute& attribute) { return "in_" + lower(attribute.name); }
+
+std::string varyingName(const ir::Varying& varying) { return "v_" + varying.name; }
+
+std::string outputName(const ir::Output& output) { return "out_" + output.name; }
+
+void printMembers(Text& text, const Dialect& dialect, const ir::Block& block) {
+  uint32_t cursor = 0;
+  int paddings = 0;
+  const auto pad = [&] {
+    text.line(fmt::format("{} lacquer_padding_{};", dialect.type(Type::Float), paddings++));
+    cursor += 4;
+  };
+  text.indent();
+  for (const ir::BlockField& field : block.fields) {
+    assert(cursor <= field.offset && std140Offset(field.offset, field.type) == field.offset &&
+           hlslOffset(field.offset, field.type) == field.offset);
+    while (std140Offset(cursor, field.type) != field.offset || hlslOffset(cursor, field.type) != field.offset)
+      pad();
+    text.line(fmt::format("{} {};", dialect.type(field.type), field.name));
+    cursor = field.offset + byteSize(field.type);
+  }
+  // The elements of an array, and blocks as a whole, end at a multiple of 16 of themselves.
+  while (roundUp(cursor, 16) < block.size) pad();
+  text.outdent();
+}
+
+std::string printProgram(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+                         std::string_view head) {
+  Text text;
+  dialect.open(text, module, program, head);
+  text.indent();
+  Printer(dialect, module, program).statements(text);
+  text.outdent();
+  text.line("}");
+  return text.take();
+}
+
+void printStatements(Text& text, const Dialect& dialect, const ir::Module& module,
+                     const passes::Program& program) {
+  Printer(dialect, module, program).statements(text);
+}
+
+std::string printValue(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+                       ValueId value) {
+  return Printer(dialect, module, program).root(value);
+}
+
+std::string printExpression(const Dialect& dialect, const ir::Module& module, ValueId value) {
+  passes::Program nameless{};
+  nameless.names.resize(module.dag.size());
+  return Printer(dialect, module, nameless).root(value);
+}
+
+}  // namespace lacquer::targets

@@ -1,0 +1,127 @@
+// The one printer of GLSL and HLSL. It walks a passes::Program from front to back and asks a Dialect, the few
+// hooks in which the languages differ, for every spelling. It decides nothing, never looks back and never
+// edits what it wrote.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "ir/module.h"
+#include "passes/program.h"
+
+namespace lacquer::targets {
+
+/// How tightly an expression's outermost operator binds, loosest first; one order for GLSL and HLSL.
+enum class Precedence : uint8_t {
+  Ternary,
+  Or,
+  And,
+  Equality,
+  Relational,
+  Additive,
+  Multiplicative,
+  Unary,
+  Postfix,  ///< names, literals, calls, swizzles: never in need of parentheses
+};
+
+/// The text of an expression, and what decides whether it needs parentheses where it is put.
+struct Expression {
+  std::string text;
+  Precedence precedence = Precedence::Postfix;
+};
+
+/// The expression's text for a place that takes anything which binds at least as tightly as `least`.
+std::string parenthesized(const Expression& expression, Precedence least);
+
+/// The shortest literal that reads back as the float nearest to x: `0.04`, `1.0`, `1e-7`. Beyond the range of
+/// float it is the largest float. A negative one binds like a unary minus.
+Expression floatLiteral(double x);
+
+/// Lines of text at a depth of indentation.
+class Text {
+public:
+  void line(std::string_view text);
+  void blank() { text_ += '\n'; }
+  /// A comment of one line. What would end it early or continue it (control characters, a backslash) is
+  /// replaced.
+  void comment(std::string_view text);
+  /// One comment for each line of `text`.
+  void comments(std::string_view text);
+  void indent() { ++depth_; }
+  void outdent() { --depth_; }
+  std::string take() { return std::move(text_); }
+
+private:
+  std::string text_;
+  int depth_ = 0;
+};
+
+/// What differs between the C-like targets.
+class Dialect {
+public:
+  virtual ~Dialect() = default;
+
+  virtual std::string_view type(ir::Type type) const = 0;
+  /// The operator or the function's name: a column of ops.def.
+  virtual std::string_view spelling(ir::Op op) const = 0;
+  virtual std::string_view position() const = 0;
+  virtual std::string_view frontFacing() const = 0;
+  /// True when the function has an overload that takes a Float at `index` beside the vectors among
+  /// `operands`. Elsewhere it is printed as a splat. The same in all dialects: what GLSL has, and HLSL
+  /// promotes any.
+  static bool takesFloat(ir::Op op, std::span<const ir::Type> operands, size_t index);
+  /// A number: floatLiteral's.
+  virtual Expression literal(double x) const;
+  /// A parameter where no place pass has been: its name.
+  virtual std::string parameter(const ir::Input& input) const;
+  /// Components of a vector, `picks` out of "xyzw". `vector` is text that a '.' may follow.
+  virtual std::string swizzle(ir::Type result, std::string_view vector, std::string_view picks) const;
+  /// A vector with one number in all components. `literal`: `x` is a literal.
+  virtual Expression splat(ir::Type type, const Expression& x, bool literal) const = 0;
+  /// A texel; `lod` is empty for implicit derivatives.
+  virtual std::string texture(std::string_view name, std::string_view at, std::string_view lod) const = 0;
+  /// A call of a function of ops.def.
+  virtual std::string call(ir::Op op, ir::Type result, std::string_view arguments) const;
+
+  /// All that stands before the statements of main: the head as comments, the interface, and main's opening
+  /// line.
+  virtual void open(Text& text, const ir::Module& module, const passes::Program& program,
+                    std::string_view head) const = 0;
+};
+
+/// The dialects' interface names, the same in all of them. Variables of a Program never begin with these
+/// prefixes.
+std::string attributeName(const ir::Attribute& attribute);  ///< "TEXCOORD_0": in_texcoord_0
+std::string varyingName(const ir::Varying& varying);        ///< v_…
+std::string outputName(const ir::Output& output);           ///< out_…
+
+/// The members of a block, one a line. Where std140 or HLSL's packing would place a member elsewhere than the
+/// block says, padding stands before it, so that one declaration means the same bytes in every dialect.
+void printMembers(Text& text, const Dialect& dialect, const ir::Block& block);
+
+/// The whole text of a stage.
+std::string printProgram(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+                         std::string_view head);
+
+/// The Section, Let and Output statements, and what is between them.
+void printStatements(Text& text, const Dialect& dialect, const ir::Module& module,
+                     const passes::Program& program);
+
+/// A value where it is used: its variable if it has one.
+std::string printValue(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+                       ir::ValueId value);
+
+/// A value as one expression, everything written where it is used; parameters of the material by their names.
+std::string printExpression(const Dialect& dialect, const ir::Module& module, ir::ValueId value);
+
+/// The C++ header that packs the material's block (cpp.cpp).
+std::string printHeader(const ir::Module& module, std::string_view name, std::string_view head);
+
+const Dialect& glslVulkan();
+const Dialect& glslOpenGl();
+const Dialect& essl300();
+const Dialect& hlsl();
+
+}  // namespace lacquer::targets

@@ -1,0 +1,549 @@
+// The preshader as C++11: a header without dependencies that turns a material's parameters into the bytes of
+// the uniform block. It computes in double what Shader::pack() computes, operation by operation, so that the
+// bytes are the same.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include "passes/names.h"
+#include "targets/clike.h"
+
+namespace lacquer::targets {
+
+using ir::Op;
+using ir::Signature;
+using ir::Type;
+using ir::ValueId;
+
+namespace {
+
+/// The fold column of ops.def: an op's meaning in C++, with T for the arithmetic and a, b, c for the
+/// operands.
+constexpr std::array<std::string_view, ir::kOpCount> kFolds = {{
+#define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) #fold,
+#include "ir/ops.def"
+#undef OP
+}};
+
+std::string_view foldOf(Op op) { return kFolds[static_cast<size_t>(op)]; }
+
+/// True when the op is one function of <cmath>.
+bool standard(Op op) { return foldOf(op).starts_with("std::"); }
+
+bool isOperator(Op op) { return std::isalpha(static_cast<unsigned char>(ir::info(op).glsl.front())) == 0; }
+
+/// A number in double: the shortest text that reads back as the same.
+std::string doubleLiteral(double x) {
+  std::string text = fmt::format("{}", x);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+class Cpp final : public Dialect {
+public:
+  std::string_view type(Type type) const override {
+    return type == Type::Float ? "double" : ir::typeName(type);
+  }
+
+  /// Windows has macros of the names min and max.
+  std::string_view spelling(Op op) const override {
+    if (op == Op::Min) return "min_of";
+    if (op == Op::Max) return "max_of";
+    return ir::info(op).glsl;
+  }
+
+  std::string_view position() const override { return {}; }
+  std::string_view frontFacing() const override { return {}; }
+
+  Expression literal(double x) const override {
+    return {doubleLiteral(x), std::signbit(x) ? Precedence::Unary : Precedence::Postfix};
+  }
+
+  /// Members of `p`; vectors are locals.
+  std::string parameter(const ir::Input& input) const override {
+    const std::string& member = members_.at(input.name);
+    return ir::isFloatVector(input.type) ? member : "p." + member;
+  }
+  void nameParameter(const std::string& name, const std::string& member) { members_[name] = member; }
+  const std::string& member(const std::string& name) const { return members_.at(name); }
+
+  std::string swizzle(Type result, std::string_view vector, std::string_view picks) const override {
+    if (result == Type::Float) return fmt::format("{}.{}", vector, picks);
+    std::string list;
+    for (const char pick : picks) list += fmt::format("{}{}.{}", list.empty() ? "" : ", ", vector, pick);
+    return fmt::format("{}({})", type(result), list);
+  }
+
+  Expression splat(Type type, const Expression& x, bool) const override {
+    return {fmt::format("{}({})", ir::typeName(type), x.text)};
+  }
+
+  std::string texture(std::string_view, std::string_view, std::string_view) const override {
+    assert(false && "no texture has material rate");
+    return {};
+  }
+
+  std::string call(Op op, Type result, std::string_view arguments) const override {
+    if (!standard(op) || result != Type::Float) return Dialect::call(op, result, arguments);
+    const std::string_view fold = foldOf(op);
+    return fmt::format("{}({})", fold.substr(0, fold.find('(')), arguments);
+  }
+
+  void open(Text&, const ir::Module&, const passes::Program&, std::string_view) const override {
+    assert(false && "a header has no stage");
+  }
+
+private:
+  std::map<std::string, std::string> members_;
+};
+
+constexpr std::string_view kComponents = "xyzw";
+
+/// The types, operators and functions that the expressions need, and no others.
+class Helpers {
+public:
+  Helpers(const Dialect& dialect, const ir::Module& module, const std::vector<ValueId>& live)
+      : dialect_(dialect), dag_(module.dag) {
+    for (const ValueId id : live) need(id);
+  }
+
+  void needVector(Type type) { vectors_.insert(type); }
+  /// Names that mean something in the header.
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const Op op : scalar_) all.emplace_back(dialect_.spelling(op));
+    for (const Use& use : uses_) all.emplace_back(dialect_.spelling(use.op));
+    return all;
+  }
+
+  void print(Text& text) const {
+    for (const Op op : scalar_) scalar(text, op);
+    for (const Type type : vectors_) vector(text, type);
+    for (const Type type : vectors_) store(text, type);
+    for (const Use& use : uses_) overload(text, use);
+  }
+
+private:
+  /// An op on operands of these types.
+  struct Use {
+    Op op;
+    Type result;
+    std::array<Type, 4> types;
+    size_t count;
+    auto operator<=>(const Use&) const = default;
+  };
+
+  void need(ValueId id) {
+    const ir::Value& value = dag_[id];
+    if (ir::isFloatVector(value.type)) needVector(value.type);
+    Use use{value.op, value.type, {}, value.count};
+    for (size_t k = 0; k < value.count; ++k) {
+      use.types[k] = dag_[value.args[k]].type;
+      if (ir::isFloatVector(use.types[k])) needVector(use.types[k]);
+    }
+    switch (ir::info(value.op).signature) {
+      case Signature::Special: needSpecial(use); return;
+      case Signature::Map: needMap(use); return;
+      case Signature::Reduce2:
+      case Signature::Cross:
+      case Signature::Length:
+      case Signature::Same: uses_.insert(use); return;
+      case Signature::Compare:
+      case Signature::Logic:
+      case Signature::Select: return;  // C++ has them
+    }
+  }
+
+  /// Vectors are constructed from what they are constructed from.
+  void needSpecial(const Use& use) {
+    const auto count = static_cast<ptrdiff_t>(use.count);
+    if (use.op == Op::Construct)
+      constructors_[use.result].insert({use.types.begin(), use.types.begin() + count});
+  }
+
+  void needMap(Use use) {
+    if (!isOperator(use.op) && !standard(use.op)) scalar_.insert(use.op);
+    if (use.result == Type::Float) return;
+    const std::array<Type, 4> given = use.types;
+    for (size_t k = 0; k < use.count && !isOperator(use.op); ++k) {
+      // The printer writes a splat where GLSL has no overload.
+      if (!Dialect::takesFloat(use.op, {given.data(), use.count}, k)) use.types[k] = use.result;
+    }
+    uses_.insert(use);
+  }
+
+  /// `template <class T> T mix(T a, T b, T c)`, in the words of ops.def.
+  void scalar(Text& text, Op op) const {
+    std::string parameters;
+    for (int k = 0; k < ir::info(op).arity; ++k)
+      parameters += fmt::format("{}T {}", k == 0 ? "" : ", ", "abc"[k]);
+    text.line(fmt::format("template <class T> T {}({}) {{ return {}; }}", dialect_.spelling(op), parameters,
+                          foldOf(op)));
+  }
+
+  void vector(Text& text, Type type) const {
+    const auto width = static_cast<size_t>(ir::componentCount(type));
+    const std::string_view name = ir::typeName(type);
+    std::set<std::vector<Type>> constructors{std::vector<Type>(width, Type::Float), {Type::Float}};
+    if (const auto found = constructors_.find(type); found != constructors_.end()) {
+      constructors.insert(found->second.begin(), found->second.end());
+    }
+    text.line(fmt::format("struct {} {{", name));
+    text.indent();
+    std::string members;
+    for (size_t i = 0; i < width; ++i) members += fmt::format("{}{}", i == 0 ? "" : ", ", kComponents[i]);
+    text.line(fmt::format("double {};", members));
+    for (const std::vector<Type>& parts : constructors) constructor(text, type, parts);
+    std::string list;
+    for (size_t i = 0; i < width; ++i)
+      list += fmt::format("{}{}(from[{}])", i == 0 ? "" : ", ", kComponents[i], i);
+    text.line(fmt::format("explicit {}(const double* from) : {} {{}}", name, list));
+    text.outdent();
+    text.line("};");
+  }
+
+  void constructor(Text& text, Type type, const std::vector<Type>& parts) const {
+    const bool splat = parts.size() == 1 && parts[0] == Type::Float;
+    std::string parameters;
+    std::string list;
+    size_t at = 0;
+    for (size_t k = 0; k < parts.size(); ++k) {
+      const char part = "abcd"[k];
+      const int width = ir::componentCount(parts[k]);
+      parameters += fmt::format("{}{} {}", k == 0 ? "" : ", ", passed(parts[k]), part);
+      for (int i = 0; i < (splat ? ir::componentCount(type) : width); ++i, ++at) {
+        list += fmt::format("{}{}({})", at == 0 ? "" : ", ", kComponents[at],
+                            component(parts[k], part, static_cast<size_t>(i)));
+      }
+    }
+    text.line(fmt::format("{}{}({}) : {} {{}}", parts.size() == 1 ? "explicit " : "", ir::typeName(type),
+                          parameters, list));
+  }
+
+  void store(Text& text, Type type) const {
+    std::string body;
+    for (int i = 0; i < ir::componentCount(type); ++i) {
+      body += fmt::format("to[{}] = to_float(x.{}); ", i, kComponents[static_cast<size_t>(i)]);
+    }
+    text.line(fmt::format("inline void store(float* to, {} x) {{ {}}}", passed(type), body));
+  }
+
+  std::string passed(Type type) const {
+    return type == Type::Float ? "double" : fmt::format("const {}&", ir::typeName(type));
+  }
+
+  static std::string component(Type type, char name, size_t i) {
+    return type == Type::Float ? std::string(1, name) : fmt::format("{}.{}", name, kComponents[i]);
+  }
+
+  void overload(Text& text, const Use& use) const {
+    std::string parameters;
+    for (size_t k = 0; k < use.count; ++k) {
+      parameters += fmt::format("{}{} {}", k == 0 ? "" : ", ", passed(use.types[k]), "abc"[k]);
+    }
+    const std::string spelled = isOperator(use.op) ? fmt::format("operator{}", dialect_.spelling(use.op))
+                                                   : std::string(dialect_.spelling(use.op));
+    text.line(fmt::format("inline {} {}({}) {{ return {}; }}", dialect_.type(use.result), spelled, parameters,
+                          bodyOf(use)));
+  }
+
+  std::string bodyOf(const Use& use) const {
+    if (use.op == Op::Dot) return sumOfProducts(use.types[0], 'a', 'b');
+    if (use.op == Op::Length) return fmt::format("std::sqrt({})", sumOfProducts(use.types[0], 'a', 'a'));
+    if (use.op == Op::Cross)
+      return "vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)";
+    if (use.op == Op::Normalize) return normalized(use);
+    assert(ir::info(use.op).signature == Signature::Map && "nothing else has material rate");
+    std::string list;
+    for (int i = 0; i < ir::componentCount(use.result); ++i) {
+      list += fmt::format("{}{}", i == 0 ? "" : ", ", onComponent(use, static_cast<size_t>(i)));
+    }
+    return fmt::format("{}({})", dialect_.type(use.result), list);
+  }
+
+  std::string onComponent(const Use& use, size_t i) const {
+    std::vector<std::string> x;
+    for (size_t k = 0; k < use.count; ++k) x.push_back(component(use.types[k], "abc"[k], i));
+    if (isOperator(use.op) && use.count == 1) return std::string(dialect_.spelling(use.op)) + x[0];
+    if (isOperator(use.op)) return fmt::format("{} {} {}", x[0], dialect_.spelling(use.op), x[1]);
+    return dialect_.call(use.op, Type::Float, fmt::format("{}", fmt::join(x, ", ")));
+  }
+
+  /// The sum begins with 0, so that it is never -0.
+  static std::string sumOfProducts(Type type, char a, char b) {
+    std::string text = "0";
+    for (int i = 0; i < ir::componentCount(type); ++i) {
+      const auto at = static_cast<size_t>(i);
+      text += fmt::format(" + {} * {}", component(type, a, at), component(type, b, at));
+    }
+    return text;
+  }
+
+  std::string normalized(const Use& use) const {
+    const std::string length = fmt::format("std::sqrt({})", sumOfProducts(use.result, 'a', 'a'));
+    if (use.result == Type::Float) return "a / " + length;
+    std::string list;
+    for (int i = 0; i < ir::componentCount(use.result); ++i) {
+      list += fmt::format("{}a.{} / {}", i == 0 ? "" : ", ", kComponents[static_cast<size_t>(i)], length);
+    }
+    return fmt::format("{}({})", dialect_.type(use.result), list);
+  }
+
+  const Dialect& dialect_;
+  const ir::Dag& dag_;
+  std::set<Type> vectors_;
+  std::map<Type, std::set<std::vector<Type>>> constructors_;
+  std::set<Op> scalar_;
+  std::set<Use> uses_;
+};
+
+/// Letters, digits and underscores, as a part of an identifier.
+std::string identifier(std::string_view text, bool upper) {
+  std::string result;
+  for (const char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    result += std::isalnum(u) == 0 ? '_' : upper ? static_cast<char>(std::toupper(u)) : c;
+  }
+  return result;
+}
+
+class Header {
+public:
+  Header(const ir::Module& module, std::string_view name) : module_(module), name_(identifier(name, false)) {
+    for (const ir::Block& block : module.blocks) {
+      if (block.role == ir::BlockRole::Material) block_ = &block;
+    }
+    for (const ir::PreshaderField& field : module.preshader) roots_.push_back(field.value);
+    for (const char* word : {"p", "block", "bytes", "store", "to_float", "pack"}) names_.take(word);
+    for (const uint32_t index : ir::usedParameters(module)) {
+      parameters_.push_back(index);
+      dialect_.nameParameter(module.parameters[index].name, names_.pick(module.parameters[index].name));
+    }
+  }
+
+  std::string run(std::string_view head) {
+    const std::string guard = fmt::format("LACQUER_{}_H", identifier(name_, true));
+    text_.comments(head);
+    text_.comment("");
+    text_.comments(
+        "The material's uniform block from its parameters. C++11; for the bytes of the library's own pack(), "
+        "compile\n"
+        "without contraction of products and sums (-ffp-contract=off) and without -ffast-math.");
+    text_.line("#ifndef " + guard);
+    text_.line("#define " + guard);
+    text_.blank();
+    for (const char* include : {"cmath", "cstddef", "cstring"})
+      text_.line(fmt::format("#include <{}>", include));
+    text_.blank();
+    text_.line("namespace lacquer_shaders {");
+    text_.line(fmt::format("namespace {} {{", name_));
+    parameters();
+    if (block_ != nullptr) block();
+    pack();
+    bindings();
+    text_.blank();
+    text_.line(fmt::format("}}  // namespace {}", name_));
+    text_.line("}  // namespace lacquer_shaders");
+    text_.blank();
+    text_.line("#endif");
+    return text_.take();
+  }
+
+private:
+  const std::string& memberOf(const ir::Parameter& parameter) const {
+    return dialect_.member(parameter.name);
+  }
+
+  void doc(std::string_view words) { text_.line(fmt::format("/// {}", words)); }
+
+  void parameters() {
+    text_.blank();
+    doc("What can be edited. The values here are glTF's defaults and belong to no material.");
+    text_.line("struct Parameters {");
+    text_.indent();
+    for (const uint32_t index : parameters_) {
+      const ir::Parameter& p = module_.parameters[index];
+      if (p.type == Type::Bool) {
+        text_.line(fmt::format("bool {} = {};", memberOf(p), p.neutral[0] != 0));
+      } else if (p.type == Type::Float) {
+        text_.line(fmt::format("double {} = {};", memberOf(p), doubleLiteral(p.neutral[0])));
+      } else {
+        const int width = ir::componentCount(p.type);
+        std::string list;
+        for (int i = 0; i < width; ++i) {
+          list += fmt::format("{}{}", i == 0 ? "" : ", ", doubleLiteral(p.neutral[static_cast<size_t>(i)]));
+        }
+        text_.line(fmt::format("double {}[{}] = {{{}}};", memberOf(p), width, list));
+      }
+    }
+    text_.outdent();
+    text_.line("};");
+  }
+
+  void block() {
+    text_.blank();
+    doc(fmt::format("The uniform block `{}` as the GPU reads it: std140.", block_->name));
+    text_.line("struct Block {");
+    text_.indent();
+    uint32_t cursor = 0;
+    int paddings = 0;
+    const auto padTo = [&](uint32_t offset) {
+      assert(cursor <= offset);
+      if (cursor < offset)
+        text_.line(fmt::format("float lacquer_padding_{}[{}];", paddings++, (offset - cursor) / 4));
+      cursor = offset;
+    };
+    for (const ir::BlockField& field : block_->fields) {
+      padTo(field.offset);
+      const int width = ir::componentCount(field.type);
+      text_.line(width == 1 ? fmt::format("float {};", field.name)
+                            : fmt::format("float {}[{}];", field.name, width));
+      cursor += 4 * static_cast<uint32_t>(width);
+    }
+    padTo(block_->size);
+    text_.outdent();
+    text_.line("};");
+    for (const ir::BlockField& field : block_->fields) {
+      text_.line(
+          fmt::format("static_assert(offsetof(Block, {}) == {}, \"std140\");", field.name, field.offset));
+    }
+    text_.line(fmt::format("static_assert(sizeof(Block) == {}, \"std140\");", block_->size));
+  }
+
+  void helpers(const Helpers& helpers) {
+    text_.blank();
+    text_.line("namespace detail {");
+    text_.comment("A value that is not finite becomes 0, and so does -0.");
+    text_.line(
+        "inline float to_float(double x) { return std::isfinite(x) && x != 0 ? static_cast<float>(x) : 0.0f; "
+        "}");
+    helpers.print(text_);
+    text_.line("}  // namespace detail");
+  }
+
+  void pack() {
+    text_.blank();
+    text_.line(fmt::format("constexpr std::size_t kBlockSize = {};", block_ == nullptr ? 0 : block_->size));
+    if (block_ == nullptr) {
+      text_.blank();
+      doc("There is no block: nothing is written.");
+      text_.line("inline void pack(const Parameters&, void*) {}");
+      return;
+    }
+    Helpers needed(dialect_, module_, ir::reachable(module_.dag, roots_));
+    helpers(needed);
+    std::vector<std::string> taken = needed.names();
+    for (const char* word : {"p", "block", "store", "to_float", "pack"}) taken.emplace_back(word);
+    for (const uint32_t index : parameters_) taken.push_back(memberOf(module_.parameters[index]));
+    const passes::Program program = passes::schedulePreshader(module_, taken);
+    text_.blank();
+    doc("The block for these parameters.");
+    text_.line("inline Block pack(const Parameters& p) {");
+    text_.indent();
+    text_.line("using namespace detail;");
+    for (const uint32_t index : parameters_) {
+      const ir::Parameter& p = module_.parameters[index];
+      if (!ir::isFloatVector(p.type)) continue;
+      text_.line(fmt::format("const {} {}(p.{});", ir::typeName(p.type), memberOf(p), memberOf(p)));
+    }
+    printStatements(text_, dialect_, module_, program);
+    assignments(program);
+    text_.outdent();
+    text_.line("}");
+    text_.blank();
+    doc("Writes the block: kBlockSize bytes, of any alignment.");
+    text_.line("inline void pack(const Parameters& p, void* bytes) {");
+    text_.indent();
+    text_.line("const Block block = pack(p);");
+    text_.line("std::memcpy(bytes, &block, sizeof block);");
+    text_.outdent();
+    text_.line("}");
+  }
+
+  void assignments(const passes::Program& program) {
+    if (!program.statements.empty()) text_.blank();
+    text_.line("Block block = {};");
+    for (const ir::PreshaderField& p : module_.preshader) {
+      const ir::BlockField& field = block_->fields[p.field];
+      const std::string value = printValue(dialect_, module_, program, p.value);
+      text_.line(field.type == Type::Float ? fmt::format("block.{} = to_float({});", field.name, value)
+                                           : fmt::format("store(block.{}, {});", field.name, value));
+    }
+    text_.line("return block;");
+  }
+
+  static std::string place(const passes::Binding& at) {
+    return fmt::format("{{{}, {}, {}}}", at.set, at.binding, at.flat);
+  }
+
+  bool uses(const ir::Block& block) const {
+    const auto index = static_cast<uint32_t>(&block - module_.blocks.data());
+    const bool counted = std::any_of(module_.light_groups.begin(), module_.light_groups.end(),
+                                     [](const ir::LightGroup& group) { return group.count < 0; });
+    if (block.role == ir::BlockRole::Frame && counted) return true;
+    std::vector<ValueId> roots;
+    for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
+    const std::vector<ValueId> live = ir::reachable(module_.dag, roots);
+    return std::any_of(live.begin(), live.end(), [&](ValueId id) {
+      if (module_.dag[id].op != Op::Input) return false;
+      const ir::Input& input = module_.dag.inputOf(id);
+      return input.kind == ir::InputKind::BlockField && input.block == index;
+    });
+  }
+
+  void bindings() {
+    text_.blank();
+    doc("Where something is bound: descriptor set and binding for Vulkan, `flat` where there are no sets.");
+    text_.line("struct Binding {");
+    text_.line("    unsigned set, binding, flat;");
+    text_.line("};");
+    for (const ir::Block& block : module_.blocks) {
+      if (!uses(block)) continue;
+      const std::string place = Header::place(passes::blockBinding(block.role));
+      text_.line(fmt::format("constexpr Binding k{}Binding = {};", block.name, place));
+    }
+    text_.blank();
+    doc("`srgb`: to be given an sRGB format. `environment`: the frame's, not the material's.");
+    text_.line("struct Texture {");
+    text_.line("    const char* name;");
+    text_.line("    Binding binding;");
+    text_.line("    bool cube, srgb, environment;");
+    text_.line("};");
+    text_.line(fmt::format("constexpr std::size_t kTextureCount = {};", module_.textures.size()));
+    if (module_.textures.empty()) return;
+    passes::Names names;
+    std::string all;
+    text_.line("namespace textures {");
+    for (const ir::TextureSlot& slot : module_.textures) {
+      const std::string name = names.pick(slot.name);
+      all += fmt::format("{}textures::{}", all.empty() ? "" : ", ", name);
+      text_.line(fmt::format("constexpr Texture {} = {{\"{}\", {}, {}, {}, {}}};", name, slot.name,
+                             place(passes::textureBinding(module_, slot)), slot.type == Type::TextureCube,
+                             slot.srgb, slot.environment));
+    }
+    text_.line("}  // namespace textures");
+    text_.line(fmt::format("constexpr Texture kTextures[] = {{{}}};", all));
+  }
+
+  const ir::Module& module_;
+  std::string name_;
+  const ir::Block* block_ = nullptr;
+  std::vector<ValueId> roots_;
+  std::vector<uint32_t> parameters_;  ///< by name
+  passes::Names names_;
+  Cpp dialect_;
+  Text text_;
+};
+
+}  // namespace
+
+std::string printHeader(const ir::Module& module, std::string_view name, std::string_view head) {
+  return Header(module, name).run(head);
+}
+
+}  // namespace lacquer::targets

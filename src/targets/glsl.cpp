@@ -1,0 +1,191 @@
+// GLSL 4.50 for Vulkan and for OpenGL 4.5, and ESSL 3.00 for WebGL 2: one dialect, three rows.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "targets/clike.h"
+
+namespace lacquer::targets {
+
+using ir::Type;
+
+namespace {
+
+/// Where the three differ: what may stand in a `layout`, and what has a default precision.
+struct GlslRow {
+  std::string_view version;
+  bool sets;               ///< descriptor sets (Vulkan)
+  bool bindings;           ///< `binding =`; without it, names are the contract
+  bool varying_locations;  ///< `location =` between the stages
+  bool precisions;         ///< precision statements
+};
+
+constexpr GlslRow kVulkan = {"450", true, true, true, false};
+constexpr GlslRow kOpenGl = {"450", false, true, true, false};
+constexpr GlslRow kEssl300 = {"300 es", false, false, false, true};
+
+class Glsl final : public Dialect {
+public:
+  explicit Glsl(const GlslRow& row) : row_(row) {}
+
+  std::string_view type(Type type) const override { return ir::typeName(type); }
+  std::string_view spelling(ir::Op op) const override { return ir::info(op).glsl; }
+  std::string_view position() const override { return "gl_Position"; }
+  std::string_view frontFacing() const override { return "gl_FrontFacing"; }
+
+  Expression splat(Type type, const Expression& x, bool) const override {
+    return {fmt::format("{}({})", ir::typeName(type), x.text)};
+  }
+
+  std::string texture(std::string_view name, std::string_view at, std::string_view lod) const override {
+    return lod.empty() ? fmt::format("texture({}, {})", name, at)
+                       : fmt::format("textureLod({}, {}, {})", name, at, lod);
+  }
+
+  void open(Text& text, const ir::Module& module, const passes::Program& program,
+            std::string_view head) const override {
+    text.line(fmt::format("#version {}", row_.version));
+    text.comments(head);
+    if (row_.precisions) precisions(text, module, program);
+    constants(text, module, program);
+    for (uint32_t index : program.blocks) block(text, module.blocks[index]);
+    textures(text, module, program);
+    attributes(text, module, program);
+    varyings(text, module, program);
+    outputs(text, module, program);
+    text.blank();
+    text.line("void main() {");
+  }
+
+private:
+  /// Fragment shaders have no default for floats, and the samplers' default is low.
+  void precisions(Text& text, const ir::Module& module, const passes::Program& program) const {
+    text.blank();
+    text.line("precision highp float;");
+    text.line("precision highp int;");
+    for (Type type : {Type::Texture2D, Type::TextureCube}) {
+      const auto& used = program.textures;
+      if (std::any_of(used.begin(), used.end(),
+                      [&](uint32_t t) { return module.textures[t].type == type; })) {
+        text.line(fmt::format("precision highp {};", ir::typeName(type)));
+      }
+    }
+  }
+
+  /// `set = 0, binding = 1`, `binding = 1`, or nothing.
+  std::string place(const passes::Binding& binding) const {
+    if (row_.sets) return fmt::format("set = {}, binding = {}", binding.set, binding.binding);
+    if (row_.bindings) return fmt::format("binding = {}", binding.flat);
+    return {};
+  }
+
+  /// A SpecId has one number: vectors are composed.
+  void constants(Text& text, const ir::Module& module, const passes::Program& program) const {
+    assert(program.parameters.empty() || row_.sets);
+    if (!program.parameters.empty()) text.blank();
+    for (uint32_t index : program.parameters) {
+      const ir::Parameter& p = module.parameters[index];
+      const int width = ir::componentCount(p.type);
+      std::string list;
+      for (int c = 0; c < width; ++c) {
+        const std::string name = spec(p, c);
+        const double x = p.neutral[static_cast<size_t>(c)];
+        const std::string value = p.type == Type::Bool ? (x != 0 ? "true" : "false") : floatLiteral(x).text;
+        text.line(fmt::format("layout(constant_id = {}) const {} {} = {};", p.constant_id + c,
+                              p.type == Type::Bool ? "bool" : "float", name, value));
+        list += (list.empty() ? "" : ", ") + name;
+      }
+      if (width > 1)
+        text.line(fmt::format("const {0} {1} = {0}({2});", ir::typeName(p.type), p.constant_name, list));
+    }
+  }
+
+  static std::string spec(const ir::Parameter& p, int component) {
+    if (ir::componentCount(p.type) == 1) return p.constant_name;
+    return fmt::format("lacquer_{}_{}", p.constant_name, "xyzw"[component]);
+  }
+
+  void block(Text& text, const ir::Block& block) const {
+    const std::string place = this->place(passes::blockBinding(block.role));
+    const std::string layout = fmt::format("layout(std140{}{}) uniform", place.empty() ? "" : ", ", place);
+    text.blank();
+    if (block.array == 0) {
+      text.line(fmt::format("{} {} {{", layout, block.name));
+      printMembers(text, *this, block);
+      text.line(fmt::format("}} {};", block.instance));
+      return;
+    }
+    text.line(fmt::format("struct {} {{", block.name));
+    printMembers(text, *this, block);
+    text.line("};");
+    text.blank();
+    text.line(fmt::format("{} {}s {{", layout, block.name));
+    text.indent();
+    text.line(fmt::format("{} {}s[{}];", block.name, block.instance, block.array));
+    text.outdent();
+    text.line("};");
+  }
+
+  void textures(Text& text, const ir::Module& module, const passes::Program& program) const {
+    if (!program.textures.empty()) text.blank();
+    for (uint32_t index : program.textures) {
+      const ir::TextureSlot& slot = module.textures[index];
+      const std::string place = this->place(passes::textureBinding(module, slot));
+      const std::string layout = place.empty() ? "" : fmt::format("layout({}) ", place);
+      text.line(fmt::format("{}uniform {} {};", layout, ir::typeName(slot.type), slot.name));
+    }
+  }
+
+  void attributes(Text& text, const ir::Module& module, const passes::Program& program) const {
+    if (!program.attributes.empty()) text.blank();
+    for (uint32_t index : program.attributes) {
+      const ir::Attribute& a = module.attributes[index];
+      text.line(
+          fmt::format("layout(location = {}) in {} {};", a.location, ir::typeName(a.type), attributeName(a)));
+    }
+  }
+
+  void varyings(Text& text, const ir::Module& module, const passes::Program& program) const {
+    if (!program.varyings.empty()) text.blank();
+    const std::string_view way = program.stage == ir::Stage::Vertex ? "out" : "in";
+    for (uint32_t index : program.varyings) {
+      const ir::Varying& v = module.varyings[index];
+      assert(ir::isFloating(v.type));
+      const std::string layout =
+          row_.varying_locations ? fmt::format("layout(location = {}) ", v.location) : "";
+      text.line(fmt::format("{}{} {} {};", layout, way, ir::typeName(v.type), varyingName(v)));
+    }
+  }
+
+  void outputs(Text& text, const ir::Module& module, const passes::Program& program) const {
+    if (!program.outputs.empty()) text.blank();
+    for (uint32_t index : program.outputs) {
+      const ir::Output& o = module.outputs[index];
+      const Type type = module.dag[o.value].type;
+      text.line(
+          fmt::format("layout(location = {}) out {} {};", o.location, ir::typeName(type), outputName(o)));
+    }
+  }
+
+  GlslRow row_;
+};
+
+}  // namespace
+
+const Dialect& glslVulkan() {
+  static const Glsl dialect(kVulkan);
+  return dialect;
+}
+
+const Dialect& glslOpenGl() {
+  static const Glsl dialect(kOpenGl);
+  return dialect;
+}
+
+const Dialect& essl300() {
+  static const Glsl dialect(kEssl300);
+  return dialect;
+}
+
+}  // namespace lacquer::targets

@@ -1,0 +1,158 @@
+// HLSL: one text for Shader Model 5 (fxc), 5.1 and 6 (dxc).
+//
+// The interface is the parameter list of main, so that every name in the body is the one of the GLSL text,
+// and only what is used is declared. SV_Position comes last: the varyings then have the same registers in
+// both stages, and the fragment stage need not declare a position that it does not read.
+#include <fmt/format.h>
+
+#include <cassert>
+#include <vector>
+
+#include "targets/clike.h"
+
+namespace lacquer::targets {
+
+using ir::Type;
+
+namespace {
+
+/// glTF numbers its semantics as TEXCOORD_0, HLSL as TEXCOORD0.
+std::string semantic(const ir::Attribute& attribute) {
+  std::string name = attribute.name;
+  const size_t underscore = name.rfind('_');
+  if (underscore != std::string::npos &&
+      name.find_first_not_of("0123456789", underscore + 1) == std::string::npos) {
+    name.erase(underscore, 1);
+  }
+  return name;
+}
+
+class Hlsl final : public Dialect {
+public:
+  std::string_view type(Type type) const override {
+    switch (type) {
+      case Type::Bool: return "bool";
+      case Type::Int: return "int";
+      case Type::Float: return "float";
+      case Type::Vec2: return "float2";
+      case Type::Vec3: return "float3";
+      case Type::Vec4: return "float4";
+      case Type::Mat4: return "column_major float4x4";  // only members of blocks have this type
+      case Type::Texture2D: return "Texture2D";
+      case Type::TextureCube: return "TextureCube";
+    }
+    assert(false);
+    return {};
+  }
+
+  std::string_view spelling(ir::Op op) const override { return ir::info(op).hlsl; }
+  std::string_view position() const override { return "out_position"; }
+  std::string_view frontFacing() const override { return "in_front_facing"; }
+
+  Expression splat(Type type, const Expression& x, bool literal) const override {
+    const auto count = static_cast<size_t>(ir::componentCount(type));
+    // No constructor fills a vector from one number; a number can be swizzled instead.
+    if (!literal) return {parenthesized(x, Precedence::Postfix) + '.' + std::string(count, 'x')};
+    std::string list = x.text;
+    for (size_t i = 1; i < count; ++i) list += ", " + x.text;
+    return {fmt::format("{}({})", this->type(type), list)};
+  }
+
+  std::string texture(std::string_view name, std::string_view at, std::string_view lod) const override {
+    return lod.empty() ? fmt::format("{0}.Sample({0}_sampler, {1})", name, at)
+                       : fmt::format("{0}.SampleLevel({0}_sampler, {1}, {2})", name, at, lod);
+  }
+
+  std::string call(ir::Op op, Type result, std::string_view arguments) const override {
+    const std::string plain = Dialect::call(op, result, arguments);
+    // HLSL's sign gives integers.
+    return op == ir::Op::Sign ? fmt::format("{}({})", type(result), plain) : plain;
+  }
+
+  void open(Text& text, const ir::Module& module, const passes::Program& program,
+            std::string_view head) const override {
+    text.comments(head);
+    bool first = head.empty();
+    const auto blank = [&] {
+      if (!first) text.blank();
+      first = false;
+    };
+    for (uint32_t index : program.blocks) {
+      blank();
+      block(text, module.blocks[index]);
+    }
+    if (!program.textures.empty()) blank();
+    for (uint32_t index : program.textures) texture(text, module, module.textures[index]);
+    blank();
+    openMain(text, parameters(module, program));
+  }
+
+private:
+  void block(Text& text, const ir::Block& block) const {
+    const bool array = block.array != 0;
+    const std::string structure = array ? block.name : block.name + "Block";
+    const std::string buffer = array ? block.name + "s" : block.name;
+    text.line(fmt::format("struct {} {{", structure));
+    printMembers(text, *this, block);
+    text.line("};");
+    text.blank();
+    text.line(fmt::format("cbuffer {} : register(b{}) {{", buffer, passes::blockBinding(block.role).flat));
+    text.indent();
+    text.line(array ? fmt::format("{} {}s[{}];", structure, block.instance, block.array)
+                    : fmt::format("{} {};", structure, block.instance));
+    text.outdent();
+    text.line("};");
+  }
+
+  void texture(Text& text, const ir::Module& module, const ir::TextureSlot& slot) const {
+    const uint32_t number = passes::textureBinding(module, slot).flat;
+    text.line(fmt::format("{} {} : register(t{});", type(slot.type), slot.name, number));
+    text.line(fmt::format("SamplerState {}_sampler : register(s{});", slot.name, number));
+  }
+
+  std::vector<std::string> parameters(const ir::Module& module, const passes::Program& program) const {
+    std::vector<std::string> list;
+    const bool vertex = program.stage == ir::Stage::Vertex;
+    for (uint32_t index : program.attributes) {
+      const ir::Attribute& a = module.attributes[index];
+      list.push_back(fmt::format("{} {} : {}", type(a.type), attributeName(a), semantic(a)));
+    }
+    for (uint32_t index : program.varyings) {
+      const ir::Varying& v = module.varyings[index];
+      assert(ir::isFloating(v.type));
+      list.push_back(fmt::format("{}{} {} : TEXCOORD{}", vertex ? "out " : "", type(v.type), varyingName(v),
+                                 v.location));
+    }
+    for (const ir::Output& o : module.outputs) {
+      if (vertex && o.kind == ir::OutputKind::Position) {
+        list.push_back(fmt::format("out {} {} : SV_Position", type(Type::Vec4), position()));
+      }
+    }
+    if (program.front_facing) list.push_back(fmt::format("bool {} : SV_IsFrontFace", frontFacing()));
+    for (uint32_t index : program.outputs) {
+      const ir::Output& o = module.outputs[index];
+      list.push_back(
+          fmt::format("out {} {} : SV_Target{}", type(module.dag[o.value].type), outputName(o), o.location));
+    }
+    return list;
+  }
+
+  void openMain(Text& text, const std::vector<std::string>& parameters) const {
+    if (parameters.empty()) return text.line("void main() {");
+    text.line("void main(");
+    text.indent();
+    for (size_t i = 0; i < parameters.size(); ++i) {
+      text.line(parameters[i] + (i + 1 < parameters.size() ? "," : ") {"));
+    }
+    text.outdent();
+  }
+};
+
+}  // namespace
+
+const Dialect& hlsl() {
+  static const Hlsl dialect;
+  return dialect;
+}
+
+}  // namespace lacquer::targets

@@ -1,0 +1,494 @@
+#include "targets/spirv/body.h"
+
+#include <spirv/unified1/GLSL.std.450.h>
+
+#include <algorithm>
+#include <array>
+
+namespace lacquer::targets::spirv {
+
+using ir::InputKind;
+using ir::Op;
+using ir::Rate;
+using ir::Signature;
+using ir::Type;
+using ir::ValueId;
+
+namespace {
+
+/// The instruction columns of ops.def.
+constexpr std::array<uint32_t, ir::kOpCount> opcodes() {
+  using namespace spv;          // NOLINT: ops.def names the opcodes as the specification does
+  constexpr uint32_t None = 0;  // NOLINT(readability-identifier-naming)
+  return {{
+#define OP(e, name, arity, signature, glsl, hlsl, set, instruction, ...) static_cast<uint32_t>(instruction),
+#include "ir/ops.def"
+#undef OP
+  }};
+}
+
+constexpr std::array<uint32_t, ir::kOpCount> kOpcodes = opcodes();
+
+/// What lone_component_ says of a value that is needed whole; below it, 1 + the component.
+constexpr uint8_t kWhole = 0xff;
+
+spv::Op integerComparison(Op op) {
+  if (op == Op::Less) return spv::OpSLessThan;
+  if (op == Op::LessEqual) return spv::OpSLessThanEqual;
+  assert(op == Op::Equal);
+  return spv::OpIEqual;
+}
+
+bool takesDerivatives(Op op) { return op == Op::Texture || op == Op::DFdx || op == Op::DFdy; }
+
+}  // namespace
+
+Body::Body(const ir::Module& module, const passes::Program& program, const Interface& interface,
+           Globals& globals, bool debug)
+    : module_(module),
+      dag_(module.dag),
+      program_(program),
+      interface_(interface),
+      globals_(globals),
+      debug_(debug),
+      live_(ir::reachable(module, program.stage)),
+      ids_(dag_.size(), 0),
+      splats_(dag_.size() * 3, 0),
+      lone_component_(dag_.size(), 0),
+      term_strings_(debug ? dag_.terms().size() : 0, 0) {
+  constexpr size_t kWordsPerValue = 6;
+  code_.reserve(live_.size() * kWordsPerValue + 64);
+  findLoneComponents();
+}
+
+/// A field of a block that is read for one component only is loaded as that component: one instruction less,
+/// and the vector's other components need no registers.
+void Body::findLoneComponents() {
+  const auto use = [this](ValueId id, uint8_t what) {
+    uint8_t& known = lone_component_[id];
+    known = known == 0 || known == what ? what : kWhole;
+  };
+  for (const ValueId id : live_) {
+    const ir::Value& v = dag_[id];
+    const bool lone = v.op == Op::Swizzle && v.type == Type::Float;
+    for (const ValueId operand : v.operands()) {
+      use(operand, lone ? static_cast<uint8_t>(1 + ir::swizzleComponent(v.payload, 0)) : kWhole);
+    }
+  }
+  for (const ir::Output& output : module_.outputs) {
+    if (output.stage == program_.stage) use(output.value, kWhole);
+  }
+}
+
+uint32_t Body::write() {
+  const uint32_t none = globals_.type(Kind::Void);
+  const uint32_t type = globals_.type(Kind::Main);
+  const uint32_t function = globals_.newId();
+  code_.op(spv::OpFunction, none, function, spv::FunctionControlMaskNone, type);
+  label(globals_.newId());
+  for (const passes::Statement& s : program_.statements) statement(s);
+  assert(!in_loop_);
+  code_.op(spv::OpReturn);
+  code_.op(spv::OpFunctionEnd);
+  return function;
+}
+
+// -- values --
+
+uint32_t Body::value(ValueId id) {
+  if (ids_[id] != 0) return ids_[id];
+  const uint32_t made = make(id);
+  ids_[id] = made;
+  if (in_loop_) made_in_loop_.push_back(id);
+  return made;
+}
+
+uint32_t Body::make(ValueId id) {
+  const ir::Value& v = dag_[id];
+  switch (ir::info(v.op).signature) {
+    case Signature::Special: return special(id);
+    case Signature::Map:
+    case Signature::Reduce2:
+    case Signature::Cross:
+    case Signature::Length:
+    case Signature::Same:
+    case Signature::Compare:
+    case Signature::Logic:
+    case Signature::Select: return operation(id);
+  }
+  return 0;
+}
+
+uint32_t Body::special(ValueId id) {
+  const Op op = dag_[id].op;
+  // Not a switch: the ops without a hook here are written by their row in ops.def.
+  if (op == Op::Constant) return constant(id);
+  if (op == Op::Input) return input(id);
+  if (op == Op::Construct) return construct(id);
+  if (op == Op::Swizzle) return swizzle(id);
+  if (op == Op::Texture || op == Op::TextureLod) return texture(id);
+  return operation(id);
+}
+
+uint32_t Body::operation(ValueId id) {
+  const ir::Value& v = dag_[id];
+  Instruction what{ir::info(v.op).spirv_set, kOpcodes[static_cast<size_t>(v.op)]};
+  assert(what.set != ir::SpirvSet::None && "placed, and its loop is before it");
+  std::array<uint32_t, 4> operands{};
+  for (size_t k = 0; k < v.count; ++k) operands[k] = operand(v, k);
+  if (v.op == Op::Mul && dag_[v.args[0]].type != dag_[v.args[1]].type) {
+    what.opcode = spv::OpVectorTimesScalar;
+    if (dag_[v.args[0]].type == Type::Float) std::swap(operands[0], operands[1]);
+  }
+  if (ir::info(v.op).signature == Signature::Compare && dag_[v.args[0]].type == Type::Int) {
+    what.opcode = integerComparison(v.op);
+  }
+  assert((v.op != Op::Dot || dag_[v.args[0]].type != Type::Float) && "legalized");
+  return instruction(id, what, operands.data(), v.count);
+}
+
+/// The id of an operand as the instruction needs it. SPIR-V has no broadcast but OpVectorTimesScalar's.
+uint32_t Body::operand(const ir::Value& user, size_t index) {
+  const ValueId id = user.args[index];
+  const Signature signature = ir::info(user.op).signature;
+  const bool map = signature == Signature::Map && user.op != Op::Mul && dag_[id].type == Type::Float;
+  const bool condition = signature == Signature::Select && index == 0;
+  const bool splat = ir::isFloatVector(user.type) && (map || condition);
+  return splat ? this->splat(id, user.type) : value(id);
+}
+
+/// A vector as wide as `like` with the scalar, a Float or a Bool, in all components.
+uint32_t Body::splat(ValueId scalar, Type like) {
+  if (dag_.isConstant(scalar) && dag_[scalar].type == Type::Float) {
+    return globals_.splat(like, dag_.constantOf(scalar)[0]);
+  }
+  const auto width = static_cast<size_t>(ir::componentCount(like));
+  const size_t slot = scalar * size_t{3} + width - 2;
+  if (splats_[slot] != 0) return splats_[slot];
+  const uint32_t component = value(scalar);
+  const bool condition = dag_[scalar].type == Type::Bool;
+  const uint32_t type = globals_.type(condition ? boolKind(like) : kindOf(like));
+  const uint32_t id = globals_.newId();
+  code_.begin(spv::OpCompositeConstruct);
+  code_.word(type);
+  code_.word(id);
+  for (size_t i = 0; i < width; ++i) code_.word(component);
+  code_.end();
+  splats_[slot] = id;
+  if (in_loop_) splats_in_loop_.push_back(static_cast<uint32_t>(slot));
+  return id;
+}
+
+uint32_t Body::constant(ValueId id) {
+  const ir::Components& c = dag_.constantOf(id);
+  switch (dag_[id].type) {
+    case Type::Bool: return globals_.boolean(c[0] != 0);
+    case Type::Int: return globals_.integer(static_cast<int32_t>(c[0]));
+    case Type::Float: return globals_.number(c[0]);
+    case Type::Vec2:
+    case Type::Vec3:
+    case Type::Vec4: return globals_.vector(dag_[id].type, c.data());
+    case Type::Mat4:
+    case Type::Texture2D:
+    case Type::TextureCube: break;
+  }
+  assert(false && "not a type of constants");
+  return 0;
+}
+
+uint32_t Body::input(ValueId id) {
+  const ir::Input& in = dag_.inputOf(id);
+  switch (in.kind) {
+    case InputKind::Parameter: break;  // the place pass made it a field of the material block
+    case InputKind::BlockField: return blockField(id, in, -1);
+    case InputKind::Attribute: return load(id, interface_.attributes[in.field]);
+    case InputKind::Texture: return load(id, interface_.textures[in.field]);
+    case InputKind::FrontFacing: return load(id, interface_.front_facing);
+    case InputKind::LightIndex: assert(in_loop_); return loop_.index;
+    case InputKind::Varying: return load(id, interface_.varyings[in.field]);
+    case InputKind::SpecConstant: return interface_.constants[in.field];
+  }
+  assert(false && "not an input of a placed module");
+  return 0;
+}
+
+uint32_t Body::load(ValueId id, uint32_t variable) {
+  assert(variable != 0 && "the program lists all that it uses");
+  return instruction(id, {ir::SpirvSet::Core, spv::OpLoad}, &variable, 1);
+}
+
+/// Loads a field, or one component of it when `component` is not negative; `id` is the value that it becomes.
+uint32_t Body::blockField(ValueId id, const ir::Input& input, int component) {
+  const ir::Block& block = module_.blocks[input.block];
+  const uint32_t variable = interface_.blocks[input.block];
+  assert(variable != 0 && "the program lists all that it uses");
+  std::array<uint32_t, 4> indices{};
+  size_t count = 0;
+  if (block.array != 0) {
+    assert(input.element >= 0 || in_loop_);
+    indices[count++] = globals_.integer(0);
+    indices[count++] = input.element >= 0 ? globals_.integer(input.element) : loop_.index;
+  }
+  indices[count++] = globals_.integer(static_cast<int32_t>(input.field));
+  if (component >= 0) indices[count++] = globals_.integer(component);
+  const uint32_t pointer = globals_.pointer(spv::StorageClassUniform, kindOf(dag_[id].type));
+  const uint32_t chain = globals_.newId();
+  code_.begin(spv::OpAccessChain);
+  code_.word(pointer);
+  code_.word(chain);
+  code_.word(variable);
+  for (size_t i = 0; i < count; ++i) code_.word(indices[i]);
+  code_.end();
+  return instruction(id, {ir::SpirvSet::Core, spv::OpLoad}, &chain, 1);
+}
+
+uint32_t Body::construct(ValueId id) {
+  const ir::Value& v = dag_[id];
+  if (v.count == 1 && dag_[v.args[0]].type == Type::Float) return splat(v.args[0], v.type);
+  std::array<uint32_t, 4> parts{};
+  for (size_t k = 0; k < v.count; ++k) parts[k] = value(v.args[k]);
+  return instruction(id, {ir::SpirvSet::Core, spv::OpCompositeConstruct}, parts.data(), v.count);
+}
+
+uint32_t Body::swizzle(ValueId id) {
+  const ir::Value& v = dag_[id];
+  const ValueId from = v.args[0];
+  if (v.type == Type::Float) {
+    const auto component = static_cast<uint32_t>(ir::swizzleComponent(v.payload, 0));
+    const bool field = dag_[from].op == Op::Input && dag_.inputOf(from).kind == InputKind::BlockField;
+    if (field && lone_component_[from] != kWhole) {
+      return blockField(id, dag_.inputOf(from), static_cast<int>(component));
+    }
+    if (dag_[from].op == Op::Input && dag_.inputOf(from).kind == InputKind::SpecConstant) {
+      return interface_.constant_components[dag_.inputOf(from).field].at(component);
+    }
+    const std::array<uint32_t, 2> operands = {value(from), component};
+    return instruction(id, {ir::SpirvSet::Core, spv::OpCompositeExtract}, operands.data(), 2);
+  }
+  std::array<uint32_t, 6> operands{};
+  operands[0] = operands[1] = value(from);
+  const auto count = static_cast<size_t>(ir::componentCount(v.type));
+  for (size_t i = 0; i < count; ++i) {
+    operands[2 + i] = static_cast<uint32_t>(ir::swizzleComponent(v.payload, static_cast<int>(i)));
+  }
+  return instruction(id, {ir::SpirvSet::Core, spv::OpVectorShuffle}, operands.data(), 2 + count);
+}
+
+/// Implicit derivatives exist in fragments only; a vertex samples the first level, as GLSL's texture() does.
+uint32_t Body::texture(ValueId id) {
+  const ir::Value& v = dag_[id];
+  const uint32_t sampler = value(v.args[0]);
+  const uint32_t at = value(v.args[1]);
+  if (v.op == Op::Texture && program_.stage == ir::Stage::Fragment) {
+    const std::array<uint32_t, 2> operands = {sampler, at};
+    return instruction(id, {ir::SpirvSet::Core, spv::OpImageSampleImplicitLod}, operands.data(), 2);
+  }
+  const uint32_t lod = v.op == Op::TextureLod ? value(v.args[2]) : globals_.number(0);
+  const std::array<uint32_t, 4> operands = {sampler, at, spv::ImageOperandsLodMask, lod};
+  return instruction(id, {ir::SpirvSet::Core, spv::OpImageSampleExplicitLod}, operands.data(), 4);
+}
+
+/// Writes the instruction that computes a value. Its operands are written already, so that what stands
+/// between two OpLines is of one term.
+uint32_t Body::instruction(ValueId id, const Instruction& what, const uint32_t* operands, size_t count) {
+  const uint32_t type = globals_.type(dag_[id].type);
+  const bool extended = what.set == ir::SpirvSet::Ext;
+  const uint32_t set = extended ? globals_.glslSet() : 0;
+  const uint32_t made = result(id);
+  code_.begin(extended ? spv::OpExtInst : static_cast<spv::Op>(what.opcode));
+  code_.word(type);
+  code_.word(made);
+  if (extended) {
+    code_.word(set);
+    code_.word(what.opcode);
+  }
+  for (size_t i = 0; i < count; ++i) code_.word(operands[i]);
+  code_.end();
+  return made;
+}
+
+/// A new id for a value, with the names that debugging wants.
+uint32_t Body::result(ValueId id) {
+  const uint32_t made = globals_.newId();
+  if (!debug_) return made;
+  if (!program_.names[id].empty()) globals_.name(made, program_.names[id]);
+  const ir::TermId term = dag_.termOf(id);
+  if (term == term_) return made;
+  term_ = term;
+  if (dag_.terms()[term].name.empty()) {
+    code_.op(spv::OpNoLine);
+    return made;
+  }
+  uint32_t& string = term_strings_[term];
+  if (string == 0) {
+    const ir::Term& t = dag_.terms()[term];
+    string = globals_.string(t.source.empty() ? t.name : t.name + ": " + t.source);
+  }
+  // A term is where a value comes from, as far as is known: it takes the place of the file.
+  code_.op(spv::OpLine, string, 1, 1);
+  return made;
+}
+
+// -- statements --
+
+void Body::statement(const passes::Statement& s) {
+  switch (s.kind) {
+    case passes::StatementKind::Section: return;
+    case passes::StatementKind::Let: value(s.value); return;
+    case passes::StatementKind::LoopBegin: openLoop(s); return;
+    case passes::StatementKind::Accumulate: accumulate(s.value); return;
+    case passes::StatementKind::LoopEnd: closeLoop(); return;
+    case passes::StatementKind::Discard: discard(s.value); return;
+    case passes::StatementKind::Output: {
+      const ir::Output& output = module_.outputs[s.output];
+      const bool varying = output.kind == ir::OutputKind::Varying;
+      const uint32_t variable = varying ? interface_.varyings[output.location] : interface_.outputs[s.output];
+      const uint32_t stored = value(output.value);
+      code_.op(spv::OpStore, variable, stored);
+      return;
+    }
+  }
+}
+
+void Body::label(uint32_t id) {
+  code_.op(spv::OpLabel, id);
+  block_ = id;
+  term_ = 0;  // an OpLine holds to the end of its block
+}
+
+/// The head of the loop holds the counter and the sums as phis, so that nothing lives in memory.
+void Body::openLoop(const passes::Statement& s) {
+  assert(!in_loop_);
+  hoist(s.sums);
+  const ir::LightGroup& group = module_.light_groups[s.group];
+  const uint32_t first = globals_.integer(group.first);
+  const uint32_t end = group.count < 0 ? lightCount() : globals_.integer(group.first + group.count);
+  const uint32_t before = block_;
+  loop_.head = globals_.newId();
+  loop_.next_step = globals_.newId();
+  loop_.merge = globals_.newId();
+  loop_.index = globals_.newId();
+  loop_.next_index = globals_.newId();
+  loop_.sums.clear();
+  for (const ValueId sum : s.sums) loop_.sums.push_back({sum, globals_.newId(), globals_.newId()});
+
+  code_.op(spv::OpBranch, loop_.head);
+  label(loop_.head);
+  code_.op(spv::OpPhi, globals_.type(Kind::Int), loop_.index, first, before, loop_.next_index,
+           loop_.next_step);
+  for (const Sum& sum : loop_.sums) {
+    const Type type = dag_[sum.value].type;
+    const uint32_t zero = type == Type::Float ? globals_.number(0) : globals_.splat(type, 0);
+    code_.op(spv::OpPhi, globals_.type(type), sum.phi, zero, before, sum.next, loop_.next_step);
+    // Behind the loop, the phi is the whole sum.
+    ids_[sum.value] = sum.phi;
+    if (debug_) globals_.name(sum.phi, program_.names[sum.value]);
+  }
+  const uint32_t goes_on = globals_.newId();
+  const uint32_t inside = globals_.newId();
+  code_.op(spv::OpSLessThan, globals_.type(Kind::Bool), goes_on, loop_.index, end);
+  code_.op(spv::OpLoopMerge, loop_.merge, loop_.next_step, spv::LoopControlMaskNone);
+  code_.op(spv::OpBranchConditional, goes_on, inside, loop_.merge);
+  label(inside);
+  if (debug_) globals_.name(loop_.index, passes::kLightIndexName);
+  in_loop_ = true;
+}
+
+/// Writes, before the loop, all that its body reads and that does not change with the light.
+void Body::hoist(const std::vector<ValueId>& sums) {
+  std::vector<ValueId> body;
+  std::vector<ValueId> pending;
+  std::vector<bool> seen(dag_.size(), false);
+  const auto visit = [&](ValueId id) {
+    if (!seen[id] && dag_[id].rate == Rate::Light) pending.push_back(id);
+    seen[id] = true;
+  };
+  for (const ValueId sum : sums) {
+    const ValueId term = dag_[sum].args[0];
+    if (dag_[term].rate != Rate::Light) value(term);
+    visit(term);
+  }
+  while (!pending.empty()) {
+    const ValueId id = pending.back();
+    pending.pop_back();
+    body.push_back(id);
+    for (const ValueId operand : dag_[id].operands()) visit(operand);
+  }
+  std::sort(body.begin(), body.end());
+  for (const ValueId id : body) {
+    const ir::Value& v = dag_[id];
+    for (size_t k = 0; k < v.count; ++k) {
+      if (dag_[v.args[k]].rate != Rate::Light) operand(v, k);
+    }
+  }
+}
+
+uint32_t Body::lightCount() {
+  if (light_count_ != 0) return light_count_;
+  for (uint32_t b = 0; b < module_.blocks.size(); ++b) {
+    const ir::Block& block = module_.blocks[b];
+    if (block.role != ir::BlockRole::Frame) continue;
+    const auto field = std::find_if(block.fields.begin(), block.fields.end(),
+                                    [](const ir::BlockField& f) { return f.name == "light_count"; });
+    assert(field != block.fields.end() && field->type == Type::Int);
+    const uint32_t index = globals_.integer(static_cast<int32_t>(field - block.fields.begin()));
+    const uint32_t pointer = globals_.pointer(spv::StorageClassUniform, Kind::Int);
+    const uint32_t chain = globals_.newId();
+    light_count_ = globals_.newId();
+    code_.op(spv::OpAccessChain, pointer, chain, interface_.blocks[b], index);
+    code_.op(spv::OpLoad, globals_.type(Kind::Int), light_count_, chain);
+    return light_count_;
+  }
+  assert(false && "a loop over a run-time number of lights needs the frame block");
+  return 0;
+}
+
+void Body::accumulate(ValueId sum) {
+  const uint32_t term = value(dag_[sum].args[0]);
+  for (const Sum& s : loop_.sums) {
+    if (s.value == sum) code_.op(spv::OpFAdd, globals_.type(dag_[sum].type), s.next, s.phi, term);
+  }
+}
+
+void Body::closeLoop() {
+  assert(in_loop_);
+  code_.op(spv::OpBranch, loop_.next_step);
+  label(loop_.next_step);
+  code_.op(spv::OpIAdd, globals_.type(Kind::Int), loop_.next_index, loop_.index, globals_.integer(1));
+  code_.op(spv::OpBranch, loop_.head);
+  label(loop_.merge);
+  // The body does not dominate what follows: what it computed is unknown here.
+  for (const ValueId id : made_in_loop_) ids_[id] = 0;
+  for (const uint32_t slot : splats_in_loop_) splats_[slot] = 0;
+  made_in_loop_.clear();
+  splats_in_loop_.clear();
+  in_loop_ = false;
+}
+
+void Body::discard(ValueId condition) {
+  derivativesFirst();
+  const uint32_t drop = value(condition);
+  const uint32_t kill = globals_.newId();
+  const uint32_t merge = globals_.newId();
+  code_.op(spv::OpSelectionMerge, merge, spv::SelectionControlMaskNone);
+  code_.op(spv::OpBranchConditional, drop, kill, merge);
+  label(kill);
+  code_.op(spv::OpKill);
+  label(merge);
+}
+
+/// Derivatives are undefined once a neighbour is dropped: what needs them comes before. What waits for a loop
+/// that is still to come cannot.
+void Body::derivativesFirst() {
+  std::vector<bool> waits(dag_.size(), false);
+  for (const ValueId id : live_) {
+    const ir::Value& v = dag_[id];
+    // What has an id is there already; a sum's operands belong to its loop.
+    bool wait = ids_[id] == 0 && (v.op == Op::SumOverLights || v.rate == Rate::Light);
+    for (const ValueId operand : v.operands()) wait = wait || (ids_[id] == 0 && waits[operand]);
+    waits[id] = wait;
+    if (takesDerivatives(v.op) && !wait) value(id);
+  }
+}
+
+}  // namespace lacquer::targets::spirv

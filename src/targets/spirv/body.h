@@ -1,0 +1,91 @@
+// The function of a module: the statements of a Program, each value computed once in a block that dominates
+// its uses.
+#pragma once
+
+#include <vector>
+
+#include "passes/program.h"
+#include "targets/spirv/interface.h"
+
+namespace lacquer::targets::spirv {
+
+class Body {
+public:
+  Body(const ir::Module& module, const passes::Program& program, const Interface& interface, Globals& globals,
+       bool debug);
+
+  /// Writes the function; returns its id.
+  uint32_t write();
+  const Words& code() const { return code_; }
+
+private:
+  /// A loop's sum: the phi at its head, and the value that the next round starts from.
+  struct Sum {
+    ir::ValueId value;
+    uint32_t phi, next;
+  };
+  struct Loop {
+    uint32_t head = 0, next_step = 0, merge = 0;
+    uint32_t index = 0, next_index = 0;
+    std::vector<Sum> sums;
+  };
+  struct Instruction {
+    ir::SpirvSet set;
+    uint32_t opcode;
+  };
+
+  // values
+  uint32_t value(ir::ValueId id);
+  uint32_t make(ir::ValueId id);
+  uint32_t special(ir::ValueId id);
+  uint32_t operation(ir::ValueId id);
+  uint32_t operand(const ir::Value& user, size_t index);
+  uint32_t splat(ir::ValueId scalar, ir::Type like);
+  uint32_t constant(ir::ValueId id);
+  uint32_t input(ir::ValueId id);
+  uint32_t load(ir::ValueId id, uint32_t variable);
+  uint32_t blockField(ir::ValueId id, const ir::Input& input, int component);
+  uint32_t construct(ir::ValueId id);
+  uint32_t swizzle(ir::ValueId id);
+  uint32_t texture(ir::ValueId id);
+  uint32_t lightCount();
+  uint32_t instruction(ir::ValueId id, const Instruction& what, const uint32_t* operands, size_t count);
+  uint32_t result(ir::ValueId id);
+
+  // statements
+  void statement(const passes::Statement& statement);
+  void openLoop(const passes::Statement& statement);
+  void hoist(const std::vector<ir::ValueId>& sums);
+  void accumulate(ir::ValueId sum);
+  void closeLoop();
+  void discard(ir::ValueId condition);
+  void derivativesFirst();
+  void label(uint32_t id);
+
+  // preparation
+  void findLoneComponents();
+
+  const ir::Module& module_;
+  const ir::Dag& dag_;
+  const passes::Program& program_;
+  const Interface& interface_;
+  Globals& globals_;
+  const bool debug_;
+  Words code_;
+
+  std::vector<ir::ValueId> live_;
+  std::vector<uint32_t> ids_;            ///< by value: its id, 0 while it has none here
+  std::vector<uint32_t> splats_;         ///< three a value: of 2, 3 and 4 components
+  std::vector<uint8_t> lone_component_;  ///< by value, see findLoneComponents
+  std::vector<uint32_t> made_in_loop_;   ///< indices of ids_, then of splats_, forgotten after the loop
+  std::vector<uint32_t> splats_in_loop_;
+  Loop loop_;
+  bool in_loop_ = false;
+  uint32_t block_ = 0;        ///< the label of the block being written
+  uint32_t light_count_ = 0;  ///< loaded once, before the first loop that needs it
+
+  ir::TermId term_ = 0;  ///< that the last OpLine named
+  std::vector<uint32_t> term_strings_;
+};
+
+}  // namespace lacquer::targets::spirv

@@ -1,0 +1,173 @@
+#include "targets/spirv/interface.h"
+
+#include "targets/clike.h"
+
+namespace lacquer::targets::spirv {
+
+namespace {
+
+class Declarer {
+public:
+  Declarer(const ir::Module& module, const passes::Program& program, Globals& globals)
+      : module_(module), program_(program), globals_(globals) {}
+
+  Interface run() {
+    made_.blocks.resize(module_.blocks.size());
+    made_.textures.resize(module_.textures.size());
+    made_.attributes.resize(module_.attributes.size());
+    made_.varyings.resize(module_.varyings.size());
+    made_.outputs.resize(module_.outputs.size());
+    made_.constants.resize(module_.parameters.size());
+    made_.constant_components.resize(module_.parameters.size());
+    for (const uint32_t p : program_.parameters) constant(p);
+    for (const uint32_t b : program_.blocks) made_.blocks[b] = block(module_.blocks[b]);
+    for (const uint32_t t : program_.textures) made_.textures[t] = texture(module_.textures[t]);
+    inputs();
+    outputs();
+    return std::move(made_);
+  }
+
+private:
+  uint32_t variable(spv::StorageClass storage, uint32_t pointer, std::string_view name) {
+    const uint32_t id = globals_.newId();
+    globals_.declarations.op(spv::OpVariable, pointer, id, storage);
+    if (!name.empty()) globals_.name(id, name);
+    return id;
+  }
+
+  /// An input or output; the decoration is Location or BuiltIn.
+  uint32_t io(spv::StorageClass storage, ir::Type type, std::string_view name, spv::Decoration decoration,
+              uint32_t where) {
+    const uint32_t id = variable(storage, globals_.pointer(storage, kindOf(type)), name);
+    globals_.decorations.op(spv::OpDecorate, id, decoration, where);
+    made_.entry_point.push_back(id);
+    return id;
+  }
+
+  void bindAt(uint32_t variable, const passes::Binding& at) {
+    globals_.decorations.op(spv::OpDecorate, variable, spv::DecorationDescriptorSet, at.set);
+    globals_.decorations.op(spv::OpDecorate, variable, spv::DecorationBinding, at.binding);
+  }
+
+  /// The structure of the fields, at the offsets that they have in memory.
+  uint32_t structure(const ir::Block& block) {
+    std::vector<uint32_t> types;
+    for (const ir::BlockField& field : block.fields) types.push_back(globals_.type(field.type));
+    Words& declarations = globals_.declarations;
+    Words& decorations = globals_.decorations;
+    const uint32_t id = globals_.newId();
+    declarations.begin(spv::OpTypeStruct);
+    declarations.word(id);
+    for (const uint32_t type : types) declarations.word(type);
+    declarations.end();
+    globals_.name(id, block.name);
+    for (uint32_t f = 0; f < block.fields.size(); ++f) {
+      const ir::BlockField& field = block.fields[f];
+      globals_.memberName(id, f, field.name);
+      if (field.type == ir::Type::Mat4) {
+        constexpr uint32_t kColumn = 16;
+        decorations.op(spv::OpMemberDecorate, id, f, spv::DecorationColMajor);
+        decorations.op(spv::OpMemberDecorate, id, f, spv::DecorationMatrixStride, kColumn);
+      }
+      decorations.op(spv::OpMemberDecorate, id, f, spv::DecorationOffset, field.offset);
+    }
+    return id;
+  }
+
+  uint32_t block(const ir::Block& block) {
+    const bool array = block.array != 0;
+    const uint32_t element = structure(block);
+    const uint32_t type = array ? arrayBlock(block, element) : element;
+    globals_.decorations.op(spv::OpDecorate, type, spv::DecorationBlock);
+    const uint32_t pointer = globals_.newId();
+    globals_.declarations.op(spv::OpTypePointer, pointer, spv::StorageClassUniform, type);
+    // Like the GLSL's: the block of an array has no instance name, its one member is found by its own.
+    const uint32_t id = variable(spv::StorageClassUniform, pointer, array ? "" : block.instance);
+    bindAt(id, passes::blockBinding(block.role));
+    return id;
+  }
+
+  /// `Lights { Light lights[16]; }`
+  uint32_t arrayBlock(const ir::Block& block, uint32_t element) {
+    const uint32_t length = globals_.integer(static_cast<int32_t>(block.array));
+    const uint32_t elements = globals_.newId();
+    globals_.declarations.op(spv::OpTypeArray, elements, element, length);
+    globals_.decorations.op(spv::OpDecorate, elements, spv::DecorationArrayStride, block.size);
+    const uint32_t id = globals_.newId();
+    globals_.declarations.op(spv::OpTypeStruct, id, elements);
+    globals_.name(id, block.name + "s");
+    globals_.memberName(id, 0, block.instance + "s");
+    globals_.decorations.op(spv::OpMemberDecorate, id, 0, spv::DecorationOffset, 0);
+    return id;
+  }
+
+  void constant(uint32_t index) {
+    const ir::Parameter& p = module_.parameters[index];
+    std::array<uint32_t, 4>& components = made_.constant_components[index];
+    const int width = ir::componentCount(p.type);
+    for (int c = 0; c < width; ++c) {
+      const auto at = static_cast<size_t>(c);
+      const auto spec_id = static_cast<uint32_t>(p.constant_id + c);
+      components[at] = p.type == ir::Type::Bool ? globals_.specBoolean(spec_id, p.neutral[at] != 0)
+                                                : globals_.specNumber(spec_id, p.neutral[at]);
+      if (width > 1) globals_.name(components[at], "lacquer_" + p.constant_name + "_" + "xyzw"[at]);
+    }
+    made_.constants[index] = width > 1 ? globals_.specVector(p.type, components.data()) : components[0];
+    globals_.name(made_.constants[index], p.constant_name);
+  }
+
+  uint32_t texture(const ir::TextureSlot& slot) {
+    const auto storage = spv::StorageClassUniformConstant;
+    const uint32_t id = variable(storage, globals_.pointer(storage, kindOf(slot.type)), slot.name);
+    bindAt(id, passes::textureBinding(module_, slot));
+    return id;
+  }
+
+  void inputs() {
+    const auto in = spv::StorageClassInput;
+    for (const uint32_t index : program_.attributes) {
+      const ir::Attribute& a = module_.attributes[index];
+      made_.attributes[index] = io(in, a.type, attributeName(a), spv::DecorationLocation, a.location);
+    }
+    if (program_.stage == ir::Stage::Fragment) varyings(in);
+    if (!program_.front_facing) return;
+    made_.front_facing =
+        io(in, ir::Type::Bool, "gl_FrontFacing", spv::DecorationBuiltIn, spv::BuiltInFrontFacing);
+  }
+
+  void outputs() {
+    const auto out = spv::StorageClassOutput;
+    if (program_.stage == ir::Stage::Vertex) varyings(out);
+    for (uint32_t index = 0; index < module_.outputs.size(); ++index) {
+      const ir::Output& o = module_.outputs[index];
+      if (o.kind != ir::OutputKind::Position || o.stage != program_.stage) continue;
+      made_.outputs[index] =
+          io(out, ir::Type::Vec4, "gl_Position", spv::DecorationBuiltIn, spv::BuiltInPosition);
+    }
+    for (const uint32_t index : program_.outputs) {
+      const ir::Output& o = module_.outputs[index];
+      made_.outputs[index] =
+          io(out, module_.dag[o.value].type, outputName(o), spv::DecorationLocation, o.location);
+    }
+  }
+
+  void varyings(spv::StorageClass storage) {
+    for (const uint32_t index : program_.varyings) {
+      const ir::Varying& v = module_.varyings[index];
+      made_.varyings[index] = io(storage, v.type, varyingName(v), spv::DecorationLocation, v.location);
+    }
+  }
+
+  const ir::Module& module_;
+  const passes::Program& program_;
+  Globals& globals_;
+  Interface made_;
+};
+
+}  // namespace
+
+Interface declareInterface(const ir::Module& module, const passes::Program& program, Globals& globals) {
+  return Declarer(module, program, globals).run();
+}
+
+}  // namespace lacquer::targets::spirv

@@ -1,0 +1,51 @@
+// The back-ends: a row per target.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ir/module.h"
+#include "passes/program.h"
+
+namespace lacquer::targets {
+
+enum class TargetId : uint8_t { Glsl, GlslGl, Essl, Hlsl, Spirv, Cpp };
+
+struct Target {
+  TargetId id;
+  std::string_view
+      name;  ///< on the command line and in DIR/<target>/: "glsl", "glsl-gl", "essl", "hlsl", "spirv", "cpp"
+  std::string_view extension;  ///< "glsl", "hlsl", "spv", "h"
+  std::string_view prose;
+};
+
+/// All targets, in the order of TargetId.
+std::span<const Target> all();
+std::optional<TargetId> find(std::string_view name);
+const Target& row(TargetId id);
+
+/// The text of one stage. The module must be placed, bound and legalized for the target. `head` is printed as
+/// comment lines at the top (one per line).
+std::string printText(const ir::Module& module, const passes::Program& program, TargetId target,
+                      std::string_view head);
+
+/// TargetId::Cpp: a C++11 header in the namespace lacquer_shaders::NAME with the parameters, the material's
+/// block, the preshader as a function, and the bindings. The module must be placed and bound. `name`: the
+/// shader's id. `head` as above.
+std::string headerText(const ir::Module& module, std::string_view name, std::string_view head);
+
+/// A value as one GLSL expression over parameters, for people and for other tools: the preshader in the
+/// manifest.
+std::string expressionText(const ir::Module& module, ir::ValueId value);
+
+/// The SPIR-V words of one stage, written directly: SPIR-V 1.3, Vulkan 1.1.
+struct SpirvOptions {
+  bool debug = false;  ///< OpLine toward the node source where known
+};
+std::vector<uint32_t> writeSpirv(const ir::Module& module, const passes::Program& program,
+                                 const SpirvOptions& options);
+
+}  // namespace lacquer::targets

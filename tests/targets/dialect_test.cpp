@@ -1,0 +1,83 @@
+// Whole texts in each dialect, compared with files (LACQUER_BLESS=1 renews them) and compiled.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "support/cases.h"
+#include "targets/samples.h"
+
+namespace lacquer::targets {
+
+using ir::Stage;
+
+namespace {
+
+/// Prints a stage for every target, compares with expected/<name>.<stage>.<target> and compiles.
+void expectTexts(const std::string& name, const ir::Module& module, Stage stage) {
+  for (const TargetId target : kTextTargets) {
+    SCOPED_TRACE(row(target).name);
+    const std::string text = print(module, stage, target, "Printed by the tests.");
+    const std::string file = fmt::format("tests/targets/expected/{}.{}.{}", name,
+                                         stage == Stage::Vertex ? "vert" : "frag", row(target).name);
+    test::expectFile(test::sourceFolder() / file, text);
+    expectCompiles(text, stage, target);
+    EXPECT_EQ(text, print(module, stage, target, "Printed by the tests.")) << "the same twice";
+  }
+}
+
+}  // namespace
+
+TEST(Dialect, LitVertex) { expectTexts("lit", litSample({}), Stage::Vertex); }
+TEST(Dialect, LitFragment) { expectTexts("lit", litSample({}), Stage::Fragment); }
+TEST(Dialect, FixedFragment) { expectTexts("fixed", fixedSample(), Stage::Fragment); }
+TEST(Dialect, EveryOp) { expectTexts("every_op", everyOpSample(), Stage::Fragment); }
+
+TEST(Dialect, ALightGroupRunsFromItsFirstLight) {
+  for (const TargetId target : kTextTargets) {
+    const std::string text = print(litSample({3, 2}), Stage::Fragment, target);
+    EXPECT_NE(text.find("for (int i = 3; i < 5; ++i) {"), std::string::npos) << text;
+    EXPECT_EQ(text.find("frame.light_count"), std::string::npos) << text;
+    expectCompiles(text, Stage::Fragment, target);
+  }
+}
+
+/// Prints one fragment output of a module that is not legalized: a text must be right all the same.
+TEST(Dialect, FloatsBesideVectorsNeedNoPass) {
+  for (const TargetId target : kTextTargets) {
+    const ir::Module module = everyOpSample();
+    expectCompiles(printText(module, passes::schedule(module, Stage::Fragment), target, {}), Stage::Fragment,
+                   target);
+  }
+}
+
+TEST(Dialect, TheVersionIsTheFirstLine) {
+  // WebGL 2 allows nothing before it, comments included.
+  const std::string text = print(fixedSample(), Stage::Fragment, TargetId::Essl, "one\ntwo");
+  EXPECT_TRUE(text.starts_with("#version 300 es\n// one\n// two\n\nprecision highp float;\n")) << text;
+}
+
+TEST(Dialect, CommentsStayComments) {
+  const std::string text = print(fixedSample(), Stage::Fragment, TargetId::Glsl, "a\\\nb\rc\tvoid");
+  EXPECT_TRUE(text.starts_with("#version 450\n// a/\n// b c void\n")) << text;
+  EXPECT_NE(text.find("// odd name/: a line that must not continue /\n"), std::string::npos) << text;
+}
+
+TEST(Dialect, NothingUnusedIsDeclared) {
+  for (const TargetId target : kTextTargets) {
+    const std::string text = print(fixedSample(), Stage::Fragment, target);
+    for (const char* word :
+         {"frame", "Frame", "sampler", "Sampler", "facing", "gl_FrontFacing", "SV_Position"}) {
+      EXPECT_EQ(text.find(word), std::string::npos) << word << " in\n" << text;
+    }
+  }
+}
+
+TEST(Targets, RowsAreFoundByName) {
+  ASSERT_EQ(all().size(), 6U);
+  for (const Target& target : all()) {
+    EXPECT_EQ(find(target.name), target.id);
+    EXPECT_EQ(row(target.id).name, target.name);
+  }
+  EXPECT_EQ(find("glsl-es"), std::nullopt);
+}
+
+}  // namespace lacquer::targets

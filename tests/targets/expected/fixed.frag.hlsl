@@ -1,0 +1,27 @@
+// Printed by the tests.
+
+struct Light {
+    float3 direction;
+    float range;
+    float3 color;
+    int type;
+};
+
+cbuffer Lights : register(b1) {
+    Light lights[16];
+};
+
+void main(
+    float2 v_uv : TEXCOORD0,
+    float v_weight : TEXCOORD1,
+    out float4 out_first : SV_Target0,
+    out float4 out_second : SV_Target1) {
+    // alpha.mask: glTF 2.0, "Alpha Coverage"
+    if (v_weight < 0.5) {
+        discard;
+    }
+
+    // odd name/: a line that must not continue /
+    out_first = float4(v_uv + v_weight, float2(1.0, 1.0));
+    out_second = float4(lights[2].color * v_weight, 1e-7);
+}

@@ -1,0 +1,65 @@
+// Printed by the tests.
+
+struct FrameBlock {
+    column_major float4x4 view_projection;
+    float3 camera_position;
+    int light_count;
+    float exposure;
+};
+
+cbuffer Frame : register(b0) {
+    FrameBlock frame;
+};
+
+struct Light {
+    float3 direction;
+    float range;
+    float3 color;
+    int type;
+};
+
+cbuffer Lights : register(b1) {
+    Light lights[16];
+};
+
+struct MaterialBlock {
+    float3 base_color;
+    float roughness;
+    float2 uv_scale;
+};
+
+cbuffer Material : register(b2) {
+    MaterialBlock material;
+};
+
+Texture2D base_color_texture : register(t2);
+SamplerState base_color_texture_sampler : register(s2);
+TextureCube environment_texture : register(t0);
+SamplerState environment_texture_sampler : register(s0);
+
+void main(
+    float3 v_position : TEXCOORD0,
+    float3 v_normal : TEXCOORD1,
+    float2 v_uv : TEXCOORD2,
+    bool in_front_facing : SV_IsFrontFace,
+    out float4 out_color : SV_Target0) {
+    // surface.normal: glTF 2.0, "Double Sided"
+    float3 unit_normal = normalize(v_normal);
+    float3 normal = in_front_facing ? unit_normal : -unit_normal;
+
+    // base.color: glTF 2.0, "Metallic-Roughness Material"
+    float4 color = base_color_texture.Sample(base_color_texture_sampler, v_uv * material.uv_scale);
+    float3 base_color = color.xyz * material.base_color;
+
+    // base.lambert: glTF 2.0, B.3.1
+    float3 direct = float3(0.0, 0.0, 0.0);
+    for (int i = 0; i < frame.light_count; ++i) {
+        float n_dot_l = max(0.0, dot(normal, lights[i].direction));
+        direct += base_color * lights[i].color * (n_dot_l * (lights[i].type == 1 ? lights[i].range : 1.0));
+    }
+
+    // environment.specular
+    float4 specular = float4((direct + environment_texture.SampleLevel(environment_texture_sampler, normalize(frame.camera_position - v_position), material.roughness * 8.0).xyz) * frame.exposure, color.w);
+
+    out_color = specular;
+}

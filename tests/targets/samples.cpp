@@ -1,0 +1,268 @@
+#include "targets/samples.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cassert>
+
+#include "passes/legalize.h"
+
+namespace lacquer::targets {
+
+using ir::Op;
+using ir::Rate;
+using ir::Stage;
+using ir::Type;
+using ir::ValueId;
+
+uint32_t Builder::block(ir::BlockRole role, std::string name, std::string instance,
+                        std::vector<std::pair<std::string, Type>> fields, uint32_t array) {
+  ir::Block block{role, std::move(name), std::move(instance), {}, array, 0};
+  for (auto& [field, type] : fields) block.fields.push_back({std::move(field), type, 0, {}, {}});
+  block.size = ir::layout(block.fields);
+  module.blocks.push_back(std::move(block));
+  return static_cast<uint32_t>(module.blocks.size() - 1);
+}
+
+ValueId Builder::field(std::string_view path, int32_t element) {
+  const size_t dot = path.find('.');
+  for (uint32_t b = 0; b < module.blocks.size(); ++b) {
+    const ir::Block& block = module.blocks[b];
+    if (block.instance != path.substr(0, dot)) continue;
+    for (uint32_t f = 0; f < block.fields.size(); ++f) {
+      if (block.fields[f].name != path.substr(dot + 1)) continue;
+      const bool looped = block.array != 0 && element < 0;
+      const Rate rate = block.role == ir::BlockRole::Object ? Rate::Vertex
+                        : looped                            ? Rate::Light
+                                                            : Rate::Frame;
+      return dag().input(
+          {ir::InputKind::BlockField, std::string(path), block.fields[f].type, rate, {}, b, f, element});
+    }
+  }
+  assert(false && "no such field");
+  return ir::kNoValue;
+}
+
+ValueId Builder::texture(std::string name, Type type, bool environment) {
+  uint32_t binding = 0;
+  for (const ir::TextureSlot& slot : module.textures) binding += slot.environment == environment ? 1 : 0;
+  const auto index = static_cast<uint32_t>(module.textures.size());
+  module.textures.push_back({name, type, false, environment, -1, {}, binding});
+  return dag().input({ir::InputKind::Texture, std::move(name), type, Rate::Frame, {}, 0, index});
+}
+
+ValueId Builder::attribute(std::string name, Type type) {
+  const auto index = static_cast<uint32_t>(module.attributes.size());
+  module.attributes.push_back({name, type, index});
+  return dag().input({ir::InputKind::Attribute, std::move(name), type, Rate::Vertex, {}, 0, index});
+}
+
+ValueId Builder::varying(std::string name, ValueId source) {
+  const auto index = static_cast<uint32_t>(module.varyings.size());
+  const Type type = dag()[source].type;
+  module.varyings.push_back({name, type, index, source});
+  module.outputs.push_back({ir::OutputKind::Varying, Stage::Vertex, name, index, source});
+  return dag().input({ir::InputKind::Varying, std::move(name), type, Rate::Fragment, {}, 0, index});
+}
+
+void Builder::color(std::string name, ValueId value, uint32_t location) {
+  module.outputs.push_back({ir::OutputKind::Color, Stage::Fragment, std::move(name), location, value});
+}
+
+void Builder::position(ValueId clip_position) {
+  module.outputs.push_back({ir::OutputKind::Position, Stage::Vertex, "position", 0, clip_position});
+}
+
+void Builder::discard(ValueId condition) {
+  module.outputs.push_back({ir::OutputKind::Discard, Stage::Fragment, "discard", 0, condition});
+}
+
+ValueId Builder::named(ValueId value, std::string_view name) {
+  dag().name(value, name);
+  return value;
+}
+
+namespace {
+
+void addFrame(Builder& b) {
+  b.block(ir::BlockRole::Frame, "Frame", "frame",
+          {{"view_projection", Type::Mat4},
+           {"camera_position", Type::Vec3},
+           {"light_count", Type::Int},
+           {"exposure", Type::Float}});
+}
+
+void addLights(Builder& b) {
+  b.block(ir::BlockRole::Lights, "Light", "light",
+          {{"direction", Type::Vec3}, {"range", Type::Float}, {"color", Type::Vec3}, {"type", Type::Int}},
+          16);
+}
+
+}  // namespace
+
+ir::Module litSample(ir::LightGroup group) {
+  Builder b;
+  ir::Dag& dag = b.dag();
+  addFrame(b);
+  addLights(b);
+  b.block(ir::BlockRole::Material, "Material", "material",
+          {{"base_color", Type::Vec3}, {"roughness", Type::Float}, {"uv_scale", Type::Vec2}});
+  b.block(ir::BlockRole::Object, "Object", "object", {{"model", Type::Mat4}});
+  b.module.light_groups = {group};
+
+  b.term("vertex.position", "");
+  const ValueId local = dag.construct(Type::Vec4, {b.attribute("POSITION", Type::Vec3), dag.constant(1)});
+  const ValueId world = b.named(dag.make(Op::MatMul, {b.field("object.model"), local}), "world_position");
+  b.position(dag.make(Op::MatMul, {b.field("frame.view_projection"), world}));
+  const ValueId position = b.varying("position", dag.swizzle(world, {{0, 1, 2}}));
+  const ValueId normal_in = b.varying("normal", b.attribute("NORMAL", Type::Vec3));
+  const ValueId uv = b.varying("uv", b.attribute("TEXCOORD_0", Type::Vec2));
+
+  b.term("surface.normal", "glTF 2.0, \"Double Sided\"");
+  const ValueId front =
+      dag.input({ir::InputKind::FrontFacing, "front_facing", Type::Bool, Rate::Fragment, {}});
+  const ValueId unit = b.named(dag.make(Op::Normalize, {normal_in}), "unit_normal");
+  const ValueId normal = b.named(dag.make(Op::Select, {front, unit, dag.make(Op::Neg, {unit})}), "normal");
+
+  b.term("base.color", "glTF 2.0, \"Metallic-Roughness Material\"");
+  const ValueId map = b.texture("base_color_texture", Type::Texture2D);
+  const ValueId texel = dag.make(Op::Texture, {map, dag.mul(uv, b.field("material.uv_scale"))});
+  const ValueId base =
+      b.named(dag.mul(dag.swizzle(texel, {{0, 1, 2}}), b.field("material.base_color")), "base_color");
+
+  b.term("base.lambert", "glTF 2.0, B.3.1");
+  const ValueId n_dot_l = dag.make(Op::Dot, {normal, b.field("light.direction")});
+  const ValueId facing = b.named(dag.make(Op::Max, {dag.constant(0), n_dot_l}), "n_dot_l");
+  const ValueId ranged = dag.make(Op::Equal, {b.field("light.type"), dag.constant(Type::Int, {1})});
+  const ValueId fade = dag.make(Op::Select, {ranged, b.field("light.range"), dag.constant(1)});
+  const ValueId each = dag.mul(dag.mul(base, b.field("light.color")), dag.mul(facing, fade));
+  const ValueId sum = b.named(dag.make(Op::SumOverLights, {each}, 0), "direct");
+
+  b.term("environment.specular", "");
+  const ValueId cube = b.texture("environment_texture", Type::TextureCube, true);
+  const ValueId view = dag.make(Op::Normalize, {dag.sub(b.field("frame.camera_position"), position)});
+  const ValueId lod = dag.mul(b.field("material.roughness"), dag.constant(8));
+  const ValueId reflected = dag.swizzle(dag.make(Op::TextureLod, {cube, view, lod}), {{0, 1, 2}});
+  const ValueId light = dag.mul(dag.add(sum, b.named(reflected, "reflected")), b.field("frame.exposure"));
+  b.color("color", dag.construct(Type::Vec4, {light, dag.component(texel, 3)}));
+  return b.module;
+}
+
+ir::Module fixedSample() {
+  Builder b;
+  ir::Dag& dag = b.dag();
+  addLights(b);
+  const ValueId uv = b.varying("uv", b.attribute("TEXCOORD_1", Type::Vec2));
+  const ValueId weight = b.varying("weight", dag.component(b.attribute("COLOR_0", Type::Vec4), 3));
+  b.module.outputs.clear();  // the vertex stage is another's
+  b.term("alpha.mask", "glTF 2.0, \"Alpha Coverage\"");
+  b.discard(dag.make(Op::Less, {weight, dag.constant(0.5)}));
+  b.term("odd\nname\\", "a line that must not continue \\");
+  const ValueId two = dag.construct(Type::Vec2, {weight});
+  b.color("first", dag.construct(Type::Vec4, {dag.add(uv, two), dag.constant(Type::Vec2, {1, 1})}), 0);
+  const ValueId light = dag.mul(b.field("light.color", 2), weight);
+  b.color("second", dag.construct(Type::Vec4, {light, dag.constant(1e-7)}), 1);
+  return b.module;
+}
+
+ir::Module everyOpSample() {
+  Builder b;
+  ir::Dag& dag = b.dag();
+  const ValueId x = b.varying("x", b.attribute("WEIGHTS_0", Type::Vec4));
+  const ValueId v3 = b.varying("v3", b.attribute("NORMAL", Type::Vec3));
+  b.module.outputs.clear();
+  const std::array<ValueId, 3> vectors = {v3, dag.swizzle(v3, {{1, 2, 0}}), dag.swizzle(x, {{0, 1, 2}})};
+  const std::array<ValueId, 3> floats = {dag.component(x, 3), dag.component(x, 2), dag.component(x, 1)};
+  ValueId total = dag.constant(Type::Vec3, {0.25, 0.5, 1});
+  const auto take = [&](ValueId value, const std::string& name) {
+    total = dag.add(total, b.named(value, name));
+  };
+  for (int i = 0; i < ir::kOpCount; ++i) {
+    const Op op = static_cast<Op>(i);
+    const ir::OpInfo& row = ir::info(op);
+    if (row.signature != ir::Signature::Map) continue;
+    // All mixtures of vectors and floats, numbers written out included.
+    for (uint32_t mask = 0; mask < 1U << row.arity; ++mask) {
+      for (const bool literal : {false, true}) {
+        std::vector<ValueId> operands;
+        for (size_t k = 0; k < static_cast<size_t>(row.arity); ++k) {
+          const bool vector = (mask >> k & 1U) != 0;
+          operands.push_back(vector    ? vectors[k]
+                             : literal ? dag.constant(0.3 + 0.1 * static_cast<double>(k))
+                                       : floats[k]);
+        }
+        if (literal && mask == 0) continue;
+        take(dag.make(op, operands), fmt::format("{}_{}_{}", row.name, mask, literal ? "literal" : "value"));
+      }
+    }
+  }
+  take(dag.make(Op::Cross, {v3, vectors[2]}), "cross_product");
+  take(dag.make(Op::Length, {v3}), "length_of");
+  take(dag.make(Op::Dot, {v3, vectors[2]}), "dot_product");
+  take(dag.make(Op::Normalize, {v3}), "unit");
+  take(dag.make(Op::DFdx, {v3}), "along_x");
+  take(dag.make(Op::DFdy, {v3}), "along_y");
+  const ValueId below = dag.make(Op::Less, {floats[0], floats[1]});
+  const ValueId not_above = dag.make(Op::LessEqual, {floats[1], floats[2]});
+  const ValueId same = dag.make(Op::Equal, {floats[0], floats[2]});
+  const ValueId either = dag.make(Op::Or, {dag.make(Op::And, {below, dag.make(Op::Not, {not_above})}), same});
+  take(dag.make(Op::Select, {either, v3, vectors[1]}), "choice");
+  take(dag.construct(Type::Vec3, {dag.add(floats[0], floats[1])}), "splat");
+  // A bool that has a variable.
+  take(dag.make(Op::Select, {b.named(dag.make(Op::Not, {same}), "differ"), v3, dag.constant(Type::Vec3, {})}),
+       "where_they_differ");
+  b.color("color", dag.construct(Type::Vec4, {total, dag.constant(1)}));
+  return b.module;
+}
+
+std::string print(ir::Module module, Stage stage, TargetId target, std::string_view head) {
+  if (target == TargetId::Hlsl)
+    passes::legalizeHlsl(module);
+  else
+    passes::legalizeGlsl(module);
+  return printText(module, passes::schedule(module, stage), target, head);
+}
+
+namespace {
+
+check::Language languageOf(TargetId target) {
+  switch (target) {
+    case TargetId::Glsl: return check::Language::GlslVulkan;
+    case TargetId::GlslGl: return check::Language::GlslOpenGl;
+    case TargetId::Essl: return check::Language::Essl300;
+    case TargetId::Hlsl: return check::Language::Hlsl;
+    case TargetId::Spirv:
+    case TargetId::Cpp: break;
+  }
+  assert(false && "not a text");
+  return {};
+}
+
+std::string joined(const Diagnostics& diagnostics) {
+  std::string text;
+  for (const Diagnostic& diagnostic : diagnostics) text += format(diagnostic) + '\n';
+  return text;
+}
+
+}  // namespace
+
+check::Spirv expectCompiles(const std::string& text, Stage stage, TargetId target) {
+  const check::Stage check_stage = stage == Stage::Vertex ? check::Stage::Vertex : check::Stage::Fragment;
+  const std::string name = fmt::format("shader.{}", row(target).name);
+  const Result<check::Spirv> words = check::compile(text, languageOf(target), check_stage, name);
+  if (!words) {
+    ADD_FAILURE() << joined(words.error()) << text;
+    return {};
+  }
+  if (!words->empty()) {
+    const Diagnostics wrong = check::validate(*words, target == TargetId::GlslGl, name);
+    EXPECT_TRUE(wrong.empty()) << joined(wrong) << text;
+  }
+  if (target == TargetId::Hlsl && check::haveDxc()) {
+    const Diagnostics wrong = check::compileWithDxc(text, check_stage, name);
+    EXPECT_TRUE(wrong.empty()) << joined(wrong) << text;
+  }
+  return *words;
+}
+
+}  // namespace lacquer::targets
