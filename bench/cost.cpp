@@ -1,0 +1,134 @@
+#include "bench/cost.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "bench/works.h"
+#include "support/file.h"
+
+namespace lacquer::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::string kRoot = LACQUER_SOURCE_FOLDER;
+constexpr std::string_view kBegin = "<!-- measured: -->\n";
+constexpr std::string_view kEnd = "<!-- :measured -->\n";
+
+/// All that is measured: with and without compensation for multiple scattering, directly and through an
+/// optimizer.
+struct Tables {
+  std::array<Table, 2> direct, optimized;  ///< [0] with compensation
+};
+
+Json toJson(const Row& row) {
+  Json json;
+  json["spirv_instructions"] = row.spirv_instructions;
+  for (const std::string& family : cost::kFamilies) {
+    const cost::Statistics& s = *row.gpus.at(family).statistics;
+    json[family] = {{"instructions", s.instructions},
+                    {"inverse_throughput", s.inverse_throughput},
+                    {"latency", s.latency},
+                    {"vgprs", s.vgprs},
+                    {"sgprs", s.sgprs},
+                    {"spilled", s.spilled_sgprs + s.spilled_vgprs}};
+  }
+  return json;
+}
+
+Json toJson(const Tables& tables) {
+  Json json;
+  json["driver"] = tables.direct[0].driver;
+  for (size_t i = 0; i < kWorks.size(); ++i) {
+    Json& work = json["works"][kWorks[i].name];
+    for (size_t mode = 0; mode < 2; ++mode) {
+      Json& entry = work[mode == 0 ? "multiple_scattering" : "no_multiple_scattering"];
+      entry["direct"] = toJson(tables.direct[mode].rows[i]);
+      entry["glslang_and_spirv_opt"] = toJson(tables.optimized[mode].rows[i]);
+    }
+  }
+  return json;
+}
+
+std::string pair(const Row& row, const std::string& family) {
+  const cost::Statistics& s = *row.gpus.at(family).statistics;
+  return fmt::format("{} / {}", s.instructions, s.inverse_throughput);
+}
+
+/// One table: our numbers on both GPUs beside the goal and the best peer, both of which are navi21's.
+std::string markdown(const Table& direct, const Table& optimized) {
+  std::string text =
+      "| work | | SPIR-V | navi21 | at most | best peer | to the best peer | gfx1100 | by glslang and "
+      "spirv-opt: "
+      "SPIR-V | navi21 | gfx1100 |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (size_t i = 0; i < kWorks.size(); ++i) {
+    const Work& work = kWorks[i];
+    const Row& row = direct.rows[i];
+    const cost::Statistics& s = *row.gpus.at("navi21").statistics;
+    const bool met =
+        s.instructions <= work.goal.instructions && s.inverse_throughput <= work.goal.inverse_throughput;
+    const auto percent = [](uint64_t ours, uint64_t theirs) {
+      return 100.0 * static_cast<double>(ours) / static_cast<double>(theirs);
+    };
+    text += fmt::format(
+        "| {} | {} | {} | **{}** | {} / {}{} | {} / {} | {:.0f} % / {:.0f} % | {} | {} | {} | {} |\n",
+        work.name, work.what, row.spirv_instructions, pair(row, "navi21"), work.goal.instructions,
+        work.goal.inverse_throughput, met ? "" : " (missed)", work.best.instructions,
+        work.best.inverse_throughput, percent(s.instructions, work.best.instructions),
+        percent(s.inverse_throughput, work.best.inverse_throughput), pair(row, "gfx1100"),
+        optimized.rows[i].spirv_instructions, pair(optimized.rows[i], "navi21"),
+        pair(optimized.rows[i], "gfx1100"));
+  }
+  return text;
+}
+
+std::string markdown(const Tables& tables) {
+  std::string text =
+      fmt::format("{}, instructions / inverse throughput.\n\nWith compensation for multiple scattering:\n\n",
+                  tables.direct[0].driver);
+  text += markdown(tables.direct[0], tables.optimized[0]);
+  text += "\nWith `--no-multiple-scattering`:\n\n";
+  text += markdown(tables.direct[1], tables.optimized[1]);
+  return text;
+}
+
+/// Replaces what stands between the marks of the page.
+bool renewPage(const std::string& path, const std::string& tables) {
+  Result<std::string> page = readFile(path);
+  if (!page) return false;
+  const size_t begin = page->find(kBegin);
+  const size_t end = page->find(kEnd);
+  if (begin == std::string::npos || end == std::string::npos || end < begin) return false;
+  const size_t first = begin + kBegin.size();
+  page->replace(first, end - first, tables);
+  return writeFile(path, *page).has_value();
+}
+
+}  // namespace
+
+int runCost() {
+  if (const std::string reason = cost::unavailable(); !reason.empty()) {
+    fmt::print(stderr, "bench cost: {}\n", reason);
+    return 1;
+  }
+  Tables tables;
+  Messages messages;
+  for (size_t mode = 0; mode < 2; ++mode) {
+    const std::string folder = kRoot + "/bench/works";
+    tables.direct[mode] = measureWorks(folder, mode == 0, Route::Direct, cost::kFamilies, messages);
+    tables.optimized[mode] = measureWorks(folder, mode == 0, Route::Optimized, cost::kFamilies, messages);
+  }
+  for (const Message& message : messages) fmt::print(stderr, "{}\n", message.text);
+  if (hasError(messages)) return 1;
+  const std::string text = markdown(tables);
+  fmt::print("{}", text);
+  const bool written = writeFile(kRoot + "/bench/cost.json", toJson(tables).dump(2) + "\n").has_value();
+  if (written && renewPage(kRoot + "/docs/cost.md", text)) return 0;
+  fmt::print(stderr, "bench cost: bench/cost.json and docs/cost.md could not be renewed\n");
+  return 1;
+}
+
+}  // namespace lacquer::bench

@@ -1,0 +1,43 @@
+// `./dev bench VERB`: one row per benchmark.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <string_view>
+
+#include "bench/cost.h"
+#include "bench/pipeline_bench.h"
+
+namespace {
+
+struct Verb {
+  std::string_view name, what;
+  int (*run)();
+};
+
+constexpr Verb kVerbs[] = {
+    {"cost", "what the works cost on AMD GPUs; renews bench/cost.json and docs/cost.md",
+     lacquer::bench::runCost},
+    {"pipeline", "what making shaders takes, against glslang and spirv-opt; renews bench/pipeline.json",
+     lacquer::bench::runPipeline},
+};
+
+int run(int argc, char** argv) {
+  for (const Verb& verb : kVerbs) {
+    if (argc == 2 && verb.name == argv[1]) return verb.run();
+  }
+  fmt::print(stderr, "usage: bench VERB\n\n");
+  for (const Verb& verb : kVerbs) fmt::print(stderr, "  {:8} {}\n", verb.name, verb.what);
+  return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,220 @@
+// Per material, warm, on one core: from the Material struct to each target; the same through glslang and
+// spirv-opt from our own text; validation apart. And whole runs whose shaders are all cached, against parsing
+// the JSON.
+#include "bench/pipeline_bench.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "check/check.h"
+#include "gltf/material.h"
+#include "graph/build.h"
+#include "lacquer.h"
+#include "lower/lower.h"
+#include "passes/legalize.h"
+#include "passes/pipeline.h"
+#include "passes/program.h"
+#include "targets/target.h"
+#include "tests/build/random_gltf.h"
+
+namespace lacquer::bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What one material needs on its way.
+struct Subject {
+  std::string name;
+  gltf::Material material;
+  gltf::VertexAttributes attributes;
+};
+
+const lang::Library& library() {
+  static const lang::Library kLibrary = lang::Library::embedded();
+  return kLibrary;
+}
+
+graph::Graph toGraph(const Subject& subject) {
+  Diagnostics said;
+  graph::Graph graph = graph::build(subject.material, subject.attributes, {}, said);
+  if (hasError(graph::check(graph, library()))) fmt::print(stderr, "{} does not check\n", subject.name);
+  return graph;
+}
+
+ir::Module toPlaced(const Subject& subject) {
+  ir::Module module = *lower::lower(toGraph(subject), library(), {});
+  passes::runPipeline(module, {});
+  return module;
+}
+
+constexpr ir::Stage kStages[] = {ir::Stage::Vertex, ir::Stage::Fragment};
+
+size_t toSpirv(const ir::Module& module) {
+  size_t words = 0;
+  for (const ir::Stage stage : kStages) {
+    words += targets::writeSpirv(module, passes::schedule(module, stage), {}).size();
+  }
+  return words;
+}
+
+std::vector<std::string> toText(ir::Module module, targets::TargetId target) {
+  if (target == targets::TargetId::Hlsl)
+    passes::legalizeHlsl(module);
+  else
+    passes::legalizeGlsl(module);
+  std::vector<std::string> texts;
+  for (const ir::Stage stage : kStages) {
+    texts.push_back(targets::printText(module, passes::schedule(module, stage), target, "bench"));
+  }
+  return texts;
+}
+
+std::vector<check::Spirv> throughGlslang(const std::vector<std::string>& texts) {
+  return {*check::compile(texts[0], check::Language::GlslVulkan, check::Stage::Vertex, "bench.vert"),
+          *check::compile(texts[1], check::Language::GlslVulkan, check::Stage::Fragment, "bench.frag")};
+}
+
+std::vector<Subject> subjects() {
+  std::vector<Subject> all;
+  for (const char* work : {"w0", "w1", "w2", "w3"}) {
+    const std::string path = fmt::format("{}/bench/works/{}.gltf", LACQUER_SOURCE_FOLDER, work);
+    Result<gltf::Document> document = gltf::read(path, {});
+    if (!document || document->materials.empty()) throw std::runtime_error(path + " cannot be read");
+    gltf::VertexAttributes attributes;
+    attributes.normal = attributes.tangent = true;
+    attributes.texCoord[0] = true;
+    all.push_back({work, document->materials[0], attributes});
+  }
+  return all;
+}
+
+template <class Work>
+void add(const std::string& name, Work work) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [work](benchmark::State& state) {
+                                 for (auto _ : state) benchmark::DoNotOptimize(work());
+                               })
+      ->Unit(benchmark::kMicrosecond)
+      ->MinTime(0.3);
+}
+
+void addMaterial(const Subject& s) {
+  using targets::TargetId;
+  const ir::Module placed = toPlaced(s);
+  const std::vector<std::string> texts = toText(placed, TargetId::Glsl);
+  const std::vector<check::Spirv> compiled = throughGlslang(texts);
+  std::vector<check::Spirv> direct;
+  for (const ir::Stage stage : kStages)
+    direct.push_back(targets::writeSpirv(placed, passes::schedule(placed, stage), {}));
+  add(s.name + "/graph", [s] { return toGraph(s); });
+  add(s.name + "/graph+lower", [s] { return lower::lower(toGraph(s), library(), {}); });
+  add(s.name + "/graph+lower+passes", [s] { return toPlaced(s); });
+  add(s.name + "/to spirv", [s] { return toSpirv(toPlaced(s)); });
+  add(s.name + "/to glsl", [s] { return toText(toPlaced(s), TargetId::Glsl); });
+  add(s.name + "/to hlsl", [s] { return toText(toPlaced(s), TargetId::Hlsl); });
+  add(s.name + "/glslang", [texts] { return throughGlslang(texts); });
+  add(s.name + "/spirv-opt -O", [compiled] {
+    return check::optimize(compiled[0], "bench.vert")->size() +
+           check::optimize(compiled[1], "bench.frag")->size();
+  });
+  add(s.name + "/spirv-val", [direct] {
+    return check::validate(direct[0], false, "bench.vert").size() +
+           check::validate(direct[1], false, "bench.frag").size();
+  });
+}
+
+// -- whole runs --
+
+struct RunFiles {
+  fs::path folder = fs::temp_directory_path() / "lacquer-pipeline-bench";
+  std::string input = (folder / "materials.gltf").string();
+  std::string text;
+  Options options;
+
+  RunFiles(size_t materials, size_t kinds) {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    text = test::RandomGltf(1).text(materials, kinds);
+    std::ofstream(input, std::ios::binary) << text;
+    options.validate = false;
+    options.jobs = 1;
+    options.cache = (folder / "cache").string();
+    options.cache_size = uint64_t{4} << 30;
+  }
+  ~RunFiles() {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+  }
+  /// False when something had to be made.
+  bool run() const {
+    Messages messages;
+    const Report report = generate({input}, {}, (folder / "out").string(), options, messages);
+    return report.ok && report.made == 0;
+  }
+};
+
+void addRuns(const RunFiles& files) {
+  add("10000 materials/parse JSON", [&files] { return nlohmann::json::parse(files.text).size(); });
+  add("10000 materials/cached run", [&files] { return files.run(); });
+}
+
+class Collector : public benchmark::ConsoleReporter {
+public:
+  Collector() : ConsoleReporter(OO_None) {}
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      if (!run.error_occurred)
+        microseconds[run.benchmark_name().substr(0, run.benchmark_name().find("/min_time"))] =
+            run.GetAdjustedCPUTime();
+    }
+  }
+  std::map<std::string, double> microseconds;
+};
+
+nlohmann::ordered_json summary(std::map<std::string, double>& us, const std::vector<Subject>& all) {
+  const auto rounded = [](double x) { return std::stod(fmt::format("{:.3g}", x)); };
+  nlohmann::ordered_json json;
+  json["unit"] = "microseconds of CPU time, one core";
+  for (const Subject& s : all) {
+    nlohmann::ordered_json& row = json["materials"][s.name];
+    for (const char* stage : {"graph", "graph+lower", "graph+lower+passes", "to spirv", "to glsl", "to hlsl",
+                              "glslang", "spirv-opt -O", "spirv-val"}) {
+      row[stage] = rounded(us[s.name + "/" + stage]);
+    }
+    const double text_route =
+        us[s.name + "/to glsl"] + us[s.name + "/glslang"] + us[s.name + "/spirv-opt -O"];
+    row["text route / direct"] = rounded(text_route / us[s.name + "/to spirv"]);
+  }
+  const double parse = us["10000 materials/parse JSON"];
+  const double cached = us["10000 materials/cached run"];
+  json["10000 materials"] = {
+      {"parse JSON", rounded(parse)}, {"cached run", rounded(cached)}, {"ratio", rounded(cached / parse)}};
+  return json;
+}
+
+}  // namespace
+
+int runPipeline() {
+  const std::vector<Subject> all = subjects();
+  for (const Subject& subject : all) addMaterial(subject);
+  const RunFiles files(10000, 40);
+  files.run();
+  if (!files.run()) throw std::runtime_error("the second run is not served from the cache");
+  addRuns(files);
+  Collector collector;
+  benchmark::RunSpecifiedBenchmarks(&collector);
+  const std::string path = std::string(LACQUER_SOURCE_FOLDER) + "/bench/pipeline.json";
+  std::ofstream(path) << summary(collector.microseconds, all).dump(2) << "\n";
+  fmt::print("written: {}\n", path);
+  return 0;
+}
+
+}  // namespace lacquer::bench

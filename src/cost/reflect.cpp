@@ -1,0 +1,313 @@
+// Reads a module in one walk over its words (SPIR-V specification, 2.3 and 2.4): decorations stand before
+// types, types before variables. Operands that are not there read as 0, so that no module makes the walk
+// leave its words.
+#include "cost/reflect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <spirv/unified1/spirv.hpp>
+#include <tuple>
+
+#include "cost/cost.h"
+
+namespace lacquer::cost {
+namespace {
+
+constexpr uint32_t kHeaderWords = 5;
+constexpr uint32_t kMaxSlots = 64;   ///< more locations than any device has
+constexpr uint32_t kMaxNesting = 8;  ///< of arrays
+
+struct Instruction {
+  spv::Op op = spv::OpNop;
+  const uint32_t* words = nullptr;
+  uint32_t length = 0;
+
+  uint32_t at(uint32_t index) const { return index < length ? words[index] : 0; }
+};
+
+/// Calls `visit` for each instruction until it returns false. False when the words are no module.
+template <class Visit>
+bool walk(const std::vector<uint32_t>& words, const Visit& visit) {
+  if (words.size() < kHeaderWords || words[0] != spv::MagicNumber) return false;
+  for (size_t i = kHeaderWords; i < words.size();) {
+    const uint32_t length = words[i] >> spv::WordCountShift;
+    if (length == 0 || length > words.size() - i) return false;
+    if (!visit(Instruction{static_cast<spv::Op>(words[i] & spv::OpCodeMask), &words[i], length})) break;
+    i += length;
+  }
+  return true;
+}
+
+struct Type {
+  spv::Op op = spv::OpNop;
+  uint32_t width = 0;
+  bool is_signed = false;
+  uint32_t element = 0;  ///< id of a vector's, matrix's or array's element, or what a pointer points to
+  uint32_t count = 0;    ///< of elements; 0 for a run-time array
+  uint32_t dim = 0, sampled = 0;  ///< of an image
+  uint32_t bytes = 0;             ///< 0 for a matrix: its stride is the member's that holds it
+};
+
+using Decorations = std::map<uint32_t, uint32_t>;  ///< decoration → its operand, or 0
+
+class Reader {
+public:
+  explicit Reader(Stage stage)
+      : model_(stage == Stage::Vertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment) {}
+
+  bool read(const Instruction& instruction);
+  Result<Interface> finish();
+
+private:
+  void readEntryPoint(const Instruction& instruction);
+  void readType(const Instruction& instruction);
+  void readVariable(const Instruction& instruction);
+  void readResource(uint32_t type_id, spv::StorageClass storage, const Decorations& decorations);
+  void readSlots(uint32_t type_id, const Decorations& decorations, std::vector<Slot>& slots);
+  bool addSlots(uint32_t type_id, Slot& next, std::vector<Slot>& slots, uint32_t nesting) const;
+  std::optional<Resource> resourceOf(uint32_t type_id, spv::StorageClass storage) const;
+  uint32_t memberBytes(uint32_t type_id, const Decorations& member) const;
+  const Type& typeOf(uint32_t id) const;
+  const Decorations& decorationsOf(uint32_t id, std::optional<uint32_t> member = {}) const;
+
+  spv::ExecutionModel model_;
+  bool found_ = false;
+  Interface interface_;
+  std::string error_;
+  std::map<uint32_t, Decorations> decorations_;
+  std::map<std::pair<uint32_t, uint32_t>, Decorations> member_decorations_;
+  std::map<uint32_t, Type> types_;
+  std::map<uint32_t, uint32_t> constants_;
+};
+
+const Type& Reader::typeOf(uint32_t id) const {
+  static const Type kNone;
+  const auto found = types_.find(id);
+  return found == types_.end() ? kNone : found->second;
+}
+
+const Decorations& Reader::decorationsOf(uint32_t id, std::optional<uint32_t> member) const {
+  static const Decorations kNone;
+  if (member) {
+    const auto found = member_decorations_.find({id, *member});
+    return found == member_decorations_.end() ? kNone : found->second;
+  }
+  const auto found = decorations_.find(id);
+  return found == decorations_.end() ? kNone : found->second;
+}
+
+uint32_t get(const Decorations& decorations, spv::Decoration decoration) {
+  const auto found = decorations.find(decoration);
+  return found == decorations.end() ? 0 : found->second;
+}
+
+void Reader::readEntryPoint(const Instruction& instruction) {
+  if (found_ || static_cast<spv::ExecutionModel>(instruction.at(1)) != model_) return;
+  found_ = true;
+  for (uint32_t i = 3; i < instruction.length; ++i) {
+    for (uint32_t shift = 0; shift < 32; shift += 8) {
+      const char c = static_cast<char>(instruction.words[i] >> shift & 0xff);
+      if (c == '\0') return;
+      interface_.entry += c;
+    }
+  }
+}
+
+void Reader::readType(const Instruction& instruction) {
+  Type type;
+  type.op = instruction.op;
+  if (instruction.op == spv::OpTypeInt || instruction.op == spv::OpTypeFloat) {
+    type.width = instruction.at(2);
+    type.bytes = type.width / 8;
+    type.is_signed = instruction.op == spv::OpTypeInt && instruction.at(3) != 0;
+  } else if (instruction.op == spv::OpTypeVector || instruction.op == spv::OpTypeMatrix) {
+    type.element = instruction.at(2);
+    type.count = instruction.at(3);
+    if (instruction.op == spv::OpTypeVector) type.bytes = type.count * typeOf(type.element).bytes;
+  } else if (instruction.op == spv::OpTypeArray) {
+    type.element = instruction.at(2);
+    const auto length = constants_.find(instruction.at(3));
+    type.count = length == constants_.end() ? 1 : length->second;
+    type.bytes = get(decorationsOf(instruction.at(1)), spv::DecorationArrayStride) * type.count;
+  } else if (instruction.op == spv::OpTypeRuntimeArray || instruction.op == spv::OpTypeSampledImage) {
+    type.element = instruction.at(2);
+  } else if (instruction.op == spv::OpTypePointer) {
+    type.element = instruction.at(3);
+  } else if (instruction.op == spv::OpTypeImage) {
+    type.dim = instruction.at(3);
+    type.sampled = instruction.at(7);
+  } else if (instruction.op == spv::OpTypeStruct) {
+    for (uint32_t i = 2; i < instruction.length; ++i) {
+      const Decorations& member = decorationsOf(instruction.at(1), i - 2);
+      type.bytes = std::max(type.bytes,
+                            get(member, spv::DecorationOffset) + memberBytes(instruction.words[i], member));
+    }
+  }
+  types_[instruction.at(1)] = type;
+}
+
+std::optional<Resource> Reader::resourceOf(uint32_t type_id, spv::StorageClass storage) const {
+  const Type& type = typeOf(type_id);
+  if (storage == spv::StorageClassStorageBuffer) return Resource::StorageBuffer;
+  if (storage == spv::StorageClassUniform) {
+    const bool stored = decorationsOf(type_id).contains(spv::DecorationBufferBlock);
+    return stored ? Resource::StorageBuffer : Resource::UniformBuffer;
+  }
+  if (type.op == spv::OpTypeSampler) return Resource::Sampler;
+  const bool buffer = type.dim == spv::DimBuffer;
+  if (type.op == spv::OpTypeSampledImage) {
+    return typeOf(type.element).dim == spv::DimBuffer ? Resource::UniformTexelBuffer
+                                                      : Resource::CombinedImageSampler;
+  }
+  if (type.op != spv::OpTypeImage || type.dim == spv::DimSubpassData) return {};
+  if (type.sampled == 2) return buffer ? Resource::StorageTexelBuffer : Resource::StorageImage;
+  return buffer ? Resource::UniformTexelBuffer : Resource::SampledImage;
+}
+
+void Reader::readResource(uint32_t type_id, spv::StorageClass storage, const Decorations& decorations) {
+  Binding binding;
+  for (uint32_t i = 0; i < kMaxNesting; ++i) {
+    const Type& type = typeOf(type_id);
+    if (type.op != spv::OpTypeArray && type.op != spv::OpTypeRuntimeArray) break;
+    binding.count *= std::clamp(type.count, 1U, 1024U);
+    type_id = type.element;
+  }
+  const std::optional<Resource> resource = resourceOf(type_id, storage);
+  const std::pair key(get(decorations, spv::DecorationDescriptorSet),
+                      get(decorations, spv::DecorationBinding));
+  if (!resource || key.first >= 32 || binding.count > 65536) {
+    error_ = fmt::format("the resource at set {}, binding {} is of a kind that is not measured", key.first,
+                         key.second);
+    return;
+  }
+  binding.resource = *resource;
+  Binding& known = interface_.bindings.try_emplace(key, binding).first->second;
+  // Two variables may share a binding: an image and its sampler out of one combined descriptor.
+  if (known.resource != binding.resource) known.resource = Resource::CombinedImageSampler;
+  known.count = std::max(known.count, binding.count);
+}
+
+/// Appends the locations of a type from `next` on. False for structs, booleans and numbers that are not 32
+/// bits wide.
+bool Reader::addSlots(uint32_t type_id, Slot& next, std::vector<Slot>& slots, uint32_t nesting) const {
+  const Type& type = typeOf(type_id);
+  if (type.op == spv::OpTypeArray || type.op == spv::OpTypeMatrix) {
+    if (nesting == 0 || type.count == 0) return false;
+    for (uint32_t i = 0; i < type.count; ++i) {
+      if (slots.size() >= kMaxSlots || !addSlots(type.element, next, slots, nesting - 1)) return false;
+    }
+    return true;
+  }
+  const Type& scalar = type.op == spv::OpTypeVector ? typeOf(type.element) : type;
+  if ((scalar.op != spv::OpTypeFloat && scalar.op != spv::OpTypeInt) || scalar.width != 32) return false;
+  next.count = type.op == spv::OpTypeVector ? type.count : 1;
+  next.scalar = scalar.op == spv::OpTypeFloat ? Scalar::Float : scalar.is_signed ? Scalar::Int : Scalar::Uint;
+  if (next.count > 4 || next.location >= kMaxSlots) return false;
+  slots.push_back(next);
+  ++next.location;
+  return true;
+}
+
+void Reader::readSlots(uint32_t type_id, const Decorations& decorations, std::vector<Slot>& slots) {
+  if (decorations.contains(spv::DecorationBuiltIn)) return;
+  const Type& type = typeOf(type_id);
+  // gl_PerVertex is a block of built-ins.
+  if (type.op == spv::OpTypeStruct && decorationsOf(type_id, 0).contains(spv::DecorationBuiltIn)) return;
+  Slot next;
+  next.location = get(decorations, spv::DecorationLocation);
+  next.component = get(decorations, spv::DecorationComponent);
+  const size_t before = slots.size();
+  if (addSlots(type_id, next, slots, kMaxNesting)) return;
+  slots.resize(before);
+  if (&slots == &interface_.inputs) {
+    interface_.odd_input = fmt::format("the input at location {}", get(decorations, spv::DecorationLocation));
+  }
+}
+
+/// Bytes of a struct's member; its decorations hold the stride of a matrix.
+uint32_t Reader::memberBytes(uint32_t type_id, const Decorations& member) const {
+  const Type& type = typeOf(type_id);
+  if (type.op != spv::OpTypeMatrix) return type.bytes;
+  const bool rows = member.contains(spv::DecorationRowMajor);
+  return get(member, spv::DecorationMatrixStride) * (rows ? typeOf(type.element).count : type.count);
+}
+
+void Reader::readVariable(const Instruction& instruction) {
+  const uint32_t type_id = typeOf(instruction.at(1)).element;
+  const Decorations& decorations = decorationsOf(instruction.at(2));
+  const auto storage = static_cast<spv::StorageClass>(instruction.at(3));
+  if (storage == spv::StorageClassInput) {
+    readSlots(type_id, decorations, interface_.inputs);
+  } else if (storage == spv::StorageClassOutput) {
+    readSlots(type_id, decorations, interface_.outputs);
+  } else if (storage == spv::StorageClassPushConstant) {
+    interface_.push_constant_bytes = std::max(interface_.push_constant_bytes, typeOf(type_id).bytes);
+  } else if (storage == spv::StorageClassUniform || storage == spv::StorageClassUniformConstant ||
+             storage == spv::StorageClassStorageBuffer) {
+    readResource(type_id, storage, decorations);
+  }
+}
+
+bool Reader::read(const Instruction& instruction) {
+  const spv::Op op = instruction.op;
+  if (op == spv::OpFunction) return false;  // all declarations stand before it
+  if (op == spv::OpEntryPoint) {
+    readEntryPoint(instruction);
+  } else if (op == spv::OpDecorate) {
+    decorations_[instruction.at(1)][instruction.at(2)] = instruction.at(3);
+  } else if (op == spv::OpMemberDecorate) {
+    member_decorations_[{instruction.at(1), instruction.at(2)}][instruction.at(3)] = instruction.at(4);
+  } else if (op == spv::OpConstant || op == spv::OpSpecConstant) {
+    constants_[instruction.at(2)] = instruction.at(3);
+  } else if (op == spv::OpVariable) {
+    readVariable(instruction);
+  } else if (op >= spv::OpTypeVoid && op <= spv::OpTypePointer) {
+    readType(instruction);
+  }
+  return true;
+}
+
+Result<Interface> Reader::finish() {
+  if (!found_) {
+    const char* name = model_ == spv::ExecutionModelVertex ? "vertex" : "fragment";
+    return fail("spirv-reflection", {}, fmt::format("the module has no entry point of a {} shader", name));
+  }
+  if (!error_.empty()) return fail("spirv-reflection", {}, error_);
+  for (std::vector<Slot>* slots : {&interface_.inputs, &interface_.outputs}) {
+    std::sort(slots->begin(), slots->end(), [](const Slot& a, const Slot& b) {
+      return std::tie(a.location, a.component) < std::tie(b.location, b.component);
+    });
+  }
+  return std::move(interface_);
+}
+
+}  // namespace
+
+Result<Interface> reflect(const std::vector<uint32_t>& words, Stage stage) {
+  Reader reader(stage);
+  if (!walk(words, [&](const Instruction& instruction) { return reader.read(instruction); })) {
+    return fail("spirv-reflection", {}, "not a SPIR-V module");
+  }
+  return reader.finish();
+}
+
+size_t spirvInstructions(const Spirv& words) {
+  size_t count = 0;
+  bool inside = false;
+  const bool good = walk(words, [&](const Instruction& instruction) {
+    const spv::Op op = instruction.op;
+    if (op == spv::OpFunction) inside = true;
+    const bool declares = op == spv::OpFunction || op == spv::OpFunctionParameter || op == spv::OpLabel ||
+                          op == spv::OpVariable || op == spv::OpLine || op == spv::OpNoLine ||
+                          op == spv::OpFunctionEnd;
+    if (inside && !declares) ++count;
+    if (op == spv::OpFunctionEnd) inside = false;
+    return true;
+  });
+  return good ? count : 0;
+}
+
+}  // namespace lacquer::cost

@@ -1,0 +1,183 @@
+// The driver reads its settings from the environment when it is opened, serves one family for the life of a
+// process, and may crash on a module that no validator has seen. So it lives in a fork: the child alone
+// changes its environment, and sends what it found through a pipe.
+#ifdef LACQUER_VULKAN
+#include "cost/worker.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+
+#include "cost/loader.h"
+#include "cost/pipeline.h"
+
+namespace lacquer::cost {
+namespace {
+
+constexpr int kPatience = 60'000;          // ms for one shader
+constexpr uint32_t kMaxText = 64U << 20U;  // bytes; more is no disassembly
+
+// A message of the child: `Head`, then the two texts.
+enum class Kind : uint32_t {
+  Driver,
+  Outcome,
+  Stop
+};  // the driver's name or the reason to stop is the problem's text
+struct Head {
+  Kind kind = Kind::Outcome;
+  uint32_t has_statistics = 0;
+  uint32_t problem_size = 0, disassembly_size = 0;
+  Statistics statistics;
+};
+
+bool writeAll(int pipe, const void* data, size_t size) {
+  const char* at = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t written = write(pipe, at, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    at += written;
+    size -= static_cast<size_t>(written);
+  }
+  return true;
+}
+
+bool send(int pipe, Kind kind, const Outcome& outcome) {
+  Head head;
+  head.kind = kind;
+  head.has_statistics = outcome.statistics ? 1 : 0;
+  head.problem_size = static_cast<uint32_t>(outcome.problem.size());
+  head.disassembly_size = static_cast<uint32_t>(outcome.disassembly.size());
+  if (outcome.statistics) head.statistics = *outcome.statistics;
+  return writeAll(pipe, &head, sizeof head) &&
+         writeAll(pipe, outcome.problem.data(), outcome.problem.size()) &&
+         writeAll(pipe, outcome.disassembly.data(), outcome.disassembly.size());
+}
+
+/// An environment of nothing but what the numbers need: no debugging switches, layers or caches of the
+/// user's.
+void prepareEnvironment(const std::string& family, const std::string& manifest) {
+  clearenv();
+  setenv("VK_ICD_FILENAMES", manifest.c_str(), 1);
+  setenv("VK_DRIVER_FILES", manifest.c_str(), 1);
+  setenv("RADV_FORCE_FAMILY", family.c_str(), 1);
+  setenv("RADV_DEBUG", "nocache", 1);
+  setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+  setenv("NODEVICE_SELECT", "1", 1);  // Mesa's layer that sorts devices
+  setenv("XDG_RUNTIME_DIR", "/tmp", 1);
+}
+
+[[noreturn]] void work(int pipe, const std::vector<Subject>& subjects, size_t first,
+                       const std::string& family, bool disassembly) {
+  signal(SIGPIPE, SIG_IGN);
+  const std::string manifest = radvManifest();
+  prepareEnvironment(family, manifest);
+  // The driver talks: "not a conformant implementation".
+  const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, stream);
+  Device device;
+  const std::string problem = openDevice(device);
+  const bool begun = problem.empty();
+  if (!send(pipe, begun ? Kind::Driver : Kind::Stop, {{}, {}, begun ? device.driver : problem}) || !begun)
+    _exit(0);
+  for (size_t i = first; i < subjects.size(); ++i) {
+    if (!send(pipe, Kind::Outcome, compilePipeline(device, subjects[i], disassembly))) break;
+  }
+  // No destructors: the driver's threads and the parent's objects are not this process' to end.
+  _exit(0);
+}
+
+enum class Read : uint8_t { Good, End, Hung };
+
+Read readAll(int pipe, void* data, size_t size) {
+  char* at = static_cast<char*>(data);
+  while (size > 0) {
+    pollfd waiting{pipe, POLLIN, 0};
+    const int ready = poll(&waiting, 1, kPatience);
+    if (ready == 0) return Read::Hung;
+    if (ready < 0 && errno != EINTR) return Read::End;
+    if (ready < 0) continue;
+    const ssize_t got = read(pipe, at, size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return Read::End;
+    at += got;
+    size -= static_cast<size_t>(got);
+  }
+  return Read::Good;
+}
+
+Read receive(int pipe, Kind& kind, Outcome& outcome) {
+  Head head;
+  Read state = readAll(pipe, &head, sizeof head);
+  if (state != Read::Good) return state;
+  if (head.problem_size > kMaxText || head.disassembly_size > kMaxText) return Read::End;
+  kind = head.kind;
+  outcome.problem.resize(head.problem_size);
+  outcome.disassembly.resize(head.disassembly_size);
+  if (head.has_statistics != 0) outcome.statistics = head.statistics;
+  state = readAll(pipe, outcome.problem.data(), outcome.problem.size());
+  return state == Read::Good ? readAll(pipe, outcome.disassembly.data(), outcome.disassembly.size()) : state;
+}
+
+/// Forks; the child runs `body` with the pipe's writing end. -1 with a problem's text when that fails.
+template <class Body>
+pid_t startChild(int& reading, std::string& problem, const Body& body) {
+  // One at a time: a child that inherits another's writing end would hide that one's death.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+    problem = fmt::format("no pipe: {}", std::strerror(errno));
+    return -1;
+  }
+  const pid_t child = fork();
+  if (child == 0) body(ends[1]);
+  close(ends[1]);
+  reading = ends[0];
+  if (child < 0) {
+    problem = fmt::format("no child process: {}", std::strerror(errno));
+    close(ends[0]);
+  }
+  return child;
+}
+
+}  // namespace
+
+Work compileApart(const std::vector<Subject>& subjects, size_t first, const std::string& family,
+                  bool disassembly) {
+  Work result;
+  int pipe = -1;
+  const pid_t child =
+      startChild(pipe, result.problem, [&](int end) { work(end, subjects, first, family, disassembly); });
+  if (child < 0) return result;
+  while (result.problem.empty() && first + result.outcomes.size() < subjects.size()) {
+    Kind kind = Kind::Outcome;
+    Outcome outcome;
+    const Read state = receive(pipe, kind, outcome);
+    result.hung = state == Read::Hung;
+    if (state != Read::Good) break;
+    switch (kind) {
+      case Kind::Driver: result.driver = outcome.problem; break;
+      case Kind::Outcome: result.outcomes.push_back(std::move(outcome)); break;
+      case Kind::Stop: result.problem = outcome.problem; break;
+    }
+  }
+  close(pipe);
+  if (result.hung) kill(child, SIGKILL);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return result;
+}
+
+}  // namespace lacquer::cost
+#endif

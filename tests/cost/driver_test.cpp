@@ -1,0 +1,162 @@
+// The driver's side: these tests skip, and say why, where RADV is not installed.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "check/check.h"
+#include "cost/cost.h"
+#include "lacquer.h"
+
+namespace lacquer::cost {
+namespace {
+
+constexpr const char* kVertex = R"(#version 450
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec3 normal;
+layout(location = 0) out vec3 v_normal;
+void main() { v_normal = normal; gl_Position = position; }
+)";
+constexpr const char* kShort = R"(#version 450
+layout(location = 0) in vec3 v_normal;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(normalize(v_normal), 1.0); }
+)";
+constexpr const char* kLong = R"(#version 450
+layout(location = 0) in vec3 v_normal;
+layout(location = 0) out vec4 color;
+layout(set = 1, binding = 3) uniform sampler2D image;
+void main() { color = texture(image, v_normal.xy) * pow(length(v_normal), v_normal.z); }
+)";
+
+Spirv compile(const char* text, check::Stage stage) {
+  Result<Spirv> words = check::compile(text, check::Language::GlslVulkan, stage, "test");
+  if (!words) throw std::runtime_error(format(words.error()[0]));
+  return *words;
+}
+
+class Driver : public testing::Test {
+protected:
+  void SetUp() override {
+    if (const std::string reason = unavailable(); !reason.empty()) GTEST_SKIP() << reason;
+  }
+};
+
+TEST_F(Driver, TellsTheSameOnEveryRun) {
+  const Subject subject{"long", compile(kVertex, check::Stage::Vertex),
+                        compile(kLong, check::Stage::Fragment)};
+  for (const std::string& family : kFamilies) {
+    const Measurement first = measure({subject}, family, false);
+    const Measurement second = measure({subject, subject}, family, true);
+    EXPECT_EQ(first.driver.substr(0, 5), "Mesa ");
+    ASSERT_TRUE(first.outcomes[0].statistics) << first.outcomes[0].problem;
+    EXPECT_GT(first.outcomes[0].statistics->instructions, 10U);
+    EXPECT_GT(first.outcomes[0].statistics->latency, first.outcomes[0].statistics->inverse_throughput);
+    EXPECT_EQ(first.outcomes[0].disassembly, "");
+    for (const Outcome& outcome : second.outcomes) {
+      EXPECT_EQ(outcome.statistics, first.outcomes[0].statistics);
+      EXPECT_NE(outcome.disassembly.find("image_sample"), std::string::npos);
+    }
+  }
+}
+
+TEST_F(Driver, AFragmentShaderAloneCostsWhatItCostsInAPair) {
+  const Spirv fragment = compile(kLong, check::Stage::Fragment);
+  const Measurement measured = measure(
+      {{"pair", compile(kVertex, check::Stage::Vertex), fragment}, {"alone", {}, fragment}}, "navi21", false);
+  ASSERT_TRUE(measured.outcomes[0].statistics) << measured.outcomes[0].problem;
+  EXPECT_EQ(measured.outcomes[0].statistics, measured.outcomes[1].statistics);
+}
+
+TEST_F(Driver, ABrokenModuleCostsOnlyItsOwnNumbers) {
+  const Spirv good = compile(kShort, check::Stage::Fragment);
+  const Spirv vertex = compile(kVertex, check::Stage::Vertex);
+  Spirv half = good;
+  half.resize(half.size() * 3 / 4);
+  Spirv odd = good;
+  for (size_t i = odd.size() - 12; i < odd.size(); ++i) odd[i] ^= 0x5aU;
+  const Measurement measured = measure({{"good", vertex, good},
+                                        {"none", vertex, {1, 2, 3}},
+                                        {"vertex", vertex, vertex},
+                                        {"half", vertex, half},
+                                        {"odd", vertex, odd},
+                                        {"long", vertex, compile(kLong, check::Stage::Fragment)}},
+                                       "navi21", false);
+  ASSERT_EQ(measured.outcomes.size(), 6U);
+  EXPECT_TRUE(measured.outcomes[0].statistics) << measured.outcomes[0].problem;
+  for (size_t i = 1; i < 5; ++i) {
+    EXPECT_FALSE(measured.outcomes[i].statistics);
+    EXPECT_NE(measured.outcomes[i].problem, "");
+  }
+  ASSERT_TRUE(measured.outcomes[5].statistics) << measured.outcomes[5].problem;
+  EXPECT_GT(measured.outcomes[5].statistics->instructions, measured.outcomes[0].statistics->instructions);
+}
+
+TEST_F(Driver, AnUnknownFamilyIsAProblem) {
+  const Measurement measured =
+      measure({{"short", {}, compile(kShort, check::Stage::Fragment)}}, "navi99", false);
+  EXPECT_FALSE(measured.outcomes[0].statistics);
+  EXPECT_NE(measured.outcomes[0].problem, "");
+}
+
+TEST_F(Driver, TheCallersEnvironmentIsLeftAlone) {
+  ASSERT_EQ(std::getenv("RADV_FORCE_FAMILY"), nullptr);
+  measure({{"short", {}, compile(kShort, check::Stage::Fragment)}}, "navi21", false);
+  EXPECT_EQ(std::getenv("RADV_FORCE_FAMILY"), nullptr);
+}
+
+class Paths : public testing::Test {
+protected:
+  void SetUp() override {
+    folder_ = testing::TempDir() + "lacquer_cost_paths";
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ + "/" + name, std::ios::binary) << bytes;
+    return folder_ + "/" + name;
+  }
+  std::string write(const std::string& name, const Spirv& words) const {
+    return write(name,
+                 std::string(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t)));
+  }
+  std::string folder_;
+};
+
+TEST_F(Paths, FilesFoldersAndManifests) {
+  const std::string fragment = write("a.frag.spv", compile(kShort, check::Stage::Fragment));
+  write("a.vert.spv", compile(kVertex, check::Stage::Vertex));
+  Messages messages;
+  EXPECT_EQ(measureCost({fragment, folder_}, false, messages).size(), 2U);
+  write("manifest.json",
+        std::string(
+            R"({"shaders": {"x": {"files": {"spirv": {"vert": "a.vert.spv", "frag": "a.frag.spv"}}}}})"));
+  const std::vector<ShaderCost> costs = measureCost({folder_}, false, messages);
+  ASSERT_EQ(costs.size(), 1U);
+  EXPECT_EQ(costs[0].name, "x");
+  EXPECT_GT(costs[0].spirv_instructions, 3U);
+  EXPECT_EQ(costs[0].gpus.size(), unavailable().empty() ? kFamilies.size() : 0U);
+  EXPECT_FALSE(hasError(messages));
+}
+
+TEST_F(Paths, WhatIsWrongIsSaid) {
+  const auto codeOf = [](const std::string& path) {
+    Messages messages;
+    EXPECT_TRUE(measureCost({path}, false, messages).empty());
+    return messages.empty() ? "" : messages[0].code;
+  };
+  EXPECT_EQ(codeOf(folder_ + "/absent.spv"), "file-unreadable");
+  EXPECT_EQ(codeOf(folder_), "no-spirv");
+  EXPECT_EQ(codeOf(write("text.spv", std::string("this is text"))), "spirv-unreadable");
+  EXPECT_EQ(codeOf(write("empty.spv", std::string())), "spirv-unreadable");
+  write("manifest.json", std::string("{\"shaders\": 1}"));
+  EXPECT_EQ(codeOf(folder_), "manifest-unreadable");
+  write("manifest.json",
+        std::string(R"({"shaders": {"x": {"files": {"glsl": {"frag": "a"}}, "y": 3}, "z": []}})"));
+  EXPECT_EQ(codeOf(folder_), "no-spirv");
+}
+
+}  // namespace
+}  // namespace lacquer::cost
