@@ -1,0 +1,203 @@
+#include "eval/evaluate.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace lacquer::eval {
+
+namespace {
+
+using ir::Op;
+
+/// One component-wise op over the lanes. `b` and `c` are any readable array where the op has fewer operands.
+/// `out` may be one of the operands.
+template <class T>
+void mapLanes(Op op, const T* pa, const T* pb, const T* pc, T* out, size_t lanes) {
+  switch (op) {
+#define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) \
+  case Op::e:                                                             \
+    for (size_t i = 0; i < lanes; ++i) {                                  \
+      [[maybe_unused]] const T a = pa[i];                                 \
+      [[maybe_unused]] const T b = pb[i];                                 \
+      [[maybe_unused]] const T c = pc[i];                                 \
+      out[i] = static_cast<T>(fold);                                      \
+    }                                                                     \
+    return;
+#include "ir/ops.def"
+#undef OP
+  }
+}
+
+template <class T>
+class Machine {
+public:
+  Machine(const Program& program, const Bindings& bindings, size_t points)
+      : program_(program), bindings_(bindings), points_(points), registers_(program.registers * kBatch) {
+    for (const std::string& name : program.columns) columns_.push_back(column(name));
+    for (const std::string& name : program.textures)
+      samplers_.push_back(&bindings.textures.find(name)->second);
+    for (const Columns& light : bindings.lights) {
+      for (const std::string& name : program.light_fields) {
+        const auto it = light.find(name);
+        light_columns_.push_back(it == light.end() ? nullptr : &it->second);
+      }
+    }
+  }
+
+  std::vector<std::vector<T>> run() {
+    std::vector<std::vector<T>> results;
+    for (const auto& components : program_.results) results.emplace_back(points_ * components.size());
+    lanes_ = std::min(points_, kBatch);
+    for (const Instruction& instruction : program_.uniform) execute(instruction);
+    for (first_ = 0; first_ < points_; first_ += kBatch) {
+      lanes_ = std::min(points_ - first_, kBatch);
+      body();
+      for (size_t r = 0; r < results.size(); ++r) store(program_.results[r], results[r]);
+    }
+    return results;
+  }
+
+private:
+  const Column* column(const std::string& name) const {
+    const auto it = bindings_.columns.find(name);
+    if (it != bindings_.columns.end()) return &it->second;
+    for (const auto& [known, value] : program_.defaults) {
+      if (known == name) return &value;
+    }
+    assert(false && "compiled for other bindings");
+    return nullptr;
+  }
+
+  T* at(Register r) { return registers_.data() + r * kBatch; }
+
+  void store(const std::vector<Register>& components, std::vector<T>& result) {
+    for (size_t c = 0; c < components.size(); ++c) {
+      const T* from = at(components[c]);
+      for (size_t i = 0; i < lanes_; ++i) result[(first_ + i) * components.size() + c] = from[i];
+    }
+  }
+
+  void body() {
+    size_t begin = 0;
+    size_t last = 0;
+    for (size_t i = 0; i < program_.body.size(); ++i) {
+      const Instruction& instruction = program_.body[i];
+      if (instruction.step == Step::LoopBegin) {
+        const ir::LightGroup& group = program_.light_groups[instruction.payload];
+        begin = i;
+        light_ = static_cast<size_t>(group.first);
+        last = group.count < 0 ? bindings_.lights.size() : light_ + static_cast<size_t>(group.count);
+        if (light_ >= last) {
+          while (program_.body[i].step != Step::LoopEnd) ++i;
+        }
+      } else if (instruction.step == Step::LoopEnd) {
+        if (++light_ < last) i = begin;
+      } else {
+        execute(instruction);
+      }
+    }
+  }
+
+  void load(const Column& from, const Instruction& instruction) {
+    T* out = at(instruction.outs[0]);
+    const auto stride = static_cast<size_t>(from.components);
+    const double* source = from.values.data() + instruction.component;
+    if (from.per_point) {
+      for (size_t i = 0; i < lanes_; ++i) out[i] = static_cast<T>(source[(first_ + i) * stride]);
+    } else {
+      std::fill(out, out + lanes_, static_cast<T>(*source));
+    }
+  }
+
+  void texture(const Instruction& instruction) {
+    const Sampler& sampler = *samplers_[instruction.payload];
+    for (size_t i = 0; i < lanes_; ++i) {
+      std::array<double, 3> coordinate{};
+      for (size_t c = 0; c < 3; ++c) {
+        if (instruction.args[c] != kNoRegister)
+          coordinate[c] = static_cast<double>(at(instruction.args[c])[i]);
+      }
+      const double lod =
+          instruction.args[3] == kNoRegister ? 0 : static_cast<double>(at(instruction.args[3])[i]);
+      const std::array<double, 4> texel = sampler(first_ + i, coordinate, lod);
+      for (size_t c = 0; c < 4; ++c) at(instruction.outs[c])[i] = static_cast<T>(texel[c]);
+    }
+  }
+
+  /// `step` is 1 along x and 2 along y. A quad that the last points do not fill has no neighbours there.
+  void derivative(const Instruction& instruction, size_t step) {
+    const T* a = at(instruction.args[0]);
+    T* out = at(instruction.outs[0]);
+    for (size_t quad = 0; quad < lanes_; quad += 4) {
+      std::array<T, 4> in{};
+      for (size_t k = 0; k < 4; ++k) in[k] = a[std::min(quad + k, lanes_ - 1)];
+      for (size_t k = 0; k < 4 && quad + k < lanes_; ++k) out[quad + k] = in[k | step] - in[k & ~step];
+    }
+  }
+
+  void execute(const Instruction& instruction) {
+    const auto arg = [&](size_t k) {
+      const Register r = instruction.args[k];
+      return at(r == kNoRegister ? instruction.args[0] : r);
+    };
+    const Register out = instruction.outs[0];
+    switch (instruction.step) {
+      case Step::Map: return mapLanes<T>(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_);
+      case Step::Select: {
+        const T* condition = arg(0);
+        const T* yes = arg(1);
+        const T* no = arg(2);
+        T* to = at(out);
+        for (size_t i = 0; i < lanes_; ++i) to[i] = condition[i] != 0 ? yes[i] : no[i];
+        return;
+      }
+      case Step::Literal:
+        return static_cast<void>(
+            std::fill_n(at(out), lanes_, static_cast<T>(program_.literals[instruction.payload])));
+      case Step::Load: return load(*columns_[instruction.payload], instruction);
+      case Step::Light: {
+        const size_t light = instruction.element >= 0 ? static_cast<size_t>(instruction.element) : light_;
+        return load(*light_columns_[light * program_.light_fields.size() + instruction.payload], instruction);
+      }
+      case Step::LightIndex: return static_cast<void>(std::fill_n(at(out), lanes_, static_cast<T>(light_)));
+      case Step::Texture: return texture(instruction);
+      case Step::DerivativeX: return derivative(instruction, 1);
+      case Step::DerivativeY: return derivative(instruction, 2);
+      case Step::LoopBegin:
+      case Step::LoopEnd: return;
+    }
+  }
+
+  const Program& program_;
+  const Bindings& bindings_;
+  size_t points_;
+  std::vector<T> registers_;
+  std::vector<const Column*> columns_, light_columns_;
+  std::vector<const Sampler*> samplers_;
+  size_t first_ = 0, lanes_ = 0, light_ = 0;
+};
+
+}  // namespace
+
+template <class T>
+std::vector<std::vector<T>> run(const Program& program, const Bindings& bindings, size_t points) {
+  return Machine<T>(program, bindings, points).run();
+}
+
+template <class T>
+Result<std::vector<std::vector<T>>> evaluate(const ir::Module& module, std::span<const ir::ValueId> roots,
+                                             const Bindings& bindings, size_t points) {
+  const Result<Program> program = compile(module, roots, bindings, points);
+  if (!program) return tl::make_unexpected(program.error());
+  return run<T>(*program, bindings, points);
+}
+
+template std::vector<std::vector<float>> run(const Program&, const Bindings&, size_t);
+template std::vector<std::vector<double>> run(const Program&, const Bindings&, size_t);
+template Result<std::vector<std::vector<float>>> evaluate(const ir::Module&, std::span<const ir::ValueId>,
+                                                          const Bindings&, size_t);
+template Result<std::vector<std::vector<double>>> evaluate(const ir::Module&, std::span<const ir::ValueId>,
+                                                           const Bindings&, size_t);
+
+}  // namespace lacquer::eval

@@ -1,0 +1,23 @@
+// The evaluator of a module's DAG on the CPU: the meaning that every target's code must have, over many
+// points at once, in float (each operation rounded to float, as a GPU's exact operations are) or in double.
+#pragma once
+
+#include "eval/program.h"
+
+namespace lacquer::eval {
+
+/// Lanes that are computed together. A multiple of 4, so that a quad is never torn.
+inline constexpr size_t kBatch = 256;
+
+/// The roots' values: one vector per root with the components of each point side by side (Bools are 0 and 1).
+/// T is float or double. The meaning of the component-wise ops is the fold column of ir/ops.def in the
+/// arithmetic of T; dot sums from x to w, length is the square root of a dot, normalize divides by it.
+template <class T>
+std::vector<std::vector<T>> run(const Program& program, const Bindings& bindings, size_t points);
+
+/// compile() and run().
+template <class T>
+Result<std::vector<std::vector<T>>> evaluate(const ir::Module& module, std::span<const ir::ValueId> roots,
+                                             const Bindings& bindings, size_t points);
+
+}  // namespace lacquer::eval

@@ -1,0 +1,408 @@
+#include "eval/program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace lacquer::eval {
+
+namespace {
+
+using ir::Op;
+using ir::Rate;
+using ir::ValueId;
+
+/// What is known of a register while compiling: it is written once, or it is a sum's.
+struct Virtual {
+  bool uniform = false;
+};
+
+size_t indexOf(std::vector<std::string>& names, const std::string& name) {
+  const auto it = std::find(names.begin(), names.end(), name);
+  if (it != names.end()) return static_cast<size_t>(it - names.begin());
+  names.push_back(name);
+  return names.size() - 1;
+}
+
+class Compiler {
+public:
+  Compiler(const ir::Module& module, const Bindings& bindings, size_t points)
+      : module_(module),
+        dag_(module.dag),
+        bindings_(bindings),
+        points_(points),
+        registers_of_(module.dag.size()) {}
+
+  Result<Program> run(std::span<const ValueId> roots) {
+    program_.light_groups = module_.light_groups;
+    for (const ValueId id : ir::reachable(dag_, roots)) {
+      if (dag_[id].rate != Rate::Light) value(id);
+    }
+    if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
+    for (const ValueId root : roots) program_.results.push_back(registers_of_[root]);
+    return std::move(program_);
+  }
+
+  const std::vector<Virtual>& virtuals() const { return virtuals_; }
+
+private:
+  Register fresh(bool uniform) {
+    virtuals_.push_back({uniform});
+    return static_cast<Register>(virtuals_.size() - 1);
+  }
+
+  /// Appends an instruction with one result; it belongs to the uniform part when nothing in it varies.
+  Register emit(Instruction instruction, bool uniform) {
+    const Register out = fresh(uniform);
+    instruction.outs[0] = out;
+    (uniform ? program_.uniform : program_.body).push_back(instruction);
+    return out;
+  }
+
+  Register map(Op op, Register a, Register b = kNoRegister, Register c = kNoRegister) {
+    bool uniform = true;
+    for (const Register r : {a, b, c}) uniform &= r == kNoRegister || virtuals_[r].uniform;
+    return emit({Step::Map, op, 0, -1, 0, {}, {a, b, c, kNoRegister}}, uniform);
+  }
+
+  Register literal(double x) {
+    program_.literals.push_back(x);
+    return emit({Step::Literal, Op::Constant, 0, -1, static_cast<uint32_t>(program_.literals.size() - 1)},
+                true);
+  }
+
+  void fail(std::string code, std::string message, std::string help) {
+    wrong_.push_back({std::move(code), Severity::Error, {}, std::move(message), std::move(help), {}});
+  }
+
+  bool fits(const Column& column, const ir::Input& input) {
+    const size_t rows = column.per_point ? points_ : 1;
+    const int components = ir::componentCount(input.type);
+    if (column.components == components && column.values.size() == rows * static_cast<size_t>(components))
+      return true;
+    fail("wrong-binding",
+         fmt::format("the input '{}' is given {} numbers of {} components for {} points", input.name,
+                     column.values.size(), column.components, points_),
+         fmt::format("a {} has {}", ir::typeName(input.type), components));
+    return false;
+  }
+
+  std::vector<Register> load(const ir::Input& input) {
+    const auto components = static_cast<size_t>(ir::componentCount(input.type));
+    std::vector<Register> result(components, kNoRegister);
+    const auto bound = bindings_.columns.find(input.name);
+    bool per_point = false;
+    if (bound != bindings_.columns.end()) {
+      if (!fits(bound->second, input)) return result;
+      per_point = bound->second.per_point;
+    } else if (input.kind == ir::InputKind::Parameter || input.kind == ir::InputKind::SpecConstant) {
+      const ir::Components& value = module_.parameters[input.field].value;
+      const std::vector<double> values(value.begin(), value.begin() + static_cast<ptrdiff_t>(components));
+      program_.defaults.emplace_back(input.name, Column::constant(values));
+    } else {
+      fail("unbound-input", fmt::format("the input '{}' has no value", input.name),
+           "bind a column of that name");
+      return result;
+    }
+    const auto index = static_cast<uint32_t>(indexOf(program_.columns, input.name));
+    for (size_t i = 0; i < components; ++i) {
+      result[i] = emit({Step::Load, Op::Input, static_cast<uint8_t>(i), -1, index}, !per_point);
+    }
+    return result;
+  }
+
+  std::vector<Register> loadLight(const ir::Input& input) {
+    const auto components = static_cast<size_t>(ir::componentCount(input.type));
+    std::vector<Register> result(components, kNoRegister);
+    for (size_t i = 0; i < bindings_.lights.size(); ++i) {
+      if (input.element >= 0 && i != static_cast<size_t>(input.element)) continue;
+      const auto bound = bindings_.lights[i].find(input.name);
+      if (bound == bindings_.lights[i].end()) {
+        fail("unbound-input", fmt::format("light {} has no '{}'", i, input.name),
+             "bind a column of that name");
+        return result;
+      }
+      if (!fits(bound->second, input)) return result;
+    }
+    if (input.element >= 0 && static_cast<size_t>(input.element) >= bindings_.lights.size()) {
+      fail("unbound-input", fmt::format("there is no light {}", input.element),
+           "bind as many lights as the module sums");
+      return result;
+    }
+    const auto index = static_cast<uint32_t>(indexOf(program_.light_fields, input.name));
+    for (size_t i = 0; i < components; ++i) {
+      result[i] = emit({Step::Light, Op::Input, static_cast<uint8_t>(i), input.element, index}, false);
+    }
+    return result;
+  }
+
+  std::vector<Register> input(const ir::Input& input) {
+    switch (input.kind) {
+      case ir::InputKind::BlockField:
+        if (module_.blocks[input.block].role == ir::BlockRole::Lights) return loadLight(input);
+        return load(input);
+      case ir::InputKind::Parameter:
+      case ir::InputKind::SpecConstant:
+      case ir::InputKind::Attribute:
+      case ir::InputKind::FrontFacing:
+      case ir::InputKind::Varying: return load(input);
+      case ir::InputKind::LightIndex: return {emit({Step::LightIndex}, false)};
+      case ir::InputKind::Texture:
+        if (!bindings_.textures.contains(input.name)) {
+          fail("unbound-input", fmt::format("the texture '{}' has no texels", input.name),
+               "bind a sampler of that name");
+        }
+        return {};
+    }
+    return {};
+  }
+
+  const std::vector<Register>& of(ValueId id) const { return registers_of_[id]; }
+  /// A component of an operand; a Float stands for all of them.
+  Register at(ValueId id, size_t component) const { return of(id)[of(id).size() == 1 ? 0 : component]; }
+
+  Register dot(ValueId a, ValueId b) {
+    Register sum = map(Op::Mul, of(a)[0], of(b)[0]);
+    for (size_t i = 1; i < of(a).size(); ++i) sum = map(Op::Add, sum, map(Op::Mul, of(a)[i], of(b)[i]));
+    return sum;
+  }
+
+  std::vector<Register> cross(ValueId a, ValueId b) {
+    std::vector<Register> result;
+    for (size_t i = 0; i < 3; ++i) {
+      const size_t j = (i + 1) % 3;
+      const size_t k = (i + 2) % 3;
+      result.push_back(map(Op::Sub, map(Op::Mul, of(a)[j], of(b)[k]), map(Op::Mul, of(a)[k], of(b)[j])));
+    }
+    return result;
+  }
+
+  std::vector<Register> matrixTimesVector(ValueId m, ValueId v) {
+    std::vector<Register> result;
+    for (size_t row = 0; row < 4; ++row) {
+      Register sum = map(Op::Mul, of(m)[row], of(v)[0]);
+      for (size_t c = 1; c < 4; ++c) sum = map(Op::Add, sum, map(Op::Mul, of(m)[c * 4 + row], of(v)[c]));
+      result.push_back(sum);
+    }
+    return result;
+  }
+
+  std::vector<Register> texture(const ir::Value& value) {
+    const ir::Input& slot = dag_.inputOf(value.args[0]);
+    Instruction instruction{Step::Texture, value.op, 0, -1,
+                            static_cast<uint32_t>(indexOf(program_.textures, slot.name))};
+    const std::vector<Register>& coordinate = of(value.args[1]);
+    std::copy(coordinate.begin(), coordinate.end(), instruction.args.begin());
+    if (value.op == Op::TextureLod) instruction.args[3] = of(value.args[2])[0];
+    for (Register& out : instruction.outs) out = fresh(false);
+    program_.body.push_back(instruction);
+    return {instruction.outs.begin(), instruction.outs.end()};
+  }
+
+  std::vector<Register> derivative(const ir::Value& value, Step step) {
+    std::vector<Register> result;
+    for (const Register r : of(value.args[0])) {
+      if (!bindings_.quads || virtuals_[r].uniform)
+        result.push_back(literal(0));
+      else
+        result.push_back(
+            emit({step, value.op, 0, -1, 0, {}, {r, kNoRegister, kNoRegister, kNoRegister}}, false));
+    }
+    return result;
+  }
+
+  std::vector<Register> sumOverLights(const ir::Value& value) {
+    const ValueId operand = value.args[0];
+    std::vector<Register> sums;
+    for (int i = 0; i < ir::componentCount(value.type); ++i) {
+      program_.literals.push_back(0);
+      sums.push_back(emit(
+          {Step::Literal, Op::Constant, 0, -1, static_cast<uint32_t>(program_.literals.size() - 1)}, false));
+    }
+    program_.body.push_back({Step::LoopBegin, value.op, 0, -1, value.payload});
+    for (const ValueId id : ir::reachable(dag_, {{operand}})) {
+      if (dag_[id].rate == Rate::Light) this->value(id);
+    }
+    for (size_t i = 0; i < sums.size(); ++i) {
+      program_.body.push_back({Step::Map,
+                               Op::Add,
+                               0,
+                               -1,
+                               0,
+                               {sums[i], kNoRegister, kNoRegister, kNoRegister},
+                               {sums[i], at(operand, i), kNoRegister, kNoRegister}});
+    }
+    program_.body.push_back({Step::LoopEnd, value.op, 0, -1, value.payload});
+    return sums;
+  }
+
+  std::vector<Register> componentWise(const ir::Value& value) {
+    std::vector<Register> result;
+    for (size_t i = 0; i < static_cast<size_t>(ir::componentCount(value.type)); ++i) {
+      std::array<Register, 3> args{kNoRegister, kNoRegister, kNoRegister};
+      for (size_t k = 0; k < value.count; ++k) args[k] = at(value.args[k], i);
+      result.push_back(map(value.op, args[0], args[1], args[2]));
+    }
+    return result;
+  }
+
+  std::vector<Register> select(const ir::Value& value) {
+    std::vector<Register> result;
+    const Register condition = of(value.args[0])[0];
+    for (size_t i = 0; i < static_cast<size_t>(ir::componentCount(value.type)); ++i) {
+      const Register yes = at(value.args[1], i);
+      const Register no = at(value.args[2], i);
+      const bool uniform = virtuals_[condition].uniform && virtuals_[yes].uniform && virtuals_[no].uniform;
+      result.push_back(
+          emit({Step::Select, value.op, 0, -1, 0, {}, {condition, yes, no, kNoRegister}}, uniform));
+    }
+    return result;
+  }
+
+  void value(ValueId id) {
+    // After an error registers are missing; what is left to find is more unbound inputs.
+    if (wrong_.empty() || dag_[id].op == Op::Input) registers_of_[id] = made(id);
+  }
+
+  std::vector<Register> made(ValueId id) {
+    const ir::Value& value = dag_[id];
+    const auto components = static_cast<size_t>(ir::componentCount(value.type));
+    std::vector<Register> result;
+    switch (value.op) {
+      case Op::Constant:
+        for (size_t i = 0; i < components; ++i) result.push_back(literal(dag_.constantOf(id)[i]));
+        return result;
+      case Op::Input: return input(dag_.inputOf(id));
+      case Op::Interpolate: return of(value.args[0]);
+      case Op::Swizzle:
+        for (size_t i = 0; i < components; ++i) {
+          result.push_back(at(value.args[0],
+                              static_cast<size_t>(ir::swizzleComponent(value.payload, static_cast<int>(i)))));
+        }
+        return result;
+      case Op::Construct:
+        for (const ValueId part : value.operands())
+          result.insert(result.end(), of(part).begin(), of(part).end());
+        if (result.size() == 1) result.assign(components, result[0]);
+        return result;
+      case Op::Dot: return {dot(value.args[0], value.args[1])};
+      case Op::Length: return {map(Op::Sqrt, dot(value.args[0], value.args[0]))};
+      case Op::Normalize: {
+        const Register length = map(Op::Sqrt, dot(value.args[0], value.args[0]));
+        for (const Register r : of(value.args[0])) result.push_back(map(Op::Div, r, length));
+        return result;
+      }
+      case Op::Cross: return cross(value.args[0], value.args[1]);
+      case Op::MatMul: return matrixTimesVector(value.args[0], value.args[1]);
+      case Op::Select: return select(value);
+      case Op::Texture:
+      case Op::TextureLod: return texture(value);
+      case Op::DFdx: return derivative(value, Step::DerivativeX);
+      case Op::DFdy: return derivative(value, Step::DerivativeY);
+      case Op::SumOverLights: return sumOverLights(value);
+      default: return componentWise(value);
+    }
+  }
+
+  const ir::Module& module_;
+  const ir::Dag& dag_;
+  const Bindings& bindings_;
+  size_t points_;
+  Program program_;
+  Diagnostics wrong_;
+  std::vector<Virtual> virtuals_;
+  std::vector<std::vector<Register>> registers_of_;
+};
+
+/// Gives the registers of the body new numbers, so that one whose last use is past serves again: the working
+/// set then fits a cache.
+class Allocator {
+public:
+  Allocator(Program& program, const std::vector<Virtual>& virtuals)
+      : program_(program), virtuals_(virtuals), first_(virtuals.size(), kNever), last_(virtuals.size(), 0) {}
+
+  void run() {
+    lifetimes();
+    number_.assign(virtuals_.size(), kNoRegister);
+    for (Register r = 0; r < virtuals_.size(); ++r) {
+      if (virtuals_[r].uniform) number_[r] = program_.registers++;
+    }
+    for (Instruction& instruction : program_.uniform) renumber(instruction);
+    for (size_t i = 0; i < program_.body.size(); ++i) {
+      Instruction& instruction = program_.body[i];
+      for (const Register out : instruction.outs) {
+        if (out != kNoRegister && number_[out] == kNoRegister) take(out);
+      }
+      renumber(instruction);
+      for (const Register r : ending_[i]) free_.push_back(number_[r]);
+    }
+    for (std::vector<Register>& result : program_.results) {
+      for (Register& r : result) r = number_[r];
+    }
+  }
+
+private:
+  static constexpr size_t kNever = ~size_t{0};
+
+  void lifetimes() {
+    const size_t length = program_.body.size();
+    std::vector<size_t> loop_end(length, kNever);
+    size_t end = kNever;
+    for (size_t i = length; i-- > 0;) {
+      if (program_.body[i].step == Step::LoopEnd) end = i;
+      loop_end[i] = end;
+      if (program_.body[i].step == Step::LoopBegin) end = kNever;
+    }
+    for (size_t i = 0; i < length; ++i) {
+      const auto touch = [&](Register r) {
+        if (r == kNoRegister || virtuals_[r].uniform) return;
+        if (first_[r] == kNever) first_[r] = i;
+        // What comes from before a loop is needed in its every turn.
+        const bool from_outside = loop_end[i] != kNever && loop_end[first_[r]] != loop_end[i];
+        last_[r] = std::max(last_[r], from_outside ? loop_end[i] : i);
+      };
+      for (const Register r : program_.body[i].outs) touch(r);
+      for (const Register r : program_.body[i].args) touch(r);
+    }
+    for (const std::vector<Register>& result : program_.results) {
+      for (const Register r : result) last_[r] = kNever;
+    }
+    ending_.resize(length);
+    for (Register r = 0; r < virtuals_.size(); ++r) {
+      if (first_[r] != kNever && last_[r] != kNever) ending_[last_[r]].push_back(r);
+    }
+  }
+
+  void take(Register r) {
+    if (free_.empty()) {
+      number_[r] = program_.registers++;
+    } else {
+      number_[r] = free_.back();
+      free_.pop_back();
+    }
+  }
+
+  void renumber(Instruction& instruction) {
+    for (Register& r : instruction.outs) r = r == kNoRegister ? r : number_[r];
+    for (Register& r : instruction.args) r = r == kNoRegister ? r : number_[r];
+  }
+
+  Program& program_;
+  const std::vector<Virtual>& virtuals_;
+  std::vector<size_t> first_, last_;
+  std::vector<std::vector<Register>> ending_;
+  std::vector<Register> number_, free_;
+};
+
+}  // namespace
+
+Result<Program> compile(const ir::Module& module, std::span<const ir::ValueId> roots,
+                        const Bindings& bindings, size_t points) {
+  Compiler compiler(module, bindings, points);
+  Result<Program> program = compiler.run(roots);
+  if (program) Allocator(*program, compiler.virtuals()).run();
+  return program;
+}
+
+}  // namespace lacquer::eval

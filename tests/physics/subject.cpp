@@ -1,0 +1,104 @@
+#include "physics/subject.h"
+
+#include <gtest/gtest.h>
+
+#include "gltf/material.h"
+#include "lower/lower.h"
+#include "passes/pipeline.h"
+
+namespace lacquer::physics {
+
+namespace {
+
+const lang::Library& library() {
+  static const lang::Library kLibrary = lang::Library::embedded();
+  return kLibrary;
+}
+
+std::string textOf(const Diagnostics& diagnostics) {
+  std::string text;
+  for (const Diagnostic& d : diagnostics) text += format(d) + "\n";
+  return text;
+}
+
+}  // namespace
+
+Subject::Subject(const Material& material, const Configuration& setup) : texels_(material.texels) {
+  make(gltfOf(material), 0, setup);
+}
+
+Subject::Subject(const std::string& gltf, size_t material, std::map<std::string, Vec4> texels,
+                 const Configuration& setup)
+    : texels_(std::move(texels)) {
+  make(gltf, material, setup);
+}
+
+void Subject::make(const std::string& gltf, size_t material, const Configuration& setup) {
+  const Result<gltf::Document> document = gltf::readText(gltf, "test.gltf", {});
+  ASSERT_TRUE(document) << textOf(document.error());
+  const gltf::Material& m = document->materials.at(material);
+  ASSERT_FALSE(hasError(m.diagnostics)) << textOf(m.diagnostics);
+  graph::BuildOptions options;
+  options.template_name = setup.template_name;
+  options.ibl = setup.ibl;
+  options.multiple_scattering = setup.multiple_scattering;
+  options.live = setup.live;
+  Diagnostics warnings;
+  graph_ = graph::build(m, {true, setup.tangents, true, {true, true, true, true}}, options, warnings);
+  const Diagnostics wrong = graph::check(graph_, library());
+  ASSERT_FALSE(hasError(wrong)) << textOf(wrong);
+  Result<ir::Module> module = lower::lower(graph_, library(), {});
+  ASSERT_TRUE(module) << textOf(module.error());
+  module_ = std::move(*module);
+  quads_ = setup.quads;
+  if (setup.placed) passes::runPipeline(module_, {{false, 1, 0, 0}, {}});
+}
+
+template <class T>
+std::vector<Vec4> Subject::colors(std::span<const Sample> samples, const Vec3& environment) const {
+  std::vector<eval::Point> points;
+  for (const Sample& s : samples) {
+    eval::Point point;
+    point.n = s.n;
+    point.t = s.t;
+    point.v = s.v;
+    point.l = s.l;
+    point.color0 = s.color0;
+    point.light = s.light;
+    point.front_facing = s.front_facing;
+    point.position = s.position;
+    point.uv = {s.uv, s.uv, s.uv, s.uv};
+    points.push_back(point);
+  }
+  eval::Bindings bindings;
+  eval::bindPoints(points, bindings);
+  bindings.quads = quads_;
+  for (const ir::TextureSlot& slot : module_.textures) {
+    Vec4 texel{environment[0], environment[1], environment[2], 1};
+    if (!slot.environment) {
+      const std::string property = slot.pointer.substr(slot.pointer.rfind('/') + 1);
+      const auto it = texels_.find(property);
+      EXPECT_NE(it, texels_.end()) << "no texel for " << property;
+      if (it != texels_.end()) texel = it->second;
+    }
+    bindings.textures[slot.name] = [texel](size_t, const Vec3&, double) { return texel; };
+  }
+  EXPECT_TRUE(eval::bindMaterialBlock(module_, bindings));
+  EXPECT_TRUE(eval::bindVaryings<T>(module_, points.size(), bindings));
+  std::vector<Vec4> result(samples.size());
+  for (const ir::Output& output : module_.outputs) {
+    if (output.kind != ir::OutputKind::Color || output.location != 0) continue;
+    const auto values = eval::evaluate<T>(module_, {{output.value}}, bindings, points.size());
+    EXPECT_TRUE(values) << textOf(values.error());
+    if (!values) return result;
+    for (size_t i = 0; i < result.size(); ++i) {
+      for (size_t c = 0; c < 4; ++c) result[i][c] = static_cast<double>((*values)[0][i * 4 + c]);
+    }
+  }
+  return result;
+}
+
+template std::vector<Vec4> Subject::colors<float>(std::span<const Sample>, const Vec3&) const;
+template std::vector<Vec4> Subject::colors<double>(std::span<const Sample>, const Vec3&) const;
+
+}  // namespace lacquer::physics
