@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <mutex>
+
+#include "api/internal.h"
+#include "support/file.h"
+#include "targets/target.h"
+
+namespace lacquer {
+
+std::string_view version() { return LACQUER_VERSION; }
+
+Message toMessage(const Diagnostic& d) {
+  const auto level = d.severity == Severity::Error     ? Message::Level::Error
+                     : d.severity == Severity::Warning ? Message::Level::Warning
+                                                       : Message::Level::Note;
+  return {level,           d.code,    d.place.file, d.place.line, d.place.column,
+          d.place.pointer, d.message, d.help,       format(d)};
+}
+
+Diagnostic toDiagnostic(const Message& m) {
+  const auto severity = m.level == Message::Level::Error     ? Severity::Error
+                        : m.level == Message::Level::Warning ? Severity::Warning
+                                                             : Severity::Note;
+  return {m.code, severity, {m.file, m.line, m.column, m.pointer}, m.message, m.help, {}};
+}
+
+void report(const Diagnostics& diagnostics, const std::string& file, Messages& messages) {
+  for (Diagnostic d : diagnostics) {
+    if (d.place.file.empty()) d.place.file = file;
+    messages.push_back(toMessage(d));
+  }
+}
+
+bool hasError(const Messages& messages) {
+  return std::any_of(messages.begin(), messages.end(),
+                     [](const Message& m) { return m.level == Message::Level::Error; });
+}
+
+static_assert(static_cast<int>(Target::Cpp) == static_cast<int>(targets::TargetId::Cpp));
+
+std::string_view targetName(Target target) {
+  return targets::row(static_cast<targets::TargetId>(target)).name;
+}
+
+bool findTarget(std::string_view name, Target& target) {
+  const std::optional<targets::TargetId> id = targets::find(name);
+  if (id) target = static_cast<Target>(*id);
+  return id.has_value();
+}
+
+std::vector<std::string> liveTerms() { return graph::liveTerms(); }
+
+std::vector<std::string> passNames() {
+  const auto names = passes::passNames();
+  return {names.begin(), names.end()};
+}
+
+Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<std::string> paths;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() == ".node") paths.push_back(it->path().generic_string());
+  }
+  if (error)
+    return fail("file-unreadable", {folder, 0, 0, {}}, "the folder of nodes cannot be read", error.message());
+  std::sort(paths.begin(), paths.end());
+  std::vector<lang::SourceFile> files;
+  for (const std::string& path : paths) {
+    Result<std::string> text = readFile(path);
+    if (!text) return tl::make_unexpected(text.error());
+    files.push_back({path, std::move(*text)});
+  }
+  return files;
+}
+
+Result<std::shared_ptr<const lang::Library>> libraryFor(const Options& options) {
+  if (options.node_directories.empty()) {
+    static const auto kBuiltIn = std::make_shared<const lang::Library>(lang::Library::embedded());
+    return kBuiltIn;
+  }
+  auto library = std::make_shared<lang::Library>(lang::Library::embedded());
+  for (const std::string& folder : options.node_directories) {
+    Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
+    if (!files) return tl::make_unexpected(files.error());
+    if (Result<void> added = library->add(std::move(*files)); !added)
+      return tl::make_unexpected(added.error());
+  }
+  return library;
+}
+
+passes::LightFacts lightsOf(const gltf::Document& document) {
+  const auto count = [&](gltf::LightType type) {
+    const auto it = document.lights.find(type);
+    return it == document.lights.end() ? 0U : static_cast<uint32_t>(it->second);
+  };
+  return {false, count(gltf::LightType::Directional), count(gltf::LightType::Point),
+          count(gltf::LightType::Spot)};
+}
+
+passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& scene) {
+  switch (options.lights.mode) {
+    case Lights::Mode::Any: return {};
+    case Lights::Mode::Scene: return scene;
+    case Lights::Mode::Fixed: break;
+  }
+  return {false, options.lights.directional, options.lights.point, options.lights.spot};
+}
+
+graph::BuildOptions buildOptions(const Options& options) {
+  graph::BuildOptions build;
+  build.template_name = options.template_name;
+  build.ibl = options.ibl;
+  build.multiple_scattering = options.multiple_scattering;
+  build.decode_srgb = options.decode_srgb;
+  build.live = {options.live.begin(), options.live.end()};
+  return build;
+}
+
+}  // namespace lacquer

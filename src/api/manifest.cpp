@@ -1,0 +1,180 @@
+#include "api/manifest.h"
+
+#include <algorithm>
+
+#include "passes/program.h"
+#include "targets/target.h"
+
+namespace lacquer {
+
+namespace {
+
+std::string_view roleName(ir::BlockRole role) {
+  switch (role) {
+    case ir::BlockRole::Frame: return "frame";
+    case ir::BlockRole::Lights: return "lights";
+    case ir::BlockRole::Material: return "material";
+    case ir::BlockRole::Object: return "object";
+  }
+  return "";
+}
+
+Json bindingJson(const passes::Binding& binding) {
+  return {{"set", binding.set}, {"binding", binding.binding}, {"flat", binding.flat}};
+}
+
+Json blockJson(const ir::Module& module, const ir::Block& block) {
+  Json json = {{"block", block.name}, {"role", roleName(block.role)}};
+  json.update(bindingJson(passes::blockBinding(block.role)));
+  if (block.array != 0) {
+    json["array"] = block.array;
+    json["stride"] = block.size;
+  }
+  json["size"] = block.array == 0 ? block.size : block.array * block.size;
+  Json fields = Json::array();
+  for (uint32_t i = 0; i < block.fields.size(); ++i) {
+    const ir::BlockField& field = block.fields[i];
+    Json row = {{"name", field.name}, {"type", ir::typeName(field.type)}, {"offset", field.offset}};
+    if (block.role == ir::BlockRole::Material) {
+      for (const ir::PreshaderField& p : module.preshader) {
+        if (p.field == i) row["expression"] = targets::expressionText(module, p.value);
+      }
+    } else if (!field.prose.empty()) {
+      row["meaning"] = field.prose;
+    }
+    fields.push_back(std::move(row));
+  }
+  json["fields"] = std::move(fields);
+  return json;
+}
+
+/// One row for each component: a SpecId has one number.
+Json specConstantsJson(const ir::Module& module) {
+  Json rows = Json::array();
+  for (const uint32_t index : ir::usedParameters(module)) {
+    const ir::Parameter& p = module.parameters[index];
+    for (int c = 0; c < ir::componentCount(p.type); ++c) {
+      const double x = p.neutral[static_cast<size_t>(c)];
+      Json row = {{"id", p.constant_id + c}, {"name", p.name}, {"component", c}};
+      row["type"] = p.type == ir::Type::Bool ? "bool" : "float";
+      row["default"] = p.type == ir::Type::Bool ? Json(x != 0) : Json(x);
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+/// The inputs, of any kind, that the outputs of both stages reach.
+std::vector<ir::Input> usedInputs(const ir::Module& module) {
+  std::vector<ir::ValueId> roots;
+  for (const ir::Output& output : module.outputs) roots.push_back(output.value);
+  std::vector<ir::Input> inputs;
+  for (const ir::ValueId id : ir::reachable(module.dag, roots)) {
+    if (module.dag[id].op == ir::Op::Input) inputs.push_back(module.dag.inputOf(id));
+  }
+  return inputs;
+}
+
+}  // namespace
+
+Json componentsJson(ir::Type type, const ir::Components& components) {
+  const int n = ir::componentCount(type);
+  if (n == 1) return components[0];
+  Json array = Json::array();
+  for (int i = 0; i < n; ++i) array.push_back(components[static_cast<size_t>(i)]);
+  return array;
+}
+
+Json interfaceOf(const ir::Module& module, bool has_vertex) {
+  const std::vector<ir::Input> inputs = usedInputs(module);
+  const auto uses = [&](ir::InputKind kind, uint32_t index, bool block) {
+    return std::any_of(inputs.begin(), inputs.end(), [&](const ir::Input& input) {
+      return input.kind == kind && (block ? input.block : input.field) == index;
+    });
+  };
+  const bool counted = std::any_of(module.light_groups.begin(), module.light_groups.end(),
+                                   [](const ir::LightGroup& group) { return group.count < 0; });
+  Json json;
+  json["template"] = module.template_name;
+  Json uniforms = Json::array();
+  for (uint32_t i = 0; i < module.blocks.size(); ++i) {
+    const ir::Block& block = module.blocks[i];
+    const bool count_needed = block.role == ir::BlockRole::Frame && counted;
+    if (uses(ir::InputKind::BlockField, i, true) || count_needed)
+      uniforms.push_back(blockJson(module, block));
+  }
+  json["uniforms"] = std::move(uniforms);
+  if (module.spec_constants) json["spec_constants"] = specConstantsJson(module);
+  Json textures = Json::array();
+  for (const ir::TextureSlot& slot : module.textures) {
+    Json row = {{"name", slot.name}, {"type", ir::typeName(slot.type)}};
+    row.update(bindingJson(passes::textureBinding(module, slot)));
+    row["role"] = slot.environment ? "environment" : "material";
+    if (!slot.environment) row["color_space"] = slot.srgb ? "srgb" : "linear";
+    textures.push_back(std::move(row));
+  }
+  json["textures"] = std::move(textures);
+  Json attributes = Json::array();
+  for (uint32_t i = 0; i < module.attributes.size(); ++i) {
+    const ir::Attribute& a = module.attributes[i];
+    if (!uses(ir::InputKind::Attribute, i, false)) continue;
+    attributes.push_back({{"name", a.name}, {"type", ir::typeName(a.type)}, {"location", a.location}});
+  }
+  if (!has_vertex) {
+    for (uint32_t i = 0; i < module.varyings.size(); ++i) {
+      const ir::Varying& v = module.varyings[i];
+      if (!uses(ir::InputKind::Varying, i, false)) continue;
+      attributes.push_back({{"name", v.name}, {"type", ir::typeName(v.type)}, {"location", v.location}});
+    }
+  }
+  json["inputs"] = std::move(attributes);
+  Json outputs = Json::array();
+  for (const ir::Output& output : module.outputs) {
+    if (output.kind == ir::OutputKind::Color) {
+      outputs.push_back({{"name", output.name}, {"type", "vec4"}, {"location", output.location}});
+    }
+  }
+  json["outputs"] = std::move(outputs);
+  json["proofs"] = proofsJson(module);
+  return json;
+}
+
+std::string interfaceJson(const ir::Module& module, bool has_vertex) {
+  JsonText json;
+  return json.json(interfaceOf(module, has_vertex)).take();
+}
+
+Json diagnosticJson(const Diagnostic& d) {
+  Json json = {{"code", d.code}, {"severity", severityName(d.severity)}};
+  if (!d.place.pointer.empty()) json["pointer"] = d.place.pointer;
+  json["message"] = d.message;
+  if (!d.help.empty()) json["help"] = d.help;
+  return json;
+}
+
+ManifestFile::ManifestFile(const std::string& path, const Scratch* scratch) : file_(path, scratch) {
+  JsonText name(1);
+  file_.append("{\n  \"lacquer\": " + name.string(version()).take() + ",\n  \"files\": [");
+}
+
+void ManifestFile::file(std::string_view entry) {
+  file_.append(files_++ == 0 ? "\n    " : ",\n    ");
+  file_.append(entry);
+}
+
+void ManifestFile::shader(std::string_view id, std::string_view entry) {
+  if (shaders_ == 0) file_.append(files_ == 0 ? "],\n  \"shaders\": {" : "\n  ],\n  \"shaders\": {");
+  file_.append(shaders_++ == 0 ? "\n    " : ",\n    ");
+  file_.append(JsonText().string(id).take() + ": ");
+  file_.append(entry);
+}
+
+Result<bool> ManifestFile::finish() {
+  if (shaders_ == 0)
+    file_.append(files_ == 0 ? "],\n  \"shaders\": {}\n}\n" : "\n  ],\n  \"shaders\": {}\n}\n");
+  else
+    file_.append("\n  }\n}\n");
+  return file_.finish();
+}
+
+}  // namespace lacquer

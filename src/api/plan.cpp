@@ -1,0 +1,170 @@
+// Plans: a Ninja file with one command for each distinct shader. What a command reads is beside the plan (the
+// shader's graph, without anything that belongs to one material), so that it runs wherever the plan and the
+// program are.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "api/manifest.h"
+#include "api/run.h"
+
+namespace lacquer {
+
+namespace {
+
+/// A path in a build statement.
+std::string escaped(const std::string& path) {
+  std::string text;
+  for (const char c : path) {
+    if (c == '$' || c == ' ' || c == ':') text += '$';
+    text += c;
+  }
+  return text;
+}
+
+std::string lightsFlag(const passes::LightFacts& lights) {
+  if (lights.any) return {};
+  return fmt::format(" --lights directional:{},point:{},spot:{}", lights.directional, lights.point,
+                     lights.spot);
+}
+
+class NinjaFile {
+public:
+  NinjaFile(const Plan& plan, const std::string& folder, const Options& options,
+            std::vector<std::string> inputs)
+      : plan_(plan), folder_(folder), options_(options), inputs_(std::move(inputs)) {}
+
+  std::string stem(const std::string& id) const { return plan_.ninja + ".plan/" + id; }
+  std::string materials() const { return plan_.ninja + ".plan/materials.json"; }
+
+  void head() {
+    text_ +=
+        "# Made by `lacquer plan`: one command for each distinct shader, then one that merges what they say "
+        "of it.\n"
+        "# A command reads what is named here and nothing else, and writes what is named here.\n"
+        "ninja_required_version = 1.7\n\n";
+    text_ += fmt::format("rule shader\n  command = {} --graph $graph --shard $shard$lights\n",
+                         ninjaText(plan_.command));
+    text_ += "  description = shader $id\n  restat = 1\n\n";
+    text_ += fmt::format("rule merge\n  command = {} merge -o {} $in\n", ninjaText(shellWord(plan_.program)),
+                         ninjaText(shellWord(folder_)));
+    text_ += "  description = merge $out\n  restat = 1\n\n";
+    if (plan_.replan.empty()) return;
+    text_ +=
+        fmt::format("rule plan\n  command = {}\n  description = plan $out\n  generator = 1\n  restat = 1\n\n",
+                    ninjaText(plan_.replan));
+  }
+
+  void shader(const std::string& id, const Structure& structure) {
+    text_ += "build " + escaped(stem(id) + ".shard.json") + " |";
+    for (const Target target : options_.targets) {
+      for (int stage = firstStage(target, structure.has_vertex); stage < 2; ++stage) {
+        text_ += " " + escaped(folder_ + "/" + shaderPath(target, id, stage));
+      }
+    }
+    text_ += ": shader " + escaped(stem(id) + ".graph.json");
+    tools(text_);
+    text_ += fmt::format("\n  id = {}\n  graph = {}\n  shard = {}\n", id,
+                         ninjaText(shellWord(stem(id) + ".graph.json")),
+                         ninjaText(shellWord(stem(id) + ".shard.json")));
+    if (!structure.lights.any)
+      text_ += "  lights =" + std::string("$ ") + lightsFlag(structure.lights).substr(1) + "\n";
+    shards_.push_back(stem(id) + ".shard.json");
+  }
+
+  std::string finish() {
+    text_ += fmt::format("\nbuild {}: merge {}", escaped(folder_ + "/manifest.json"), escaped(materials()));
+    for (const std::string& shard : shards_) text_ += " " + escaped(shard);
+    if (!program().empty()) text_ += " | " + escaped(program());
+    if (!plan_.replan.empty()) again();
+    text_ += "\n\ndefault " + escaped(folder_ + "/manifest.json") + "\n";
+    return std::move(text_);
+  }
+
+  /// The plan itself, as Ninja makes it anew when an input has changed.
+  void again() {
+    text_ += "\n\nbuild " + escaped(plan_.ninja) + " | " + escaped(materials());
+    for (const std::string& shard : shards_) {
+      text_ +=
+          " " + escaped(shard.substr(0, shard.size() - std::string_view("shard.json").size()) + "graph.json");
+    }
+    text_ += ": plan |";
+    for (const std::string& input : inputs_) text_ += " " + escaped(input);
+    if (!program().empty()) text_ += " " + escaped(program());
+  }
+
+  static std::string shellWord(const std::string& text) {
+    const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+      return std::isalnum(c) != 0 ||
+             std::string_view("_-./,:=+@%").find(static_cast<char>(c)) != std::string::npos;
+    });
+    if (plain) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + "'";
+  }
+
+private:
+  /// Text of a variable or a command.
+  static std::string ninjaText(const std::string& text) {
+    std::string out;
+    for (const char c : text) out += c == '$' ? std::string("$$") : std::string(1, c);
+    return out;
+  }
+
+  /// The program, when it is a file and not found by the PATH.
+  std::string program() const { return plan_.program.find('/') == std::string::npos ? "" : plan_.program; }
+
+  /// What every command reads beside its graph.
+  void tools(std::string& text) const {
+    std::vector<std::string> all = nodeInputs();
+    if (!program().empty()) all.insert(all.begin(), program());
+    if (!all.empty()) text += " |";
+    for (const std::string& one : all) text += " " + escaped(one);
+  }
+
+  std::vector<std::string> nodeInputs() const {
+    std::vector<std::string> all;
+    std::copy_if(inputs_.begin(), inputs_.end(), std::back_inserter(all),
+                 [](const std::string& path) { return path.ends_with(".node"); });
+    return all;
+  }
+
+  const Plan& plan_;
+  const std::string& folder_;
+  const Options& options_;
+  std::vector<std::string> inputs_;
+  std::vector<std::string> shards_;
+  std::string text_;
+};
+
+Report planWith(const Plan& plan, const std::vector<std::string>& files,
+                const std::vector<std::string>& materials, const std::string& folder, const Options& options,
+                Messages& messages) {
+  Run run(options, messages);
+  if (!run.open()) return run.finish();
+  ManifestFile manifest(plan.ninja + ".plan/materials.json");
+  run.readScenes(files, materials, [&](FileResult& file) { manifest.file(file.text); });
+  NinjaFile ninja(plan, folder, options, run.inputs());
+  ninja.head();
+  for (const auto& [id, shader] : run.structures().shaders()) {
+    run.wrote(writeFile(ninja.stem(id) + ".graph.json", shader.structure->graph));
+    run.result().shaders.push_back({id, {}, false});
+    ninja.shader(id, *shader.structure);
+  }
+  run.wrote(manifest.finish());
+  run.wrote(writeFile(plan.ninja, ninja.finish()));
+  return run.finish();
+}
+
+}  // namespace
+
+Report plan(const Plan& plan, const std::vector<std::string>& files,
+            const std::vector<std::string>& materials, const std::string& folder, const Options& options,
+            Messages& messages) {
+  Report report;
+  withJobs(options.jobs, [&] { report = planWith(plan, files, materials, folder, options, messages); });
+  return report;
+}
+
+}  // namespace lacquer

@@ -1,0 +1,25 @@
+// The points of `lacquer eval`, from JSON.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "eval/points.h"
+#include "support/diagnostic.h"
+
+namespace lacquer {
+
+struct EvalPoints {
+  std::vector<eval::Point> points;
+  std::vector<std::array<double, 3>> environment;  ///< radiance, one per point; black where none is given
+  bool has_environment = false;                    ///< a point names one
+};
+
+/// Reads an array of points, or an object whose "points" is one (docs/eval.md). `file` stands for the text in
+/// diagnostics, which carry a JSON pointer each. Unit vectors come out normalized.
+Result<EvalPoints> readPoints(std::string_view text, const std::string& file);
+
+}  // namespace lacquer

@@ -1,0 +1,142 @@
+// What is proved of a shader, as JSON: for the manifest, and in full for `lacquer prove`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/manifest.h"
+#include "api/node_proofs.h"
+#include "lower/lower.h"
+#include "passes/prove.h"
+#include "targets/target.h"
+
+namespace lacquer {
+
+namespace {
+
+constexpr size_t kLongestExpression = 160;
+
+Json endJson(double x) { return std::isfinite(x) ? Json(x) : Json(x < 0 ? "-inf" : "inf"); }
+
+Json rangeJson(const passes::Range& range) {
+  Json json = Json::array({endJson(range.lo), endJson(range.hi)});
+  // Beside what lies in the range it may be no number.
+  if (range.nan) json.push_back("nan");
+  return json;
+}
+
+std::string shortened(std::string text) {
+  if (text.size() <= kLongestExpression) return text;
+  text.resize(kLongestExpression);
+  // Not within a character.
+  while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
+  return text + "…";
+}
+
+Json operationJson(const ir::Module& module, const passes::Proof& proof) {
+  const ir::Dag& dag = module.dag;
+  const std::string& term = dag.terms()[dag.termOf(proof.id)].name;
+  Json json = {{"term", term}};
+  if (const std::string_view name = dag.nameOf(proof.id); !name.empty()) json["name"] = name;
+  json["operation"] = ir::info(dag[proof.id].op).name;
+  json["rate"] = ir::rateName(dag[proof.id].rate);
+  json["operand"] = shortened(targets::expressionText(module, proof.operand));
+  json["need"] = proof.need;
+  json["reached"] = rangeJson(proof.reached);
+  return json;
+}
+
+Json claimJson(const Claim& claim) {
+  return {{"what", shortened(claim.what)},
+          {"need", claim.need},
+          {"reached", rangeJson(claim.reached)},
+          {"proved", claim.proved}};
+}
+
+Json claimsJson(const std::vector<Claim>& claims) {
+  Json json = Json::array();
+  for (const Claim& claim : claims) json.push_back(claimJson(claim));
+  return json;
+}
+
+/// The arguments of all nodes of a graph against their contracts, on the module as lowered.
+Result<std::vector<Claim>> contractClaims(const graph::Graph& graph, const lang::Library& library,
+                                          const Options& options) {
+  std::vector<NodeModule::Call> calls;
+  lower::LowerOptions lowering;
+  if (options.parameters == Parameters::Baked) lowering.parameters = lower::ParameterMode::Baked;
+  lowering.on_call = [&](const lang::NodeDecl& node, std::span<const ir::ValueId> arguments) {
+    calls.push_back({&node, {arguments.begin(), arguments.end()}});
+  };
+  const Result<ir::Module> module = lower::lower(graph, library, lowering);
+  if (!module) return tl::make_unexpected(module.error());
+  std::vector<Claim> claims;
+  for (const NodeModule::Call& call : calls) proveCall(*module, call, 200, claims);
+  return claims;
+}
+
+}  // namespace
+
+Json proofsJson(const ir::Module& module) {
+  size_t safe = 0;
+  Json unproved = Json::array();
+  for (const passes::Proof& proof : passes::prove(module).operations) {
+    if (proof.safe)
+      ++safe;
+    else
+      unproved.push_back(operationJson(module, proof));
+  }
+  return {{"safe", safe}, {"unproved", std::move(unproved)}};
+}
+
+std::string Graph::prove(const Options& options, Messages& messages) {
+  if (!check(messages, options)) return {};
+  const auto library = libraryFor(options);
+  const Result<ir::Module> module = toModule(impl_->graph, **library, options, impl_->scene_lights);
+  const Result<std::vector<Claim>> claims = contractClaims(impl_->graph, **library, options);
+  if (!module || !claims) {
+    report(module ? claims.error() : module.error(), impl_->file, messages);
+    return {};
+  }
+  const passes::Proofs proofs = passes::prove(*module);
+  Json operations = Json::array();
+  for (const passes::Proof& proof : proofs.operations) {
+    Json row = operationJson(*module, proof);
+    row["safe"] = proof.safe;
+    operations.push_back(std::move(row));
+  }
+  Json outputs = Json::array();
+  for (const passes::OutputRange& range : proofs.outputs) {
+    outputs.push_back({{"name", module->outputs[range.output].name}, {"reached", rangeJson(range.reached)}});
+  }
+  return Json{{"material", impl_->graph.name},
+              {"shader", shaderId(*module)},
+              {"operations", std::move(operations)},
+              {"outputs", std::move(outputs)},
+              {"contracts", claimsJson(*claims)}}
+      .dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string proveNodesJson(const Options& options, Messages& messages) {
+  const auto library = libraryFor(options);
+  if (!library) {
+    report(library.error(), {}, messages);
+    return {};
+  }
+  if (const Diagnostics wrong = (*library)->checkAll(); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return {};
+  }
+  Json nodes = Json::array();
+  for (const NodeProof& proof : proveNodes(**library)) {
+    Json row = {{"name", proof.node}};
+    if (!proof.variant.empty()) row["variant"] = proof.variant;
+    row["operations"] = claimsJson(proof.operations);
+    row["results"] = claimsJson(proof.results);
+    row["calls"] = claimsJson(proof.calls);
+    nodes.push_back(std::move(row));
+  }
+  return Json{{"nodes", std::move(nodes)}}.dump(2);
+}
+
+}  // namespace lacquer

@@ -1,0 +1,167 @@
+#include "api/run.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "api/fingerprint.h"
+
+namespace lacquer {
+
+namespace {
+
+/// So many files are held in memory at once. Enough for every core, few enough that a run over thousands of
+/// files does not grow with their number.
+constexpr size_t kFilesAtOnce = 16;
+constexpr uint32_t kMostThreads = 1024;
+constexpr auto kProgressGrain = std::chrono::milliseconds(50);
+
+}  // namespace
+
+void withJobs(uint32_t jobs, const std::function<void()>& work) {
+  if (jobs == 0) return work();
+  jobs = std::min(jobs, kMostThreads);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, jobs);
+  tbb::task_arena arena(static_cast<int>(jobs));
+  arena.execute(work);
+}
+
+Run::Run(const Options& options, Messages& messages, std::function<void(size_t, size_t)> progress)
+    : options_(options),
+      messages_(messages),
+      progress_(std::move(progress)),
+      shown_(std::chrono::steady_clock::now()) {}
+
+bool Run::open() {
+  const StageTimer timer(&times_, StageOfRun::Library);
+  if (const Diagnostics wrong = checkOptions(options_); !wrong.empty()) {
+    report(wrong, {});
+    report_.ok = false;
+    return false;
+  }
+  const auto library = libraryFor(options_);
+  if (!library) {
+    report(library.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  library_ = *library;
+  KeyBuilder base;
+  base.text(fingerprint());
+  for (const std::string& folder : options_.node_directories) {
+    const Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
+    if (!files)
+      continue;  // it was there a moment ago: whatever is cached under this key is right for what was read
+    for (const lang::SourceFile& file : *files) {
+      base.text(file.name).text(file.text);
+      node_files_.push_back(file.name);
+    }
+  }
+  if (!options_.cache.empty()) cache_ = std::make_unique<Cache>(options_.cache, options_.cache_size);
+  setting_.emplace(Setting{options_, *library_, base.finish(), cache_.get(), &times_});
+  structures_.emplace(*setting_);
+  return true;
+}
+
+void Run::progress(size_t done, bool last) {
+  if (!progress_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (!last && now - shown_ < kProgressGrain) return;
+  shown_ = now;
+  progress_(done, structures_->shaderCount());
+}
+
+void Run::readAll(const std::vector<std::string>& files,
+                  const std::function<FileResult(const std::string&)>& read,
+                  const std::function<void(FileResult&)>& each) {
+  inputs_.insert(inputs_.end(), files.begin(), files.end());
+  for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
+    std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
+    tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) { results[i] = read(files[first + i]); });
+    for (size_t i = 0; i < results.size(); ++i) {
+      FileResult& result = results[i];
+      report(result.diagnostics, files[first + i]);
+      report_.ok &= result.ok;
+      each(result);
+      report_.materials.insert(report_.materials.end(), std::make_move_iterator(result.materials.begin()),
+                               std::make_move_iterator(result.materials.end()));
+    }
+    progress(0, false);
+  }
+}
+
+void Run::readScenes(const std::vector<std::string>& files, const std::vector<std::string>& only,
+                     const std::function<void(FileResult&)>& each) {
+  std::vector<std::string> seen;
+  readAll(
+      files, [&](const std::string& path) { return readScene(path, only, *setting_, *structures_); },
+      [&](FileResult& result) {
+        seen.insert(seen.end(), result.names.begin(), result.names.end());
+        each(result);
+      });
+  checkNames(only, seen);
+}
+
+void Run::readGraphs(const std::vector<std::string>& files, const std::function<void(FileResult&)>& each) {
+  readAll(
+      files, [&](const std::string& path) { return readGraph(path, *setting_, *structures_); }, each);
+}
+
+void Run::checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen) {
+  for (const std::string& name : only) {
+    if (std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
+    std::string known;
+    for (size_t i = 0; i < seen.size() && i < 8; ++i)
+      known += fmt::format("{}'{}'", i == 0 ? "" : ", ", seen[i]);
+    if (seen.size() > 8) known += ", …";
+    report({{"no-such-material",
+             Severity::Error,
+             {},
+             fmt::format("no file has a material named '{}'", name),
+             known.empty() ? "the files have no materials" : "there are " + known,
+             {}}},
+           {});
+    report_.ok = false;
+  }
+}
+
+void Run::make(const std::string& folder, const Scratch& scratch,
+               const std::function<void(const MadeShader&)>& each) {
+  const std::vector<MadeShader> made = makeShaders(structures_->shaders(), *setting_, folder, scratch,
+                                                   [&](size_t done) { progress(done, false); });
+  progress(made.size(), true);
+  for (const MadeShader& shader : made) {
+    report(shader.wrong, {});
+    report_.ok &= shader.wrong.empty();
+    report_.shaders.push_back({shader.id, shader.files, shader.validated});
+    report_.made += shader.cached ? 0 : 1;
+    report_.written += shader.written;
+    if (!shader.text.empty()) each(shader);
+  }
+}
+
+void Run::wrote(const Result<bool>& written) {
+  if (written) {
+    report_.written += *written ? 1 : 0;
+    return;
+  }
+  report(written.error(), {});
+  report_.ok = false;
+}
+
+std::vector<std::string> Run::inputs() const {
+  std::vector<std::string> all = inputs_;
+  all.insert(all.end(), node_files_.begin(), node_files_.end());
+  return all;
+}
+
+Report Run::finish() {
+  if (cache_) report(cache_->problems(), {});
+  report_.times = times_.list();
+  return std::move(report_);
+}
+
+}  // namespace lacquer
