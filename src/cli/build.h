@@ -1,0 +1,32 @@
+// The verbs for many shaders at once: what they print, and the commands of a plan.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lacquer.h"
+
+namespace lacquer::cli {
+
+/// Stages with their time, on stderr. `wall`: seconds from start to end.
+void printTimes(const Report& report, double wall);
+
+/// Shows "3/12 shaders" on one line of a terminal.
+class ProgressLine {
+public:
+  explicit ProgressLine(bool shown) : shown_(shown) {}
+  ~ProgressLine();
+  void operator()(size_t done, size_t known);
+
+private:
+  bool shown_;
+  bool open_ = false;
+};
+
+/// `lacquer plan`: `arguments` are the program's own, from its name on; with `replan` the plan keeps
+/// itself up to date.
+Report makePlan(const std::string& ninja, const std::vector<std::string>& arguments, bool replan,
+                const std::vector<std::string>& files, const std::vector<std::string>& materials,
+                const std::string& folder, const Options& options, Messages& messages);
+
+}  // namespace lacquer::cli

@@ -1,0 +1,80 @@
+#include "cli/eval.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "cli/table.h"
+
+namespace lacquer::cli {
+
+CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
+  CLI::App* verb =
+      app.add_subcommand("eval", "the linear colours of a material at points, computed on the CPU");
+  verb->add_option("file", flags.file, "a .gltf or .glb file")->required();
+  verb->add_option("--material", flags.material, "the material's name; not needed for a file with one");
+  verb->add_option("--points", flags.points,
+                   "a JSON file with points (docs/eval.md); - for the standard input")
+      ->required();
+  verb->add_option("--engine", flags.engine, "float or double: the arithmetic")
+      ->check(CLI::IsMember({"float", "double", "vulkan"}))
+      ->capture_default_str();
+  verb->add_option("--profile", flags.profile, "the reading of the specification")
+      ->check(CLI::IsMember({"khr", "openpbr"}))
+      ->capture_default_str();
+  verb->add_option("--texel", flags.texels,
+                   "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
+      ->allow_extra_args(false);
+  verb->add_option("--live", flags.options.live, "terms to keep though today's value would remove them")
+      ->delimiter(',');
+  verb->add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
+                 "do not compensate image-based light for multiple scattering");
+  verb->add_flag("--permissive", flags.options.permissive,
+                 "drop a coat that must not be there instead of failing");
+  verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files");
+  return verb;
+}
+
+namespace {
+
+bool readAll(const std::string& path, std::string& text) {
+  if (path == "-") {
+    text.assign(std::istreambuf_iterator<char>(std::cin), {});
+    return true;
+  }
+  std::ifstream in(path, std::ios::binary);
+  // A folder opens, but cannot be read.
+  if (!in || in.peek() == std::ifstream::traits_type::eof()) return in.eof() && !in.bad() && in.is_open();
+  text.assign(std::istreambuf_iterator<char>(in), {});
+  return !in.bad();
+}
+
+}  // namespace
+
+int runEval(EvalFlags& flags) {
+  if (flags.engine == "vulkan" || flags.profile == "openpbr") {
+    const bool engine = flags.engine == "vulkan";
+    fmt::print(stderr, "eval: {} '{}' is not available in this build; {}\n",
+               engine ? "--engine" : "--profile", engine ? flags.engine : flags.profile,
+               engine ? "use float or double" : "use khr");
+    return 2;
+  }
+  std::string points;
+  if (!readAll(flags.points, points)) {
+    fmt::print(stderr, "{}: error: the points cannot be read [file-unreadable]\n", flags.points);
+    return 1;
+  }
+  flags.options.multiple_scattering = !flags.no_multiple_scattering;
+  Messages messages;
+  const std::string answer = evaluate(flags.file, flags.material, points, flags.points,
+                                      flags.engine == "float", flags.texels, flags.options, messages);
+  for (const Message& message : messages) {
+    if (message.level != Message::Level::Note) fmt::print(stderr, "{}\n", printable(message.text));
+  }
+  fmt::print("{}", answer);
+  return answer.empty() || hasError(messages) ? 1 : 0;
+}
+
+}  // namespace lacquer::cli

@@ -1,0 +1,24 @@
+// The verb `eval`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "lacquer.h"
+
+namespace lacquer::cli {
+
+struct EvalFlags {
+  Options options;
+  std::string file, material, points, engine = "double", profile = "khr";
+  std::vector<std::string> texels;
+  bool no_multiple_scattering = false;
+};
+
+CLI::App* addEval(CLI::App& app, EvalFlags& flags);
+
+/// The exit status: 0, 1 for bad input, 2 for bad usage.
+int runEval(EvalFlags& flags);
+
+}  // namespace lacquer::cli

@@ -1,0 +1,418 @@
+// Flags, calls of the public API, diagnostics; nothing else.
+#include <fmt/color.h>
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <sstream>
+
+#include "cli/build.h"
+#include "cli/cost.h"
+#include "cli/eval.h"
+#include "cli/prove.h"
+#include "cli/table.h"
+#include "lacquer.h"
+
+namespace {
+
+using lacquer::Messages;
+using lacquer::Options;
+
+constexpr int kGood = 0;
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+constexpr int kMostJobs = 1024;    ///< more threads than that are a mistyped number
+constexpr size_t kMostNames = 20;  ///< so many materials are named when the one asked for is not there
+
+/// An empty folder name is a script's unset variable, and would lead to the root of the file system.
+const CLI::Validator kNotEmpty(
+    [](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "");
+
+struct Flags {
+  Options options;
+  std::vector<std::string> files, graphs, materials, targets;
+  std::string output, format = "json", pass, lights = "any", params = "uniform", spirv_from = "direct";
+  bool json = false, no_validate = false, no_ibl = false, no_multiple_scattering = false, quiet = false;
+  bool disassembly = false, time = false, replan = false;
+  std::string ninja;
+  std::optional<std::string> material;
+  std::vector<std::string> arguments;  ///< the program's own, as given
+};
+
+void print(const Messages& messages) {
+  for (const lacquer::Message& message : messages) {
+    if (message.level == lacquer::Message::Level::Note) continue;
+    fmt::print(stderr, "{}\n", lacquer::cli::printable(message.text));
+  }
+}
+
+/// "any", "scene" or "directional:1,point:4".
+std::string parseLights(const std::string& text, lacquer::Lights& lights) {
+  using Mode = lacquer::Lights::Mode;
+  lights.mode = text == "any" ? Mode::Any : text == "scene" ? Mode::Scene : Mode::Fixed;
+  if (lights.mode != Mode::Fixed) return {};
+  std::stringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    const size_t colon = part.find(':');
+    const std::string type = part.substr(0, colon);
+    const std::string number = colon == std::string::npos ? "1" : part.substr(colon + 1);
+    const bool digits = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
+    const unsigned long count = digits && number.size() < 4 ? std::stoul(number) : 17;
+    uint32_t* slot = type == "directional" ? &lights.directional
+                     : type == "point"     ? &lights.point
+                     : type == "spot"      ? &lights.spot
+                                           : nullptr;
+    if (slot == nullptr || count > 16) {
+      return fmt::format("--lights: '{}' is not TYPE:COUNT with directional, point or spot and up to 16",
+                         part);
+    }
+    *slot += static_cast<uint32_t>(count);
+  }
+  if (lights.directional + lights.point + lights.spot > 16) return "--lights: there is room for 16 lights";
+  return {};
+}
+
+/// What CLI11 cannot know; an empty text when all is well.
+std::string finish(Flags& flags) {
+  Options& options = flags.options;
+  options.validate = !flags.no_validate;
+  options.ibl = !flags.no_ibl;
+  options.multiple_scattering = !flags.no_multiple_scattering;
+  options.parameters = flags.params == "baked"  ? lacquer::Parameters::Baked
+                       : flags.params == "spec" ? lacquer::Parameters::Spec
+                                                : lacquer::Parameters::Uniform;
+  options.spirv_route =
+      flags.spirv_from == "direct" ? lacquer::SpirvRoute::Direct : lacquer::SpirvRoute::Glslang;
+  const bool spec = options.parameters == lacquer::Parameters::Spec;
+  if (spec) options.targets = {lacquer::Target::Glsl, lacquer::Target::Spirv};
+  if (!flags.targets.empty()) options.targets.clear();
+  for (const std::string& name : flags.targets) {
+    lacquer::Target target{};
+    if (!lacquer::findTarget(name, target)) {
+      return fmt::format("--target: there is no '{}'; targets are glsl, glsl-gl, essl, hlsl, spirv and cpp",
+                         name);
+    }
+    if (spec && target != lacquer::Target::Glsl && target != lacquer::Target::Spirv) {
+      return fmt::format("--target: {} has no specialization constants; --params spec is for glsl and spirv",
+                         name);
+    }
+    if (std::find(options.targets.begin(), options.targets.end(), target) == options.targets.end()) {
+      options.targets.push_back(target);
+    }
+  }
+  return parseLights(flags.lights, options.lights);
+}
+
+void addShared(CLI::App& app, Flags& flags) {
+  app.add_option("--template", flags.options.template_name, "forward, surface or bsdf")
+      ->capture_default_str();
+  app.add_option(
+         "--params", flags.params,
+         "uniform: numbers stay editable; baked: they are constants; spec: they are specialization constants")
+      ->check(CLI::IsMember({"uniform", "baked", "spec"}))
+      ->capture_default_str();
+  app.add_option("--lights", flags.lights, "any, scene, or fixed counts such as directional:1,point:4")
+      ->capture_default_str();
+  // Options that may be repeated take one argument each time: the next one may be a file.
+  app.add_option("--live", flags.options.live, "terms to keep though today's value would remove them")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(lacquer::liveTerms()));
+  app.add_flag("--no-ibl", flags.no_ibl, "no image-based light");
+  app.add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
+               "do not compensate image-based light for multiple scattering");
+  app.add_flag("--decode-srgb", flags.options.decode_srgb, "decode colour textures in the shader");
+  app.add_flag("--permissive", flags.options.permissive,
+               "drop a coat that must not be there instead of failing");
+  app.add_option("--nodes", flags.options.node_directories, "a folder with more node files (may be repeated)")
+      ->allow_extra_args(false);
+}
+
+/// What `gen` and `plan` have in common.
+void addGeneration(CLI::App& verb, Flags& flags) {
+  verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
+  verb.add_option("--target", flags.targets,
+                  "of glsl, glsl-gl, essl, hlsl, spirv, cpp; all but cpp when absent")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
+      ->allow_extra_args(false);
+  verb.add_option("--spirv-from", flags.spirv_from, "direct, or glslang: through the GLSL, as a cross-check")
+      ->check(CLI::IsMember({"direct", "glslang"}))
+      ->capture_default_str();
+  verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");
+  verb.add_flag("--unused", flags.options.unused, "also materials that no primitive uses");
+  verb.add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
+      ->check(CLI::Range(0, kMostJobs));
+  verb.add_option("--cache", flags.options.cache, "a folder that keeps results between runs");
+  verb.add_option("--cache-size", flags.options.cache_size, "bytes that it may take, such as 500MB (1 GiB)")
+      ->transform(CLI::AsSizeValue(false));
+  verb.add_flag("--time", flags.time, "the time of every stage, on stderr");
+  verb.add_flag("-q,--quiet", flags.quiet, "no table, no progress");
+  addShared(verb, flags);
+}
+
+int gen(Flags& flags) {
+  Messages messages;
+  const auto begin = std::chrono::steady_clock::now();
+  lacquer::Report report;
+  {
+    lacquer::cli::ProgressLine line(lacquer::cli::terminalWidth() > 0 && !flags.quiet);
+    const auto progress = [&](size_t done, size_t known) { line(done, known); };
+    report =
+        flags.graphs.empty()
+            ? lacquer::generate(flags.files, flags.materials, flags.output, flags.options, messages, progress)
+            : lacquer::generateGraphs(flags.graphs, flags.output, flags.options, messages, progress);
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  if (!flags.quiet) lacquer::cli::printReport(report, flags.options);
+  print(messages);
+  if (flags.time) lacquer::cli::printTimes(report, wall.count());
+  return report.ok && !hasError(messages) ? kGood : kFailed;
+}
+
+int plan(const Flags& flags) {
+  Messages messages;
+  const auto begin = std::chrono::steady_clock::now();
+  const lacquer::Report report =
+      lacquer::cli::makePlan(flags.ninja, flags.arguments, flags.replan, flags.files, flags.materials,
+                             flags.output, flags.options, messages);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  print(messages);
+  if (!flags.quiet) {
+    fmt::print("{} materials, {} distinct shaders: run ninja -f {}\n", report.materials.size(),
+               report.shaders.size(), flags.ninja);
+  }
+  if (flags.time) lacquer::cli::printTimes(report, wall.count());
+  return report.ok && !hasError(messages) ? kGood : kFailed;
+}
+
+int merge(const Flags& flags) {
+  Messages messages;
+  const bool merged = lacquer::merge(flags.files, flags.output, messages);
+  print(messages);
+  return merged ? kGood : kFailed;
+}
+
+/// "'Paint', 'Trim', …"
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size() && i < kMostNames; ++i)
+    text += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+  if (names.size() > kMostNames) text += fmt::format(", … ({} in all)", names.size());
+  return lacquer::cli::printable(text);
+}
+
+/// The place of the material that `graph` and `dump` are about, or no place and a message.
+std::optional<size_t> onlyMaterial(const lacquer::Scene& scene, const Flags& flags) {
+  std::vector<std::string> names;
+  std::vector<size_t> found;
+  for (size_t i = 0; i < scene.materialCount(); ++i) {
+    names.push_back(scene.materialName(i));
+    if (!flags.material || names[i] == *flags.material) found.push_back(i);
+  }
+  if (found.size() == 1) return found[0];
+  const std::string& file = flags.files[0];
+  if (names.empty()) {
+    fmt::print(stderr, "{}: error: the file has no materials [no-such-material]\n", file);
+  } else if (!flags.material) {
+    fmt::print(stderr,
+               "{}: error: the file has several materials: say which with --material [no-such-material]\n",
+               file);
+    fmt::print(stderr, "  help: there are {}\n", listed(names));
+  } else if (found.empty()) {
+    fmt::print(stderr, "{}: error: no material is named '{}' [no-such-material]\n", file, *flags.material);
+    fmt::print(stderr, "  help: there are {}\n", listed(names));
+  } else {
+    fmt::print(stderr, "{}: warning: {} materials are named '{}': this is /materials/{} [duplicate-name]\n",
+               file, found.size(), *flags.material, found[0]);
+    return found[0];
+  }
+  return std::nullopt;
+}
+
+lacquer::Graph onlyGraph(const Flags& flags, Messages& messages) {
+  const lacquer::Scene scene = lacquer::Scene::load(flags.files[0], flags.options, messages);
+  if (!scene) return {};
+  const std::optional<size_t> material = onlyMaterial(scene, flags);
+  if (!material) return {};
+  const std::vector<lacquer::Attributes> uses = scene.uses(*material);
+  lacquer::Attributes attributes;
+  attributes.tangent = true;
+  attributes.texCoord = {true, true, false, false};
+  return scene.graph(*material, uses.empty() ? attributes : uses[0], flags.options, messages);
+}
+
+int graph(const Flags& flags) {
+  Messages messages;
+  const lacquer::Graph graph = onlyGraph(flags, messages);
+  if (graph) fmt::print("{}", flags.format == "dot" ? graph.toDot() : graph.toJson());
+  print(messages);
+  return graph && !hasError(messages) ? kGood : kFailed;
+}
+
+int dump(const Flags& flags) {
+  const std::vector<std::string> passes = lacquer::passNames();
+  if (!flags.pass.empty() && flags.pass != "lower" &&
+      std::find(passes.begin(), passes.end(), flags.pass) == passes.end()) {
+    fmt::print(stderr, "--after: there is no pass '{}'; passes are lower, {}\n", flags.pass,
+               fmt::join(passes, ", "));
+    return kUsage;
+  }
+  Messages messages;
+  lacquer::Graph graph = onlyGraph(flags, messages);
+  if (graph) fmt::print("{}", graph.dump(flags.options, flags.pass, messages));
+  print(messages);
+  return graph && !hasError(messages) ? kGood : kFailed;
+}
+
+int prove(const Flags& flags) {
+  Messages messages;
+  const bool good = lacquer::cli::prove(flags.files, flags.materials, flags.json, flags.options, messages);
+  print(messages);
+  return good && !hasError(messages) ? kGood : kFailed;
+}
+
+int nodes(const Flags& flags, const std::string& name) {
+  Messages messages;
+  const std::string json = lacquer::nodesJson(flags.options, messages);
+  print(messages);
+  if (hasError(messages)) return kFailed;
+  return lacquer::cli::printNodes(json, name, flags.json) ? kGood : kFailed;
+}
+
+int cost(const Flags& flags) {
+  Messages messages;
+  const std::vector<lacquer::ShaderCost> costs =
+      lacquer::measureCost(flags.files, flags.disassembly, messages);
+  lacquer::cli::printCosts(costs, flags.json);
+  print(messages);
+  return hasError(messages) ? kFailed : kGood;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Lacquer turns glTF materials into GLSL, HLSL and SPIR-V.", "lacquer"};
+  app.set_version_flag("--version", std::string(lacquer::version()));
+  app.set_help_all_flag("--help-all", "the help of every verb");
+  app.require_subcommand(1);
+  Flags flags;
+  flags.arguments.assign(argv, argv + argc);
+  std::string node_name;
+
+  CLI::App* gen_verb = app.add_subcommand("gen", "shaders and manifest.json for the materials of glTF files");
+  auto* files = gen_verb->add_option("files", flags.files, ".gltf or .glb files");
+  auto* graphs = gen_verb
+                     ->add_option("--graph", flags.graphs,
+                                  "a node graph in JSON instead of glTF files (may be repeated)")
+                     ->allow_extra_args(false)
+                     ->excludes(files);
+  gen_verb->add_option("--depfile", flags.options.depfile,
+                       "a file for Make and Ninja: what manifest.json depends on");
+  gen_verb->add_option("--shard", flags.options.shard, "in place of manifest.json: a file for `merge`");
+  addGeneration(*gen_verb, flags);
+  graphs->excludes(gen_verb->get_option("--material"));
+
+  CLI::App* plan_verb = app.add_subcommand("plan", "a Ninja file with one command for each distinct shader");
+  plan_verb->add_option("files", flags.files, ".gltf or .glb files")->required();
+  plan_verb->add_option("--ninja", flags.ninja, "the Ninja file; what its commands read is put beside it")
+      ->required();
+  plan_verb->add_flag("--replan", flags.replan, "the Ninja file makes itself anew when an input has changed");
+  addGeneration(*plan_verb, flags);
+
+  CLI::App* merge_verb =
+      app.add_subcommand("merge", "manifest.json from the manifests or shards of several runs");
+  merge_verb->add_option("shards", flags.files, "what gen wrote, in the order of a run over all files")
+      ->required();
+  merge_verb->add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
+
+  CLI::App* graph_verb = app.add_subcommand("graph", "the node graph of a material");
+  CLI::App* dump_verb = app.add_subcommand("dump", "the DAG of a material, with the rate of every value");
+  for (CLI::App* verb : {graph_verb, dump_verb}) {
+    verb->add_option("file", flags.files, "a .gltf or .glb file")->required()->expected(1);
+    verb->add_option("--material", flags.material, "the material's name; not needed for a file with one");
+    addShared(*verb, flags);
+  }
+  graph_verb->add_option("--format", flags.format, "json or dot")
+      ->check(CLI::IsMember({"json", "dot"}))
+      ->capture_default_str();
+  dump_verb->add_option("--after", flags.pass, "the pass after which to look; the last when absent");
+
+  CLI::App* prove_verb =
+      app.add_subcommand("prove", "which operations are safe for all inputs; of the nodes without FILE");
+  prove_verb->add_option("files", flags.files, ".gltf or .glb files");
+  prove_verb->add_option("--material", flags.materials, "only materials of this name (may be repeated)")
+      ->allow_extra_args(false);
+  prove_verb->add_flag("--json", flags.json, "as JSON, with everything that is proved");
+  addShared(*prove_verb, flags);
+
+  CLI::App* nodes_verb =
+      app.add_subcommand("nodes", "the node library: contracts, ranges, sources, variants");
+  nodes_verb->add_option("name", node_name, "one node");
+  nodes_verb->add_flag("--json", flags.json, "as JSON");
+  nodes_verb
+      ->add_option("--nodes", flags.options.node_directories,
+                   "a folder with more node files (may be repeated)")
+      ->allow_extra_args(false);
+
+  CLI::App* cost_verb =
+      app.add_subcommand("cost", "what SPIR-V fragment shaders cost on AMD GPUs, by Mesa's compiler");
+  cost_verb->add_option("paths", flags.files, "folders that gen wrote, or .spv files")->required();
+  cost_verb->add_flag("--json", flags.json, "as JSON");
+  cost_verb->add_flag("--disassembly", flags.disassembly, "the GPUs' instructions, too");
+
+  lacquer::cli::EvalFlags eval_flags;
+  CLI::App* eval_verb = lacquer::cli::addEval(app, eval_flags);
+
+  for (CLI::App* verb : app.get_subcommands({}))
+    verb->set_version_flag("--version", std::string(lacquer::version()));
+  // CLI11 would say only that a verb is missing.
+  const std::vector<CLI::App*> verbs = app.get_subcommands({});
+  const auto named = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '\0' && std::none_of(verbs.begin(), verbs.end(), named) &&
+      app.get_option_no_throw(argv[1]) == nullptr) {
+    fmt::print(stderr, "lacquer: there is no '{}'; `lacquer --help` lists what there is\n", argv[1]);
+    return kUsage;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kGood : kUsage;
+  }
+  if (const std::string wrong = finish(flags); !wrong.empty()) {
+    fmt::print(stderr, "{}\n", wrong);
+    return kUsage;
+  }
+  if (*gen_verb && flags.files.empty() && flags.graphs.empty()) {
+    fmt::print(stderr, "gen: name a .gltf or .glb file, or a graph with --graph\n");
+    return kUsage;
+  }
+  if (*eval_verb) return lacquer::cli::runEval(eval_flags);
+  if (*gen_verb) return gen(flags);
+  if (*plan_verb) return plan(flags);
+  if (*merge_verb) return merge(flags);
+  if (*graph_verb) return graph(flags);
+  if (*prove_verb) return prove(flags);
+  if (*dump_verb) return dump(flags);
+  if (*cost_verb) return cost(flags);
+  return nodes(flags, node_name);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const int status = run(argc, argv);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+    fmt::print(stderr, "lacquer: the standard output cannot be written\n");
+    return kFailed;
+  } catch (const std::exception& error) {
+    // Out of memory, a full pipe: nothing that input alone can cause.
+    fmt::print(stderr, "lacquer: {}\n", error.what());
+    return kFailed;
+  }
+}

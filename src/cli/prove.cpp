@@ -1,0 +1,124 @@
+#include "cli/prove.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace lacquer::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string rangeText(const Json& range) {
+  const auto end = [](const Json& x) {
+    return x.is_string() ? x.get<std::string>() : fmt::format("{:.7g}", x.get<double>());
+  };
+  return fmt::format("[{}, {}]{}", end(range[0]), end(range[1]), range.size() > 2 ? " or no number" : "");
+}
+
+void printClaims(const Json& claims, const std::string& where) {
+  for (const Json& claim : claims) {
+    if (claim["proved"].get<bool>()) continue;
+    fmt::print("  {}{}: must be {}, may be {}\n", where, claim["what"].get<std::string>(),
+               claim["need"].get<std::string>(), rangeText(claim["reached"]));
+  }
+}
+
+size_t proved(const Json& claims) {
+  return static_cast<size_t>(
+      std::count_if(claims.begin(), claims.end(), [](const Json& c) { return c["proved"].get<bool>(); }));
+}
+
+void printShader(const Json& json) {
+  const Json& operations = json["operations"];
+  size_t safe = 0;
+  for (const Json& row : operations) safe += row["safe"].get<bool>() ? 1 : 0;
+  const Json& contracts = json["contracts"];
+  fmt::print("{} ({}): {} of {} operations safe, {} of {} arguments within their nodes' contracts\n",
+             json["material"].get<std::string>(), json["shader"].get<std::string>(), safe, operations.size(),
+             proved(contracts), contracts.size());
+  for (const Json& row : operations) {
+    if (row["safe"].get<bool>()) continue;
+    fmt::print("  {}{}: {} of {}: must be {}, may be {}\n", row["term"].get<std::string>(),
+               row.contains("name") ? "." + row["name"].get<std::string>() : "",
+               row["operation"].get<std::string>(), row["operand"].get<std::string>(),
+               row["need"].get<std::string>(), rangeText(row["reached"]));
+  }
+  printClaims(contracts, "argument ");
+  for (const Json& output : json["outputs"]) {
+    fmt::print("  output {} is in {}\n", output["name"].get<std::string>(), rangeText(output["reached"]));
+  }
+}
+
+bool proveNodes(bool as_json, const Options& options, Messages& messages) {
+  const std::string text = proveNodesJson(options, messages);
+  if (text.empty()) return false;
+  const Json json = Json::parse(text);
+  size_t good = 0;
+  size_t all = 0;
+  for (const Json& node : json["nodes"]) {
+    for (const char* kind : {"operations", "results", "calls"}) {
+      good += proved(node[kind]);
+      all += node[kind].size();
+      const std::string variant = node.contains("variant") ? "." + node["variant"].get<std::string>() : "";
+      if (!as_json) printClaims(node[kind], node["name"].get<std::string>() + variant + ", ");
+    }
+  }
+  if (as_json)
+    fmt::print("{}\n", text);
+  else
+    fmt::print("{} nodes: {} of {} claims proved\n", json["nodes"].size(), good, all);
+  return good == all;
+}
+
+bool proveMaterial(const Scene& scene, size_t material, bool as_json, const Options& options,
+                   Messages& messages) {
+  std::vector<Attributes> uses = scene.uses(material);
+  if (uses.empty()) {
+    Attributes everything;
+    everything.tangent = true;
+    everything.texCoord = {true, true, false, false};
+    uses.push_back(everything);
+  }
+  bool good = true;
+  for (const Attributes& attributes : uses) {
+    Graph graph = scene.graph(material, attributes, options, messages);
+    const std::string text = graph ? graph.prove(options, messages) : std::string();
+    good &= !text.empty();
+    if (text.empty()) continue;
+    if (as_json)
+      fmt::print("{}\n", text);
+    else
+      printShader(Json::parse(text));
+  }
+  return good;
+}
+
+}  // namespace
+
+bool prove(const std::vector<std::string>& files, const std::vector<std::string>& materials, bool as_json,
+           const Options& options, Messages& messages) {
+  if (files.empty()) return proveNodes(as_json, options, messages);
+  bool good = true;
+  size_t found = 0;
+  for (const std::string& file : files) {
+    const Scene scene = Scene::load(file, options, messages);
+    good &= static_cast<bool>(scene);
+    for (size_t i = 0; scene && i < scene.materialCount(); ++i) {
+      const bool named =
+          std::find(materials.begin(), materials.end(), scene.materialName(i)) != materials.end();
+      if (!materials.empty() && !named) continue;
+      ++found;
+      good &= proveMaterial(scene, i, as_json, options, messages);
+    }
+  }
+  if (found == 0 && good) {
+    fmt::print(stderr, "prove: no material of that name\n");
+    return false;
+  }
+  return good;
+}
+
+}  // namespace lacquer::cli

@@ -1,0 +1,163 @@
+#include "cli/table.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <sys/ioctl.h>
+#include <unistd.h>
+#endif
+
+namespace lacquer::cli {
+
+int terminalWidth() {
+#if defined(__unix__) || defined(__APPLE__)
+  winsize size{};
+  if (isatty(STDERR_FILENO) != 0 && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0) return size.ws_col;
+#endif
+  return 0;
+}
+
+std::string printable(std::string_view text) {
+  std::string result;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    // U+0080 to U+009F are control characters, too.
+    const bool two = byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    const bool control = two || (byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7F;
+    result += control ? '?' : text[i];
+    i += two ? 1 : 0;
+  }
+  return result;
+}
+
+namespace {
+
+constexpr size_t kLineWidth = 110;
+/// More materials than this are counted, not listed: nobody reads them.
+constexpr size_t kMostMaterials = 60;
+
+/// Words after a label, wrapped under each other.
+void printWrapped(const std::string& label, const std::vector<std::string>& words) {
+  std::string line = label;
+  const std::string indent(label.size(), ' ');
+  for (size_t i = 0; i < words.size(); ++i) {
+    const std::string word = words[i] + (i + 1 < words.size() ? "," : "");
+    if (line.size() + word.size() + 1 > kLineWidth && line.size() > indent.size()) {
+      fmt::print("{}\n", line);
+      line = indent;
+    }
+    line += (line.size() > indent.size() ? " " : "") + word;
+  }
+  if (!words.empty()) fmt::print("{}\n", line);
+}
+
+/// "coat: fresnel absorption", one entry for each group of terms.
+std::vector<std::string> grouped(const std::vector<std::string>& terms) {
+  std::vector<std::string> order;
+  std::map<std::string, std::string> groups;
+  for (const std::string& term : terms) {
+    const size_t dot = term.find('.');
+    const std::string group = term.substr(0, dot);
+    if (!groups.contains(group)) order.push_back(group);
+    groups[group] += dot == std::string::npos ? "" : " " + term.substr(dot + 1);
+  }
+  std::vector<std::string> result;
+  for (const std::string& group : order) {
+    result.push_back(groups[group].empty() ? group : fmt::format("{} ({})", group, groups[group].substr(1)));
+  }
+  return result;
+}
+
+std::string range(const nlohmann::json& item) {
+  if (!item.contains("range")) return {};
+  const auto end = [](const nlohmann::json& x, const char* infinite) {
+    return x.is_null() ? std::string(infinite) : fmt::format("{}", x.get<double>());
+  };
+  return fmt::format(" in [{}, {}]", end(item["range"][0], "-inf"), end(item["range"][1], "inf"));
+}
+
+void printNode(const nlohmann::json& node) {
+  fmt::print("{}\n", node["name"].get<std::string>());
+  fmt::print("    {}\n    source: {}\n", node["doc"].get<std::string>(), node["source"].get<std::string>());
+  for (const auto& input : node["inputs"]) {
+    std::string line = fmt::format("    in   {:<10} {}{}", input["type"].get<std::string>(),
+                                   input["name"].get<std::string>(), range(input));
+    if (input.contains("default")) line += " = " + input["default"].dump();
+    if (input.contains("meaning")) line += "  // " + input["meaning"].get<std::string>();
+    fmt::print("{}\n", line);
+  }
+  for (const auto& output : node["outputs"]) {
+    const std::string line = fmt::format("    out  {:<10} {}{}", output["type"].get<std::string>(),
+                                         output["name"].get<std::string>(), range(output));
+    fmt::print("{}\n", line);
+  }
+  for (const auto& variant : node["variants"]) {
+    fmt::print("    variant {}  {}\n", variant["name"].get<std::string>(), variant["doc"].get<std::string>());
+  }
+}
+
+}  // namespace
+
+void printReport(const Report& report, const Options& options) {
+  std::string file;
+  size_t listed = 0;
+  for (const MaterialReport& material : report.materials) {
+    if (material.file != file) {
+      file = material.file;
+      fmt::print("\n{}\n", file);
+    }
+    if (++listed > kMostMaterials) continue;
+    std::string ids;
+    for (const std::string& id : material.shaders) {
+      if (ids.find(id) == std::string::npos) ids += " " + id;
+    }
+    const std::string state = !material.ok ? " failed" : ids.empty() ? " nothing to generate" : ids;
+    fmt::print(
+        "  {}{}\n",
+        material.name.empty() ? fmt::format("(material {})", material.index) : printable(material.name),
+        state);
+    printWrapped("      terms    ", grouped(material.terms->terms));
+    std::vector<std::string> skipped;
+    for (const auto& [term, reason] : material.terms->skipped)
+      skipped.push_back(fmt::format("{} ({})", term, reason));
+    printWrapped("      skipped  ", skipped);
+  }
+  if (listed > kMostMaterials)
+    fmt::print("  … and {} more materials, in manifest.json\n", listed - kMostMaterials);
+
+  if (!report.shaders.empty()) fmt::print("\nshaders\n");
+  for (const ShaderReport& shader : report.shaders) {
+    if (report.shaders.size() > kMostMaterials) break;
+    fmt::print("  {}  {}\n", shader.id,
+               shader.validated   ? "validated"
+               : options.validate ? "NOT VALID"
+                                  : "not validated (--no-validate)");
+    for (const auto& [path, bytes] : shader.files) fmt::print("      {:>7} {}\n", bytes, path);
+  }
+  size_t valid = 0;
+  for (const ShaderReport& shader : report.shaders) valid += shader.validated ? 1 : 0;
+  fmt::print("\n{} materials, {} distinct shaders, {} validated\n", report.materials.size(),
+             report.shaders.size(), valid);
+}
+
+bool printNodes(const std::string& text, const std::string& name, bool as_json) {
+  const nlohmann::ordered_json all = nlohmann::ordered_json::parse(text);
+  bool found = name.empty();
+  for (const auto& node : all["nodes"]) {
+    if (!name.empty() && node["name"] != name) continue;
+    found = true;
+    if (name.empty() && !as_json)
+      fmt::print("{:<36} {}\n", node["name"].get<std::string>(), node["source"].get<std::string>());
+    if (!name.empty() && as_json) fmt::print("{}\n", node.dump(2));
+    if (!name.empty() && !as_json) printNode(node);
+  }
+  if (name.empty() && as_json) fmt::print("{}\n", all.dump(2));
+  if (!found) fmt::print(stderr, "there is no node '{}'; `lacquer nodes` lists them\n", name);
+  return found;
+}
+
+}  // namespace lacquer::cli

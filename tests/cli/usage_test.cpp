@@ -1,0 +1,240 @@
+// How the program is called, rightly and wrongly: 0, 1 and 2.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "command.h"
+#include "lacquer.h"
+
+namespace lacquer::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+const Words kVerbs = {"gen", "plan", "merge", "graph", "dump", "nodes", "cost", "eval"};
+
+std::string joined(const Words& words) { return fmt::format("{}", fmt::join(words, " ")); }
+
+TEST(Usage, helpEverywhere) {
+  const Workplace place;
+  const Outcome whole = place.run({"--help"});
+  EXPECT_EQ(whole.status, 0) << whole.all();
+  EXPECT_EQ(whole.err, "");
+  for (const std::string& verb : kVerbs) {
+    EXPECT_NE(whole.out.find("\n  " + verb + " "), std::string::npos) << verb << "\n" << whole.out;
+    for (const char* flag : {"--help", "-h"}) {
+      const Outcome one = place.run({verb, flag});
+      EXPECT_EQ(one.status, 0) << one.all();
+      EXPECT_EQ(one.err, "");
+      EXPECT_NE(one.out.find("Usage: lacquer " + verb), std::string::npos) << one.out;
+    }
+  }
+  EXPECT_TRUE(place.names().empty());
+}
+
+TEST(Usage, versionEverywhere) {
+  const Workplace place;
+  const std::string expected = std::string(version()) + "\n";
+  EXPECT_EQ(place.run({"--version"}).out, expected);
+  for (const std::string& verb : kVerbs) {
+    const Outcome outcome = place.run({verb, "--version"});
+    EXPECT_EQ(outcome.status, 0) << verb << outcome.all();
+    EXPECT_EQ(outcome.out, expected);
+    EXPECT_EQ(outcome.err, "");
+  }
+}
+
+/// Nothing is written, nothing goes to stdout, and stderr says what is wrong.
+TEST(Usage, wrongUsageIsTwo) {
+  const Workplace place;
+  const std::string coat = example("coat.gltf");
+  const std::pair<Words, std::string> kCases[] = {
+      {{}, "subcommand"},
+      {{"frobnicate"}, "frobnicate"},
+      {{"--frobnicate"}, "frobnicate"},
+      {{"gen"}, "--output"},
+      {{"gen", coat}, "--output"},
+      {{"gen", coat, "-o"}, "--output"},
+      {{"gen", coat, "-o", ""}, "empty"},
+      {{"gen", "-o", "out"}, "--graph"},
+      {{"gen", coat, "-o", "out", "--frobnicate"}, "--frobnicate"},
+      {{"gen", coat, "-o", "out", "--target", "metal"}, "metal"},
+      {{"gen", coat, "-o", "out", "--target", "glsl,metal"}, "glsl, glsl-gl, essl, hlsl, spirv"},
+      {{"gen", coat, "-o", "out", "--target", ""}, "--target"},
+      {{"gen", coat, "-o", "out", "--target", "GLSL"}, "GLSL"},
+      {{"gen", coat, "-o", "out", "--params", "frozen"}, "frozen"},
+      {{"gen", coat, "-o", "out", "--spirv-from", "hlsl"}, "hlsl"},
+      {{"gen", coat, "-o", "out", "--lights", "moon"}, "moon"},
+      {{"gen", coat, "-o", "out", "--lights", "point:17"}, "point:17"},
+      {{"gen", coat, "-o", "out", "--lights", "point:-1"}, "point:-1"},
+      {{"gen", coat, "-o", "out", "--lights", "point:9,spot:9"}, "16"},
+      {{"gen", coat, "-o", "out", "--jobs", "-1"}, "--jobs"},
+      {{"gen", coat, "-o", "out", "--jobs", "many"}, "--jobs"},
+      {{"gen", coat, "-o", "out", "--jobs", "99999999"}, "--jobs"},
+      {{"gen", coat, "-o", "out", "--graph", "g.json"}, "--graph"},
+      {{"gen", "--graph", "g.json", coat, "-o", "out"}, "--graph"},
+      {{"gen", "--graph", "g.json", "-o", "out", "--material", "Paint"}, "--material"},
+      {{"graph"}, "file"},
+      {{"graph", coat, example("core.gltf"), "--material", "Off"}, "file"},
+      {{"graph", coat, "--material", "Off", "--format", "xml"}, "xml"},
+      {{"dump"}, "file"},
+      {{"dump", coat, "--material", "Off", "--after", "nothing"}, "lower"},
+      {{"nodes", "coat_f0", "coat_f0"}, "coat_f0"},
+      {{"merge", "-o", "out"}, "shards"},
+      {{"merge", "x.json"}, "--output"},
+      {{"plan", coat, "-o", "out"}, "--ninja"},
+  };
+  for (const auto& [words, said] : kCases) {
+    SCOPED_TRACE(joined(words));
+    const Outcome outcome = place.run(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.all();
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+    EXPECT_TRUE(place.names().empty());
+  }
+}
+
+/// An option that may be repeated leaves the file behind its argument alone.
+TEST(Usage, filesMayStandAnywhere) {
+  const Workplace place;
+  const std::string coat = example("coat.gltf");
+  const Words kCases[] = {
+      {"gen", coat, "-o", "out", "--target", "glsl", "--material", "Off"},
+      {"gen", "--target", "glsl", "--material", "Off", coat, "-o", "out"},
+      {"gen", "-o", "out", "--material", "Off", "--target", "glsl", coat},
+      {"gen", "--live", "coat.f0", coat, "-o", "out", "--target=glsl", "--material=Off"},
+  };
+  for (const Words& words : kCases) {
+    SCOPED_TRACE(joined(words));
+    const Outcome outcome = place.run(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.all();
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(place.manifest("out")["files"][0]["materials"].size(), 1u);
+    std::filesystem::remove_all(place / "out");
+  }
+}
+
+TEST(Usage, materialThatIsNotThere) {
+  const Workplace place;
+  const std::string coat = example("coat.gltf");
+  for (const Words& words :
+       {Words{"gen", coat, "-o", "out", "--material", "Nope"}, Words{"graph", coat, "--material", "Nope"},
+        Words{"dump", coat, "--material", "Nope"}, Words{"graph", coat, "--material", ""}}) {
+    SCOPED_TRACE(joined(words));
+    const Outcome outcome = place.run(words);
+    EXPECT_EQ(outcome.status, 1) << outcome.all();
+    for (const char* known : {"'Weight and roughness'", "'Index of refraction'", "'Off'"}) {
+      EXPECT_NE(outcome.err.find(known), std::string::npos) << known << " is not named:\n" << outcome.err;
+    }
+    EXPECT_EQ(outcome.err.find("\n\n"), std::string::npos) << "an empty line:\n" << outcome.err;
+  }
+  const Outcome without = place.run({"graph", coat});
+  EXPECT_EQ(without.status, 1);
+  EXPECT_NE(without.err.find("--material"), std::string::npos) << without.err;
+}
+
+TEST(Usage, graphOfOneMaterialNeedsNoName) {
+  const Workplace place;
+  place.write("one.gltf", gltfOf({R"({"name": "Only"})"}));
+  place.write("none.gltf", gltfOf({}));
+  place.write("twice.gltf", gltfOf({R"({"name": "a"})", R"({"name": "a", "doubleSided": true})"}));
+  EXPECT_EQ(place.run({"graph", "one.gltf"}).status, 0);
+  EXPECT_EQ(place.run({"dump", "one.gltf"}).status, 0);
+  const Outcome none = place.run({"graph", "none.gltf"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("no materials"), std::string::npos) << none.err;
+  const Outcome twice = place.run({"graph", "twice.gltf", "--material", "a"});
+  EXPECT_EQ(twice.status, 0) << twice.all();
+  EXPECT_NE(twice.err.find("2 materials are named 'a'"), std::string::npos) << twice.err;
+}
+
+TEST(Usage, graphRoundTrip) {
+  const Workplace place;
+  const std::string paint = example("car_paint.gltf");
+  const Outcome json = place.run({"graph", paint, "--material", "Car paint"});
+  EXPECT_EQ(json.status, 0) << json.all();
+  EXPECT_EQ(json.err, "");
+  place.write("paint.json", json.out);
+  const Outcome first = place.run({"gen", "--graph", "paint.json", "-o", "a"});
+  const Outcome second = place.run({"gen", paint, "--material", "Car paint", "-o", "b"});
+  EXPECT_EQ(first.status, 0) << first.all();
+  EXPECT_EQ(second.status, 0) << second.all();
+  EXPECT_EQ(place.manifest("a")["shaders"], place.manifest("b")["shaders"]);
+  EXPECT_EQ(place.manifest("a")["files"][0]["source"], "paint.json");
+  EXPECT_EQ(place.manifest("a")["files"][0]["materials"][0]["name"], "Car paint");
+  const Outcome dot = place.run({"graph", paint, "--material", "Car paint", "--format", "dot"});
+  EXPECT_EQ(dot.status, 0);
+  EXPECT_TRUE(dot.out.starts_with("digraph")) << dot.out;
+}
+
+TEST(Usage, dumpAfterEachPass) {
+  const Workplace place;
+  std::vector<std::string> passes = passNames();
+  passes.insert(passes.begin(), "lower");
+  ASSERT_GE(passes.size(), 4u);
+  const Words base = {"dump", example("car_paint.gltf"), "--material", "Car paint"};
+  const Outcome last = place.run(base);
+  EXPECT_EQ(last.status, 0) << last.all();
+  for (const std::string& pass : passes) {
+    Words words = base;
+    words.insert(words.end(), {"--after", pass});
+    const Outcome outcome = place.run(words);
+    EXPECT_EQ(outcome.status, 0) << pass << outcome.all();
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_NE(outcome.out.find("fragment"), std::string::npos) << pass << ": no rates in\n" << outcome.out;
+    if (pass == "lower") {
+      EXPECT_NE(outcome.out, last.out);
+    }
+    if (pass == passes.back()) {
+      EXPECT_EQ(outcome.out, last.out);
+    }
+  }
+}
+
+TEST(Usage, nodes) {
+  const Workplace place;
+  const Outcome list = place.run({"nodes"});
+  EXPECT_EQ(list.status, 0) << list.all();
+  EXPECT_NE(list.out.find("coat_absorption"), std::string::npos);
+  const Outcome all = place.run({"nodes", "--json"});
+  EXPECT_EQ(all.status, 0);
+  const auto json = nlohmann::json::parse(all.out, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << all.out;
+  ASSERT_GT(json["nodes"].size(), 20u);
+  for (const auto& node : json["nodes"]) {
+    SCOPED_TRACE(node["name"].get<std::string>());
+    const std::string line = "\n" + node["name"].get<std::string>() + " ";
+    EXPECT_NE(("\n" + list.out).find(line), std::string::npos) << "not listed";
+    EXPECT_FALSE(node["source"].get<std::string>().empty());
+    EXPECT_FALSE(node["doc"].get<std::string>().empty());
+    EXPECT_FALSE(node["outputs"].empty());
+    EXPECT_TRUE(node["inputs"].is_array());
+    EXPECT_TRUE(node["variants"].is_array());
+    for (const auto& input : node["inputs"]) EXPECT_TRUE(input.contains("name") && input.contains("type"));
+  }
+  const Outcome one = place.run({"nodes", "coat_absorption", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(one.out, nullptr, false)["name"], "coat_absorption");
+  const Outcome text = place.run({"nodes", "coat_absorption"});
+  EXPECT_EQ(text.status, 0);
+  EXPECT_NE(text.out.find("source: KHR_materials_coat"), std::string::npos) << text.out;
+  const Outcome none = place.run({"nodes", "coat_absorbtion"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("coat_absorbtion"), std::string::npos);
+}
+
+/// A misspelt name must not mean that nothing was asked for.
+TEST(Usage, misspeltTemplatesAndTermsAreErrors) {
+  const Workplace place;
+  const std::string coat = example("coat.gltf");
+  const Outcome no_template = place.run({"gen", coat, "-o", "out", "--template", "foward"});
+  EXPECT_NE(no_template.status, 0);
+  EXPECT_NE(no_template.err.find("foward"), std::string::npos) << no_template.err;
+  const Outcome no_term = place.run({"gen", coat, "-o", "out", "--live", "coat.darkning"});
+  EXPECT_NE(no_term.status, 0) << no_term.all();
+  EXPECT_NE(no_term.err.find("coat.darkning"), std::string::npos) << no_term.err;
+  const Outcome no_folder = place.run({"gen", coat, "-o", "out", "--nodes", "nowhere"});
+  EXPECT_EQ(no_folder.status, 1);
+  EXPECT_NE(no_folder.err.find("nowhere"), std::string::npos) << no_folder.err;
+}
+
+}  // namespace
+}  // namespace lacquer::test
