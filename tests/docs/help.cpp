@@ -1,0 +1,131 @@
+// What the program says of its own options.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "docs/page.h"
+#include "docs/tables.h"
+
+namespace lacquer::test {
+
+namespace {
+
+struct Row {
+  std::string flags, argument, meaning;
+  bool operator==(const Row&) const = default;
+};
+
+std::string helpOf(const std::string& verb) {
+  static std::map<std::string, std::string> kept;
+  const auto [it, fresh] = kept.emplace(verb, "");
+  if (!fresh) return it->second;
+#ifdef _WIN32
+  FILE* pipe = _popen(fmt::format("\"\"{}\" {} --help\"", LACQUER_PROGRAM, verb).c_str(), "r");
+#else
+  FILE* pipe = popen(fmt::format("'{}' {} --help", LACQUER_PROGRAM, verb).c_str(), "r");
+#endif
+  if (pipe == nullptr) return {};
+  char buffer[4096];
+  for (size_t n = 0; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) it->second.append(buffer, n);
+#ifdef _WIN32
+  const int status = _pclose(pipe);
+#else
+  const int status = pclose(pipe);
+#endif
+  EXPECT_EQ(status, 0) << verb << " --help";
+  return it->second;
+}
+
+/// "--target TEXT ..." is its flags and its argument.
+Row rowOf(const std::string& left) {
+  const std::string bare = left.substr(left.find_first_not_of(' '));
+  const size_t blank = std::min(bare.find(' '), bare.size());
+  Row row{bare.substr(0, blank), bare.substr(std::min(blank + 1, bare.size())), {}};
+  row.argument = row.argument.substr(0, row.argument.find(" Excludes:"));
+  const size_t comma = row.flags.find(',');
+  if (comma != std::string::npos)
+    row.flags = row.flags.substr(0, comma) + "`, `" + row.flags.substr(comma + 1);
+  return row;
+}
+
+bool isEverywhere(const Row& row) {
+  return row.flags.find("--help") != std::string::npos || row.flags == "--version";
+}
+
+/// The rows below "Positionals:" and "Options:": flags to the left, the meaning from column 30 on or on the
+/// next line.
+std::vector<Row> rowsOf(const std::string& verb) {
+  constexpr size_t kColumn = 30;
+  std::vector<Row> rows;
+  bool inside = false;
+  for (const std::string& line : split(helpOf(verb), "\n")) {
+    if (line.empty() || line[0] != ' ') {
+      inside = line == "Positionals:" || line == "Options:";
+      continue;
+    }
+    if (!inside) continue;
+    const size_t first = line.find_first_not_of(' ');
+    if (first >= kColumn && !rows.empty()) {
+      rows.back().meaning = line.substr(first);
+      continue;
+    }
+    const size_t gap = line.find("  ", first);
+    rows.push_back(rowOf(line.substr(0, gap)));
+    if (gap != std::string::npos) rows.back().meaning = line.substr(line.find_first_not_of(' ', gap));
+  }
+  rows.erase(std::remove_if(rows.begin(), rows.end(), isEverywhere), rows.end());
+  return rows;
+}
+
+std::vector<Row> common(const std::vector<Row>& a, const std::vector<Row>& b) {
+  std::vector<Row> both;
+  std::copy_if(a.begin(), a.end(), std::back_inserter(both),
+               [&](const Row& row) { return std::find(b.begin(), b.end(), row) != b.end(); });
+  return both;
+}
+
+std::vector<Row> without(const std::vector<Row>& a, const std::vector<Row>& b) {
+  std::vector<Row> rest;
+  std::copy_if(a.begin(), a.end(), std::back_inserter(rest),
+               [&](const Row& row) { return std::find(b.begin(), b.end(), row) == b.end(); });
+  return rest;
+}
+
+}  // namespace
+
+std::string optionsTable(std::string_view of) {
+  const std::vector<Row> shared = common(common(rowsOf("gen"), rowsOf("graph")), rowsOf("dump"));
+  const std::vector<Row> generation = without(common(rowsOf("gen"), rowsOf("plan")), shared);
+  std::vector<Row> rows;
+  if (of == "shared")
+    rows = shared;
+  else if (of == "generation")
+    rows = generation;
+  else
+    rows = without(without(rowsOf(std::string(of)), shared), generation);
+  std::string out = "| option | argument | meaning |\n|---|---|---|\n";
+  for (const Row& row : rows) {
+    out += fmt::format("| `{}` | {} | {} |\n", row.flags, row.argument, row.meaning);
+  }
+  if (rows.empty()) ADD_FAILURE() << of << " has no options of its own";
+  return out;
+}
+
+std::string verbsTable() {
+  std::string out = "| verb | what it gives |\n|---|---|\n";
+  bool inside = false;
+  for (const std::string& line : split(helpOf(""), "\n")) {
+    if (inside && line.starts_with("  ")) {
+      const Row row = rowOf(line);
+      out += fmt::format("| [`{0}`](#{0}) | {1} |\n", row.flags,
+                         row.argument.substr(row.argument.find_first_not_of(' ')));
+    }
+    inside |= line == "Subcommands:";
+  }
+  return out;
+}
+
+}  // namespace lacquer::test

@@ -1,0 +1,154 @@
+// Node graphs through their JSON form and through the public editing functions.
+#include <gtest/gtest.h>
+
+#include "compare.h"
+#include "output.h"
+#include "support/cases.h"
+
+namespace lacquer::test {
+namespace {
+
+class Graphs : public testing::TestWithParam<const char*> {
+protected:
+  Graphs() {
+    options_.template_name = GetParam();
+    options_.validate = false;
+  }
+
+  void forEach(const std::function<void(Graph&)>& body) {
+    const WorkingFolder here(sourceFolder());
+    size_t count = 0;
+    for (const std::string& file : exampleFiles()) {
+      Messages messages;
+      const Scene scene = Scene::load(file, options_, messages);
+      ASSERT_TRUE(scene) << textOf(messages);
+      for (size_t i = 0; i < scene.materialCount(); ++i) {
+        for (const Attributes& attributes : scene.uses(i)) {
+          SCOPED_TRACE(file + ": " + scene.materialName(i));
+          Graph graph = scene.graph(i, attributes, options_, messages);
+          ASSERT_TRUE(graph) << textOf(messages);
+          body(graph);
+          ++count;
+        }
+      }
+    }
+    EXPECT_GT(count, 20u);
+  }
+
+  Shader made(Graph& graph) const {
+    Messages messages;
+    Shader shader = graph.generate(options_, messages);
+    EXPECT_TRUE(shader) << textOf(messages);
+    EXPECT_FALSE(hasError(messages)) << textOf(messages);
+    return shader;
+  }
+
+  Options options_;
+};
+
+TEST_P(Graphs, jsonReadsBackAsTheSameShader) {
+  forEach([&](Graph& graph) {
+    const Shader before = made(graph);
+    const std::string json = graph.toJson();
+    Messages messages;
+    Graph again = Graph::fromJson(json, "graph.json", messages);
+    ASSERT_TRUE(again) << textOf(messages);
+    EXPECT_EQ(diffLines(json, again.toJson()), "");
+    const Shader after = made(again);
+    EXPECT_EQ(before.id(), after.id());
+    EXPECT_EQ(codeOf(before), codeOf(after));
+    EXPECT_FALSE(graph.toDot().empty());
+  });
+}
+
+/// A file of the JSON form gives the files that the glTF file gives.
+TEST_P(Graphs, generateGraphsWritesTheSameShaders) {
+  const Folder folder;
+  std::vector<std::string> files;
+  forEach([&](Graph& graph) {
+    files.push_back(folder / (std::to_string(files.size()) + ".json"));
+    writeText(files.back(), graph.toJson());
+  });
+  const WorkingFolder here(sourceFolder());
+  const Json direct = generateWell(exampleFiles(), folder.path() / "direct", options_);
+  Messages messages;
+  const Report report = generateGraphs(files, folder / "graphs", options_, messages);
+  EXPECT_TRUE(report.ok) << textOf(messages);
+  const Json through = manifestOf(folder.path() / "graphs");
+  EXPECT_EQ(direct["shaders"], through["shaders"]);
+  std::filesystem::remove(folder / "direct/manifest.json");
+  std::filesystem::remove(folder / "graphs/manifest.json");
+  EXPECT_EQ(outputDifferences(folder.path() / "direct", folder.path() / "graphs"), "");
+}
+
+/// What an authoring tool does: a node, a parameter, a port.
+TEST_P(Graphs, editsReachTheShader) {
+  options_.validate = true;
+  forEach([&](Graph& graph) {
+    const Shader before = made(graph);
+    ASSERT_TRUE(graph.addNode("my.glow", "occluded"));
+    EXPECT_FALSE(graph.addNode("my.glow", "occluded"));
+    EXPECT_TRUE(graph.setParameter("my_light", {0.25, 0.5, 1}));
+    EXPECT_TRUE(graph.setParameter("my_amount", {0.5}));
+    EXPECT_FALSE(graph.setParameter("my_amount", {0.5, 1}));
+    EXPECT_TRUE(graph.connect("my.glow", "light", R"({"parameter": "my_light"})"));
+    EXPECT_TRUE(graph.connect("my.glow", "visible", R"({"parameter": "my_amount"})"));
+    EXPECT_FALSE(graph.connect("nobody", "visible", "1"));
+    EXPECT_FALSE(graph.connect("my.glow", "visible", R"({"nothing": 1})"));
+    EXPECT_FALSE(graph.setOutput("emission", R"({"node": )"));
+    EXPECT_TRUE(graph.setOutput("emission", R"({"node": "my.glow"})"));
+    const Shader after = made(graph);
+    EXPECT_NE(before.id(), after.id());
+    EXPECT_NE(after.fragmentText(Target::Glsl), before.fragmentText(Target::Glsl));
+    // Another number is another uniform, not another shader.
+    EXPECT_TRUE(graph.setParameter("my_amount", {0.125}));
+    EXPECT_EQ(made(graph).id(), after.id());
+    // The edit survives the JSON form.
+    Messages messages;
+    Graph again = Graph::fromJson(graph.toJson(), "graph.json", messages);
+    EXPECT_EQ(codeOf(made(again)), codeOf(after));
+    // Taken back, all is as before.
+    EXPECT_TRUE(graph.removeNode("my.glow"));
+    EXPECT_FALSE(graph.removeNode("my.glow"));
+    EXPECT_FALSE(graph.check(messages));
+    EXPECT_NE(textOf(messages).find("my.glow"), std::string::npos) << textOf(messages);
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Templates, Graphs, testing::Values("forward", "surface", "bsdf"),
+                         [](const auto& info) { return info.param; });
+
+/// A graph with an error gives messages and no shader, whatever is called.
+TEST(BrokenGraphs, giveMessagesAndNoShader) {
+  const char* kWrong[] = {
+      "",
+      "[]",
+      "{}",
+      "nonsense",
+      R"({"lacquer_graph": 1})",
+      R"({"lacquer_graph": 1, "template": "forward"})",
+      R"({"lacquer_graph": 1, "template": "nowhere", "outputs": {}})",
+      R"({"lacquer_graph": 1, "template": "forward", "outputs": {"nowhere": 1}})",
+      R"({"lacquer_graph": 1, "template": "forward", "outputs": {"emission": {"node": "a"}}})",
+      R"({"lacquer_graph": 1, "template": "forward", "nodes": [{"id": "a", "node": "b", "inputs": {}}], "outputs": {}})",
+      R"({"lacquer_graph": 1, "template": "surface", "outputs": {}})",
+  };
+  for (const char* text : kWrong) {
+    SCOPED_TRACE(text);
+    Messages messages;
+    Graph graph = Graph::fromJson(text, "graph.json", messages);
+    if (graph) {
+      EXPECT_FALSE(graph.generate({}, messages));
+      EXPECT_EQ(graph.dump({}, "", messages), "");
+    }
+    ASSERT_TRUE(hasError(messages));
+    for (const Message& message : messages) {
+      EXPECT_FALSE(message.code.empty());
+      EXPECT_FALSE(message.message.empty());
+      EXPECT_EQ(message.file, "graph.json") << message.text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lacquer::test

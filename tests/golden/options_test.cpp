@@ -1,0 +1,158 @@
+// Every option with every example: all of it compiles and validates.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "output.h"
+#include "support/cases.h"
+
+namespace lacquer::test {
+namespace {
+
+struct Setting {
+  const char* name;
+  void (*set)(Options&);
+};
+
+void keepAll(Options& o) { o.live = liveTerms(); }
+
+const Setting kSettings[] = {
+    {"usual", [](Options&) {}},
+    {"baked", [](Options& o) { o.parameters = Parameters::Baked; }},
+    {"sceneLights", [](Options& o) { o.lights.mode = Lights::Mode::Scene; }},
+    {"noLights",
+     [](Options& o) {
+       o.lights = {Lights::Mode::Fixed, 0, 0, 0};
+     }},
+    {"oneDirectional",
+     [](Options& o) {
+       o.lights = {Lights::Mode::Fixed, 1, 0, 0};
+     }},
+    {"onePoint",
+     [](Options& o) {
+       o.lights = {Lights::Mode::Fixed, 0, 1, 0};
+     }},
+    {"oneSpot",
+     [](Options& o) {
+       o.lights = {Lights::Mode::Fixed, 0, 0, 1};
+     }},
+    {"sixteenLights",
+     [](Options& o) {
+       o.lights = {Lights::Mode::Fixed, 4, 8, 4};
+     }},
+    {"noIbl", [](Options& o) { o.ibl = false; }},
+    {"noMultipleScattering", [](Options& o) { o.multiple_scattering = false; }},
+    {"decodeSrgb", [](Options& o) { o.decode_srgb = true; }},
+    {"live", keepAll},
+    {"specializationConstants",
+     [](Options& o) {
+       o.parameters = Parameters::Spec;
+       o.targets = {Target::Glsl, Target::Spirv};
+     }},
+    {"spirvThroughGlslang", [](Options& o) { o.spirv_route = SpirvRoute::Glslang; }},
+    {"unused", [](Options& o) { o.unused = true; }},
+    {"permissive", [](Options& o) { o.permissive = true; }},
+    {"bakedNoIblFixedLightsSrgbLive",
+     [](Options& o) {
+       o.parameters = Parameters::Baked;
+       o.ibl = false;
+       o.lights = {Lights::Mode::Fixed, 1, 1, 1};
+       o.decode_srgb = true;
+       keepAll(o);
+     }},
+    {"nothingIsLit",
+     [](Options& o) {
+       o.ibl = false;
+       o.lights = {Lights::Mode::Fixed, 0, 0, 0};
+     }},
+    {"surface", [](Options& o) { o.template_name = "surface"; }},
+    {"surfaceBakedSrgb",
+     [](Options& o) {
+       o.template_name = "surface";
+       o.parameters = Parameters::Baked;
+       o.decode_srgb = true;
+     }},
+    {"surfaceLive",
+     [](Options& o) {
+       o.template_name = "surface";
+       keepAll(o);
+     }},
+    {"bsdf", [](Options& o) { o.template_name = "bsdf"; }},
+    {"bsdfBakedSrgb",
+     [](Options& o) {
+       o.template_name = "bsdf";
+       o.parameters = Parameters::Baked;
+       o.decode_srgb = true;
+     }},
+    {"bsdfLive",
+     [](Options& o) {
+       o.template_name = "bsdf";
+       keepAll(o);
+     }},
+};
+
+class EveryOption : public testing::TestWithParam<Setting> {};
+
+TEST_P(EveryOption, validatesInAllExamples) {
+  const WorkingFolder here(sourceFolder());
+  const Folder folder;
+  Options options;
+  GetParam().set(options);
+  const Json manifest = generateWell(exampleFiles(), folder.path(), options);
+  EXPECT_FALSE(manifest["shaders"].empty());
+  const bool mesh = options.template_name != "bsdf";
+  for (const auto& [id, shader] : manifest["shaders"].items()) {
+    EXPECT_TRUE(id.starts_with(options.template_name + "-")) << id;
+    EXPECT_EQ(shader["template"], options.template_name);
+    EXPECT_EQ(shader["files"].size(), options.targets.size()) << id;
+    for (const auto& [target, files] : shader["files"].items()) {
+      EXPECT_EQ(shader["validated"][target], true) << id << " " << target;
+      EXPECT_EQ(files.size(), mesh ? 2u : 1u) << id << " " << target;
+    }
+    if (options.parameters != Parameters::Uniform) {
+      for (const Json& block : shader["uniforms"]) EXPECT_NE(block["role"], "material") << id;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, EveryOption, testing::ValuesIn(kSettings),
+                         [](const auto& info) { return info.param.name; });
+
+/// Live terms are in the shader of a material that does not need them today.
+TEST(LiveTerms, coatThatIsOffIsInTheShader) {
+  const WorkingFolder here(sourceFolder());
+  const Folder folder;
+  Options options;
+  options.validate = false;
+  options.live = {"coat"};
+  const Json manifest = generateWell({"examples/clearcoat.gltf"}, folder.path(), options);
+  size_t found = 0;
+  for (const Json& material : manifest["files"][0]["materials"]) {
+    if (material["name"] != "No coat") continue;
+    ++found;
+    EXPECT_TRUE(material["uses"][0]["shader"].get<std::string>().starts_with("forward-coat-"));
+    EXPECT_FALSE(material["skipped"].contains("coat"));
+  }
+  EXPECT_EQ(found, 1u);
+}
+
+TEST(LightOptions, sceneLightsAreThoseOfTheFile) {
+  const Folder folder;
+  const std::string file = folder / "lights.gltf";
+  writeText(file, R"({"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+"extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional"}, {"type": "spot", "spot": {}}]}},
+"nodes": [{"extensions": {"KHR_lights_punctual": {"light": 0}}}, {"extensions": {"KHR_lights_punctual": {"light": 1}}}],
+"materials": [{"name": "m"}]})");
+  Options scene;
+  scene.lights.mode = Lights::Mode::Scene;
+  Options fixed;
+  fixed.lights = {Lights::Mode::Fixed, 1, 0, 1};
+  const Json one = generateWell({file}, folder.path() / "scene", scene);
+  const Json other = generateWell({file}, folder.path() / "fixed", fixed);
+  EXPECT_EQ(one["shaders"], other["shaders"]);
+  const Json any = generateWell({file}, folder.path() / "any", {});
+  EXPECT_NE(one["shaders"].begin().key(), any["shaders"].begin().key());
+}
+
+}  // namespace
+}  // namespace lacquer::test
