@@ -45,9 +45,32 @@ struct Spot {
 /// Where a value goes: an input of a node or a port of the template.
 struct Sink {
   Spot spot;
-  std::string pointer;
-  std::string name;  ///< as a message calls it: "'ior' of the node 'coat.f0'"
+  std::string_view name;  ///< of the input or the port
   const lang::Param* contract = nullptr;
+};
+
+/// The names that a list has had. Most lists are short: those are searched, and nothing is allocated for them.
+class Connected {
+public:
+  /// False when it was there already.
+  bool insert(std::string_view name) {
+    if (names_.size() >= kShort) {
+      if (many_.empty()) many_.insert(names_.begin(), names_.end());
+      return many_.insert(name).second;
+    }
+    if (contains(name)) return false;
+    names_.push_back(name);
+    return true;
+  }
+  bool contains(std::string_view name) const {
+    if (!many_.empty()) return many_.contains(name);
+    return std::find(names_.begin(), names_.end(), name) != names_.end();
+  }
+
+private:
+  static constexpr size_t kShort = 32;
+  std::vector<std::string_view> names_;
+  std::unordered_set<std::string_view> many_;
 };
 
 class GraphCheck {
@@ -70,6 +93,10 @@ private:
 
   void error(const Spot& spot, std::string pointer, std::string_view code, std::string message,
              std::string help = {});
+  void error(const Sink& sink, std::string_view code, std::string message, std::string help = {});
+  std::string pointerOf(const Sink& sink) const;
+  /// As a message calls it: "'ior' of the node 'coat.f0'".
+  std::string textOf(const Sink& sink) const;
   void forward(const Spot& spot, const Diagnostics& diagnostics);
   /// "did you mean 'x'?" or `otherwise`; `candidates()` gives the names that exist.
   template <class Candidates>
@@ -124,6 +151,10 @@ void GraphCheck::error(const Spot& spot, std::string pointer, std::string_view c
                      {}}});
 }
 
+void GraphCheck::error(const Sink& sink, std::string_view code, std::string message, std::string help) {
+  error(sink.spot, pointerOf(sink), code, std::move(message), std::move(help));
+}
+
 /// What is wrong within the library, at its place there.
 void GraphCheck::forward(const Spot& spot, const Diagnostics& diagnostics) {
   for (const Diagnostic& one : diagnostics) found_.push_back({spot, one});
@@ -160,6 +191,16 @@ std::string nodePointer(size_t index, std::string_view member) {
 
 std::string inputPointer(size_t index, std::string_view input) {
   return nodePointer(index, {}) + pointerTo("inputs", input);
+}
+
+std::string GraphCheck::pointerOf(const Sink& sink) const {
+  return sink.spot.section == Section::Nodes ? inputPointer(sink.spot.item, sink.name)
+                                             : pointerTo("outputs", sink.name);
+}
+
+std::string GraphCheck::textOf(const Sink& sink) const {
+  if (sink.spot.section != Section::Nodes) return fmt::format("the port {}", quote(sink.name));
+  return fmt::format("{} of the node {}", quote(sink.name), quote(graph_.nodes[sink.spot.item].id));
 }
 
 std::string rangeText(const ir::Interval& range) { return fmt::format("[{}, {}]", range.lo, range.hi); }
@@ -212,30 +253,32 @@ void GraphCheck::templateDecl() {
 void GraphCheck::parameter(size_t index) {
   const ir::Parameter& p = graph_.parameters[index];
   const Spot spot{Section::Parameters, index, 0};
-  const std::string at = pointerTo("parameters", p.name);
+  const auto at = [&p](std::string_view member = {}) {
+    return pointerTo("parameters", p.name) + std::string(member);
+  };
   if (!isName(p.name)) {
-    error(spot, at, "wrong-name", fmt::format("{} cannot be the name of a parameter", quote(p.name)),
+    error(spot, at(), "wrong-name", fmt::format("{} cannot be the name of a parameter", quote(p.name)),
           "a name has letters, digits and underscores, and begins with no digit");
   }
   if (!parameters_.emplace(p.name, index).second) {
-    error(spot, at, "duplicate-name", fmt::format("there are two parameters {}", quote(p.name)));
+    error(spot, at(), "duplicate-name", fmt::format("there are two parameters {}", quote(p.name)));
   }
   if (p.type != Type::Bool && !ir::isFloating(p.type)) {
-    return error(spot, at + "/type", "wrong-type", fmt::format("a parameter cannot be {}", article(p.type)),
+    return error(spot, at("/type"), "wrong-type", fmt::format("a parameter cannot be {}", article(p.type)),
                  "it is a float, vec2, vec3, vec4 or bool");
   }
   if (!(p.range.lo <= p.range.hi)) {
-    return error(spot, at + "/range", "wrong-range", fmt::format("{} is no range", rangeText(p.range)),
+    return error(spot, at("/range"), "wrong-range", fmt::format("{} is no range", rangeText(p.range)),
                  "write the lowest value, then the highest");
   }
   for (int i = 0; i < ir::componentCount(p.type); ++i) {
     const double x = p.value[static_cast<size_t>(i)];
     if (!std::isfinite(x)) {
-      return error(spot, at + "/value", "not-finite", fmt::format("the value of {} is {}", quote(p.name), x));
+      return error(spot, at("/value"), "not-finite", fmt::format("the value of {} is {}", quote(p.name), x));
     }
     if (!contains(p.range, x)) {
       return error(
-          spot, at + "/value", "out-of-range",
+          spot, at("/value"), "out-of-range",
           fmt::format("the value {} of {} is not in its range {}", x, quote(p.name), rangeText(p.range)));
     }
   }
@@ -249,30 +292,32 @@ void GraphCheck::textures() {
   for (size_t i = 0; i < graph_.textures.size(); ++i) {
     const ir::TextureSlot& t = graph_.textures[i];
     const Spot spot{Section::Textures, i, 0};
-    const std::string at = pointerTo("textures", t.name);
+    const auto at = [&t](std::string_view member = {}) {
+      return pointerTo("textures", t.name) + std::string(member);
+    };
     if (!isName(t.name)) {
-      error(spot, at, "wrong-name", fmt::format("{} cannot be the name of a texture", quote(t.name)),
+      error(spot, at(), "wrong-name", fmt::format("{} cannot be the name of a texture", quote(t.name)),
             "a name has letters, digits and underscores, and begins with no digit");
     }
     if (environments_.contains(t.name)) {
-      error(spot, at, "duplicate-name",
+      error(spot, at(), "duplicate-name",
             fmt::format("{} is a texture that the template {} gives", quote(t.name),
                         quote(graph_.template_name)),
             "give the material's texture another name");
     }
     if (!textures_.emplace(t.name, i).second) {
-      error(spot, at, "duplicate-name", fmt::format("there are two textures {}", quote(t.name)));
+      error(spot, at(), "duplicate-name", fmt::format("there are two textures {}", quote(t.name)));
     }
     if (!ir::isTexture(t.type)) {
-      error(spot, at + "/type", "wrong-type", fmt::format("a texture cannot be {}", article(t.type)),
+      error(spot, at("/type"), "wrong-type", fmt::format("a texture cannot be {}", article(t.type)),
             "it is a sampler2D or a samplerCube");
     }
     if (t.texture < -1) {
-      error(spot, at + "/texture", "out-of-range", fmt::format("there is no texture {}", t.texture),
+      error(spot, at("/texture"), "out-of-range", fmt::format("there is no texture {}", t.texture),
             "it is the index of a glTF texture, or -1 for none");
     }
     if (t.environment) {
-      error(spot, at, "wrong-texture",
+      error(spot, at(), "wrong-texture",
             fmt::format("{} is marked as a texture of the environment", quote(t.name)),
             "those are the template's: a source names them without an entry here");
     }
@@ -330,30 +375,30 @@ void GraphCheck::nodeHeads() {
 void GraphCheck::nodeInputs(size_t index) {
   const Node& node = graph_.nodes[index];
   const lang::NodeDecl* decl = decls_[index];
-  std::unordered_set<std::string_view> connected;
-  Names params;
-  if (decl != nullptr) {
-    for (const lang::Param& param : decl->params) params.push_back(param.name);
-  }
+  const auto params = [&] {
+    Names names;
+    for (const lang::Param& param : decl->params) names.push_back(param.name);
+    return names;
+  };
+  Connected connected;
   for (size_t i = 0; i < node.inputs.size(); ++i) {
     const auto& [name, source] = node.inputs[i];
-    Sink sink{{Section::Nodes, index, i + 1},
-              inputPointer(index, name),
-              fmt::format("{} of the node {}", quote(name), quote(node.id)),
-              nullptr};
-    if (!connected.insert(name).second) {
-      error(sink.spot, sink.pointer, "duplicate-name", sink.name + " is connected twice",
-            "remove one of the two");
+    Sink sink{{Section::Nodes, index, i + 1}, name, nullptr};
+    if (!connected.insert(name)) {
+      error(sink, "duplicate-name", textOf(sink) + " is connected twice", "remove one of the two");
       continue;
     }
-    const auto param = std::find(params.begin(), params.end(), std::string_view(name));
-    if (param != params.end()) {
-      sink.contract = &decl->params[static_cast<size_t>(param - params.begin())];
-    } else if (decl != nullptr) {
-      error(sink.spot, sink.pointer, "unknown-input",
-            fmt::format("the node {} has no input {}", quote(node.type), quote(name)),
-            suggest(
-                name, [&] { return params; }, params.empty() ? "it has none" : "it has " + listOf(params)));
+    if (decl != nullptr) {
+      const auto param = std::find_if(decl->params.begin(), decl->params.end(),
+                                      [&](const lang::Param& p) { return p.name == name; });
+      if (param != decl->params.end()) {
+        sink.contract = &*param;
+      } else {
+        const Names names = params();
+        error(sink, "unknown-input",
+              fmt::format("the node {} has no input {}", quote(node.type), quote(name)),
+              suggest(name, params, names.empty() ? "it has none" : "it has " + listOf(names)));
+      }
     }
     value(source, sink);
   }
@@ -371,19 +416,16 @@ void GraphCheck::nodeInputs(size_t index) {
 }
 
 void GraphCheck::outputs() {
-  std::unordered_set<std::string_view> connected;
+  Connected connected;
   Names ports;
   if (template_ != nullptr) {
     for (const lang::PortDecl& port : template_->ports) ports.push_back(port.param.name);
   }
   for (size_t i = 0; i < graph_.outputs.size(); ++i) {
     const auto& [name, source] = graph_.outputs[i];
-    Sink sink{{Section::Outputs, i, 0},
-              pointerTo("outputs", name),
-              fmt::format("the port {}", quote(name)),
-              nullptr};
-    if (!connected.insert(name).second) {
-      error(sink.spot, sink.pointer, "duplicate-name", sink.name + " is connected twice",
+    Sink sink{{Section::Outputs, i, 0}, name, nullptr};
+    if (!connected.insert(name)) {
+      error(sink, "duplicate-name", textOf(sink) + " is connected twice",
             "remove one of the two");
       continue;
     }
@@ -391,7 +433,7 @@ void GraphCheck::outputs() {
     if (port != ports.end()) {
       sink.contract = &template_->ports[static_cast<size_t>(port - ports.begin())].param;
     } else if (template_ != nullptr) {
-      error(sink.spot, sink.pointer, "unknown-port",
+      error(sink, "unknown-port",
             fmt::format("the template {} has no port {}", quote(graph_.template_name), quote(name)),
             suggest(
                 name, [&] { return ports; }, ports.empty() ? "it has none" : "it has " + listOf(ports)));
@@ -413,8 +455,8 @@ void GraphCheck::value(const Source& source, const Sink& sink) {
   const std::optional<Type> type = typeOf(source, sink);
   if (!type || sink.contract == nullptr) return;
   if (*type == sink.contract->type) return range(source, sink);
-  error(sink.spot, sink.pointer, "wrong-type",
-        fmt::format("{} is {}, its source is {}", sink.name, article(sink.contract->type), article(*type)),
+  error(sink, "wrong-type",
+        fmt::format("{} is {}, its source is {}", textOf(sink), article(sink.contract->type), article(*type)),
         conversion(source, *type, sink.contract->type));
 }
 
@@ -439,12 +481,11 @@ std::string GraphCheck::conversion(const Source& source, Type from, Type to) con
 void GraphCheck::range(const Source& source, const Sink& sink) {
   if (!sink.contract->has_range || !ir::isFloating(sink.contract->type)) return;
   const ir::Components* value = nullptr;
-  std::string what = "the value";
+  const auto* ref = std::get_if<ParameterRef>(&source.from);
   if (const auto* literal = std::get_if<Literal>(&source.from)) {
     value = &literal->value;
-  } else if (const auto* ref = std::get_if<ParameterRef>(&source.from)) {
+  } else if (ref != nullptr) {
     value = &graph_.parameters[parameters_.at(ref->name)].value;
-    what = fmt::format("the parameter {} has the value", quote(ref->name));
   }
   if (value == nullptr) return;
   std::string picked = swizzleComponents(source.swizzle);
@@ -454,10 +495,11 @@ void GraphCheck::range(const Source& source, const Sink& sink) {
   for (const char component : picked) {
     const double x = (*value)[static_cast<size_t>(component)];
     if (contains(sink.contract->range, x)) continue;
-    const bool parameter = std::holds_alternative<ParameterRef>(source.from);
+    const std::string what =
+        ref != nullptr ? fmt::format("the parameter {} has the value", quote(ref->name)) : "the value";
     return error(
-        sink.spot, sink.pointer, "out-of-range",
-        fmt::format("{} {}{} not in the range of {}", what, x, parameter ? ", which is" : " is", sink.name),
+        sink, "out-of-range",
+        fmt::format("{} {}{} not in the range of {}", what, x, ref != nullptr ? ", which is" : " is", textOf(sink)),
         fmt::format("the range is {}", rangeText(sink.contract->range)));
   }
 }
@@ -470,15 +512,15 @@ std::optional<Type> GraphCheck::typeOf(const Source& source, const Sink& sink) {
 
 std::optional<Type> GraphCheck::typeOf(const Literal& literal, const Sink& sink) {
   if (literal.type != Type::Bool && !ir::isFloating(literal.type)) {
-    error(sink.spot, sink.pointer, "wrong-type",
-          fmt::format("the value written for {} is {}", sink.name, article(literal.type)),
+    error(sink, "wrong-type",
+          fmt::format("the value written for {} is {}", textOf(sink), article(literal.type)),
           "floats, vectors and bools can be written into a graph");
     return std::nullopt;
   }
   for (int i = 0; i < ir::componentCount(literal.type); ++i) {
     const double x = literal.value[static_cast<size_t>(i)];
     if (std::isfinite(x)) continue;
-    error(sink.spot, sink.pointer, "not-finite", fmt::format("the value written for {} is {}", sink.name, x));
+    error(sink, "not-finite", fmt::format("the value written for {} is {}", textOf(sink), x));
     return std::nullopt;
   }
   return literal.type;
@@ -491,7 +533,7 @@ std::optional<Type> GraphCheck::typeOf(const ParameterRef& ref, const Sink& sink
     if (type != Type::Bool && !ir::isFloating(type)) return std::nullopt;  // reported at the parameter
     return type;
   }
-  error(sink.spot, sink.pointer, "unknown-parameter",
+  error(sink, "unknown-parameter",
         fmt::format("there is no parameter {}", quote(ref.name)),
         suggest(ref.name,
                 namesOf(graph_.parameters, [](const ir::Parameter& p) { return std::string_view(p.name); })));
@@ -511,7 +553,7 @@ std::optional<Type> GraphCheck::typeOf(const TextureRef& ref, const Sink& sink) 
     return all;
   };
   if (template_ == nullptr) return std::nullopt;  // it may be the template's
-  error(sink.spot, sink.pointer, "unknown-texture", fmt::format("there is no texture {}", quote(ref.name)),
+  error(sink, "unknown-texture", fmt::format("there is no texture {}", quote(ref.name)),
         suggest(ref.name, names));
   return std::nullopt;
 }
@@ -525,10 +567,10 @@ std::optional<Type> GraphCheck::typeOf(const GivenRef& ref, const Sink& sink) {
         std::string_view(ref.name).substr(std::min(ref.name.size(), head.size() + 1));
     const std::string all = "it has " + listOf(several->second);
     if (result.empty()) {
-      error(sink.spot, sink.pointer, "unknown-given", fmt::format("{} has several results", quote(head)),
+      error(sink, "unknown-given", fmt::format("{} has several results", quote(head)),
             fmt::format("name one behind a dot: '{}.{}'; {}", head, several->second[0], all));
     } else {
-      error(sink.spot, sink.pointer, "unknown-given",
+      error(sink, "unknown-given",
             fmt::format("the given {} has no result {}", quote(head), quote(result)),
             suggest(
                 result, [&] { return several->second; }, all));
@@ -541,7 +583,7 @@ std::optional<Type> GraphCheck::typeOf(const GivenRef& ref, const Sink& sink) {
     std::sort(all.begin(), all.end());
     return all;
   };
-  error(sink.spot, sink.pointer, "unknown-given",
+  error(sink, "unknown-given",
         fmt::format("the template {} does not give {}", quote(graph_.template_name), quote(ref.name)),
         suggest(ref.name, names));
   return std::nullopt;
@@ -551,7 +593,7 @@ std::optional<Type> GraphCheck::typeOf(const NodeRef& ref, const Sink& sink) {
   const auto it = nodes_.find(ref.node);
   if (it == nodes_.end()) {
     error(
-        sink.spot, sink.pointer, "unknown-source", fmt::format("there is no node {}", quote(ref.node)),
+        sink, "unknown-source", fmt::format("there is no node {}", quote(ref.node)),
         suggest(ref.node, namesOf(graph_.nodes, [](const Node& node) { return std::string_view(node.id); })));
     return std::nullopt;
   }
@@ -565,11 +607,11 @@ std::optional<Type> GraphCheck::typeOf(const NodeRef& ref, const Sink& sink) {
     if (!result.name.empty()) names.push_back(result.name);
   }
   if (ref.output.empty()) {
-    error(sink.spot, sink.pointer, "unknown-output",
+    error(sink, "unknown-output",
           fmt::format("the node {} has several results", quote(ref.node)),
           "name one as \"output\": " + listOf(names));
   } else {
-    error(sink.spot, sink.pointer, "unknown-output",
+    error(sink, "unknown-output",
           fmt::format("the node {} has no result {}", quote(ref.node), quote(ref.output)),
           suggest(
               ref.output, [&] { return names; },
@@ -586,7 +628,7 @@ std::optional<Type> GraphCheck::swizzled(Type type, const std::string& swizzle, 
       std::all_of(picked.begin(), picked.end(), [&](char c) { return static_cast<size_t>(c) < size; });
   if (fits) return ir::floatType(static_cast<int>(picked.size()));
   const auto letters = [&](std::string_view set) { return set.substr(0, size); };
-  error(sink.spot, sink.pointer, "wrong-swizzle",
+  error(sink, "wrong-swizzle",
         fmt::format("{} has no components {}", article(type), quote(swizzle)),
         ir::isFloatVector(type) ? fmt::format("one to four of {}, {} or {}, not mixed", letters("xyzw"),
                                               letters("rgba"), letters("stpq"))
@@ -642,8 +684,7 @@ GraphCheck::Tied GraphCheck::tiedOf(const Source& source, const TemplateRates& r
 /// Values of one light that no sum takes, and values of a vertex that nothing interpolates. Only for graphs
 /// that are right otherwise.
 void GraphCheck::rates() {
-  NodeRates node_rates;
-  const TemplateRates rates = templateRates(*template_, node_rates);
+  const TemplateRates rates = templateRates(*template_);
   std::vector<Tied> nodes(graph_.nodes.size());
   for (const size_t index : order_) {
     Tied& tied = nodes[index];
@@ -653,7 +694,7 @@ void GraphCheck::rates() {
       if (tied.light.empty()) tied.light = from.light;
       if (tied.vertex.empty()) tied.vertex = from.vertex;
     }
-    tied.ties &= static_cast<Ties>(~node_rates.untied(*decls_[index]));
+    tied.ties &= static_cast<Ties>(~decls_[index]->unties);
   }
   Names summed;
   for (const lang::PortDecl& port : template_->ports) {

@@ -1,7 +1,6 @@
 #include "graph/rates.h"
 
 #include <algorithm>
-#include <unordered_set>
 
 #include "lang/builtins.h"
 
@@ -10,28 +9,11 @@ namespace lacquer::graph {
 namespace {
 
 using lang::Expr;
-using lang::Statement;
 
 Ties untiedBy(const Expr& expr) {
+  if (expr.kind == Expr::Kind::Call && expr.node != nullptr) return expr.node->unties;
   if (expr.kind != Expr::Kind::Operation || expr.builtin == nullptr) return 0;
-  if (expr.builtin->op == ir::Op::SumOverLights) return kLight;
-  return expr.builtin->op == ir::Op::Interpolate ? kVertex : Ties{0};
-}
-
-/// The outermost expressions of statements, those in their branches and loops included.
-std::vector<const Expr*> expressionsOf(const std::vector<Statement>& statements) {
-  std::vector<const Expr*> found;
-  std::vector<const std::vector<Statement>*> open = {&statements};
-  while (!open.empty()) {
-    const std::vector<Statement>& block = *open.back();
-    open.pop_back();
-    for (const Statement& statement : block) {
-      for (const lang::ExprPtr& value : statement.values) found.push_back(value.get());
-      open.push_back(&statement.body);
-      open.push_back(&statement.otherwise);
-    }
-  }
-  return found;
+  return lang::untiedBy(expr.builtin->op);
 }
 
 /// What a template's expressions see of its slots.
@@ -42,7 +24,7 @@ struct Slots {
 };
 
 /// The ties of an expression. What is refused where the expression stands is refused to the ports in it.
-Ties tiesOf(const Expr& root, Slots& slots, NodeRates& nodes, Ties refused) {
+Ties tiesOf(const Expr& root, Slots& slots, Ties refused) {
   struct Open {
     const Expr* expr;
     Ties untied;
@@ -57,8 +39,7 @@ Ties tiesOf(const Expr& root, Slots& slots, NodeRates& nodes, Ties refused) {
       ties |= slots.ties[expr->slot] & static_cast<Ties>(~outer);
       if (slots.port[expr->slot]) slots.refused[expr->slot] |= refused & static_cast<Ties>(~outer);
     }
-    Ties untied = outer | untiedBy(*expr);
-    if (expr->kind == Expr::Kind::Call && expr->node != nullptr) untied |= nodes.untied(*expr->node);
+    const Ties untied = outer | untiedBy(*expr);
     for (const lang::ExprPtr& arg : expr->args) open.push_back({arg.get(), untied});
   }
   return ties;
@@ -66,37 +47,7 @@ Ties tiesOf(const Expr& root, Slots& slots, NodeRates& nodes, Ties refused) {
 
 }  // namespace
 
-Ties NodeRates::untied(const lang::NodeDecl& node) {
-  const auto known = known_.find(&node);
-  if (known != known_.end()) return known->second;
-  Ties result = 0;
-  std::unordered_set<const lang::NodeDecl*> seen = {&node};
-  std::vector<const lang::NodeDecl*> open = {&node};
-  std::vector<const Expr*> exprs;
-  while (!open.empty()) {
-    const lang::NodeDecl& decl = *open.back();
-    open.pop_back();
-    exprs = expressionsOf(decl.body.statements);
-    for (const lang::Variant& variant : decl.variants) {
-      const std::vector<const Expr*> more = expressionsOf(variant.body.statements);
-      exprs.insert(exprs.end(), more.begin(), more.end());
-    }
-    while (!exprs.empty()) {
-      const Expr* expr = exprs.back();
-      exprs.pop_back();
-      if (expr == nullptr) continue;
-      result |= untiedBy(*expr);
-      if (expr->kind == Expr::Kind::Call && expr->node != nullptr && seen.insert(expr->node).second) {
-        open.push_back(expr->node);
-      }
-      for (const lang::ExprPtr& arg : expr->args) exprs.push_back(arg.get());
-    }
-  }
-  known_.emplace(&node, result);
-  return result;
-}
-
-TemplateRates templateRates(const lang::TemplateDecl& decl, NodeRates& nodes) {
+TemplateRates templateRates(const lang::TemplateDecl& decl) {
   const bool vertex_stage = std::any_of(decl.outputs.begin(), decl.outputs.end(), [](const auto& output) {
     return output.role == lang::OutputRole::Position;
   });
@@ -112,7 +63,7 @@ TemplateRates templateRates(const lang::TemplateDecl& decl, NodeRates& nodes) {
     slots.ties[attribute.slot] = vertex_stage ? kVertex : 0;
   TemplateRates rates;
   for (const lang::GivenDecl& given : decl.givens) {
-    const Ties ties = given.value ? tiesOf(*given.value, slots, nodes, 0) : Ties{0};
+    const Ties ties = given.value ? tiesOf(*given.value, slots, 0) : Ties{0};
     for (size_t i = 0; i < given.results.size(); ++i) {
       slots.ties[given.slot + i] = ties;
       std::string name(given.name);
@@ -123,13 +74,13 @@ TemplateRates templateRates(const lang::TemplateDecl& decl, NodeRates& nodes) {
   for (const lang::PortDecl& port : decl.ports) slots.port[port.slot] = true;
   for (const lang::OutputDecl& output : decl.outputs) {
     if (output.role != lang::OutputRole::Position && output.value) {
-      tiesOf(*output.value, slots, nodes, kLight | kVertex);
+      tiesOf(*output.value, slots, kLight | kVertex);
     }
   }
   // A port's default may use the ports before it, in its place.
   for (size_t i = decl.ports.size(); i > 0; --i) {
     const lang::PortDecl& port = decl.ports[i - 1];
-    if (port.default_value) tiesOf(*port.default_value, slots, nodes, slots.refused[port.slot]);
+    if (port.default_value) tiesOf(*port.default_value, slots, slots.refused[port.slot]);
     rates.refused[port.param.name] = slots.refused[port.slot];
   }
   return rates;

@@ -95,7 +95,15 @@ uint32_t packSwizzle(std::span<const int> components) {
 
 int swizzleComponent(uint32_t payload, int index) { return static_cast<int>(payload >> (2 * index) & 3U); }
 
-Dag::Dag() : table_(256, kNoValue) { terms_.push_back({}); }
+/// Slots of a new DAG's tables: what most materials need without growing.
+static constexpr size_t kFirstSlots = 2048;
+static constexpr size_t kFirstConstantSlots = 256;
+
+Dag::Dag() : constant_table_(kFirstConstantSlots, kNoValue), table_(kFirstSlots, kNoValue) {
+  terms_.push_back({});
+  for (auto* ids : {&term_of_, &name_of_, &fact_of_, &rank_of_}) ids->reserve(kFirstSlots / 2);
+  values_.reserve(kFirstSlots / 2);
+}
 
 namespace {
 
@@ -126,15 +134,18 @@ size_t hashOf(const Value& value) {
 
 }  // namespace
 
+void Dag::rehash(size_t slots) {
+  table_.assign(slots, kNoValue);
+  for (ValueId id = 0; id < values_.size(); ++id) {
+    size_t slot = hashOf(values_[id]) & (slots - 1);
+    while (table_[slot] != kNoValue) slot = (slot + 1) & (slots - 1);
+    table_[slot] = id;
+  }
+}
+
 ValueId Dag::intern(const Value& value) {
-  if (used_ * 2 >= table_.size()) {
-    std::vector<ValueId> larger(table_.size() * 2, kNoValue);
-    for (ValueId id = 0; id < values_.size(); ++id) {
-      size_t slot = hashOf(values_[id]) & (larger.size() - 1);
-      while (larger[slot] != kNoValue) slot = (slot + 1) & (larger.size() - 1);
-      larger[slot] = id;
-    }
-    table_ = std::move(larger);
+  if (values_.size() * 2 >= table_.size()) {
+    rehash(std::max(table_.size() * 2, std::bit_ceil(values_.size() * 2 + kFirstSlots / 2)));
   }
   size_t slot = hashOf(value) & (table_.size() - 1);
   while (table_[slot] != kNoValue) {
@@ -143,10 +154,11 @@ ValueId Dag::intern(const Value& value) {
   }
   const auto id = static_cast<ValueId>(values_.size());
   table_[slot] = id;
-  ++used_;
   values_.push_back(value);
   term_of_.push_back(current_term_);
   name_of_.push_back(0);
+  fact_of_.push_back(0);
+  rank_of_.push_back(current_rank_ == kOwnRank ? id : current_rank_);
   return id;
 }
 
@@ -194,20 +206,15 @@ ValueId Dag::swizzle(ValueId value, std::span<const int> components) {
 
 ValueId Dag::component(ValueId value, int index) { return swizzle(value, {{index}}); }
 
-ValueId Dag::remake(const Dag& from, ValueId id, std::span<const ValueId> operands) {
-  const Value& value = from[id];
-  switch (value.op) {
-    case Op::Constant: return constant(value.type, from.constantOf(id));
-    case Op::Input: return input(from.inputOf(id));
-    case Op::Construct: return construct(value.type, operands);
-    case Op::Swizzle: {
-      std::array<int, 4> picks{};
-      const int n = componentCount(value.type);
-      for (int i = 0; i < n; ++i) picks[static_cast<size_t>(i)] = swizzleComponent(value.payload, i);
-      return swizzle(operands[0], {picks.data(), static_cast<size_t>(n)});
-    }
-    default: return make(value.op, operands, value.payload);
-  }
+ValueId Dag::remake(ValueId id, std::span<const ValueId> operands) {
+  const Value value = values_[id];
+  if (std::equal(operands.begin(), operands.end(), value.args.begin())) return id;
+  if (value.op == Op::Construct) return construct(value.type, operands);
+  if (value.op != Op::Swizzle) return make(value.op, operands, value.payload);
+  std::array<int, 4> picks{};
+  const int n = componentCount(value.type);
+  for (int i = 0; i < n; ++i) picks[static_cast<size_t>(i)] = swizzleComponent(value.payload, i);
+  return swizzle(operands[0], {picks.data(), static_cast<size_t>(n)});
 }
 
 ValueId Dag::constant(double x) { return constant(Type::Float, {x}); }
@@ -219,18 +226,28 @@ ValueId Dag::constant(Type type, const Components& components) {
     const auto k = static_cast<size_t>(i);
     key[k] = components[k] == 0 ? 0 : components[k];
   }
-  uint32_t index = 0;
-  const size_t hash = XXH3_64bits(key.data(), sizeof key);
-  const auto [begin, end] = constant_index_.equal_range(hash);
-  for (auto it = begin; it != end; ++it) {
-    if (std::memcmp(&constants_[it->second], &key, sizeof key) == 0) {
-      return intern({Op::Constant, type, Rate::Constant, 0, it->second, {}});
+  return intern({Op::Constant, type, Rate::Constant, 0, constantIndex(key), {}});
+}
+
+uint32_t Dag::constantIndex(const Components& key) {
+  const auto slotOf = [this](const Components& c) {
+    size_t slot = XXH3_64bits(c.data(), sizeof c) & (constant_table_.size() - 1);
+    while (constant_table_[slot] != kNoValue &&
+           std::memcmp(&constants_[constant_table_[slot]], &c, sizeof c) != 0) {
+      slot = (slot + 1) & (constant_table_.size() - 1);
     }
+    return slot;
+  };
+  if (constants_.size() * 2 >= constant_table_.size()) {
+    constant_table_.assign(constant_table_.size() * 2, kNoValue);
+    for (uint32_t i = 0; i < constants_.size(); ++i) constant_table_[slotOf(constants_[i])] = i;
   }
-  index = static_cast<uint32_t>(constants_.size());
-  constants_.push_back(key);
-  constant_index_.emplace(hash, index);
-  return intern({Op::Constant, type, Rate::Constant, 0, index, {}});
+  uint32_t& index = constant_table_[slotOf(key)];
+  if (index == kNoValue) {
+    index = static_cast<uint32_t>(constants_.size());
+    constants_.push_back(key);
+  }
+  return index;
 }
 
 ValueId Dag::input(const Input& input) {
@@ -271,28 +288,87 @@ std::string_view Dag::nameOf(ValueId id) const {
   return name_of_[id] == 0 ? std::string_view{} : std::string_view(names_[name_of_[id] - 1]);
 }
 
+void Dag::inherit(ValueId id, ValueId from) {
+  const Op op = values_[id].op;
+  if (name_of_[id] == 0 && op != Op::Constant && op != Op::Input) name_of_[id] = name_of_[from];
+  if (fact_of_[from] != 0) assume(id, Interval(facts_[fact_of_[from] - 1]));
+}
+
 void Dag::assume(ValueId id, Interval range) {
-  const auto [it, fresh] = assumed_.try_emplace(id, range);
-  if (fresh) return;
-  it->second.lo = std::max(it->second.lo, range.lo);
-  it->second.hi = std::min(it->second.hi, range.hi);
+  if (fact_of_[id] == 0) {
+    facts_.push_back(range);
+    fact_of_[id] = static_cast<uint32_t>(facts_.size());
+    return;
+  }
+  Interval& fact = facts_[fact_of_[id] - 1];
+  fact.lo = std::max(fact.lo, range.lo);
+  fact.hi = std::min(fact.hi, range.hi);
 }
 
 std::optional<Interval> Dag::assumed(ValueId id) const {
-  const auto it = assumed_.find(id);
-  if (it == assumed_.end()) return std::nullopt;
-  return it->second;
+  if (fact_of_[id] == 0) return std::nullopt;
+  return facts_[fact_of_[id] - 1];
+}
+
+void Dag::sortByRank(std::vector<ValueId>& ids) const {
+  std::sort(ids.begin(), ids.end(), [this](ValueId a, ValueId b) {
+    return rank_of_[a] != rank_of_[b] ? rank_of_[a] < rank_of_[b] : a < b;
+  });
+}
+
+std::vector<ValueId> Dag::compact(std::span<const ValueId> roots) {
+  std::vector<ValueId> live = reachable(*this, roots);
+  sortByRank(live);
+  std::vector<ValueId> moved(values_.size(), kNoValue);
+  std::vector<ValueId> order, pending;
+  order.reserve(live.size());
+  for (const ValueId start : live) {
+    pending.assign(1, start);
+    while (!pending.empty()) {
+      const ValueId id = pending.back();
+      const size_t before = pending.size();
+      if (moved[id] == kNoValue) {
+        for (size_t k = values_[id].count; k-- > 0;) {
+          if (moved[values_[id].args[k]] == kNoValue) pending.push_back(values_[id].args[k]);
+        }
+      }
+      if (pending.size() != before) continue;
+      pending.pop_back();
+      if (moved[id] != kNoValue) continue;
+      moved[id] = static_cast<ValueId>(order.size());
+      order.push_back(id);
+    }
+  }
+  const auto take = [&order](auto& from) {
+    std::remove_reference_t<decltype(from)> to;
+    to.reserve(order.size() + 16);
+    for (const ValueId id : order) to.push_back(from[id]);
+    from = std::move(to);
+  };
+  take(values_), take(term_of_), take(name_of_), take(fact_of_);
+  for (Value& value : values_) {
+    for (size_t k = 0; k < value.count; ++k) value.args[k] = moved[value.args[k]];
+  }
+  rank_of_.resize(order.size());
+  for (ValueId id = 0; id < order.size(); ++id) rank_of_[id] = id;
+  table_.clear();
+  return moved;
 }
 
 std::vector<ValueId> reachable(const Dag& dag, std::span<const ValueId> roots) {
-  std::vector<bool> seen(dag.size(), false);
-  for (const ValueId root : roots) seen[root] = true;
+  std::vector<uint8_t> seen(dag.size(), 0);
+  ValueId last = 0;
+  for (const ValueId root : roots) {
+    seen[root] = 1;
+    last = std::max(last, root + 1);
+  }
   std::vector<ValueId> result;
+  result.reserve(last);
   // Operands have smaller ids, so one descending sweep finds everything.
-  for (size_t i = dag.size(); i-- > 0;) {
+  for (size_t i = last; i-- > 0;) {
     if (!seen[i]) continue;
     result.push_back(static_cast<ValueId>(i));
-    for (const ValueId operand : dag[static_cast<ValueId>(i)].operands()) seen[operand] = true;
+    for (const ValueId operand : dag[static_cast<ValueId>(i)].operands()) seen[operand] = 1;
   }
   std::reverse(result.begin(), result.end());
   return result;

@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "ir/types.h"
@@ -124,8 +124,8 @@ public:
   ValueId swizzle(ValueId value, std::span<const int> components);
   ValueId component(ValueId value, int index);
 
-  /// A value of another DAG made here, on operands that are of this one.
-  ValueId remake(const Dag& from, ValueId id, std::span<const ValueId> operands);
+  /// A value like `id` on other operands: `id` itself when they are its own.
+  ValueId remake(ValueId id, std::span<const ValueId> operands);
 
   ValueId constant(double x);
   ValueId constant(Type type, const Components& components);
@@ -153,15 +153,35 @@ public:
   /// Names a value if it has no name yet. Constants and inputs are never named.
   void name(ValueId id, std::string_view name);
   std::string_view nameOf(ValueId id) const;
+  /// Gives a value the name and the facts of another.
+  void inherit(ValueId id, ValueId from);
 
   /// States a fact that the operations cannot show (a node's declared range, an `assume`): every component
   /// lies in the range. Facts about one value are intersected.
   void assume(ValueId id, Interval range);
   std::optional<Interval> assumed(ValueId id) const;
 
+  // Order. A rewrite appends values, yet what replaces an early value belongs where that stood: values have a
+  // rank, which is their id unless setRank() gave another. It never takes part in identity.
+  static constexpr uint32_t kOwnRank = ~uint32_t{0};
+  void setRank(uint32_t rank) { current_rank_ = rank; }
+  uint32_t rankOf(ValueId id) const { return rank_of_[id]; }
+  void sortByRank(std::vector<ValueId>& ids) const;
+  /// Drops what `roots` do not reach and numbers the rest by rank, operands first. Returns the new id of every
+  /// old one (kNoValue: dropped).
+  std::vector<ValueId> compact(std::span<const ValueId> roots);
+
+  // What may change in a value that is there, since neither is seen by the algebra.
+  /// Exchanges the operands of an operation that commutes.
+  void exchangeOperands(ValueId id) { std::swap(values_[id].args[0], values_[id].args[1]); }
+  /// Renumbers an input: its index in the module's table of that kind.
+  void setInputField(ValueId id, uint32_t field) { inputs_[values_[id].payload].field = field; }
+
 private:
   friend class Simplifier;
   ValueId intern(const Value& value);
+  void rehash(size_t slots);
+  uint32_t constantIndex(const Components& key);
   ValueId makeRaw(Op op, Type type, std::span<const ValueId> operands, uint32_t payload);
 
   std::vector<Value> values_;
@@ -171,11 +191,14 @@ private:
   std::vector<Term> terms_;
   std::vector<uint32_t> name_of_;  ///< 1 + index into names_, 0 for none
   std::vector<std::string> names_;
-  std::unordered_multimap<size_t, uint32_t> constant_index_;
-  std::unordered_map<ValueId, Interval> assumed_;
-  std::vector<ValueId> table_;  ///< open addressing over values_, by content; a power of two
-  size_t used_ = 0;
+  std::vector<uint32_t> constant_table_;  ///< open addressing over constants_; a power of two
+  std::vector<uint32_t> fact_of_;         ///< 1 + index into facts_, 0 for none
+  std::vector<Interval> facts_;
+  std::vector<uint32_t> rank_of_;
+  std::vector<ValueId> table_;  ///< open addressing over values_, by content; a power of two; empty after
+                                ///< compact() until a value is made
   TermId current_term_ = 0;
+  uint32_t current_rank_ = kOwnRank;
 };
 
 /// Swizzle payloads.

@@ -29,6 +29,31 @@ std::vector<ValueId> reachable(const Module& module, Stage stage) {
   return reachable(module.dag, roots);
 }
 
+namespace {
+
+template <class Module, class Visit>
+void visitIds(Module& module, const Visit& visit) {
+  for (auto& output : module.outputs) visit(output.value);
+  for (auto& varying : module.varyings) {
+    if (varying.source != kNoValue) visit(varying.source);
+  }
+  for (auto& field : module.preshader) visit(field.value);
+}
+
+}  // namespace
+
+std::vector<ValueId> roots(const Module& module) {
+  std::vector<ValueId> ids;
+  visitIds(module, [&](ValueId id) { ids.push_back(id); });
+  return ids;
+}
+
+void remap(Module& module, std::span<const ValueId> to) {
+  visitIds(module, [&](ValueId& id) { id = to[id]; });
+}
+
+void compact(Module& module) { remap(module, module.dag.compact(roots(module))); }
+
 std::vector<uint32_t> usedParameters(const Module& module) {
   std::vector<ValueId> roots;
   for (const Output& output : module.outputs) roots.push_back(output.value);
@@ -52,7 +77,11 @@ public:
   explicit Verifier(const Module& module) : module_(module), dag_(module.dag) {}
 
   std::vector<std::string> run() {
-    for (ValueId id = 0; id < dag_.size(); ++id) checkValue(id);
+    // What a rewrite left behind is nobody's business.
+    for (const Output& output : module_.outputs) {
+      if (output.value >= dag_.size()) return {fmt::format("output {} has no value", output.name)};
+    }
+    for (const ValueId id : reachable(dag_, roots(module_))) checkValue(id);
     for (const Output& output : module_.outputs) checkOutput(output);
     for (const Varying& varying : module_.varyings) {
       // Without a vertex stage the varyings come from outside.
@@ -129,7 +158,6 @@ private:
   }
 
   void checkOutput(const Output& output) {
-    if (output.value >= dag_.size()) return complain("output {} has no value", output.name);
     const Value& value = dag_[output.value];
     const bool vec4 = output.kind == OutputKind::Position || output.kind == OutputKind::Color;
     if (vec4 && value.type != Type::Vec4) complain("output {} is not a vec4", output.name);

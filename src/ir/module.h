@@ -116,6 +116,13 @@ uint32_t layout(std::vector<BlockField>& fields);
 /// The values that the outputs of a stage reach (both stages when none is given), ascending.
 std::vector<ValueId> reachable(const Module& module, Stage stage);
 
+/// All values that the module holds by id: outputs, sources of varyings, preshader fields.
+std::vector<ValueId> roots(const Module& module);
+/// Replaces every id that the module holds by to[id].
+void remap(Module& module, std::span<const ValueId> to);
+/// Dag::compact() with the ids that the module holds.
+void compact(Module& module);
+
 /// The parameters that the outputs or the preshader read, as indices into Module::parameters, in the order of
 /// their names: an order that depends on nothing but the shader.
 std::vector<uint32_t> usedParameters(const Module& module);

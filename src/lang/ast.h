@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "ir/dag.h"
+#include "lang/ties.h"
 
 namespace lacquer::lang {
 
@@ -157,6 +158,7 @@ struct NodeDecl {
   Span span;
   uint32_t weight = 0;  ///< expressions to evaluate for the heaviest body, calls included
   uint32_t height = 0;  ///< how deep an evaluator nests
+  Ties unties = 0;      ///< what some operation in the bodies, or in what they call, unties
 
   /// The body of that variant, the reference for an empty name, null when there is none.
   const Body* find(std::string_view variant) const {

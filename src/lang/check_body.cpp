@@ -28,6 +28,7 @@ void Checker::body(NodeDecl& decl, std::string_view variant, Span place, Body& b
   may_have_returned_ = false;
   trips_ = 1;
   weight_ = 0;
+  unties_ = 0;
   deepest_statement_ = deepest_expression_ = deepest_callee_ = 0;
   const size_t errors = reporter_.count();
   for (const Param& param : decl.params) {
@@ -52,6 +53,7 @@ void Checker::body(NodeDecl& decl, std::string_view variant, Span place, Body& b
   const uint32_t height = deepest_statement_ + deepest_expression_ + deepest_callee_;
   decl.weight = std::max(decl.weight, static_cast<uint32_t>(std::min(weight_, kMostWeight + 1)));
   decl.height = std::max(decl.height, height);
+  decl.unties |= unties_;
   if (weight_ > kMostWeight || height > kMostHeight) {
     reporter_.error("node-too-large", place,
                     fmt::format("'{}' is too large once its calls and loops are written out", decl.name));

@@ -421,6 +421,7 @@ bool Checker::function(Expr& expr) {
   }
   expr.kind = Expr::Kind::Operation;
   expr.builtin = builtin;
+  unties_ |= untiedBy(builtin->op);
   expr.type = *type;
   return true;
 }
@@ -464,6 +465,7 @@ bool Checker::call(Expr& expr) {
     return unknown(expr.variant, "variant", std::move(candidates), std::move(has));
   }
   weight_ += trips_ * expr.node->weight;
+  unties_ |= expr.node->unties;
   deepest_callee_ = std::max(deepest_callee_, expr.node->height);
   expr.type = expr.node->results[0].type;
   return arguments(expr);

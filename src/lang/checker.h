@@ -151,6 +151,7 @@ private:
   bool may_have_returned_ = false;
   uint64_t trips_ = 1;   ///< how often the enclosing loops run what is inside
   uint64_t weight_ = 0;  ///< expressions to evaluate
+  Ties unties_ = 0;
   uint32_t deepest_statement_ = 0, deepest_expression_ = 0, deepest_callee_ = 0;
 };
 

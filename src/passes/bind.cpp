@@ -1,7 +1,6 @@
 #include "ir/module.h"
 #include "passes/passes.h"
 #include "passes/program.h"
-#include "passes/rewrite.h"
 
 namespace lacquer::passes {
 
@@ -17,7 +16,7 @@ Binding blockBinding(ir::BlockRole role) {
 
 /// Environment textures keep fixed places, used or not; a material's follow its block in set 1 and the
 /// environment's units in the flat numbering.
-static constexpr uint32_t kEnvironmentUnits = 2;
+static constexpr uint32_t kEnvironmentUnits = 3;
 
 Binding textureBinding(const ir::Module&, const ir::TextureSlot& slot) {
   if (slot.environment) return {0, 2 + slot.binding, slot.binding};
@@ -26,12 +25,13 @@ Binding textureBinding(const ir::Module&, const ir::TextureSlot& slot) {
 
 void bind(ir::Module& module) {
   std::vector<bool> used(module.textures.size(), false);
-  for (const ir::Stage stage : {ir::Stage::Vertex, ir::Stage::Fragment}) {
-    for (const ir::ValueId id : ir::reachable(module, stage)) {
-      if (module.dag[id].op != ir::Op::Input) continue;
-      const ir::Input& input = module.dag.inputOf(id);
-      if (input.kind == ir::InputKind::Texture) used[input.field] = true;
-    }
+  std::vector<ir::ValueId> texture_inputs;
+  for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
+    if (module.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    if (input.kind != ir::InputKind::Texture) continue;
+    used[input.field] = true;
+    texture_inputs.push_back(id);
   }
   std::vector<ir::TextureSlot> kept;
   std::vector<uint32_t> place(module.textures.size(), 0);
@@ -46,12 +46,7 @@ void bind(ir::Module& module) {
     kept.push_back(slot);
   }
   module.textures = std::move(kept);
-  Rewriter(module).run([&](Rewriter& rewriter, ir::ValueId id, std::span<const ir::ValueId> operands) {
-    if (rewriter.old()[id].op != ir::Op::Input) return rewriter.copy(id, operands);
-    ir::Input input = rewriter.old().inputOf(id);
-    if (input.kind == ir::InputKind::Texture) input.field = place[input.field];
-    return rewriter.dag().input(input);
-  });
+  for (const ir::ValueId id : texture_inputs) module.dag.setInputField(id, place[module.dag.inputOf(id).field]);
 }
 
 }  // namespace lacquer::passes

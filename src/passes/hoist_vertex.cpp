@@ -19,7 +19,10 @@ public:
       : dag_(module.dag), live_(ir::reachable(module, ir::Stage::Fragment)) {
     affine_.assign(dag_.size(), false);
     needed_.assign(dag_.size(), false);
-    for (const ValueId id : live_) affine_[id] = affine(id);
+    for (const ValueId id : live_) {
+      affine_[id] = affine(id);
+      if (affine_[id]) affines_.push_back(id);
+    }
     for (const ValueId id : live_) {
       if (affine_[id] && dag_[id].op != Op::Interpolate) continue;
       for (const ValueId operand : dag_[id].operands()) needed_[operand] = true;
@@ -31,9 +34,11 @@ public:
   /// interpolating no more components than without.
   std::vector<ValueId> choose() const {
     std::vector<ValueId> moved;
+    const auto movable = [&](ValueId id) { return needed_[id] && dag_[id].op != Op::Interpolate; };
+    if (std::none_of(affines_.begin(), affines_.end(), movable)) return moved;
     int cost = interpolants(moved);
-    for (const ValueId id : live_) {
-      if (!affine_[id] || !needed_[id] || dag_[id].op == Op::Interpolate) continue;
+    for (const ValueId id : affines_) {
+      if (!movable(id)) continue;
       moved.push_back(id);
       const int with = interpolants(moved);
       if (with <= cost)
@@ -70,24 +75,23 @@ private:
 
   /// Components interpolated when the given values come from the vertex stage.
   int interpolants(const std::vector<ValueId>& moved) const {
-    std::vector<bool> reached(dag_.size(), false);
-    for (const ValueId id : live_) reached[id] = needed_[id];
+    std::vector<bool> reached = needed_;
     int count = 0;
-    for (auto it = live_.rbegin(); it != live_.rend(); ++it) {
+    // What affine values are made of is affine, or uniform and interpolates nothing.
+    for (auto it = affines_.rbegin(); it != affines_.rend(); ++it) {
       if (!reached[*it]) continue;
       const bool from_vertex = std::find(moved.begin(), moved.end(), *it) != moved.end();
       if (from_vertex || dag_[*it].op == Op::Interpolate) {
         count += ir::componentCount(dag_[*it].type);
         continue;
       }
-      if (!affine_[*it]) continue;
       for (const ValueId operand : dag_[*it].operands()) reached[operand] = true;
     }
     return count;
   }
 
   const ir::Dag& dag_;
-  std::vector<ValueId> live_;
+  std::vector<ValueId> live_, affines_;
   std::vector<bool> affine_, needed_;
 };
 
@@ -100,7 +104,7 @@ void hoistToVertex(ir::Module& module) {
   // For every affine value its counterpart at the vertices; made as the rewrite goes.
   std::map<ValueId, ValueId> at_vertex;
   rewriter.run([&](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
-    const ir::Value& value = r.old()[id];
+    const ir::Value value = r.dag()[id];
     const auto counterpart = [&](ValueId operand, ValueId mapped) {
       const auto it = at_vertex.find(operand);
       return it == at_vertex.end() ? mapped : it->second;
@@ -124,7 +128,7 @@ void hoistToVertex(ir::Module& module) {
     const ValueId vertex_value = r.copy(id, {lifted.data(), operands.size()});
     at_vertex[id] = vertex_value;
     if (std::find(moved.begin(), moved.end(), id) == moved.end()) return r.copy(id, operands);
-    r.dag().name(vertex_value, r.old().nameOf(id));
+    r.dag().inherit(vertex_value, id);
     return r.dag().make(Op::Interpolate, {vertex_value});
   });
 }

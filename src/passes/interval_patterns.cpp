@@ -1,8 +1,9 @@
 // What single operations do not show: an operand that occurs twice. Every pattern only narrows the range that
 // the operations give, so a pattern that is not met costs precision, never soundness.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
+#include <span>
 
 #include "passes/intervals.h"
 
@@ -13,18 +14,38 @@ using ir::ValueId;
 
 namespace {
 
+/// How deep products are looked into.
+constexpr int kDeepest = 4;
+
+/// A few values, without allocating.
+class Few {
+public:
+  void push_back(ValueId id) { ids_[size_++] = id; }
+  void erase(size_t index) {
+    std::copy(ids_.begin() + index + 1, ids_.begin() + size_, ids_.begin() + index);
+    --size_;
+  }
+  size_t size() const { return size_; }
+  ValueId operator[](size_t index) const { return ids_[index]; }
+  std::span<const ValueId> all() const { return {ids_.data(), size_}; }
+
+private:
+  std::array<ValueId, 1U << kDeepest> ids_;
+  size_t size_ = 0;
+};
+
 /// The factors of a product of products, and of quotients by constants (those in `divisors`).
 struct Factors {
-  std::vector<ValueId> factors, divisors;
+  Few factors, divisors;
 };
 
 /// `stop` stays whole.
 void collect(const ir::Dag& dag, ValueId id, ValueId stop, int depth, Factors& out) {
   const ir::Value& value = dag[id];
-  if (id != stop && value.op == Op::Mul && depth < 4) {
+  if (id != stop && value.op == Op::Mul && depth < kDeepest) {
     collect(dag, value.args[0], stop, depth + 1, out);
     collect(dag, value.args[1], stop, depth + 1, out);
-  } else if (id != stop && value.op == Op::Div && dag.isConstant(value.args[1]) && depth < 4) {
+  } else if (id != stop && value.op == Op::Div && dag.isConstant(value.args[1]) && depth < kDeepest) {
     collect(dag, value.args[0], stop, depth + 1, out);
     out.divisors.push_back(value.args[1]);
   } else {
@@ -87,10 +108,9 @@ void Intervals::blendPattern(ValueId x, ValueId rest, bool negative, int c, Rang
     const ir::Value& difference = dag_[factor];
     const bool whole = negative && factor == x;
     if (!whole && (difference.op != Op::Sub || difference.args[negative ? 0 : 1] != x)) continue;
-    std::vector<ValueId> others = found.factors;
-    others.erase(others.begin() + static_cast<ptrdiff_t>(i));
+    found.factors.erase(i);
     bool small = true;
-    const Range t = productOf(others, found.divisors, c, small);
+    const Range t = productOf(found.factors.all(), found.divisors.all(), c, small);
     const Range k = whole ? Range{0, 0, false} : at(difference.args[negative ? 1 : 0], c);
     Range blend = math_.blend(at(x, c), k, t);
     // A factor above 1 may round past the whole difference, and so may a quotient.
@@ -109,11 +129,12 @@ void Intervals::exchangePattern(ValueId product, ValueId difference, int c, Rang
   const ValueId p = dag_[difference].args[1];
   Factors found;
   collect(dag_, product, p, 0, found);
-  const auto it = std::find(found.factors.begin(), found.factors.end(), p);
-  if (it == found.factors.end()) return;
-  found.factors.erase(it);
+  const auto factors = found.factors.all();
+  const auto it = std::find(factors.begin(), factors.end(), p);
+  if (it == factors.end()) return;
+  found.factors.erase(static_cast<size_t>(it - factors.begin()));
   bool small = true;
-  const Range t = productOf(found.factors, found.divisors, c, small);
+  const Range t = productOf(found.factors.all(), found.divisors.all(), c, small);
   Range exchange = math_.exchange(at(dag_[difference].args[0], c), at(p, c), t);
   exchange.nan = true;
   range = meet(range, exchange);
@@ -121,17 +142,20 @@ void Intervals::exchangePattern(ValueId product, ValueId difference, int c, Rang
 
 /// The range of a product of factors over divisors; `small` tells whether every factor is in [0, 1] and
 /// nothing divides.
-Range Intervals::productOf(std::vector<ValueId> factors, const std::vector<ValueId>& divisors, int c,
+Range Intervals::productOf(std::span<const ValueId> factors, std::span<const ValueId> divisors, int c,
                            bool& small) const {
   Range product = math_.constant(1);
   small = divisors.empty();
-  while (!factors.empty()) {
-    const ValueId factor = factors.back();
-    factors.pop_back();
+  Few left;
+  for (const ValueId factor : factors) left.push_back(factor);
+  while (left.size() != 0) {
+    const ValueId factor = left[left.size() - 1];
+    left.erase(left.size() - 1);
     small &= at(factor, c).lo >= 0 && at(factor, c).hi <= 1;
-    const auto twin = std::find(factors.begin(), factors.end(), factor);
-    const bool squared = twin != factors.end();
-    if (squared) factors.erase(twin);
+    const auto rest = left.all();
+    const auto twin = std::find(rest.begin(), rest.end(), factor);
+    const bool squared = twin != rest.end();
+    if (squared) left.erase(static_cast<size_t>(twin - rest.begin()));
     product = math_.mul(product, squared ? math_.square(at(factor, c)) : at(factor, c));
   }
   for (const ValueId divisor : divisors) product = math_.div(product, at(divisor, c));
@@ -162,9 +186,9 @@ void Intervals::unitPattern(ValueId id, int c, Range& range) const {
       if (root.op != Op::InverseSqrt || at(root.args[0], 0).lo < 1e-36) continue;
       if (!holdsSquare(root.args[0], v, c, 0)) continue;
       // What else is multiplied stretches the unit vector.
-      found.factors.erase(found.factors.begin() + static_cast<ptrdiff_t>(i));
+      found.factors.erase(i);
       bool small = true;
-      const Range others = productOf(found.factors, found.divisors, c, small);
+      const Range others = productOf(found.factors.all(), found.divisors.all(), c, small);
       Range unit = math_.mul({-1 - 0x1p-20, 1 + 0x1p-20, false}, others);
       unit.nan = true;
       if (!overflows(dag_[id].args[1 - k], c)) range = meet(range, unit);

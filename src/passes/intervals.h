@@ -78,7 +78,7 @@ private:
   void unitPattern(ir::ValueId id, int c, Range& range) const;
   bool holdsSquare(ir::ValueId sum, ir::ValueId v, int c, int depth) const;
   bool isComponent(ir::ValueId scalar, ir::ValueId v, int c) const;
-  Range productOf(std::vector<ir::ValueId> factors, const std::vector<ir::ValueId>& divisors, int c,
+  Range productOf(std::span<const ir::ValueId> factors, std::span<const ir::ValueId> divisors, int c,
                   bool& small) const;
 
   const ir::Module& module_;

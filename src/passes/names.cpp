@@ -249,7 +249,10 @@ constexpr auto kReserved = std::to_array<std::string_view>({"abs",
                                                             "xor_eq"});
 static_assert(std::is_sorted(kReserved.begin(), kReserved.end()));
 
-bool reserved(std::string_view name) { return std::binary_search(kReserved.begin(), kReserved.end(), name); }
+bool reserved(std::string_view name) {
+  static const std::unordered_set<std::string_view> kWords(kReserved.begin(), kReserved.end());
+  return kWords.contains(name);
+}
 
 /// The printers' own prefixes: attributes, varyings, outputs and what languages keep for themselves.
 bool prefixed(std::string_view name) {
@@ -281,13 +284,15 @@ std::string cleaned(std::string_view wanted) {
 
 }  // namespace
 
+bool Names::free(std::string_view name) const { return !reserved(name) && !taken_.contains(name); }
+
 std::string Names::pick(std::string_view wanted, std::string_view layer) {
   const std::string base = cleaned(wanted);
   std::string name = base;
-  if ((reserved(name) || taken_.contains(name)) && !layer.empty())
+  if (!free(name) && !layer.empty())
     name = cleaned(fmt::format("{}_{}", layer, base));
   const std::string numbered = name;
-  for (int k = 2; reserved(name) || taken_.contains(name); ++k) name = fmt::format("{}_{}", numbered, k);
+  for (int k = 2; !free(name); ++k) name = fmt::format("{}_{}", numbered, k);
   taken_.insert(name);
   return name;
 }

@@ -1,9 +1,9 @@
 // Identifiers that every target accepts.
 #pragma once
 
-#include <set>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 
 namespace lacquer::passes {
 
@@ -18,7 +18,13 @@ public:
   void take(std::string_view name) { taken_.emplace(name); }
 
 private:
-  std::set<std::string, std::less<>> taken_;
+  struct Hash {
+    using is_transparent = void;
+    size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
+  };
+  bool free(std::string_view name) const;
+
+  std::unordered_set<std::string, Hash, std::equal_to<>> taken_;  ///< only asked, never listed
 };
 
 /// The first part of a term's name: "coat" of "coat.distribution".

@@ -41,7 +41,9 @@ std::vector<ir::ValueId> frontier(const ir::Module& module) {
     }
   }
   for (const ir::Output& output : module.outputs) consider(output.value);
-  return {found.begin(), found.end()};
+  std::vector<ir::ValueId> values(found.begin(), found.end());
+  dag.sortByRank(values);
+  return values;
 }
 
 /// An order without holes: the wide ones first, each vec3 followed by a float while there are any.
@@ -59,76 +61,44 @@ std::vector<ir::ValueId> packed(const ir::Dag& dag, const std::vector<ir::ValueI
   return order;
 }
 
-void placeMaterial(ir::Module& module) {
+/// What stands for some values in the rewrite; empty where the value stays.
+struct Placement {
+  std::vector<uint32_t> field_of;    ///< of a value of material rate that faster ones read: its field
+  std::vector<uint32_t> varying_of;  ///< of an Interpolate: its varying
+};
+
+/// The material block and its preshader.
+void chooseFields(ir::Module& module, Placement& placement) {
   const std::vector<ir::ValueId> values = packed(module.dag, frontier(module));
   if (values.empty()) return;
   ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0};
   Names names;
-  std::vector<uint32_t> field_of(module.dag.size(), 0);
+  placement.field_of.resize(module.dag.size(), 0);
   for (const ir::ValueId id : values) {
-    field_of[id] = static_cast<uint32_t>(block.fields.size());
+    const auto field = static_cast<uint32_t>(block.fields.size());
+    placement.field_of[id] = field;
     // A Bool has no place in a block that all targets lay out alike: it travels as 0 or 1.
     const ir::Type type = module.dag[id].type == ir::Type::Bool ? ir::Type::Float : module.dag[id].type;
     block.fields.push_back({names.pick(nameFor(module.dag, id), layerFor(module.dag, id)), type, 0, {}, {}});
+    module.preshader.push_back({field, id});
   }
   block.size = ir::layout(block.fields);
-  const auto block_index = static_cast<uint32_t>(module.blocks.size());
   module.blocks.push_back(block);
+}
 
-  // The expressions are kept beside the outputs while the faster values are made on the fields.
-  std::vector<ir::PreshaderField> preshader;
-  for (const ir::ValueId id : values) preshader.push_back({field_of[id], id});
-  module.preshader = preshader;
-  const std::set<ir::ValueId> hoisted(values.begin(), values.end());
-  const auto field = [&](Rewriter& rewriter, ir::ValueId old_id) {
-    const ir::BlockField& f = block.fields[field_of[old_id]];
-    const ir::ValueId read = rewriter.dag().input({ir::InputKind::BlockField,
-                                                   "material." + f.name,
-                                                   f.type,
-                                                   ir::Rate::Frame,
-                                                   {},
-                                                   block_index,
-                                                   field_of[old_id]});
-    if (rewriter.old()[old_id].type != ir::Type::Bool) return read;
-    return rewriter.dag().make(ir::Op::Less, {rewriter.dag().constant(0.5), read});
-  };
-  Rewriter rewriter(module);
-  rewriter.run([&](Rewriter& r, ir::ValueId id, std::span<const ir::ValueId> operands) {
-    const ir::Value& value = r.old()[id];
-    if (value.rate <= ir::Rate::Material) return r.copy(id, operands);
-    std::array<ir::ValueId, 4> read{};
-    for (size_t k = 0; k < operands.size(); ++k) {
-      const bool low = r.old()[value.args[k]].rate == ir::Rate::Material;
-      read[k] = low ? field(r, value.args[k]) : operands[k];
-    }
-    return r.copy(id, {read.data(), operands.size()});
-  });
-  ir::Dag& dag = module.dag;
-  for (ir::Output& output : module.outputs) {
-    if (dag[output.value].rate != ir::Rate::Material) continue;
-    for (const ir::PreshaderField& p : module.preshader) {
-      if (p.value != output.value) continue;
-      const ir::BlockField& f = block.fields[p.field];
-      output.value = dag.input({ir::InputKind::BlockField,
-                                "material." + f.name,
-                                f.type,
-                                ir::Rate::Frame,
-                                {},
-                                block_index,
-                                p.field});
-      if (dag[p.value].type == ir::Type::Bool)
-        output.value = dag.make(ir::Op::Less, {dag.constant(0.5), output.value});
-    }
-  }
-  for (ir::PreshaderField& p : module.preshader) {
-    if (dag[p.value].type != ir::Type::Bool) continue;
-    p.value = dag.make(ir::Op::Select, {p.value, dag.constant(1), dag.constant(0)});
-  }
+/// Reads the field of a value of material rate. The block is the last one.
+ir::ValueId readField(ir::Module& module, ir::ValueId id, uint32_t field) {
+  const auto block = static_cast<uint32_t>(module.blocks.size() - 1);
+  const ir::BlockField& f = module.blocks[block].fields[field];
+  const ir::ValueId read = module.dag.input(
+      {ir::InputKind::BlockField, "material." + f.name, f.type, ir::Rate::Frame, {}, block, field});
+  if (module.dag[id].type != ir::Type::Bool) return read;
+  return module.dag.make(ir::Op::Less, {module.dag.constant(0.5), read});
 }
 
 /// Parameters that the preshader would have read become constants of the pipeline. Ids follow the names'
 /// order: they depend on nothing but what the shader needs.
-void placeSpecConstants(ir::Module& module) {
+void chooseSpecConstants(ir::Module& module) {
   Names names;
   for (const ir::Block& block : module.blocks) {
     for (const std::string& name : {block.name, block.instance}) names.take(name), names.take(name + "s");
@@ -142,48 +112,83 @@ void placeSpecConstants(ir::Module& module) {
     parameter.constant_name = names.pick(parameter.name);
     next += ir::componentCount(parameter.type);
   }
-  Rewriter rewriter(module);
-  rewriter.run([&](Rewriter& r, ir::ValueId id, std::span<const ir::ValueId> operands) {
-    if (r.old()[id].op != ir::Op::Input) return r.copy(id, operands);
-    const ir::Input& input = r.old().inputOf(id);
-    if (input.kind != ir::InputKind::Parameter) return r.copy(id, operands);
-    return r.dag().input({ir::InputKind::SpecConstant, module.parameters[input.field].constant_name,
-                          input.type, ir::Rate::Frame, input.range, 0, input.field});
-  });
 }
 
-void placeVaryings(ir::Module& module) {
+void chooseVaryings(ir::Module& module, Placement& placement) {
   // Varyings that are there already come from outside: the template has no vertex stage and no Interpolate.
   if (!module.varyings.empty()) return;
   Names names;
-  for (const ir::ValueId id : ir::reachable(module, ir::Stage::Fragment)) {
-    if (module.dag[id].op != ir::Op::Interpolate) continue;
-    const ir::Type type = module.dag[id].type;
-    module.varyings.push_back({names.pick(nameFor(module.dag, id)), type,
-                               static_cast<uint32_t>(module.varyings.size()), module.dag[id].args[0]});
+  std::vector<ir::ValueId> live = ir::reachable(module, ir::Stage::Fragment);
+  std::erase_if(live, [&](ir::ValueId id) { return module.dag[id].op != ir::Op::Interpolate; });
+  module.dag.sortByRank(live);
+  placement.varying_of.resize(module.dag.size(), 0);
+  for (const ir::ValueId id : live) {
+    const auto index = static_cast<uint32_t>(module.varyings.size());
+    placement.varying_of[id] = index;
+    module.varyings.push_back(
+        {names.pick(nameFor(module.dag, id)), module.dag[id].type, index, module.dag[id].args[0]});
   }
-  uint32_t next = 0;
-  Rewriter rewriter(module);
-  rewriter.run([&](Rewriter& r, ir::ValueId id, std::span<const ir::ValueId> operands) {
-    if (r.old()[id].op != ir::Op::Interpolate) return r.copy(id, operands);
-    const ir::Varying& varying = module.varyings[next];
+}
+
+ir::ValueId placed(Rewriter& r, const Placement& placement, ir::ValueId id,
+                   std::span<const ir::ValueId> operands) {
+  const ir::Value value = r.dag()[id];
+  const ir::Module& module = r.module();
+  if (value.op == ir::Op::Interpolate) {
+    const uint32_t index = placement.varying_of[id];
+    const ir::Varying& varying = module.varyings[index];
     return r.dag().input(
-        {ir::InputKind::Varying, varying.name, varying.type, ir::Rate::Fragment, {}, 0, next++});
-  });
-  for (uint32_t i = 0; i < module.varyings.size(); ++i) {
-    const ir::Varying& varying = module.varyings[i];
-    module.outputs.push_back({ir::OutputKind::Varying, ir::Stage::Vertex, varying.name, i, varying.source});
+        {ir::InputKind::Varying, varying.name, varying.type, ir::Rate::Fragment, {}, 0, index});
+  }
+  if (module.spec_constants) {
+    if (value.op != ir::Op::Input) return r.copy(id, operands);
+    const ir::Input input = r.dag().inputOf(id);
+    if (input.kind != ir::InputKind::Parameter) return r.copy(id, operands);
+    return r.dag().input({ir::InputKind::SpecConstant, module.parameters[input.field].constant_name,
+                          input.type, ir::Rate::Frame, input.range, 0, input.field});
+  }
+  if (value.rate <= ir::Rate::Material) return id;
+  std::array<ir::ValueId, 4> read{};
+  for (size_t k = 0; k < operands.size(); ++k) {
+    const ir::ValueId old = value.args[k];
+    const bool low = r.dag()[old].rate == ir::Rate::Material;
+    read[k] = low ? readField(r.module(), old, placement.field_of[old]) : operands[k];
+  }
+  return r.copy(id, {read.data(), operands.size()});
+}
+
+/// What the rewrite does not see, since nothing reads it: outputs of material rate.
+void finish(ir::Module& module, const Placement& placement) {
+  ir::Dag& dag = module.dag;
+  for (ir::Output& output : module.outputs) {
+    if (dag[output.value].rate == ir::Rate::Material)
+      output.value = readField(module, output.value, placement.field_of[output.value]);
+  }
+  for (ir::PreshaderField& p : module.preshader) {
+    if (dag[p.value].type != ir::Type::Bool) continue;
+    p.value = dag.make(ir::Op::Select, {p.value, dag.constant(1), dag.constant(0)});
   }
 }
 
 }  // namespace
 
 void place(ir::Module& module) {
+  Placement placement;
   if (module.spec_constants)
-    placeSpecConstants(module);
+    chooseSpecConstants(module);
   else
-    placeMaterial(module);
-  placeVaryings(module);
+    chooseFields(module, placement);
+  const bool own_varyings = module.varyings.empty();
+  chooseVaryings(module, placement);
+  Rewriter(module).run([&](Rewriter& r, ir::ValueId id, std::span<const ir::ValueId> operands) {
+    return placed(r, placement, id, operands);
+  });
+  if (!module.spec_constants) finish(module, placement);
+  for (uint32_t i = 0; own_varyings && i < module.varyings.size(); ++i) {
+    const ir::Varying& varying = module.varyings[i];
+    module.outputs.push_back({ir::OutputKind::Varying, ir::Stage::Vertex, varying.name, i, varying.source});
+  }
+  ir::compact(module);
 }
 
 }  // namespace lacquer::passes

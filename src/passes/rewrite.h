@@ -1,4 +1,4 @@
-// Rebuilding a module's DAG value by value: the frame that most passes share.
+// Rewriting a module's DAG value by value: the frame that most passes share.
 #pragma once
 
 #include <functional>
@@ -8,29 +8,28 @@
 
 namespace lacquer::passes {
 
-/// Makes module.dag anew from the values that its outputs, varyings and preshader reach, in ascending order.
-/// `make` is given each old value with its operands already mapped and returns the new value; it usually ends
-/// in `dag.make(value.op, operands, value.payload)` through Rewriter::copy. Terms, names and assumed ranges
-/// are carried over. All ids held by the module are remapped.
+/// Rewrites the values that a module's outputs, varyings and preshader reach, in ascending order: `make` is
+/// given each with its operands mapped and returns what stands for it, usually Rewriter::copy. New values are
+/// appended to the DAG, at the rank of the old one; what does not change keeps its id and costs next to
+/// nothing. Terms, names and assumed ranges are carried over, and the ids held by the module are remapped.
+///
+/// Making a value may move the others in memory: take a copy of a Value, not a reference.
 class Rewriter {
 public:
-  explicit Rewriter(ir::Module& module) : module_(module), old_(std::move(module.dag)) {}
+  explicit Rewriter(ir::Module& module) : module_(module) {}
 
-  using Make =
-      std::function<ir::ValueId(Rewriter&, ir::ValueId old_id, std::span<const ir::ValueId> operands)>;
+  using Make = std::function<ir::ValueId(Rewriter&, ir::ValueId id, std::span<const ir::ValueId> operands)>;
   void run(const Make& make);
 
-  const ir::Dag& old() const { return old_; }
   ir::Dag& dag() { return module_.dag; }
   ir::Module& module() { return module_; }
-  /// The plain copy of an old value on new operands.
-  ir::ValueId copy(ir::ValueId old_id, std::span<const ir::ValueId> operands);
-  /// The new value of an old one that has been made already.
-  ir::ValueId mapped(ir::ValueId old_id) const { return map_[old_id]; }
+  /// The value on new operands.
+  ir::ValueId copy(ir::ValueId id, std::span<const ir::ValueId> operands) { return dag().remake(id, operands); }
+  /// What stands for a value that has been visited already.
+  ir::ValueId mapped(ir::ValueId id) const { return map_[id]; }
 
 private:
   ir::Module& module_;
-  ir::Dag old_;
   std::vector<ir::ValueId> map_;
 };
 

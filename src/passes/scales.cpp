@@ -34,16 +34,16 @@ public:
 
   void run() {
     Rewriter rewriter(module_);
-    uses_.assign(rewriter.old().size(), 0);
-    for (const ValueId id : ir::reachable(rewriter.old(), rootsOf(module_))) {
-      for (const ValueId operand : rewriter.old()[id].operands()) ++uses_[operand];
+    uses_.assign(rewriter.dag().size(), 0);
+    for (const ValueId id : ir::reachable(rewriter.dag(), rootsOf(module_))) {
+      for (const ValueId operand : rewriter.dag()[id].operands()) ++uses_[operand];
     }
     rewriter.run([this](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
       if (const ValueId hoisted = hoistFactor(r, id, operands); hoisted != ir::kNoValue) return hoisted;
-      const int vector = scaledVector(r.old(), id);
+      const int vector = scaledVector(r.dag(), id);
       if (vector < 0) return r.copy(id, operands);
       const auto v = static_cast<size_t>(vector);
-      const ValueId inner = r.old()[id].args[v];
+      const ValueId inner = r.dag()[id].args[v];
       if (uses_[inner] != 1 || !worthwhile(r.dag(), operands[v])) return r.copy(id, operands);
       return scale(r.dag(), operands[v], operands[1 - v]);
     });
@@ -53,11 +53,19 @@ private:
   /// m (p + q y) = (m p) + (m q) y for m, p and q of the material's rate or constant: two products go to the
   /// preshader.
   ValueId hoistFactor(Rewriter& r, ValueId id, std::span<const ValueId> operands) const {
-    const ir::Value& value = r.old()[id];
+    const ir::Value value = r.dag()[id];
     if (value.op != Op::Mul || value.type != ir::Type::Float || value.rate <= ir::Rate::Material)
       return ir::kNoValue;
     ir::Dag& dag = r.dag();
     const auto low = [&](ValueId v) { return dag[v].rate <= ir::Rate::Material; };
+    for (const size_t k : {size_t{0}, size_t{1}}) {
+      // m (n y) = (m n) y
+      const ir::Value product = dag[operands[1 - k]];
+      if (!low(operands[k]) || product.op != Op::Mul || product.type != ir::Type::Float) continue;
+      for (const size_t n : {size_t{0}, size_t{1}}) {
+        if (low(product.args[n])) return dag.mul(dag.mul(operands[k], product.args[n]), product.args[1 - n]);
+      }
+    }
     for (const size_t k : {size_t{0}, size_t{1}}) {
       const ir::Value sum = dag[operands[1 - k]];
       if (!low(operands[k]) || sum.op != Op::Add || uses_[value.args[1 - k]] != 1) continue;
@@ -73,15 +81,22 @@ private:
     return ir::kNoValue;
   }
 
+  /// What is of the material's rate is computed already.
   static bool worthwhile(const ir::Dag& dag, ValueId vector) {
-    if (scaledVector(dag, vector) >= 0) return true;
     const ir::Value& value = dag[vector];
+    if (value.rate <= ir::Rate::Material) return false;
+    if (scaledVector(dag, vector) >= 0) return true;
     if (value.op != Op::Add || !ir::isFloatVector(value.type)) return false;
+    const auto scaled = [&](ValueId id) {
+      return dag[id].rate > ir::Rate::Material && scaledVector(dag, id) >= 0;
+    };
+    if (scaled(value.args[0]) && scaled(value.args[1])) return true;
     return dag[value.args[0]].type == ir::Type::Float || dag[value.args[1]].type == ir::Type::Float;
   }
 
   static ValueId scale(ir::Dag& dag, ValueId vector, ValueId s) {
     const ir::Value value = dag[vector];
+    if (value.rate <= ir::Rate::Material) return dag.mul(vector, s);
     if (const int v = scaledVector(dag, vector); v >= 0) {
       return dag.mul(value.args[static_cast<size_t>(v)], dag.mul(value.args[static_cast<size_t>(1 - v)], s));
     }
@@ -97,7 +112,7 @@ private:
 /// stands in registers, the sum being a fused multiply-add.
 void pullOutOfDots(ir::Module& module) {
   Rewriter rewriter(module);
-  const ir::Dag& old = rewriter.old();
+  const ir::Dag& old = module.dag;
   std::vector<int> dots(old.size(), 0);
   std::vector<bool> needed(old.size(), false);
   for (const ValueId id : ir::reachable(old, rootsOf(module))) {
@@ -113,7 +128,7 @@ void pullOutOfDots(ir::Module& module) {
   for (const ir::Output& output : module.outputs) needed[output.value] = true;
   const auto pays = [&](ValueId id) { return scaledVector(old, id) >= 0 && !needed[id] && dots[id] <= 2; };
   rewriter.run([&](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
-    const ir::Value& value = r.old()[id];
+    const ir::Value value = r.dag()[id];
     if (value.op != Op::Dot) return r.copy(id, operands);
     ValueId factor = r.dag().constant(1);
     std::array<ValueId, 2> sides{operands[0], operands[1]};
@@ -136,9 +151,9 @@ public:
 
   void run() {
     Rewriter(module_).run([this](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
-      const ir::Value& value = r.old()[id];
+      const ir::Value value = r.dag()[id];
       const bool lookup = value.op == Op::Texture || value.op == Op::TextureLod;
-      if (!lookup || r.old()[value.args[0]].type != ir::Type::TextureCube) return r.copy(id, operands);
+      if (!lookup || r.dag()[value.args[0]].type != ir::Type::TextureCube) return r.copy(id, operands);
       std::vector<ValueId> changed(operands.begin(), operands.end());
       changed[1] = stripped(r.dag(), changed[1]);
       return r.copy(id, changed);

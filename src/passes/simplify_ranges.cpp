@@ -111,7 +111,7 @@ void simplifyRanges(ir::Module& module) {
     if (decision.kind == Decision::Kind::False) return rewriter.dag().boolean(false);
     ValueId result = operands[decision.operand];
     if (decision.kind == Decision::Kind::NegatedOperand) result = rewriter.dag().make(Op::Neg, {result});
-    const ir::Type type = rewriter.old()[id].type;
+    const ir::Type type = rewriter.dag()[id].type;
     return rewriter.dag()[result].type == type ? result : rewriter.dag().construct(type, {result});
   });
 }

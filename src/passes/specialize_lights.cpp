@@ -33,25 +33,26 @@ public:
       : rewriter_(rewriter), type_(type), group_(group), element_(element) {}
 
   ir::ValueId make(ir::ValueId root) {
-    const ir::Dag& old = rewriter_.old();
-    for (const ir::ValueId id : ir::reachable(old, {{root}})) {
-      const ir::Value& value = old[id];
+    ir::Dag& dag = rewriter_.dag();
+    for (const ir::ValueId id : ir::reachable(dag, {{root}})) {
+      const ir::Value value = dag[id];
       if (value.rate != ir::Rate::Light) continue;
       std::array<ir::ValueId, 4> operands{};
       for (size_t k = 0; k < value.count; ++k) {
         const ir::ValueId a = value.args[k];
-        operands[k] = old[a].rate == ir::Rate::Light ? made_[a] : rewriter_.mapped(a);
+        operands[k] = dag[a].rate == ir::Rate::Light ? made_[a] : rewriter_.mapped(a);
       }
-      rewriter_.dag().setTerm(old.termOf(id));
+      dag.setTerm(dag.termOf(id));
+      dag.setRank(dag.rankOf(id));
       made_[id] = value.op == ir::Op::Input ? input(id) : rewriter_.copy(id, {operands.data(), value.count});
-      rewriter_.dag().name(made_[id], old.nameOf(id));
+      dag.inherit(made_[id], id);
     }
-    return old[root].rate == ir::Rate::Light ? made_[root] : rewriter_.mapped(root);
+    return dag[root].rate == ir::Rate::Light ? made_[root] : rewriter_.mapped(root);
   }
 
 private:
   ir::ValueId input(ir::ValueId id) {
-    ir::Input input = rewriter_.old().inputOf(id);
+    ir::Input input = rewriter_.dag().inputOf(id);
     const auto fixed = type_.fixed.find(input.name);
     if (fixed != type_.fixed.end()) return rewriter_.dag().constant(fixed->second);
     input.group = group_;
@@ -83,7 +84,7 @@ void specializeLights(ir::Module& module, const LightFacts& facts) {
   }
   module.light_groups = groups;
   Rewriter(module).run([&](Rewriter& rewriter, ir::ValueId id, std::span<const ir::ValueId> operands) {
-    const ir::Value& value = rewriter.old()[id];
+    const ir::Value value = rewriter.dag()[id];
     if (value.op != ir::Op::SumOverLights) return rewriter.copy(id, operands);
     ir::ValueId total = rewriter.dag().constant(value.type, {});
     uint32_t element = 0;
@@ -92,7 +93,8 @@ void specializeLights(ir::Module& module, const LightFacts& facts) {
       const bool single = types[t].count == 1;
       Body body(rewriter, types[t], std::max(group_of[t], 0), single ? static_cast<int32_t>(element) : -1);
       ir::ValueId part = body.make(value.args[0]);
-      rewriter.dag().setTerm(rewriter.old().termOf(id));
+      rewriter.dag().setTerm(rewriter.dag().termOf(id));
+      rewriter.dag().setRank(rewriter.dag().rankOf(id));
       if (!single)
         part = rewriter.dag().make(ir::Op::SumOverLights, {part}, static_cast<uint32_t>(group_of[t]));
       total = rewriter.dag().add(total, part);

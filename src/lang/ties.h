@@ -1,0 +1,22 @@
+// What ties a value to a light or a vertex.
+#pragma once
+
+#include <cstdint>
+
+#include "ir/dag.h"
+
+namespace lacquer::lang {
+
+/// What a value differs with, as bits: a value of a light is only good under a sum over the lights, a value
+/// of a vertex only where it is interpolated. Those operations untie it.
+using Ties = uint8_t;
+inline constexpr Ties kLight = 1;
+inline constexpr Ties kVertex = 2;
+
+/// The tie that an operation takes from its operand.
+constexpr Ties untiedBy(ir::Op op) {
+  if (op == ir::Op::SumOverLights) return kLight;
+  return op == ir::Op::Interpolate ? kVertex : Ties{0};
+}
+
+}  // namespace lacquer::lang
