@@ -166,7 +166,7 @@ TEST_F(Build, CacheKeepsItsSize) {
   ASSERT_EQ(runProgram(gen("out", {"--cache", "cache", "--cache-size", "100KB"}), folder_), 0);
   size_t total = 0;
   for (const auto& [name, state] : filesBelow(folder_ / "cache")) total += state.bytes.size();
-  EXPECT_LE(total, 100000U);
+  EXPECT_LE(total, 100U * 1024U);
   EXPECT_GT(total, 1000U);
   EXPECT_EQ(differences(folder_ / "plain", folder_ / "out"), "");
 }
