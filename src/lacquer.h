@@ -75,6 +75,7 @@ struct Options {
   Lights lights;
   bool ibl = true;                  ///< image-based light (forward)
   bool multiple_scattering = true;  ///< compensate it for multiple scattering
+  bool dfg_table = true;            ///< read the texture environment_dfg (docs/bindings.md); else a fit
   bool decode_srgb = false;         ///< decode colour textures in the shader, not by their format
   bool permissive = false;          ///< exclusion violations drop the coat with a warning instead of failing
   bool validate = true;             ///< compile and validate everything with glslang and SPIRV-Tools

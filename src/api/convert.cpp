@@ -114,6 +114,7 @@ graph::BuildOptions buildOptions(const Options& options) {
   build.template_name = options.template_name;
   build.ibl = options.ibl;
   build.multiple_scattering = options.multiple_scattering;
+  build.dfg_table = options.dfg_table;
   build.decode_srgb = options.decode_srgb;
   build.live = {options.live.begin(), options.live.end()};
   return build;

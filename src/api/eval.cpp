@@ -6,6 +6,7 @@
 
 #include "api/internal.h"
 #include "api/points.h"
+#include "eval/dfg.h"
 #include "eval/evaluate.h"
 #include "eval/image.h"
 #include "gltf/table.h"
@@ -151,7 +152,11 @@ public:
     for (size_t i = 0; i < used.size(); ++i) {
       if (!used[i]) continue;
       const ir::TextureSlot& slot = module_.textures[i];
-      if (slot.environment) {
+      if (slot.name == "environment_dfg") {
+        bindings_.textures[slot.name] = [](size_t, const std::array<double, 3>& at, double) {
+          return eval::lookUpEnvironmentDfg(at[0], at[1]);
+        };
+      } else if (slot.environment) {
         bindings_.textures[slot.name] = [&points](size_t point, const std::array<double, 3>&, double) {
           const std::array<double, 3>& e = points.environment[point];
           return std::array<double, 4>{e[0], e[1], e[2], 1};

@@ -31,6 +31,9 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
       ->delimiter(',');
   verb->add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
                  "do not compensate image-based light for multiple scattering");
+  verb->add_option("--dfg", flags.dfg, "the split sum's factors: from the texture environment_dfg, or a fit without one")
+      ->check(CLI::IsMember({"table", "fit"}))
+      ->capture_default_str();
   verb->add_flag("--permissive", flags.options.permissive,
                  "drop a coat that must not be there instead of failing");
   verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files");
@@ -67,6 +70,7 @@ int runEval(EvalFlags& flags) {
     return 1;
   }
   flags.options.multiple_scattering = !flags.no_multiple_scattering;
+  flags.options.dfg_table = flags.dfg == "table";
   Messages messages;
   const std::string answer = evaluate(flags.file, flags.material, points, flags.points,
                                       flags.engine == "float", flags.texels, flags.options, messages);

@@ -14,6 +14,7 @@ struct EvalFlags {
   std::string file, material, points, engine = "double", profile = "khr";
   std::vector<std::string> texels;
   bool no_multiple_scattering = false;
+  std::string dfg = "table";
 };
 
 CLI::App* addEval(CLI::App& app, EvalFlags& flags);

@@ -36,7 +36,7 @@ const CLI::Validator kNotEmpty(
 struct Flags {
   Options options;
   std::vector<std::string> files, graphs, materials, targets;
-  std::string output, format = "json", pass, lights = "any", params = "uniform", spirv_from = "direct";
+  std::string output, format = "json", pass, lights = "any", params = "uniform", spirv_from = "direct", dfg = "table";
   bool json = false, no_validate = false, no_ibl = false, no_multiple_scattering = false, quiet = false;
   bool disassembly = false, time = false, replan = false;
   std::string ninja;
@@ -83,6 +83,7 @@ std::string finish(Flags& flags) {
   options.validate = !flags.no_validate;
   options.ibl = !flags.no_ibl;
   options.multiple_scattering = !flags.no_multiple_scattering;
+  options.dfg_table = flags.dfg == "table";
   options.parameters = flags.params == "baked"  ? lacquer::Parameters::Baked
                        : flags.params == "spec" ? lacquer::Parameters::Spec
                                                 : lacquer::Parameters::Uniform;
@@ -126,6 +127,9 @@ void addShared(CLI::App& app, Flags& flags) {
   app.add_flag("--no-ibl", flags.no_ibl, "no image-based light");
   app.add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
                "do not compensate image-based light for multiple scattering");
+  app.add_option("--dfg", flags.dfg, "the split sum's factors: from the texture environment_dfg, or a fit without one")
+      ->check(CLI::IsMember({"table", "fit"}))
+      ->capture_default_str();
   app.add_flag("--decode-srgb", flags.options.decode_srgb, "decode colour textures in the shader");
   app.add_flag("--permissive", flags.options.permissive,
                "drop a coat that must not be there instead of failing");

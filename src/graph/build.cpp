@@ -19,7 +19,7 @@ public:
 
   void direct() {
     add("half", "half_vector", {{"V", given("view")}, {"L", given("light_sample.L")}});
-    const Lobe base = isotropicLobe("base", surface_.normal, surface_.alpha);
+    const Lobe base = isotropicLobe("base", surface_.normal, surface_.alpha, surface_.textured_alpha);
     Node& node = add("base.direct", "base_direct",
                      {{"diffuse", ref("base.reflectance", "diffuse")},
                       {"F0", ref("base.reflectance", "F0")},
@@ -43,18 +43,15 @@ public:
         {{"environment_irradiance", Source{TextureRef{"environment_irradiance"}, {}}},
          {"N", surface_.normal}});
     add("base.view_cosine", "view_cosine", {{"N", surface_.normal}, {"V", given("view")}});
-    add("base.albedo", "directional_albedo",
-        {{"NdotV", ref("base.view_cosine")}, {"roughness", surface_.roughness}});
-    add("base.fresnel", "directional_fresnel",
-        {{"NdotV", ref("base.view_cosine")}, {"roughness", surface_.roughness}});
+    environmentBrdf("base", ref("base.view_cosine"), surface_.roughness);
     const bool compensated = options_.multiple_scattering;
     Node& node = add("base.indirect", compensated ? "base_indirect_multiple_scattering" : "base_indirect",
                      {{"diffuse", ref("base.reflectance", "diffuse")},
                       {"F0", ref("base.reflectance", "F0")},
                       {"radiance", ref("base.radiance")},
                       {"irradiance", ref("base.irradiance")},
-                      {"albedo", ref("base.albedo")},
-                      {"fresnel", ref("base.fresnel")}});
+                      {"scale", ref("base.environment_brdf", "scale")},
+                      {"bias", ref("base.environment_brdf", "bias")}});
     if (surface_.dielectric_f0 && !compensated)
       Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
     Source result = ref("base.indirect");
@@ -84,15 +81,18 @@ private:
   }
 
   /// D and V of a layer, which are there, become its lobe.
-  Lobe lobe(const std::string& layer) {
-    add(layer + ".specular", "specular_lobe",
+  Lobe lobe(const std::string& layer, bool split = false) {
+    const std::string visibility = layer + ".visibility";
+    Node& node = add(layer + ".specular", "specular_lobe",
         {{"numerator", ref(layer + ".distribution", "numerator")},
          {"denominator", ref(layer + ".distribution", "denominator")},
-         {"inverse_visibility", ref(layer + ".visibility")}});
+         {"inverse_visibility", split ? ref(visibility, "sum") : ref(visibility)}});
+    if (split) Graph::connect(node, "weight", ref(visibility, "weight"));
     return {ref(layer + ".cosines", "NdotL"), ref(layer + ".specular")};
   }
 
-  Lobe isotropicLobe(const std::string& layer, const Source& normal, const Source& alpha) {
+  /// `textured`: alpha changes from pixel to pixel.
+  Lobe isotropicLobe(const std::string& layer, const Source& normal, const Source& alpha, bool textured) {
     const Source NdotL = cosines(layer, normal);
     add(layer + ".distribution", "ggx_distribution",
         {{"N", normal},
@@ -100,9 +100,9 @@ private:
          {"length2", ref("half", "length2")},
          {"NdotSum", ref(layer + ".cosines", "NdotSum")},
          {"alpha", alpha}});
-    add(layer + ".visibility", "smith_visibility",
+    add(layer + ".visibility", textured ? "smith_visibility" : "smith_visibility_split",
         {{"NdotL", NdotL}, {"NdotV", ref(layer + ".cosines", "NdotV")}, {"alpha", alpha}});
-    return lobe(layer);
+    return lobe(layer, !textured);
   }
 
   Lobe anisotropicLobe(const CoatSources& coat) {
@@ -127,7 +127,7 @@ private:
 
   Source coatDirect(const Source& base) {
     const CoatSources& coat = *surface_.coat;
-    const Lobe own = coat.anisotropy ? anisotropicLobe(coat) : isotropicLobe("coat", coat.normal, coat.alpha);
+    const Lobe own = coat.anisotropy ? anisotropicLobe(coat) : isotropicLobe("coat", coat.normal, coat.alpha, coat.textured_alpha);
     if (coat.darkening) {
       add("coat.light_cosine", "view_cosine", {{"N", coat.normal}, {"V", given("light_sample.L")}});
       add("coat.darkening_direct", "coat_darkening_direct",
@@ -139,6 +139,13 @@ private:
     }
     add("coat.lobe", "coat_lobe", {{"lobe", own.lobe}, {"NdotL", own.NdotL}});
     return layer("direct", base, ref("coat.lobe"));
+  }
+
+  void environmentBrdf(const std::string& layer, const Source& cosine, const Source& roughness) {
+    Node& node = add(layer + ".environment_brdf", options_.dfg_table ? "environment_brdf" : "environment_brdf_fit",
+                     {{"NdotV", cosine}, {"roughness", roughness}});
+    if (options_.dfg_table)
+      Graph::connect(node, "environment_dfg", Source{TextureRef{"environment_dfg"}, {}});
   }
 
   Source coatIndirect(const Source& base) {
@@ -160,9 +167,11 @@ private:
          {"R", ref("coat.reflection")},
          {"roughness", coat.roughness},
          {"max_lod", given("environment_max_lod")}});
-    add("coat.albedo", "directional_albedo", {{"NdotV", coat.cosine}, {"roughness", coat.roughness}});
+    environmentBrdf("coat", coat.cosine, coat.roughness);
     add("coat.lobe_indirect", "coat_lobe_indirect",
-        {{"radiance", ref("coat.radiance")}, {"albedo", ref("coat.albedo")}});
+        {{"radiance", ref("coat.radiance")},
+         {"scale", ref("coat.environment_brdf", "scale")},
+         {"bias", ref("coat.environment_brdf", "bias")}});
     if (coat.darkening) {
       add("coat.darkening_ibl", "coat_darkening_ibl",
           {{"F0", coat.F0},

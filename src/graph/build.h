@@ -11,6 +11,7 @@ namespace lacquer::graph {
 struct BuildOptions {
   std::string template_name = "forward";
   bool ibl = true;                  ///< image-based lighting (forward)
+  bool dfg_table = true;            ///< the split sum's factors from environment_dfg, not from a fit
   bool multiple_scattering = true;  ///< compensate the IBL for multiple scattering (Fdez-Aguera 2019)
   bool decode_srgb = false;         ///< decode colour textures in the shader instead of by their format
   std::set<std::string>

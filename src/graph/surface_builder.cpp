@@ -232,6 +232,7 @@ void SurfaceBuilder::metallicRoughness() {
                                "pbrMetallicRoughness/roughnessFactor"));
   if (material_.metallicRoughnessTexture) {
     inputs.emplace_back("texel", texel(*material_.metallicRoughnessTexture, "metallic_roughness", false));
+    surface_.textured_alpha = true;
   }
   add("base.metallic_roughness", "metallic_roughness", std::move(inputs));
   surface_.metallic = ref("base.metallic_roughness", "metallic");
@@ -336,6 +337,7 @@ void SurfaceBuilder::coatShape(const CoatModel& model, CoatSources& coat) {
   if (model.roughness_texture) {
     inputs.emplace_back("roughness_texel",
                         pick(texel(*model.roughness_texture, "coat_roughness", false), "g"));
+    coat.textured_alpha = true;
   }
   add("coat.surface", "coat_surface", std::move(inputs));
   coat.weight = ref("coat.surface", "weight");

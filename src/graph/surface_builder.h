@@ -22,6 +22,7 @@ struct Anisotropy {
 /// The coat as wired; absent members are terms that are skipped.
 struct CoatSources {
   Source weight, roughness, alpha, normal, cosine, F0, fresnel;
+  bool textured_alpha = false;
   std::optional<Source> color;       ///< what the tint is at normal incidence
   std::optional<Source> absorption;  ///< the colour's transmittance as seen (or the ADOBE tint)
   std::optional<Source> darkening;   ///< how much of it
@@ -30,6 +31,7 @@ struct CoatSources {
 
 struct Surface {
   bool unlit = false;
+  bool textured_alpha = false;
   Source base_color, metallic, roughness, alpha, normal;
   std::optional<Source> dielectric_f0, occlusion, emission, hidden, alpha_out;
   std::optional<CoatSources> coat;

@@ -1,0 +1,85 @@
+#include "eval/dfg.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lacquer::eval {
+
+namespace {
+
+/// ALPHA_MIN of nodes/constants.node.
+constexpr double kAlphaMin = 0.001;
+
+/// Samples over the half vector's angle and around the normal: what comes out moves by less than 1e-4 with twice as many.
+constexpr int kAngles = 96;
+constexpr int kTurns = 48;
+
+constexpr uint32_t kTableSize = 64;
+
+double smithVisibility(double NdotL, double NdotV, double alpha2) {
+  const double light = NdotV * std::sqrt(NdotL * NdotL * (1 - alpha2) + alpha2);
+  const double view = NdotL * std::sqrt(NdotV * NdotV * (1 - alpha2) + alpha2);
+  return 0.5 / (light + view);
+}
+
+}  // namespace
+
+std::array<double, 2> environmentDfg(double NdotV, double roughness) {
+  const double alpha = std::max(roughness * roughness, kAlphaMin);
+  const double alpha2 = alpha * alpha;
+  const double sine = std::sqrt(std::max(1 - NdotV * NdotV, 0.0));
+  double scale = 0;
+  double bias = 0;
+  for (int i = 0; i < kAngles; ++i) {
+    // Half vectors are drawn from D N.H, which leaves V.H and the visibility to sum.
+    const double u = (i + 0.5) / kAngles;
+    const double NdotH = std::sqrt((1 - u) / (1 + (alpha2 - 1) * u));
+    const double tilt = std::sqrt(std::max(1 - NdotH * NdotH, 0.0));
+    for (int k = 0; k < kTurns; ++k) {
+      const double VdotH = NdotV * NdotH + sine * tilt * std::cos((k + 0.5) / kTurns * std::numbers::pi);
+      const double NdotL = 2 * VdotH * NdotH - NdotV;
+      if (NdotL <= 0 || VdotH <= 0) continue;
+      const double weight = smithVisibility(NdotL, NdotV, alpha2) * 4 * NdotL * VdotH / NdotH;
+      const double fresnel = std::pow(1 - VdotH, 5);
+      scale += weight * (1 - fresnel);
+      bias += weight * fresnel;
+    }
+  }
+  const double samples = kAngles * kTurns;
+  return {std::clamp(scale / samples, 0.0, 1.0), std::clamp(bias / samples, 0.0, 1.0)};
+}
+
+std::vector<float> environmentDfgTable(uint32_t size) {
+  std::vector<float> texels;
+  texels.reserve(size_t{2} * size * size);
+  for (uint32_t y = 0; y < size; ++y) {
+    for (uint32_t x = 0; x < size; ++x) {
+      for (const double factor : environmentDfg((x + 0.5) / size, (y + 0.5) / size)) {
+        texels.push_back(static_cast<float>(factor));
+      }
+    }
+  }
+  return texels;
+}
+
+std::array<double, 4> lookUpEnvironmentDfg(double NdotV, double roughness) {
+  static const std::vector<float> kTable = environmentDfgTable(kTableSize);
+  const auto place = [](double x) {
+    const double texel = std::clamp(x * kTableSize - 0.5, 0.0, kTableSize - 1.0);
+    const auto first = static_cast<size_t>(std::min(texel, kTableSize - 2.0));
+    return std::pair(first, texel - static_cast<double>(first));
+  };
+  const auto [x, fx] = place(NdotV);
+  const auto [y, fy] = place(roughness);
+  std::array<double, 4> result{0, 0, 0, 1};
+  for (size_t c = 0; c < 2; ++c) {
+    const auto at = [&](size_t i, size_t k) { return kTable[2 * (k * kTableSize + i) + c]; };
+    const double low = at(x, y) + fx * (at(x + 1, y) - at(x, y));
+    const double high = at(x, y + 1) + fx * (at(x + 1, y + 1) - at(x, y + 1));
+    result[c] = low + fy * (high - low);
+  }
+  return result;
+}
+
+}  // namespace lacquer::eval
