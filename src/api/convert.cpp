@@ -111,6 +111,7 @@ passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& 
 
 graph::BuildOptions buildOptions(const Options& options) {
   graph::BuildOptions build;
+  if (const graph::Profile* profile = graph::findProfile(options.profile)) build.profile = profile;
   build.template_name = options.template_name;
   build.ibl = options.ibl;
   build.multiple_scattering = options.multiple_scattering;

@@ -184,9 +184,9 @@ public:
     if (!values) return tl::make_unexpected(values.error());
     constexpr bool kSingle = sizeof(T) == sizeof(float);
     std::string text =
-        fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n  \"profile\": \"khr\",\n  \"rgba\": [",
+        fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n  \"profile\": \"{}\",\n  \"rgba\": [",
                     gltf::Json(material).dump(-1, ' ', false, gltf::Json::error_handler_t::replace),
-                    kSingle ? "float" : "double");
+                    kSingle ? "float" : "double", options_.profile);
     for (size_t i = 0; i < points; ++i) {
       text += i == 0 ? "\n    [" : ",\n    [";
       for (size_t c = 0; c < 4; ++c) {
@@ -327,6 +327,10 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
 std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
                      const std::string& points_name, bool in_float, const std::vector<std::string>& texels,
                      const Options& options, Messages& messages) {
+  if (const Diagnostics wrong = checkOptions(options); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return {};
+  }
   const Result<EvalPoints> read = readPoints(points, points_name);
   if (!read) {
     report(read.error(), points_name, messages);

@@ -50,6 +50,10 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   const gltf::Material& m = impl_->document.materials[material];
   report(m.diagnostics, impl_->document.path, messages);
   if (lacquer::hasError(m.diagnostics)) return result;
+  if (const Diagnostics wrong = checkOptions(options); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return result;
+  }
   Diagnostics warnings;
   const gltf::VertexAttributes a{attributes.normal, attributes.tangent, attributes.color0,
                                  attributes.texCoord};

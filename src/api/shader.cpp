@@ -34,6 +34,18 @@ lower::ParameterMode parameterMode(const Options& options) {
 
 Diagnostics checkOptions(const Options& options) {
   Diagnostics wrong;
+  if (graph::findProfile(options.profile) == nullptr) {
+    std::string known;
+    for (const graph::Profile& profile : graph::profiles()) {
+      known += (known.empty() ? "" : ", ") + std::string(profile.name);
+    }
+    wrong.push_back({"unknown-profile",
+                     Severity::Error,
+                     {},
+                     fmt::format("there is no profile '{}'", options.profile),
+                     "there are " + known,
+                     {}});
+  }
   for (const Target target : options.targets) {
     if (options.parameters != Parameters::Spec || target == Target::Glsl || target == Target::Spirv) continue;
     wrong.push_back({"no-specialization-constants",

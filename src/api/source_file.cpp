@@ -32,7 +32,8 @@ struct Wanted {
   std::string name;
   int index = 0;
   std::vector<gltf::VertexAttributes> uses;
-  std::string note;  ///< why there is no use
+  std::string note;         ///< why there is no use
+  bool from_graph = false;  ///< a graph in JSON, which no profile has made
 };
 
 struct Done {
@@ -140,6 +141,7 @@ Done MaterialText::finish(const Wanted& wanted) {
   }
   JsonText json(kMaterialDepth);
   json.beginObject().key("index").integer(wanted.index).key("name").string(wanted.name);
+  if (!wanted.from_graph) json.key("profile").string(setting_.options.profile);
   json.key("uses").raw(uses_.endArray().take());
   const bool shared = !met_.empty() && done.report.terms == met_[0]->terms;
   json.key("terms");
@@ -279,6 +281,7 @@ Key fileKey(const std::string& path, const std::string& bytes, const Setting& se
   const Options& o = setting.options;
   KeyBuilder key;
   key.text("file").key(setting.base).text(path).key(keyOf(bytes)).text(o.template_name).number(o.parameters);
+  key.text(o.profile);
   key.number(o.lights.mode).number(o.lights.directional).number(o.lights.point).number(o.lights.spot);
   key.number(o.ibl).number(o.multiple_scattering).number(o.dfg_table).number(o.decode_srgb).number(o.permissive).number(o.unused);
   for (const std::string& term : o.live) key.text(term);
@@ -396,7 +399,7 @@ FileResult readGraph(const std::string& path, const Setting& setting, Structures
   MaterialText material(path, setting, structures);
   const std::string name = graph->name;
   material.use(*graph, lightFacts(setting.options, {}), everything(), {});
-  Done done = material.finish({&kNone, name, 0, {}, {}});
+  Done done = material.finish({&kNone, name, 0, {}, {}, true});
   FileResult result;
   result.diagnostics = std::move(done.diagnostics);
   result.structures = std::move(done.structures);

@@ -11,7 +11,7 @@ namespace lacquer::cli {
 
 struct EvalFlags {
   Options options;
-  std::string file, material, points, engine = "double", profile = "khr";
+  std::string file, material, points, engine = "double";
   std::vector<std::string> texels;
   bool no_multiple_scattering = false;
   std::string dfg = "table";

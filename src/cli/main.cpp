@@ -112,6 +112,9 @@ std::string finish(Flags& flags) {
 void addShared(CLI::App& app, Flags& flags) {
   app.add_option("--template", flags.options.template_name, "forward, surface or bsdf")
       ->capture_default_str();
+  app.add_option("--profile", flags.options.profile, "the reading of the specification")
+      ->check(CLI::IsMember({"khr", "openpbr"}))
+      ->capture_default_str();
   app.add_option(
          "--params", flags.params,
          "uniform: numbers stay editable; baked: they are constants; spec: they are specialization constants")

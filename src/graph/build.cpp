@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "graph/coat_model.h"
+#include "graph/coat_terms.h"
 #include "graph/surface_builder.h"
 
 namespace lacquer::graph {
@@ -128,17 +129,10 @@ private:
   Source coatDirect(const Source& base) {
     const CoatSources& coat = *surface_.coat;
     const Lobe own = coat.anisotropy ? anisotropicLobe(coat) : isotropicLobe("coat", coat.normal, coat.alpha, coat.textured_alpha);
-    if (coat.darkening) {
-      add("coat.light_cosine", "view_cosine", {{"N", coat.normal}, {"V", given("light_sample.L")}});
-      add("coat.darkening_direct", "coat_darkening_direct",
-          {{"F0", coat.F0},
-           {"fresnel_view", coat.fresnel},
-           {"cosine_light", ref("coat.light_cosine")},
-           {"roughness", coat.roughness},
-           {"amount", *coat.darkening}});
-    }
+    const Profile& profile = *options_.profile;
+    const Through through = terms(profile.absorption_direct, profile.darkening_direct);
     add("coat.lobe", "coat_lobe", {{"lobe", own.lobe}, {"NdotL", own.NdotL}});
-    return layer("direct", base, ref("coat.lobe"));
+    return layer("direct", base, through, ref("coat.lobe"));
   }
 
   void environmentBrdf(const std::string& layer, const Source& cosine, const Source& roughness) {
@@ -172,25 +166,35 @@ private:
         {{"radiance", ref("coat.radiance")},
          {"scale", ref("coat.environment_brdf", "scale")},
          {"bias", ref("coat.environment_brdf", "bias")}});
-    if (coat.darkening) {
-      add("coat.darkening_ibl", "coat_darkening_ibl",
-          {{"F0", coat.F0},
-           {"fresnel_view", coat.fresnel},
-           {"roughness", coat.roughness},
-           {"amount", *coat.darkening}});
-    }
-    return layer("ibl", base, ref("coat.lobe_indirect"));
+    const Profile& profile = *options_.profile;
+    return layer("ibl", base, terms(profile.absorption_ibl, profile.darkening_ibl),
+                 ref("coat.lobe_indirect"));
+  }
+
+  /// What the coat takes from the base's light, the terms that are there.
+  struct Through {
+    std::optional<Source> absorption, darkening;
+  };
+
+  Through terms(const Term& absorption, const Term& darkening) {
+    const CoatSources& coat = *surface_.coat;
+    CoatTerms terms(graph_, surface_, coat);
+    Through through{coat.tint, {}};
+    if (coat.absorbs) through.absorption = terms.term(absorption);
+    if (coat.darkening) through.darkening = terms.term(darkening);
+    return through;
   }
 
   /// The base under the coat and the coat's own light over it; `light` is "direct" or "ibl".
-  Source layer(const std::string& light, const Source& base, const Source& lobe) {
+  Source layer(const std::string& light, const Source& base, const Through& terms, const Source& lobe) {
     const CoatSources& coat = *surface_.coat;
     const std::string transmission = "coat.transmission_" + light;
-    const bool clear = !coat.absorption && !coat.darkening;
-    Node& through = add(transmission, clear ? "coat_transmission_clear" : "coat_transmission",
-                        {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
-    if (coat.absorption) Graph::connect(through, "absorption", *coat.absorption);
-    if (coat.darkening) Graph::connect(through, "darkening", ref("coat.darkening_" + light));
+    const bool clear = !terms.absorption && !terms.darkening;
+    Node& through =
+        add(transmission, clear ? "coat_transmission_clear" : std::string(options_.profile->transmission),
+            {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
+    if (terms.absorption) Graph::connect(through, "absorption", *terms.absorption);
+    if (terms.darkening) Graph::connect(through, "darkening", *terms.darkening);
     const std::string id = "coat.layer_" + light;
     add(id, "coat_layer",
         {{"base", base},

@@ -5,10 +5,12 @@
 
 #include "gltf/material.h"
 #include "graph/graph.h"
+#include "graph/profile.h"
 
 namespace lacquer::graph {
 
 struct BuildOptions {
+  const Profile* profile = &profiles().front();  ///< never null
   std::string template_name = "forward";
   bool ibl = true;                  ///< image-based lighting (forward)
   bool dfg_table = true;            ///< the split sum's factors from environment_dfg, not from a fit

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "graph/coat_terms.h"
+
 namespace lacquer::graph {
 
 Source given(std::string name, std::string swizzle) {
@@ -349,22 +351,26 @@ void SurfaceBuilder::coatShape(const CoatModel& model, CoatSources& coat) {
   const Source normal = mapped(model.normal_texture, "coat", "coat_normal_scale");
   coat.normal = shared ? surface_.normal : facing(normal, "coat");
 
-  if (model.ior != 1.5 || live("coat.f0")) {
-    add("coat.f0", "f0_from_ior",
-        {{"ior",
-          editable("coat_ior", ir::Type::Float, {model.ior}, {0, 1e9}, at + "KHR_materials_coat/coatIor")}});
-    coat.F0 = ref("coat.f0");
-  } else {
-    skip("coat.f0", "the coat's IOR is 1.5: F0 is 0.04");
-    coat.F0 = number(0.04);
-  }
+  coatIor(model, coat);
   if (!lit) return;
   add("coat.alpha", "alpha_from_roughness", {{"roughness", coat.roughness}});
   coat.alpha = ref("coat.alpha");
   add("coat.view_cosine", "view_cosine", {{"N", coat.normal}, {"V", given("view")}});
   coat.cosine = ref("coat.view_cosine");
-  add("coat.fresnel", "schlick", {{"F0", coat.F0}, {"cosine", coat.cosine}});
-  coat.fresnel = ref("coat.fresnel");
+  coat.fresnel = CoatTerms(graph_, surface_, coat).term(options_.profile->fresnel);
+}
+
+void SurfaceBuilder::coatIor(const CoatModel& model, CoatSources& coat) {
+  coat.ior = number(1.5);
+  coat.F0 = number(0.04);
+  if (model.ior == 1.5 && !live("coat.f0")) return skip("coat.f0", "the coat's IOR is 1.5: F0 is 0.04");
+  coat.ior =
+      editable("coat_ior", ir::Type::Float, {model.ior}, {0, 1e9}, "extensions/KHR_materials_coat/coatIor");
+  if (options_.template_name != "surface" && options_.profile->fresnel_from != "F0") {
+    return skip("coat.f0", fmt::format("the profile {} takes the IOR itself", options_.profile->name));
+  }
+  add("coat.f0", "f0_from_ior", {{"ior", coat.ior}});
+  coat.F0 = ref("coat.f0");
 }
 
 void SurfaceBuilder::coatColor(const CoatModel& model, CoatSources& coat) {
@@ -392,14 +398,15 @@ void SurfaceBuilder::coatColor(const CoatModel& model, CoatSources& coat) {
   if (options_.template_name == "surface") return;
   if (model.has_tint) {
     add(term, "coat_tint", {{"tint", *coat.color}});
-  } else {
-    const bool has_ior = graph_.findParameter("coat_ior") != nullptr;
-    add(term, "coat_absorption",
-        {{"tint", *coat.color},
-         {"ior", has_ior ? parameter("coat_ior") : number(1.5)},
-         {"cosine", coat.cosine}});
+    coat.tint = ref(term);
+    return;
   }
-  coat.absorption = ref(term);
+  coat.absorbs = true;
+  // Where all light is absorbed alike, the term stands with the surface.
+  const Profile& profile = *options_.profile;
+  if (profile.absorption_direct.id == profile.absorption_ibl.id) {
+    CoatTerms(graph_, surface_, coat).term(profile.absorption_direct);
+  }
 }
 
 void SurfaceBuilder::coatDarkening(const CoatModel& model, CoatSources& coat) {
@@ -484,10 +491,13 @@ void SurfaceBuilder::coatAnisotropy(const CoatModel& model, CoatSources& coat) {
 void SurfaceBuilder::coatEmission(const CoatModel& model, const CoatSources& coat) {
   if (!surface_.emission || options_.template_name == "surface") return;
   if (!model.on_emission) return skip("emission.coated", "KHR_materials_coat leaves the emission untouched");
+  std::optional<Source> absorption = coat.tint;
+  const Profile& profile = *options_.profile;
+  if (coat.absorbs) absorption = CoatTerms(graph_, surface_, coat).term(profile.absorption_emission);
   Node& through =
-      add("emission.transmission", coat.absorption ? "coat_transmission" : "coat_transmission_clear",
+      add("emission.transmission", absorption ? std::string(profile.transmission) : "coat_transmission_clear",
           {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
-  if (coat.absorption) Graph::connect(through, "absorption", *coat.absorption);
+  if (absorption) Graph::connect(through, "absorption", *absorption);
   add("emission.coated", "coat_over_emission",
       {{"emission", *surface_.emission}, {"transmission", ref("emission.transmission")}});
   surface_.emission = ref("emission.coated");

@@ -21,11 +21,12 @@ struct Anisotropy {
 
 /// The coat as wired; absent members are terms that are skipped.
 struct CoatSources {
-  Source weight, roughness, alpha, normal, cosine, F0, fresnel;
+  Source weight, roughness, alpha, normal, cosine, ior, F0, fresnel;
   bool textured_alpha = false;
-  std::optional<Source> color;       ///< what the tint is at normal incidence
-  std::optional<Source> absorption;  ///< the colour's transmittance as seen (or the ADOBE tint)
-  std::optional<Source> darkening;   ///< how much of it
+  std::optional<Source> color;      ///< what the tint is at normal incidence
+  bool absorbs = false;             ///< the colour is one that the profile's absorption takes
+  std::optional<Source> tint;       ///< the ADOBE tint, whatever the light is
+  std::optional<Source> darkening;  ///< how much of it
   std::optional<Anisotropy> anisotropy;
 };
 
@@ -75,6 +76,7 @@ private:
   void alpha();
   void coat();
   void coatShape(const CoatModel& model, CoatSources& coat);
+  void coatIor(const CoatModel& model, CoatSources& coat);
   void coatColor(const CoatModel& model, CoatSources& coat);
   void coatDarkening(const CoatModel& model, CoatSources& coat);
   void coatAnisotropy(const CoatModel& model, CoatSources& coat);

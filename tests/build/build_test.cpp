@@ -81,10 +81,14 @@ TEST_F(Build, CacheDoesNotShow) {
   EXPECT_EQ(differences(folder_ / "plain", folder_ / "first"), "");
   EXPECT_EQ(differences(folder_ / "plain", folder_ / "second"), "");
   // Other options are other results.
-  const Counts other = counts(gen("other", {"--cache", "cache", "--lights", "point:2"}));
-  EXPECT_GT(other.made, 0);
-  ASSERT_EQ(runProgram(gen("other plain", {"--lights", "point:2"}), folder_), 0);
-  EXPECT_EQ(differences(folder_ / "other plain", folder_ / "other"), "");
+  for (const Words& more : {Words{"--lights", "point:2"}, {"--profile", "openpbr"}}) {
+    SCOPED_TRACE(more[0]);
+    Words cached = {"--cache", "cache"};
+    cached.insert(cached.end(), more.begin(), more.end());
+    EXPECT_GT(counts(gen("other " + more[0], cached)).made, 0);
+    ASSERT_EQ(runProgram(gen("plain " + more[0], more), folder_), 0);
+    EXPECT_EQ(differences(folder_ / ("plain " + more[0]), folder_ / ("other " + more[0])), "");
+  }
 }
 
 TEST_F(Build, ValidationIsCachedToo) {

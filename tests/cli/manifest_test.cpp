@@ -43,6 +43,17 @@ protected:
   json manifest_;
 };
 
+TEST_F(Manifest, namesTheProfile) {
+  place_.run({"gen", "car.gltf", "-o", "other", "--profile", "openpbr", "--target", "glsl"});
+  const json other = place_.manifest("other");
+  const json& coated = other["files"][0]["materials"][0];
+  EXPECT_EQ(coated["profile"], "openpbr");
+  EXPECT_NE(coated["uses"][0]["shader"], material(0)["uses"][0]["shader"]);
+  const Outcome wrong = place_.run({"gen", "car.gltf", "-o", "wrong", "--profile", "pbr"});
+  EXPECT_EQ(wrong.status, 2) << wrong.all();
+  EXPECT_FALSE(place_.has("wrong"));
+}
+
 TEST_F(Manifest, hasTheFieldsOfTheContract) {
   EXPECT_EQ(manifest_["lacquer"], version());
   ASSERT_EQ(manifest_["files"].size(), 1u);
@@ -52,6 +63,7 @@ TEST_F(Manifest, hasTheFieldsOfTheContract) {
     SCOPED_TRACE(i);
     EXPECT_EQ(material(i)["index"], i);
     EXPECT_TRUE(material(i)["name"].is_string());
+    EXPECT_EQ(material(i)["profile"], "khr");
     EXPECT_TRUE(material(i)["uses"].is_array());
     EXPECT_TRUE(material(i)["terms"].is_array());
     EXPECT_TRUE(material(i)["skipped"].is_object());

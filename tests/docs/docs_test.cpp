@@ -9,6 +9,7 @@
 #include <fstream>
 #include <set>
 
+#include "accuracy/tables.h"
 #include "docs/page.h"
 #include "docs/sample.h"
 #include "docs/tables.h"
@@ -38,6 +39,7 @@ std::string regionText(std::string_view name) {
   if (kind == "source") return sourceLines(of);
   if (kind == "options") return optionsTable(of);
   if (kind == "verbs") return verbsTable();
+  if (kind == "accuracy") return accuracy::table(of);
   ADD_FAILURE() << "there is no region of the kind '" << kind << "', or a region has no end";
   return {};
 }

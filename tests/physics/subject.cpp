@@ -40,6 +40,7 @@ void Subject::make(const std::string& gltf, size_t material, const Configuration
   ASSERT_FALSE(hasError(m.diagnostics)) << textOf(m.diagnostics);
   graph::BuildOptions options;
   options.template_name = setup.template_name;
+  options.profile = graph::findProfile(setup.profile);
   options.ibl = setup.ibl;
   options.multiple_scattering = setup.multiple_scattering;
   options.live = setup.live;

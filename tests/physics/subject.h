@@ -14,6 +14,7 @@ namespace lacquer::physics {
 
 struct Configuration {
   std::string template_name = "forward";
+  std::string profile = "khr";
   bool ibl = false;
   bool multiple_scattering = true;
   bool placed = false;  ///< after the whole pipeline, with the preshader's values as floats

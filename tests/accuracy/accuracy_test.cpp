@@ -1,0 +1,111 @@
+// The yardsticks agree with each other, and the profiles keep what they promise of physics.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "accuracy/profiles.h"
+
+namespace lacquer::accuracy {
+namespace {
+
+constexpr double kIors[] = {1, 1.0001, 1.05, 1.3, 1.34, 1.5, 2, 3, 4};
+
+TEST(Exact, FresnelMeetsTheLimits) {
+  EXPECT_NEAR(fresnel(1.5, 1), 0.04, 1e-15);
+  EXPECT_NEAR(fresnel(1.5, 0), 1, 1e-15);
+  // Brewster's angle: the parallel half is gone, the other half is ((1 - n^2) / (1 + n^2))^2.
+  const double brewster = 1 / std::sqrt(1 + 1.5 * 1.5);
+  EXPECT_NEAR(fresnel(1.5, brewster), 0.5 * std::pow(1.25 / 3.25, 2), 1e-15);
+}
+
+/// White base, clear coat: what goes in comes out.
+TEST(Exact, ASmoothClearCoatOverWhiteLosesNothing) {
+  for (const double ior : kIors) {
+    for (const double view : {1.0, 0.5, 0.1}) {
+      EXPECT_NEAR(smoothEnvironment({ior, 1, 1, 0}, view), 1 - fresnel(ior, view), 2e-6)
+          << ior << " " << view;
+    }
+  }
+}
+
+TEST(Exact, DirectLightSumsToTheEnvironment) {
+  const Coating coating{1.5, 0.6, 0.4, 0};
+  double sum = 0;
+  constexpr int kSteps = 2000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double mu = (i + 0.5) / kSteps;
+    sum += 2 * mu * smoothDirect(coating, 0.7, mu) / kSteps;
+  }
+  EXPECT_NEAR(sum, smoothEnvironment(coating, 0.7), 1e-6);
+}
+
+TEST(Walk, OverASmoothCoatIsTheQuadrature) {
+  for (const Coating& coating :
+       {Coating{1.5, 0.5, 1, 0}, {1.5, 0.8, 0.3, 0}, {2, 0.9, 1, 0}, {1, 0.5, 0.5, 0}}) {
+    for (const double view : {1.0, 0.4}) {
+      const Estimate walk = roughEnvironment(coating, view, 40000, 1);
+      EXPECT_NEAR(walk.mean, smoothEnvironment(coating, view), 4 * walk.deviation + 1e-3)
+          << coating.ior << " " << view;
+    }
+  }
+}
+
+/// A boundary of any roughness lets at most 1 / ior^2 of diffuse light out of the denser side, because what
+/// goes through it one way goes through it the other way as well.
+TEST(Walk, ARoughCoatKeepsTheBalance) {
+  for (const double ior : {1.2, 1.5, 2.0}) {
+    const double kept = 1 - 1 / (ior * ior);
+    double mean = 0;
+    constexpr int kViews = 20;
+    for (int i = 0; i < kViews; ++i) {
+      const double view = std::sqrt((i + 0.5) / kViews);  // weighted by the cosine
+      mean += roughEnvironment({ior, 0.5, 1, 1}, view, 4000, 3).mean / kViews;
+    }
+    EXPECT_LT(mean, (1 - kept) / (1 - 0.5 * kept)) << ior;
+  }
+}
+
+TEST(Walk, IsTheSameEveryTime) {
+  const Coating coating{1.5, 0.5, 1, 0.5};
+  EXPECT_EQ(roughEnvironment(coating, 0.7, 1000, 7).mean, roughEnvironment(coating, 0.7, 1000, 7).mean);
+  EXPECT_NE(roughEnvironment(coating, 0.7, 1000, 7).mean, roughEnvironment(coating, 0.7, 1000, 8).mean);
+}
+
+double one(const std::string& profile, Light light, const Query& query) {
+  return transmissions(profile, light, {{query}})[0];
+}
+
+/// Delta (E_b) with the exact average Fresnel is the exact albedo of a smooth clear coat over Lambert.
+TEST(OpenPbr, IsExactForASmoothClearCoatInTheEnvironment) {
+  for (const double ior : kIors) {
+    for (const double albedo : {0.0, 0.5, 1.0}) {
+      for (const double view : {1.0, 0.5, 0.1}) {
+        const Query query{{ior, albedo, 1, 0}, view, 1};
+        EXPECT_NEAR(one("openpbr", Light::Environment, query), smoothEnvironment(query.coating, view), 3e-6)
+            << ior << " " << albedo << " " << view;
+      }
+    }
+  }
+}
+
+TEST(OpenPbr, AbsorbsAlongViewAndLight) {
+  // Without refraction and reflection the way is that of the two rays alone.
+  for (const double view : {1.0, 0.5}) {
+    for (const double light : {1.0, 0.25}) {
+      const Query query{{1, 0.5, 0.3, 0}, view, light};
+      EXPECT_NEAR(one("openpbr", Light::Direct, query), smoothDirect(query.coating, view, light), 1e-9);
+    }
+  }
+}
+
+/// Where there is no boundary nothing darkens; the text has 0.5 for the mean over the hemisphere all the
+/// same.
+TEST(Profiles, AtAnIorOfOne) {
+  const Query query{{1, 0.5, 1, 0}, 1, 1};
+  EXPECT_NEAR(one("openpbr", Light::Direct, query), 1, 1e-7);
+  EXPECT_NEAR(one("openpbr", Light::Environment, query), 1, 1e-7);
+  EXPECT_NEAR(one("khr", Light::Environment, query), 0.5625, 1e-12) << "the text's formula has changed";
+}
+
+}  // namespace
+}  // namespace lacquer::accuracy
