@@ -69,7 +69,7 @@ struct Lights {
 };
 
 struct Options {
-  std::string profile = "khr";  ///< how a coat is read: "khr" or "openpbr" (docs/accuracy.md)
+  std::string profile = "khr";            ///< how a coat is read: "khr" or "openpbr" (docs/accuracy.md)
   std::string template_name = "forward";  ///< "forward", "surface", "bsdf", or one of `node_directories`
   std::vector<Target> targets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl, Target::Spirv};
   Parameters parameters = Parameters::Uniform;

@@ -283,7 +283,12 @@ Key fileKey(const std::string& path, const std::string& bytes, const Setting& se
   key.text("file").key(setting.base).text(path).key(keyOf(bytes)).text(o.template_name).number(o.parameters);
   key.text(o.profile);
   key.number(o.lights.mode).number(o.lights.directional).number(o.lights.point).number(o.lights.spot);
-  key.number(o.ibl).number(o.multiple_scattering).number(o.dfg_table).number(o.decode_srgb).number(o.permissive).number(o.unused);
+  key.number(o.ibl)
+      .number(o.multiple_scattering)
+      .number(o.dfg_table)
+      .number(o.decode_srgb)
+      .number(o.permissive)
+      .number(o.unused);
   for (const std::string& term : o.live) key.text(term);
   return key.finish();
 }

@@ -31,7 +31,8 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
       ->delimiter(',');
   verb->add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
                  "do not compensate image-based light for multiple scattering");
-  verb->add_option("--dfg", flags.dfg, "the split sum's factors: from the texture environment_dfg, or a fit without one")
+  verb->add_option("--dfg", flags.dfg,
+                   "the split sum's factors: from the texture environment_dfg, or a fit without one")
       ->check(CLI::IsMember({"table", "fit"}))
       ->capture_default_str();
   verb->add_flag("--permissive", flags.options.permissive,

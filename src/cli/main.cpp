@@ -36,7 +36,8 @@ const CLI::Validator kNotEmpty(
 struct Flags {
   Options options;
   std::vector<std::string> files, graphs, materials, targets;
-  std::string output, format = "json", pass, lights = "any", params = "uniform", spirv_from = "direct", dfg = "table";
+  std::string output, format = "json", pass, lights = "any", params = "uniform", spirv_from = "direct",
+                      dfg = "table";
   bool json = false, no_validate = false, no_ibl = false, no_multiple_scattering = false, quiet = false;
   bool disassembly = false, time = false, replan = false;
   std::string ninja;
@@ -130,7 +131,8 @@ void addShared(CLI::App& app, Flags& flags) {
   app.add_flag("--no-ibl", flags.no_ibl, "no image-based light");
   app.add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
                "do not compensate image-based light for multiple scattering");
-  app.add_option("--dfg", flags.dfg, "the split sum's factors: from the texture environment_dfg, or a fit without one")
+  app.add_option("--dfg", flags.dfg,
+                 "the split sum's factors: from the texture environment_dfg, or a fit without one")
       ->check(CLI::IsMember({"table", "fit"}))
       ->capture_default_str();
   app.add_flag("--decode-srgb", flags.options.decode_srgb, "decode colour textures in the shader");

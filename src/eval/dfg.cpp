@@ -11,7 +11,8 @@ namespace {
 /// ALPHA_MIN of nodes/constants.node.
 constexpr double kAlphaMin = 0.001;
 
-/// Samples over the half vector's angle and around the normal: what comes out moves by less than 1e-4 with twice as many.
+/// Samples over the half vector's angle and around the normal: what comes out moves by less than 1e-4 with
+/// twice as many.
 constexpr int kAngles = 96;
 constexpr int kTurns = 48;
 

@@ -20,7 +20,11 @@ public:
 
   void direct() {
     add("half", "half_vector", {{"V", given("view")}, {"L", given("light_sample.L")}});
-    const Lobe base = isotropicLobe("base", surface_.normal, surface_.alpha, surface_.textured_alpha);
+    Lobe base = isotropicLobe("base", surface_.normal, surface_.alpha, surface_.textured_alpha);
+    std::optional<Lobe> coat;
+    if (surface_.coat) coat = coatLobe();
+    const bool clear = coat && clearCoat();
+    if (clear) splitCosine(base, *coat);
     Node& node = add("base.direct", "base_direct",
                      {{"diffuse", ref("base.reflectance", "diffuse")},
                       {"F0", ref("base.reflectance", "F0")},
@@ -29,7 +33,17 @@ public:
                       {"lobe", base.lobe}});
     if (surface_.dielectric_f0) Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
     Source result = ref("base.direct");
-    if (surface_.coat) result = coatDirect(result);
+    if (coat) {
+      add("coat.lobe", "coat_lobe", {{"lobe", coat->lobe}, {"NdotL", coat->NdotL}});
+      if (clear) {
+        add("coat.layer_direct", "coat_sum", {{"base", result}, {"layer", ref("coat.lobe")}});
+        result = ref("coat.layer_direct");
+      } else {
+        const Profile& profile = *options_.profile;
+        const Through through = terms(profile.absorption_direct, profile.darkening_direct);
+        result = layer("direct", result, through, ref("coat.lobe"));
+      }
+    }
     graph_.outputs.emplace_back("direct", result);
   }
 
@@ -85,9 +99,9 @@ private:
   Lobe lobe(const std::string& layer, bool split = false) {
     const std::string visibility = layer + ".visibility";
     Node& node = add(layer + ".specular", "specular_lobe",
-        {{"numerator", ref(layer + ".distribution", "numerator")},
-         {"denominator", ref(layer + ".distribution", "denominator")},
-         {"inverse_visibility", split ? ref(visibility, "sum") : ref(visibility)}});
+                     {{"numerator", ref(layer + ".distribution", "numerator")},
+                      {"denominator", ref(layer + ".distribution", "denominator")},
+                      {"inverse_visibility", split ? ref(visibility, "sum") : ref(visibility)}});
     if (split) Graph::connect(node, "weight", ref(visibility, "weight"));
     return {ref(layer + ".cosines", "NdotL"), ref(layer + ".specular")};
   }
@@ -126,18 +140,33 @@ private:
     return lobe("coat");
   }
 
-  Source coatDirect(const Source& base) {
+  Lobe coatLobe() {
     const CoatSources& coat = *surface_.coat;
-    const Lobe own = coat.anisotropy ? anisotropicLobe(coat) : isotropicLobe("coat", coat.normal, coat.alpha, coat.textured_alpha);
-    const Profile& profile = *options_.profile;
-    const Through through = terms(profile.absorption_direct, profile.darkening_direct);
-    add("coat.lobe", "coat_lobe", {{"lobe", own.lobe}, {"NdotL", own.NdotL}});
-    return layer("direct", base, through, ref("coat.lobe"));
+    if (coat.anisotropy) return anisotropicLobe(coat);
+    return isotropicLobe("coat", coat.normal, coat.alpha, coat.textured_alpha);
+  }
+
+  /// The coat takes nothing from the base's light but what it reflects.
+  bool clearCoat() const {
+    const CoatSources& coat = *surface_.coat;
+    return !coat.tint && !coat.absorbs && !coat.darkening;
+  }
+
+  /// Divides the light's cosine between a clear coat and the base.
+  void splitCosine(Lobe& base, Lobe& lobe) {
+    const CoatSources& coat = *surface_.coat;
+    const std::string split = "coat.transmission_direct";
+    Node& node = add(split, coat.normal == surface_.normal ? "coat_split" : "coat_split_normals",
+                     {{"NdotL", base.NdotL}, {"weight", coat.weight}, {"fresnel", coat.fresnel}});
+    if (!(coat.normal == surface_.normal)) Graph::connect(node, "coat_NdotL", lobe.NdotL);
+    base.NdotL = ref(split, "transmitted");
+    lobe.NdotL = ref(split, "reflected");
   }
 
   void environmentBrdf(const std::string& layer, const Source& cosine, const Source& roughness) {
-    Node& node = add(layer + ".environment_brdf", options_.dfg_table ? "environment_brdf" : "environment_brdf_fit",
-                     {{"NdotV", cosine}, {"roughness", roughness}});
+    Node& node =
+        add(layer + ".environment_brdf", options_.dfg_table ? "environment_brdf" : "environment_brdf_fit",
+            {{"NdotV", cosine}, {"roughness", roughness}});
     if (options_.dfg_table)
       Graph::connect(node, "environment_dfg", Source{TextureRef{"environment_dfg"}, {}});
   }

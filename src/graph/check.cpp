@@ -49,7 +49,8 @@ struct Sink {
   const lang::Param* contract = nullptr;
 };
 
-/// The names that a list has had. Most lists are short: those are searched, and nothing is allocated for them.
+/// The names that a list has had. Most lists are short: those are searched, and nothing is allocated for
+/// them.
 class Connected {
 public:
   /// False when it was there already.
@@ -425,8 +426,7 @@ void GraphCheck::outputs() {
     const auto& [name, source] = graph_.outputs[i];
     Sink sink{{Section::Outputs, i, 0}, name, nullptr};
     if (!connected.insert(name)) {
-      error(sink, "duplicate-name", textOf(sink) + " is connected twice",
-            "remove one of the two");
+      error(sink, "duplicate-name", textOf(sink) + " is connected twice", "remove one of the two");
       continue;
     }
     const auto port = std::find(ports.begin(), ports.end(), std::string_view(name));
@@ -497,10 +497,10 @@ void GraphCheck::range(const Source& source, const Sink& sink) {
     if (contains(sink.contract->range, x)) continue;
     const std::string what =
         ref != nullptr ? fmt::format("the parameter {} has the value", quote(ref->name)) : "the value";
-    return error(
-        sink, "out-of-range",
-        fmt::format("{} {}{} not in the range of {}", what, x, ref != nullptr ? ", which is" : " is", textOf(sink)),
-        fmt::format("the range is {}", rangeText(sink.contract->range)));
+    return error(sink, "out-of-range",
+                 fmt::format("{} {}{} not in the range of {}", what, x, ref != nullptr ? ", which is" : " is",
+                             textOf(sink)),
+                 fmt::format("the range is {}", rangeText(sink.contract->range)));
   }
 }
 
@@ -533,8 +533,7 @@ std::optional<Type> GraphCheck::typeOf(const ParameterRef& ref, const Sink& sink
     if (type != Type::Bool && !ir::isFloating(type)) return std::nullopt;  // reported at the parameter
     return type;
   }
-  error(sink, "unknown-parameter",
-        fmt::format("there is no parameter {}", quote(ref.name)),
+  error(sink, "unknown-parameter", fmt::format("there is no parameter {}", quote(ref.name)),
         suggest(ref.name,
                 namesOf(graph_.parameters, [](const ir::Parameter& p) { return std::string_view(p.name); })));
   return std::nullopt;
@@ -570,8 +569,7 @@ std::optional<Type> GraphCheck::typeOf(const GivenRef& ref, const Sink& sink) {
       error(sink, "unknown-given", fmt::format("{} has several results", quote(head)),
             fmt::format("name one behind a dot: '{}.{}'; {}", head, several->second[0], all));
     } else {
-      error(sink, "unknown-given",
-            fmt::format("the given {} has no result {}", quote(head), quote(result)),
+      error(sink, "unknown-given", fmt::format("the given {} has no result {}", quote(head), quote(result)),
             suggest(
                 result, [&] { return several->second; }, all));
     }
@@ -607,8 +605,7 @@ std::optional<Type> GraphCheck::typeOf(const NodeRef& ref, const Sink& sink) {
     if (!result.name.empty()) names.push_back(result.name);
   }
   if (ref.output.empty()) {
-    error(sink, "unknown-output",
-          fmt::format("the node {} has several results", quote(ref.node)),
+    error(sink, "unknown-output", fmt::format("the node {} has several results", quote(ref.node)),
           "name one as \"output\": " + listOf(names));
   } else {
     error(sink, "unknown-output",
@@ -628,8 +625,7 @@ std::optional<Type> GraphCheck::swizzled(Type type, const std::string& swizzle, 
       std::all_of(picked.begin(), picked.end(), [&](char c) { return static_cast<size_t>(c) < size; });
   if (fits) return ir::floatType(static_cast<int>(picked.size()));
   const auto letters = [&](std::string_view set) { return set.substr(0, size); };
-  error(sink, "wrong-swizzle",
-        fmt::format("{} has no components {}", article(type), quote(swizzle)),
+  error(sink, "wrong-swizzle", fmt::format("{} has no components {}", article(type), quote(swizzle)),
         ir::isFloatVector(type) ? fmt::format("one to four of {}, {} or {}, not mixed", letters("xyzw"),
                                               letters("rgba"), letters("stpq"))
                                 : "only a vector can have a swizzle");

@@ -167,8 +167,8 @@ public:
   void setRank(uint32_t rank) { current_rank_ = rank; }
   uint32_t rankOf(ValueId id) const { return rank_of_[id]; }
   void sortByRank(std::vector<ValueId>& ids) const;
-  /// Drops what `roots` do not reach and numbers the rest by rank, operands first. Returns the new id of every
-  /// old one (kNoValue: dropped).
+  /// Drops what `roots` do not reach and numbers the rest by rank, operands first. Returns the new id of
+  /// every old one (kNoValue: dropped).
   std::vector<ValueId> compact(std::span<const ValueId> roots);
 
   // What may change in a value that is there, since neither is seen by the algebra.

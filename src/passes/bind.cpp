@@ -46,7 +46,8 @@ void bind(ir::Module& module) {
     kept.push_back(slot);
   }
   module.textures = std::move(kept);
-  for (const ir::ValueId id : texture_inputs) module.dag.setInputField(id, place[module.dag.inputOf(id).field]);
+  for (const ir::ValueId id : texture_inputs)
+    module.dag.setInputField(id, place[module.dag.inputOf(id).field]);
 }
 
 }  // namespace lacquer::passes

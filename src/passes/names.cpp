@@ -289,8 +289,7 @@ bool Names::free(std::string_view name) const { return !reserved(name) && !taken
 std::string Names::pick(std::string_view wanted, std::string_view layer) {
   const std::string base = cleaned(wanted);
   std::string name = base;
-  if (!free(name) && !layer.empty())
-    name = cleaned(fmt::format("{}_{}", layer, base));
+  if (!free(name) && !layer.empty()) name = cleaned(fmt::format("{}_{}", layer, base));
   const std::string numbered = name;
   for (int k = 2; !free(name); ++k) name = fmt::format("{}_{}", numbered, k);
   taken_.insert(name);

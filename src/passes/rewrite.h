@@ -24,7 +24,9 @@ public:
   ir::Dag& dag() { return module_.dag; }
   ir::Module& module() { return module_; }
   /// The value on new operands.
-  ir::ValueId copy(ir::ValueId id, std::span<const ir::ValueId> operands) { return dag().remake(id, operands); }
+  ir::ValueId copy(ir::ValueId id, std::span<const ir::ValueId> operands) {
+    return dag().remake(id, operands);
+  }
   /// What stands for a value that has been visited already.
   ir::ValueId mapped(ir::ValueId id) const { return map_[id]; }
 

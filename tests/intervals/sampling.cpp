@@ -186,7 +186,11 @@ Floats World::input(const ir::Input& input) const {
 Floats World::texel(bool environment, std::string_view texture, const Floats& coordinates) const {
   Random random(mix(mix(seed_, texture.data(), texture.size()), coordinates.data(), sizeof coordinates));
   Floats out{};
-  for (float& x : out) x = inRange(random, 0, environment ? 65504 : 1, limit_);
+  // The table's two channels add up to an albedo, which its node states.
+  const bool table = texture == "environment_dfg";
+  const double least = table ? 0.15 : 0;
+  const double most = table ? 0.5 : environment ? 65504 : 1;
+  for (float& x : out) x = inRange(random, least, most, limit_);
   return out;
 }
 

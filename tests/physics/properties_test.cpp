@@ -270,10 +270,15 @@ TEST(Properties, WhiteFurnace) {
   }
 }
 
-/// The fits that image-based light uses against the same integrals of the direct light. A coat with an IOR of
-/// 0 has a Fresnel of 1 and leaves nothing of the base: it is the albedo alone. A black metal is the part of
-/// Schlick's weight.
-TEST(Properties, DirectionalAlbedoFitsTheQuadrature) {
+/// How far image-based light's factors are from the same integrals of the direct light: of the albedo, and of the part
+/// that Schlick's weight brings; at N.V >= 0.1 and below.
+struct EnvironmentBrdfError {
+  double albedo = 0, albedo_low = 0, fresnel = 0, fresnel_low = 0;
+};
+
+/// A coat with an IOR of 0 has a Fresnel of 1 and leaves nothing of the base: it is the albedo alone. A black metal is
+/// the part of Schlick's weight.
+EnvironmentBrdfError environmentBrdfError(bool table) {
   Material mirror;
   mirror.metallic = 0;
   Material black;
@@ -281,10 +286,8 @@ TEST(Properties, DirectionalAlbedoFitsTheQuadrature) {
   Configuration with_sky;
   with_sky.ibl = true;
   with_sky.multiple_scattering = false;
-  double worst = 0;
-  double worst_low = 0;
-  double worst_fresnel = 0;
-  double worst_fresnel_low = 0;
+  with_sky.dfg_table = table;
+  EnvironmentBrdfError worst;
   for (const double roughness : {0.3, 0.45, 0.6, 0.8, 1.0}) {
     mirror.coat = Coat{.factor = 1, .roughness = roughness, .ior = 0, .darkening = 0};
     black.roughness = roughness;
@@ -299,18 +302,32 @@ TEST(Properties, DirectionalAlbedoFitsTheQuadrature) {
       const double albedo = std::abs(furnace(direct, cosine) - indirect.color<double>(s, {1, 1, 1})[0]);
       const double fresnel =
           std::abs(furnace(direct_black, cosine) - indirect_black.color<double>(s, {1, 1, 1})[0]);
-      const bool low = cosine < 0.1;
-      (low ? worst_low : worst) = std::max(low ? worst_low : worst, albedo);
-      (low ? worst_fresnel_low : worst_fresnel) = std::max(low ? worst_fresnel_low : worst_fresnel, fresnel);
+      double& a = cosine < 0.1 ? worst.albedo_low : worst.albedo;
+      double& f = cosine < 0.1 ? worst.fresnel_low : worst.fresnel;
+      a = std::max(a, albedo);
+      f = std::max(f, fresnel);
     }
   }
-  fmt::print("albedo within {:.4f} ({:.4f} below N.V = 0.1), its Fresnel part within {:.4f} ({:.4f})\n",
-             worst, worst_low, worst_fresnel, worst_fresnel_low);
+  fmt::print("{}: albedo within {:.4f} ({:.4f} below N.V = 0.1), its Fresnel part within {:.4f} ({:.4f})\n",
+             table ? "table" : "fit", worst.albedo, worst.albedo_low, worst.fresnel, worst.fresnel_low);
+  return worst;
+}
+
+TEST(Properties, EnvironmentBrdfFitsTheQuadrature) {
   // As the nodes' comments say, and a thousandth for the quadrature.
-  EXPECT_LE(worst, 0.030);
-  EXPECT_LE(worst_low, 0.092);
-  EXPECT_LE(worst_fresnel, 0.029);
-  EXPECT_LE(worst_fresnel_low, 0.066);
+  const EnvironmentBrdfError fit = environmentBrdfError(false);
+  EXPECT_LE(fit.albedo, 0.030);
+  EXPECT_LE(fit.albedo_low, 0.092);
+  EXPECT_LE(fit.fresnel, 0.029);
+  EXPECT_LE(fit.fresnel_low, 0.066);
+}
+
+TEST(Properties, EnvironmentBrdfTableIsTheQuadrature) {
+  const EnvironmentBrdfError table = environmentBrdfError(true);
+  EXPECT_LE(table.albedo, 0.002);
+  EXPECT_LE(table.albedo_low, 0.004);
+  EXPECT_LE(table.fresnel, 0.002);
+  EXPECT_LE(table.fresnel_low, 0.004);
 }
 
 }  // namespace

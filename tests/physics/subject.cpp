@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "eval/dfg.h"
 #include "gltf/material.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
@@ -43,6 +44,7 @@ void Subject::make(const std::string& gltf, size_t material, const Configuration
   options.profile = graph::findProfile(setup.profile);
   options.ibl = setup.ibl;
   options.multiple_scattering = setup.multiple_scattering;
+  options.dfg_table = setup.dfg_table;
   options.live = setup.live;
   Diagnostics warnings;
   graph_ = graph::build(m, {true, setup.tangents, true, {true, true, true, true}}, options, warnings);
@@ -83,6 +85,10 @@ std::vector<Vec4> Subject::colors(std::span<const Sample> samples, const Vec3& e
       if (it != texels_.end()) texel = it->second;
     }
     bindings.textures[slot.name] = [texel](size_t, const Vec3&, double) { return texel; };
+    if (slot.name != "environment_dfg") continue;
+    bindings.textures[slot.name] = [](size_t, const Vec3& at, double) {
+      return eval::lookUpEnvironmentDfg(at[0], at[1]);
+    };
   }
   EXPECT_TRUE(eval::bindMaterialBlock(module_, bindings));
   EXPECT_TRUE(eval::bindVaryings<T>(module_, points.size(), bindings));
