@@ -11,7 +11,8 @@ namespace lacquer::cli {
 
 struct EvalFlags {
   Options options;
-  std::string file, material, points, engine = "double", profile = "khr";
+  std::string file, material, points, engine = "double", profile = "khr", params = "uniform",
+                                      spirv_from = "direct";
   std::vector<std::string> texels;
   bool no_multiple_scattering = false;
 };
