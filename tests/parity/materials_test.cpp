@@ -1,0 +1,55 @@
+// The materials of examples/, at thousands of random points, as nodes_test.cpp does it with nodes: whole
+// shaders, with blocks, textures, loops over lights and the vertex stage's work behind them.
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "parity/subject.h"
+
+namespace lacquer::parity {
+namespace {
+
+void expectAgreement(const MaterialSetting& setting, size_t points) {
+  if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
+  Comparison all;
+  uint64_t seed = 1;
+  for (const NamedGraph& graph : exampleGraphs(setting)) {
+    const Subject subject = materialSubject(graph, setting, points, seed++);
+    const Comparison comparison = compareEngines(subject);
+    EXPECT_EQ(comparison.outside, 0U) << comparison.first;
+    all.numbers += comparison.numbers;
+    all.vague += comparison.vague;
+  }
+  std::cout << all.numbers << " numbers, " << all.vague << " with a vague bound\n";
+  // Filters between random texels, mostly.
+  EXPECT_LT(all.vague, all.numbers / 4);
+}
+
+TEST(ParityMaterials, Forward) { expectAgreement({}, 1024); }
+
+TEST(ParityMaterials, ForwardWithAnyLights) {
+  MaterialSetting setting;
+  setting.lights = {};
+  expectAgreement(setting, 256);
+}
+
+TEST(ParityMaterials, ForwardThatDecodesSrgb) {
+  MaterialSetting setting;
+  setting.decode_srgb = true;
+  expectAgreement(setting, 256);
+}
+
+TEST(ParityMaterials, Surface) {
+  MaterialSetting setting;
+  setting.template_name = "surface";
+  expectAgreement(setting, 256);
+}
+
+TEST(ParityMaterials, Bsdf) {
+  MaterialSetting setting;
+  setting.template_name = "bsdf";
+  expectAgreement(setting, 256);
+}
+
+}  // namespace
+}  // namespace lacquer::parity

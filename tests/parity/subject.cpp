@@ -1,0 +1,358 @@
+#include "parity/subject.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "../intervals/sampling.h"
+#include "eval/evaluate.h"
+#include "eval/image.h"
+#include "eval/points.h"
+#include "gltf/material.h"
+#include "graph/build.h"
+#include "lower/lower.h"
+#include "passes/intervals.h"
+#include "passes/pipeline.h"
+#include "support/cases.h"
+
+namespace lacquer::parity {
+
+using ir::ValueId;
+
+namespace {
+
+/// Portable: the standard fixes this engine's numbers, but not its distributions'.
+class Random {
+public:
+  explicit Random(uint64_t seed) : engine_(seed) {}
+  double unit() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
+  double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
+  size_t below(size_t n) { return static_cast<size_t>(engine_() % n); }
+  std::array<double, 3> direction() {
+    const double z = between(-1, 1);
+    const double angle = between(0, 6.283185307179586);
+    const double r = std::sqrt(1 - z * z);
+    return {r * std::cos(angle), r * std::sin(angle), z};
+  }
+
+private:
+  std::mt19937_64 engine_;
+};
+
+double rounded(double x) { return static_cast<double>(static_cast<float>(x)); }
+
+void roundAll(eval::Columns& columns) {
+  for (auto& [name, column] : columns) {
+    for (double& x : column.values) x = rounded(x);
+  }
+}
+
+/// A texture of a slot: a small random image, or for a cube map a colour for each point.
+void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
+  std::vector<vulkan::Texel> texels;
+  vulkan::Texture texture;
+  texture.cube = slot.type == ir::Type::TextureCube;
+  if (texture.cube) {
+    std::vector<vulkan::Texel> few(8);
+    for (vulkan::Texel& texel : few) {
+      for (float& x : texel) x = static_cast<float>(random.between(0, 2));
+    }
+    for (size_t i = 0; i < subject.points; ++i) texels.push_back(few[i / 16 % few.size()]);
+  } else {
+    texture.width = static_cast<uint32_t>(2 + random.below(6));
+    texture.height = static_cast<uint32_t>(2 + random.below(6));
+    texture.s = static_cast<vulkan::Wrap>(random.below(3));
+    texture.t = static_cast<vulkan::Wrap>(random.below(3));
+    texture.nearest = random.below(4) != 0;
+    texels.resize(size_t{texture.width} * texture.height);
+    for (vulkan::Texel& texel : texels) {
+      for (float& x : texel) x = static_cast<float>(random.unit());
+    }
+    subject.sizes[slot.name] = {static_cast<double>(texture.width), static_cast<double>(texture.height)};
+  }
+  texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(texels);
+  if (texture.cube) {
+    subject.bindings.textures[slot.name] = [texels](size_t point, const std::array<double, 3>&, double) {
+      const vulkan::Texel& t = texels[point];
+      return std::array<double, 4>{t[0], t[1], t[2], t[3]};
+    };
+  } else {
+    auto image = std::make_shared<eval::Image>();
+    image->width = static_cast<int>(texture.width);
+    image->height = static_cast<int>(texture.height);
+    image->texels = texels;
+    subject.bindings.textures[slot.name] = eval::makeSampler(
+        image,
+        {static_cast<eval::Wrap>(texture.s), static_cast<eval::Wrap>(texture.t), texture.nearest, false});
+  }
+  subject.textures[slot.name] = std::move(texture);
+}
+
+/// A value as floats of colours.
+void addParts(ir::Dag& dag, ValueId value, std::vector<ValueId>& parts) {
+  if (dag[value].type == ir::Type::Bool) {
+    value = dag.make(ir::Op::Select, {value, dag.constant(1), dag.constant(0)});
+  }
+  for (int c = 0; c < ir::componentCount(dag[value].type); ++c) parts.push_back(dag.component(value, c));
+}
+
+ValueId argument(ir::Module& module, const lang::Param& param, std::vector<ir::Input>& inputs) {
+  const std::string name(param.name);
+  if (ir::isTexture(param.type)) {
+    ir::TextureSlot slot;
+    slot.name = name;
+    slot.type = param.type;
+    slot.environment = param.type == ir::Type::TextureCube;
+    const auto index = static_cast<uint32_t>(module.textures.size());
+    module.textures.push_back(slot);
+    return module.dag.input({ir::InputKind::Texture, name, param.type, ir::Rate::Frame, {0, 1}, 0, index});
+  }
+  const bool flag = param.type == ir::Type::Bool;
+  const auto index = static_cast<uint32_t>(module.varyings.size());
+  const ir::Type type = flag ? ir::Type::Float : param.type;
+  ir::Input input{ir::InputKind::Varying, name, type, ir::Rate::Fragment, param.range, 0, index};
+  if (flag) input.range = {0, 1};
+  module.varyings.push_back({name, type, index, ir::kNoValue});
+  const ValueId value = module.dag.input(input);
+  input.type = param.type;
+  inputs.push_back(input);
+  return flag ? module.dag.make(ir::Op::Less, {module.dag.constant(0.5), value}) : value;
+}
+
+}  // namespace
+
+const lang::Library& library() {
+  static const lang::Library kLibrary = lang::Library::embedded();
+  return kLibrary;
+}
+
+std::vector<ValueId> Subject::roots() const {
+  std::vector<ValueId> values;
+  for (uint32_t location = 0; location < module.outputs.size(); ++location) {
+    for (const ir::Output& output : module.outputs) {
+      if (output.kind == ir::OutputKind::Color && output.location == location) values.push_back(output.value);
+    }
+  }
+  return values;
+}
+
+Subject nodeSubject(const lang::NodeDecl& node, std::string_view variant, size_t points) {
+  Subject subject;
+  subject.name = variant.empty() ? std::string(node.name) : fmt::format("{}.{}", node.name, variant);
+  subject.points = points;
+  ir::Module& module = subject.module;
+  module.template_name = "node";
+  std::vector<ir::Input> inputs;
+  std::vector<ValueId> arguments;
+  std::vector<ValueId> parts;
+  for (const lang::Param& param : node.params) arguments.push_back(argument(module, param, inputs));
+  for (const ValueId result : lower::Inliner(module.dag).call(node, variant, arguments)) {
+    addParts(module.dag, result, parts);
+  }
+  while (parts.size() % 4 != 0) parts.push_back(module.dag.constant(0));
+  for (uint32_t i = 0; 4 * i < parts.size(); ++i) {
+    const ValueId color = module.dag.construct(
+        ir::Type::Vec4, {parts[4 * i], parts[4 * i + 1], parts[4 * i + 2], parts[4 * i + 3]});
+    module.outputs.push_back(
+        {ir::OutputKind::Color, ir::Stage::Fragment, fmt::format("part_{}", i), i, color});
+  }
+  for (size_t i = 0; i < points; ++i) {
+    const test::World world(i, passes::kSceneLimit);
+    for (const ir::Input& input : inputs) {
+      eval::Column& column = subject.bindings.columns[input.name];
+      column.components = ir::componentCount(input.type);
+      column.per_point = true;
+      const test::Floats x = world.input(input);
+      column.values.insert(column.values.end(), x.begin(), x.begin() + column.components);
+    }
+  }
+  passes::runPipeline(module, {});
+  EXPECT_TRUE(ir::verify(module).empty()) << subject.name << ": " << ir::verify(module)[0];
+  Random random(1);
+  for (const ir::TextureSlot& slot : module.textures) addTexture(subject, slot, random);
+  return subject;
+}
+
+std::vector<NamedGraph> exampleGraphs(const MaterialSetting& setting) {
+  std::vector<NamedGraph> graphs;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(test::sourceFolder() / "examples")) {
+    if (entry.path().extension() == ".gltf") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const std::filesystem::path& file : files) {
+    const Result<gltf::Document> document = gltf::read(file.string(), {});
+    EXPECT_TRUE(document) << file;
+    for (const gltf::Material& material : document->materials) {
+      graph::BuildOptions options;
+      options.template_name = setting.template_name;
+      options.decode_srgb = setting.decode_srgb;
+      Diagnostics warnings;
+      NamedGraph made{
+          fmt::format("{}, {}, {}", file.stem().string(), material.name, setting.template_name),
+          graph::build(material, {true, true, true, {true, true, true, true}}, options, warnings)};
+      EXPECT_FALSE(hasError(graph::check(made.graph, library()))) << made.name;
+      graphs.push_back(std::move(made));
+    }
+  }
+  return graphs;
+}
+
+namespace {
+
+eval::Point randomPoint(Random& random, size_t i) {
+  eval::Point p;
+  p.n = random.direction();
+  p.v = random.direction();
+  p.l = random.direction();
+  // Most are in front of the surface; some are equal, opposite or just about grazing.
+  const auto facing = [&](std::array<double, 3>& d) {
+    const double along = d[0] * p.n[0] + d[1] * p.n[1] + d[2] * p.n[2];
+    for (size_t c = 0; along < 0 && c < 3; ++c) d[c] = -d[c];
+  };
+  const auto graze = [&](std::array<double, 3>& d) {
+    const double along = d[0] * p.n[0] + d[1] * p.n[1] + d[2] * p.n[2];
+    double length = 0;
+    for (size_t c = 0; c < 3; ++c) d[c] -= along * p.n[c];
+    for (const double x : d) length += x * x;
+    const double raised = std::exp2(-20 * random.unit());
+    for (size_t c = 0; c < 3; ++c)
+      d[c] = d[c] / std::sqrt(length) * std::sqrt(1 - raised * raised) + raised * p.n[c];
+  };
+  if (i % 8 != 0) facing(p.v), facing(p.l);
+  if (i % 16 == 1) p.v = p.n;
+  if (i % 16 == 2) p.l = p.v;
+  if (i % 16 == 3) p.l = p.v = p.n;
+  if (i % 16 == 4) graze(p.v);
+  if (i % 16 == 5) graze(p.l);
+  const std::array<double, 3> across = random.direction();
+  const double along = across[0] * p.n[0] + across[1] * p.n[1] + across[2] * p.n[2];
+  for (size_t c = 0; c < 3; ++c) p.t[c] = across[c] - along * p.n[c];
+  p.t[3] = random.below(2) == 0 ? 1 : -1;
+  for (auto& uv : p.uv) uv = {random.between(-2, 2), random.between(-2, 2)};
+  for (double& x : p.color0) x = random.below(8) == 0 ? std::round(random.unit()) : random.unit();
+  for (double& x : p.light) x = random.between(0, 4);
+  for (double& x : p.position) x = random.between(-2, 2);
+  p.front_facing = random.below(4) != 0;
+  return p;
+}
+
+/// A point light and a spot beside the directional one.
+void addLights(eval::Bindings& bindings, size_t points, Random& random) {
+  for (const bool spot : {false, true}) {
+    eval::Columns light = bindings.lights[0];
+    std::vector<double> positions;
+    for (size_t i = 0; i < 3 * points; ++i) positions.push_back(random.between(-4, 4));
+    light["light.position"] = eval::Column::perPoint(3, std::move(positions));
+    light["light.positional"] = eval::Column::constant({1});
+    light["light.inverse_range_4"] = eval::Column::constant({spot ? 0.0 : 1e-4});
+    if (spot) {
+      light["light.direction"] = eval::Column::constant({0.6, 0, -0.8});
+      light["light.spot_scale"] = eval::Column::constant({2.5});
+      light["light.spot_offset"] = eval::Column::constant({0.25});
+    }
+    bindings.lights.push_back(std::move(light));
+  }
+  bindings.columns["frame.light_count"] = eval::Column::constant({3});
+}
+
+}  // namespace
+
+Subject materialSubject(const NamedGraph& graph, const MaterialSetting& setting, size_t points,
+                        uint64_t seed) {
+  Subject subject;
+  subject.name = graph.name;
+  subject.points = points;
+  Result<ir::Module> module = lower::lower(graph.graph, library(), {setting.parameters});
+  EXPECT_TRUE(module) << graph.name;
+  if (!module) return subject;
+  subject.module = std::move(*module);
+  passes::runPipeline(subject.module, {setting.lights, {}});
+  Random random(seed);
+  std::vector<eval::Point> list;
+  for (size_t i = 0; i < points; ++i) list.push_back(randomPoint(random, i));
+  eval::Bindings& bindings = subject.bindings;
+  eval::bindPoints(list, bindings);
+  bindings.columns["frame.environment_intensity"] = eval::Column::constant({1.25});
+  if (setting.lights.any) addLights(bindings, points, random);
+  roundAll(bindings.columns);
+  for (eval::Columns& light : bindings.lights) roundAll(light);
+  for (const ir::TextureSlot& slot : subject.module.textures) addTexture(subject, slot, random);
+  EXPECT_TRUE(eval::bindMaterialBlock(subject.module, bindings)) << graph.name;
+  EXPECT_TRUE(eval::bindVaryings<float>(subject.module, points, bindings)) << graph.name;
+  return subject;
+}
+
+const vulkan::Device* device() {
+  static const Result<vulkan::Device> kDevice = vulkan::Device::open();
+  return kDevice ? &*kDevice : nullptr;
+}
+
+std::vector<std::vector<float>> onCpu(const Subject& subject) {
+  const auto values =
+      eval::evaluate<float>(subject.module, subject.roots(), subject.bindings, subject.points);
+  EXPECT_TRUE(values) << subject.name << ": " << (values ? "" : format(values.error()[0]));
+  return values.value_or(std::vector<std::vector<float>>{});
+}
+
+std::vector<std::vector<float>> onDevice(const Subject& subject, SpirvRoute route) {
+  const Result<vulkan::Work> work =
+      gpuWork(subject.module, subject.bindings, subject.textures, subject.points, route);
+  EXPECT_TRUE(work) << subject.name << ": " << (work ? "" : format(work.error()[0]));
+  if (!work) return {};
+  Result<vulkan::Outcome> outcome = device()->run(*work);
+  EXPECT_TRUE(outcome) << subject.name << ": " << (outcome ? "" : format(outcome.error()[0]));
+  if (!outcome) return {};
+  // A discarded fragment has no colour: it counts as what the CPU says.
+  const std::vector<std::vector<float>> cpu = onCpu(subject);
+  for (size_t i = 0; i < subject.points; ++i) {
+    for (size_t o = 0; o < cpu.size() && outcome->discarded[i]; ++o) {
+      std::copy_n(cpu[o].begin() + static_cast<std::ptrdiff_t>(4 * i), 4,
+                  outcome->outputs[o].begin() + static_cast<std::ptrdiff_t>(4 * i));
+    }
+  }
+  return std::move(outcome->outputs);
+}
+
+void compare(const Subject& subject, const std::vector<std::vector<passes::Range>>& bounds,
+             const std::vector<std::vector<float>>& outputs, std::string_view engine,
+             Comparison& comparison) {
+  for (size_t i = 0; i < bounds.size(); ++i) {
+    for (size_t k = 0; k < bounds[i].size(); ++k) {
+      const passes::Range& bound = bounds[i][k];
+      const auto x = static_cast<double>(outputs[k / 4][4 * i + k % 4]);
+      ++comparison.numbers;
+      const double scale = std::max(std::abs(bound.lo), std::abs(bound.hi));
+      if (!(bound.hi - bound.lo <= std::max(1e-3 * scale, 1e-6))) ++comparison.vague;
+      if (std::isnan(x) ? bound.nan : bound.contains(x)) continue;
+      if (comparison.outside++ > 0) continue;
+      comparison.first =
+          fmt::format("{}: {} gives {:.9g} at point {}, number {}, which must be in [{:.9g}, {:.9g}]",
+                      subject.name, engine, x, i, k, bound.lo, bound.hi);
+    }
+  }
+}
+
+std::vector<std::vector<passes::Range>> boundsOf(const Subject& subject, bool rounded_parameters) {
+  const uint32_t bits = device() == nullptr ? 8 : device()->subTexelBits();
+  Enclosure enclosure(subject.module, subject.bindings, subject.sizes, bits, rounded_parameters);
+  const std::vector<ValueId> roots = subject.roots();
+  std::vector<std::vector<passes::Range>> bounds;
+  for (size_t i = 0; i < subject.points; ++i) bounds.push_back(enclosure.at(i, roots));
+  return bounds;
+}
+
+Comparison compareEngines(const Subject& subject) {
+  const auto bounds = boundsOf(subject);
+  Comparison comparison;
+  compare(subject, bounds, onCpu(subject), "the CPU", comparison);
+  compare(subject, bounds, onDevice(subject, SpirvRoute::Direct), "the direct SPIR-V", comparison);
+  compare(subject, bounds, onDevice(subject, SpirvRoute::Glslang), "the GLSL", comparison);
+  compare(subject, bounds, onDevice(subject, SpirvRoute::Hlsl), "the HLSL", comparison);
+  return comparison;
+}
+
+}  // namespace lacquer::parity
