@@ -96,6 +96,7 @@ void Enclosure::value(ValueId id) {
                            math_.mul(get(v.args[0], j), get(v.args[1], i)));
       }
       return;
+    case Op::MatMul: return matrixTimesVector(id);
     case Op::Texture:
     case Op::TextureLod: return texture(id);
     case Op::DFdx:
@@ -107,7 +108,7 @@ void Enclosure::value(ValueId id) {
 
 void Enclosure::input(ValueId id) {
   const ir::Input& in = dag_.inputOf(id);
-  if (in.kind == ir::InputKind::Texture) return;
+  if (in.kind == ir::InputKind::Texture || in.type == ir::Type::Mat4) return;
   if (in.kind == ir::InputKind::LightIndex) {
     return values_[id].fill({static_cast<double>(light_), static_cast<double>(light_), false});
   }
@@ -206,6 +207,19 @@ Range Enclosure::wave(const Range& a, double (*f)(double)) const {
   if (!a.finite() || a.lo < -kPi || a.hi > kPi) return math_.wave(a);
   const double x = f((a.lo + a.hi) / 2);
   return math_.widened({x, x, false}, 0, (a.hi - a.lo) / 2 + 0x1p-11);
+}
+
+/// The matrix is a block's field, by columns.
+void Enclosure::matrixTimesVector(ValueId id) {
+  const eval::Column& matrix = bindings_.columns.find(dag_.inputOf(dag_[id].args[0]).name)->second;
+  for (size_t row = 0; row < 4; ++row) {
+    std::array<Range, 4> terms;
+    for (size_t c = 0; c < 4; ++c) {
+      const double x = matrix.values[4 * c + row];
+      terms[c] = math_.mul({x, x, false}, get(dag_[id].args[1], c));
+    }
+    values_[id][row] = math_.sum(terms);
+  }
 }
 
 Range Enclosure::regrouped(const Range& sum, const Range& a, const Range& b) const {

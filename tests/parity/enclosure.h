@@ -57,6 +57,7 @@ private:
   void sumOverLights(ir::ValueId id);
   void texture(ir::ValueId id);
   void normalize(ir::ValueId id);
+  void matrixTimesVector(ir::ValueId id);
   void componentWise(ir::ValueId id);
   passes::Range arithmetic(ir::Op op, const passes::Range& a, const passes::Range& b,
                            const passes::Range& c) const;

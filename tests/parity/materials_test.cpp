@@ -51,5 +51,17 @@ TEST(ParityMaterials, Bsdf) {
   expectAgreement(setting, 256);
 }
 
+TEST(ParityMaterials, VertexStages) {
+  if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
+  size_t numbers = 0;
+  for (const NamedGraph& graph : exampleGraphs({})) {
+    const Comparison comparison = compareEngines(vertexSubject(graph, {}, 256, 5));
+    EXPECT_EQ(comparison.outside, 0U) << comparison.first;
+    EXPECT_LT(comparison.vague, comparison.numbers / 100) << graph.name;
+    numbers += comparison.numbers;
+  }
+  EXPECT_GT(numbers, 100000U);
+}
+
 }  // namespace
 }  // namespace lacquer::parity

@@ -1,7 +1,8 @@
-// Every node of the library by itself: the direct SPIR-V, the GLSL through glslang and the HLSL through
-// glslang, run on the Vulkan device, and the evaluator on the CPU give the same numbers, within what Vulkan
-// lets each operation be off by (enclosure.h). Arguments lie in their declared ranges, the ends included.
-// Then the bounds themselves are tested: a wrong operand, swizzle or guard in a node leaves them.
+// Every operation, and every node of the library by itself: the direct SPIR-V, the GLSL through glslang and
+// the HLSL through glslang, run on the Vulkan device, and the evaluator on the CPU give the same numbers,
+// within what Vulkan lets each operation be off by (enclosure.h). Arguments lie in their declared ranges, the
+// ends included. Then the bounds themselves are tested: a wrong operand, swizzle or guard in a node leaves
+// them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,6 +26,17 @@ std::vector<Subject> allNodes(size_t points) {
       subjects.push_back(nodeSubject(node, variant.name, points));
   }
   return subjects;
+}
+
+TEST(ParityOperations, CpuAndAllRoutesAgree) {
+  if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
+  const std::vector<Subject> subjects = operationSubjects(1024);
+  std::cout << subjects.size() << " operations on types\n";
+  EXPECT_GT(subjects.size(), 100U);
+  for (const Subject& subject : subjects) {
+    const Comparison comparison = compareEngines(subject);
+    EXPECT_EQ(comparison.outside, 0U) << comparison.first;
+  }
 }
 
 TEST(ParityNodes, CpuAndAllRoutesAgree) {

@@ -34,6 +34,10 @@ const lang::Library& library();
 /// among them, its results lie in colours, four numbers in each.
 Subject nodeSubject(const lang::NodeDecl& node, std::string_view variant, size_t points);
 
+/// Each operation of ir/ops.def that has an arithmetic, for every type that it takes, a Float beside a vector
+/// among them: operands are fragment inputs within the operation's domain.
+std::vector<Subject> operationSubjects(size_t points);
+
 struct MaterialSetting {
   std::string template_name = "forward";
   lower::ParameterMode parameters = lower::ParameterMode::Uniform;
@@ -54,6 +58,10 @@ std::vector<NamedGraph> exampleGraphs(const MaterialSetting& setting);
 /// lights that are not known there are three, one of each type.
 Subject materialSubject(const NamedGraph& graph, const MaterialSetting& setting, size_t points,
                         uint64_t seed);
+
+/// What the vertex stage of a material does, as a fragment shader: attributes come as fragment inputs, the
+/// clip position and the varyings go out as colours. Matrices are random.
+Subject vertexSubject(const NamedGraph& graph, const MaterialSetting& setting, size_t points, uint64_t seed);
 
 /// The device; null where there is none.
 const vulkan::Device* device();
