@@ -33,6 +33,7 @@ public:
   WorkBuilder(const ir::Module& module, const eval::Bindings& bindings, size_t points, SpirvRoute route)
       : module_(module), bindings_(bindings), points_(points), hlsl_(route == SpirvRoute::Hlsl) {
     work_.points = points;
+    work_.quads = bindings.quads;
   }
 
   Result<vulkan::Work> build(const GpuTextures& textures) {

@@ -20,7 +20,8 @@ using GpuTextures = std::map<std::string, vulkan::Texture, std::less<>>;
 Result<std::vector<uint32_t>> fragmentWords(const ir::Module& module, SpirvRoute route);
 
 /// A run at `points` points: blocks, varyings, specialization constants and the side that is seen come from
-/// the bindings' columns, each number rounded to float, textures from `textures`. Errors: "unbound-input".
+/// the bindings' columns, each number rounded to float, textures from `textures`. With quads the inputs must
+/// be affine in each. Errors: "unbound-input".
 Result<vulkan::Work> gpuWork(const ir::Module& module, const eval::Bindings& bindings,
                              const GpuTextures& textures, size_t points, SpirvRoute route);
 

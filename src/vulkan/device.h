@@ -24,7 +24,7 @@ namespace lacquer::vulkan {
   X(AllocateCommandBuffers) X(BeginCommandBuffer) X(EndCommandBuffer) X(CreateFence) X(DestroyFence) \
   X(QueueSubmit) X(WaitForFences) X(CmdPipelineBarrier) X(CmdCopyBufferToImage) X(CmdCopyImageToBuffer) \
   X(CmdBeginRenderPass) X(CmdEndRenderPass) X(CmdBindPipeline) X(CmdBindVertexBuffers) X(CmdBindDescriptorSets) \
-  X(CmdDraw)
+  X(CmdDraw) X(CmdSetScissor)
 // clang-format on
 
 struct RunFunctions {

@@ -118,13 +118,14 @@ struct FixedState {
   std::vector<VkVertexInputAttributeDescription> attributes;
   std::vector<VkPipelineColorBlendAttachmentState> blends;
   VkViewport area{0, 0, float{kSide}, float{kSide}, 0, 1};
-  VkRect2D all{{0, 0}, {kSide, kSide}};
+  VkDynamicState dynamic_state = VK_DYNAMIC_STATE_SCISSOR;
   VkPipelineVertexInputStateCreateInfo vertex_input{};
   VkPipelineInputAssemblyStateCreateInfo assembly{};
   VkPipelineViewportStateCreateInfo viewport{};
   VkPipelineRasterizationStateCreateInfo raster{};
   VkPipelineMultisampleStateCreateInfo samples{};
   VkPipelineColorBlendStateCreateInfo blend{};
+  VkPipelineDynamicStateCreateInfo dynamic{};
 
   FixedState(const Interface& fragment, uint32_t stride, uint32_t attachment_count);
   FixedState(const FixedState&) = delete;  // it points into itself
@@ -151,7 +152,6 @@ FixedState::FixedState(const Interface& fragment, uint32_t stride, uint32_t atta
   viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
   viewport.viewportCount = viewport.scissorCount = 1;
   viewport.pViewports = &area;
-  viewport.pScissors = &all;
   raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
   raster.polygonMode = VK_POLYGON_MODE_FILL;
   // The corners of run.cpp, in pixels with y downwards.
@@ -166,6 +166,9 @@ FixedState::FixedState(const Interface& fragment, uint32_t stride, uint32_t atta
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
   blend.attachmentCount = attachment_count;
   blend.pAttachments = blends.data();
+  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+  dynamic.dynamicStateCount = 1;
+  dynamic.pDynamicStates = &dynamic_state;
 }
 
 }  // namespace
@@ -214,6 +217,7 @@ void Pipeline::make(const std::vector<uint32_t>& vertex, const std::vector<uint3
   info.pRasterizationState = &state.raster;
   info.pMultisampleState = &state.samples;
   info.pColorBlendState = &state.blend;
+  info.pDynamicState = &state.dynamic;
   info.layout = layout_;
   info.renderPass = render_pass_;
   if (objects_.check(

@@ -35,6 +35,10 @@ struct Chunk {
   std::vector<std::vector<Texel>> cubes;  ///< the distinct sets of colours, one colour for each cube texture
 };
 
+struct Pixel {
+  uint32_t x = 0, y = 0;
+};
+
 size_t blockSize(const UniformBlock& block, size_t points) {
   return block.per_point ? block.bytes.size() / points : block.bytes.size();
 }
@@ -57,6 +61,8 @@ private:
   bool together(size_t a, size_t b) const;
   std::vector<Texel> cubesAt(size_t point) const;
   void upload(Objects& objects, const std::vector<Texel>& texels, const Image& image) const;
+  Pixel pixelOf(size_t i) const;
+  void corner(size_t point, const Pixel& pixel, const std::array<float, 2>& reach, unsigned char* to) const;
   Buffer vertices(Objects& objects, const Chunk& chunk) const;
   Buffer uniforms(Objects& objects, const Chunk& chunk, std::vector<BlockData>& data) const;
   std::vector<std::vector<VkImageView>> cubeViews(Objects& objects, const Chunk& chunk) const;
@@ -140,8 +146,17 @@ std::vector<Texel> Running::cubesAt(size_t point) const {
   return colors;
 }
 
+/// Where a chunk's point lies.
+Pixel Running::pixelOf(size_t i) const {
+  const auto n = static_cast<uint32_t>(i);
+  if (!work_.quads) return {n % kSide, n / kSide};
+  const uint32_t quad = n / 4;
+  return {2 * (quad % (kSide / 2)) + n % 2, 2 * (quad / (kSide / 2)) + n / 2 % 2};
+}
+
 /// Whether a draw may take both points.
 bool Running::together(size_t a, size_t b) const {
+  if (work_.quads) return b % 4 != 0;
   for (const UniformBlock& block : work_.blocks) {
     const size_t size = blockSize(block, work_.points);
     if (block.per_point && std::memcmp(&block.bytes[a * size], &block.bytes[b * size], size) != 0)
@@ -171,30 +186,45 @@ Chunk Running::split(size_t first) const {
   return chunk;
 }
 
-/// Three corners for each point: the inputs, then the position.
+/// The inputs, then the position, of a corner that lies at `reach` pixels from the centre of a point's pixel.
+/// In quads the inputs go on beyond the points as they do between them.
+void Running::corner(size_t point, const Pixel& pixel, const std::array<float, 2>& reach,
+                     unsigned char* to) const {
+  for (const Varying& input : work_.inputs) {
+    for (size_t c = 0; c < input.components; ++c) {
+      const float* value = &input.values[point * input.components + c];
+      float x = *value;
+      if (work_.quads) {
+        x +=
+            (value[input.components] - *value) * reach[0] + (value[2 * input.components] - *value) * reach[1];
+      }
+      std::memcpy(to, &x, sizeof x);
+      to += sizeof x;
+    }
+  }
+  const float x = static_cast<float>(pixel.x) + 0.5F + reach[0];
+  const float y = static_cast<float>(pixel.y) + 0.5F + reach[1];
+  const Texel position = {2 * x / kSide - 1, 2 * y / kSide - 1, 0, 1};
+  std::memcpy(to, position.data(), sizeof position);
+}
+
 Buffer Running::vertices(Objects& objects, const Chunk& chunk) const {
   const size_t stride = pipeline_.vertexStride();
   const Buffer buffer = objects.buffer(chunk.count * 3 * stride, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   if (!objects.good()) return buffer;
+  using Corners = std::array<std::array<float, 2>, 3>;
   // A triangle about the pixel's centre that reaches no other: 0.4 of a pixel to each side.
   constexpr float kReach = 0.4F;
-  constexpr std::array<std::array<float, 2>, 3> kCorners = {
-      {{-kReach, -kReach}, {kReach, -kReach}, {0, kReach}}};
+  constexpr Corners kPoint = {{{-kReach, -kReach}, {kReach, -kReach}, {0, kReach}}};
+  // About four centres; the scissor cuts the rest off. With sides of 8 its plane equations are exact.
+  constexpr Corners kQuad = {{{-1, -1}, {7, -1}, {-1, 7}}};
+  const size_t step = work_.quads ? 4 : 1;
   unsigned char* to = buffer.bytes;
-  for (size_t i = 0; i < chunk.count; ++i) {
+  for (size_t i = 0; i < chunk.count; i += step) {
     const size_t point = chunk.first + i;
     const bool back = !work_.back_facing.empty() && work_.back_facing[point];
-    for (size_t corner = 0; corner < 3; ++corner, to += stride) {
-      unsigned char* at = to;
-      for (const Varying& input : work_.inputs) {
-        std::memcpy(at, &input.values[point * input.components], input.components * sizeof(float));
-        at += input.components * sizeof(float);
-      }
-      const std::array<float, 2>& reach = kCorners[back ? 2 - corner : corner];
-      const auto x = static_cast<float>(i % kSide) + 0.5F + reach[0];
-      const auto y = static_cast<float>(i / kSide) + 0.5F + reach[1];
-      const Texel position = {2 * x / kSide - 1, 2 * y / kSide - 1, 0, 1};
-      std::memcpy(at, position.data(), sizeof position);
+    for (size_t k = 0; k < 3; ++k, to += stride) {
+      corner(point, pixelOf(i), (work_.quads ? kQuad : kPoint)[back ? 2 - k : k], to);
     }
   }
   return buffer;
@@ -329,6 +359,8 @@ void Running::record(VkCommandBuffer commands, const Chunk& chunk, const Buffer&
   vk_.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.handle());
   const VkDeviceSize zero = 0;
   vk_.CmdBindVertexBuffers(commands, 0, 1, &vertex.handle, &zero);
+  VkRect2D scissor{{0, 0}, {kSide, kSide}};
+  vk_.CmdSetScissor(commands, 0, 1, &scissor);
   for (size_t d = 0; d < chunk.draws.size(); ++d) {
     const Draw& draw = chunk.draws[d];
     std::vector<uint32_t> offsets;  // in the order of sets and bindings
@@ -343,7 +375,14 @@ void Running::record(VkCommandBuffer commands, const Chunk& chunk, const Buffer&
                                 static_cast<uint32_t>(bound.size()), bound.data(),
                                 static_cast<uint32_t>(offsets.size()), offsets.data());
     }
-    vk_.CmdDraw(commands, static_cast<uint32_t>(3 * draw.count), 1, static_cast<uint32_t>(3 * draw.first), 0);
+    const size_t points_of_triangle = work_.quads ? 4 : 1;
+    if (work_.quads) {
+      const Pixel pixel = pixelOf(draw.first);
+      scissor = {{static_cast<int32_t>(pixel.x), static_cast<int32_t>(pixel.y)}, {2, 2}};
+      vk_.CmdSetScissor(commands, 0, 1, &scissor);
+    }
+    vk_.CmdDraw(commands, static_cast<uint32_t>(3 * draw.count / points_of_triangle), 1,
+                static_cast<uint32_t>(3 * draw.first / points_of_triangle), 0);
   }
   vk_.CmdEndRenderPass(commands);
   for (size_t t = 0; t < targets_.size(); ++t) {
@@ -375,13 +414,16 @@ void Running::read(const Chunk& chunk, const Buffer& result, Outcome& outcome) {
                          "name another driver in VK_DRIVER_FILES");
   }
   for (size_t i = 0; i < chunk.count; ++i) {
-    const Texel& color = texels[i];
+    const Pixel pixel = pixelOf(i);
+    const size_t at = size_t{pixel.y} * kSide + pixel.x;
+    const Texel& color = texels[at];
     outcome.discarded[chunk.first + i] =
         std::all_of(color.begin(), color.end(), [](float x) { return x == kUntouched; });
-  }
-  for (size_t t = 0; t < targets_.size(); ++t) {
-    std::memcpy(outcome.outputs[t].data() + 4 * chunk.first, texels + t * kChunk,
-                chunk.count * sizeof(Texel));
+    for (size_t t = 0; t < targets_.size(); ++t) {
+      const Texel& texel = texels[t * kChunk + at];
+      std::copy(texel.begin(), texel.end(),
+                outcome.outputs[t].begin() + static_cast<std::ptrdiff_t>(4 * (chunk.first + i)));
+    }
   }
 }
 
@@ -412,6 +454,9 @@ std::optional<Diagnostic> problemOf(const Device::State& device, const Work& wor
   if (interface.inputs.size() != work.inputs.size()) {
     return wrong("vulkan-interface", fmt::format("the shader reads {} inputs, {} are given",
                                                  interface.inputs.size(), work.inputs.size()));
+  }
+  if (work.quads && work.points % 4 != 0) {
+    return wrong("vulkan-interface", fmt::format("{} points are not in fours", work.points));
   }
   for (size_t i = 0; i < work.inputs.size(); ++i) {
     const Slot& slot = interface.inputs[i];

@@ -1,7 +1,7 @@
 // A fragment shader run offscreen: N points in, N colours out. Each point is one pixel of RGBA32F targets,
 // covered by a triangle of its own whose three corners have the same inputs: they reach the shader unchanged,
 // their derivatives are 0, and the triangle's winding says which side is seen. All points of a chunk are one
-// submission.
+// submission. Where derivatives matter, four points are one quad of pixels.
 #pragma once
 
 #include <array>
@@ -51,6 +51,10 @@ struct Work {
   size_t points = 0;
   std::vector<Varying> inputs;    ///< in the order of their locations
   std::vector<bool> back_facing;  ///< empty: all are seen from the front
+  /// Points stand in fours, as fragments do: (x, y), (x+1, y), (x, y+1), (x+1, y+1). One triangle covers
+  /// them, so the inputs must be affine within: those of the fourth are not looked at. All else is the first
+  /// one's.
+  bool quads = false;
   std::vector<UniformBlock> blocks;
   std::vector<Texture> textures;
 };

@@ -99,8 +99,8 @@ void Enclosure::value(ValueId id) {
     case Op::MatMul: return matrixTimesVector(id);
     case Op::Texture:
     case Op::TextureLod: return texture(id);
-    case Op::DFdx:
-    case Op::DFdy: return out.fill({0, 0, false});  // the three corners are the same
+    case Op::DFdx: return derivative(id, 1);
+    case Op::DFdy: return derivative(id, 2);
     case Op::SumOverLights: return sumOverLights(id);
     default: return componentWise(id);
   }
@@ -131,6 +131,16 @@ void Enclosure::input(ValueId id) {
     // A subnormal number may be read as zero.
     const bool small = std::abs(f) < FLT_MIN;
     const Range exact{small ? std::min(f, 0.0) : f, small ? std::max(f, 0.0) : f, false};
+    if (bindings_.quads && in.kind == ir::InputKind::Varying && column->second.per_point) {
+      double largest = 0;
+      for (size_t k = 0; k < 4; ++k) {
+        const size_t n = static_cast<size_t>(column->second.components);
+        largest = std::max(
+            largest, std::abs(column->second.values[(point_ / 4 * 4 + k) * n + static_cast<size_t>(c)]));
+      }
+      values_[id][static_cast<size_t>(c)] = math_.widened(exact, 0, 8 * kUlp * largest);
+      continue;
+    }
     values_[id][static_cast<size_t>(c)] =
         material && rounded_parameters_ ? math_.widened(exact, kUlp, 0) : exact;
   }
@@ -207,6 +217,28 @@ Range Enclosure::wave(const Range& a, double (*f)(double)) const {
   if (!a.finite() || a.lo < -kPi || a.hi > kPi) return math_.wave(a);
   const double x = f((a.lo + a.hi) / 2);
   return math_.widened({x, x, false}, 0, (a.hi - a.lo) / 2 + 0x1p-11);
+}
+
+/// `step` leads to the neighbour within the quad.
+void Enclosure::derivative(ValueId id, size_t step) {
+  Ranges& out = values_[id];
+  if (!bindings_.quads) return out.fill({0, 0, false});  // all corners of the triangle are the same
+  const ValueId a = dag_[id].args[0];
+  const std::vector<ValueId> needed = ir::reachable(dag_, {{a}});
+  const size_t here = point_;
+  const std::vector<Ranges> kept = values_;
+  std::array<Ranges, 4> at;
+  for (size_t k = 0; k < 4; ++k) {
+    point_ = here / 4 * 4 + k;
+    for (const ValueId part : needed) value(part);
+    at[k] = values_[a];
+  }
+  point_ = here;
+  values_ = kept;
+  const size_t other = 3 - step;  // the other row or column: a device may give one derivative to all four
+  for (size_t c = 0; c < 4; ++c) {
+    values_[id][c] = hull(math_.sub(at[step][c], at[0][c]), math_.sub(at[3][c], at[other][c]));
+  }
 }
 
 /// The matrix is a block's field, by columns.

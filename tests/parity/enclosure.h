@@ -17,6 +17,8 @@
 //   sin, cos              absolutely 2^-11 within [-pi, pi]
 //   min, max, abs, neg,   exact; a comparison that its operands' intervals leave open may go both ways
 //   floor, comparisons
+//   dFdx, dFdy            differences of neighbours, in either row or column of the quad; there the inputs
+//                         are interpolated, and off by 8 ULP of the largest of the four
 //   texture               the filter's weights have `subTexelPrecisionBits`
 //
 // So the bound follows each point's own conditioning: a few ULP where the formula is well conditioned, more
@@ -57,6 +59,7 @@ private:
   void sumOverLights(ir::ValueId id);
   void texture(ir::ValueId id);
   void normalize(ir::ValueId id);
+  void derivative(ir::ValueId id, size_t step);
   void matrixTimesVector(ir::ValueId id);
   void componentWise(ir::ValueId id);
   passes::Range arithmetic(ir::Op op, const passes::Range& a, const passes::Range& b,

@@ -51,6 +51,14 @@ TEST(ParityMaterials, Bsdf) {
   expectAgreement(setting, 256);
 }
 
+/// Tangent frames come from derivatives.
+TEST(ParityMaterials, QuadsWithoutTangents) {
+  MaterialSetting setting;
+  setting.tangents = false;
+  setting.quads = true;
+  expectAgreement(setting, 256);
+}
+
 TEST(ParityMaterials, VertexStages) {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
   size_t numbers = 0;

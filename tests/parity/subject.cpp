@@ -284,9 +284,9 @@ std::vector<NamedGraph> exampleGraphs(const MaterialSetting& setting) {
       options.template_name = setting.template_name;
       options.decode_srgb = setting.decode_srgb;
       Diagnostics warnings;
-      NamedGraph made{
-          fmt::format("{}, {}, {}", file.stem().string(), material.name, setting.template_name),
-          graph::build(material, {true, true, true, {true, true, true, true}}, options, warnings)};
+      NamedGraph made{fmt::format("{}, {}, {}", file.stem().string(), material.name, setting.template_name),
+                      graph::build(material, {true, setting.tangents, true, {true, true, true, true}},
+                                   options, warnings)};
       EXPECT_FALSE(hasError(graph::check(made.graph, library()))) << made.name;
       graphs.push_back(std::move(made));
     }
@@ -333,6 +333,29 @@ eval::Point randomPoint(Random& random, size_t i) {
   return p;
 }
 
+/// Makes four equal points a quad: steps of whole 64ths, which a triangle's plane equations keep exactly. The
+/// eye stays where it is.
+void spread(std::span<eval::Point> quad, Random& random) {
+  const auto step = [&] { return std::round(random.between(-16, 16)) / 64; };
+  const auto affine = [&](auto&& number) {
+    const double first = std::round(number(quad[0]) * 64) / 64;
+    const double x = step();
+    const double y = step();
+    for (size_t k = 0; k < 4; ++k) number(quad[k]) = first + (k % 2 == 0 ? 0 : x) + (k / 2 == 0 ? 0 : y);
+  };
+  std::array<double, 3> eye{};
+  for (size_t c = 0; c < 3; ++c) {
+    eye[c] = rounded(quad[0].position[c] + quad[0].v[c]);
+    affine([c](eval::Point& p) -> double& { return p.position[c]; });
+  }
+  for (eval::Point& p : quad) {
+    for (size_t c = 0; c < 3; ++c) p.v[c] = eye[c] - p.position[c];
+  }
+  for (size_t set = 0; set < 4; ++set) {
+    for (size_t c = 0; c < 2; ++c) affine([set, c](eval::Point& p) -> double& { return p.uv[set][c]; });
+  }
+}
+
 /// A point light and a spot beside the directional one.
 void addLights(eval::Bindings& bindings, size_t points, Random& random) {
   for (const bool spot : {false, true}) {
@@ -366,9 +389,13 @@ Subject materialSubject(const NamedGraph& graph, const MaterialSetting& setting,
   passes::runPipeline(subject.module, {setting.lights, {}});
   Random random(seed);
   std::vector<eval::Point> list;
-  for (size_t i = 0; i < points; ++i) list.push_back(randomPoint(random, i));
+  for (size_t i = 0; i < points; ++i) {
+    list.push_back(setting.quads && i % 4 != 0 ? list.back() : randomPoint(random, i));
+    if (setting.quads && i % 4 == 3) spread({list.data() + i - 3, 4}, random);
+  }
   eval::Bindings& bindings = subject.bindings;
   eval::bindPoints(list, bindings);
+  bindings.quads = setting.quads;
   bindings.columns["frame.environment_intensity"] = eval::Column::constant({1.25});
   if (setting.lights.any) addLights(bindings, points, random);
   roundAll(bindings.columns);

@@ -43,6 +43,8 @@ struct MaterialSetting {
   lower::ParameterMode parameters = lower::ParameterMode::Uniform;
   passes::LightFacts lights{false, 1, 0, 0};
   bool decode_srgb = false;
+  bool tangents = true;
+  bool quads = false;  ///< points stand in fours; positions and texture coordinates are affine in each
 };
 
 struct NamedGraph {

@@ -75,6 +75,40 @@ TEST(VulkanRun, InputsComeBackUnchanged) {
   }
 }
 
+TEST(VulkanRun, QuadsHaveDerivatives) {
+  NEEDS_DEVICE();
+  Work work;
+  work.fragment = compiled(
+      "layout(location = 0) in vec2 a;\nlayout(location = 0) out vec4 c;\nlayout(location = 1) out vec4 d;\n"
+      "void main() { c = vec4(a, dFdx(a.x), dFdy(a.x)); d = vec4(dFdx(a.y), dFdy(a.y), gl_FrontFacing, 0); "
+      "}\n");
+  work.points = 8000;
+  work.quads = true;
+  Varying input{2, {}};
+  for (size_t i = 0; i < work.points; ++i) {
+    const auto quad = static_cast<float>(i / 4);
+    const auto x = static_cast<float>(i % 2);
+    const auto y = static_cast<float>(i / 2 % 2);
+    input.values.push_back(quad + 3 * x - 5 * y);
+    input.values.push_back(2 * quad - 0.25F * x + (quad / 4) * y);
+    work.back_facing.push_back(i / 4 % 3 == 0);
+  }
+  work.inputs = {input};
+  const Outcome outcome = ran(work);
+  for (size_t i = 0; i < work.points; ++i) {
+    const auto quad = static_cast<float>(i / 4);
+    const float near = 1e-5F * (quad + 1);
+    for (size_t c = 0; c < 2; ++c)
+      ASSERT_NEAR(outcome.outputs[0][4 * i + c], input.values[2 * i + c], near) << i;
+    ASSERT_NEAR(outcome.outputs[0][4 * i + 2], 3, near) << i;
+    ASSERT_NEAR(outcome.outputs[0][4 * i + 3], -5, near) << i;
+    ASSERT_NEAR(outcome.outputs[1][4 * i], -0.25, near) << i;
+    ASSERT_NEAR(outcome.outputs[1][4 * i + 1], quad / 4, near) << i;
+    ASSERT_EQ(outcome.outputs[1][4 * i + 2], i / 4 % 3 == 0 ? 0 : 1) << i;
+    ASSERT_FALSE(outcome.discarded[i]) << i;
+  }
+}
+
 TEST(VulkanRun, SidesAndDroppedFragments) {
   NEEDS_DEVICE();
   Work work;
