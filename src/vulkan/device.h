@@ -67,6 +67,8 @@ public:
   bool good() const { return wrong_.empty(); }
   const Diagnostics& wrong() const { return wrong_; }
   void fail(std::string code, std::string message, std::string help = {});
+  /// What went wrong with others that this one needs.
+  void take(const Diagnostics& wrong) { wrong_.insert(wrong_.end(), wrong.begin(), wrong.end()); }
   /// False, and the failure noted, unless `result` is success.
   bool check(VkResult result, const char* call);
   void atEnd(std::function<void()> undo) { undo_.push_back(std::move(undo)); }

@@ -60,7 +60,7 @@ private:
   Chunk split(size_t first) const;
   bool together(size_t a, size_t b) const;
   std::vector<Texel> cubesAt(size_t point) const;
-  void upload(Objects& objects, const std::vector<Texel>& texels, const Image& image) const;
+  void upload(const std::vector<Texel>& texels, const Image& image, Objects& objects) const;
   Pixel pixelOf(size_t i) const;
   void corner(size_t point, const Pixel& pixel, const std::array<float, 2>& reach, unsigned char* to) const;
   Buffer vertices(Objects& objects, const Chunk& chunk) const;
@@ -88,21 +88,23 @@ private:
   VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
 };
 
-void Running::upload(Objects& objects, const std::vector<Texel>& texels, const Image& image) const {
-  const size_t size = texels.size() * sizeof(Texel);
-  const Buffer staging = objects.buffer(size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+void Running::upload(const std::vector<Texel>& texels, const Image& image, Objects& objects) const {
   if (!objects.good()) return;
-  std::memcpy(staging.bytes, texels.data(), size);
-  objects.submit([&](VkCommandBuffer commands) {
-    objects.toLayout(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  Objects mine(device_);  // the copy is not needed afterwards
+  const size_t size = texels.size() * sizeof(Texel);
+  const Buffer staging = mine.buffer(size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  if (mine.good()) std::memcpy(staging.bytes, texels.data(), size);
+  mine.submit([&](VkCommandBuffer commands) {
+    mine.toLayout(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     VkBufferImageCopy copy{};
     copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, image.layers};
     copy.imageExtent = {image.width, image.height, 1};
     vk_.CmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
                              &copy);
-    objects.toLayout(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    mine.toLayout(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   });
+  objects.take(mine.wrong());
 }
 
 /// What all chunks share: the targets and the textures.
@@ -135,7 +137,7 @@ void Running::prepare() {
     }
     const Image image = objects_.image(texture.width, texture.height, 1,
                                        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    if (objects_.good()) upload(objects_, *texture.texels, image);
+    upload(*texture.texels, image, objects_);
     views_.back() = objects_.view(image, 0, false);
   }
 }
@@ -264,7 +266,7 @@ std::vector<std::vector<VkImageView>> Running::cubeViews(Objects& objects, const
     for (const std::vector<Texel>& colors : chunk.cubes) texels.insert(texels.end(), 6, colors[c]);
     const Image image = objects.image(1, 1, static_cast<uint32_t>(texels.size()),
                                       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    if (objects.good()) upload(objects, texels, image);
+    upload(texels, image, objects);
     for (size_t v = 0; v < views.size(); ++v)
       views[v].push_back(objects.view(image, static_cast<uint32_t>(6 * v), true));
   }
@@ -442,7 +444,7 @@ void Running::chunk(size_t first, Outcome& outcome) {
     objects.submit([&](VkCommandBuffer commands) { record(commands, chunk, vertex, data, bound, result); });
   }
   if (objects.good()) read(chunk, result, outcome);
-  for (const Diagnostic& d : objects.wrong()) objects_.fail(d.code, d.message, d.help);
+  objects_.take(objects.wrong());
 }
 
 /// What would make the device's calls undefined; empty when all is well.
