@@ -6,7 +6,7 @@
 namespace lacquer::vulkan {
 
 Objects::~Objects() {
-  for (auto undo = undo_.rbegin(); undo != undo_.rend(); ++undo) (*undo)();
+  for (; !undo_.empty(); undo_.pop_back()) undo_.back()();
 }
 
 void Objects::fail(std::string code, std::string message, std::string help) {

@@ -197,8 +197,8 @@ void Running::corner(size_t point, const Pixel& pixel, const std::array<float, 2
       const float* value = &input.values[point * input.components + c];
       float x = *value;
       if (work_.quads) {
-        x +=
-            (value[input.components] - *value) * reach[0] + (value[2 * input.components] - *value) * reach[1];
+        x += (value[input.components] - *value) * reach[0] +
+             (value[size_t{2} * input.components] - *value) * reach[1];
       }
       std::memcpy(to, &x, sizeof x);
       to += sizeof x;

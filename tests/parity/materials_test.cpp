@@ -9,11 +9,11 @@
 namespace lacquer::parity {
 namespace {
 
-void expectAgreement(const MaterialSetting& setting, size_t points) {
+void expectAgreement(const std::vector<NamedGraph>& graphs, const MaterialSetting& setting, size_t points) {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
   Comparison all;
   uint64_t seed = 1;
-  for (const NamedGraph& graph : exampleGraphs(setting)) {
+  for (const NamedGraph& graph : graphs) {
     const Subject subject = materialSubject(graph, setting, points, seed++);
     const Comparison comparison = compareEngines(subject);
     EXPECT_EQ(comparison.outside, 0U) << comparison.first;
@@ -23,6 +23,10 @@ void expectAgreement(const MaterialSetting& setting, size_t points) {
   std::cout << all.numbers << " numbers, " << all.vague << " with a vague bound\n";
   // Filters between random texels, mostly.
   EXPECT_LT(all.vague, all.numbers / 4);
+}
+
+void expectAgreement(const MaterialSetting& setting, size_t points) {
+  expectAgreement(exampleGraphs(setting), setting, points);
 }
 
 TEST(ParityMaterials, Forward) { expectAgreement({}, 1024); }
@@ -50,6 +54,9 @@ TEST(ParityMaterials, Bsdf) {
   setting.template_name = "bsdf";
   expectAgreement(setting, 256);
 }
+
+/// Combinations of properties that no example has.
+TEST(ParityMaterials, RandomOnes) { expectAgreement(randomGraphs({}, 10), {}, 64); }
 
 /// Tangent frames come from derivatives.
 TEST(ParityMaterials, QuadsWithoutTangents) {

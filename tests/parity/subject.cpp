@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "../golden/random_material.h"
 #include "../intervals/sampling.h"
 #include "eval/evaluate.h"
 #include "eval/image.h"
@@ -269,6 +270,27 @@ std::vector<Subject> operationSubjects(size_t points) {
   return subjects;
 }
 
+namespace {
+
+/// Appends the materials of a document that have no errors.
+void addGraphs(const gltf::Document& document, const std::string& name, const MaterialSetting& setting,
+               std::vector<NamedGraph>& graphs) {
+  for (const gltf::Material& material : document.materials) {
+    graph::BuildOptions options;
+    options.template_name = setting.template_name;
+    options.decode_srgb = setting.decode_srgb;
+    Diagnostics warnings;
+    NamedGraph made{
+        fmt::format("{}, {}, {}", name, material.name, setting.template_name),
+        graph::build(material, {true, setting.tangents, true, {true, true, true, true}}, options, warnings)};
+    EXPECT_FALSE(hasError(material.diagnostics)) << made.name;
+    EXPECT_FALSE(hasError(graph::check(made.graph, library()))) << made.name;
+    graphs.push_back(std::move(made));
+  }
+}
+
+}  // namespace
+
 std::vector<NamedGraph> exampleGraphs(const MaterialSetting& setting) {
   std::vector<NamedGraph> graphs;
   std::vector<std::filesystem::path> files;
@@ -279,17 +301,18 @@ std::vector<NamedGraph> exampleGraphs(const MaterialSetting& setting) {
   for (const std::filesystem::path& file : files) {
     const Result<gltf::Document> document = gltf::read(file.string(), {});
     EXPECT_TRUE(document) << file;
-    for (const gltf::Material& material : document->materials) {
-      graph::BuildOptions options;
-      options.template_name = setting.template_name;
-      options.decode_srgb = setting.decode_srgb;
-      Diagnostics warnings;
-      NamedGraph made{fmt::format("{}, {}, {}", file.stem().string(), material.name, setting.template_name),
-                      graph::build(material, {true, setting.tangents, true, {true, true, true, true}},
-                                   options, warnings)};
-      EXPECT_FALSE(hasError(graph::check(made.graph, library()))) << made.name;
-      graphs.push_back(std::move(made));
-    }
+    if (document) addGraphs(*document, file.stem().string(), setting, graphs);
+  }
+  return graphs;
+}
+
+std::vector<NamedGraph> randomGraphs(const MaterialSetting& setting, uint64_t files) {
+  std::vector<NamedGraph> graphs;
+  for (uint64_t seed = 1; seed <= files; ++seed) {
+    const std::string text = test::RandomMaterial(seed).valid(4).dump();
+    const Result<gltf::Document> document = gltf::readText(text, "random.gltf", {});
+    EXPECT_TRUE(document) << text;
+    if (document) addGraphs(*document, fmt::format("seed {}", seed), setting, graphs);
   }
   return graphs;
 }

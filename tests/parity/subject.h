@@ -55,6 +55,9 @@ struct NamedGraph {
 /// The materials of examples/*.gltf, on primitives with all attributes.
 std::vector<NamedGraph> exampleGraphs(const MaterialSetting& setting);
 
+/// Four materials of each file of random ones (tests/golden/random_material.h).
+std::vector<NamedGraph> randomGraphs(const MaterialSetting& setting, uint64_t files);
+
 /// A material at random points, the edges among them: grazing and equal directions, both sides. Textures are
 /// small random images with random wrap modes, nearest or bilinear; environments are random colours. With
 /// lights that are not known there are three, one of each type.
