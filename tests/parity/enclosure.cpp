@@ -28,14 +28,12 @@ Range comparison(Op op, const Range& a, const Range& b) {
 }  // namespace
 
 Enclosure::Enclosure(const ir::Module& module, const eval::Bindings& bindings,
-                     const std::map<std::string, TextureSize>& sizes, uint32_t sub_texel_bits,
-                     bool rounded_parameters)
+                     const std::map<std::string, TextureSize>& sizes, const EnclosureOptions& options)
     : module_(module),
       dag_(module.dag),
       bindings_(bindings),
       sizes_(sizes),
-      sub_texel_(std::exp2(-static_cast<double>(sub_texel_bits))),
-      rounded_parameters_(rounded_parameters),
+      options_(options),
       math_(passes::Arithmetic::Float32),
       values_(module.dag.size()) {
   for (ValueId id = 0; id < dag_.size(); ++id) {
@@ -142,7 +140,7 @@ void Enclosure::input(ValueId id) {
       continue;
     }
     values_[id][static_cast<size_t>(c)] =
-        material && rounded_parameters_ ? math_.widened(exact, kUlp, 0) : exact;
+        material && options_.rounded_parameters ? math_.widened(exact, kUlp, 0) : exact;
   }
 }
 
@@ -174,7 +172,8 @@ void Enclosure::texture(ValueId id) {
     middle[i] = (x.lo + x.hi) / 2;
     // A coordinate is scaled by the size, in floats, and then cut to the filter's bits.
     const double texels = size == sizes_.end() ? 1 : c == 0 ? size->second.width : size->second.height;
-    const double slack = sub_texel_ / texels + 4 * kUlp * std::abs(middle[i]);
+    const double slack =
+        std::exp2(-static_cast<double>(options_.sub_texel_bits)) / texels + 4 * kUlp * std::abs(middle[i]);
     tries[0][i] = x.lo - slack;
     tries[1][i] = x.hi + slack;
   }
@@ -255,6 +254,7 @@ void Enclosure::matrixTimesVector(ValueId id) {
 }
 
 Range Enclosure::regrouped(const Range& sum, const Range& a, const Range& b) const {
+  if (!options_.regrouped) return sum;
   const double larger = std::max({std::abs(a.lo), std::abs(a.hi), std::abs(b.lo), std::abs(b.hi)});
   return std::isfinite(larger) ? math_.widened(sum, 0, larger * kUlp) : sum;
 }

@@ -7,7 +7,7 @@
 //   *, dot, cross         each step correctly rounded, in either direction, sums in any order, fused or not
 //   + -                   a ULP of the larger operand: nothing forbids a compiler to write a * (1 - t) + b *
 //   t
-//                         as a + (b - a) * t, and Mesa's does
+//                         as a + (b - a) * t, and Mesa's does; alone, correctly rounded
 //   /                     2.5 ULP
 //   sqrt, inversesqrt     5 and 2 ULP
 //   exp2, exp             3 + 2 |x| ULP
@@ -41,13 +41,19 @@ struct TextureSize {
   double width = 1, height = 1;
 };
 
+struct EnclosureOptions {
+  uint32_t sub_texel_bits = 8;
+  /// The material's numbers (fields of its block, specialization constants) may be off by a unit in the last
+  /// place: they were rounded before the shader was given them.
+  bool rounded_parameters = false;
+  /// Sums may be regrouped. Otherwise they are correctly rounded in either direction, like products.
+  bool regrouped = true;
+};
+
 class Enclosure {
 public:
-  /// With `rounded_parameters` the material's numbers (fields of its block, specialization constants) may be
-  /// off by a unit in the last place: they were rounded before the shader was given them.
   Enclosure(const ir::Module& module, const eval::Bindings& bindings,
-            const std::map<std::string, TextureSize>& sizes, uint32_t sub_texel_bits,
-            bool rounded_parameters = false);
+            const std::map<std::string, TextureSize>& sizes, const EnclosureOptions& options);
 
   /// The components of the values at a point, one after the other.
   std::vector<passes::Range> at(size_t point, const std::vector<ir::ValueId>& roots);
@@ -75,8 +81,7 @@ private:
   const ir::Dag& dag_;
   const eval::Bindings& bindings_;
   const std::map<std::string, TextureSize>& sizes_;
-  double sub_texel_;
-  bool rounded_parameters_;
+  EnclosureOptions options_;
   passes::RangeMath math_;
   std::vector<Ranges> values_;
   std::map<ir::ValueId, std::vector<ir::ValueId>> bodies_;  ///< of the sums over lights

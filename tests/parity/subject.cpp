@@ -214,6 +214,7 @@ std::optional<Subject> operationSubject(ir::Op op, const std::vector<ir::Type>& 
   Subject subject;
   subject.name = std::string(ir::info(op).name);
   for (const ir::Type type : types) subject.name += fmt::format(" {}", ir::typeName(type));
+  subject.single = true;
   subject.points = points;
   ir::Module& module = subject.module;
   module.template_name = "operation";
@@ -516,8 +517,11 @@ void compare(const Subject& subject, const std::vector<std::vector<passes::Range
 }
 
 std::vector<std::vector<passes::Range>> boundsOf(const Subject& subject, bool rounded_parameters) {
-  const uint32_t bits = device() == nullptr ? 8 : device()->subTexelBits();
-  Enclosure enclosure(subject.module, subject.bindings, subject.sizes, bits, rounded_parameters);
+  EnclosureOptions options;
+  if (device() != nullptr) options.sub_texel_bits = device()->subTexelBits();
+  options.rounded_parameters = rounded_parameters;
+  options.regrouped = !subject.single;
+  Enclosure enclosure(subject.module, subject.bindings, subject.sizes, options);
   const std::vector<ValueId> roots = subject.roots();
   std::vector<std::vector<passes::Range>> bounds;
   for (size_t i = 0; i < subject.points; ++i) bounds.push_back(enclosure.at(i, roots));

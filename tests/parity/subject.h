@@ -23,6 +23,7 @@ struct Subject {
   eval::Bindings bindings;  ///< every number is a float
   GpuTextures textures;
   std::map<std::string, TextureSize> sizes;  ///< of textures that are no constants
+  bool single = false;                       ///< one operation: there is nothing to regroup
 
   /// The colours, in the order of their locations.
   std::vector<ir::ValueId> roots() const;
