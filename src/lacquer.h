@@ -58,6 +58,7 @@ enum class Parameters : uint8_t {
 enum class SpirvRoute : uint8_t {
   Direct,   ///< written from the DAG
   Glslang,  ///< the Vulkan GLSL through glslang: slower, a cross-check
+  Hlsl,     ///< the HLSL through glslang: for evaluate() alone
 };
 
 /// What is known of the lights. Fixed counts lie in the light array as directional, point, spot.
@@ -268,11 +269,14 @@ struct ShaderCost {
 std::vector<ShaderCost> measureCost(const std::vector<std::string>& paths, bool disassembly,
                                     Messages& messages);
 
-/// A material's linear forward colours at points, JSON in and out (docs/eval.md), in double or float; empty
+/// Double and Float on the CPU; Vulkan: the shader of Options::spirv_route on the first Vulkan device.
+enum class Engine : uint8_t { Double, Float, Vulkan };
+
+/// A material's linear forward colours at points, JSON in and out (docs/eval.md); empty
 /// on an error. `texels`: "SLOT=r,g,b,a", instead of images. `points_name` stands for the points' file in
 /// messages.
 std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
-                     const std::string& points_name, bool in_float, const std::vector<std::string>& texels,
+                     const std::string& points_name, Engine engine, const std::vector<std::string>& texels,
                      const Options& options, Messages& messages);
 
 /// The node library as JSON (contracts, ranges, sources, variants), and what is proved of it. Empty on an

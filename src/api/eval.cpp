@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "api/gpu.h"
 #include "api/internal.h"
 #include "api/points.h"
 #include "eval/dfg.h"
@@ -87,9 +88,57 @@ eval::Wrap wrapOf(int gl) {
   return gl == kClamp ? eval::Wrap::Clamp : gl == kMirror ? eval::Wrap::Mirror : eval::Wrap::Repeat;
 }
 
+struct Colors {
+  std::vector<double> rgba;     ///< of each point
+  std::vector<bool> discarded;  ///< by point; empty when the material discards nothing
+  std::string device;           ///< that ran the shader; empty for the CPU
+};
+
+std::string_view nameOf(Engine engine) {
+  switch (engine) {
+    case Engine::Double: return "double";
+    case Engine::Float: return "float";
+    case Engine::Vulkan: return "vulkan";
+  }
+  return {};
+}
+
+std::string answerOf(const Colors& colors, const std::string& material, const std::string& profile, Engine engine) {
+  const auto quoted = [](const std::string& text) {
+    return gltf::Json(text).dump(-1, ' ', false, gltf::Json::error_handler_t::replace);
+  };
+  std::string text =
+      fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n", quoted(material), nameOf(engine));
+  if (!colors.device.empty()) text += fmt::format("  \"device\": {},\n", quoted(colors.device));
+  text += fmt::format("  \"profile\": \"{}\",\n  \"rgba\": [", profile);
+  for (size_t i = 0; 4 * i < colors.rgba.size(); ++i) {
+    text += i == 0 ? "\n    [" : ",\n    [";
+    // A device leaves no colour where it has dropped the fragment.
+    const bool none = engine == Engine::Vulkan && !colors.discarded.empty() && colors.discarded[i];
+    for (size_t c = 0; c < 4; ++c) {
+      const double x = colors.rgba[4 * i + c];
+      if (c > 0) text += ", ";
+      // JSON has no infinity; no input in its range should come here.
+      text += none || !std::isfinite(x)  ? "null"
+              : engine == Engine::Double ? fmt::format("{:.17g}", x)
+                                         : fmt::format("{:.9g}", static_cast<float>(x));
+    }
+    text += "]";
+  }
+  text += "\n  ]";
+  if (!colors.discarded.empty()) {
+    text += ",\n  \"discarded\": [";
+    for (size_t i = 0; i < colors.discarded.size(); ++i)
+      text += fmt::format("{}{}", i == 0 ? "" : ", ", static_cast<bool>(colors.discarded[i]));
+    text += "]";
+  }
+  return text + "\n}\n";
+}
+
 class Evaluating {
 public:
-  Evaluating(const std::string& file, const Options& options) : file_(file), options_(options) {}
+  Evaluating(const std::string& file, const Options& options, Engine engine)
+      : file_(file), options_(options), on_gpu_(engine == Engine::Vulkan) {}
 
   Result<void> setTexels(const std::vector<std::string>& texts) {
     for (const std::string& text : texts) {
@@ -119,14 +168,13 @@ public:
     if (Diagnostics wrong = graph::check(graph, library); lacquer::hasError(wrong)) {
       return tl::make_unexpected(std::move(wrong));
     }
-    Result<ir::Module> module = lower::lower(graph, library, {});
+    Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options)});
     if (!module) return tl::make_unexpected(std::move(module.error()));
     module_ = std::move(*module);
     return checkTexels();
   }
 
-  /// The float engine computes what the shader does: values of the material's rate in the preshader, then
-  /// floats.
+  /// What the shader computes: values of the material's rate in the preshader, then floats.
   void place() {
     passes::PipelineOptions pipeline;
     pipeline.lights = {false, 1, 0, 0};
@@ -153,14 +201,15 @@ public:
       if (!used[i]) continue;
       const ir::TextureSlot& slot = module_.textures[i];
       if (slot.name == "environment_dfg") {
-        bindings_.textures[slot.name] = [](size_t, const std::array<double, 3>& at, double) {
-          return eval::lookUpEnvironmentDfg(at[0], at[1]);
-        };
+        bindings_.textures[slot.name] = eval::environmentDfgSampler();
+        gpu_textures_[slot.name] =
+            imageOf(*eval::environmentDfgImage(), {eval::Wrap::Clamp, eval::Wrap::Clamp, false, false});
       } else if (slot.environment) {
         bindings_.textures[slot.name] = [&points](size_t point, const std::array<double, 3>&, double) {
           const std::array<double, 3>& e = points.environment[point];
           return std::array<double, 4>{e[0], e[1], e[2], 1};
         };
+        gpu_textures_[slot.name] = environmentOf(points);
       } else if (Result<void> bound = bindTexture(slot); !bound) {
         wrong.insert(wrong.end(), bound.error().begin(), bound.error().end());
       }
@@ -170,7 +219,7 @@ public:
   }
 
   template <class T>
-  Result<std::string> answer(const std::string& material, size_t points) const {
+  Result<Colors> colors(size_t points) const {
     std::vector<ir::ValueId> roots;
     ir::ValueId color = ir::kNoValue;
     ir::ValueId dropped = ir::kNoValue;
@@ -182,29 +231,26 @@ public:
     if (dropped != ir::kNoValue) roots.push_back(dropped);
     const auto values = eval::evaluate<T>(module_, roots, bindings_, points);
     if (!values) return tl::make_unexpected(values.error());
-    constexpr bool kSingle = sizeof(T) == sizeof(float);
-    std::string text =
-        fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n  \"profile\": \"{}\",\n  \"rgba\": [",
-                    gltf::Json(material).dump(-1, ' ', false, gltf::Json::error_handler_t::replace),
-                    kSingle ? "float" : "double", options_.profile);
-    for (size_t i = 0; i < points; ++i) {
-      text += i == 0 ? "\n    [" : ",\n    [";
-      for (size_t c = 0; c < 4; ++c) {
-        const T x = (*values)[0][4 * i + c];
-        if (c > 0) text += ", ";
-        // JSON has no infinity; no input in its range should come here.
-        text += std::isfinite(x) ? fmt::format(kSingle ? "{:.9g}" : "{:.17g}", x) : "null";
-      }
-      text += "]";
-    }
-    text += "\n  ]";
+    Colors result{{(*values)[0].begin(), (*values)[0].end()}, {}, {}};
     if (values->size() > 1) {
-      text += ",\n  \"discarded\": [";
-      for (size_t i = 0; i < points; ++i)
-        text += fmt::format("{}{}", i == 0 ? "" : ", ", (*values)[1][i] != 0);
-      text += "]";
+      for (const T x : (*values)[1]) result.discarded.push_back(x != 0);
     }
-    return text + "\n}\n";
+    return result;
+  }
+
+  Result<Colors> colorsOnGpu(size_t points) const {
+    const Result<vulkan::Work> work =
+        gpuWork(module_, bindings_, gpu_textures_, points, options_.spirv_route);
+    if (!work) return tl::make_unexpected(work.error());
+    const Result<vulkan::Device> device = vulkan::Device::open();
+    if (!device) return tl::make_unexpected(device.error());
+    Result<vulkan::Outcome> outcome = device->run(*work);
+    if (!outcome) return tl::make_unexpected(std::move(outcome.error()));
+    Colors result{{outcome->outputs[0].begin(), outcome->outputs[0].end()}, {}, device->name()};
+    const bool may_discard = std::any_of(module_.outputs.begin(), module_.outputs.end(),
+                                         [](const auto& o) { return o.kind == ir::OutputKind::Discard; });
+    if (may_discard) result.discarded = std::move(outcome->discarded);
+    return result;
   }
 
 private:
@@ -231,11 +277,50 @@ private:
     return {};
   }
 
+  static vulkan::Texture environmentOf(const EvalPoints& points) {
+    std::vector<vulkan::Texel> texels;
+    for (const std::array<double, 3>& e : points.environment) {
+      texels.push_back({static_cast<float>(e[0]), static_cast<float>(e[1]), static_cast<float>(e[2]), 1});
+    }
+    vulkan::Texture texture;
+    texture.cube = true;
+    texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(std::move(texels));
+    return texture;
+  }
+
+  static vulkan::Texture constantOf(const std::array<double, 4>& value) {
+    vulkan::Texel texel{};
+    for (size_t i = 0; i < 4; ++i) texel[i] = static_cast<float>(value[i]);
+    vulkan::Texture texture;
+    texture.nearest = true;
+    texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(1, texel);
+    return texture;
+  }
+
+  /// Decoded here, as the device's sRGB format would before it filters.
+  static vulkan::Texture imageOf(const eval::Image& image, const eval::Lookup& lookup) {
+    std::vector<vulkan::Texel> texels = image.texels;
+    for (size_t i = 0; lookup.srgb && i < texels.size(); ++i) {
+      for (size_t c = 0; c < 3; ++c) {
+        texels[i][c] = static_cast<float>(eval::decodeSrgb(static_cast<double>(texels[i][c])));
+      }
+    }
+    vulkan::Texture texture;
+    texture.width = static_cast<uint32_t>(image.width);
+    texture.height = static_cast<uint32_t>(image.height);
+    texture.s = static_cast<vulkan::Wrap>(lookup.s);
+    texture.t = static_cast<vulkan::Wrap>(lookup.t);
+    texture.nearest = lookup.nearest;
+    texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(std::move(texels));
+    return texture;
+  }
+
   Result<void> bindTexture(const ir::TextureSlot& slot) {
     for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
       if (!names(it->slot, slot)) continue;
       const std::array<double, 4> value = it->value;
       bindings_.textures[slot.name] = [value](size_t, const std::array<double, 3>&, double) { return value; };
+      gpu_textures_[slot.name] = constantOf(value);
       return {};
     }
     Result<eval::Sampler> sampler = imageSampler(slot);
@@ -266,8 +351,10 @@ private:
       image = std::make_shared<const eval::Image>(std::move(*decoded));
     }
     constexpr int kNearest = 9728;
-    return eval::makeSampler(
-        image, {wrapOf(source->wrapS), wrapOf(source->wrapT), source->magFilter == kNearest, slot.srgb});
+    const eval::Lookup lookup{wrapOf(source->wrapS), wrapOf(source->wrapT), source->magFilter == kNearest,
+                              slot.srgb};
+    if (on_gpu_) gpu_textures_[slot.name] = imageOf(*image, lookup);
+    return eval::makeSampler(image, lookup);
   }
 
   const std::string& file_;
@@ -278,6 +365,8 @@ private:
   std::map<int, std::shared_ptr<const eval::Image>> images_;
   ir::Module module_;
   eval::Bindings bindings_;
+  bool on_gpu_;
+  GpuTextures gpu_textures_;
 };
 
 /// The material of that name, or the only one where no name is given.
@@ -295,7 +384,7 @@ Result<const gltf::Material*> findMaterial(const gltf::Document& document, const
 }
 
 Result<std::string> evaluateOne(const std::string& file, const std::string& material,
-                                const EvalPoints& points, bool in_float,
+                                const EvalPoints& points, Engine engine,
                                 const std::vector<std::string>& texels, const Options& options,
                                 Messages& messages) {
   const Result<gltf::Document> document = gltf::read(file, {options.permissive});
@@ -307,27 +396,33 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
   if (lacquer::hasError((*found)->diagnostics)) return std::string();
   const auto library = libraryFor(options);
   if (!library) return tl::make_unexpected(library.error());
-  Evaluating evaluating(file, options);
+  Evaluating evaluating(file, options, engine);
   if (Result<void> set = evaluating.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
   if (Result<void> lowered = evaluating.lower(**found, **library, points.has_environment, messages);
       !lowered) {
     return tl::make_unexpected(std::move(lowered.error()));
   }
-  if (in_float) evaluating.place();
+  if (engine != Engine::Double) evaluating.place();
   if (Result<void> bound = evaluating.bind(points); !bound)
     return tl::make_unexpected(std::move(bound.error()));
   const size_t count = points.points.size();
-  return in_float ? evaluating.answer<float>((*found)->name, count)
-                  : evaluating.answer<double>((*found)->name, count);
+  const Result<Colors> colors = engine == Engine::Double  ? evaluating.colors<double>(count)
+                                : engine == Engine::Float ? evaluating.colors<float>(count)
+                                                          : evaluating.colorsOnGpu(count);
+  if (!colors) return tl::make_unexpected(colors.error());
+  return answerOf(*colors, (*found)->name, options.profile, engine);
 }
 
 }  // namespace
 
 std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
-                     const std::string& points_name, bool in_float, const std::vector<std::string>& texels,
+                     const std::string& points_name, Engine engine, const std::vector<std::string>& texels,
                      const Options& options, Messages& messages) {
-  if (const Diagnostics wrong = checkOptions(options); !wrong.empty()) {
+  Options checked = options;
+  checked.targets = {Target::Spirv};
+  checked.spirv_route = SpirvRoute::Direct;  // the engine takes every route
+  if (const Diagnostics wrong = checkOptions(checked); !wrong.empty()) {
     report(wrong, {}, messages);
     return {};
   }
@@ -336,7 +431,7 @@ std::string evaluate(const std::string& file, const std::string& material, const
     report(read.error(), points_name, messages);
     return {};
   }
-  Result<std::string> text = evaluateOne(file, material, *read, in_float, texels, options, messages);
+  Result<std::string> text = evaluateOne(file, material, *read, engine, texels, options, messages);
   if (text) return std::move(*text);
   report(text.error(), file, messages);
   return {};

@@ -46,6 +46,14 @@ Diagnostics checkOptions(const Options& options) {
                      "there are " + known,
                      {}});
   }
+  if (options.spirv_route == SpirvRoute::Hlsl) {
+    wrong.push_back({"wrong-route",
+                     Severity::Error,
+                     {},
+                     "SPIR-V by way of the HLSL has other bindings than Lacquer's",
+                     "it is written directly or by way of the GLSL; evaluate() alone takes this way",
+                     {}});
+  }
   for (const Target target : options.targets) {
     if (options.parameters != Parameters::Spec || target == Target::Glsl || target == Target::Spirv) continue;
     wrong.push_back({"no-specialization-constants",

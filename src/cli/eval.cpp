@@ -11,18 +11,27 @@
 namespace lacquer::cli {
 
 CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
-  CLI::App* verb =
-      app.add_subcommand("eval", "the linear colours of a material at points, computed on the CPU");
+  CLI::App* verb = app.add_subcommand(
+      "eval", "the linear colours of a material at points, computed on the CPU or by a GPU");
   verb->add_option("file", flags.file, "a .gltf or .glb file")->required();
   verb->add_option("--material", flags.material, "the material's name; not needed for a file with one");
   verb->add_option("--points", flags.points,
                    "a JSON file with points (docs/eval.md); - for the standard input")
       ->required();
-  verb->add_option("--engine", flags.engine, "float or double: the arithmetic")
+  verb->add_option("--engine", flags.engine,
+                   "double or float: on the CPU; vulkan: the shader on a Vulkan device")
       ->check(CLI::IsMember({"float", "double", "vulkan"}))
       ->capture_default_str();
   verb->add_option("--profile", flags.options.profile, "the reading of the specification")
       ->check(CLI::IsMember({"khr", "openpbr"}))
+      ->capture_default_str();
+  verb->add_option(
+          "--spirv-from", flags.spirv_from,
+          "what --engine vulkan runs: direct, or through glslang: its GLSL (glslang), its HLSL (hlsl)")
+      ->check(CLI::IsMember({"direct", "glslang", "hlsl"}))
+      ->capture_default_str();
+  verb->add_option("--params", flags.params, "uniform, baked or spec, as for gen; the colours are the same")
+      ->check(CLI::IsMember({"uniform", "baked", "spec"}))
       ->capture_default_str();
   verb->add_option("--texel", flags.texels,
                    "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
@@ -58,10 +67,18 @@ bool readAll(const std::string& path, std::string& text) {
 }  // namespace
 
 int runEval(EvalFlags& flags) {
-  if (flags.engine == "vulkan") {
-    fmt::print(stderr, "eval: --engine 'vulkan' is not available in this build; use float or double\n");
+  if (flags.params == "spec" && flags.spirv_from == "hlsl") {
+    fmt::print(stderr,
+               "eval: HLSL has no specialization constants: --params spec goes with --spirv-from direct or "
+               "glslang\n");
     return 2;
   }
+  flags.options.spirv_route = flags.spirv_from == "hlsl"      ? SpirvRoute::Hlsl
+                              : flags.spirv_from == "glslang" ? SpirvRoute::Glslang
+                                                              : SpirvRoute::Direct;
+  flags.options.parameters = flags.params == "baked"  ? Parameters::Baked
+                             : flags.params == "spec" ? Parameters::Spec
+                                                      : Parameters::Uniform;
   std::string points;
   if (!readAll(flags.points, points)) {
     fmt::print(stderr, "{}: error: the points cannot be read [file-unreadable]\n", flags.points);
@@ -71,7 +88,10 @@ int runEval(EvalFlags& flags) {
   flags.options.dfg_table = flags.dfg == "table";
   Messages messages;
   const std::string answer = evaluate(flags.file, flags.material, points, flags.points,
-                                      flags.engine == "float", flags.texels, flags.options, messages);
+                                      flags.engine == "vulkan"  ? Engine::Vulkan
+                                      : flags.engine == "float" ? Engine::Float
+                                                                : Engine::Double,
+                                      flags.texels, flags.options, messages);
   for (const Message& message : messages) {
     if (message.level != Message::Level::Note) fmt::print(stderr, "{}\n", printable(message.text));
   }

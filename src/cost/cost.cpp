@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "check/check.h"
-#include "cost/passthrough.h"
-#include "cost/reflect.h"
+#include "vulkan/passthrough.h"
+#include "vulkan/reflect.h"
 #ifdef LACQUER_VULKAN
 #include "cost/loader.h"
 #include "cost/worker.h"
@@ -14,10 +14,12 @@ namespace lacquer::cost {
 
 const std::vector<std::string> kFamilies = {"navi21", "gfx1100"};
 
+size_t spirvInstructions(const Spirv& words) { return vulkan::instructionCount(words); }
+
 #ifdef LACQUER_VULKAN
 
 std::string unavailable() {
-  if (!haveLoader()) return "there is no Vulkan loader (libvulkan.so.1) on this machine";
+  if (!vulkan::haveLoader()) return "there is no Vulkan loader (libvulkan.so.1) on this machine";
   if (radvManifest().empty()) return "Mesa's RADV (radeon_icd.*.json) is not installed on this machine";
   return {};
 }
@@ -39,8 +41,8 @@ std::vector<Subject> complete(const std::vector<Subject>& subjects, std::vector<
   std::vector<Subject> whole = subjects;
   for (size_t i = 0; i < whole.size(); ++i) {
     if (!whole[i].vertex.empty()) continue;
-    const Result<Interface> fragment = reflect(whole[i].fragment, Stage::Fragment);
-    Result<Spirv> vertex = fragment ? passthroughVertex(*fragment) : tl::unexpected(fragment.error());
+    const Result<vulkan::Interface> fragment = vulkan::reflect(whole[i].fragment, vulkan::Stage::Fragment);
+    Result<Spirv> vertex = fragment ? vulkan::passthroughVertex(*fragment) : tl::unexpected(fragment.error());
     if (vertex) {
       whole[i].vertex = std::move(*vertex);
     } else {

@@ -1,8 +1,7 @@
-// The loader, RADV and its null device.
+// RADV and its null device.
 #ifdef LACQUER_VULKAN
 #include "cost/loader.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,9 +14,6 @@
 namespace lacquer::cost {
 namespace {
 
-// Never closed: drivers leave threads and exit handlers behind.
-void* openLoader() { return dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL); }
-
 std::vector<std::string> manifestFolders() {
   std::vector<std::string> folders = {"/etc/vulkan/icd.d"};
   const char* data = std::getenv("XDG_DATA_DIRS");
@@ -29,22 +25,6 @@ std::vector<std::string> manifestFolders() {
     at = end + 1;
   }
   return folders;
-}
-
-std::string createInstance(PFN_vkGetInstanceProcAddr find, VkInstance& instance) {
-  const auto create = reinterpret_cast<PFN_vkCreateInstance>(find(VK_NULL_HANDLE, "vkCreateInstance"));
-  VkApplicationInfo application{};
-  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-  application.pApplicationName = "lacquer";
-  application.apiVersion = VK_API_VERSION_1_3;
-  VkInstanceCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-  info.pApplicationInfo = &application;
-  const VkResult result =
-      create == nullptr ? VK_ERROR_INITIALIZATION_FAILED : create(&info, nullptr, &instance);
-  return result == VK_SUCCESS ? ""
-                              : fmt::format("the Vulkan loader found no driver (vkCreateInstance: {})",
-                                            static_cast<int>(result));
 }
 
 std::string createDevice(Device& device, VkPhysicalDevice physical) {
@@ -103,24 +83,18 @@ std::string radvManifest() {
   return {};
 }
 
-bool haveLoader() { return openLoader() != nullptr; }
-
 std::string openDevice(Device& device) {
-  void* loader = openLoader();
-  if (loader == nullptr) return "there is no Vulkan loader (libvulkan.so.1)";
-  const auto find = reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(loader, "vkGetInstanceProcAddr"));
-  if (find == nullptr) return "the Vulkan loader has no vkGetInstanceProcAddr";
-  VkInstance instance = VK_NULL_HANDLE;
-  if (std::string problem = createInstance(find, instance); !problem.empty()) return problem;
-#define LACQUER_FIND(name)                                                     \
-  device.vk.name = reinterpret_cast<PFN_vk##name>(find(instance, "vk" #name)); \
+  vulkan::Instance instance;
+  if (std::string problem = vulkan::openInstance(instance); !problem.empty()) return problem;
+#define LACQUER_FIND(name)                                                                     \
+  device.vk.name = reinterpret_cast<PFN_vk##name>(instance.find(instance.handle, "vk" #name)); \
   if (device.vk.name == nullptr) return "the Vulkan loader does not know vk" #name;
   LACQUER_VULKAN_FUNCTIONS(LACQUER_FIND)
 #undef LACQUER_FIND
 
   uint32_t count = 1;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
-  device.vk.EnumeratePhysicalDevices(instance, &count, &physical);
+  device.vk.EnumeratePhysicalDevices(instance.handle, &count, &physical);
   if (count == 0 || physical == VK_NULL_HANDLE) return "the driver does not know this GPU family";
   VkPhysicalDeviceDriverProperties driver{};
   driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;

@@ -1,10 +1,9 @@
-// The Vulkan functions in use, found at run time: a machine without Vulkan runs everything else.
+// The Vulkan functions in use, and the device that compiles.
 #pragma once
 
-#define VK_NO_PROTOTYPES
-#include <vulkan/vulkan.h>
-
 #include <string>
+
+#include "vulkan/loader.h"
 
 namespace lacquer::cost {
 
@@ -32,9 +31,6 @@ struct Device {
 
 /// The path of RADV's description for the loader (radeon_icd.*.json); empty where RADV is not installed.
 std::string radvManifest();
-
-/// True when the Vulkan loader can be opened.
-bool haveLoader();
 
 /// Opens the device; the text says what is missing, and is empty when all is well. The environment must have
 /// been prepared: the loader and the driver read it here.

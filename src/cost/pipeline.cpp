@@ -8,10 +8,16 @@
 #include <cctype>
 #include <map>
 
-#include "cost/reflect.h"
+#include "vulkan/reflect.h"
 
 namespace lacquer::cost {
 namespace {
+
+using vulkan::Binding;
+using vulkan::Interface;
+using vulkan::Resource;
+using vulkan::Scalar;
+using vulkan::Slot;
 
 VkDescriptorType descriptorType(Resource resource) {
   switch (resource) {
@@ -347,9 +353,9 @@ std::string textOf(const Diagnostics& diagnostics) {
 
 Outcome compilePipeline(const Device& device, const Subject& subject, bool disassembly) {
   Outcome outcome;
-  const Result<Interface> fragment = reflect(subject.fragment, Stage::Fragment);
+  const Result<Interface> fragment = vulkan::reflect(subject.fragment, vulkan::Stage::Fragment);
   if (!fragment) return {{}, {}, textOf(fragment.error())};
-  const Result<Interface> vertex = reflect(subject.vertex, Stage::Vertex);
+  const Result<Interface> vertex = vulkan::reflect(subject.vertex, vulkan::Stage::Vertex);
   if (!vertex) return {{}, {}, textOf(vertex.error())};
 
   Pipeline pipeline(device, *vertex, *fragment);

@@ -16,7 +16,7 @@ constexpr double kAlphaMin = 0.001;
 constexpr int kAngles = 96;
 constexpr int kTurns = 48;
 
-constexpr uint32_t kTableSize = 64;
+constexpr int kTableSize = 64;
 
 double smithVisibility(double NdotL, double NdotV, double alpha2) {
   const double light = NdotV * std::sqrt(NdotL * NdotL * (1 - alpha2) + alpha2);
@@ -64,23 +64,19 @@ std::vector<float> environmentDfgTable(uint32_t size) {
   return texels;
 }
 
-std::array<double, 4> lookUpEnvironmentDfg(double NdotV, double roughness) {
-  static const std::vector<float> kTable = environmentDfgTable(kTableSize);
-  const auto place = [](double x) {
-    const double texel = std::clamp(x * kTableSize - 0.5, 0.0, kTableSize - 1.0);
-    const auto first = static_cast<size_t>(std::min(texel, kTableSize - 2.0));
-    return std::pair(first, texel - static_cast<double>(first));
-  };
-  const auto [x, fx] = place(NdotV);
-  const auto [y, fy] = place(roughness);
-  std::array<double, 4> result{0, 0, 0, 1};
-  for (size_t c = 0; c < 2; ++c) {
-    const auto at = [&](size_t i, size_t k) { return kTable[2 * (k * kTableSize + i) + c]; };
-    const double low = at(x, y) + fx * (at(x + 1, y) - at(x, y));
-    const double high = at(x, y + 1) + fx * (at(x + 1, y + 1) - at(x, y + 1));
-    result[c] = low + fy * (high - low);
-  }
-  return result;
+std::shared_ptr<const Image> environmentDfgImage() {
+  static const std::shared_ptr<const Image> kImage = [] {
+    Image image;
+    image.width = image.height = kTableSize;
+    const std::vector<float> table = environmentDfgTable(kTableSize);
+    for (size_t i = 0; i < table.size(); i += 2) image.texels.push_back({table[i], table[i + 1], 0, 1});
+    return std::make_shared<const Image>(std::move(image));
+  }();
+  return kImage;
+}
+
+Sampler environmentDfgSampler() {
+  return makeSampler(environmentDfgImage(), {Wrap::Clamp, Wrap::Clamp, false, false});
 }
 
 }  // namespace lacquer::eval

@@ -3,7 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
+
+#include "eval/image.h"
 
 namespace lacquer::eval {
 
@@ -16,7 +19,9 @@ std::array<double, 2> environmentDfg(double NdotV, double roughness);
 /// each.
 std::vector<float> environmentDfgTable(uint32_t size);
 
-/// The table that evaluation reads, bilinear and clamped to its edge.
-std::array<double, 4> lookUpEnvironmentDfg(double NdotV, double roughness);
+/// The table that evaluation reads, as an image; to be looked up bilinearly and clamped to its edge.
+std::shared_ptr<const Image> environmentDfgImage();
+/// Such a lookup.
+Sampler environmentDfgSampler();
 
 }  // namespace lacquer::eval

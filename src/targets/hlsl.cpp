@@ -65,6 +65,8 @@ public:
 
   std::string call(ir::Op op, Type result, std::string_view arguments) const override {
     const std::string plain = Dialect::call(op, result, arguments);
+    // HLSL's normalize takes vectors: of a number its sign is left, which is undefined at 0 alike.
+    if (op == ir::Op::Normalize && result == Type::Float) return fmt::format("float(sign({}))", arguments);
     // HLSL's sign gives integers.
     return op == ir::Op::Sign ? fmt::format("{}({})", type(result), plain) : plain;
   }

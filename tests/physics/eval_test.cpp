@@ -32,7 +32,8 @@ protected:
   static std::string run(const std::string& file, const std::string& points, std::string& text,
                          bool in_float = false, const std::vector<std::string>& texels = {}) {
     Messages messages;
-    const std::string answer = evaluate(file, "", points, "points.json", in_float, texels, {}, messages);
+    const std::string answer = evaluate(file, "", points, "points.json",
+                                        in_float ? Engine::Float : Engine::Double, texels, {}, messages);
     text.clear();
     for (const Message& m : messages) {
       if (m.level != Message::Level::Note) text += m.text + "\n";

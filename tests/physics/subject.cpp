@@ -86,9 +86,7 @@ std::vector<Vec4> Subject::colors(std::span<const Sample> samples, const Vec3& e
     }
     bindings.textures[slot.name] = [texel](size_t, const Vec3&, double) { return texel; };
     if (slot.name != "environment_dfg") continue;
-    bindings.textures[slot.name] = [](size_t, const Vec3& at, double) {
-      return eval::lookUpEnvironmentDfg(at[0], at[1]);
-    };
+    bindings.textures[slot.name] = eval::environmentDfgSampler();
   }
   EXPECT_TRUE(eval::bindMaterialBlock(module_, bindings));
   EXPECT_TRUE(eval::bindVaryings<T>(module_, points.size(), bindings));

@@ -9,7 +9,7 @@
 
 #include "support/diagnostic.h"
 
-namespace lacquer::cost {
+namespace lacquer::vulkan {
 
 enum class Stage : uint8_t { Vertex, Fragment };
 
@@ -51,4 +51,8 @@ struct Interface {
 /// Reads the first entry point of a stage. Any words are safe to give. Errors: "spirv-reflection".
 Result<Interface> reflect(const std::vector<uint32_t>& words, Stage stage);
 
-}  // namespace lacquer::cost
+/// Instructions inside functions, labels, line marks and the declarations of local variables not counted.
+/// 0 for words that are no module.
+size_t instructionCount(const std::vector<uint32_t>& words);
+
+}  // namespace lacquer::vulkan

@@ -1,7 +1,7 @@
 // Reads a module in one walk over its words (SPIR-V specification, 2.3 and 2.4): decorations stand before
 // types, types before variables. Operands that are not there read as 0, so that no module makes the walk
 // leave its words.
-#include "cost/reflect.h"
+#include "vulkan/reflect.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,7 @@
 #include <spirv/unified1/spirv.hpp>
 #include <tuple>
 
-#include "cost/cost.h"
-
-namespace lacquer::cost {
+namespace lacquer::vulkan {
 namespace {
 
 constexpr uint32_t kHeaderWords = 5;
@@ -294,7 +292,7 @@ Result<Interface> reflect(const std::vector<uint32_t>& words, Stage stage) {
   return reader.finish();
 }
 
-size_t spirvInstructions(const Spirv& words) {
+size_t instructionCount(const std::vector<uint32_t>& words) {
   size_t count = 0;
   bool inside = false;
   const bool good = walk(words, [&](const Instruction& instruction) {
@@ -310,4 +308,4 @@ size_t spirvInstructions(const Spirv& words) {
   return good ? count : 0;
 }
 
-}  // namespace lacquer::cost
+}  // namespace lacquer::vulkan

@@ -1,4 +1,4 @@
-#include "cost/passthrough.h"
+#include "vulkan/passthrough.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "check/check.h"
 
-namespace lacquer::cost {
+namespace lacquer::vulkan {
 namespace {
 
 std::string typeName(const Slot& slot) {
@@ -19,7 +19,7 @@ std::string typeName(const Slot& slot) {
 
 }  // namespace
 
-Result<Spirv> passthroughVertex(const Interface& fragment) {
+Result<std::vector<uint32_t>> passthroughVertex(const Interface& fragment) {
   if (!fragment.odd_input.empty()) {
     return fail("spirv-reflection", {}, fragment.odd_input + " is of a type that no vertex attribute has",
                 "name the vertex module, too");
@@ -42,4 +42,4 @@ Result<Spirv> passthroughVertex(const Interface& fragment) {
   return check::compile(text, check::Language::GlslVulkan, check::Stage::Vertex, "passthrough.vert");
 }
 
-}  // namespace lacquer::cost
+}  // namespace lacquer::vulkan

@@ -1,15 +1,14 @@
 // What the pipelines are told about a module, and that no words can lead the reader astray.
-#include "cost/reflect.h"
+#include "vulkan/reflect.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "check/check.h"
-#include "cost/cost.h"
-#include "cost/passthrough.h"
+#include "vulkan/passthrough.h"
 
-namespace lacquer::cost {
+namespace lacquer::vulkan {
 namespace {
 
 constexpr const char* kFragment = R"(#version 450
@@ -35,8 +34,8 @@ void main() {
 }
 )";
 
-Spirv compile(const char* text, check::Stage stage) {
-  Result<Spirv> words = check::compile(text, check::Language::GlslVulkan, stage, "test");
+check::Spirv compile(const char* text, check::Stage stage) {
+  Result<check::Spirv> words = check::compile(text, check::Language::GlslVulkan, stage, "test");
   if (!words) throw std::runtime_error(format(words.error()[0]));
   return *words;
 }
@@ -68,7 +67,7 @@ TEST(Reflect, ResourcesInputsAndOutputs) {
 TEST(Reflect, TheVertexStageOfAFragmentShaderAlone) {
   const Result<Interface> fragment = reflect(compile(kFragment, check::Stage::Fragment), Stage::Fragment);
   ASSERT_TRUE(fragment);
-  const Result<Spirv> words = passthroughVertex(*fragment);
+  const Result<check::Spirv> words = passthroughVertex(*fragment);
   ASSERT_TRUE(words) << format(words.error()[0]);
   const Result<Interface> vertex = reflect(*words, Stage::Vertex);
   ASSERT_TRUE(vertex);
@@ -77,14 +76,14 @@ TEST(Reflect, TheVertexStageOfAFragmentShaderAlone) {
 }
 
 TEST(Reflect, WrongStageAndNoModule) {
-  const Spirv fragment = compile(kFragment, check::Stage::Fragment);
+  const check::Spirv fragment = compile(kFragment, check::Stage::Fragment);
   const Result<Interface> wrong = reflect(fragment, Stage::Vertex);
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error()[0].message, "the module has no entry point of a vertex shader");
   const Result<Interface> none = reflect({1, 2, 3, 4, 5, 6}, Stage::Fragment);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error()[0].message, "not a SPIR-V module");
-  EXPECT_EQ(spirvInstructions({1, 2, 3, 4, 5, 6}), 0U);
+  EXPECT_EQ(instructionCount({1, 2, 3, 4, 5, 6}), 0U);
 }
 
 TEST(Reflect, CountsWhatIsInFunctions) {
@@ -92,17 +91,17 @@ TEST(Reflect, CountsWhatIsInFunctions) {
   const char* text =
       "#version 450\nlayout(location = 0) in vec4 a;\nlayout(location = 0) out vec4 b;\n"
       "void main() { b = a; }\n";
-  EXPECT_EQ(spirvInstructions(compile(text, check::Stage::Fragment)), 3U);
+  EXPECT_EQ(instructionCount(compile(text, check::Stage::Fragment)), 3U);
 }
 
 TEST(Reflect, DamagedModulesAreReadOrRefused) {
-  const Spirv good = compile(kFragment, check::Stage::Fragment);
+  const check::Spirv good = compile(kFragment, check::Stage::Fragment);
   for (size_t length = 0; length < good.size(); ++length) {
-    reflect(Spirv(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(length)), Stage::Fragment);
+    reflect(check::Spirv(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(length)), Stage::Fragment);
   }
   std::mt19937 random(1);
   for (int round = 0; round < 20000; ++round) {
-    Spirv damaged = good;
+    check::Spirv damaged = good;
     for (int change = 0; change < 3; ++change) {
       const uint32_t value = random() % 2 == 0 ? random() % 64 : random();
       damaged[5 + random() % (good.size() - 5)] = value;
@@ -110,9 +109,9 @@ TEST(Reflect, DamagedModulesAreReadOrRefused) {
     if (const Result<Interface> interface = reflect(damaged, Stage::Fragment)) {
       EXPECT_LE(interface->inputs.size(), 64U * 8U);
     }
-    spirvInstructions(damaged);
+    instructionCount(damaged);
   }
 }
 
 }  // namespace
-}  // namespace lacquer::cost
+}  // namespace lacquer::vulkan

@@ -1,0 +1,232 @@
+#ifdef LACQUER_VULKAN
+#include "vulkan/pipeline.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace lacquer::vulkan {
+
+VkDescriptorType Pipeline::typeOf(Resource resource) {
+  switch (resource) {
+    case Resource::UniformBuffer: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
+    case Resource::StorageBuffer: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
+    case Resource::Sampler: return VK_DESCRIPTOR_TYPE_SAMPLER;
+    case Resource::SampledImage: return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    case Resource::CombinedImageSampler: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case Resource::StorageImage: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    case Resource::UniformTexelBuffer: return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    case Resource::StorageTexelBuffer: return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+  }
+  return VK_DESCRIPTOR_TYPE_MAX_ENUM;
+}
+
+uint32_t Pipeline::vertexStride() const {
+  uint32_t floats = 4;
+  for (const Slot& slot : fragment_.inputs) floats += slot.count;
+  return floats * static_cast<uint32_t>(sizeof(float));
+}
+
+void Pipeline::makeSets() {
+  const uint32_t count = fragment_.bindings.empty() ? 0 : fragment_.bindings.rbegin()->first.first + 1;
+  if (count > device_.limits.maxBoundDescriptorSets) {
+    return objects_.fail("vulkan-unsupported",
+                         fmt::format("{} has fewer than {} descriptor sets", device_.name, count));
+  }
+  for (uint32_t set = 0; set < count && objects_.good(); ++set) {
+    std::vector<VkDescriptorSetLayoutBinding> rows;
+    for (const auto& [place, binding] : fragment_.bindings) {
+      if (place.first != set) continue;
+      rows.push_back({place.second, typeOf(binding.resource), 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
+    }
+    VkDescriptorSetLayoutCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    info.bindingCount = static_cast<uint32_t>(rows.size());
+    info.pBindings = rows.data();
+    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+    if (!objects_.check(device_.vk.CreateDescriptorSetLayout(device_.handle, &info, nullptr, &layout),
+                        "vkCreateDescriptorSetLayout")) {
+      return;
+    }
+    sets_.push_back(layout);
+    objects_.atEnd([&device = device_, layout] {
+      device.vk.DestroyDescriptorSetLayout(device.handle, layout, nullptr);
+    });
+  }
+}
+
+void Pipeline::makeLayout() {
+  makeSets();
+  VkPipelineLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.setLayoutCount = static_cast<uint32_t>(sets_.size());
+  info.pSetLayouts = sets_.data();
+  if (objects_.good() &&
+      objects_.check(device_.vk.CreatePipelineLayout(device_.handle, &info, nullptr, &layout_),
+                     "vkCreatePipelineLayout")) {
+    objects_.atEnd([&device = device_, made = layout_] {
+      device.vk.DestroyPipelineLayout(device.handle, made, nullptr);
+    });
+  }
+}
+
+void Pipeline::makeRenderPass() {
+  VkAttachmentDescription attachment{};
+  attachment.format = kFormat;
+  attachment.samples = VK_SAMPLE_COUNT_1_BIT;
+  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  attachment.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+  attachment.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  attachment.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  attachment.finalLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  const std::vector<VkAttachmentDescription> attachments(outputs(), attachment);
+  std::vector<VkAttachmentReference> references;
+  for (uint32_t i = 0; i < outputs(); ++i) {
+    references.push_back({i, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL});
+  }
+  VkSubpassDescription subpass{};
+  subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+  subpass.colorAttachmentCount = outputs();
+  subpass.pColorAttachments = references.data();
+  VkRenderPassCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+  info.attachmentCount = outputs();
+  info.pAttachments = attachments.data();
+  info.subpassCount = 1;
+  info.pSubpasses = &subpass;
+  if (objects_.good() &&
+      objects_.check(device_.vk.CreateRenderPass(device_.handle, &info, nullptr, &render_pass_),
+                     "vkCreateRenderPass")) {
+    objects_.atEnd([&device = device_, made = render_pass_] {
+      device.vk.DestroyRenderPass(device.handle, made, nullptr);
+    });
+  }
+}
+
+namespace {
+
+VkFormat floatFormat(uint32_t components) {
+  constexpr std::array<VkFormat, 4> kFormats = {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT,
+                                                VK_FORMAT_R32G32B32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT};
+  return kFormats[components - 1];
+}
+
+/// The fixed functions: triangles of both sides, one sample, no depth, no blending.
+struct FixedState {
+  VkVertexInputBindingDescription binding{};
+  std::vector<VkVertexInputAttributeDescription> attributes;
+  std::vector<VkPipelineColorBlendAttachmentState> blends;
+  VkViewport area{0, 0, float{kSide}, float{kSide}, 0, 1};
+  VkDynamicState dynamic_state = VK_DYNAMIC_STATE_SCISSOR;
+  VkPipelineVertexInputStateCreateInfo vertex_input{};
+  VkPipelineInputAssemblyStateCreateInfo assembly{};
+  VkPipelineViewportStateCreateInfo viewport{};
+  VkPipelineRasterizationStateCreateInfo raster{};
+  VkPipelineMultisampleStateCreateInfo samples{};
+  VkPipelineColorBlendStateCreateInfo blend{};
+  VkPipelineDynamicStateCreateInfo dynamic{};
+
+  FixedState(const Interface& fragment, uint32_t stride, uint32_t attachment_count);
+  FixedState(const FixedState&) = delete;  // it points into itself
+  FixedState& operator=(const FixedState&) = delete;
+};
+
+FixedState::FixedState(const Interface& fragment, uint32_t stride, uint32_t attachment_count) {
+  binding = {0, stride, VK_VERTEX_INPUT_RATE_VERTEX};
+  uint32_t offset = 0;
+  uint32_t location = 0;
+  for (const Slot& slot : fragment.inputs) {
+    attributes.push_back({slot.location, 0, floatFormat(slot.count), offset});
+    offset += slot.count * static_cast<uint32_t>(sizeof(float));
+    location = slot.location + 1;
+  }
+  attributes.push_back({location, 0, floatFormat(4), offset});
+  vertex_input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+  vertex_input.vertexBindingDescriptionCount = 1;
+  vertex_input.pVertexBindingDescriptions = &binding;
+  vertex_input.vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size());
+  vertex_input.pVertexAttributeDescriptions = attributes.data();
+  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+  viewport.viewportCount = viewport.scissorCount = 1;
+  viewport.pViewports = &area;
+  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+  raster.polygonMode = VK_POLYGON_MODE_FILL;
+  // The corners of run.cpp, in pixels with y downwards.
+  raster.frontFace = VK_FRONT_FACE_CLOCKWISE;
+  raster.lineWidth = 1.0F;
+  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+  VkPipelineColorBlendAttachmentState opaque{};
+  opaque.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
+                          VK_COLOR_COMPONENT_A_BIT;
+  blends.assign(attachment_count, opaque);
+  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+  blend.attachmentCount = attachment_count;
+  blend.pAttachments = blends.data();
+  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+  dynamic.dynamicStateCount = 1;
+  dynamic.pDynamicStates = &dynamic_state;
+}
+
+}  // namespace
+
+void Pipeline::make(const std::vector<uint32_t>& vertex, const std::vector<uint32_t>& fragment,
+                    const std::map<uint32_t, uint32_t>& constants) {
+  const VkPhysicalDeviceLimits& limits = device_.limits;
+  if (outputs() == 0 || outputs() > limits.maxColorAttachments ||
+      fragment_.inputs.size() + 1 > limits.maxVertexInputAttributes) {
+    return objects_.fail(
+        "vulkan-unsupported",
+        fmt::format("{} takes 1 to {} outputs and up to {} inputs; the shader has {} and {}", device_.name,
+                    limits.maxColorAttachments, limits.maxVertexInputAttributes - 1, outputs(),
+                    fragment_.inputs.size()));
+  }
+  makeLayout();
+  makeRenderPass();
+  std::vector<VkSpecializationMapEntry> entries;
+  std::vector<uint32_t> values;
+  for (const auto& [id, bits] : constants) {
+    entries.push_back({id, static_cast<uint32_t>(values.size() * sizeof(uint32_t)), sizeof(uint32_t)});
+    values.push_back(bits);
+  }
+  const VkSpecializationInfo special{static_cast<uint32_t>(entries.size()), entries.data(),
+                                     values.size() * sizeof(uint32_t), values.data()};
+  std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
+  for (VkPipelineShaderStageCreateInfo& stage : stages) {
+    stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  }
+  stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+  stages[0].module = objects_.module(vertex);
+  stages[0].pName = "main";
+  stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
+  stages[1].module = objects_.module(fragment);
+  stages[1].pName = fragment_.entry.c_str();
+  stages[1].pSpecializationInfo = &special;
+  if (!objects_.good()) return;
+  const FixedState state(fragment_, vertexStride(), outputs());
+  VkGraphicsPipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  info.stageCount = static_cast<uint32_t>(stages.size());
+  info.pStages = stages.data();
+  info.pVertexInputState = &state.vertex_input;
+  info.pInputAssemblyState = &state.assembly;
+  info.pViewportState = &state.viewport;
+  info.pRasterizationState = &state.raster;
+  info.pMultisampleState = &state.samples;
+  info.pColorBlendState = &state.blend;
+  info.pDynamicState = &state.dynamic;
+  info.layout = layout_;
+  info.renderPass = render_pass_;
+  if (objects_.check(
+          device_.vk.CreateGraphicsPipelines(device_.handle, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_),
+          "vkCreateGraphicsPipelines")) {
+    objects_.atEnd(
+        [&device = device_, made = pipeline_] { device.vk.DestroyPipeline(device.handle, made, nullptr); });
+  }
+}
+
+}  // namespace lacquer::vulkan
+#endif

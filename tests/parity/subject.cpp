@@ -1,0 +1,542 @@
+#include "parity/subject.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "../golden/random_material.h"
+#include "../intervals/sampling.h"
+#include "eval/evaluate.h"
+#include "eval/image.h"
+#include "eval/points.h"
+#include "gltf/material.h"
+#include "graph/build.h"
+#include "lower/lower.h"
+#include "passes/intervals.h"
+#include "passes/pipeline.h"
+#include "passes/rewrite.h"
+#include "support/cases.h"
+
+namespace lacquer::parity {
+
+using ir::ValueId;
+
+namespace {
+
+/// Portable: the standard fixes this engine's numbers, but not its distributions'.
+class Random {
+public:
+  explicit Random(uint64_t seed) : engine_(seed) {}
+  double unit() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
+  double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
+  size_t below(size_t n) { return static_cast<size_t>(engine_() % n); }
+  std::array<double, 3> direction() {
+    const double z = between(-1, 1);
+    const double angle = between(0, 6.283185307179586);
+    const double r = std::sqrt(1 - z * z);
+    return {r * std::cos(angle), r * std::sin(angle), z};
+  }
+
+private:
+  std::mt19937_64 engine_;
+};
+
+double rounded(double x) { return static_cast<double>(static_cast<float>(x)); }
+
+void roundAll(eval::Columns& columns) {
+  for (auto& [name, column] : columns) {
+    for (double& x : column.values) x = rounded(x);
+  }
+}
+
+/// A texture of a slot: a small random image, or for a cube map a colour for each point.
+void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
+  std::vector<vulkan::Texel> texels;
+  vulkan::Texture texture;
+  texture.cube = slot.type == ir::Type::TextureCube;
+  if (texture.cube) {
+    std::vector<vulkan::Texel> few(8);
+    for (vulkan::Texel& texel : few) {
+      for (float& x : texel) x = static_cast<float>(random.between(0, 2));
+    }
+    for (size_t i = 0; i < subject.points; ++i) texels.push_back(few[i / 16 % few.size()]);
+  } else {
+    texture.width = static_cast<uint32_t>(2 + random.below(6));
+    texture.height = static_cast<uint32_t>(2 + random.below(6));
+    texture.s = static_cast<vulkan::Wrap>(random.below(3));
+    texture.t = static_cast<vulkan::Wrap>(random.below(3));
+    texture.nearest = random.below(4) != 0;
+    texels.resize(size_t{texture.width} * texture.height);
+    for (vulkan::Texel& texel : texels) {
+      // The environment's table holds two parts of an albedo.
+      for (float& x : texel) x = static_cast<float>(slot.environment ? random.between(0.15, 0.5) : random.unit());
+    }
+    subject.sizes[slot.name] = {static_cast<double>(texture.width), static_cast<double>(texture.height)};
+  }
+  texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(texels);
+  if (texture.cube) {
+    subject.bindings.textures[slot.name] = [texels](size_t point, const std::array<double, 3>&, double) {
+      const vulkan::Texel& t = texels[point];
+      return std::array<double, 4>{t[0], t[1], t[2], t[3]};
+    };
+  } else {
+    auto image = std::make_shared<eval::Image>();
+    image->width = static_cast<int>(texture.width);
+    image->height = static_cast<int>(texture.height);
+    image->texels = texels;
+    subject.bindings.textures[slot.name] = eval::makeSampler(
+        image,
+        {static_cast<eval::Wrap>(texture.s), static_cast<eval::Wrap>(texture.t), texture.nearest, false});
+  }
+  subject.textures[slot.name] = std::move(texture);
+}
+
+/// A value as floats of colours.
+void addParts(ir::Dag& dag, ValueId value, std::vector<ValueId>& parts) {
+  if (dag[value].type == ir::Type::Bool) {
+    value = dag.make(ir::Op::Select, {value, dag.constant(1), dag.constant(0)});
+  }
+  for (int c = 0; c < ir::componentCount(dag[value].type); ++c) parts.push_back(dag.component(value, c));
+}
+
+/// Makes the colours of a module from values, four numbers in each.
+void setColors(ir::Module& module, const std::vector<ValueId>& values) {
+  std::vector<ValueId> parts;
+  for (const ValueId value : values) addParts(module.dag, value, parts);
+  while (parts.size() % 4 != 0) parts.push_back(module.dag.constant(0));
+  module.outputs.clear();
+  for (uint32_t i = 0; 4 * i < parts.size(); ++i) {
+    const ValueId color = module.dag.construct(
+        ir::Type::Vec4, {parts[4 * i], parts[4 * i + 1], parts[4 * i + 2], parts[4 * i + 3]});
+    module.outputs.push_back(
+        {ir::OutputKind::Color, ir::Stage::Fragment, fmt::format("part_{}", i), i, color});
+  }
+}
+
+ValueId argument(ir::Module& module, const lang::Param& param, std::vector<ir::Input>& inputs) {
+  const std::string name(param.name);
+  if (ir::isTexture(param.type)) {
+    ir::TextureSlot slot;
+    slot.name = name;
+    slot.type = param.type;
+    slot.environment = param.type == ir::Type::TextureCube;
+    const auto index = static_cast<uint32_t>(module.textures.size());
+    module.textures.push_back(slot);
+    return module.dag.input({ir::InputKind::Texture, name, param.type, ir::Rate::Frame, {0, 1}, 0, index});
+  }
+  const bool flag = param.type == ir::Type::Bool;
+  const auto index = static_cast<uint32_t>(module.varyings.size());
+  const ir::Type type = flag ? ir::Type::Float : param.type;
+  ir::Input input{ir::InputKind::Varying, name, type, ir::Rate::Fragment, param.range, 0, index};
+  if (flag) input.range = {0, 1};
+  module.varyings.push_back({name, type, index, ir::kNoValue});
+  const ValueId value = module.dag.input(input);
+  input.type = param.type;
+  inputs.push_back(input);
+  return flag ? module.dag.make(ir::Op::Less, {module.dag.constant(0.5), value}) : value;
+}
+
+}  // namespace
+
+const lang::Library& library() {
+  static const lang::Library kLibrary = lang::Library::embedded();
+  return kLibrary;
+}
+
+std::vector<ValueId> Subject::roots() const {
+  std::vector<ValueId> values;
+  for (uint32_t location = 0; location < module.outputs.size(); ++location) {
+    for (const ir::Output& output : module.outputs) {
+      if (output.kind == ir::OutputKind::Color && output.location == location) values.push_back(output.value);
+    }
+  }
+  return values;
+}
+
+Subject nodeSubject(const lang::NodeDecl& node, std::string_view variant, size_t points) {
+  Subject subject;
+  subject.name = variant.empty() ? std::string(node.name) : fmt::format("{}.{}", node.name, variant);
+  subject.points = points;
+  ir::Module& module = subject.module;
+  module.template_name = "node";
+  std::vector<ir::Input> inputs;
+  std::vector<ValueId> arguments;
+  for (const lang::Param& param : node.params) arguments.push_back(argument(module, param, inputs));
+  setColors(module, lower::Inliner(module.dag).call(node, variant, arguments));
+  for (size_t i = 0; i < points; ++i) {
+    const test::World world(i, passes::kSceneLimit);
+    for (const ir::Input& input : inputs) {
+      eval::Column& column = subject.bindings.columns[input.name];
+      column.components = ir::componentCount(input.type);
+      column.per_point = true;
+      const test::Floats x = world.input(input);
+      column.values.insert(column.values.end(), x.begin(), x.begin() + column.components);
+    }
+  }
+  passes::runPipeline(module, {});
+  EXPECT_TRUE(ir::verify(module).empty()) << subject.name << ": " << ir::verify(module)[0];
+  Random random(1);
+  for (const ir::TextureSlot& slot : module.textures) addTexture(subject, slot, random);
+  return subject;
+}
+
+namespace {
+
+/// Where an operation is defined and Vulkan promises something.
+ir::Interval domainOf(ir::Op op, size_t operand) {
+  using ir::Op;
+  switch (op) {
+    case Op::Sqrt:
+    case Op::Length: return {0, 1e6};
+    case Op::InverseSqrt:
+    case Op::Log2:
+    case Op::Log: return {1e-6, 1e6};
+    case Op::Exp2:
+    case Op::Exp: return {-20, 20};
+    case Op::Sin:
+    case Op::Cos: return {-3.14, 3.14};
+    case Op::Acos: return {-1, 1};
+    case Op::Pow: return operand == 0 ? ir::Interval{1e-3, 10} : ir::Interval{-4, 4};
+    case Op::Div: return operand == 0 ? ir::Interval{-100, 100} : ir::Interval{0.01, 100};
+    case Op::Mix: return operand == 2 ? ir::Interval{0, 1} : ir::Interval{-4, 4};
+    case Op::Clamp:
+      return operand == 0 ? ir::Interval{-4, 4} : operand == 1 ? ir::Interval{-2, 0} : ir::Interval{0, 2};
+    case Op::Normalize: return {0.1, 4};
+    default: return {-8, 8};
+  }
+}
+
+/// Nothing where the operation does not take these types.
+std::optional<Subject> operationSubject(ir::Op op, const std::vector<ir::Type>& types, size_t points) {
+  if (!ir::resultType(op, types)) return {};
+  Subject subject;
+  subject.name = std::string(ir::info(op).name);
+  for (const ir::Type type : types) subject.name += fmt::format(" {}", ir::typeName(type));
+  subject.single = true;
+  subject.points = points;
+  ir::Module& module = subject.module;
+  module.template_name = "operation";
+  Random random(1);
+  std::vector<ValueId> operands;
+  for (uint32_t k = 0; k < types.size(); ++k) {
+    const std::string name = fmt::format("operand_{}", k);
+    const bool flag = types[k] == ir::Type::Bool;
+    const ir::Interval domain = flag ? ir::Interval{0, 1} : domainOf(op, k);
+    const ir::Type type = flag ? ir::Type::Float : types[k];
+    module.varyings.push_back({name, type, k, ir::kNoValue});
+    const ValueId x =
+        module.dag.input({ir::InputKind::Varying, name, type, ir::Rate::Fragment, domain, 0, k});
+    operands.push_back(flag ? module.dag.make(ir::Op::Less, {module.dag.constant(0.5), x}) : x);
+    eval::Column& column = subject.bindings.columns[name];
+    column.components = ir::componentCount(type);
+    column.per_point = true;
+    for (size_t i = 0; i < points * static_cast<size_t>(column.components); ++i) {
+      // Whole numbers among them, so that comparisons meet equal operands, and the ends.
+      const double any = random.between(domain.lo, domain.hi);
+      const bool end = random.below(8) == 0;
+      const double x0 = end ? (random.below(2) == 0 ? domain.lo : domain.hi) : any;
+      const double whole = std::clamp(std::round(any), domain.lo, domain.hi);
+      column.values.push_back(rounded(random.below(4) == 0 || flag ? whole : x0));
+    }
+  }
+  setColors(module, {module.dag.make(op, operands)});
+  passes::runPipeline(module, {});
+  EXPECT_TRUE(ir::verify(module).empty()) << subject.name << ": " << ir::verify(module)[0];
+  return subject;
+}
+
+}  // namespace
+
+std::vector<Subject> operationSubjects(size_t points) {
+  std::vector<Subject> subjects;
+  const std::vector<ir::Type> kTypes = {ir::Type::Float, ir::Type::Vec2, ir::Type::Vec3, ir::Type::Vec4,
+                                        ir::Type::Bool};
+  for (int index = 0; index < ir::kOpCount; ++index) {
+    const auto op = static_cast<ir::Op>(index);
+    const ir::OpInfo& info = ir::info(op);
+    if (info.signature == ir::Signature::Special || op == ir::Op::SumOverLights || op == ir::Op::Interpolate)
+      continue;
+    const auto arity = static_cast<size_t>(info.arity);
+    size_t ways = 1;
+    for (size_t k = 0; k < arity; ++k) ways *= kTypes.size();
+    for (size_t way = 0; way < ways; ++way) {
+      std::vector<ir::Type> types;
+      for (size_t k = 0, rest = way; k < arity; ++k, rest /= kTypes.size())
+        types.push_back(kTypes[rest % kTypes.size()]);
+      if (auto subject = operationSubject(op, types, points)) subjects.push_back(std::move(*subject));
+    }
+  }
+  return subjects;
+}
+
+namespace {
+
+/// Appends the materials of a document that have no errors.
+void addGraphs(const gltf::Document& document, const std::string& name, const MaterialSetting& setting,
+               std::vector<NamedGraph>& graphs) {
+  for (const gltf::Material& material : document.materials) {
+    graph::BuildOptions options;
+    options.template_name = setting.template_name;
+    options.decode_srgb = setting.decode_srgb;
+    Diagnostics warnings;
+    NamedGraph made{
+        fmt::format("{}, {}, {}", name, material.name, setting.template_name),
+        graph::build(material, {true, setting.tangents, true, {true, true, true, true}}, options, warnings)};
+    EXPECT_FALSE(hasError(material.diagnostics)) << made.name;
+    EXPECT_FALSE(hasError(graph::check(made.graph, library()))) << made.name;
+    graphs.push_back(std::move(made));
+  }
+}
+
+}  // namespace
+
+std::vector<NamedGraph> exampleGraphs(const MaterialSetting& setting) {
+  std::vector<NamedGraph> graphs;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(test::sourceFolder() / "examples")) {
+    if (entry.path().extension() == ".gltf") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const std::filesystem::path& file : files) {
+    const Result<gltf::Document> document = gltf::read(file.string(), {});
+    EXPECT_TRUE(document) << file;
+    if (document) addGraphs(*document, file.stem().string(), setting, graphs);
+  }
+  return graphs;
+}
+
+std::vector<NamedGraph> randomGraphs(const MaterialSetting& setting, uint64_t files) {
+  std::vector<NamedGraph> graphs;
+  for (uint64_t seed = 1; seed <= files; ++seed) {
+    const std::string text = test::RandomMaterial(seed).valid(4).dump();
+    const Result<gltf::Document> document = gltf::readText(text, "random.gltf", {});
+    EXPECT_TRUE(document) << text;
+    if (document) addGraphs(*document, fmt::format("seed {}", seed), setting, graphs);
+  }
+  return graphs;
+}
+
+namespace {
+
+eval::Point randomPoint(Random& random, size_t i) {
+  eval::Point p;
+  p.n = random.direction();
+  p.v = random.direction();
+  p.l = random.direction();
+  // Most are in front of the surface; some are equal, opposite or just about grazing.
+  const auto facing = [&](std::array<double, 3>& d) {
+    const double along = d[0] * p.n[0] + d[1] * p.n[1] + d[2] * p.n[2];
+    for (size_t c = 0; along < 0 && c < 3; ++c) d[c] = -d[c];
+  };
+  const auto graze = [&](std::array<double, 3>& d) {
+    const double along = d[0] * p.n[0] + d[1] * p.n[1] + d[2] * p.n[2];
+    double length = 0;
+    for (size_t c = 0; c < 3; ++c) d[c] -= along * p.n[c];
+    for (const double x : d) length += x * x;
+    const double raised = std::exp2(-20 * random.unit());
+    for (size_t c = 0; c < 3; ++c)
+      d[c] = d[c] / std::sqrt(length) * std::sqrt(1 - raised * raised) + raised * p.n[c];
+  };
+  if (i % 8 != 0) facing(p.v), facing(p.l);
+  if (i % 16 == 1) p.v = p.n;
+  if (i % 16 == 2) p.l = p.v;
+  if (i % 16 == 3) p.l = p.v = p.n;
+  if (i % 16 == 4) graze(p.v);
+  if (i % 16 == 5) graze(p.l);
+  const std::array<double, 3> across = random.direction();
+  const double along = across[0] * p.n[0] + across[1] * p.n[1] + across[2] * p.n[2];
+  for (size_t c = 0; c < 3; ++c) p.t[c] = across[c] - along * p.n[c];
+  p.t[3] = random.below(2) == 0 ? 1 : -1;
+  for (auto& uv : p.uv) uv = {random.between(-2, 2), random.between(-2, 2)};
+  for (double& x : p.color0) x = random.below(8) == 0 ? std::round(random.unit()) : random.unit();
+  for (double& x : p.light) x = random.between(0, 4);
+  for (double& x : p.position) x = random.between(-2, 2);
+  p.front_facing = random.below(4) != 0;
+  return p;
+}
+
+/// Makes four equal points a quad: steps of whole 64ths, which a triangle's plane equations keep exactly. The
+/// eye stays where it is.
+void spread(std::span<eval::Point> quad, Random& random) {
+  const auto step = [&] { return std::round(random.between(-16, 16)) / 64; };
+  const auto affine = [&](auto&& number) {
+    const double first = std::round(number(quad[0]) * 64) / 64;
+    const double x = step();
+    const double y = step();
+    for (size_t k = 0; k < 4; ++k) number(quad[k]) = first + (k % 2 == 0 ? 0 : x) + (k / 2 == 0 ? 0 : y);
+  };
+  std::array<double, 3> eye{};
+  for (size_t c = 0; c < 3; ++c) {
+    eye[c] = rounded(quad[0].position[c] + quad[0].v[c]);
+    affine([c](eval::Point& p) -> double& { return p.position[c]; });
+  }
+  for (eval::Point& p : quad) {
+    for (size_t c = 0; c < 3; ++c) p.v[c] = eye[c] - p.position[c];
+  }
+  for (size_t set = 0; set < 4; ++set) {
+    for (size_t c = 0; c < 2; ++c) affine([set, c](eval::Point& p) -> double& { return p.uv[set][c]; });
+  }
+}
+
+/// A point light and a spot beside the directional one.
+void addLights(eval::Bindings& bindings, size_t points, Random& random) {
+  for (const bool spot : {false, true}) {
+    eval::Columns light = bindings.lights[0];
+    std::vector<double> positions;
+    for (size_t i = 0; i < 3 * points; ++i) positions.push_back(random.between(-4, 4));
+    light["light.position"] = eval::Column::perPoint(3, std::move(positions));
+    light["light.positional"] = eval::Column::constant({1});
+    light["light.inverse_range_4"] = eval::Column::constant({spot ? 0.0 : 1e-4});
+    if (spot) {
+      light["light.direction"] = eval::Column::constant({0.6, 0, -0.8});
+      light["light.spot_scale"] = eval::Column::constant({2.5});
+      light["light.spot_offset"] = eval::Column::constant({0.25});
+    }
+    bindings.lights.push_back(std::move(light));
+  }
+  bindings.columns["frame.light_count"] = eval::Column::constant({3});
+}
+
+}  // namespace
+
+Subject materialSubject(const NamedGraph& graph, const MaterialSetting& setting, size_t points,
+                        uint64_t seed) {
+  Subject subject;
+  subject.name = graph.name;
+  subject.points = points;
+  Result<ir::Module> module = lower::lower(graph.graph, library(), {setting.parameters});
+  EXPECT_TRUE(module) << graph.name;
+  if (!module) return subject;
+  subject.module = std::move(*module);
+  passes::runPipeline(subject.module, {setting.lights, {}});
+  Random random(seed);
+  std::vector<eval::Point> list;
+  for (size_t i = 0; i < points; ++i) {
+    list.push_back(setting.quads && i % 4 != 0 ? list.back() : randomPoint(random, i));
+    if (setting.quads && i % 4 == 3) spread({list.data() + i - 3, 4}, random);
+  }
+  eval::Bindings& bindings = subject.bindings;
+  eval::bindPoints(list, bindings);
+  bindings.quads = setting.quads;
+  bindings.columns["frame.environment_intensity"] = eval::Column::constant({1.25});
+  if (setting.lights.any) addLights(bindings, points, random);
+  roundAll(bindings.columns);
+  for (eval::Columns& light : bindings.lights) roundAll(light);
+  for (const ir::TextureSlot& slot : subject.module.textures) addTexture(subject, slot, random);
+  EXPECT_TRUE(eval::bindMaterialBlock(subject.module, bindings)) << graph.name;
+  EXPECT_TRUE(eval::bindVaryings<float>(subject.module, points, bindings)) << graph.name;
+  return subject;
+}
+
+Subject vertexSubject(const NamedGraph& graph, const MaterialSetting& setting, size_t points, uint64_t seed) {
+  Subject subject = materialSubject(graph, setting, points, seed);
+  subject.name += ", vertex stage";
+  ir::Module& module = subject.module;
+  std::vector<ValueId> values;
+  for (const ir::Output& output : module.outputs) {
+    if (output.kind == ir::OutputKind::Position) values.push_back(output.value);
+  }
+  for (const ir::Varying& varying : module.varyings) values.push_back(varying.source);
+  setColors(module, values);
+  module.preshader.clear();
+  module.varyings.clear();
+  for (const ir::Attribute& attribute : module.attributes) {
+    module.varyings.push_back({attribute.name, attribute.type, attribute.location, ir::kNoValue});
+  }
+  passes::Rewriter(module).run([](passes::Rewriter& r, ValueId id, std::span<const ValueId> operands) {
+    if (r.dag()[id].op != ir::Op::Input) return r.copy(id, operands);
+    ir::Input input = r.dag().inputOf(id);
+    if (input.kind == ir::InputKind::Attribute) {
+      input.kind = ir::InputKind::Varying;
+      input.rate = ir::Rate::Fragment;
+    }
+    return r.dag().input(input);
+  });
+  passes::bind(module);
+  EXPECT_TRUE(ir::verify(module).empty()) << subject.name << ": " << ir::verify(module)[0];
+  Random random(seed);
+  for (const char* name : {"object.model", "object.normal_matrix", "frame.view_projection"}) {
+    std::vector<double> matrix;
+    for (int i = 0; i < 16; ++i) matrix.push_back(rounded(random.between(-2, 2)));
+    subject.bindings.columns[name] = eval::Column::constant(std::move(matrix));
+  }
+  return subject;
+}
+
+const vulkan::Device* device() {
+  static const Result<vulkan::Device> kDevice = vulkan::Device::open();
+  return kDevice ? &*kDevice : nullptr;
+}
+
+std::vector<std::vector<float>> onCpu(const Subject& subject) {
+  const auto values =
+      eval::evaluate<float>(subject.module, subject.roots(), subject.bindings, subject.points);
+  EXPECT_TRUE(values) << subject.name << ": " << (values ? "" : format(values.error()[0]));
+  return values.value_or(std::vector<std::vector<float>>{});
+}
+
+std::vector<std::vector<float>> onDevice(const Subject& subject, SpirvRoute route) {
+  const Result<vulkan::Work> work =
+      gpuWork(subject.module, subject.bindings, subject.textures, subject.points, route);
+  EXPECT_TRUE(work) << subject.name << ": " << (work ? "" : format(work.error()[0]));
+  if (!work) return {};
+  Result<vulkan::Outcome> outcome = device()->run(*work);
+  EXPECT_TRUE(outcome) << subject.name << ": " << (outcome ? "" : format(outcome.error()[0]));
+  if (!outcome) return {};
+  // A discarded fragment has no colour: it counts as what the CPU says.
+  const std::vector<std::vector<float>> cpu = onCpu(subject);
+  for (size_t i = 0; i < subject.points; ++i) {
+    for (size_t o = 0; o < cpu.size() && outcome->discarded[i]; ++o) {
+      std::copy_n(cpu[o].begin() + static_cast<std::ptrdiff_t>(4 * i), 4,
+                  outcome->outputs[o].begin() + static_cast<std::ptrdiff_t>(4 * i));
+    }
+  }
+  return std::move(outcome->outputs);
+}
+
+void compare(const Subject& subject, const std::vector<std::vector<passes::Range>>& bounds,
+             const std::vector<std::vector<float>>& outputs, std::string_view engine,
+             Comparison& comparison) {
+  if (outputs.empty()) return;  // it did not run, and has failed for that
+  for (size_t i = 0; i < bounds.size(); ++i) {
+    for (size_t k = 0; k < bounds[i].size(); ++k) {
+      const passes::Range& bound = bounds[i][k];
+      const auto x = static_cast<double>(outputs[k / 4][4 * i + k % 4]);
+      ++comparison.numbers;
+      const double scale = std::max(std::abs(bound.lo), std::abs(bound.hi));
+      if (!(bound.hi - bound.lo <= std::max(1e-3 * scale, 1e-6))) ++comparison.vague;
+      if (std::isnan(x) ? bound.nan : bound.contains(x)) continue;
+      if (comparison.outside++ > 0) continue;
+      comparison.first =
+          fmt::format("{}: {} gives {:.9g} at point {}, number {}, which must be in [{:.9g}, {:.9g}]",
+                      subject.name, engine, x, i, k, bound.lo, bound.hi);
+    }
+  }
+}
+
+std::vector<std::vector<passes::Range>> boundsOf(const Subject& subject, bool rounded_parameters) {
+  EnclosureOptions options;
+  if (device() != nullptr) options.sub_texel_bits = device()->subTexelBits();
+  options.rounded_parameters = rounded_parameters;
+  options.regrouped = !subject.single;
+  Enclosure enclosure(subject.module, subject.bindings, subject.sizes, options);
+  const std::vector<ValueId> roots = subject.roots();
+  std::vector<std::vector<passes::Range>> bounds;
+  for (size_t i = 0; i < subject.points; ++i) bounds.push_back(enclosure.at(i, roots));
+  return bounds;
+}
+
+Comparison compareEngines(const Subject& subject) {
+  const auto bounds = boundsOf(subject);
+  Comparison comparison;
+  compare(subject, bounds, onCpu(subject), "the CPU", comparison);
+  compare(subject, bounds, onDevice(subject, SpirvRoute::Direct), "the direct SPIR-V", comparison);
+  compare(subject, bounds, onDevice(subject, SpirvRoute::Glslang), "the GLSL", comparison);
+  compare(subject, bounds, onDevice(subject, SpirvRoute::Hlsl), "the HLSL", comparison);
+  return comparison;
+}
+
+}  // namespace lacquer::parity
