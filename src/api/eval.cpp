@@ -2,278 +2,72 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "api/eval_material.h"
 #include "api/internal.h"
 #include "api/points.h"
 #include "eval/evaluate.h"
-#include "eval/image.h"
-#include "gltf/table.h"
 #include "gltf/text.h"
-#include "gltf/texture_source.h"
-#include "lower/lower.h"
 
 namespace lacquer {
 
 namespace {
 
-/// The textures of a material, in an order of its own.
-std::vector<gltf::TextureInfo*> texturesOf(gltf::Material& m) {
-  std::vector<gltf::Texture*> all = {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture,
-                                     &m.occlusionTexture, &m.emissiveTexture};
-  if (m.clearcoat) {
-    gltf::Clearcoat& c = *m.clearcoat;
-    all.insert(all.end(), {&c.clearcoatTexture, &c.clearcoatRoughnessTexture, &c.clearcoatNormalTexture});
-    if (c.color) all.push_back(&c.color->clearcoatColorTexture);
-    if (c.darkening) all.push_back(&c.darkening->clearcoatDarkeningTexture);
+/// The points' own values, the environment of each, and what comes from the stages before the fragment's.
+Result<void> bind(EvalMaterial& material, const EvalPoints& points, eval::Bindings& bindings) {
+  eval::bindPoints(points.points, bindings);
+  if (Result<void> block = eval::bindMaterialBlock(material.module(), bindings); !block) return block;
+  if (Result<void> varyings = eval::bindVaryings<float>(material.module(), points.points.size(), bindings);
+      !varyings) {
+    return varyings;
   }
-  if (m.clearcoatTint) all.push_back(&m.clearcoatTint->clearcoatTintTexture);
-  if (m.coat) {
-    gltf::Coat& c = *m.coat;
-    all.insert(all.end(), {&c.coatTexture, &c.coatRoughnessTexture, &c.coatNormalTexture, &c.coatColorTexture,
-                           &c.coatAnisotropyTexture});
+  for (const ir::TextureSlot* slot : material.environments()) {
+    bindings.textures[slot->name] = [&points](size_t point, const std::array<double, 3>&, double) {
+      const std::array<double, 3>& e = points.environment[point];
+      return std::array<double, 4>{e[0], e[1], e[2], 1};
+    };
   }
-  std::vector<gltf::TextureInfo*> result;
-  for (gltf::Texture* texture : all) {
-    if (*texture) result.push_back(&**texture);
-  }
-  return result;
+  return material.bindTextures({}, bindings);
 }
 
-std::string propertyOf(const ir::TextureSlot& slot) {
-  return slot.pointer.substr(slot.pointer.rfind('/') + 1);
+/// The values of the points as JSON.
+template <class T>
+Result<std::string> answer(const ir::Module& module, const eval::Bindings& bindings,
+                           const std::string& material, size_t points) {
+  std::vector<ir::ValueId> roots;
+  ir::ValueId color = ir::kNoValue;
+  ir::ValueId dropped = ir::kNoValue;
+  for (const ir::Output& output : module.outputs) {
+    if (output.kind == ir::OutputKind::Color && output.location == 0) color = output.value;
+    if (output.kind == ir::OutputKind::Discard) dropped = output.value;
+  }
+  roots.push_back(color);
+  if (dropped != ir::kNoValue) roots.push_back(dropped);
+  const auto values = eval::evaluate<T>(module, roots, bindings, points);
+  if (!values) return tl::make_unexpected(values.error());
+  constexpr bool kSingle = sizeof(T) == sizeof(float);
+  std::string text =
+      fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n  \"profile\": \"khr\",\n  \"rgba\": [",
+                  gltf::Json(material).dump(-1, ' ', false, gltf::Json::error_handler_t::replace),
+                  kSingle ? "float" : "double");
+  for (size_t i = 0; i < points; ++i) {
+    text += i == 0 ? "\n    [" : ",\n    [";
+    for (size_t c = 0; c < 4; ++c) {
+      const T x = (*values)[0][4 * i + c];
+      if (c > 0) text += ", ";
+      // JSON has no infinity; no input in its range should come here.
+      text += std::isfinite(x) ? fmt::format(kSingle ? "{:.9g}" : "{:.17g}", x) : "null";
+    }
+    text += "]";
+  }
+  text += "\n  ]";
+  if (values->size() > 1) {
+    text += ",\n  \"discarded\": [";
+    for (size_t i = 0; i < points; ++i) text += fmt::format("{}{}", i == 0 ? "" : ", ", (*values)[1][i] != 0);
+    text += "]";
+  }
+  return text + "\n}\n";
 }
-
-struct Texel {
-  std::string slot;
-  std::array<double, 4> value{};
-};
-
-/// "baseColorTexture=0.5,0.5,0.5,1"
-Result<Texel> parseTexel(const std::string& text) {
-  const auto wrong = [&] {
-    return fail("bad-texel", {}, fmt::format("'{}' is no texel", text),
-                "write SLOT=r,g,b,a with four numbers");
-  };
-  const size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) return wrong();
-  Texel texel;
-  texel.slot = text.substr(0, equals);
-  std::istringstream numbers(text.substr(equals + 1));
-  numbers.imbue(std::locale::classic());
-  for (size_t i = 0; i < 4; ++i) {
-    char comma = ',';
-    if (i > 0 && (!(numbers >> comma) || comma != ',')) return wrong();
-    if (!(numbers >> texel.value[i]) || !std::isfinite(texel.value[i])) return wrong();
-  }
-  if (!(numbers >> std::ws).eof()) return wrong();
-  return texel;
-}
-
-bool isTextureProperty(const std::string& name) {
-  const std::vector<gltf::TableRow> rows = gltf::tableRows();
-  return std::any_of(rows.begin(), rows.end(), [&](const gltf::TableRow& row) {
-    const bool texture = row.facts.kind == gltf::Kind::Texture ||
-                         row.facts.kind == gltf::Kind::NormalTexture ||
-                         row.facts.kind == gltf::Kind::OcclusionTexture;
-    return texture && row.facts.name == name;
-  });
-}
-
-eval::Wrap wrapOf(int gl) {
-  constexpr int kClamp = 33071;
-  constexpr int kMirror = 33648;
-  return gl == kClamp ? eval::Wrap::Clamp : gl == kMirror ? eval::Wrap::Mirror : eval::Wrap::Repeat;
-}
-
-class Evaluating {
-public:
-  Evaluating(const std::string& file, const Options& options) : file_(file), options_(options) {}
-
-  Result<void> setTexels(const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) {
-      Result<Texel> texel = parseTexel(text);
-      if (!texel) return tl::make_unexpected(std::move(texel.error()));
-      texels_.push_back(std::move(*texel));
-    }
-    return {};
-  }
-
-  /// The module as lowered, for a primitive with every attribute: points are given all of them.
-  Result<void> lower(gltf::Material material, const lang::Library& library, bool environment,
-                     Messages& messages) {
-    // Every use of a texture gets a slot of its own, so that each can be given a texel.
-    for (gltf::TextureInfo* info : texturesOf(material)) {
-      originals_.push_back(info->texture);
-      info->texture = static_cast<int>(originals_.size()) - 1;
-    }
-    Options options = options_;
-    options.template_name = "forward";
-    options.ibl = options.ibl && environment;
-    options.decode_srgb = false;
-    Diagnostics warnings;
-    graph::Graph graph =
-        graph::build(material, {true, true, true, {true, true, true, true}}, buildOptions(options), warnings);
-    report(warnings, file_, messages);
-    if (Diagnostics wrong = graph::check(graph, library); lacquer::hasError(wrong)) {
-      return tl::make_unexpected(std::move(wrong));
-    }
-    Result<ir::Module> module = lower::lower(graph, library, {});
-    if (!module) return tl::make_unexpected(std::move(module.error()));
-    module_ = std::move(*module);
-    return checkTexels();
-  }
-
-  /// The float engine computes what the shader does: values of the material's rate in the preshader, then
-  /// floats.
-  void place() {
-    passes::PipelineOptions pipeline;
-    pipeline.lights = {false, 1, 0, 0};
-    passes::runPipeline(module_, pipeline);
-  }
-
-  Result<void> bind(const EvalPoints& points) {
-    eval::bindPoints(points.points, bindings_);
-    if (Result<void> block = eval::bindMaterialBlock(module_, bindings_); !block) return block;
-    if (Result<void> varyings = eval::bindVaryings<float>(module_, points.points.size(), bindings_);
-        !varyings) {
-      return varyings;
-    }
-    std::vector<ir::ValueId> roots;
-    for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
-    std::vector<bool> used(module_.textures.size(), false);
-    for (const ir::ValueId id : ir::reachable(module_.dag, roots)) {
-      if (module_.dag[id].op != ir::Op::Input) continue;
-      const ir::Input& input = module_.dag.inputOf(id);
-      if (input.kind == ir::InputKind::Texture) used[input.field] = true;
-    }
-    Diagnostics wrong;
-    for (size_t i = 0; i < used.size(); ++i) {
-      if (!used[i]) continue;
-      const ir::TextureSlot& slot = module_.textures[i];
-      if (slot.environment) {
-        bindings_.textures[slot.name] = [&points](size_t point, const std::array<double, 3>&, double) {
-          const std::array<double, 3>& e = points.environment[point];
-          return std::array<double, 4>{e[0], e[1], e[2], 1};
-        };
-      } else if (Result<void> bound = bindTexture(slot); !bound) {
-        wrong.insert(wrong.end(), bound.error().begin(), bound.error().end());
-      }
-    }
-    if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
-    return {};
-  }
-
-  template <class T>
-  Result<std::string> answer(const std::string& material, size_t points) const {
-    std::vector<ir::ValueId> roots;
-    ir::ValueId color = ir::kNoValue;
-    ir::ValueId dropped = ir::kNoValue;
-    for (const ir::Output& output : module_.outputs) {
-      if (output.kind == ir::OutputKind::Color && output.location == 0) color = output.value;
-      if (output.kind == ir::OutputKind::Discard) dropped = output.value;
-    }
-    roots.push_back(color);
-    if (dropped != ir::kNoValue) roots.push_back(dropped);
-    const auto values = eval::evaluate<T>(module_, roots, bindings_, points);
-    if (!values) return tl::make_unexpected(values.error());
-    constexpr bool kSingle = sizeof(T) == sizeof(float);
-    std::string text =
-        fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n  \"profile\": \"khr\",\n  \"rgba\": [",
-                    gltf::Json(material).dump(-1, ' ', false, gltf::Json::error_handler_t::replace),
-                    kSingle ? "float" : "double");
-    for (size_t i = 0; i < points; ++i) {
-      text += i == 0 ? "\n    [" : ",\n    [";
-      for (size_t c = 0; c < 4; ++c) {
-        const T x = (*values)[0][4 * i + c];
-        if (c > 0) text += ", ";
-        // JSON has no infinity; no input in its range should come here.
-        text += std::isfinite(x) ? fmt::format(kSingle ? "{:.9g}" : "{:.17g}", x) : "null";
-      }
-      text += "]";
-    }
-    text += "\n  ]";
-    if (values->size() > 1) {
-      text += ",\n  \"discarded\": [";
-      for (size_t i = 0; i < points; ++i)
-        text += fmt::format("{}{}", i == 0 ? "" : ", ", (*values)[1][i] != 0);
-      text += "]";
-    }
-    return text + "\n}\n";
-  }
-
-private:
-  static bool names(const std::string& name, const ir::TextureSlot& slot) {
-    return !slot.environment && (name == propertyOf(slot) || name == slot.name);
-  }
-
-  /// A texel for a texture that this material does not have is not used; a name that no texture has is a
-  /// mistake.
-  Result<void> checkTexels() const {
-    for (const Texel& texel : texels_) {
-      const bool known = isTextureProperty(texel.slot) ||
-                         std::any_of(module_.textures.begin(), module_.textures.end(),
-                                     [&](const ir::TextureSlot& slot) { return names(texel.slot, slot); });
-      if (known) continue;
-      std::vector<std::string> slots;
-      for (const ir::TextureSlot& slot : module_.textures) {
-        if (!slot.environment) slots.push_back(propertyOf(slot));
-      }
-      return fail("unknown-texture", {}, fmt::format("--texel: there is no texture '{}'", texel.slot),
-                  slots.empty() ? "the material has no textures"
-                                : fmt::format("the material has {}", fmt::join(slots, ", ")));
-    }
-    return {};
-  }
-
-  Result<void> bindTexture(const ir::TextureSlot& slot) {
-    for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
-      if (!names(it->slot, slot)) continue;
-      const std::array<double, 4> value = it->value;
-      bindings_.textures[slot.name] = [value](size_t, const std::array<double, 3>&, double) { return value; };
-      return {};
-    }
-    Result<eval::Sampler> sampler = imageSampler(slot);
-    if (sampler) {
-      bindings_.textures[slot.name] = std::move(*sampler);
-      return {};
-    }
-    for (Diagnostic& d : sampler.error()) {
-      d.message = fmt::format("{} has no image: {}", propertyOf(slot), d.message);
-      if (d.help.empty()) d.help = fmt::format("or give a constant: --texel {}=r,g,b,a", propertyOf(slot));
-    }
-    return tl::make_unexpected(std::move(sampler.error()));
-  }
-
-  Result<eval::Sampler> imageSampler(const ir::TextureSlot& slot) {
-    if (!opened_) {
-      Result<gltf::TextureFile> opened = gltf::TextureFile::open(file_);
-      if (!opened) return tl::make_unexpected(std::move(opened.error()));
-      opened_ = std::move(*opened);
-    }
-    const int texture = originals_[static_cast<size_t>(slot.texture)];
-    const Result<gltf::TextureSource> source = opened_->texture(texture);
-    if (!source) return tl::make_unexpected(source.error());
-    std::shared_ptr<const eval::Image>& image = images_[texture];
-    if (!image) {
-      Result<eval::Image> decoded = eval::decodeImage(source->bytes, source->place);
-      if (!decoded) return tl::make_unexpected(std::move(decoded.error()));
-      image = std::make_shared<const eval::Image>(std::move(*decoded));
-    }
-    constexpr int kNearest = 9728;
-    return eval::makeSampler(
-        image, {wrapOf(source->wrapS), wrapOf(source->wrapT), source->magFilter == kNearest, slot.srgb});
-  }
-
-  const std::string& file_;
-  const Options& options_;
-  std::vector<Texel> texels_;
-  std::vector<int> originals_;  ///< by the slot's texture: the file's
-  std::optional<gltf::TextureFile> opened_;
-  std::map<int, std::shared_ptr<const eval::Image>> images_;
-  ir::Module module_;
-  eval::Bindings bindings_;
-};
 
 /// The material of that name, or the only one where no name is given.
 Result<const gltf::Material*> findMaterial(const gltf::Document& document, const std::string& name) {
@@ -302,19 +96,21 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
   if (lacquer::hasError((*found)->diagnostics)) return std::string();
   const auto library = libraryFor(options);
   if (!library) return tl::make_unexpected(library.error());
-  Evaluating evaluating(file, options);
-  if (Result<void> set = evaluating.setTexels(texels); !set)
+  FileImages images(file);
+  EvalMaterial evaluated(images, options);
+  if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
-  if (Result<void> lowered = evaluating.lower(**found, **library, points.has_environment, messages);
+  if (Result<void> lowered = evaluated.lower(**found, **library, points.has_environment, {}, messages);
       !lowered) {
     return tl::make_unexpected(std::move(lowered.error()));
   }
-  if (in_float) evaluating.place();
-  if (Result<void> bound = evaluating.bind(points); !bound)
+  if (in_float) evaluated.place({false, 1, 0, 0});
+  eval::Bindings bindings;
+  if (Result<void> bound = bind(evaluated, points, bindings); !bound)
     return tl::make_unexpected(std::move(bound.error()));
   const size_t count = points.points.size();
-  return in_float ? evaluating.answer<float>((*found)->name, count)
-                  : evaluating.answer<double>((*found)->name, count);
+  return in_float ? answer<float>(evaluated.module(), bindings, (*found)->name, count)
+                  : answer<double>(evaluated.module(), bindings, (*found)->name, count);
 }
 
 }  // namespace
