@@ -285,6 +285,15 @@ std::string drawPreview(const Preview& preview, const std::vector<std::string>& 
                         const std::vector<std::string>& materials, const Options& options, Messages& messages,
                         const std::function<void(size_t done, size_t known)>& progress = {});
 
+/// Attacks nodes, materials of files, or cases again, docs/stress.md: what was found, as JSON; empty on an error.
+struct Stress {
+  uint64_t samples = 100000, seed = 1;  ///< of each node and material
+  bool mediump = false;                 ///< every operation rounded to half precision
+};
+std::string stressNodes(const Stress& stress, const std::vector<std::string>& subjects, const Options& options,
+                        Messages& messages,
+                        const std::function<void(size_t done, size_t known)>& progress = {});
+
 /// The node library as JSON (contracts, ranges, sources, variants), and what is proved of it. Empty on an
 /// error.
 std::string nodesJson(const Options& options, Messages& messages);

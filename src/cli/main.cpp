@@ -16,6 +16,7 @@
 #include "cli/eval.h"
 #include "cli/preview.h"
 #include "cli/prove.h"
+#include "cli/stress.h"
 #include "cli/table.h"
 #include "lacquer.h"
 
@@ -370,6 +371,8 @@ int run(int argc, char** argv) {
   CLI::App* eval_verb = lacquer::cli::addEval(app, eval_flags);
   lacquer::cli::PreviewFlags preview_flags;
   CLI::App* preview_verb = lacquer::cli::addPreview(app, preview_flags);
+  lacquer::cli::StressFlags stress_flags;
+  CLI::App* stress_verb = lacquer::cli::addStress(app, stress_flags);
 
   for (CLI::App* verb : app.get_subcommands({}))
     verb->set_version_flag("--version", std::string(lacquer::version()));
@@ -396,6 +399,7 @@ int run(int argc, char** argv) {
   }
   if (*eval_verb) return lacquer::cli::runEval(eval_flags);
   if (*preview_verb) return lacquer::cli::runPreview(preview_flags);
+  if (*stress_verb) return lacquer::cli::runStress(stress_flags);
   if (*gen_verb) return gen(flags);
   if (*plan_verb) return plan(flags);
   if (*merge_verb) return merge(flags);
