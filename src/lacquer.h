@@ -279,6 +279,28 @@ std::string evaluate(const std::string& file, const std::string& material, const
                      const std::string& points_name, Engine engine, const std::vector<std::string>& texels,
                      const Options& options, Messages& messages);
 
+/// A contact sheet, docs/preview.md. `compare`: empty, or the names of two settings to put side by side.
+struct Preview {
+  std::string output;  ///< the PNG file
+  std::vector<std::string> compare, texels;
+  uint32_t size = 160, columns = 0;  ///< pixels of a ball; balls in a row, 0 for a good number
+  bool in_float = true;
+};
+/// Writes it, and returns what was measured as JSON; empty on an error.
+std::string drawPreview(const Preview& preview, const std::vector<std::string>& files,
+                        const std::vector<std::string>& materials, const Options& options, Messages& messages,
+                        const std::function<void(size_t done, size_t known)>& progress = {});
+
+/// Attacks nodes, materials of files, or cases again, docs/stress.md: what was found, as JSON; empty on an
+/// error.
+struct Stress {
+  uint64_t samples = 100000, seed = 1;  ///< of each node and material
+  bool mediump = false;                 ///< every operation rounded to half precision
+};
+std::string stressNodes(const Stress& stress, const std::vector<std::string>& subjects,
+                        const Options& options, Messages& messages,
+                        const std::function<void(size_t done, size_t known)>& progress = {});
+
 /// The node library as JSON (contracts, ranges, sources, variants), and what is proved of it. Empty on an
 /// error.
 std::string nodesJson(const Options& options, Messages& messages);

@@ -56,7 +56,7 @@ ProgressLine::~ProgressLine() {
 
 void ProgressLine::operator()(size_t done, size_t known) {
   if (!shown_) return;
-  fmt::print(stderr, "\r{}/{} shaders", done, known);
+  fmt::print(stderr, "\r{}/{} {}", done, known, what_);
   open_ = true;
 }
 

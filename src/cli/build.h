@@ -11,15 +11,16 @@ namespace lacquer::cli {
 /// Stages with their time, on stderr. `wall`: seconds from start to end.
 void printTimes(const Report& report, double wall);
 
-/// Shows "3/12 shaders" on one line of a terminal.
+/// Shows "3/12 shaders", or of what else, on one line of a terminal.
 class ProgressLine {
 public:
-  explicit ProgressLine(bool shown) : shown_(shown) {}
+  explicit ProgressLine(bool shown, const char* what = "shaders") : shown_(shown), what_(what) {}
   ~ProgressLine();
   void operator()(size_t done, size_t known);
 
 private:
   bool shown_;
+  const char* what_;
   bool open_ = false;
 };
 

@@ -11,8 +11,7 @@ namespace lacquer::cli {
 
 struct EvalFlags {
   Options options;
-  std::string file, material, points, engine = "double", params = "uniform",
-                                      spirv_from = "direct";
+  std::string file, material, points, engine = "double", params = "uniform", spirv_from = "direct";
   std::vector<std::string> texels;
   bool no_multiple_scattering = false;
   std::string dfg = "table";

@@ -14,7 +14,9 @@
 #include "cli/build.h"
 #include "cli/cost.h"
 #include "cli/eval.h"
+#include "cli/preview.h"
 #include "cli/prove.h"
+#include "cli/stress.h"
 #include "cli/table.h"
 #include "lacquer.h"
 
@@ -376,6 +378,10 @@ int run(int argc, char** argv) {
 
   lacquer::cli::EvalFlags eval_flags;
   CLI::App* eval_verb = lacquer::cli::addEval(app, eval_flags);
+  lacquer::cli::PreviewFlags preview_flags;
+  CLI::App* preview_verb = lacquer::cli::addPreview(app, preview_flags);
+  lacquer::cli::StressFlags stress_flags;
+  CLI::App* stress_verb = lacquer::cli::addStress(app, stress_flags);
 
   for (CLI::App* verb : app.get_subcommands({}))
     verb->set_version_flag("--version", std::string(lacquer::version()));
@@ -401,6 +407,8 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   if (*eval_verb) return lacquer::cli::runEval(eval_flags);
+  if (*preview_verb) return lacquer::cli::runPreview(preview_flags);
+  if (*stress_verb) return lacquer::cli::runStress(stress_flags);
   if (*gen_verb) return gen(flags);
   if (*plan_verb) return plan(flags);
   if (*merge_verb) return merge(flags);

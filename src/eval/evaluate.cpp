@@ -1,6 +1,7 @@
 #include "eval/evaluate.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 
@@ -10,9 +11,28 @@ namespace {
 
 using ir::Op;
 
+/// To the nearest half-precision number, ties to even: 11 bits, subnormal numbers below 2^-14, infinite from
+/// 65520.
+float roundedToHalf(float x) {
+  const float magnitude = std::abs(x);
+  if (!(magnitude < 65520.0F)) return std::isnan(x) ? x : std::copysign(INFINITY, x);
+  if (magnitude < 0x1p-14F) return std::rint(x * 0x1p24F) * 0x1p-24F;
+  auto bits = std::bit_cast<uint32_t>(x);
+  bits += 0xFFFU + ((bits >> 13) & 1U);
+  return std::bit_cast<float>(bits & ~0x1FFFU);
+}
+
+/// Float operations rounded to half are the half operations: float has more than twice the bits (Figueroa
+/// 1995).
+template <bool kHalf, class T>
+T rounded(T x) {
+  if constexpr (kHalf) return roundedToHalf(x);
+  return x;
+}
+
 /// One component-wise op over the lanes. `b` and `c` are any readable array where the op has fewer operands.
 /// `out` may be one of the operands.
-template <class T>
+template <class T, bool kHalf>
 void mapLanes(Op op, const T* pa, const T* pb, const T* pc, T* out, size_t lanes) {
   switch (op) {
 #define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) \
@@ -21,7 +41,7 @@ void mapLanes(Op op, const T* pa, const T* pb, const T* pc, T* out, size_t lanes
       [[maybe_unused]] const T a = pa[i];                                 \
       [[maybe_unused]] const T b = pb[i];                                 \
       [[maybe_unused]] const T c = pc[i];                                 \
-      out[i] = static_cast<T>(fold);                                      \
+      out[i] = rounded<kHalf>(static_cast<T>(fold));                      \
     }                                                                     \
     return;
 #include "ir/ops.def"
@@ -29,7 +49,7 @@ void mapLanes(Op op, const T* pa, const T* pb, const T* pc, T* out, size_t lanes
   }
 }
 
-template <class T>
+template <class T, bool kHalf = false>
 class Machine {
 public:
   Machine(const Program& program, const Bindings& bindings, size_t points)
@@ -104,9 +124,10 @@ private:
     const auto stride = static_cast<size_t>(from.components);
     const double* source = from.values.data() + instruction.component;
     if (from.per_point) {
-      for (size_t i = 0; i < lanes_; ++i) out[i] = static_cast<T>(source[(first_ + i) * stride]);
+      for (size_t i = 0; i < lanes_; ++i)
+        out[i] = rounded<kHalf>(static_cast<T>(source[(first_ + i) * stride]));
     } else {
-      std::fill(out, out + lanes_, static_cast<T>(*source));
+      std::fill(out, out + lanes_, rounded<kHalf>(static_cast<T>(*source)));
     }
   }
 
@@ -121,7 +142,7 @@ private:
       const double lod =
           instruction.args[3] == kNoRegister ? 0 : static_cast<double>(at(instruction.args[3])[i]);
       const std::array<double, 4> texel = sampler(first_ + i, coordinate, lod);
-      for (size_t c = 0; c < 4; ++c) at(instruction.outs[c])[i] = static_cast<T>(texel[c]);
+      for (size_t c = 0; c < 4; ++c) at(instruction.outs[c])[i] = rounded<kHalf>(static_cast<T>(texel[c]));
     }
   }
 
@@ -132,7 +153,8 @@ private:
     for (size_t quad = 0; quad < lanes_; quad += 4) {
       std::array<T, 4> in{};
       for (size_t k = 0; k < 4; ++k) in[k] = a[std::min(quad + k, lanes_ - 1)];
-      for (size_t k = 0; k < 4 && quad + k < lanes_; ++k) out[quad + k] = in[k | step] - in[k & ~step];
+      for (size_t k = 0; k < 4 && quad + k < lanes_; ++k)
+        out[quad + k] = rounded<kHalf>(in[k | step] - in[k & ~step]);
     }
   }
 
@@ -143,7 +165,7 @@ private:
     };
     const Register out = instruction.outs[0];
     switch (instruction.step) {
-      case Step::Map: return mapLanes<T>(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_);
+      case Step::Map: return mapLanes<T, kHalf>(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_);
       case Step::Select: {
         const T* condition = arg(0);
         const T* yes = arg(1);
@@ -153,8 +175,8 @@ private:
         return;
       }
       case Step::Literal:
-        return static_cast<void>(
-            std::fill_n(at(out), lanes_, static_cast<T>(program_.literals[instruction.payload])));
+        return static_cast<void>(std::fill_n(
+            at(out), lanes_, rounded<kHalf>(static_cast<T>(program_.literals[instruction.payload]))));
       case Step::Load: return load(*columns_[instruction.payload], instruction);
       case Step::Light: {
         const size_t light = instruction.element >= 0 ? static_cast<size_t>(instruction.element) : light_;
@@ -183,6 +205,10 @@ private:
 template <class T>
 std::vector<std::vector<T>> run(const Program& program, const Bindings& bindings, size_t points) {
   return Machine<T>(program, bindings, points).run();
+}
+
+std::vector<std::vector<float>> runHalf(const Program& program, const Bindings& bindings, size_t points) {
+  return Machine<float, true>(program, bindings, points).run();
 }
 
 template <class T>

@@ -15,6 +15,10 @@ inline constexpr size_t kBatch = 256;
 template <class T>
 std::vector<std::vector<T>> run(const Program& program, const Bindings& bindings, size_t points);
 
+/// run<float>() with inputs, texels and the result of every operation rounded to half precision: what a GPU
+/// may do with `mediump` at its worst.
+std::vector<std::vector<float>> runHalf(const Program& program, const Bindings& bindings, size_t points);
+
 /// compile() and run().
 template <class T>
 Result<std::vector<std::vector<T>>> evaluate(const ir::Module& module, std::span<const ir::ValueId> roots,

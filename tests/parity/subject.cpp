@@ -72,7 +72,8 @@ void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
     texels.resize(size_t{texture.width} * texture.height);
     for (vulkan::Texel& texel : texels) {
       // The environment's table holds two parts of an albedo.
-      for (float& x : texel) x = static_cast<float>(slot.environment ? random.between(0.15, 0.5) : random.unit());
+      for (float& x : texel)
+        x = static_cast<float>(slot.environment ? random.between(0.15, 0.5) : random.unit());
     }
     subject.sizes[slot.name] = {static_cast<double>(texture.width), static_cast<double>(texture.height)};
   }

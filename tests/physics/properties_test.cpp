@@ -270,14 +270,14 @@ TEST(Properties, WhiteFurnace) {
   }
 }
 
-/// How far image-based light's factors are from the same integrals of the direct light: of the albedo, and of the part
-/// that Schlick's weight brings; at N.V >= 0.1 and below.
+/// How far image-based light's factors are from the same integrals of the direct light: of the albedo, and of
+/// the part that Schlick's weight brings; at N.V >= 0.1 and below.
 struct EnvironmentBrdfError {
   double albedo = 0, albedo_low = 0, fresnel = 0, fresnel_low = 0;
 };
 
-/// A coat with an IOR of 0 has a Fresnel of 1 and leaves nothing of the base: it is the albedo alone. A black metal is
-/// the part of Schlick's weight.
+/// A coat with an IOR of 0 has a Fresnel of 1 and leaves nothing of the base: it is the albedo alone. A black
+/// metal is the part of Schlick's weight.
 EnvironmentBrdfError environmentBrdfError(bool table) {
   Material mirror;
   mirror.metallic = 0;

@@ -1,0 +1,233 @@
+#include "api/eval_material.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "eval/dfg.h"
+#include "gltf/table.h"
+#include "gltf/text.h"
+#include "lower/lower.h"
+
+namespace lacquer {
+
+namespace {
+
+/// The textures of a material, in an order of its own.
+std::vector<gltf::TextureInfo*> texturesOf(gltf::Material& m) {
+  std::vector<gltf::Texture*> all = {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture,
+                                     &m.occlusionTexture, &m.emissiveTexture};
+  if (m.clearcoat) {
+    gltf::Clearcoat& c = *m.clearcoat;
+    all.insert(all.end(), {&c.clearcoatTexture, &c.clearcoatRoughnessTexture, &c.clearcoatNormalTexture});
+    if (c.color) all.push_back(&c.color->clearcoatColorTexture);
+    if (c.darkening) all.push_back(&c.darkening->clearcoatDarkeningTexture);
+  }
+  if (m.clearcoatTint) all.push_back(&m.clearcoatTint->clearcoatTintTexture);
+  if (m.coat) {
+    gltf::Coat& c = *m.coat;
+    all.insert(all.end(), {&c.coatTexture, &c.coatRoughnessTexture, &c.coatNormalTexture, &c.coatColorTexture,
+                           &c.coatAnisotropyTexture});
+  }
+  std::vector<gltf::TextureInfo*> result;
+  for (gltf::Texture* texture : all) {
+    if (*texture) result.push_back(&**texture);
+  }
+  return result;
+}
+
+bool isTextureProperty(const std::string& name) {
+  const std::vector<gltf::TableRow> rows = gltf::tableRows();
+  return std::any_of(rows.begin(), rows.end(), [&](const gltf::TableRow& row) {
+    const bool texture = row.facts.kind == gltf::Kind::Texture ||
+                         row.facts.kind == gltf::Kind::NormalTexture ||
+                         row.facts.kind == gltf::Kind::OcclusionTexture;
+    return texture && row.facts.name == name;
+  });
+}
+
+eval::Wrap wrapOf(int gl) {
+  constexpr int kClamp = 33071;
+  constexpr int kMirror = 33648;
+  return gl == kClamp ? eval::Wrap::Clamp : gl == kMirror ? eval::Wrap::Mirror : eval::Wrap::Repeat;
+}
+
+}  // namespace
+
+std::string propertyOf(const ir::TextureSlot& slot) {
+  return slot.pointer.substr(slot.pointer.rfind('/') + 1);
+}
+
+Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
+  if (!opened_) {
+    Result<gltf::TextureFile> opened = gltf::TextureFile::open(file_);
+    if (!opened) return tl::make_unexpected(std::move(opened.error()));
+    opened_ = std::move(*opened);
+  }
+  const Result<gltf::TextureSource> source = opened_->texture(texture);
+  if (!source) return tl::make_unexpected(source.error());
+  std::shared_ptr<const eval::Image>& image = images_[texture];
+  if (!image) {
+    Result<eval::Image> decoded = eval::decodeImage(source->bytes, source->place);
+    if (!decoded) return tl::make_unexpected(std::move(decoded.error()));
+    image = std::make_shared<const eval::Image>(std::move(*decoded));
+  }
+  constexpr int kNearest = 9728;
+  return Loaded{image, {wrapOf(source->wrapS), wrapOf(source->wrapT), source->magFilter == kNearest, srgb}};
+}
+
+Result<EvalMaterial::Texel> EvalMaterial::parseTexel(const std::string& text) {
+  const auto wrong = [&] {
+    return fail("bad-texel", {}, fmt::format("'{}' is no texel", text),
+                "write SLOT=r,g,b,a with four numbers");
+  };
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) return wrong();
+  Texel texel;
+  texel.slot = text.substr(0, equals);
+  std::istringstream numbers(text.substr(equals + 1));
+  numbers.imbue(std::locale::classic());
+  for (size_t i = 0; i < 4; ++i) {
+    char comma = ',';
+    if (i > 0 && (!(numbers >> comma) || comma != ',')) return wrong();
+    if (!(numbers >> texel.value[i]) || !std::isfinite(texel.value[i])) return wrong();
+  }
+  if (!(numbers >> std::ws).eof()) return wrong();
+  return texel;
+}
+
+Result<void> EvalMaterial::setTexels(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) {
+    Result<Texel> texel = parseTexel(text);
+    if (!texel) return tl::make_unexpected(std::move(texel.error()));
+    texels_.push_back(std::move(*texel));
+  }
+  return {};
+}
+
+Result<void> EvalMaterial::lower(gltf::Material material, const lang::Library& library, bool environment,
+                                 const std::string& variant, Messages& messages) {
+  // Every use of a texture gets a slot of its own, so that each can be given a texel.
+  for (gltf::TextureInfo* info : texturesOf(material)) {
+    originals_.push_back(info->texture);
+    info->texture = static_cast<int>(originals_.size()) - 1;
+  }
+  Options options = options_;
+  options.template_name = "forward";
+  options.ibl = options.ibl && environment;
+  options.decode_srgb = false;
+  Diagnostics warnings;
+  graph::Graph graph =
+      graph::build(material, {true, true, true, {true, true, true, true}}, buildOptions(options), warnings);
+  report(warnings, images_.file(), messages);
+  for (graph::Node& node : graph.nodes) {
+    const Result<const lang::NodeDecl*> decl = library.node(node.type);
+    if (decl && !variant.empty() && (*decl)->find(variant) != nullptr) node.variant = variant;
+  }
+  if (Diagnostics wrong = graph::check(graph, library); lacquer::hasError(wrong)) {
+    return tl::make_unexpected(std::move(wrong));
+  }
+  Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options)});
+  if (!module) return tl::make_unexpected(std::move(module.error()));
+  module_ = std::move(*module);
+  return checkTexels();
+}
+
+void EvalMaterial::place(const passes::LightFacts& lights) {
+  passes::PipelineOptions pipeline;
+  pipeline.lights = lights;
+  passes::runPipeline(module_, pipeline);
+}
+
+std::vector<const ir::TextureSlot*> EvalMaterial::usedTextures() const {
+  std::vector<ir::ValueId> roots;
+  for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
+  std::vector<bool> used(module_.textures.size(), false);
+  for (const ir::ValueId id : ir::reachable(module_.dag, roots)) {
+    if (module_.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module_.dag.inputOf(id);
+    if (input.kind == ir::InputKind::Texture) used[input.field] = true;
+  }
+  std::vector<const ir::TextureSlot*> slots;
+  for (size_t i = 0; i < used.size(); ++i) {
+    if (used[i]) slots.push_back(&module_.textures[i]);
+  }
+  return slots;
+}
+
+std::vector<const ir::TextureSlot*> EvalMaterial::environments() const {
+  std::vector<const ir::TextureSlot*> slots = usedTextures();
+  std::erase_if(slots, [](const ir::TextureSlot* slot) {
+    return !slot->environment || slot->type != ir::Type::TextureCube;
+  });
+  return slots;
+}
+
+Result<void> EvalMaterial::bindTextures(const Substitute& substitute, eval::Bindings& bindings) {
+  Diagnostics wrong;
+  for (const ir::TextureSlot* slot : usedTextures()) {
+    if (slot->environment && slot->type == ir::Type::TextureCube) continue;
+    Result<BoundTexture> bound = textureOf(*slot, substitute);
+    if (!bound) {
+      wrong.insert(wrong.end(), bound.error().begin(), bound.error().end());
+      continue;
+    }
+    if (bound->constant) {
+      const std::array<double, 4> value = *bound->constant;
+      bindings.textures[slot->name] = [value](size_t, const std::array<double, 3>&, double) { return value; };
+    } else {
+      bindings.textures[slot->name] = eval::makeSampler(bound->image, bound->lookup);
+    }
+    bound_[slot->name] = std::move(*bound);
+  }
+  if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  return {};
+}
+
+bool EvalMaterial::names(const std::string& name, const ir::TextureSlot& slot) {
+  return !slot.environment && (name == propertyOf(slot) || name == slot.name);
+}
+
+/// A texel for a texture that this material does not have is not used; a name that no texture has is a
+/// mistake.
+Result<void> EvalMaterial::checkTexels() const {
+  for (const Texel& texel : texels_) {
+    const bool known = isTextureProperty(texel.slot) ||
+                       std::any_of(module_.textures.begin(), module_.textures.end(),
+                                   [&](const ir::TextureSlot& slot) { return names(texel.slot, slot); });
+    if (known) continue;
+    std::vector<std::string> slots;
+    for (const ir::TextureSlot& slot : module_.textures) {
+      if (!slot.environment) slots.push_back(propertyOf(slot));
+    }
+    return fail("unknown-texture", {}, fmt::format("--texel: there is no texture '{}'", texel.slot),
+                slots.empty() ? "the material has no textures"
+                              : fmt::format("the material has {}", fmt::join(slots, ", ")));
+  }
+  return {};
+}
+
+Result<BoundTexture> EvalMaterial::textureOf(const ir::TextureSlot& slot, const Substitute& substitute) {
+  if (slot.environment) {
+    return BoundTexture{
+        {}, eval::environmentDfgImage(), {eval::Wrap::Clamp, eval::Wrap::Clamp, false, false}};
+  }
+  for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
+    if (names(it->slot, slot)) return BoundTexture{it->value, {}, {}};
+  }
+  Result<FileImages::Loaded> loaded = images_.load(originals_[static_cast<size_t>(slot.texture)], slot.srgb);
+  if (loaded) return BoundTexture{{}, loaded->image, loaded->lookup};
+  if (substitute) {
+    if (const std::optional<std::array<double, 4>> value = substitute(slot))
+      return BoundTexture{value, {}, {}};
+  }
+  for (Diagnostic& d : loaded.error()) {
+    d.message = fmt::format("{} has no image: {}", propertyOf(slot), d.message);
+    if (d.help.empty()) d.help = fmt::format("or give a constant: --texel {}=r,g,b,a", propertyOf(slot));
+  }
+  return tl::make_unexpected(std::move(loaded.error()));
+}
+
+}  // namespace lacquer

@@ -1,0 +1,97 @@
+// A material of a file made ready for the CPU evaluator: its module, and its textures as samplers.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/internal.h"
+#include "eval/image.h"
+#include "gltf/texture_source.h"
+
+namespace lacquer {
+
+/// The images behind a file's textures, opened and decoded when first asked for.
+class FileImages {
+public:
+  explicit FileImages(std::string file) : file_(std::move(file)) {}
+
+  const std::string& file() const { return file_; }
+  struct Loaded {
+    std::shared_ptr<const eval::Image> image;
+    eval::Lookup lookup;
+  };
+  /// Errors: those of gltf::TextureFile and of eval::decodeImage().
+  Result<Loaded> load(int texture, bool srgb);
+
+private:
+  std::string file_;
+  std::optional<gltf::TextureFile> opened_;
+  std::map<int, std::shared_ptr<const eval::Image>> images_;
+};
+
+/// What stands behind a texture slot: an image or a constant.
+struct BoundTexture {
+  std::optional<std::array<double, 4>> constant;
+  std::shared_ptr<const eval::Image> image;
+  eval::Lookup lookup;
+};
+
+class EvalMaterial {
+public:
+  /// What stands for a texture without an image; nothing where that is an error.
+  using Substitute = std::function<std::optional<std::array<double, 4>>(const ir::TextureSlot&)>;
+
+  /// `images` must outlive this.
+  EvalMaterial(FileImages& images, const Options& options) : images_(images), options_(options) {}
+
+  /// "baseColorTexture=0.5,0.5,0.5,1", each. Errors: "bad-texel".
+  Result<void> setTexels(const std::vector<std::string>& texts);
+
+  /// The forward module as lowered, for a primitive with every attribute: points are given all of them. Nodes
+  /// that have the variant of that name use it. Errors: "unknown-texture", those of a graph.
+  Result<void> lower(gltf::Material material, const lang::Library& library, bool environment,
+                     const std::string& variant, Messages& messages);
+
+  /// The float engine computes what the shader does: values of the material's rate in the preshader, then
+  /// floats.
+  void place(const passes::LightFacts& lights);
+
+  /// Samplers of the textures that the outputs reach, but for the environment's maps; its table of factors is
+  /// one of them. Errors: "image-missing" and the like, one for each texture, where there is no substitute.
+  Result<void> bindTextures(const Substitute& substitute, eval::Bindings& bindings);
+  /// What bindTextures() bound, by slot.
+  const std::map<std::string, BoundTexture>& textures() const { return bound_; }
+
+  /// The environment maps, cubes, that the outputs reach.
+  std::vector<const ir::TextureSlot*> environments() const;
+
+  const ir::Module& module() const { return module_; }
+
+private:
+  struct Texel {
+    std::string slot;
+    std::array<double, 4> value{};
+  };
+
+  static Result<Texel> parseTexel(const std::string& text);
+  static bool names(const std::string& name, const ir::TextureSlot& slot);
+  Result<void> checkTexels() const;
+  Result<BoundTexture> textureOf(const ir::TextureSlot& slot, const Substitute& substitute);
+  std::vector<const ir::TextureSlot*> usedTextures() const;
+
+  FileImages& images_;
+  Options options_;
+  std::vector<Texel> texels_;
+  std::vector<int> originals_;  ///< by the slot's texture: the file's
+  ir::Module module_;
+  std::map<std::string, BoundTexture> bound_;
+};
+
+/// The last part of the slot's pointer: "coatNormalTexture".
+std::string propertyOf(const ir::TextureSlot& slot);
+
+}  // namespace lacquer

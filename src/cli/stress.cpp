@@ -1,0 +1,93 @@
+#include "cli/stress.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/build.h"
+#include "cli/table.h"
+
+namespace lacquer::cli {
+
+CLI::App* addStress(CLI::App& app, StressFlags& flags) {
+  CLI::App* verb =
+      app.add_subcommand("stress", "attacks nodes and materials with the inputs that break shaders");
+  verb->add_option("subjects", flags.subjects,
+                   "nodes, .gltf or .glb files, .json cases; every node of the library when absent");
+  verb->add_option("--samples", flags.stress.samples, "inputs for each node and each material")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+      ->capture_default_str();
+  verb->add_option("--seed", flags.stress.seed, "another one draws other inputs")->capture_default_str();
+  verb->add_flag("--mediump", flags.stress.mediump,
+                 "round every operation to half precision and only report what comes of it");
+  verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files")
+      ->allow_extra_args(false);
+  verb->add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
+      ->check(CLI::Range(0, 1024));
+  verb->add_flag("--json", flags.json, "as JSON, with a case for each finding");
+  verb->add_flag("-q,--quiet", flags.quiet, "no progress, and only what was found");
+  return verb;
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string titleOf(const ordered_json& subject) {
+  if (subject.contains("case")) return subject["case"].get<std::string>();
+  if (subject.contains("node")) {
+    const std::string name = subject["node"].get<std::string>();
+    return subject.contains("variant") ? name + "." + subject["variant"].get<std::string>() : name;
+  }
+  return fmt::format("{}: {}", subject["file"].get<std::string>(), subject["name"].get<std::string>());
+}
+
+void printFound(const std::string& text, bool quiet) {
+  const ordered_json answer = ordered_json::parse(text);
+  for (const auto& subject : answer["subjects"]) {
+    const bool bare = subject["findings"].empty() && !subject.contains("energy");
+    if (bare || (quiet && subject["findings"].empty())) continue;
+    fmt::print("{}\n", printable(titleOf(subject)));
+    if (subject.contains("energy") && !quiet) {
+      const auto& energy = subject["energy"];
+      fmt::print(
+          "  white sky: gives back {:.4f} at most, its base {:.4f}; exchanging light and eye changes "
+          "{:.2g}\n",
+          energy["largest"].get<double>(), energy["base"].get<double>(), energy["asymmetry"].get<double>());
+    }
+    for (const auto& finding : subject["findings"]) {
+      fmt::print("  {:<11} {} in {}", finding["fault"].get<std::string>(), finding["count"].get<uint64_t>(),
+                 printable(finding["what"].get<std::string>()));
+      if (finding.contains("value")) fmt::print(": {:.9g}", finding["value"].get<double>());
+      if (finding.contains("known")) fmt::print("  (known: {})", finding["known"].get<std::string>());
+      fmt::print("\n");
+      if (finding.contains("case") && !finding.contains("known"))
+        fmt::print("    case: {}\n", printable(finding["case"].dump()));
+    }
+  }
+  fmt::print("{} subjects, {} samples each, seed {}: {} faults\n", answer["subjects"].size(),
+             answer["samples"].get<uint64_t>(), answer["seed"].get<uint64_t>(),
+             answer["faults"].get<size_t>());
+}
+
+}  // namespace
+
+int runStress(StressFlags& flags) {
+  Messages messages;
+  std::string answer;
+  {
+    ProgressLine line(terminalWidth() > 0 && !flags.quiet, "subjects");
+    const auto progress = [&](size_t done, size_t known) { line(done, known); };
+    answer = stressNodes(flags.stress, flags.subjects, flags.options, messages, progress);
+  }
+  for (const Message& message : messages) {
+    if (message.level != Message::Level::Note) fmt::print(stderr, "{}\n", printable(message.text));
+  }
+  if (flags.json) fmt::print("{}", answer);
+  if (!answer.empty() && !flags.json) printFound(answer, flags.quiet);
+  if (answer.empty() || hasError(messages)) return 1;
+  // At half precision something always comes of it: that is a report, not a verdict.
+  return flags.stress.mediump || ordered_json::parse(answer)["faults"] == 0 ? 0 : 1;
+}
+
+}  // namespace lacquer::cli

@@ -1,0 +1,267 @@
+#include "preview/ball.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "eval/image.h"
+
+namespace lacquer::preview {
+
+namespace {
+
+using Rgba = std::array<double, 4>;
+
+/// Samples of a pixel along each side.
+constexpr uint32_t kGrid = 4;
+constexpr uint32_t kSamples = kGrid * kGrid;
+/// Distance of the eye, in radii: near enough that the rim is not only grazing, far enough not to bulge.
+constexpr double kEye = 6.0;
+/// Half of the picture, where it cuts the ball's middle plane.
+constexpr double kHalf = 1.045;
+constexpr double kSquares = 8;  ///< of the board behind what is transparent, over the picture
+constexpr double kBoard[] = {0.18, 0.36};
+
+/// The point of the ball at a place of the picture, both in [-1, 1]; false beside the ball.
+bool pointAt(double x, double y, eval::Point& point) {
+  // From the eye at (0, 0, kEye) through (x, y, 0) kHalf.
+  const Vec3 way{x * kHalf, y * kHalf, -kEye};
+  const double a = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+  const double half_b = kEye * way[2];
+  const double inside = half_b * half_b - a * (kEye * kEye - 1);
+  if (inside <= 0) return false;
+  const double along = (-half_b - std::sqrt(inside)) / a;
+  const Vec3 n{way[0] * along, way[1] * along, kEye + way[2] * along};
+  const double length = std::sqrt(a);
+  // Longitude, 0 towards the eye, and latitude. The front half shows the whole of a texture once.
+  const double longitude = std::atan2(n[0], n[2]);
+  const double latitude = std::acos(std::clamp(n[1], -1.0, 1.0));
+  const std::array<double, 2> uv{longitude / std::numbers::pi + 0.5, latitude / std::numbers::pi};
+  point.n = n;
+  point.t = {std::cos(longitude), 0, -std::sin(longitude), 1};
+  point.v = {-way[0] / length, -way[1] / length, -way[2] / length};
+  point.uv.fill(uv);
+  return true;
+}
+
+/// The samples of one row of pixels that hit the ball.
+struct Row {
+  std::vector<eval::Point> points;
+  std::vector<uint32_t> sample;  ///< of each point: pixel times kSamples plus the sample's number
+};
+
+Row rowOf(uint32_t y, uint32_t size) {
+  Row row;
+  for (uint32_t i = 0; i < size * kSamples; ++i) {
+    const uint32_t x = i / kSamples;
+    const uint32_t k = i % kSamples;
+    // Each row and each column of the grid's cells has its sample elsewhere: edges along an axis get all
+    // shades.
+    const double dx = (k % kGrid + (k / kGrid + 0.5) / kGrid) / kGrid;
+    const double dy = (k / kGrid + (k % kGrid + 0.5) / kGrid) / kGrid;
+    eval::Point point;
+    if (!pointAt((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, point)) continue;
+    row.points.push_back(point);
+    row.sample.push_back(i);
+  }
+  return row;
+}
+
+/// Display light of a sample: tone mapped, before a board where it is not opaque.
+Vec3 shown(const Rgba& linear, uint32_t x, uint32_t y, uint32_t size) {
+  const Vec3 mapped = toneMap({linear[0], linear[1], linear[2]});
+  const double alpha = std::clamp(linear[3], 0.0, 1.0);
+  const auto square = static_cast<uint32_t>(x * kSquares / size) + static_cast<uint32_t>(y * kSquares / size);
+  const double board = kBoard[square % 2];
+  Vec3 result{};
+  for (size_t i = 0; i < 3; ++i) {
+    const double c = std::isfinite(mapped[i]) ? std::clamp(mapped[i], 0.0, 1.0) : 0;
+    result[i] = c * alpha + board * (1 - alpha);
+  }
+  return result;
+}
+
+void drawRow(const Row& row, const std::vector<Rgba>& colors, uint32_t y, Color background, Picture& to) {
+  const uint32_t size = to.width();
+  Vec3 back{};
+  for (size_t i = 0; i < 3; ++i) back[i] = eval::decodeSrgb(background[i] / 255.0);
+  std::vector<Vec3> sums(size, Vec3{});
+  std::vector<uint32_t> hits(size, 0);
+  for (size_t i = 0; i < row.points.size(); ++i) {
+    const uint32_t x = row.sample[i] / kSamples;
+    const Vec3 light = shown(colors[i], x, y, size);
+    for (size_t c = 0; c < 3; ++c) sums[x][c] += light[c];
+    ++hits[x];
+  }
+  for (uint32_t x = 0; x < size; ++x) {
+    for (size_t c = 0; c < 3; ++c) {
+      to.at(x, y)[c] = encodeSrgb((sums[x][c] + back[c] * (kSamples - hits[x])) / kSamples);
+    }
+  }
+}
+
+}  // namespace
+
+Result<Shading> Shading::make(Look look, const Studio& studio) {
+  Shading shading;
+  shading.look_ = std::make_shared<const Look>(std::move(look));
+  const Look& of = *shading.look_;
+  shading.base_ = of.textures;
+  for (const std::string& name : of.specular) {
+    shading.base_.textures[name] = [](size_t, const Vec3& direction, double lod) -> Rgba {
+      const Vec3 c = Studio::radiance(direction, lod);
+      return {c[0], c[1], c[2], 1};
+    };
+  }
+  for (const std::string& name : of.irradiance) {
+    shading.base_.textures[name] = [&studio](size_t, const Vec3& direction, double) -> Rgba {
+      const Vec3 c = studio.irradiance(direction);
+      return {c[0], c[1], c[2], 1};
+    };
+  }
+  // One point stands for all: a program holds for every number of them.
+  const eval::Point any;
+  shading.bind({&any, 1}, shading.base_);
+  if (Result<void> block = eval::bindMaterialBlock(of.module, shading.base_); !block)
+    return tl::make_unexpected(std::move(block.error()));
+  if (Result<void> varyings = eval::bindVaryings<float>(of.module, 1, shading.base_); !varyings)
+    return tl::make_unexpected(std::move(varyings.error()));
+  std::vector<ir::ValueId> sources;
+  for (const ir::Varying& varying : of.module.varyings) {
+    if (varying.source == ir::kNoValue) continue;
+    sources.push_back(varying.source);
+    shading.varyings_.push_back(&varying);
+  }
+  std::vector<ir::ValueId> roots;
+  for (const ir::OutputKind kind : {ir::OutputKind::Color, ir::OutputKind::Discard}) {
+    for (const ir::Output& output : of.module.outputs) {
+      if (output.kind == kind && output.location == 0) roots.push_back(output.value);
+    }
+  }
+  Result<eval::Program> vertex = eval::compile(of.module, sources, shading.base_, 1);
+  if (!vertex) return tl::make_unexpected(std::move(vertex.error()));
+  Result<eval::Program> fragment = eval::compile(of.module, roots, shading.base_, 1);
+  if (!fragment) return tl::make_unexpected(std::move(fragment.error()));
+  shading.vertex_ = std::move(*vertex);
+  shading.fragment_ = std::move(*fragment);
+  return shading;
+}
+
+void Shading::bind(std::span<const eval::Point> points, eval::Bindings& bindings) const {
+  eval::bindPoints(points, bindings);
+  bindings.columns["frame.light_count"] = eval::Column::constant({Studio::kLights});
+  bindings.columns["frame.environment_max_lod"] = eval::Column::constant({1});  // the level is the roughness
+  bindings.lights = Studio::lights();
+}
+
+template <class T>
+std::vector<Rgba> Shading::run(std::span<const eval::Point> points) const {
+  eval::Bindings bindings = base_;
+  bind(points, bindings);
+  const std::vector<std::vector<T>> varyings = eval::run<T>(vertex_, bindings, points.size());
+  for (size_t i = 0; i < varyings.size(); ++i) {
+    bindings.columns[varyings_[i]->name] = eval::Column::perPoint(ir::componentCount(varyings_[i]->type),
+                                                                  {varyings[i].begin(), varyings[i].end()});
+  }
+  const std::vector<std::vector<T>> values = eval::run<T>(fragment_, bindings, points.size());
+  std::vector<Rgba> result(points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    for (size_t c = 0; c < 4; ++c) result[i][c] = static_cast<double>(values[0][4 * i + c]);
+    if (values.size() > 1 && values[1][i] != 0) result[i][3] = 0;
+  }
+  return result;
+}
+
+std::vector<Rgba> Shading::operator()(std::span<const eval::Point> points) const {
+  if (points.empty()) return {};
+  return look_->in_float ? run<float>(points) : run<double>(points);
+}
+
+Picture drawBall(const Shading& shading, uint32_t size, Color background) {
+  Picture picture(size, size, background);
+  tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) {
+    const Row row = rowOf(y, size);
+    drawRow(row, shading(row.points), y, background, picture);
+  });
+  return picture;
+}
+
+namespace {
+
+struct Sums {
+  double largest = 0, sum = 0, squares = 0;
+  size_t samples = 0;
+};
+
+using Pixels = std::vector<std::array<float, 3>>;
+
+/// What one row adds to the pixels' mean differences and to the measures.
+Sums addRow(const Row& row, const std::vector<Rgba>& a, const std::vector<Rgba>& b,
+            std::span<std::array<float, 3>> pixels) {
+  Sums sums;
+  for (size_t i = 0; i < row.points.size(); ++i) {
+    std::array<float, 3>& pixel = pixels[row.sample[i] / kSamples];
+    for (size_t c = 0; c < 3; ++c) {
+      const double d = std::abs(a[i][c] * a[i][3] - b[i][c] * b[i][3]);
+      // A NaN on either side is as different as can be.
+      sums.largest = std::isnan(d) ? std::numeric_limits<double>::infinity() : std::max(sums.largest, d);
+      sums.sum += d;
+      sums.squares += d * d;
+      pixel[c] += static_cast<float>(d / kSamples);
+    }
+  }
+  sums.samples = 3 * row.points.size();
+  return sums;
+}
+
+double gainFor(const Pixels& pixels) {
+  std::vector<float> levels;
+  for (const std::array<float, 3>& pixel : pixels) {
+    const float level = std::max({pixel[0], pixel[1], pixel[2]});
+    if (std::isfinite(level) && level > 0) levels.push_back(level);
+  }
+  if (levels.empty()) return 1;
+  const auto high = levels.begin() + static_cast<ptrdiff_t>(levels.size() - 1 - levels.size() / 100);
+  std::nth_element(levels.begin(), high, levels.end());
+  return std::pow(10.0, std::floor(-std::log10(static_cast<double>(*high))));
+}
+
+}  // namespace
+
+Comparison compareBalls(const Shading& a, const Shading& b, uint32_t size, Color background) {
+  Comparison result{
+      Picture(size, size, background), Picture(size, size, background), Picture(size, size, {}), 1, {}};
+  Pixels pixels(size_t{size} * size);
+  std::vector<Sums> rows(size);  // added up in their order: the sums do not depend on the threads
+  tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) {
+    const Row row = rowOf(y, size);
+    const std::vector<Rgba> of_a = a(row.points);
+    const std::vector<Rgba> of_b = b(row.points);
+    drawRow(row, of_a, y, background, result.a);
+    drawRow(row, of_b, y, background, result.b);
+    rows[y] = addRow(row, of_a, of_b, std::span(pixels).subspan(size_t{y} * size, size));
+  });
+  Sums all;
+  for (const Sums& sums : rows) {
+    all.largest = std::max(all.largest, sums.largest);
+    all.sum += sums.sum;
+    all.squares += sums.squares;
+    all.samples += sums.samples;
+  }
+  const auto count = static_cast<double>(std::max<size_t>(all.samples, 1));
+  result.measured = {all.largest, all.sum / count, std::sqrt(all.squares / count)};
+  result.gain = gainFor(pixels);
+  for (uint32_t i = 0; i < size * size; ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      // A NaN shows at its brightest.
+      const double x = std::isnan(pixels[i][c]) ? 1 : static_cast<double>(pixels[i][c]) * result.gain;
+      result.difference.at(i % size, i / size)[c] = encodeSrgb(x);
+    }
+  }
+  return result;
+}
+
+}  // namespace lacquer::preview

@@ -1,0 +1,64 @@
+// A lit ball: one material, evaluated at every sample of every pixel that shows it.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "eval/evaluate.h"
+#include "eval/points.h"
+#include "ir/module.h"
+#include "preview/canvas.h"
+#include "preview/studio.h"
+
+namespace lacquer::preview {
+
+/// A material to look at. The module is placed (`in_float`) or as lowered, with lights for Studio::kLights
+/// directional ones; `textures` are its samplers without the environment's.
+struct Look {
+  ir::Module module;
+  eval::Bindings textures;
+  std::vector<std::string> specular, irradiance;  ///< the environment maps that it reads, by slot name
+  bool in_float = true;
+};
+
+/// A Look compiled: linear colours, straight alpha, of points.
+class Shading {
+public:
+  /// `studio` must outlive this. Errors: "unbound-input" and the like, for a template that is not known here.
+  static Result<Shading> make(Look look, const Studio& studio);
+
+  /// RGBA of each point; alpha is 0 where the material drops the fragment. Thread-safe.
+  std::vector<std::array<double, 4>> operator()(std::span<const eval::Point> points) const;
+
+private:
+  Shading() = default;
+  void bind(std::span<const eval::Point> points, eval::Bindings& bindings) const;
+  template <class T>
+  std::vector<std::array<double, 4>> run(std::span<const eval::Point> points) const;
+
+  std::shared_ptr<const Look> look_;
+  eval::Bindings base_;  ///< textures and the material's block
+  eval::Program vertex_, fragment_;
+  std::vector<const ir::Varying*> varyings_;
+};
+
+/// How two balls differ, over all samples, of linear colours.
+struct Difference {
+  double largest = 0, mean = 0, root_mean_square = 0;
+};
+
+/// The picture of a ball of that many pixels, tone mapped and encoded as sRGB before `background`.
+Picture drawBall(const Shading& shading, uint32_t size, Color background);
+
+/// Both balls, the absolute difference of each pixel in linear light times `gain`, and its measures. The gain
+/// is a power of ten that leaves one of a hundred pixels of the ball too bright to show.
+struct Comparison {
+  Picture a, b, difference;
+  double gain = 1;
+  Difference measured;
+};
+Comparison compareBalls(const Shading& a, const Shading& b, uint32_t size, Color background);
+
+}  // namespace lacquer::preview

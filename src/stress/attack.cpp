@@ -1,0 +1,337 @@
+#include "stress/attack.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace lacquer::stress {
+
+namespace {
+
+constexpr size_t kChunk = 1024;  ///< samples of a task; a multiple of 4
+/// Thresholds are probed between the samples of one chunk of so many: a bisection takes many evaluations.
+constexpr uint64_t kProbed = 8;
+constexpr size_t kMostCrossings = 16;  ///< of a threshold in a chunk
+/// Halvings: afterwards the two sides differ in the last bits of a double.
+constexpr int kHalvings = 50;
+/// A step of a result that counts as a jump, relative to 1 and to the result: above what steep functions do
+/// over two neighbouring doubles, and below what an eye sees.
+constexpr double kJump = 1e-3;
+
+using Key = std::pair<Fault, std::string>;
+
+struct Found {
+  uint64_t count = 0;
+  std::vector<double> input;  ///< of the first
+};
+using Finds = std::map<Key, Found>;
+
+/// The worst of what a root's value at a sample is.
+bool wrong(const Root& root, const std::vector<double>& values, size_t sample, Fault& fault, double& value) {
+  for (int c = 0; c < root.components; ++c) {
+    const double x = values[sample * static_cast<size_t>(root.components) + static_cast<size_t>(c)];
+    value = x;
+    if (std::isnan(x)) return fault = Fault::NaN, true;
+    if (root.kind == Root::Kind::Condition) continue;
+    if (std::isinf(x)) return fault = Fault::Infinity, true;
+    if (root.allowed.contains(x)) continue;
+    fault = root.kind == Root::Kind::Fact   ? Fault::Assume
+            : root.allowed.lo == 0 && x < 0 ? Fault::Negative
+                                            : Fault::Range;
+    return true;
+  }
+  return false;
+}
+
+void drawChunk(const Subject& subject, uint64_t seed, uint64_t chunk, size_t count,
+               std::vector<double>& samples) {
+  const size_t width = subject.space.width();
+  samples.resize(count * width);
+  const uint64_t own = mixed(mixed(seed, subject.name), chunk);
+  for (size_t i = 0; i < count; ++i)
+    subject.space.draw(mixed(own, i), std::span(samples).subspan(i * width, width));
+}
+
+void checkValues(const Subject& subject, const Values& values, std::span<const double> samples, size_t count,
+                 Finds& finds) {
+  const size_t width = subject.space.width();
+  for (size_t r = 0; r < subject.roots.size(); ++r) {
+    for (size_t i = 0; i < count; ++i) {
+      Fault fault{};
+      double value = 0;
+      if (!wrong(subject.roots[r], values[r], i, fault, value)) continue;
+      Found& found = finds[{fault, subject.roots[r].name}];
+      if (found.count++ > 0) continue;
+      const size_t first = i / subject.group * subject.group;
+      const std::span<const double> of = samples.subspan(first * width, subject.group * width);
+      found.input.assign(of.begin(), of.end());
+    }
+  }
+}
+
+/// Two sides of a threshold, as parts of the way from one sample to the next.
+struct Crossing {
+  size_t root = 0;
+  std::vector<double> a, b;
+  double below = 0, above = 1;
+  bool turned = false;  ///< the condition at `below`
+};
+
+/// Halves all of them at once.
+void bisect(const Subject& subject, std::vector<Crossing>& crossings) {
+  const size_t width = subject.space.width() * subject.group;
+  std::vector<double> samples(crossings.size() * width);
+  for (int step = 0; step < kHalvings; ++step) {
+    for (size_t k = 0; k < crossings.size(); ++k) {
+      const Crossing& c = crossings[k];
+      for (size_t g = 0; g < subject.group; ++g) {
+        const size_t from = g * subject.space.width();
+        subject.space.between(std::span(c.a).subspan(from, subject.space.width()),
+                              std::span(c.b).subspan(from, subject.space.width()), 0.5 * (c.below + c.above),
+                              std::span(samples).subspan(k * width + from, subject.space.width()));
+      }
+    }
+    const Values values = subject.evaluate(Arithmetic::Double, samples, crossings.size() * subject.group);
+    for (size_t k = 0; k < crossings.size(); ++k) {
+      Crossing& c = crossings[k];
+      const bool here = values[c.root][k * subject.group] != 0;
+      (here == c.turned ? c.below : c.above) = 0.5 * (c.below + c.above);
+    }
+  }
+}
+
+/// The two sides of each crossing, group by group, below first.
+std::vector<double> sides(const Subject& subject, const Crossing& c) {
+  const size_t width = subject.space.width();
+  std::vector<double> samples(2 * subject.group * width);
+  for (size_t side = 0; side < 2; ++side) {
+    for (size_t g = 0; g < subject.group; ++g) {
+      subject.space.between(std::span(c.a).subspan(g * width, width),
+                            std::span(c.b).subspan(g * width, width), side == 0 ? c.below : c.above,
+                            std::span(samples).subspan((side * subject.group + g) * width, width));
+    }
+  }
+  return samples;
+}
+
+/// How far results are apart at the two sides, relative to 1 and to them.
+double heightOf(const Subject& subject, const Values& values, size_t below, size_t above) {
+  double height = 0;
+  for (size_t r = 0; r < subject.roots.size(); ++r) {
+    if (subject.roots[r].kind != Root::Kind::Result || subject.roots[r].flag) continue;
+    const auto n = static_cast<size_t>(subject.roots[r].components);
+    for (size_t c = 0; c < n; ++c) {
+      const double x = values[r][below * n + c];
+      const double y = values[r][above * n + c];
+      const double d = std::abs(x - y) / (1 + std::max(std::abs(x), std::abs(y)));
+      height = std::max(height, std::isnan(d) ? 0 : d);  // what is no number has been found before
+    }
+  }
+  return height;
+}
+
+void probe(const Subject& subject, std::span<const double> samples, size_t count, Finds& finds) {
+  const size_t width = subject.space.width() * subject.group;
+  const size_t groups = count / subject.group;
+  if (groups < 2) return;
+  // Flags are those of the first of a pair, or they would turn conditions themselves.
+  std::vector<double> ends(2 * (groups - 1) * width);
+  for (size_t k = 0; k + 1 < groups; ++k) {
+    std::copy_n(samples.data() + k * width, width, ends.data() + 2 * k * width);
+    for (size_t g = 0; g < subject.group; ++g) {
+      const size_t from = k * width + g * subject.space.width();
+      subject.space.between(
+          samples.subspan(from, subject.space.width()), samples.subspan(from + width, subject.space.width()),
+          1, std::span(ends).subspan((2 * k + 1) * width + g * subject.space.width(), subject.space.width()));
+    }
+  }
+  const Values at_ends = subject.evaluate(Arithmetic::Double, ends, 2 * (groups - 1) * subject.group);
+  std::vector<Crossing> crossings;
+  for (size_t r = 0; r < subject.roots.size(); ++r) {
+    if (subject.roots[r].kind != Root::Kind::Condition) continue;
+    size_t taken = 0;
+    for (size_t k = 0; k + 1 < groups && taken < kMostCrossings; ++k) {
+      const bool first = at_ends[r][2 * k * subject.group] != 0;
+      if (first == (at_ends[r][(2 * k + 1) * subject.group] != 0)) continue;
+      ++taken;
+      const double* a = ends.data() + 2 * k * width;
+      crossings.push_back({r, {a, a + width}, {a + width, a + 2 * width}, 0, 1, first});
+    }
+  }
+  if (crossings.empty()) return;
+  bisect(subject, crossings);
+  std::vector<double> both;
+  for (const Crossing& c : crossings) {
+    const std::vector<double> own = sides(subject, c);
+    both.insert(both.end(), own.begin(), own.end());
+  }
+  const Values values = subject.evaluate(Arithmetic::Double, both, 2 * crossings.size() * subject.group);
+  for (size_t k = 0; k < crossings.size(); ++k) {
+    if (heightOf(subject, values, 2 * k * subject.group, (2 * k + 1) * subject.group) < kJump) continue;
+    Found& found = finds[{Fault::Jump, subject.roots[crossings[k].root].name}];
+    if (found.count++ == 0)
+      found.input.assign(both.begin() + static_cast<ptrdiff_t>(2 * k * width),
+                         both.begin() + static_cast<ptrdiff_t>(2 * (k + 1) * width));
+  }
+}
+
+Finds attackChunk(const Subject& subject, const Plan& plan, uint64_t chunk) {
+  const uint64_t left = plan.samples - chunk * kChunk;
+  const size_t count = (static_cast<size_t>(std::min<uint64_t>(left, kChunk)) + 3) / 4 * 4;
+  std::vector<double> samples;
+  drawChunk(subject, plan.seed, chunk, count, samples);
+  Finds finds;
+  checkValues(subject, subject.evaluate(plan.half ? Arithmetic::Half : Arithmetic::Float, samples, count),
+              samples, count, finds);
+  if (!plan.half && chunk % kProbed == 0) probe(subject, samples, count, finds);
+  return finds;
+}
+
+/// Values to try for a component, the plainest first.
+std::vector<double> plain(const Variable& variable, double x) {
+  std::vector<double> tries = {0, 1, 0.5, variable.range.lo, variable.range.hi};
+  for (const double scale : {1.0, 10.0, 100.0, 1000.0, 1e5}) tries.push_back(std::round(x * scale) / scale);
+  std::erase_if(tries, [&](double y) {
+    return !(y >= variable.range.lo && y <= variable.range.hi) || !std::isfinite(y) ||
+           (variable.nature == Nature::Flag && y != 0 && y != 1);
+  });
+  // Only what is plainer than `x` itself comes into question, so that this ends.
+  const auto own = std::find(tries.begin(), tries.end(), x);
+  tries.erase(own, tries.end());
+  return tries;
+}
+
+/// Replaces component by component by plainer numbers as long as the fault stays. The samples of a group, and
+/// the sides of a jump, get the same number.
+void minimise(const Subject& subject, Finding& finding) {
+  const size_t width = subject.space.width();
+  for (int round = 0; round < 2; ++round) {
+    for (const Variable& variable : subject.space.variables()) {
+      for (size_t c = variable.first; c < variable.first + static_cast<size_t>(variable.components); ++c) {
+        for (const double x : plain(variable, finding.input[c])) {
+          std::vector<double> candidate = finding.input;
+          for (size_t i = c; i < candidate.size(); i += width) candidate[i] = x;
+          double value = 0;
+          if (!shows(subject, finding.fault, finding.what, candidate, value)) continue;
+          finding.input = std::move(candidate);
+          break;
+        }
+      }
+    }
+  }
+  shows(subject, finding.fault, finding.what, finding.input, finding.value);
+}
+
+/// At half precision the input still shows it by another value than in float.
+void valueAtHalf(const Subject& subject, Finding& finding) {
+  const Values values = subject.evaluate(Arithmetic::Half, finding.input, subject.group);
+  for (size_t r = 0; r < subject.roots.size(); ++r) {
+    for (size_t i = 0; i < subject.group; ++i) {
+      Fault fault{};
+      double value = 0;
+      if (wrong(subject.roots[r], values[r], i, fault, value) && fault == finding.fault &&
+          subject.roots[r].name == finding.what) {
+        finding.value = value;
+        return;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string_view faultName(Fault fault) {
+  switch (fault) {
+    case Fault::NaN: return "nan";
+    case Fault::Infinity: return "infinity";
+    case Fault::Negative: return "negative";
+    case Fault::Range: return "range";
+    case Fault::Assume: return "assume";
+    case Fault::Jump: return "jump";
+    case Fault::Reciprocity: return "reciprocity";
+    case Fault::Energy: return "energy";
+  }
+  return {};
+}
+
+bool shows(const Subject& subject, Fault fault, const std::string& what, std::span<const double> input,
+           double& value) {
+  const size_t count = input.size() / subject.space.width();
+  if (fault == Fault::Jump) {
+    const Values values = subject.evaluate(Arithmetic::Double, input, count);
+    bool turns = false;
+    for (size_t r = 0; r < subject.roots.size(); ++r) {
+      turns |= subject.roots[r].kind == Root::Kind::Condition && subject.roots[r].name == what &&
+               values[r][0] != values[r][subject.group];
+    }
+    value = heightOf(subject, values, 0, subject.group);
+    return turns && value >= kJump;
+  }
+  const Values values = subject.evaluate(Arithmetic::Float, input, count);
+  for (size_t r = 0; r < subject.roots.size(); ++r) {
+    if (subject.roots[r].name != what) continue;
+    for (size_t i = 0; i < count; ++i) {
+      Fault own{};
+      if (wrong(subject.roots[r], values[r], i, own, value) && own == fault) return true;
+    }
+  }
+  return false;
+}
+
+Report replay(const Subject& subject, std::span<const double> input) {
+  Report report{subject.name, subject.is_node, 1, {}, {}};
+  const size_t count = input.size() / subject.space.width();
+  Finds finds;
+  checkValues(subject, subject.evaluate(Arithmetic::Float, input, count), input, count, finds);
+  for (auto& [key, found] : finds)
+    report.findings.push_back({key.first, key.second, found.count, 0, found.input, {}});
+  for (Finding& finding : report.findings)
+    shows(subject, finding.fault, finding.what, finding.input, finding.value);
+  for (size_t r = 0; r < subject.roots.size() && count == 2 * subject.group; ++r) {
+    double height = 0;
+    if (subject.roots[r].kind != Root::Kind::Condition ||
+        !shows(subject, Fault::Jump, subject.roots[r].name, input, height))
+      continue;
+    report.findings.push_back(
+        {Fault::Jump, subject.roots[r].name, 1, height, {input.begin(), input.end()}, {}});
+  }
+  return report;
+}
+
+Report attack(const Subject& subject, const Plan& plan) {
+  Report report;
+  report.name = subject.name;
+  report.is_node = subject.is_node;
+  report.samples = plan.samples;
+  const uint64_t chunks = (plan.samples + kChunk - 1) / kChunk;
+  // Some at a time, so that memory does not grow with the samples; added up in their order.
+  constexpr uint64_t kAtOnce = 256;
+  Finds all;
+  for (uint64_t first = 0; first < chunks; first += kAtOnce) {
+    std::vector<Finds> finds(static_cast<size_t>(std::min(kAtOnce, chunks - first)));
+    tbb::parallel_for(size_t{0}, finds.size(),
+                      [&](size_t i) { finds[i] = attackChunk(subject, plan, first + i); });
+    for (Finds& own : finds) {
+      for (auto& [key, found] : own) {
+        Found& sum = all[key];
+        if (sum.count == 0) sum.input = std::move(found.input);
+        sum.count += found.count;
+      }
+    }
+  }
+  for (auto& [key, found] : all) {
+    Finding finding{key.first, key.second, found.count, 0, std::move(found.input), {}};
+    if (plan.half)
+      valueAtHalf(subject, finding);
+    else
+      minimise(subject, finding);
+    if (finding.fault == Fault::Jump) finding.known = knownJump(subject.name, finding.what);
+    report.findings.push_back(std::move(finding));
+  }
+  if (!subject.is_node && !plan.half) measureLight(subject, plan, report);
+  return report;
+}
+
+}  // namespace lacquer::stress

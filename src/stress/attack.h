@@ -1,0 +1,73 @@
+// Many samples of a subject: what goes wrong, how often, and the smallest input that still does it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "stress/subject.h"
+
+namespace lacquer::stress {
+
+enum class Fault : uint8_t {
+  NaN,
+  Infinity,
+  Negative,     ///< below a range that begins at 0
+  Range,        ///< outside of a declared range otherwise
+  Assume,       ///< a value outside of what an `assume` says of it
+  Jump,         ///< a result that jumps where a comparison turns
+  Reciprocity,  ///< a material without a coat that is not the same with light and eye exchanged
+  Energy,       ///< more light than came, beyond what the texts' formulas do
+};
+/// "nan", "infinity", "negative", "range", "assume", "jump", "reciprocity", "energy".
+std::string_view faultName(Fault fault);
+
+struct Finding {
+  Fault fault = Fault::NaN;
+  std::string what;    ///< the root's name
+  uint64_t count = 0;  ///< samples that do it
+  double value = 0;    ///< at `input`: the wrong value, or the height of the jump
+  /// The smallest samples found that do it: a group of the subject, or, for a jump, the two sides of it.
+  std::vector<double> input;
+  std::string known;  ///< why it is no mistake of ours; empty when it is
+};
+
+struct Energy {
+  double largest = 0;  ///< of a white sky's light
+  double largest_base =
+      0;  ///< of the same materials without their coat: the base's own gain, as the text has it
+  double asymmetry = 0;  ///< the largest relative difference when light and eye are exchanged
+  bool measured = false;
+};
+
+struct Report {
+  std::string name;
+  bool is_node = true;
+  uint64_t samples = 0;
+  std::vector<Finding> findings;  ///< sorted: by fault, then by root
+  Energy energy;                  ///< materials only
+};
+
+struct Plan {
+  uint64_t samples = 100000;
+  uint64_t seed = 1;
+  bool half = false;  ///< every operation rounded to half precision; only values are looked at
+};
+
+/// The same report for every number of threads.
+Report attack(const Subject& subject, const Plan& plan);
+
+/// True when these samples (Finding::input) do it.
+bool shows(const Subject& subject, Fault fault, const std::string& what, std::span<const double> input,
+           double& value);
+
+/// Everything that is wrong at these samples: a group, or the two sides of a jump.
+Report replay(const Subject& subject, std::span<const double> input);
+
+/// Reciprocity and energy of a material; adds to the report. docs/stress.md says how.
+void measureLight(const Subject& subject, const Plan& plan, Report& report);
+
+/// Why a jump there is none of ours; empty when nothing is known of it.
+std::string_view knownJump(std::string_view subject, std::string_view condition);
+
+}  // namespace lacquer::stress

@@ -1,0 +1,176 @@
+// Energy and reciprocity of whole materials, by quadrature in double.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "stress/attack.h"
+
+namespace lacquer::stress {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// Midpoints in sin^2 (even in projected area) and azimuth.
+constexpr size_t kRings = 96;
+constexpr size_t kSteps = 64;
+/// Below it a lobe falls between the quadrature's points.
+constexpr double kLeastRoughness = 0.3;
+/// What the quadrature itself may be off.
+constexpr double kTolerance = 0.01;
+constexpr double kReciprocal = 1e-5;  ///< relative; the preshader's fields are floats
+constexpr size_t kMaterials = 6;
+constexpr double kCosines[] = {1, 0.5, 0.2, 0.05};
+
+class Light {
+public:
+  explicit Light(const Subject& subject) : subject_(subject), width_(subject.space.width()) {}
+
+  bool has(const char* name) const { return subject_.space.find(name) != nullptr; }
+
+  void set(std::vector<double>& sample, const char* name, std::initializer_list<double> values) const {
+    const Variable* variable = subject_.space.find(name);
+    if (variable == nullptr) return;
+    std::copy(values.begin(), values.end(), sample.begin() + static_cast<ptrdiff_t>(variable->first));
+  }
+
+  /// A material of the space in its own light: flat maps, no emission, no environment, rough enough.
+  std::vector<double> material(uint64_t seed) const {
+    std::vector<double> sample(width_);
+    subject_.space.draw(seed, sample);
+    for (const Variable& variable : subject_.space.variables()) {
+      const auto begin = sample.begin() + static_cast<ptrdiff_t>(variable.first);
+      const auto ends = [&](std::string_view end) { return variable.name.ends_with(end); };
+      const bool environment = variable.name.starts_with("environment");
+      if (variable.nature == Nature::Texel) std::fill_n(begin, variable.components, 1.0);
+      if (variable.nature == Nature::Texel && ends("normal_texture")) *begin = *(begin + 1) = 0.5;
+      if (environment || variable.name.starts_with("emissive")) std::fill_n(begin, variable.components, 0.0);
+      if (ends("roughness_factor")) *begin = std::max(*begin, kLeastRoughness);
+      // What makes the sum too bright is found where all else is bright.
+      if (variable.name == "base_color_factor" || ends("color0"))
+        std::fill_n(begin, variable.components, 1.0);
+    }
+    set(sample, "n", {0, 0, 1});
+    set(sample, "t", {1, 0, 0});
+    set(sample, "n_length", {1});
+    set(sample, "t_length", {1});
+    set(sample, "interpolated", {1});
+    set(sample, "front_facing", {1});
+    set(sample, "light", {1, 1, 1});
+    return sample;
+  }
+
+  /// Red of each pair of directions; what does not come from the light is taken away.
+  std::vector<double> colors(const std::vector<double>& material,
+                             const std::vector<std::array<std::array<double, 3>, 2>>& pairs) const {
+    std::vector<double> samples;
+    samples.reserve(pairs.size() * width_);
+    for (const auto& [v, l] : pairs) {
+      std::vector<double> sample = material;
+      set(sample, "v", {v[0], v[1], v[2]});
+      set(sample, "l", {l[0], l[1], l[2]});
+      samples.insert(samples.end(), sample.begin(), sample.end());
+    }
+    const Values values = subject_.evaluate(Arithmetic::Double, samples, pairs.size());
+    std::vector<double> dark = material;
+    set(dark, "light", {0, 0, 0});
+    const double own = subject_.evaluate(Arithmetic::Double, dark, 1)[0][0];
+    std::vector<double> result(pairs.size());
+    for (size_t i = 0; i < pairs.size(); ++i) result[i] = values[0][4 * i] - own;
+    return result;
+  }
+
+  double furnace(const std::vector<double>& material, double view_cosine) const {
+    const std::array<double, 3> v{std::sqrt(1 - view_cosine * view_cosine), 0, view_cosine};
+    std::vector<std::array<std::array<double, 3>, 2>> pairs;
+    std::vector<double> weights;
+    for (size_t r = 0; r < kRings; ++r) {
+      const double sin2 = (static_cast<double>(r) + 0.5) / kRings;
+      const double cosine = std::sqrt(1 - sin2);
+      for (size_t k = 0; k < kSteps; ++k) {
+        const double angle = (static_cast<double>(k) + 0.5) * 2 * kPi / kSteps;
+        pairs.push_back({v, {std::sqrt(sin2) * std::cos(angle), std::sqrt(sin2) * std::sin(angle), cosine}});
+        weights.push_back(kPi / (kRings * kSteps) /
+                          cosine);  // the colour holds N.L; so does the projected area
+      }
+    }
+    const std::vector<double> reflected = colors(material, pairs);
+    double sum = 0;
+    for (size_t i = 0; i < reflected.size(); ++i) sum += reflected[i] * weights[i];
+    return sum;
+  }
+
+  /// The largest relative difference of the BSDF when light and eye are exchanged.
+  double asymmetry(const std::vector<double>& material, Random& random) const {
+    std::vector<std::array<std::array<double, 3>, 2>> pairs;
+    const auto above = [&] {
+      const double z = 0.02 + 0.98 * random.unit();
+      const double angle = 2 * kPi * random.unit();
+      const double ring = std::sqrt(1 - z * z);
+      return std::array<double, 3>{ring * std::cos(angle), ring * std::sin(angle), z};
+    };
+    for (int i = 0; i < 128; ++i) {
+      const std::array<double, 3> v = above();
+      const std::array<double, 3> l = above();
+      pairs.push_back({v, l});
+      pairs.push_back({l, v});
+    }
+    const std::vector<double> values = colors(material, pairs);
+    double worst = 0;
+    for (size_t i = 0; i < values.size(); i += 2) {
+      const double forth = values[i] / pairs[i][1][2];
+      const double back = values[i + 1] / pairs[i + 1][1][2];
+      worst = std::max(worst, std::abs(forth - back) / (1e-3 + std::max(forth, back)));
+    }
+    return worst;
+  }
+
+private:
+  const Subject& subject_;
+  size_t width_;
+};
+
+}  // namespace
+
+void measureLight(const Subject& subject, const Plan& plan, Report& report) {
+  const Light light(subject);
+  report.energy.measured = true;
+  const auto tell = [&](Fault fault, const char* what, double value, const std::vector<double>& input) {
+    for (const Finding& finding : report.findings) {
+      if (finding.fault == fault) return;
+    }
+    report.findings.push_back({fault, what, 1, value, input, {}});
+  };
+  const bool coat = light.has("coat_factor");
+  for (size_t k = 0; k < kMaterials; ++k) {
+    const uint64_t seed = mixed(mixed(plan.seed, subject.name), ~k);
+    const std::vector<double> whole = light.material(seed);
+    std::vector<double> base = whole;
+    light.set(base, "coat_factor", {0});
+    for (const double cosine : kCosines) {
+      const double of_base = light.furnace(base, cosine);
+      const double all = coat ? light.furnace(whole, cosine) : of_base;
+      report.energy.largest = std::max(report.energy.largest, all);
+      report.energy.largest_base = std::max(report.energy.largest_base, of_base);
+      // A coat takes from the base what it reflects, so that it can only come nearer to 1. The base gains
+      // where the text's Lambert under 1 - F(V.H) does.
+      std::vector<double> at = whole;
+      light.set(at, "v", {std::sqrt(1 - cosine * cosine), 0, cosine});
+      if (!(all <= std::max(1.0, of_base) + kTolerance)) tell(Fault::Energy, "coat", all, at);
+    }
+    if (light.has("metallic_factor")) {
+      // Metal alone has nothing to gain from: one bounce of a perfect mirror at most.
+      light.set(base, "metallic_factor", {1});
+      for (const double cosine : kCosines) {
+        const double metal = light.furnace(base, cosine);
+        if (!(metal <= 1 + kTolerance)) tell(Fault::Energy, "metal", metal, base);
+      }
+    }
+    Random random(seed);
+    const double of_base = light.asymmetry(base, random);
+    if (!(of_base <= kReciprocal)) tell(Fault::Reciprocity, "base", of_base, base);
+    report.energy.asymmetry =
+        std::max(report.energy.asymmetry, coat ? light.asymmetry(whole, random) : of_base);
+  }
+}
+
+}  // namespace lacquer::stress

@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "eval/dfg.h"
+#include "eval/points.h"
+#include "passes/intervals.h"
+#include "stress/subject.h"
+
+namespace lacquer::stress {
+
+namespace {
+
+using eval::Column;
+using Vec3 = std::array<double, 3>;
+
+/// Lengths that a file's normals and tangents may have; 0 is one of them.
+constexpr ir::Interval kLengths{0, 1e4};
+/// Interpolation between unit normals 120 degrees apart leaves half.
+constexpr ir::Interval kInterpolated{0.5, 1};
+constexpr double kBrightest = 1e4;
+/// Open ends of parameters: larger emission strengths and the like come from mistakes.
+constexpr double kLimit = 1e6;
+
+Vec3 unit(const double* a) {
+  const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+  if (!(length > 0)) return {0, 0, 1};
+  return {a[0] / length, a[1] / length, a[2] / length};
+}
+
+class Material final : public Subject {
+public:
+  static Result<std::unique_ptr<Subject>> make(std::string name, ir::Module module) {
+    auto material = std::make_unique<Material>();
+    material->name = std::move(name);
+    material->is_node = false;
+    material->module_ = std::move(module);
+    material->makeSpace();
+    material->makeRoots();
+    std::vector<double> sample(material->space.width());
+    material->space.draw(0, sample);
+    if (Result<void> compiled = material->compile(sample); !compiled)
+      return tl::make_unexpected(std::move(compiled.error()));
+    return material;
+  }
+
+  Values evaluate(Arithmetic arithmetic, std::span<const double> samples, size_t count) const override {
+    eval::Bindings bindings = bind(samples, count);
+    preshade(bindings, count);
+    if (arithmetic == Arithmetic::Double) {
+      vary<double>(samples, count, bindings);
+      return taken(eval::run<double>(fragment_, bindings, count));
+    }
+    vary<float>(samples, count, bindings);
+    return taken(arithmetic == Arithmetic::Half ? eval::runHalf(fragment_, bindings, count)
+                                                : eval::run<float>(fragment_, bindings, count));
+  }
+
+private:
+  template <class T>
+  static Values taken(const std::vector<std::vector<T>>& results) {
+    Values values;
+    for (const auto& column : results) values.emplace_back(column.begin(), column.end());
+    return values;
+  }
+
+  /// The environment's factors are what they are.
+  static bool isTable(const ir::TextureSlot& slot) {
+    return slot.environment && slot.type == ir::Type::Texture2D;
+  }
+
+  void makeSpace() {
+    // The directions of a sample are named as a point's are (docs/eval.md).
+    for (const char* direction : {"n", "v", "l", "t"}) space.add(direction, 3, {}, Nature::Direction, 1);
+    space.add("n_length", 1, kLengths, Nature::Number, kBrightest);
+    space.add("t_length", 1, kLengths, Nature::Number, kBrightest);
+    space.add("interpolated", 1, kInterpolated, Nature::Number, 1);
+    space.add("t_sign", 1, {}, Nature::Flag, 1);
+    space.add("front_facing", 1, {}, Nature::Flag, 1);
+    space.add("color0", 4, {0, 1}, Nature::Number, 1);
+    space.add("light", 3, {0, kBrightest}, Nature::Number, kBrightest);
+    for (const uint32_t index : ir::usedParameters(module_)) {
+      const ir::Parameter& parameter = module_.parameters[index];
+      space.add(parameter.name, ir::componentCount(parameter.type), parameter.range, Nature::Number, kLimit);
+    }
+    for (const ir::TextureSlot& slot : module_.textures) {
+      if (isTable(slot)) continue;
+      if (slot.environment)
+        space.add(slot.name, 3, {0, 65504}, Nature::Number, kLimit);
+      else
+        space.add(slot.name, 4, {0, 1}, Nature::Texel, 1);
+    }
+  }
+
+  void makeRoots() {
+    const ir::Dag& dag = module_.dag;
+    const double inf = std::numeric_limits<double>::infinity();
+    std::vector<ir::ValueId> outputs;
+    for (const ir::Output& output : module_.outputs) {
+      // Whether a fragment is dropped is no number; its colour counts all the same.
+      if (output.kind != ir::OutputKind::Color) continue;
+      outputs.push_back(output.value);
+      ids_.push_back(output.value);
+      roots.push_back({Root::Kind::Result,
+                       output.name,
+                       ir::componentCount(dag[output.value].type),
+                       false,
+                       {0, inf, false}});
+    }
+    for (const ir::ValueId id : ir::reachable(dag, outputs)) {
+      // Inside of a loop over lights there is no value to look at; with one light there is no loop.
+      if (dag[id].rate == ir::Rate::Light) continue;
+      if (dag[id].op != ir::Op::Less && dag[id].op != ir::Op::LessEqual && dag[id].op != ir::Op::Equal)
+        continue;
+      ids_.push_back(id);
+      const std::string term = dag.terms().empty() ? "" : dag.terms()[dag.termOf(id)].name + ": ";
+      roots.push_back({Root::Kind::Condition, term + conditionName(module_, id), 1, true, {0, 1, false}});
+    }
+  }
+
+  const double* at(std::span<const double> samples, size_t point, const char* name) const {
+    return samples.data() + point * space.width() + space.find(name)->first;
+  }
+
+  eval::Bindings bind(std::span<const double> samples, size_t count) const {
+    std::vector<eval::Point> points(count);
+    for (size_t i = 0; i < count; ++i) {
+      eval::Point& point = points[i];
+      const Vec3 n = unit(at(samples, i, "n"));
+      const Vec3 t = unit(at(samples, i, "t"));
+      const double n_length = *at(samples, i, "n_length");
+      const double t_length = *at(samples, i, "t_length");
+      for (size_t c = 0; c < 3; ++c) {
+        point.n[c] = n[c] * n_length;
+        point.t[c] = t[c] * t_length;
+      }
+      point.t[3] = *at(samples, i, "t_sign") != 0 ? 1 : -1;
+      point.v = unit(at(samples, i, "v"));
+      point.l = unit(at(samples, i, "l"));
+      std::copy_n(at(samples, i, "color0"), 4, point.color0.begin());
+      std::copy_n(at(samples, i, "light"), 3, point.light.begin());
+      point.front_facing = *at(samples, i, "front_facing") != 0;
+    }
+    eval::Bindings bindings;
+    eval::bindPoints(points, bindings);
+    const size_t width = space.width();
+    for (const Variable& variable : space.variables()) {
+      if (variable.nature != Nature::Number) continue;
+      std::vector<double> values;
+      values.reserve(count * static_cast<size_t>(variable.components));
+      for (size_t i = 0; i < count; ++i) {
+        const double* from = samples.data() + i * width + variable.first;
+        values.insert(values.end(), from, from + variable.components);
+      }
+      bindings.columns[variable.name] = Column::perPoint(variable.components, std::move(values));
+    }
+    for (const ir::TextureSlot& slot : module_.textures) {
+      if (isTable(slot)) {
+        bindings.textures[slot.name] = eval::environmentDfgSampler();
+        continue;
+      }
+      const Variable& texel = *space.find(slot.name);
+      bindings.textures[slot.name] = [samples, width, &texel](size_t point, const Vec3&, double) {
+        const double* from = samples.data() + point * width + texel.first;
+        return std::array<double, 4>{from[0], from[1], from[2], texel.components > 3 ? from[3] : 1.0};
+      };
+    }
+    return bindings;
+  }
+
+  /// Every sample is a material of its own: the fields of its block, rounded to float.
+  void preshade(eval::Bindings& bindings, size_t count) const {
+    const std::vector<std::vector<double>> values = eval::run<double>(preshader_, bindings, count);
+    for (const ir::Block& block : module_.blocks) {
+      if (block.role != ir::BlockRole::Material) continue;
+      for (size_t i = 0; i < values.size(); ++i) {
+        const ir::BlockField& field = block.fields[module_.preshader[i].field];
+        std::vector<double> rounded = values[i];
+        for (double& x : rounded) x = static_cast<double>(static_cast<float>(x));
+        bindings.columns[block.instance + "." + field.name] =
+            Column::perPoint(ir::componentCount(field.type), std::move(rounded));
+      }
+    }
+  }
+
+  /// Interpolation makes unit vectors shorter.
+  template <class T>
+  void vary(std::span<const double> samples, size_t count, eval::Bindings& bindings) const {
+    const std::vector<std::vector<T>> values = eval::run<T>(vertex_, bindings, count);
+    for (size_t i = 0; i < values.size(); ++i) {
+      const ir::Varying& varying = *varyings_[i];
+      const auto components = static_cast<size_t>(ir::componentCount(varying.type));
+      std::vector<double> column(values[i].begin(), values[i].end());
+      for (size_t k = 0; k < column.size() && (varying.name == "normal" || varying.name == "tangent"); ++k) {
+        if (k % components < 3) column[k] *= *at(samples, k / components, "interpolated");
+      }
+      bindings.columns[varying.name] = Column::perPoint(static_cast<int>(components), std::move(column));
+    }
+  }
+
+  Result<void> compile(std::span<const double> sample) {
+    eval::Bindings bindings = bind(sample, 1);
+    std::vector<ir::ValueId> fields;
+    for (const ir::PreshaderField& field : module_.preshader) fields.push_back(field.value);
+    Result<eval::Program> preshader = eval::compile(module_, fields, bindings, 1);
+    if (!preshader) return tl::make_unexpected(std::move(preshader.error()));
+    preshader_ = std::move(*preshader);
+    preshade(bindings, 1);
+    std::vector<ir::ValueId> sources;
+    for (const ir::Varying& varying : module_.varyings) {
+      if (varying.source == ir::kNoValue) continue;
+      sources.push_back(varying.source);
+      varyings_.push_back(&varying);
+    }
+    Result<eval::Program> vertex = eval::compile(module_, sources, bindings, 1);
+    if (!vertex) return tl::make_unexpected(std::move(vertex.error()));
+    vertex_ = std::move(*vertex);
+    vary<double>(sample, 1, bindings);
+    Result<eval::Program> fragment = eval::compile(module_, ids_, bindings, 1);
+    if (!fragment) return tl::make_unexpected(std::move(fragment.error()));
+    fragment_ = std::move(*fragment);
+    return {};
+  }
+
+  ir::Module module_;
+  std::vector<ir::ValueId> ids_;  ///< by root
+  std::vector<const ir::Varying*> varyings_;
+  eval::Program preshader_, vertex_, fragment_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Subject>> materialSubject(std::string name, ir::Module module) {
+  return Material::make(std::move(name), std::move(module));
+}
+
+}  // namespace lacquer::stress

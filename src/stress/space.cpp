@@ -1,0 +1,160 @@
+#include "stress/space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lacquer::stress {
+
+namespace {
+
+using Vec3 = std::array<double, 3>;
+
+constexpr double kPi = 3.14159265358979323846;
+/// Ranges wider than this are open ends that were cut: numbers as they occur are drawn by their magnitude.
+constexpr double kWide = 1e4;
+
+/// Where numbers end, or where float32 changes its ways: the smallest subnormal and normal number, half a
+/// unit in the last place of 1 and its neighbour, texels of eight bits around the middle.
+constexpr double kEdges[] = {0,           0x1p-149,    0x1p-126, 1e-12,     0x1p-24,     0x1p-23,
+                             1 - 0x1p-24, 1,           0.5,      1.0 / 255, 127.0 / 255, 128.0 / 255,
+                             254.0 / 255, 1 + 0x1p-23, 1.5,      4};
+
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vec3 combined(const Vec3& a, double of_a, const Vec3& b, double of_b) {
+  return {a[0] * of_a + b[0] * of_b, a[1] * of_a + b[1] * of_b, a[2] * of_a + b[2] * of_b};
+}
+
+Vec3 unit(const Vec3& a) {
+  const double length = std::sqrt(dot(a, a));
+  return length > 0 ? combined(a, 1 / length, a, 0) : Vec3{0, 0, 1};
+}
+
+Vec3 anyDirection(Random& random) {
+  if (random.below(10) == 0) {
+    Vec3 axis{};
+    axis[random.below(3)] = random.below(2) == 0 ? 1 : -1;
+    return axis;
+  }
+  const double z = 2 * random.unit() - 1;
+  const double angle = 2 * kPi * random.unit();
+  const double ring = std::sqrt(1 - z * z);
+  return {ring * std::cos(angle), ring * std::sin(angle), z};
+}
+
+/// Equal, opposite, almost so, at right angles, almost so (grazing, above and below), or anything.
+Vec3 relatedTo(const Vec3& a, Random& random) {
+  const Vec3 any = anyDirection(random);
+  const double little = std::exp2(-30 * random.unit()) * (random.below(2) == 0 ? 1 : -1);
+  const Vec3 across = unit(combined(any, 1, a, -dot(a, any)));
+  switch (random.below(10)) {
+    case 0: return a;
+    case 1: return combined(a, -1, a, 0);
+    case 2: return unit(combined(a, 1, any, little));
+    case 3: return unit(combined(a, -1, any, little));
+    case 4: return across;
+    case 5: return unit(combined(across, 1, a, little));
+    default: return any;
+  }
+}
+
+/// To float32, without leaving the range.
+double exact(double x, const ir::Interval& range) {
+  auto f = static_cast<float>(std::clamp(x, range.lo, range.hi));
+  if (static_cast<double>(f) > range.hi) f = std::nextafter(f, -INFINITY);
+  if (static_cast<double>(f) < range.lo) f = std::nextafter(f, INFINITY);
+  return static_cast<double>(f);
+}
+
+}  // namespace
+
+uint64_t Random::next() {
+  state_ += 0x9e3779b97f4a7c15U;
+  uint64_t z = state_;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebU;
+  return z ^ z >> 31;
+}
+
+uint64_t mixed(uint64_t seed, uint64_t with) { return Random(seed ^ Random(with).next()).next(); }
+
+uint64_t mixed(uint64_t seed, std::string_view with) {
+  for (const char c : with) seed = mixed(seed, static_cast<unsigned char>(c));
+  return seed;
+}
+
+double drawNumber(Random& random, const ir::Interval& range) {
+  const double size = range.hi - range.lo;
+  const bool wide = size > kWide;
+  double x = 0;
+  switch (random.below(wide ? 12 : 8)) {
+    case 0: x = range.lo; break;
+    case 1: x = range.hi; break;
+    case 2: x = range.lo + size * std::exp2(-40 * random.unit()); break;
+    case 3: x = range.hi - size * std::exp2(-40 * random.unit()); break;
+    case 4:
+      x = kEdges[random.below(std::size(kEdges))] * (range.lo < 0 && random.below(2) == 0 ? -1 : 1);
+      break;
+    case 5:
+    case 6:
+    case 7: x = range.lo + size * random.unit(); break;
+    default: x = std::exp2(40 * random.unit() - 20) * (range.lo < 0 && random.below(2) == 0 ? -1 : 1); break;
+  }
+  return exact(x, range);
+}
+
+size_t Space::add(std::string name, int components, ir::Interval range, Nature nature, double limit) {
+  const size_t first = width_;
+  if (nature == Nature::Direction) range = {-1, 1};
+  if (nature == Nature::Flag || nature == Nature::Texel) range = {0, 1};
+  range = {std::max(range.lo, -limit), std::min(range.hi, limit)};
+  variables_.push_back({std::move(name), components, range, nature, first});
+  width_ += static_cast<size_t>(components);
+  return first;
+}
+
+const Variable* Space::find(std::string_view name) const {
+  const auto it =
+      std::find_if(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.name == name; });
+  return it == variables_.end() ? nullptr : &*it;
+}
+
+void Space::draw(uint64_t seed, std::span<double> sample) const {
+  Random random(seed);
+  std::vector<Vec3> directions;
+  for (const Variable& variable : variables_) {
+    const std::span<double> to = sample.subspan(variable.first, static_cast<size_t>(variable.components));
+    if (variable.nature == Nature::Direction) {
+      const Vec3 d =
+          directions.empty()
+              ? anyDirection(random)
+              : relatedTo(directions[random.below(static_cast<uint32_t>(directions.size()))], random);
+      for (size_t c = 0; c < 3; ++c) to[c] = exact(d[c], variable.range);
+      directions.push_back({to[0], to[1], to[2]});
+      continue;
+    }
+    // A texel that decodes to no direction at all: what filtering makes of 127 and 128.
+    const bool middle = variable.nature == Nature::Texel && random.below(16) == 0;
+    for (double& x : to) {
+      if (variable.nature == Nature::Flag)
+        x = random.below(2);
+      else if (variable.nature == Nature::Texel && random.below(4) != 0)
+        x = exact(random.below(256) / 255.0, variable.range);
+      else
+        x = drawNumber(random, variable.range);
+      if (middle) x = 0.5;
+    }
+  }
+}
+
+void Space::between(std::span<const double> a, std::span<const double> b, double t,
+                    std::span<double> sample) const {
+  for (const Variable& variable : variables_) {
+    for (size_t i = variable.first; i < variable.first + static_cast<size_t>(variable.components); ++i) {
+      sample[i] = variable.nature == Nature::Flag ? a[i] : a[i] * (1 - t) + b[i] * t;
+    }
+  }
+}
+
+}  // namespace lacquer::stress

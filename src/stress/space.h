@@ -1,0 +1,69 @@
+// The inputs of what is attacked, as numbers side by side: how they are drawn, and what lies between two
+// drawings.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ir/types.h"
+
+namespace lacquer::stress {
+
+/// splitmix64 (Steele, Lea and Flood 2014).
+class Random {
+public:
+  explicit Random(uint64_t seed) : state_(seed) {}
+  uint64_t next();
+  uint32_t below(uint32_t n) { return static_cast<uint32_t>(next() % n); }
+  double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+
+private:
+  uint64_t state_;
+};
+
+/// A seed that depends on both and on nothing else.
+uint64_t mixed(uint64_t seed, uint64_t with);
+uint64_t mixed(uint64_t seed, std::string_view with);
+
+enum class Nature : uint8_t {
+  Number,     ///< anything in the range
+  Direction,  ///< three components of any length but 0; related to the directions before it
+  Flag,       ///< 0 or 1
+  Texel,      ///< in [0, 1], mostly eight bits
+};
+
+struct Variable {
+  std::string name;
+  int components = 1;
+  ir::Interval range;
+  Nature nature = Nature::Number;
+  size_t first = 0;  ///< of its components, in a sample
+};
+
+class Space {
+public:
+  /// Open ends of a range are cut at `limit`. Returns the place of the first component.
+  size_t add(std::string name, int components, ir::Interval range, Nature nature, double limit);
+
+  std::span<const Variable> variables() const { return variables_; }
+  const Variable* find(std::string_view name) const;
+  size_t width() const { return width_; }  ///< numbers of a sample
+
+  /// One sample, every number exact in float32, edges over-represented. A function of `seed`.
+  void draw(uint64_t seed, std::span<double> sample) const;
+  /// From `a` at 0 to `b` at 1, in double. Flags are those of `a`.
+  void between(std::span<const double> a, std::span<const double> b, double t,
+               std::span<double> sample) const;
+
+private:
+  std::vector<Variable> variables_;
+  size_t width_ = 0;
+};
+
+/// A number of the range, exact in float32.
+double drawNumber(Random& random, const ir::Interval& range);
+
+}  // namespace lacquer::stress

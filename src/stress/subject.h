@@ -1,0 +1,66 @@
+// What is attacked: a node by itself, or a whole material, as a function from a sample to values.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/evaluate.h"
+#include "ir/module.h"
+#include "passes/interval_math.h"
+#include "stress/space.h"
+
+namespace lacquer::stress {
+
+enum class Arithmetic : uint8_t { Float, Double, Half };
+
+struct Root {
+  enum class Kind : uint8_t {
+    Result,     ///< what the node or the material gives
+    Fact,       ///< a value that an `assume` speaks of
+    Condition,  ///< a comparison: where it turns, results may jump
+  };
+  Kind kind = Kind::Result;
+  std::string name;  ///< "the result", "planar2", "NdotSum > 0"
+  int components = 1;
+  bool flag = false;      ///< a Bool: 0 or 1, and no jump when it turns
+  passes::Range allowed;  ///< Result, Fact: with the slack of float32
+};
+
+/// By root: the components of each sample side by side.
+using Values = std::vector<std::vector<double>>;
+
+class Subject {
+public:
+  virtual ~Subject() = default;
+
+  std::string name;
+  bool is_node = true;
+  Space space;
+  std::vector<Root> roots;
+  /// Samples stand in groups of so many: 4 where derivatives are taken between neighbours, else 1.
+  size_t group = 1;
+
+  /// `samples` are those of `count` points, side by side. Thread-safe.
+  virtual Values evaluate(Arithmetic arithmetic, std::span<const double> samples, size_t count) const = 0;
+};
+
+/// A node's own module: inputs are its parameters, outputs its results, in order, `results` with their
+/// ranges. Parameters that nodes call N, V, L, T, B, sum, length2, NdotL and so on belong to one geometry of
+/// unit vectors, rounded as float32 rounds them. Open ends of ranges are cut at 2^27.
+struct NodeSource {
+  std::string name;
+  ir::Module module;
+  std::vector<std::pair<std::string, ir::Interval>> results;
+};
+Result<std::unique_ptr<Subject>> nodeSubject(NodeSource source);
+
+/// A forward module after all passes, with one directional light: a sample is a point, its view and its
+/// light, every texel and every parameter of the material.
+Result<std::unique_ptr<Subject>> materialSubject(std::string name, ir::Module module);
+
+/// A comparison as a person writes it, of two names or constants where they have such.
+std::string conditionName(const ir::Module& module, ir::ValueId id);
+
+}  // namespace lacquer::stress
