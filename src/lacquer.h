@@ -301,6 +301,12 @@ std::string stressNodes(const Stress& stress, const std::vector<std::string>& su
                         const Options& options, Messages& messages,
                         const std::function<void(size_t done, size_t known)>& progress = {});
 
+/// The table that the texture environment_dfg holds (docs/bindings.md): `size` rows of roughness with `size`
+/// columns of N.V at texel centres, scale and bias of F0 in each. The second writes it as a DDS file,
+/// R16G16_UNORM.
+std::vector<float> environmentDfg(uint32_t size);
+bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messages);
+
 /// The node library as JSON (contracts, ranges, sources, variants), and what is proved of it. Empty on an
 /// error.
 std::string nodesJson(const Options& options, Messages& messages);

@@ -13,6 +13,7 @@
 
 #include "cli/build.h"
 #include "cli/cost.h"
+#include "cli/dfg.h"
 #include "cli/eval.h"
 #include "cli/preview.h"
 #include "cli/prove.h"
@@ -378,6 +379,8 @@ int run(int argc, char** argv) {
 
   lacquer::cli::EvalFlags eval_flags;
   CLI::App* eval_verb = lacquer::cli::addEval(app, eval_flags);
+  lacquer::cli::DfgFlags dfg_flags;
+  CLI::App* dfg_verb = lacquer::cli::addDfg(app, dfg_flags);
   lacquer::cli::PreviewFlags preview_flags;
   CLI::App* preview_verb = lacquer::cli::addPreview(app, preview_flags);
   lacquer::cli::StressFlags stress_flags;
@@ -407,6 +410,7 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   if (*eval_verb) return lacquer::cli::runEval(eval_flags);
+  if (*dfg_verb) return lacquer::cli::runDfg(dfg_flags);
   if (*preview_verb) return lacquer::cli::runPreview(preview_flags);
   if (*stress_verb) return lacquer::cli::runStress(stress_flags);
   if (*gen_verb) return gen(flags);

@@ -1,0 +1,19 @@
+// The verb `dfg`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace lacquer::cli {
+
+struct DfgFlags {
+  std::string output;
+  uint32_t size = 64;
+};
+
+CLI::App* addDfg(CLI::App& app, DfgFlags& flags);
+
+/// The exit status: 0, or 1 when the file cannot be written.
+int runDfg(const DfgFlags& flags);
+
+}  // namespace lacquer::cli
