@@ -2,80 +2,96 @@
 // shaders, with blocks, textures, loops over lights and the vertex stage's work behind them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
+#include <set>
 
 #include "parity/subject.h"
+#include "passes/pipeline.h"
 
 namespace lacquer::parity {
 namespace {
 
-void expectAgreement(const std::vector<NamedGraph>& graphs, const MaterialSetting& setting, size_t points) {
+/// The driver compiles each shader three times, so most settings take every third material.
+constexpr size_t kSome = 3;
+
+void expectAgreement(const std::vector<NamedGraph>& graphs, const MaterialSetting& setting, size_t points,
+                     size_t stride = 1, double most_vague = 0.25) {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
   Comparison all;
-  uint64_t seed = 1;
-  for (const NamedGraph& graph : graphs) {
-    const Subject subject = materialSubject(graph, setting, points, seed++);
-    const Comparison comparison = compareEngines(subject);
+  for (size_t i = 0; i < graphs.size(); i += stride) {
+    const Comparison comparison = compareEngines(materialSubject(graphs[i], setting, points, i));
     EXPECT_EQ(comparison.outside, 0U) << comparison.first;
     all.numbers += comparison.numbers;
     all.vague += comparison.vague;
   }
   std::cout << all.numbers << " numbers, " << all.vague << " with a vague bound\n";
+  EXPECT_GT(all.numbers, 10000U);
   // Filters between random texels, mostly.
-  EXPECT_LT(all.vague, all.numbers / 4);
+  EXPECT_LT(static_cast<double>(all.vague), most_vague * static_cast<double>(all.numbers));
 }
 
-void expectAgreement(const MaterialSetting& setting, size_t points) {
-  expectAgreement(exampleGraphs(setting), setting, points);
-}
-
-TEST(ParityMaterials, Forward) { expectAgreement({}, 1024); }
+TEST(ParityMaterials, Forward) { expectAgreement(exampleGraphs({}), {}, 1024); }
 
 TEST(ParityMaterials, ForwardWithAnyLights) {
   MaterialSetting setting;
   setting.lights = {};
-  expectAgreement(setting, 256);
+  expectAgreement(exampleGraphs(setting), setting, 256, kSome);
 }
 
 TEST(ParityMaterials, ForwardThatDecodesSrgb) {
   MaterialSetting setting;
   setting.decode_srgb = true;
-  expectAgreement(setting, 256);
+  expectAgreement(exampleGraphs(setting), setting, 256, kSome);
 }
 
 TEST(ParityMaterials, Surface) {
   MaterialSetting setting;
   setting.template_name = "surface";
-  expectAgreement(setting, 256);
+  expectAgreement(exampleGraphs(setting), setting, 256, kSome);
 }
 
 TEST(ParityMaterials, Bsdf) {
   MaterialSetting setting;
   setting.template_name = "bsdf";
-  expectAgreement(setting, 256);
+  expectAgreement(exampleGraphs(setting), setting, 256, kSome);
 }
 
 /// Combinations of properties that no example has.
-TEST(ParityMaterials, RandomOnes) { expectAgreement(randomGraphs({}, 10), {}, 64); }
+TEST(ParityMaterials, RandomOnes) { expectAgreement(randomGraphs({}, 6), {}, 64); }
+
+bool takesDerivatives(const ir::Module& module) {
+  const std::vector<ir::ValueId> values = ir::reachable(module, ir::Stage::Fragment);
+  return std::any_of(values.begin(), values.end(), [&](ir::ValueId id) {
+    return module.dag[id].op == ir::Op::DFdx || module.dag[id].op == ir::Op::DFdy;
+  });
+}
 
 /// Tangent frames come from derivatives.
 TEST(ParityMaterials, QuadsWithoutTangents) {
   MaterialSetting setting;
   setting.tangents = false;
   setting.quads = true;
-  expectAgreement(setting, 256);
+  std::vector<NamedGraph> graphs;
+  for (NamedGraph& graph : exampleGraphs(setting)) {
+    if (takesDerivatives(materialSubject(graph, setting, 4, 1).module)) graphs.push_back(std::move(graph));
+  }
+  EXPECT_GT(graphs.size(), 4U);
+  // Differences of interpolated numbers have few digits.
+  expectAgreement(graphs, setting, 256, 1, 0.5);
 }
 
 TEST(ParityMaterials, VertexStages) {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
-  size_t numbers = 0;
+  std::set<std::string> seen;
   for (const NamedGraph& graph : exampleGraphs({})) {
-    const Comparison comparison = compareEngines(vertexSubject(graph, {}, 256, 5));
+    const Subject subject = vertexSubject(graph, {}, 1024, 5);
+    if (!seen.insert(passes::contentAddress(subject.module)).second) continue;
+    const Comparison comparison = compareEngines(subject);
     EXPECT_EQ(comparison.outside, 0U) << comparison.first;
     EXPECT_LT(comparison.vague, comparison.numbers / 100) << graph.name;
-    numbers += comparison.numbers;
   }
-  EXPECT_GT(numbers, 100000U);
+  EXPECT_GT(seen.size(), 3U);
 }
 
 }  // namespace

@@ -31,8 +31,7 @@ std::vector<Subject> allNodes(size_t points) {
 TEST(ParityOperations, CpuAndAllRoutesAgree) {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
   const std::vector<Subject> subjects = operationSubjects(1024);
-  std::cout << subjects.size() << " operations on types\n";
-  EXPECT_GT(subjects.size(), 100U);
+  EXPECT_GT(subjects.size(), 50U);
   for (const Subject& subject : subjects) {
     const Comparison comparison = compareEngines(subject);
     EXPECT_EQ(comparison.outside, 0U) << comparison.first;

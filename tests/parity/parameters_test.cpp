@@ -55,8 +55,9 @@ TEST(ParityParameters, OtherValuesGiveOtherColors) {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
   MaterialSetting setting;
   setting.parameters = lower::ParameterMode::Spec;
-  for (const NamedGraph& graph : exampleGraphs(setting)) {
-    Subject subject = materialSubject(graph, setting, 64, 4);
+  const std::vector<NamedGraph> graphs = exampleGraphs(setting);
+  for (size_t i = 0; i < graphs.size(); i += 3) {
+    Subject subject = materialSubject(graphs[i], setting, 64, 4);
     const std::vector<float> before = onDevice(subject, SpirvRoute::Direct)[0];
     for (const uint32_t index : ir::usedParameters(subject.module)) {
       for (double& x : subject.module.parameters[index].value) x = 0.5 * x + 0.2;
@@ -65,7 +66,7 @@ TEST(ParityParameters, OtherValuesGiveOtherColors) {
     const std::vector<std::vector<float>> after = onDevice(subject, SpirvRoute::Direct);
     compare(subject, boundsOf(subject), after, "spec", comparison);
     EXPECT_EQ(comparison.outside, 0U) << comparison.first;
-    EXPECT_NE(before, after[0]) << graph.name;
+    EXPECT_NE(before, after[0]) << subject.name;
   }
 }
 
