@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "bench/cost.h"
+#include "bench/error.h"
 #include "bench/pipeline_bench.h"
 
 namespace {
@@ -18,6 +19,8 @@ struct Verb {
 constexpr Verb kVerbs[] = {
     {"cost", "what the works cost on AMD GPUs; renews bench/cost.json and docs/cost.md",
      lacquer::bench::runCost},
+    {"error", "what variants of nodes are wrong by and save; renews bench/error.json and docs/error.md",
+     lacquer::bench::runError},
     {"pipeline", "what making shaders takes, against glslang and spirv-opt; renews bench/pipeline.json",
      lacquer::bench::runPipeline},
 };

@@ -70,7 +70,8 @@ struct Lights {
 };
 
 struct Options {
-  std::string profile = "khr";            ///< how a coat is read: "khr" or "openpbr" (docs/accuracy.md)
+  std::string profile = "khr";  ///< how a coat is read: "khr" or "openpbr" (docs/accuracy.md)
+  double error_budget = 0;      ///< relative error of colours that cheaper variants may bring (docs/error.md)
   std::string template_name = "forward";  ///< "forward", "surface", "bsdf", or one of `node_directories`
   std::vector<Target> targets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl, Target::Spirv};
   Parameters parameters = Parameters::Uniform;
@@ -200,6 +201,13 @@ private:
 struct MaterialTerms {
   std::vector<std::string> terms;
   std::vector<std::pair<std::string, std::string>> skipped;  ///< term, reason
+  struct Variant {
+    std::string node, variant;
+    std::vector<std::string> terms;
+    double error, saved;  ///< relative, of the colour; cycles on navi21 (docs/error.md)
+  };
+  std::vector<Variant> variants;  ///< what Options::error_budget took in place of reference bodies
+  double expected_error = 0;      ///< of all of them
 };
 /// What one run did to one material.
 struct MaterialReport {

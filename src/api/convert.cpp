@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <mutex>
 
+#include "api/budget.h"
 #include "api/internal.h"
 #include "support/file.h"
 #include "targets/target.h"
@@ -109,7 +110,8 @@ passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& 
   return {false, options.lights.directional, options.lights.point, options.lights.spot};
 }
 
-graph::BuildOptions buildOptions(const Options& options) {
+graph::Graph buildGraph(const gltf::Material& material, const gltf::VertexAttributes& attributes,
+                        const Options& options, Diagnostics& warnings) {
   graph::BuildOptions build;
   if (const graph::Profile* profile = graph::findProfile(options.profile)) build.profile = profile;
   build.template_name = options.template_name;
@@ -118,7 +120,9 @@ graph::BuildOptions buildOptions(const Options& options) {
   build.dfg_table = options.dfg_table;
   build.decode_srgb = options.decode_srgb;
   build.live = {options.live.begin(), options.live.end()};
-  return build;
+  graph::Graph graph = graph::build(material, attributes, build, warnings);
+  applyBudget(graph, options.error_budget);
+  return graph;
 }
 
 }  // namespace lacquer

@@ -119,8 +119,7 @@ Result<void> EvalMaterial::lower(gltf::Material material, const lang::Library& l
   options.ibl = options.ibl && environment;
   options.decode_srgb = false;
   Diagnostics warnings;
-  graph::Graph graph =
-      graph::build(material, {true, true, true, {true, true, true, true}}, buildOptions(options), warnings);
+  graph::Graph graph = buildGraph(material, {true, true, true, {true, true, true, true}}, options, warnings);
   report(warnings, images_.file(), messages);
   for (graph::Node& node : graph.nodes) {
     const Result<const lang::NodeDecl*> decl = library.node(node.type);

@@ -56,7 +56,9 @@ struct Shader::Impl : ShaderData {
 
 passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& scene);
 passes::LightFacts lightsOf(const gltf::Document& document);
-graph::BuildOptions buildOptions(const Options& options);
+/// The graph of a material as the options want it: the profile, then the variants that the budget allows.
+graph::Graph buildGraph(const gltf::Material& material, const gltf::VertexAttributes& attributes,
+                        const Options& options, Diagnostics& warnings);
 
 /// A checked graph to a placed module.
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,

@@ -57,7 +57,7 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   Diagnostics warnings;
   const gltf::VertexAttributes a{attributes.normal, attributes.tangent, attributes.color0,
                                  attributes.texCoord};
-  graph::Graph graph = graph::build(m, a, buildOptions(options), warnings);
+  graph::Graph graph = buildGraph(m, a, options, warnings);
   report(warnings, impl_->document.path, messages);
   result.impl_ = std::make_shared<Graph::Impl>(
       Graph::Impl{std::move(graph), impl_->document.path, lightsOf(impl_->document)});

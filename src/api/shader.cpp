@@ -54,6 +54,14 @@ Diagnostics checkOptions(const Options& options) {
                      "it is written directly or by way of the GLSL; evaluate() alone takes this way",
                      {}});
   }
+  if (!(options.error_budget >= 0 && options.error_budget <= 1)) {
+    wrong.push_back({"bad-error-budget",
+                     Severity::Error,
+                     {},
+                     fmt::format("the error budget is {}", options.error_budget),
+                     "it is a relative error from 0 to 1",
+                     {}});
+  }
   for (const Target target : options.targets) {
     if (options.parameters != Parameters::Spec || target == Target::Glsl || target == Target::Spirv) continue;
     wrong.push_back({"no-specialization-constants",

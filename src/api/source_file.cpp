@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "api/budget.h"
 #include "api/manifest.h"
 #include "gltf/container.h"
 
@@ -95,6 +96,27 @@ void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
   uses_.endObject();
 }
 
+/// Those that are not there yet.
+void addVariants(const std::vector<MaterialTerms::Variant>& from, std::vector<MaterialTerms::Variant>& to) {
+  for (const MaterialTerms::Variant& variant : from) {
+    const auto same = [&](const auto& other) {
+      return other.node == variant.node && other.variant == variant.variant;
+    };
+    if (std::none_of(to.begin(), to.end(), same)) to.push_back(variant);
+  }
+}
+
+/// What the budget took and what that comes to.
+void writeBudget(const MaterialTerms& terms, JsonText& json) {
+  json.key("variants").beginArray();
+  for (const MaterialTerms::Variant& v : terms.variants) {
+    json.beginObject().key("node").string(v.node).key("variant").string(v.variant).key("terms");
+    writeList(v.terms, json);
+    json.key("error").json(Json(v.error)).key("saved").json(Json(v.saved)).endObject();
+  }
+  json.endArray().key("expected_error").json(Json(terms.expected_error));
+}
+
 /// Of all uses, each once.
 std::shared_ptr<const MaterialTerms> MaterialText::terms() const {
   if (met_.empty()) return std::make_shared<MaterialTerms>();
@@ -115,6 +137,8 @@ std::shared_ptr<const MaterialTerms> MaterialText::terms() const {
       else
         it->second = skipped.second;
     }
+    addVariants(structure->terms->variants, all->variants);
+    all->expected_error = expectedError(all->variants);
   }
   return all;
 }
@@ -154,6 +178,7 @@ Done MaterialText::finish(const Wanted& wanted) {
     json.raw(met_[0]->skipped_text);
   else
     writeSkipped(done.report.terms->skipped, json);
+  if (setting_.options.error_budget > 0 && !wanted.from_graph) writeBudget(*done.report.terms, json);
   json.key("ignored");
   writeList(wanted.material->ignored, json);
   json.key("diagnostics").beginArray();
@@ -215,7 +240,7 @@ Done SceneFile::make(const Wanted& wanted) const {
       graph::Graph graph;
       {
         const StageTimer timer(setting_.times, StageOfRun::Graph);
-        graph = graph::build(*wanted.material, attributes, buildOptions(setting_.options), said);
+        graph = buildGraph(*wanted.material, attributes, setting_.options, said);
       }
       text.use(graph, lights_, attributes, said);
     }
@@ -281,7 +306,7 @@ Key fileKey(const std::string& path, const std::string& bytes, const Setting& se
   const Options& o = setting.options;
   KeyBuilder key;
   key.text("file").key(setting.base).text(path).key(keyOf(bytes)).text(o.template_name).number(o.parameters);
-  key.text(o.profile);
+  key.text(o.profile).number(o.error_budget);
   key.number(o.lights.mode).number(o.lights.directional).number(o.lights.point).number(o.lights.spot);
   key.number(o.ibl)
       .number(o.multiple_scattering)
@@ -311,6 +336,7 @@ std::string toBlob(const FileResult& result) {
   blob.list(terms, [&](const MaterialTerms* one) {
     blob.list(one->terms, [&](const std::string& term) { blob.text(term); });
     blob.list(one->skipped, [&](const auto& s) { blob.text(s.first), blob.text(s.second); });
+    writeVariants(one->variants, blob);
   });
   blob.list(result.structures, [&](const Key& key) { blob.number(key.high), blob.number(key.low); });
   return blob.take();
@@ -337,6 +363,8 @@ std::optional<FileResult> fromBlob(const std::string& path, std::string_view byt
       std::string term = blob.text();
       one->skipped.emplace_back(std::move(term), blob.text());
     });
+    one->variants = readVariants(blob);
+    one->expected_error = expectedError(one->variants);
     terms.push_back(std::move(one));
   });
   blob.list([&] {

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "api/budget.h"
 #include "api/manifest.h"
 #include "lower/lower.h"
 
@@ -129,6 +130,8 @@ void describe(const graph::Graph& graph, Structure& structure) {
   auto terms = std::make_shared<MaterialTerms>();
   for (const graph::Node& node : graph.nodes) terms->terms.push_back(node.id);
   for (const graph::Skipped& s : graph.skipped) terms->skipped.emplace_back(s.term, s.reason);
+  terms->variants = variantsOf(graph);
+  terms->expected_error = expectedError(terms->variants);
   structure.terms = terms;
 }
 
@@ -271,6 +274,28 @@ void writeBindings(const Structure& structure, const graph::Graph& graph, JsonTe
   json.endObject();
 }
 
+void writeVariants(const std::vector<MaterialTerms::Variant>& variants, BlobWriter& blob) {
+  blob.list(variants, [&](const MaterialTerms::Variant& v) {
+    blob.text(v.node), blob.text(v.variant);
+    blob.list(v.terms, [&](const std::string& term) { blob.text(term); });
+    blob.number(v.error), blob.number(v.saved);
+  });
+}
+
+std::vector<MaterialTerms::Variant> readVariants(BlobReader& blob) {
+  std::vector<MaterialTerms::Variant> variants;
+  blob.list([&] {
+    MaterialTerms::Variant v{};
+    v.node = blob.text();
+    v.variant = blob.text();
+    blob.list([&] { v.terms.push_back(blob.text()); });
+    v.error = blob.number<double>();
+    v.saved = blob.number<double>();
+    variants.push_back(std::move(v));
+  });
+  return variants;
+}
+
 std::string toBlob(const Structure& s) {
   BlobWriter blob;
   blob.diagnostics(s.diagnostics);
@@ -279,6 +304,7 @@ std::string toBlob(const Structure& s) {
   blob.list(s.interface, pair);
   blob.list(s.terms->terms, [&](const std::string& term) { blob.text(term); });
   blob.list(s.terms->skipped, pair);
+  writeVariants(s.terms->variants, blob);
   s.preshader.write(blob);
   blob.list(s.parameters, [&](uint32_t i) { blob.number(i); });
   blob.list(s.textures, [&](const auto& t) { blob.text(t.first), blob.number(t.second); });
@@ -301,6 +327,8 @@ bool fromBlob(std::string_view bytes, Structure& s) {
   auto terms = std::make_shared<MaterialTerms>();
   blob.list([&] { terms->terms.push_back(blob.text()); });
   blob.list([&] { terms->skipped.push_back(pair()); });
+  terms->variants = readVariants(blob);
+  terms->expected_error = expectedError(terms->variants);
   s.terms = terms;
   s.preshader = Preshader::read(blob);
   blob.list([&] { s.parameters.push_back(blob.number<uint32_t>()); });

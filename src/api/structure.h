@@ -7,6 +7,7 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "api/blob.h"
 #include "api/cache.h"
 #include "api/internal.h"
 #include "api/json_text.h"
@@ -58,6 +59,9 @@ Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting);
 std::string toBlob(const Structure& structure);
 /// False when the bytes are no structure.
 bool fromBlob(std::string_view bytes, Structure& structure);
+
+void writeVariants(const std::vector<MaterialTerms::Variant>& variants, BlobWriter& blob);
+std::vector<MaterialTerms::Variant> readVariants(BlobReader& blob);
 
 /// The members "parameters", "uniforms" and "textures" of a use of a material.
 void writeBindings(const Structure& structure, const graph::Graph& graph, JsonText& json);

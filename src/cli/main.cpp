@@ -119,6 +119,9 @@ void addShared(CLI::App& app, Flags& flags) {
   app.add_option("--profile", flags.options.profile, "the reading of the specification")
       ->check(CLI::IsMember({"khr", "openpbr"}))
       ->capture_default_str();
+  app.add_option("--error-budget", flags.options.error_budget,
+                 "relative error of the colour that cheaper variants of the terms may bring, such as 1e-3")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option(
          "--params", flags.params,
          "uniform: numbers stay editable; baked: they are constants; spec: they are specialization constants")
@@ -328,6 +331,8 @@ int run(int argc, char** argv) {
   gen_verb->add_option("--shard", flags.options.shard, "in place of manifest.json: a file for `merge`");
   addGeneration(*gen_verb, flags);
   graphs->excludes(gen_verb->get_option("--material"));
+  // A graph says itself which variants it has, and nothing was measured on it.
+  graphs->excludes(gen_verb->get_option("--error-budget"));
 
   CLI::App* plan_verb = app.add_subcommand("plan", "a Ninja file with one command for each distinct shader");
   plan_verb->add_option("files", flags.files, ".gltf or .glb files")->required();

@@ -1,0 +1,142 @@
+#include "bench/error_physics.h"
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <random>
+
+#include "accuracy/exact.h"
+
+namespace lacquer::bench {
+
+namespace {
+
+constexpr size_t kPoints = 1000;
+constexpr double kPi = 3.14159265358979323846;
+
+double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+/// Inputs by name, and the answer.
+struct Sample {
+  std::map<std::string, double> inputs;
+  double value = 0;
+};
+
+double averageFresnel(double ior) {
+  // Nothing comes back from a black base, so what gets in is the environment's transmission over what gets
+  // out.
+  const double in = accuracy::smoothEnvironment({ior, 0, 1, 0}, 1) * ior * ior;
+  return 1 - in / (1 - accuracy::fresnel(ior, 1));
+}
+
+double iorOf(double F0) { return (1 + std::sqrt(F0)) / (1 - std::sqrt(F0)); }
+
+/// What a GGX lobe with Smith's height-correlated masking reflects; `weighted` by Schlick's (1 - V.H)^5.
+/// Over facets drawn from the visible ones, at the middles of a grid (Heitz 2018).
+double directionalAlbedo(double cosine, double roughness, bool weighted) {
+  constexpr int kSide = 128;
+  const double alpha = std::max(roughness * roughness, 0.001);
+  const double sine = std::sqrt(1 - cosine * cosine);
+  const double stretch = std::sqrt(alpha * alpha * sine * sine + cosine * cosine);
+  const double wx = alpha * sine / stretch;
+  const double wz = cosine / stretch;
+  const auto lambda = [&](double c) {
+    return 0.5 * (std::sqrt(1 + alpha * alpha * (1 - c * c) / (c * c)) - 1);
+  };
+  double sum = 0;
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      const double phi = 2 * kPi * (i + 0.5) / kSide;
+      const double z = (1 - (j + 0.5) / kSide) * (1 + wz) - wz;
+      const double s = std::sqrt(std::max(1 - z * z, 0.0));
+      const double mx = alpha * (s * std::cos(phi) + wx);
+      const double my = alpha * s * std::sin(phi);
+      const double mz = std::max(z + wz, 1e-12);
+      const double length = std::sqrt(mx * mx + my * my + mz * mz);
+      const double c = (sine * mx + cosine * mz) / length;
+      const double out = 2 * c * mz / length - cosine;
+      if (out <= 0) continue;
+      const double masked = (1 + lambda(cosine)) / (1 + lambda(cosine) + lambda(out));
+      sum += masked * (weighted ? std::pow(1 - c, 5) : 1);
+    }
+  }
+  return sum / (kSide * kSide);
+}
+
+using Draw = std::function<Sample(std::mt19937_64&)>;
+
+struct Row {
+  std::string what;
+  Draw draw;
+};
+
+Sample drawAlbedo(std::mt19937_64& random, bool weighted) {
+  const double cosine = 0.02 + 0.98 * uniform(random);
+  const double roughness = uniform(random);
+  return {{{"NdotV", cosine}, {"roughness", roughness}}, directionalAlbedo(cosine, roughness, weighted)};
+}
+
+/// A smooth clear coat with its darkening in full over a base of albedo 0.5, as seen under an environment,
+/// without the Fresnel of the view.
+Sample drawDarkening(std::mt19937_64& random) {
+  const double ior = 1 + 2 * uniform(random);
+  const double cosine = 0.1 + 0.9 * uniform(random);
+  const double F0 = std::pow((ior - 1) / (ior + 1), 2);
+  const double schlick = F0 + (1 - F0) * std::pow(1 - cosine, 5);
+  const double value =
+      accuracy::smoothEnvironment({ior, 0.5, 1, 0}, cosine) / (1 - accuracy::fresnel(ior, cosine));
+  return {{{"F0", F0}, {"fresnel_view", schlick}, {"roughness", 0}, {"amount", 1}}, value};
+}
+
+const std::map<std::string, Row>& rows() {
+  static const std::map<std::string, Row> kRows = {
+      {"schlick",
+       {"Fresnel's equations for the IOR of that F0",
+        [](std::mt19937_64& random) {
+          const double F0 = 0.64 * uniform(random);
+          const double c = uniform(random);
+          return Sample{{{"F0", F0}, {"cosine", c}}, accuracy::fresnel(iorOf(F0), c)};
+        }}},
+      {"fresnel_dielectric",
+       {"Fresnel's equations by Snell's law",
+        [](std::mt19937_64& random) {
+          const double ior = 1 + 3 * uniform(random);
+          const double c = uniform(random);
+          return Sample{{{"ior", ior}, {"cosine", c}}, accuracy::fresnel(ior, c)};
+        }}},
+      {"average_fresnel",
+       {"quadrature of Fresnel's equations",
+        [](std::mt19937_64& random) {
+          const double ior = 1 + 3 * uniform(random);
+          return Sample{{{"ior", ior}}, averageFresnel(ior)};
+        }}},
+      {"directional_albedo",
+       {"quadrature of the lobe", [](std::mt19937_64& random) { return drawAlbedo(random, false); }}},
+      {"directional_fresnel",
+       {"quadrature of the lobe", [](std::mt19937_64& random) { return drawAlbedo(random, true); }}},
+      {"coat_darkening_ibl",
+       {"a smooth clear coat over Lambert of albedo 0.5, by quadrature", drawDarkening}},
+  };
+  return kRows;
+}
+
+}  // namespace
+
+std::optional<Truth> truthOf(const Subject& subject) {
+  const auto row = rows().find(subject.node);
+  if (row == rows().end()) return std::nullopt;
+  Truth truth{row->second.what, {}, kPoints, {}};
+  std::mt19937_64 random(7);
+  std::map<std::string, std::vector<double>> inputs;
+  for (size_t i = 0; i < kPoints; ++i) {
+    const Sample sample = row->second.draw(random);
+    for (const auto& [name, value] : sample.inputs) inputs[name].push_back(value);
+    truth.values.insert(truth.values.end(), 3, sample.value);
+  }
+  for (auto& [name, values] : inputs) {
+    truth.columns["AT_" + name] = eval::Column::perPoint(1, std::move(values));
+  }
+  return truth;
+}
+
+}  // namespace lacquer::bench
