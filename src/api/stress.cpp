@@ -243,10 +243,7 @@ private:
     if (!subject) return tl::make_unexpected(std::move(subject.error()));
     const Result<std::vector<double>> input = inputOf(**subject, *test, path);
     if (!input) return tl::make_unexpected(input.error());
-    stress::Report report = stress::replay(**subject, *input);
-    faults += report.findings.size();
-    size_t ignored = 0;
-    Json json = reported(**subject, {{"case", path}}, report, ignored);
+    Json json = reported(**subject, {{"case", path}}, stress::replay(**subject, *input), faults);
     for (Json& finding : json["findings"]) finding.erase("case");
     return json;
   }

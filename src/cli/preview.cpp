@@ -13,7 +13,9 @@ CLI::App* addPreview(CLI::App& app, PreviewFlags& flags) {
   CLI::App* verb =
       app.add_subcommand("preview", "a picture with a lit ball for each material, computed on the CPU");
   verb->add_option("files", flags.files, ".gltf or .glb files")->required();
-  verb->add_option("-o,--output", flags.preview.output, "the PNG file to write")->required();
+  verb->add_option("-o,--output", flags.preview.output, "the PNG file to write")
+      ->required()
+      ->check([](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "");
   verb->add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   verb->add_option("--size", flags.preview.size, "pixels of a ball")

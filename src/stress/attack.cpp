@@ -28,6 +28,23 @@ struct Found {
 };
 using Finds = std::map<Key, Found>;
 
+/// At half precision the open ends of ranges (beyond all halves) are cut here: that a radiance of 2^27 is
+/// infinite there needs no test.
+constexpr double kHalfLimit = 1000;
+
+void cutOpenEnds(const Subject& subject, std::span<double> samples) {
+  const size_t width = subject.space.width();
+  for (const Variable& variable : subject.space.variables()) {
+    if (variable.range.hi <= 65530 && variable.range.lo >= -65530) continue;
+    for (size_t i = 0; i < samples.size(); i += width) {
+      for (int c = 0; c < variable.components; ++c) {
+        double& x = samples[i + variable.first + static_cast<size_t>(c)];
+        x = std::clamp(x, -kHalfLimit, kHalfLimit);
+      }
+    }
+  }
+}
+
 /// The worst of what a root's value at a sample is.
 bool wrong(const Root& root, const std::vector<double>& values, size_t sample, Fault& fault, double& value) {
   for (int c = 0; c < root.components; ++c) {
@@ -182,6 +199,7 @@ Finds attackChunk(const Subject& subject, const Plan& plan, uint64_t chunk) {
   const size_t count = (static_cast<size_t>(std::min<uint64_t>(left, kChunk)) + 3) / 4 * 4;
   std::vector<double> samples;
   drawChunk(subject, plan.seed, chunk, count, samples);
+  if (plan.half) cutOpenEnds(subject, samples);
   Finds finds;
   checkValues(subject, subject.evaluate(plan.half ? Arithmetic::Half : Arithmetic::Float, samples, count),
               samples, count, finds);

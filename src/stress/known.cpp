@@ -4,7 +4,7 @@ namespace lacquer::stress {
 
 namespace {
 
-/// Steps that the texts have, or that no formula can avoid.
+/// Steps that the texts have, or that no formula can avoid. A test sees that each still occurs.
 struct Known {
   std::string_view node;       ///< of the library; in a material, a part of the term's name
   std::string_view condition;  ///< as conditionName() writes it
@@ -18,8 +18,6 @@ constexpr Known kKnown[] = {
     {"anisotropy_texel", "1e-12 < length2",
      "a texel of no length has no direction; the tangent stands for it"},
     {"coat_absorption", "ior == 0",
-     "0 stands for an infinite index; what is between 0 and 1 is out of range"},
-    {"coat.absorption", "coat_ior == 0",
      "0 stands for an infinite index; what is between 0 and 1 is out of range"},
     {"flat_normal", "dot < 0", "a triangle seen from its edge turns its other side"},
     {"tangent_frame_from_derivatives", "mul < mul", "texture coordinates without an area have no tangent"},

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 /// Midpoints in sin^2 (even in projected area) and azimuth.
-constexpr size_t kRings = 96;
-constexpr size_t kSteps = 64;
+constexpr size_t kRings = 64;
+constexpr size_t kSteps = 48;
 /// Below it a lobe falls between the quadrature's points.
 constexpr double kLeastRoughness = 0.3;
 /// What the quadrature itself may be off.
 constexpr double kTolerance = 0.01;
 constexpr double kReciprocal = 1e-5;  ///< relative; the preshader's fields are floats
-constexpr size_t kMaterials = 6;
+constexpr size_t kMaterials = 4;
 constexpr double kCosines[] = {1, 0.5, 0.2, 0.05};
 
 class Light {

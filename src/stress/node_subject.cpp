@@ -77,9 +77,17 @@ struct Geometry {
   }
 };
 
-bool isGeometry(std::string_view name) {
+bool isPositional(const ir::Parameter& parameter) {
+  return parameter.name == "positional" && parameter.type == ir::Type::Float;
+}
+
+/// By name and type: a node may call anything `N`.
+bool isGeometry(const ir::Parameter& parameter) {
   const double any[12] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0, 0};
-  return !Geometry<double>(any).of(name).empty();
+  const size_t components = Geometry<double>(any).of(parameter.name).size();
+  return components == (parameter.type == ir::Type::Vec3    ? 3
+                        : parameter.type == ir::Type::Float ? 1
+                                                            : ~size_t{0});
 }
 
 class Node final : public Subject {
@@ -115,18 +123,18 @@ public:
 
 private:
   void makeSpace() {
-    std::vector<std::string> names;
-    for (const ir::Parameter& parameter : module_.parameters) names.push_back(parameter.name);
-    if (std::any_of(names.begin(), names.end(), isGeometry)) {
+    if (std::any_of(module_.parameters.begin(), module_.parameters.end(), isGeometry)) {
       geometric_ = true;
       for (const char* base : {"N", "V", "L", "T"}) space.add(base, 3, {}, Nature::Direction, 1);
     }
     for (const ir::Parameter& parameter : module_.parameters) {
-      if (isGeometry(parameter.name)) continue;
+      if (isGeometry(parameter)) continue;
       const bool unit = parameter.range.lo == -1 && parameter.range.hi == 1;
       // A light is positional or not: what stands between has no meaning.
-      const bool flag = parameter.type == ir::Type::Bool || parameter.name == "positional";
+      const bool flag = parameter.type == ir::Type::Bool || isPositional(parameter);
+      const bool texel = parameter.name == "texel" && parameter.range == ir::Interval{0, 1};
       const Nature nature = flag                                       ? Nature::Flag
+                            : texel                                    ? Nature::Texel
                             : unit && parameter.type == ir::Type::Vec3 ? Nature::Direction
                                                                        : Nature::Number;
       space.add(parameter.name, ir::componentCount(parameter.type), parameter.range, nature,
@@ -178,7 +186,7 @@ private:
       const auto components = static_cast<size_t>(ir::componentCount(parameter.type));
       std::vector<double> values(count * components);
       const Variable* variable = space.find(parameter.name);
-      const bool derived = geometric_ && isGeometry(parameter.name);
+      const bool derived = geometric_ && isGeometry(parameter);
       for (size_t i = 0; i < count; ++i) {
         const double* sample = samples.data() + i * width;
         if (derived) {
@@ -195,7 +203,7 @@ private:
       }
       bindings.columns[parameter.name] = Column::perPoint(static_cast<int>(components), std::move(values));
     }
-    keepPairs<T>(samples, count, bindings);
+    keepPairs<T>(count, bindings);
     for (const ir::TextureSlot& slot : module_.textures) {
       const size_t first = space.find(slot.name)->first;
       bindings.textures[slot.name] = [samples, width, first](size_t point, const std::array<double, 3>&,
@@ -210,24 +218,23 @@ private:
   /// What contracts say in words: a pair in [-1, 1] is a unit vector, and so is a directional light's
   /// position.
   template <class T>
-  void keepPairs(std::span<const double>, size_t count, eval::Bindings& bindings) const {
+  void keepPairs(size_t count, eval::Bindings& bindings) const {
+    const auto normalize = [](double* d, size_t n) {
+      Vector<T> own{};
+      for (size_t c = 0; c < n; ++c) own[c] = static_cast<T>(d[c]);
+      own = normalized<T>(own);
+      std::copy_n(own.begin(), n, d);
+    };
+    const auto light = std::find_if(module_.parameters.begin(), module_.parameters.end(), isPositional);
     for (const ir::Parameter& parameter : module_.parameters) {
+      const bool pair = parameter.type == ir::Type::Vec2 && parameter.range == ir::Interval{-1, 1};
+      const bool position = parameter.type == ir::Type::Vec3 && parameter.name == "position" &&
+                            light != module_.parameters.end();
+      if (!pair && !position) continue;
+      const size_t n = pair ? 2 : 3;
       Column& column = bindings.columns[parameter.name];
-      const auto positional = bindings.columns.find("positional");
       for (size_t i = 0; i < count; ++i) {
-        if (parameter.type == ir::Type::Vec2 && parameter.range.lo == -1 && parameter.range.hi == 1) {
-          double* d = column.values.data() + 2 * i;
-          const Vector<T> own = normalized<T>({static_cast<T>(d[0]), static_cast<T>(d[1]), T(0)});
-          d[0] = static_cast<double>(own[0]);
-          d[1] = static_cast<double>(own[1]);
-        }
-        if (parameter.name == "position" && positional != bindings.columns.end() &&
-            positional->second.values[i] == 0) {
-          double* d = column.values.data() + 3 * i;
-          const Vector<T> own =
-              normalized<T>({static_cast<T>(d[0]), static_cast<T>(d[1]), static_cast<T>(d[2])});
-          std::copy(own.begin(), own.end(), d);
-        }
+        if (pair || bindings.columns["positional"].values[i] == 0) normalize(column.values.data() + n * i, n);
       }
     }
   }

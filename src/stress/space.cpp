@@ -108,7 +108,8 @@ size_t Space::add(std::string name, int components, ir::Interval range, Nature n
   const size_t first = width_;
   if (nature == Nature::Direction) range = {-1, 1};
   if (nature == Nature::Flag || nature == Nature::Texel) range = {0, 1};
-  range = {std::max(range.lo, -limit), std::min(range.hi, limit)};
+  if (std::isinf(range.lo)) range.lo = std::min(-limit, range.hi);
+  if (std::isinf(range.hi)) range.hi = std::max(limit, range.lo);
   variables_.push_back({std::move(name), components, range, nature, first});
   width_ += static_cast<size_t>(components);
   return first;

@@ -10,7 +10,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-const Words kVerbs = {"gen", "plan", "merge", "graph", "dump", "nodes", "cost", "eval"};
+const Words kVerbs = {"gen", "plan", "merge", "graph", "dump", "nodes", "cost", "eval", "preview", "stress"};
 
 std::string joined(const Words& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
@@ -55,6 +55,12 @@ TEST(Usage, wrongUsageIsTwo) {
       {{"gen", coat}, "--output"},
       {{"gen", coat, "-o"}, "--output"},
       {{"gen", coat, "-o", ""}, "empty"},
+      {{"preview", coat}, "--output"},
+      {{"preview", coat, "-o", ""}, "empty"},
+      {{"preview", coat, "-o", "a.png", "--size", "5"}, "--size"},
+      {{"preview", coat, "-o", "a.png", "--compare", "float"}, "--compare"},
+      {{"stress", "--samples", "0"}, "--samples"},
+      {{"stress", "--samples", "many"}, "--samples"},
       {{"gen", "-o", "out"}, "--graph"},
       {{"gen", coat, "-o", "out", "--frobnicate"}, "--frobnicate"},
       {{"gen", coat, "-o", "out", "--target", "metal"}, "metal"},
@@ -222,6 +228,39 @@ TEST(Usage, nodes) {
 }
 
 /// A misspelt name must not mean that nothing was asked for.
+TEST(Usage, previewWritesAPicture) {
+  const Workplace place;
+  const Outcome good = place.run({"preview", example("clearcoat_tint.gltf"), "-o", "a.png", "--size", "16",
+                                  "--compare", "float", "double"});
+  EXPECT_EQ(good.status, 0) << good.all();
+  EXPECT_NE(good.out.find("Amber"), std::string::npos) << good.out;
+  EXPECT_EQ(good.err, "");
+  EXPECT_EQ(place.read("a.png").substr(1, 3), "PNG");
+  const Outcome bad =
+      place.run({"preview", example("clearcoat_tint.gltf"), "-o", "b.png", "--compare", "float", "quick"});
+  EXPECT_EQ(bad.status, 1) << bad.all();
+  EXPECT_NE(bad.err.find("[unknown-setting]"), std::string::npos) << bad.err;
+  EXPECT_FALSE(place.has("b.png"));
+}
+
+TEST(Usage, stressSaysWhatItFinds) {
+  const Workplace place;
+  place.write("bad.node",
+              "/// D.\n/// source: S\nnode bad(float x in [0, 1]) -> float { return sin(x) / x; }\n");
+  const Outcome good = place.run({"stress", "schlick", "--samples", "100"});
+  EXPECT_EQ(good.status, 0) << good.all();
+  EXPECT_NE(good.out.find("0 faults"), std::string::npos) << good.out;
+  const Outcome bad = place.run({"stress", "bad", "--nodes", ".", "--samples", "5000"});
+  EXPECT_EQ(bad.status, 1) << bad.all();
+  EXPECT_NE(bad.out.find(R"(case: {"node":"bad","fault":"nan","what":"the result","samples":[{"x":0.0}]})"),
+            std::string::npos)
+      << bad.out;
+  const Outcome half = place.run({"stress", "bad", "--nodes", ".", "--samples", "5000", "--mediump"});
+  EXPECT_EQ(half.status, 0) << half.all();
+  EXPECT_NE(half.out.find("nan"), std::string::npos) << half.out;
+  EXPECT_EQ(place.run({"stress", "worse"}).status, 1);
+}
+
 TEST(Usage, misspeltTemplatesAndTermsAreErrors) {
   const Workplace place;
   const std::string coat = example("coat.gltf");

@@ -5,11 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "passes/pipeline.h"
 #include "physics/subject.h"
-#include "support/cases.h"
 
 namespace lacquer::physics {
 namespace {
@@ -115,18 +113,6 @@ void expectSaneEverywhere(const std::string& text, size_t material, const std::s
     expectSane<double>(subject, samples, environment, what);
     expectSane<float>(subject, samples, environment, what);
   }
-}
-
-TEST(Properties, ExamplesGiveNoNaNNoInfinityAndNothingNegative) {
-  size_t materials = 0;
-  for (const std::filesystem::path& file : test::findFiles(test::sourceFolder() / "examples", ".gltf")) {
-    const std::string text = test::readFile(file);
-    const size_t count = nlohmann::json::parse(text)["materials"].size();
-    for (size_t i = 0; i < count; ++i, ++materials) {
-      expectSaneEverywhere(text, i, fmt::format("{} #{}", file.filename().string(), i), i);
-    }
-  }
-  EXPECT_GT(materials, 6U);
 }
 
 TEST(Properties, RandomMaterialsGiveNoNaNNoInfinityAndNothingNegative) {

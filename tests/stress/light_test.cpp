@@ -1,0 +1,117 @@
+// Energy, reciprocity and the drawing of inputs, on subjects made up for it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "stress/attack.h"
+
+namespace lacquer::stress {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// A Lambertian base of albedo `base`, a factor `coat` for what its coat makes of it, and a weight for the
+/// view.
+class Painted final : public Subject {
+public:
+  Painted(double base, double coat, double view) : base_(base), coat_(coat), view_(view) {
+    is_node = false;
+    for (const char* direction : {"n", "v", "l", "t"}) space.add(direction, 3, {}, Nature::Direction, 1);
+    space.add("light", 3, {0, 10}, Nature::Number, 10);
+    space.add("coat_factor", 1, {0, 1}, Nature::Number, 1);
+    roots.push_back({Root::Kind::Result, "color", 4, false, {0, 1e9, false}});
+  }
+
+  Values evaluate(Arithmetic, std::span<const double> samples, size_t count) const override {
+    Values values(1);
+    for (size_t i = 0; i < count; ++i) {
+      const double* s = samples.data() + i * space.width();
+      const double n_dot_l = std::max(s[8], 0.0);
+      const double coat = 1 + (coat_ - 1) * s[space.find("coat_factor")->first];
+      const double x =
+          s[space.find("light")->first] * base_ * coat * std::pow(std::abs(s[5]), view_) * n_dot_l / kPi;
+      values[0].insert(values[0].end(), {x, x, x, 1});
+    }
+    return values;
+  }
+
+private:
+  double base_, coat_, view_;
+};
+
+Report lit(const Subject& subject) {
+  Report report;
+  measureLight(subject, {}, report);
+  return report;
+}
+
+TEST(Light, TheFurnaceOfALambertianIsItsAlbedo) {
+  const Report report = lit(Painted(0.8, 1, 0));
+  EXPECT_NEAR(report.energy.largest, 0.8, 1e-6);
+  EXPECT_LT(report.energy.asymmetry, 1e-12);
+  EXPECT_TRUE(report.findings.empty());
+}
+
+TEST(Light, ABaseThatGainsIsReportedAndACoatThatGainsIsAFault) {
+  const Report base = lit(Painted(1.1, 0.5, 0));
+  EXPECT_NEAR(base.energy.largest_base, 1.1, 1e-6);
+  EXPECT_TRUE(base.findings.empty());
+  const Report coat = lit(Painted(0.9, 1.5, 0));
+  ASSERT_EQ(coat.findings.size(), 1U);
+  EXPECT_EQ(coat.findings[0].fault, Fault::Energy);
+  EXPECT_GT(coat.findings[0].value, 1.01);
+}
+
+TEST(Light, ABaseThatIsNotReciprocalIsAFault) {
+  const Report report = lit(Painted(0.5, 1, 0.5));
+  ASSERT_EQ(report.findings.size(), 1U);
+  EXPECT_EQ(report.findings[0].fault, Fault::Reciprocity);
+  EXPECT_EQ(faultName(report.findings[0].fault), "reciprocity");
+}
+
+TEST(Space, DrawsEdgesAndKeepsRanges) {
+  Space space;
+  const size_t x = space.add("x", 1, {0.25, 4}, Nature::Number, 1e9);
+  const size_t open = space.add("open", 1, {0, INFINITY}, Nature::Number, 1e6);
+  const size_t flag = space.add("flag", 1, {}, Nature::Flag, 1);
+  const size_t texel = space.add("texel", 3, {}, Nature::Texel, 1);
+  const size_t n = space.add("n", 3, {}, Nature::Direction, 1);
+  const size_t v = space.add("v", 3, {}, Nature::Direction, 1);
+  size_t low = 0, high = 0, one = 0, subnormal = 0, middle = 0, same = 0, opposite = 0, across = 0;
+  std::set<double> flags;
+  std::vector<double> s(space.width());
+  for (uint64_t i = 0; i < 20000; ++i) {
+    space.draw(i, s);
+    for (size_t k = 0; k < s.size(); ++k) EXPECT_EQ(s[k], static_cast<double>(static_cast<float>(s[k])));
+    ASSERT_GE(s[x], 0.25);
+    ASSERT_LE(s[x], 4);
+    ASSERT_GE(s[open], 0);
+    ASSERT_LE(s[open], 1e6);
+    low += s[x] == 0.25;
+    high += s[x] == 4;
+    one += s[x] == 1;
+    subnormal += s[open] > 0 && s[open] < 1e-38;
+    middle += s[texel] == 0.5 && s[texel + 1] == 0.5 && s[texel + 2] == 0.5;
+    flags.insert(s[flag]);
+    const double cosine = s[n] * s[v] + s[n + 1] * s[v + 1] + s[n + 2] * s[v + 2];
+    same += s[n] == s[v] && s[n + 2] == s[v + 2];
+    opposite += s[n] == -s[v] && s[n + 2] == -s[v + 2];
+    across += std::abs(cosine) < 1e-6;
+  }
+  for (const size_t count : {low, high, one, subnormal, middle, same, opposite, across})
+    EXPECT_GT(count, 100U);
+  EXPECT_EQ(flags, (std::set<double>{0, 1}));
+}
+
+TEST(Space, KeepsFlagsOnTheWay) {
+  Space space;
+  space.add("flag", 1, {}, Nature::Flag, 1);
+  space.add("x", 1, {0, 8}, Nature::Number, 8);
+  std::vector<double> s(2);
+  space.between(std::vector<double>{0, 2}, std::vector<double>{1, 6}, 0.75, s);
+  EXPECT_EQ(s, (std::vector<double>{0, 5}));
+}
+
+}  // namespace
+}  // namespace lacquer::stress

@@ -1,0 +1,206 @@
+// Seeded faults are found, made small and shown again; the library's nodes and the examples have none; cases/
+// holds inputs that once failed, or that are known to be hard.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "lacquer.h"
+#include "support/cases.h"
+
+namespace lacquer::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+json stressed(const std::vector<std::string>& subjects, const Stress& stress, const Options& options) {
+  Messages messages;
+  const std::string answer = stressNodes(stress, subjects, options, messages);
+  for (const Message& message : messages) ADD_FAILURE() << message.text;
+  return answer.empty() ? json() : json::parse(answer);
+}
+
+Options faulty() {
+  Options options;
+  options.node_directories = {(sourceFolder() / "tests/stress/faulty").string()};
+  return options;
+}
+
+Stress few(uint64_t samples = 20000, uint64_t seed = 1) {
+  Stress stress;
+  stress.samples = samples;
+  stress.seed = seed;
+  return stress;
+}
+
+/// The findings of one node of faulty.node.
+json found(const std::string& node, uint64_t seed = 1) {
+  const json answer = stressed({node}, few(20000, seed), faulty());
+  return answer.is_null() ? json::array() : answer["subjects"][0]["findings"];
+}
+
+class Seeded : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+/// Found with any seed, and the printed case shows it again.
+TEST_P(Seeded, FaultIsFoundAndShownAgain) {
+  const auto [node, fault] = GetParam();
+  for (const uint64_t seed : {1U, 2U, 99U}) {
+    const json findings = found(node, seed);
+    ASSERT_GE(findings.size(), 1U) << node << " with seed " << seed;
+    EXPECT_EQ(findings[0]["fault"], fault);
+    const fs::path path = fs::path(testing::TempDir()) / "lacquer_stress_case.json";
+    std::ofstream(path) << findings[0]["case"].dump();
+    const json again = stressed({path.string()}, few(), faulty());
+    ASSERT_EQ(again["faults"], 1) << findings[0]["case"].dump();
+    EXPECT_EQ(again["subjects"][0]["findings"][0]["fault"], fault);
+    EXPECT_EQ(again["subjects"][0]["findings"][0]["what"], findings[0]["what"]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Nodes, Seeded,
+    testing::Values(std::pair{"faulty_nan", "nan"}, std::pair{"faulty_infinity", "infinity"},
+                    std::pair{"faulty_negative", "negative"}, std::pair{"faulty_range", "range"},
+                    std::pair{"faulty_jump", "jump"}, std::pair{"faulty_assume", "assume"},
+                    std::pair{"faulty_derivative", "nan"}, std::pair{"faulty_texel", "nan"}),
+    [](const auto& info) { return std::string(info.param.first); });
+
+TEST(Stress, CasesAreSmall) {
+  EXPECT_EQ(found("faulty_nan")[0]["case"]["samples"], json::parse(R"([{"x": 0.0}])"));
+  EXPECT_EQ(found("faulty_infinity")[0]["case"]["samples"], json::parse(R"([{"x": 1.0}])"));
+  EXPECT_EQ(found("faulty_negative")[0]["case"]["samples"],
+            json::parse(R"([{"color": [0.0, 0.0, 0.0], "weight": 0.0}])"));
+  EXPECT_EQ(found("faulty_range")[0]["case"]["samples"], json::parse(R"([{"x": 1.0, "y": 1.0}])"));
+  const json jump = found("faulty_jump")[0]["case"]["samples"];
+  ASSERT_EQ(jump.size(), 2U);
+  for (const char* name : {"x", "y"})
+    EXPECT_NEAR(jump[0][name].get<double>(), jump[1][name].get<double>(), 1e-9);
+}
+
+TEST(Stress, AThresholdWithoutAStepIsNoFault) { EXPECT_EQ(found("steady"), json::array()); }
+
+TEST(Stress, NamesOfOtherTypesAreOrdinary) { EXPECT_EQ(found("odd_names"), json::array()); }
+
+TEST(Stress, VariantsAreAttackedToo) {
+  const json answer = stressed({"faulty_variant"}, few(), faulty());
+  ASSERT_EQ(answer["subjects"].size(), 2U);
+  EXPECT_TRUE(answer["subjects"][0]["findings"].empty());
+  EXPECT_EQ(answer["subjects"][1]["variant"], "quick");
+  EXPECT_EQ(answer["subjects"][1]["findings"][0]["fault"], "range");
+}
+
+TEST(Stress, IsTheSameForEveryNumberOfThreads) {
+  const std::vector<std::string> subjects = {"faulty_jump", "faulty_assume",
+                                             (sourceFolder() / "examples/clearcoat_tint.gltf").string()};
+  Options options = faulty();
+  options.jobs = 1;
+  const json one = stressed(subjects, few(9000), options);
+  options.jobs = 5;
+  EXPECT_EQ(one, stressed(subjects, few(9000), options));
+  EXPECT_NE(one["subjects"][0], stressed(subjects, few(9000, 2), options)["subjects"][0]);
+}
+
+TEST(Stress, TheLibraryHoldsAtAHundredThousand) {
+  const json answer = stressed({}, few(100000), Options());
+  ASSERT_FALSE(answer.is_null());
+  EXPECT_GE(answer["subjects"].size(), 40U);
+  std::set<std::string> reasons;
+  for (const json& subject : answer["subjects"]) {
+    for (const json& finding : subject["findings"]) {
+      EXPECT_TRUE(finding.contains("known")) << finding.dump();
+      if (finding.contains("known")) reasons.insert(finding["known"]);
+    }
+  }
+  EXPECT_EQ(answer["faults"], 0);
+  EXPECT_EQ(reasons.size(), 6U) << "src/stress/known.cpp lists what no longer occurs";
+}
+
+TEST(Stress, TheExamplesHold) {
+  std::vector<std::string> files;
+  for (const fs::path& file : findFiles(sourceFolder() / "examples", ".gltf")) files.push_back(file.string());
+  const json answer = stressed(files, few(10000), Options());
+  ASSERT_FALSE(answer.is_null());
+  EXPECT_GE(answer["subjects"].size(), 20U);
+  EXPECT_EQ(answer["faults"], 0);
+  double base = 0;
+  for (const json& subject : answer["subjects"]) {
+    for (const json& finding : subject["findings"]) {
+      EXPECT_TRUE(finding.contains("known")) << finding.dump();
+    }
+    base = std::max(base, subject["energy"]["base"].get<double>());
+  }
+  // The text's Lambert under 1 - F(V.H) gives back more than it got at grazing.
+  EXPECT_GT(base, 1.05);
+  EXPECT_LT(base, 1.2);
+}
+
+TEST(Stress, MediumPrecisionOnlyReports) {
+  Stress half = few(4096);
+  half.mediump = true;
+  const json findings = stressed({"faulty_range"}, half, faulty())["subjects"][0]["findings"];
+  EXPECT_TRUE(findings.empty()) << "1.00002 is 1 at half precision";
+  const json answer = stressed({"ggx_distribution", "specular_lobe"}, half, Options());
+  EXPECT_GT(answer["faults"], 0);
+}
+
+TEST(Stress, HalfPrecisionRoundsToNearestEven) {
+  // The input itself is rounded before the node, which passes it on, sees it.
+  const fs::path folder = fs::path(testing::TempDir()) / "lacquer_half";
+  fs::create_directories(folder);
+  std::ofstream(folder / "half.node")
+      << "/// D.\n/// source: S\nnode least(float x in [1e-8, 2.9e-8]) -> float in [0, 0] "
+         "{ return x; }\n/// D.\n/// source: S\nnode most(float x in [65519, 65519.9]) "
+         "-> float in [65504, 65504] { return x; }\n/// D.\n/// source: S\n"
+         "node over(float x in [65520, 65530]) -> float { return x; }\n"
+         "/// D.\n/// source: S\nnode even(float x in [1.0004, 1.00048828125]) -> "
+         "float in [1, 1] { return x; }\n/// D.\n/// source: S\n"
+         "node odd(float x in [1.0014648438, 1.0015]) -> float in [1.001953125, "
+         "1.001953125] { return x; }\n";
+  Options options;
+  options.node_directories = {folder.string()};
+  Stress half = few(4096);
+  half.mediump = true;
+  for (const char* node : {"least", "most", "even", "odd"}) {
+    EXPECT_EQ(stressed({node}, half, options)["faults"], 0) << node;
+    EXPECT_EQ(stressed({node}, few(4096), options)["faults"], 1) << node;
+  }
+  EXPECT_EQ(stressed({"over"}, half, options)["subjects"][0]["findings"][0]["fault"], "infinity");
+}
+
+TEST(Stress, SaysWhatIsWrong) {
+  const auto code = [](const std::string& subject) {
+    Messages messages;
+    EXPECT_TRUE(stressNodes(few(16), {subject}, Options(), messages).empty());
+    return messages.empty() ? std::string() : messages[0].code;
+  };
+  const auto file = [](const char* text) {
+    const fs::path path = fs::path(testing::TempDir()) / "lacquer_stress_bad.json";
+    std::ofstream(path) << text;
+    return path.string();
+  };
+  EXPECT_EQ(code("no_such_node"), "unknown-node");
+  EXPECT_EQ(code("nowhere.gltf"), "cannot-read");
+  EXPECT_EQ(code("nowhere.json"), "file-unreadable");
+  EXPECT_EQ(code(file("[]")), "bad-case");
+  EXPECT_EQ(code(file("{")), "json-syntax");
+  EXPECT_EQ(code(file(R"({"node": "schlick"})")), "bad-case");
+  EXPECT_EQ(code(file(R"({"node": "schlick", "samples": [{"F0": 1}]})")), "bad-case");
+  EXPECT_EQ(code(file(R"({"node": "schlick", "samples": [{"F0": 1, "cosine": [1, 2]}]})")), "bad-case");
+  EXPECT_EQ(code(file(R"({"node": "schlick", "samples": [3]})")), "bad-case");
+  EXPECT_EQ(code(file(R"({"node": "schlick", "variant": "no", "samples": []})")), "unknown-node");
+  EXPECT_EQ(code(file(R"({"file": "nowhere.gltf", "material": 0, "samples": []})")), "cannot-read");
+}
+
+const bool kRegistered =
+    registerFiles("StressCases", sourceFolder() / "tests/stress/cases", ".json", [](const fs::path& file) {
+      const json answer = stressed({file.string()}, Stress(), Options());
+      ASSERT_FALSE(answer.is_null());
+      EXPECT_EQ(answer["faults"], 0) << answer.dump(2);
+    });
+
+}  // namespace
+}  // namespace lacquer::test
