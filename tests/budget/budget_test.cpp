@@ -64,7 +64,8 @@ protected:
   static std::vector<physics::Vec4> colors(const std::string& path, const json& points,
                                            const Options& options) {
     Messages messages;
-    const std::string answer = evaluate(path, "", points.dump(), "points", false, {}, options, messages);
+    const std::string answer =
+        evaluate(path, "", points.dump(), "points", Engine::Double, {}, options, messages);
     EXPECT_FALSE(hasError(messages)) << messages[0].text;
     return json::parse(answer)["rgba"].get<std::vector<physics::Vec4>>();
   }
