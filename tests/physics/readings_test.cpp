@@ -259,6 +259,23 @@ TEST(Readings, R10AnisotropyTexelsAreDirections) {
   expectNear(turned(0), weaker, kTight);
 }
 
+/// A tangent of no length, vertex data or derivatives of texture coordinates that do not change: some direction is
+/// taken, and the lobe stays within what tangents can give.
+TEST(Readings, R10AnisotropyWithoutATangentIsBounded) {
+  Material m = paint();
+  m.coat = Coat{.factor = 1, .roughness = 0.1, .anisotropy = 1};
+  Sample s = slanted();
+  s.l = tilted(0.65, 0.3 + 2.9);
+  double most = 0;
+  for (int i = 0; i < 64; ++i) {
+    const double angle = i * std::acos(-1) / 64;
+    s.t = {std::cos(angle), std::sin(angle), 0, 1};
+    most = std::max(most, shade(m, s)[0]);
+  }
+  s.t = {0, 0, 0, 1};
+  EXPECT_LE(shade(m, s)[0], 1.01 * most);
+}
+
 /// GGX's D in float from unit vectors that were rounded to float, the half vector left unnormalized and its
 /// part in the plane taken as V + L - N (N.V + N.L): the largest relative error where D is above a hundredth
 /// of its peak.
