@@ -213,7 +213,8 @@ std::vector<double> plain(const Variable& variable, double x) {
   for (const double scale : {1.0, 10.0, 100.0, 1000.0, 1e5}) tries.push_back(std::round(x * scale) / scale);
   std::erase_if(tries, [&](double y) {
     return !(y >= variable.range.lo && y <= variable.range.hi) || !std::isfinite(y) ||
-           (variable.nature == Nature::Flag && y != 0 && y != 1);
+           (variable.nature == Nature::Flag && y != 0 && y != 1) ||
+           (variable.nature == Nature::Index && y > 0 && y < 1);
   });
   // Only what is plainer than `x` itself comes into question, so that this ends.
   const auto own = std::find(tries.begin(), tries.end(), x);

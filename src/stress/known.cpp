@@ -14,11 +14,8 @@ struct Known {
 constexpr Known kKnown[] = {
     {"distribution", "0 < NdotSum",
      "Appendix B's D ends with a step at N.H = 0; it is seen past the horizon alone"},
-    {"normal_map", "add < 1e-06", "a texel of no length has no direction; the normal stays as it is"},
     {"anisotropy_texel", "1e-12 < length2",
      "a texel of no length has no direction; the tangent stands for it"},
-    {"coat_absorption", "ior == 0",
-     "0 stands for an infinite index; what is between 0 and 1 is out of range"},
     {"flat_normal", "dot < 0", "a triangle seen from its edge turns its other side"},
     {"tangent_frame_from_derivatives", "mul < mul", "texture coordinates without an area have no tangent"},
 };

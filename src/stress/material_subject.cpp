@@ -83,7 +83,8 @@ private:
     space.add("light", 3, {0, kBrightest}, Nature::Number, kBrightest);
     for (const uint32_t index : ir::usedParameters(module_)) {
       const ir::Parameter& parameter = module_.parameters[index];
-      space.add(parameter.name, ir::componentCount(parameter.type), parameter.range, Nature::Number, kLimit);
+      space.add(parameter.name, ir::componentCount(parameter.type), parameter.range,
+                natureOf(parameter.name, parameter.range), kLimit);
     }
     for (const ir::TextureSlot& slot : module_.textures) {
       if (isTable(slot)) continue;
@@ -147,7 +148,7 @@ private:
     eval::bindPoints(points, bindings);
     const size_t width = space.width();
     for (const Variable& variable : space.variables()) {
-      if (variable.nature != Nature::Number) continue;
+      if (variable.nature != Nature::Number && variable.nature != Nature::Index) continue;
       std::vector<double> values;
       values.reserve(count * static_cast<size_t>(variable.components));
       for (size_t i = 0; i < count; ++i) {

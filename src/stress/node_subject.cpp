@@ -133,10 +133,11 @@ private:
       // A light is positional or not: what stands between has no meaning.
       const bool flag = parameter.type == ir::Type::Bool || isPositional(parameter);
       const bool texel = parameter.name == "texel" && parameter.range == ir::Interval{0, 1};
-      const Nature nature = flag                                       ? Nature::Flag
-                            : texel                                    ? Nature::Texel
-                            : unit && parameter.type == ir::Type::Vec3 ? Nature::Direction
-                                                                       : Nature::Number;
+      const Nature nature = flag    ? Nature::Flag
+                            : texel ? Nature::Texel
+                            : unit && parameter.type == ir::Type::Vec3
+                                ? Nature::Direction
+                                : natureOf(parameter.name, parameter.range);
       space.add(parameter.name, ir::componentCount(parameter.type), parameter.range, nature,
                 passes::kSceneLimit);
     }
@@ -236,6 +237,24 @@ private:
       for (size_t i = 0; i < count; ++i) {
         if (pair || bindings.columns["positional"].values[i] == 0) normalize(column.values.data() + n * i, n);
       }
+    }
+    keepSplitSum(count, bindings);
+  }
+
+  /// The two parts of a lobe's directional albedo, which is 0.25 at least
+  /// (base_indirect_multiple_scattering).
+  static void keepSplitSum(size_t count, eval::Bindings& bindings) {
+    const auto scale = bindings.columns.find("scale");
+    const auto bias = bindings.columns.find("bias");
+    if (scale == bindings.columns.end() || bias == bindings.columns.end()) return;
+    if (scale->second.components != 1 || bias->second.components != 1) return;
+    for (size_t i = 0; i < count; ++i) {
+      double& a = scale->second.values[i];
+      double& b = bias->second.values[i];
+      const double sum = a + b;
+      const double kept = std::clamp(sum, 0.25, 1.0);
+      a = sum > 0 ? a * (kept / sum) : kept;
+      b = sum > 0 ? b * (kept / sum) : 0;
     }
   }
 

@@ -104,6 +104,11 @@ double drawNumber(Random& random, const ir::Interval& range) {
   return exact(x, range);
 }
 
+Nature natureOf(std::string_view name, const ir::Interval& range) {
+  // docs/specification.md, reading 5: other values below 1 are out of range.
+  return name.ends_with("ior") && range.lo == 0 && range.hi > 1 ? Nature::Index : Nature::Number;
+}
+
 size_t Space::add(std::string name, int components, ir::Interval range, Nature nature, double limit) {
   const size_t first = width_;
   if (nature == Nature::Direction) range = {-1, 1};
@@ -140,6 +145,8 @@ void Space::draw(uint64_t seed, std::span<double> sample) const {
     for (double& x : to) {
       if (variable.nature == Nature::Flag)
         x = random.below(2);
+      else if (variable.nature == Nature::Index)
+        x = random.below(8) == 0 ? 0 : drawNumber(random, {1, variable.range.hi});
       else if (variable.nature == Nature::Texel && random.below(4) != 0)
         x = exact(random.below(256) / 255.0, variable.range);
       else
@@ -153,7 +160,8 @@ void Space::between(std::span<const double> a, std::span<const double> b, double
                     std::span<double> sample) const {
   for (const Variable& variable : variables_) {
     for (size_t i = variable.first; i < variable.first + static_cast<size_t>(variable.components); ++i) {
-      sample[i] = variable.nature == Nature::Flag ? a[i] : a[i] * (1 - t) + b[i] * t;
+      const bool apart = variable.nature == Nature::Index && (a[i] == 0 || b[i] == 0);
+      sample[i] = variable.nature == Nature::Flag || apart ? a[i] : a[i] * (1 - t) + b[i] * t;
     }
   }
 }

@@ -33,6 +33,7 @@ enum class Nature : uint8_t {
   Direction,  ///< three components of any length but 0; related to the directions before it
   Flag,       ///< 0 or 1
   Texel,      ///< in [0, 1], mostly eight bits
+  Index,      ///< of refraction: 0, which stands for an infinite one, or 1 and more
 };
 
 struct Variable {
@@ -54,7 +55,7 @@ public:
 
   /// One sample, every number exact in float32, edges over-represented. A function of `seed`.
   void draw(uint64_t seed, std::span<double> sample) const;
-  /// From `a` at 0 to `b` at 1, in double. Flags are those of `a`.
+  /// From `a` at 0 to `b` at 1, in double. Flags, and an index where one of both is 0, are those of `a`.
   void between(std::span<const double> a, std::span<const double> b, double t,
                std::span<double> sample) const;
 
@@ -62,6 +63,10 @@ private:
   std::vector<Variable> variables_;
   size_t width_ = 0;
 };
+
+/// What a number is, by the name and the range of a parameter: an index of refraction that may be 0, or any
+/// number.
+Nature natureOf(std::string_view name, const ir::Interval& range);
 
 /// A number of the range, exact in float32.
 double drawNumber(Random& random, const ir::Interval& range);

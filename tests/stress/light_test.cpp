@@ -104,6 +104,27 @@ TEST(Space, DrawsEdgesAndKeepsRanges) {
   EXPECT_EQ(flags, (std::set<double>{0, 1}));
 }
 
+TEST(Space, AnIndexIsZeroOrOneAndMore) {
+  EXPECT_EQ(natureOf("coat_ior", {0, 1e9}), Nature::Index);
+  EXPECT_EQ(natureOf("coat_ior", {1, 4}), Nature::Number);
+  EXPECT_EQ(natureOf("weight", {0, 4}), Nature::Number);
+  Space space;
+  space.add("ior", 1, {0, 4}, Nature::Index, 1e9);
+  std::vector<double> s(1);
+  size_t zeros = 0;
+  for (uint64_t i = 0; i < 2000; ++i) {
+    space.draw(i, s);
+    zeros += s[0] == 0;
+    EXPECT_TRUE(s[0] == 0 || (s[0] >= 1 && s[0] <= 4)) << s[0];
+  }
+  EXPECT_GT(zeros, 100U);
+  EXPECT_LT(zeros, 1000U);
+  space.between(std::vector<double>{2}, std::vector<double>{0}, 0.75, s);
+  EXPECT_EQ(s[0], 2);
+  space.between(std::vector<double>{2}, std::vector<double>{4}, 0.75, s);
+  EXPECT_EQ(s[0], 3.5);
+}
+
 TEST(Space, KeepsFlagsOnTheWay) {
   Space space;
   space.add("flag", 1, {}, Nature::Flag, 1);
