@@ -6,7 +6,7 @@ layout(std140, binding = 2) uniform Material {
     vec4 base_color_factor;
 } material;
 
-layout(binding = 2) uniform sampler2D base_color_texture;
+layout(binding = 3) uniform sampler2D base_color_texture;
 
 layout(location = 0) in vec2 v_uv0;
 layout(location = 1) in vec4 v_COLOR_0;

@@ -9,8 +9,8 @@ cbuffer Material : register(b2) {
     MaterialBlock material;
 };
 
-Texture2D base_color_texture : register(t2);
-SamplerState base_color_texture_sampler : register(s2);
+Texture2D base_color_texture : register(t3);
+SamplerState base_color_texture_sampler : register(s3);
 
 void main(
     float2 v_uv0 : TEXCOORD0,

@@ -16,8 +16,8 @@ Message toMessage(const Diagnostic& d) {
   const auto level = d.severity == Severity::Error     ? Message::Level::Error
                      : d.severity == Severity::Warning ? Message::Level::Warning
                                                        : Message::Level::Note;
-  return {level,           d.code,    d.place.file, d.place.line, d.place.column,
-          d.place.pointer, d.message, d.help,       format(d)};
+  return {level,          d.code,    d.place.file, d.place.pointer, d.place.line,
+          d.place.column, d.message, d.help,       format(d)};
 }
 
 Diagnostic toDiagnostic(const Message& m) {

@@ -8,7 +8,7 @@ namespace lacquer::cli {
 
 struct DfgFlags {
   std::string output;
-  uint32_t size = 64;
+  uint32_t size = 128;
 };
 
 CLI::App* addDfg(CLI::App& app, DfgFlags& flags);

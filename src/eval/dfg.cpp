@@ -11,17 +11,23 @@ namespace {
 /// ALPHA_MIN of nodes/constants.node.
 constexpr double kAlphaMin = 0.001;
 
-/// Samples over the half vector's angle and around the normal: what comes out moves by less than 1e-4 with
-/// twice as many.
-constexpr int kAngles = 96;
-constexpr int kTurns = 48;
+/// Samples over the half vector's angle and around the normal. With twice as many what comes out moves by
+/// 2e-4, and by 2e-3 below N.V = 0.03.
+constexpr int kAngles = 64;
+constexpr int kTurns = 32;
 
-constexpr int kTableSize = 64;
+constexpr int kTableSize = 128;
 
-double smithVisibility(double NdotL, double NdotV, double alpha2) {
-  const double light = NdotV * std::sqrt(NdotL * NdotL * (1 - alpha2) + alpha2);
-  const double view = NdotL * std::sqrt(NdotV * NdotV * (1 - alpha2) + alpha2);
-  return 0.5 / (light + view);
+/// Cosines of the turns, which all integrals share.
+const std::array<double, kTurns>& turns() {
+  static const std::array<double, kTurns> kCosines = [] {
+    std::array<double, kTurns> cosines{};
+    for (size_t k = 0; k < kTurns; ++k) {
+      cosines[k] = std::cos((static_cast<double>(k) + 0.5) / kTurns * std::numbers::pi);
+    }
+    return cosines;
+  }();
+  return kCosines;
 }
 
 }  // namespace
@@ -30,19 +36,25 @@ std::array<double, 2> environmentDfg(double NdotV, double roughness) {
   const double alpha = std::max(roughness * roughness, kAlphaMin);
   const double alpha2 = alpha * alpha;
   const double sine = std::sqrt(std::max(1 - NdotV * NdotV, 0.0));
+  const double masked_view = std::sqrt(NdotV * NdotV * (1 - alpha2) + alpha2);
   double scale = 0;
   double bias = 0;
   for (int i = 0; i < kAngles; ++i) {
-    // Half vectors are drawn from D N.H, which leaves V.H and the visibility to sum.
-    const double u = (i + 0.5) / kAngles;
+    // Half vectors are drawn from D N.H, which leaves V.H and the visibility to sum; 1 - u = t^2 takes away
+    // the pole that 1 / N.H has where the half vector lies in the plane.
+    const double t = (i + 0.5) / kAngles;
+    const double u = 1 - t * t;
     const double NdotH = std::sqrt((1 - u) / (1 + (alpha2 - 1) * u));
-    const double tilt = std::sqrt(std::max(1 - NdotH * NdotH, 0.0));
-    for (int k = 0; k < kTurns; ++k) {
-      const double VdotH = NdotV * NdotH + sine * tilt * std::cos((k + 0.5) / kTurns * std::numbers::pi);
+    const double across = sine * std::sqrt(std::max(1 - NdotH * NdotH, 0.0));
+    for (const double turn : turns()) {
+      const double VdotH = NdotV * NdotH + across * turn;
       const double NdotL = 2 * VdotH * NdotH - NdotV;
       if (NdotL <= 0 || VdotH <= 0) continue;
-      const double weight = smithVisibility(NdotL, NdotV, alpha2) * 4 * NdotL * VdotH / NdotH;
-      const double fresnel = std::pow(1 - VdotH, 5);
+      const double masked_light = std::sqrt(NdotL * NdotL * (1 - alpha2) + alpha2);
+      const double visibility = 0.5 / (NdotV * masked_light + NdotL * masked_view);
+      const double weight = 2 * t * visibility * 4 * NdotL * VdotH / NdotH;
+      const double c = 1 - VdotH;
+      const double fresnel = c * c * c * c * c;
       scale += weight * (1 - fresnel);
       bias += weight * fresnel;
     }

@@ -42,7 +42,8 @@ TEST(ParityMaterials, ForwardWithAnyLights) {
 TEST(ParityMaterials, ForwardThatDecodesSrgb) {
   MaterialSetting setting;
   setting.decode_srgb = true;
-  expectAgreement(exampleGraphs(setting), setting, 256, kSome);
+  // The curve is steep where texels are dark.
+  expectAgreement(exampleGraphs(setting), setting, 256, kSome, 0.4);
 }
 
 TEST(ParityMaterials, Surface) {
@@ -58,7 +59,7 @@ TEST(ParityMaterials, Bsdf) {
 }
 
 /// Combinations of properties that no example has.
-TEST(ParityMaterials, RandomOnes) { expectAgreement(randomGraphs({}, 6), {}, 64); }
+TEST(ParityMaterials, RandomOnes) { expectAgreement(randomGraphs({}, 6), {}, 64, 1, 0.35); }
 
 bool takesDerivatives(const ir::Module& module) {
   const std::vector<ir::ValueId> values = ir::reachable(module, ir::Stage::Fragment);
@@ -78,7 +79,7 @@ TEST(ParityMaterials, QuadsWithoutTangents) {
   }
   EXPECT_GT(graphs.size(), 4U);
   // Differences of interpolated numbers have few digits.
-  expectAgreement(graphs, setting, 256, 1, 0.5);
+  expectAgreement(graphs, setting, 256, 1, 0.6);
 }
 
 TEST(ParityMaterials, VertexStages) {

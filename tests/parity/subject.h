@@ -79,9 +79,12 @@ std::vector<std::vector<float>> onDevice(const Subject& subject, SpirvRoute rout
 struct Comparison {
   size_t numbers = 0;  ///< compared
   size_t outside = 0;  ///< beyond the bound
-  size_t vague = 0;    ///< where the bound is wider than a thousandth of the number, and than 1e-6
+  size_t vague = 0;    ///< of those with a bound that is vague()
   std::string first;   ///< the first that is outside
 };
+
+/// Whether a bound is wider than a thousandth of its numbers, and than 1e-6.
+bool vague(const passes::Range& bound);
 
 /// Adds a run's outputs to a comparison with the bounds.
 void compare(const Subject& subject, const std::vector<std::vector<passes::Range>>& bounds,

@@ -259,8 +259,8 @@ TEST(Readings, R10AnisotropyTexelsAreDirections) {
   expectNear(turned(0), weaker, kTight);
 }
 
-/// A tangent of no length, vertex data or derivatives of texture coordinates that do not change: some direction is
-/// taken, and the lobe stays within what tangents can give.
+/// A tangent of no length, vertex data or derivatives of texture coordinates that do not change: some
+/// direction is taken, and the lobe stays within what tangents can give.
 TEST(Readings, R10AnisotropyWithoutATangentIsBounded) {
   Material m = paint();
   m.coat = Coat{.factor = 1, .roughness = 0.1, .anisotropy = 1};
