@@ -61,7 +61,8 @@ std::string nodesJson(const Options& options, Messages& messages) {
   for (const std::string_view name : (*library)->names(lang::DeclKind::Node)) {
     nodes.push_back(nodeJson(**(*library)->node(name)));
   }
-  return Json{{"lacquer", version()}, {"nodes", std::move(nodes)}}.dump(2);
+  return Json{{"lacquer", version()}, {"nodes", std::move(nodes)}}.dump(
+      2, ' ', false, Json::error_handler_t::replace);  // a node file may hold any bytes
 }
 
 }  // namespace lacquer

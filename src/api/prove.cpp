@@ -136,7 +136,8 @@ std::string proveNodesJson(const Options& options, Messages& messages) {
     row["calls"] = claimsJson(proof.calls);
     nodes.push_back(std::move(row));
   }
-  return Json{{"nodes", std::move(nodes)}}.dump(2);
+  return Json{{"nodes", std::move(nodes)}}.dump(
+      2, ' ', false, Json::error_handler_t::replace);  // a node file may hold any bytes
 }
 
 }  // namespace lacquer
