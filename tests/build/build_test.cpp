@@ -81,7 +81,10 @@ TEST_F(Build, CacheDoesNotShow) {
   EXPECT_EQ(differences(folder_ / "plain", folder_ / "first"), "");
   EXPECT_EQ(differences(folder_ / "plain", folder_ / "second"), "");
   // Other options are other results.
-  for (const Words& more : {Words{"--lights", "point:2"}, {"--profile", "openpbr"}}) {
+  for (const Words& more :
+       {Words{"--lights", "point:2"}, Words{"--profile", "openpbr"}, Words{"--dfg", "fit"},
+        Words{"--no-multiple-scattering"}, Words{"--no-ibl"}, Words{"--params", "baked"},
+        Words{"--error-budget", "0.4"}, Words{"--template", "surface"}}) {
     SCOPED_TRACE(more[0]);
     Words cached = {"--cache", "cache"};
     cached.insert(cached.end(), more.begin(), more.end());
