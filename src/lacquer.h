@@ -5,7 +5,6 @@
 /// input; what a failed call returns is empty (operator bool is false). Equal input gives equal bytes.
 /// Distinct objects may be used from distinct threads; a copy of a Scene, Graph or Shader is the same object.
 #pragma once
-
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -67,6 +66,7 @@ struct Options {
   bool validate = true;             ///< compile and validate everything with glslang and SPIRV-Tools
   bool unused = false;  ///< also materials that no primitive uses (as if with normals, tangents, UV 0 and 1)
   SpirvRoute spirv_route = SpirvRoute::Direct;
+  bool debug = false;        ///< SPIR-V has the names of values and the lines of the nodes (Direct)
   Strings live;              ///< terms kept though today's value would remove them: "coat.darkening"
   Strings node_directories;  ///< more node files (*.node) beside the built-in library
   uint32_t jobs = 0;         ///< threads, at most 1024; 0 for one on each core

@@ -187,7 +187,8 @@ private:
   std::vector<uint32_t> words(int stage, const std::string& path) {
     const StageTimer timer(times_, StageOfRun::Print, Target::Spirv);
     if (options_.spirv_route == SpirvRoute::Direct) {
-      return targets::writeSpirv(shader_.module, passes::schedule(shader_.module, kStages[stage]), {});
+      return targets::writeSpirv(shader_.module, passes::schedule(shader_.module, kStages[stage]),
+                                 {options_.debug});
     }
     const auto check_stage = stage == 0 ? check::Stage::Vertex : check::Stage::Fragment;
     Result<check::Spirv> made =

@@ -55,7 +55,7 @@ Key Maker::keyOf(const std::string& id, Target target) const {
   const Options& options = setting_.options;
   KeyBuilder key;
   key.text("shader").key(setting_.base).text(id).text(targetName(target)).number(options.validate);
-  if (target == Target::Spirv) key.number(options.spirv_route);
+  if (target == Target::Spirv) key.number(options.spirv_route).number(options.debug);
   if (target == Target::Hlsl && options.validate) key.number(check::haveDxc());
   return key.finish();
 }

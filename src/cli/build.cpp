@@ -31,6 +31,7 @@ std::string graphCommand(const std::string& program, const std::string& folder, 
   if (options.parameters == Parameters::Baked) text += " --params baked";
   if (options.parameters == Parameters::Spec) text += " --params spec";
   if (options.spirv_route == SpirvRoute::Glslang) text += " --spirv-from glslang";
+  if (options.debug) text += " --debug";
   if (!options.validate) text += " --no-validate";
   for (const std::string& nodes : options.node_directories) text += " --nodes " + quoted(nodes);
   return text;

@@ -160,6 +160,8 @@ void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_option("--spirv-from", flags.spirv_from, "direct, or glslang: through the GLSL, as a cross-check")
       ->check(CLI::IsMember({"direct", "glslang"}))
       ->capture_default_str();
+  verb.add_flag("--debug", flags.options.debug,
+                "SPIR-V has the names of values and the lines of the nodes (with --spirv-from direct)");
   verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");
   verb.add_flag("--unused", flags.options.unused, "also materials that no primitive uses");
   verb.add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")

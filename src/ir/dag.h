@@ -100,6 +100,8 @@ using TermId = uint32_t;
 struct Term {
   std::string name;    ///< the graph node's id, "coat.absorption"
   std::string source;  ///< the node's source line, `KHR_materials_coat, "Colored Absorption"`
+  std::string file{};  ///< where the node is written; empty when it is not known
+  uint32_t line = 0;
 };
 
 class Dag {

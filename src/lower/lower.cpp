@@ -137,7 +137,9 @@ private:
   void bindGivens() {
     for (const lang::GivenDecl& decl : template_->givens) {
       const lang::NodeDecl* node = decl.value->kind == lang::Expr::Kind::Call ? decl.value->node : nullptr;
-      dag().setTerm(dag().addTerm({std::string(decl.name), node == nullptr ? "" : node->source}));
+      const lang::Origin& origin = node == nullptr ? template_->origin : node->origin;
+      dag().setTerm(dag().addTerm({std::string(decl.name), node == nullptr ? "" : node->source,
+                                   std::string(origin.file), origin.line}));
       inliner_.bind(decl, slots_);
       for (uint32_t i = 0; i < decl.results.size(); ++i) {
         const std::string name =
@@ -158,7 +160,7 @@ private:
                                      [&](const auto& input) { return input.first == param.name; });
         args.push_back(it == node.inputs.end() ? ir::kNoValue : source(it->second));
       }
-      dag().setTerm(dag().addTerm({node.id, decl.source}));
+      dag().setTerm(dag().addTerm({node.id, decl.source, std::string(decl.origin.file), decl.origin.line}));
       const std::vector<ir::ValueId> results = inliner_.call(decl, node.variant, args);
       for (size_t i = 0; i < results.size(); ++i) {
         const std::string output = decl.results.size() == 1 ? "" : std::string(decl.results[i].name);
@@ -218,7 +220,7 @@ private:
 
   void outputs() {
     uint32_t color = 0;
-    dag().setTerm(dag().addTerm({"output", ""}));
+    dag().setTerm(dag().addTerm({"output", "", std::string(template_->origin.file), template_->origin.line}));
     for (const lang::OutputDecl& decl : template_->outputs) {
       ir::Output output{ir::OutputKind::Color, ir::Stage::Fragment, std::string(decl.name), 0, ir::kNoValue};
       output.value = inliner_.evaluate(*decl.value, slots_);

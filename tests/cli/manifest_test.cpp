@@ -54,6 +54,16 @@ TEST_F(Manifest, namesTheProfile) {
   EXPECT_FALSE(place_.has("wrong"));
 }
 
+/// --debug adds where values come from, and changes nothing else: the shader is the same.
+TEST_F(Manifest, debugNamesTheNodesFiles) {
+  const std::string id = material(0)["uses"][0]["shader"];
+  EXPECT_EQ(place_.run({"gen", "car.gltf", "-o", "debug", "--debug", "--target", "spirv"}).status, 1);
+  EXPECT_EQ(place_.manifest("debug")["files"][0]["materials"][0]["uses"][0]["shader"], id);
+  const std::string debug = place_.read("debug/spirv/" + id + ".frag.spv");
+  EXPECT_NE(debug.find("nodes/coat.node"), std::string::npos);
+  EXPECT_EQ(place_.read("out/spirv/" + id + ".frag.spv").find("nodes/"), std::string::npos);
+}
+
 TEST_F(Manifest, hasTheFieldsOfTheContract) {
   EXPECT_EQ(manifest_["lacquer"], version());
   ASSERT_EQ(manifest_["files"].size(), 1u);

@@ -54,8 +54,7 @@ Body::Body(const ir::Module& module, const passes::Program& program, const Inter
       live_(ir::reachable(module, program.stage)),
       ids_(dag_.size(), 0),
       splats_(dag_.size() * 3, 0),
-      lone_component_(dag_.size(), 0),
-      term_strings_(debug ? dag_.terms().size() : 0, 0) {
+      lone_component_(dag_.size(), 0) {
   constexpr size_t kWordsPerValue = 6;
   code_.reserve(live_.size() * kWordsPerValue + 64);
   findLoneComponents();
@@ -319,13 +318,12 @@ uint32_t Body::result(ValueId id) {
     code_.op(spv::OpNoLine);
     return made;
   }
-  uint32_t& string = term_strings_[term];
-  if (string == 0) {
-    const ir::Term& t = dag_.terms()[term];
-    string = globals_.string(t.source.empty() ? t.name : t.name + ": " + t.source);
-  }
-  // A term is where a value comes from, as far as is known: it takes the place of the file.
-  code_.op(spv::OpLine, string, 1, 1);
+  // The declaration of the term's node; where that is not known, the term takes the place of a file.
+  const ir::Term& t = dag_.terms()[term];
+  const std::string place = !t.file.empty() ? t.file : t.source.empty() ? t.name : t.name + ": " + t.source;
+  uint32_t& string = strings_[place];
+  if (string == 0) string = globals_.string(place);
+  code_.op(spv::OpLine, string, std::max(t.line, 1U), 1);
   return made;
 }
 

@@ -2,6 +2,8 @@
 // its uses.
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "passes/program.h"
@@ -84,8 +86,8 @@ private:
   uint32_t block_ = 0;        ///< the label of the block being written
   uint32_t light_count_ = 0;  ///< loaded once, before the first loop that needs it
 
-  ir::TermId term_ = 0;  ///< that the last OpLine named
-  std::vector<uint32_t> term_strings_;
+  ir::TermId term_ = 0;                      ///< that the last OpLine named
+  std::map<std::string, uint32_t> strings_;  ///< the ids of OpStrings
 };
 
 }  // namespace lacquer::targets::spirv
