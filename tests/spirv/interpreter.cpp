@@ -57,6 +57,7 @@ double componentwise(uint32_t code, double a, double b, double c) {
     case GLSLstd450FMax: return a < b ? b : a;
     case GLSLstd450Pow: return std::pow(a, b);
     case GLSLstd450Atan2: return std::atan2(a, b);
+    case GLSLstd450Fma: return a * b + c;
     case GLSLstd450FMix: return a * (1 - c) + b * c;
     case GLSLstd450FClamp: return a < b ? b : (c < a ? c : a);
     default: fail("GLSL.std.450 instruction " + std::to_string(code));

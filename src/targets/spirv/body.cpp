@@ -58,6 +58,31 @@ Body::Body(const ir::Module& module, const passes::Program& program, const Inter
   constexpr size_t kWordsPerValue = 6;
   code_.reserve(live_.size() * kWordsPerValue + 64);
   findLoneComponents();
+  findFusedProducts();
+}
+
+/// a b + c is one instruction where nothing else reads the product. GPUs have it, and its rounding is within
+/// what SPIR-V allows the two.
+void Body::findFusedProducts() {
+  std::vector<uint32_t> uses(dag_.size(), 0);
+  for (const ValueId id : live_) {
+    for (const ValueId operand : dag_[id].operands()) ++uses[operand];
+  }
+  for (const ir::Output& output : module_.outputs) ++uses[output.value];
+  fused_.assign(dag_.size(), 0);
+  for (const ValueId id : live_) {
+    const ir::Value& sum = dag_[id];
+    if (sum.op != Op::Add || dag_[sum.args[0]].type != dag_[sum.args[1]].type) continue;
+    for (const ValueId operand : sum.operands()) {
+      const ir::Value& product = dag_[operand];
+      const bool alike = product.op == Op::Mul && dag_[product.args[0]].type == dag_[product.args[1]].type;
+      // What does not change with the light stays outside of the loop.
+      const bool together = (product.rate == Rate::Light) == (sum.rate == Rate::Light);
+      if (!alike || !together || uses[operand] != 1) continue;
+      fused_[operand] = 1;
+      break;
+    }
+  }
 }
 
 /// A field of a block that is read for one component only is loaded as that component: one instruction less,
@@ -129,8 +154,19 @@ uint32_t Body::special(ValueId id) {
   return operation(id);
 }
 
+uint32_t Body::fusedSum(ValueId id, size_t product) {
+  const ir::Value& sum = dag_[id];
+  const ir::Value& factors = dag_[sum.args[product]];
+  const std::array<uint32_t, 3> operands{value(factors.args[0]), value(factors.args[1]),
+                                         value(sum.args[1 - product])};
+  return instruction(id, {ir::SpirvSet::Ext, GLSLstd450Fma}, operands.data(), operands.size());
+}
+
 uint32_t Body::operation(ValueId id) {
   const ir::Value& v = dag_[id];
+  for (size_t k = 0; v.op == Op::Add && k < 2; ++k) {
+    if (fused_[v.args[k]] != 0) return fusedSum(id, k);
+  }
   Instruction what{ir::info(v.op).spirv_set, kOpcodes[static_cast<size_t>(v.op)]};
   assert(what.set != ir::SpirvSet::None && "placed, and its loop is before it");
   std::array<uint32_t, 4> operands{};
@@ -332,7 +368,9 @@ uint32_t Body::result(ValueId id) {
 void Body::statement(const passes::Statement& s) {
   switch (s.kind) {
     case passes::StatementKind::Section: return;
-    case passes::StatementKind::Let: value(s.value); return;
+    case passes::StatementKind::Let:
+      if (fused_[s.value] == 0) value(s.value);
+      return;
     case passes::StatementKind::LoopBegin: openLoop(s); return;
     case passes::StatementKind::Accumulate: accumulate(s.value); return;
     case passes::StatementKind::LoopEnd: closeLoop(); return;

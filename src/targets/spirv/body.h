@@ -41,6 +41,7 @@ private:
   uint32_t make(ir::ValueId id);
   uint32_t special(ir::ValueId id);
   uint32_t operation(ir::ValueId id);
+  uint32_t fusedSum(ir::ValueId id, size_t product);
   uint32_t operand(const ir::Value& user, size_t index);
   uint32_t splat(ir::ValueId scalar, ir::Type like);
   uint32_t constant(ir::ValueId id);
@@ -66,6 +67,7 @@ private:
 
   // preparation
   void findLoneComponents();
+  void findFusedProducts();
 
   const ir::Module& module_;
   const ir::Dag& dag_;
@@ -76,6 +78,7 @@ private:
   Words code_;
 
   std::vector<ir::ValueId> live_;
+  std::vector<uint8_t> fused_;           ///< by value: a product that is part of the one sum that reads it
   std::vector<uint32_t> ids_;            ///< by value: its id, 0 while it has none here
   std::vector<uint32_t> splats_;         ///< three a value: of 2, 3 and 4 components
   std::vector<uint8_t> lone_component_;  ///< by value, see findLoneComponents
