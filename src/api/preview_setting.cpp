@@ -26,6 +26,8 @@ constexpr Word kWords[] = {
     {"no-multiple-scattering", [](PreviewSetting& s) { s.options.multiple_scattering = false; }},
     {"ibl", [](PreviewSetting& s) { s.options.ibl = true; }},
     {"no-ibl", [](PreviewSetting& s) { s.options.ibl = false; }},
+    {"khr", [](PreviewSetting& s) { s.options.profile = "khr"; }},
+    {"openpbr", [](PreviewSetting& s) { s.options.profile = "openpbr"; }},
 };
 constexpr std::string_view kVariant = "variant:";
 

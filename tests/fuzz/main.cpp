@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <regex>
 #include <sstream>
 
 #include "lacquer.h"
@@ -46,8 +45,12 @@ std::vector<Input> corpus(const Options& options) {
   }
   // Under names of their own, or all that the checker said would be that they are there already.
   for (const auto& entry : fs::directory_iterator(root / "nodes")) {
-    inputs.push_back(
-        {Kind::Node, std::regex_replace(readFile(entry.path()), std::regex("\nnode "), "\nnode own_")});
+    std::string text = readFile(entry.path());
+    const std::string node = "\nnode ";
+    for (size_t at = text.find(node); at != std::string::npos; at = text.find(node, at + 1)) {
+      text.insert(at + node.size(), "own_");
+    }
+    inputs.push_back({Kind::Node, std::move(text)});
   }
   return inputs;
 }
