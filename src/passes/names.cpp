@@ -289,7 +289,10 @@ bool Names::free(std::string_view name) const { return !reserved(name) && !taken
 std::string Names::pick(std::string_view wanted, std::string_view layer) {
   const std::string base = cleaned(wanted);
   std::string name = base;
-  if (!free(name) && !layer.empty()) name = cleaned(fmt::format("{}_{}", layer, base));
+  // "coat_alpha", but not "coat_coat_alpha": a second one of a layer's own is numbered.
+  const bool of_layer =
+      base.starts_with(layer) && base.substr(std::min(layer.size(), base.size())).starts_with('_');
+  if (!free(name) && !layer.empty() && !of_layer) name = cleaned(fmt::format("{}_{}", layer, base));
   const std::string numbered = name;
   for (int k = 2; !free(name); ++k) name = fmt::format("{}_{}", numbered, k);
   taken_.insert(name);
