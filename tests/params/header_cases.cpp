@@ -5,7 +5,6 @@
 
 #include <cctype>
 #include <filesystem>
-#include <regex>
 #include <sstream>
 
 #include "../build/processes.h"
@@ -70,12 +69,17 @@ std::string inputText(const std::vector<HeaderCase>& cases) {
 std::vector<Member> membersOf(const std::string& header) {
   const size_t begin = header.find("struct Parameters {");
   const std::string body = header.substr(begin, header.find("\n};\n", begin) - begin);
-  static const std::regex kMember(R"((double|bool) (\w+)(?:\[(\d)\])? = )");
   std::vector<Member> members;
-  for (std::sregex_iterator it(body.begin(), body.end(), kMember), end; it != end; ++it) {
-    const std::string width = (*it)[3];
-    members.push_back(
-        {(*it)[2], width.empty() ? 1 : static_cast<size_t>(width[0] - '0'), (*it)[1] == "bool"});
+  std::istringstream lines(body);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string type, name, equals;
+    words >> type >> name >> equals;
+    if ((type != "double" && type != "bool") || equals != "=") continue;
+    const size_t bracket = name.find('[');
+    const bool array = bracket != std::string::npos;
+    members.push_back({name.substr(0, bracket),
+                       array ? static_cast<size_t>(name.at(bracket + 1) - '0') : 1, type == "bool"});
   }
   return members;
 }
