@@ -96,7 +96,7 @@ NodeModule nodeModule(const lang::NodeDecl& node, std::string_view variant) {
   lower::Inliner inliner(result.module.dag, [&](const lang::NodeDecl& callee, std::span<const ValueId> args) {
     if (!std::exchange(outermost, false)) result.calls.push_back({&callee, {args.begin(), args.end()}});
   });
-  const std::vector<ValueId> results = inliner.call(node, variant, arguments);
+  const lower::Values results = inliner.call(node, variant, arguments);
   for (size_t i = 0; i < results.size(); ++i) {
     const std::string name(node.results[i].name);
     result.module.outputs.push_back(

@@ -13,9 +13,9 @@
 #include "gltf/text.h"
 #include "graph/graph.h"
 #include "graph/order.h"
-#include "graph/rates.h"
 #include "graph/text.h"
 #include "lang/suggest.h"
+#include "support/arena.h"
 
 namespace lacquer::graph {
 
@@ -24,6 +24,9 @@ namespace {
 using gltf::Path;
 using ir::Type;
 using ir::typeName;
+using lang::kLight;
+using lang::kVertex;
+using lang::Ties;
 
 constexpr size_t kLast = std::numeric_limits<size_t>::max();
 
@@ -104,6 +107,7 @@ private:
   std::string suggest(std::string_view name, Candidates candidates, std::string otherwise = {});
 
   void templateDecl();
+  const lang::EnvironmentDecl* environment(std::string_view name) const;
   void parameters();
   void parameter(size_t index);
   void textures();
@@ -122,19 +126,18 @@ private:
   std::optional<Type> typeOf(const TextureRef& ref, const Sink& sink);
   std::optional<Type> typeOf(const GivenRef& ref, const Sink& sink);
   std::optional<Type> typeOf(const NodeRef& ref, const Sink& sink);
+  void unknownGiven(std::string_view name, const Sink& sink);
   std::optional<Type> swizzled(Type type, const std::string& swizzle, const Sink& sink);
   std::string conversion(const Source& source, Type from, Type to) const;
-  Tied tiedOf(const Source& source, const TemplateRates& rates, const std::vector<Tied>& nodes) const;
+  Tied tiedOf(const Source& source, const std::vector<Tied>& nodes) const;
 
   Graph& graph_;
   const lang::Library& library_;
   std::vector<Found> found_;
   size_t suggestions_ = 0;
   const lang::TemplateDecl* template_ = nullptr;
-  std::unordered_map<std::string, Type> givens_;
-  std::unordered_map<std::string_view, Names> given_results_;  ///< of those with several
-  std::unordered_map<std::string_view, size_t> parameters_, textures_, nodes_;
-  std::unordered_map<std::string_view, Type> environments_;
+  Arena arena_;
+  NameMap<size_t> parameters_{&arena_}, textures_{&arena_}, nodes_{&arena_};
   std::vector<const lang::NodeDecl*> decls_;  ///< of each node; null where it is unknown or wrong
   std::vector<size_t> order_;
 };
@@ -236,19 +239,14 @@ void GraphCheck::templateDecl() {
   const Result<const lang::TemplateDecl*> found = library_.template_(graph_.template_name);
   if (!found) return forward(spot, found.error());
   template_ = *found;
-  for (const lang::EnvironmentDecl& environment : template_->environments) {
-    environments_.emplace(environment.name, environment.type);
-  }
-  for (const lang::GivenDecl& given : template_->givens) {
-    for (const lang::Param& result : given.results) {
-      std::string name(given.name);
-      if (given.multiple) {
-        name += "." + std::string(result.name);
-        given_results_[given.name].push_back(result.name);
-      }
-      givens_.emplace(std::move(name), result.type);
-    }
-  }
+}
+
+/// The template's texture of that name, or nothing.
+const lang::EnvironmentDecl* GraphCheck::environment(std::string_view name) const {
+  if (template_ == nullptr) return nullptr;
+  const auto& all = template_->environments;
+  const auto it = std::find_if(all.begin(), all.end(), [&](const auto& e) { return e.name == name; });
+  return it == all.end() ? nullptr : &*it;
 }
 
 void GraphCheck::parameter(size_t index) {
@@ -300,7 +298,7 @@ void GraphCheck::textures() {
       error(spot, at(), "wrong-name", fmt::format("{} cannot be the name of a texture", quote(t.name)),
             "a name has letters, digits and underscores, and begins with no digit");
     }
-    if (environments_.contains(t.name)) {
+    if (environment(t.name) != nullptr) {
       error(spot, at(), "duplicate-name",
             fmt::format("{} is a texture that the template {} gives", quote(t.name),
                         quote(graph_.template_name)),
@@ -351,7 +349,7 @@ void GraphCheck::nodeHead(size_t index) {
 }
 
 void GraphCheck::nodeHeads() {
-  std::unordered_map<std::string_view, const lang::NodeDecl*> known;
+  NameMap<const lang::NodeDecl*> known(&arena_);
   for (size_t i = 0; i < graph_.nodes.size(); ++i) {
     const std::string& type = graph_.nodes[i].type;
     const auto [it, fresh] = known.try_emplace(type, nullptr);
@@ -544,7 +542,7 @@ std::optional<Type> GraphCheck::typeOf(const TextureRef& ref, const Sink& sink) 
     const Type type = graph_.textures[it->second].type;
     return ir::isTexture(type) ? std::optional(type) : std::nullopt;
   }
-  if (const auto it = environments_.find(ref.name); it != environments_.end()) return it->second;
+  if (const auto* given = environment(ref.name); given != nullptr) return given->type;
   const auto names = [&] {
     Names all;
     for (const ir::TextureSlot& t : graph_.textures) all.push_back(t.name);
@@ -559,32 +557,36 @@ std::optional<Type> GraphCheck::typeOf(const TextureRef& ref, const Sink& sink) 
 
 std::optional<Type> GraphCheck::typeOf(const GivenRef& ref, const Sink& sink) {
   if (template_ == nullptr) return std::nullopt;
-  if (const auto it = givens_.find(ref.name); it != givens_.end()) return it->second;
-  const std::string_view head = std::string_view(ref.name).substr(0, ref.name.find('.'));
-  if (const auto several = given_results_.find(head); several != given_results_.end()) {
-    const std::string_view result =
-        std::string_view(ref.name).substr(std::min(ref.name.size(), head.size() + 1));
-    const std::string all = "it has " + listOf(several->second);
-    if (result.empty()) {
-      error(sink, "unknown-given", fmt::format("{} has several results", quote(head)),
-            fmt::format("name one behind a dot: '{}.{}'; {}", head, several->second[0], all));
-    } else {
-      error(sink, "unknown-given", fmt::format("the given {} has no result {}", quote(head), quote(result)),
-            suggest(
-                result, [&] { return several->second; }, all));
-    }
-    return std::nullopt;
-  }
-  const auto names = [&] {
-    Names all;
-    for (const auto& [name, type] : givens_) all.push_back(name);
-    std::sort(all.begin(), all.end());
-    return all;
-  };
-  error(sink, "unknown-given",
-        fmt::format("the template {} does not give {}", quote(graph_.template_name), quote(ref.name)),
-        suggest(ref.name, names));
+  if (const auto found = template_->find(ref.name)) return found->given->results[found->index].type;
+  unknownGiven(ref.name, sink);
   return std::nullopt;
+}
+
+void GraphCheck::unknownGiven(std::string_view name, const Sink& sink) {
+  const std::string_view head = name.substr(0, name.find('.'));
+  std::vector<std::string> full;
+  for (const lang::GivenDecl& given : template_->givens) {
+    for (const lang::Param& result : given.results) {
+      full.push_back(given.multiple ? fmt::format("{}.{}", given.name, result.name)
+                                    : std::string(given.name));
+    }
+    if (!given.multiple || given.name != head) continue;
+    const std::string_view result = name.substr(std::min(name.size(), head.size() + 1));
+    const Names names = namesOf(given.results, [](const lang::Param& r) { return r.name; })();
+    const std::string all = "it has " + listOf(names);
+    if (result.empty()) {
+      return error(sink, "unknown-given", fmt::format("{} has several results", quote(head)),
+                   fmt::format("name one behind a dot: '{}.{}'; {}", head, names[0], all));
+    }
+    return error(sink, "unknown-given",
+                 fmt::format("the given {} has no result {}", quote(head), quote(result)),
+                 suggest(
+                     result, [&] { return names; }, all));
+  }
+  std::sort(full.begin(), full.end());
+  error(sink, "unknown-given",
+        fmt::format("the template {} does not give {}", quote(graph_.template_name), quote(name)),
+        suggest(name, namesOf(full, [](const std::string& one) { return std::string_view(one); })));
 }
 
 std::optional<Type> GraphCheck::typeOf(const NodeRef& ref, const Sink& sink) {
@@ -665,12 +667,11 @@ void GraphCheck::order() {
   order_ = std::move(result.order);
 }
 
-GraphCheck::Tied GraphCheck::tiedOf(const Source& source, const TemplateRates& rates,
-                                    const std::vector<Tied>& nodes) const {
+GraphCheck::Tied GraphCheck::tiedOf(const Source& source, const std::vector<Tied>& nodes) const {
   if (const auto* ref = std::get_if<NodeRef>(&source.from)) return nodes[nodes_.at(ref->node)];
   const auto* given = std::get_if<GivenRef>(&source.from);
   if (given == nullptr) return {};
-  const Ties ties = rates.givens.at(given->name);
+  const Ties ties = template_->find(given->name)->given->ties;
   Tied tied{ties, {}, {}};
   if ((ties & kLight) != 0) tied.light = given->name;
   if ((ties & kVertex) != 0) tied.vertex = given->name;
@@ -680,12 +681,11 @@ GraphCheck::Tied GraphCheck::tiedOf(const Source& source, const TemplateRates& r
 /// Values of one light that no sum takes, and values of a vertex that nothing interpolates. Only for graphs
 /// that are right otherwise.
 void GraphCheck::rates() {
-  const TemplateRates rates = templateRates(*template_);
   std::vector<Tied> nodes(graph_.nodes.size());
   for (const size_t index : order_) {
     Tied& tied = nodes[index];
     for (const auto& [name, source] : graph_.nodes[index].inputs) {
-      const Tied from = tiedOf(source, rates, nodes);
+      const Tied from = tiedOf(source, nodes);
       tied.ties |= from.ties;
       if (tied.light.empty()) tied.light = from.light;
       if (tied.vertex.empty()) tied.vertex = from.vertex;
@@ -694,12 +694,14 @@ void GraphCheck::rates() {
   }
   Names summed;
   for (const lang::PortDecl& port : template_->ports) {
-    if ((rates.refused.at(port.param.name) & kLight) == 0) summed.push_back(port.param.name);
+    if ((port.refused & kLight) == 0) summed.push_back(port.param.name);
   }
   for (size_t i = 0; i < graph_.outputs.size(); ++i) {
     const auto& [name, source] = graph_.outputs[i];
-    const Tied tied = tiedOf(source, rates, nodes);
-    const Ties wrong = tied.ties & rates.refused.at(name);
+    const Tied tied = tiedOf(source, nodes);
+    const auto port = std::find_if(template_->ports.begin(), template_->ports.end(),
+                                   [&](const lang::PortDecl& p) { return p.param.name == name; });
+    const Ties wrong = tied.ties & port->refused;
     const Spot spot{Section::Outputs, i, 0};
     if ((wrong & kLight) != 0) {
       error(spot, pointerTo("outputs", name), "light-rate",

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "gltf/table.h"
 
@@ -21,16 +24,31 @@ std::string spelled(std::string_view property) {
   return name;
 }
 
+/// The table's rows by the names of parameters.
+struct Facts {
+  std::vector<gltf::TableRow> rows = gltf::tableRows();
+  std::map<std::string, const gltf::PropertyFacts*, std::less<>> of_material;
+  std::vector<std::pair<std::string, const gltf::PropertyFacts*>> of_texture;  ///< "_scale"
+
+  Facts() {
+    for (const gltf::TableRow& row : rows) {
+      if (gltf::elementCount(row.facts.kind) == 0) continue;
+      const std::string property = spelled(row.facts.name);
+      of_material.emplace(property, &row.facts);
+      const bool texture = row.object == "KHR_texture_transform" || row.object.ends_with("extureInfo");
+      if (texture) of_texture.emplace_back("_" + property, &row.facts);
+    }
+  }
+};
+
 /// The row whose property is called so, or else the one of a texture that the name ends in.
 const gltf::PropertyFacts* factsOf(std::string_view name) {
-  static const std::vector<gltf::TableRow> kRows = gltf::tableRows();
+  static const Facts kFacts;
+  const auto it = kFacts.of_material.find(name);
+  if (it != kFacts.of_material.end()) return it->second;
   const gltf::PropertyFacts* found = nullptr;
-  for (const gltf::TableRow& row : kRows) {
-    if (gltf::elementCount(row.facts.kind) == 0) continue;
-    const std::string property = spelled(row.facts.name);
-    if (name == property) return &row.facts;
-    const bool of_texture = row.object == "KHR_texture_transform" || row.object.ends_with("extureInfo");
-    if (of_texture && name.ends_with("_" + property)) found = &row.facts;
+  for (const auto& [ending, facts] : kFacts.of_texture) {
+    if (name.ends_with(ending)) found = facts;
   }
   return found;
 }

@@ -208,7 +208,9 @@ ValueId Dag::component(ValueId value, int index) { return swizzle(value, {{index
 
 ValueId Dag::remake(ValueId id, std::span<const ValueId> operands) {
   const Value value = values_[id];
-  if (std::equal(operands.begin(), operands.end(), value.args.begin())) return id;
+  bool same = true;
+  for (size_t k = 0; k < operands.size(); ++k) same &= operands[k] == value.args[k];
+  if (same) return id;
   if (value.op == Op::Construct) return construct(value.type, operands);
   if (value.op != Op::Swizzle) return make(value.op, operands, value.payload);
   std::array<int, 4> picks{};
@@ -310,39 +312,50 @@ std::optional<Interval> Dag::assumed(ValueId id) const {
   return facts_[fact_of_[id] - 1];
 }
 
-void Dag::sortByRank(std::vector<ValueId>& ids) const {
-  std::sort(ids.begin(), ids.end(), [this](ValueId a, ValueId b) {
-    return rank_of_[a] != rank_of_[b] ? rank_of_[a] < rank_of_[b] : a < b;
-  });
+/// Ascending ids by rank; of equal rank they keep their order.
+std::vector<ValueId> Dag::byRank(std::span<const ValueId> ids) const {
+  std::vector<uint32_t> place(values_.size() + 1, 0);
+  for (const ValueId id : ids) ++place[rank_of_[id] + 1];
+  for (size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
+  std::vector<ValueId> sorted(ids.size());
+  for (const ValueId id : ids) sorted[place[rank_of_[id]]++] = id;
+  return sorted;
 }
 
 std::vector<ValueId> Dag::compact(std::span<const ValueId> roots) {
-  std::vector<ValueId> live = reachable(*this, roots);
-  sortByRank(live);
   std::vector<ValueId> moved(values_.size(), kNoValue);
   std::vector<ValueId> order, pending;
+  const std::vector<ValueId> live = byRank(reachable(*this, roots));
   order.reserve(live.size());
+  const auto place = [&](ValueId id) {
+    moved[id] = static_cast<ValueId>(order.size());
+    order.push_back(id);
+  };
+  // Puts an operand that has no place yet on the stack: false when all have one.
+  const auto waits = [&](ValueId id) {
+    const size_t before = pending.size();
+    for (size_t k = values_[id].count; k-- > 0;) {
+      if (moved[values_[id].args[k]] == kNoValue) pending.push_back(values_[id].args[k]);
+    }
+    return pending.size() != before;
+  };
   for (const ValueId start : live) {
-    pending.assign(1, start);
+    if (moved[start] != kNoValue) continue;
+    if (!waits(start)) {
+      place(start);
+      continue;
+    }
+    pending.insert(pending.begin(), start);
     while (!pending.empty()) {
       const ValueId id = pending.back();
-      const size_t before = pending.size();
-      if (moved[id] == kNoValue) {
-        for (size_t k = values_[id].count; k-- > 0;) {
-          if (moved[values_[id].args[k]] == kNoValue) pending.push_back(values_[id].args[k]);
-        }
-      }
-      if (pending.size() != before) continue;
+      if (moved[id] == kNoValue && waits(id)) continue;
       pending.pop_back();
-      if (moved[id] != kNoValue) continue;
-      moved[id] = static_cast<ValueId>(order.size());
-      order.push_back(id);
+      if (moved[id] == kNoValue) place(id);
     }
   }
   const auto take = [&order](auto& from) {
-    std::remove_reference_t<decltype(from)> to;
-    to.reserve(order.size() + 16);
-    for (const ValueId id : order) to.push_back(from[id]);
+    std::remove_reference_t<decltype(from)> to(order.size());
+    for (size_t i = 0; i < order.size(); ++i) to[i] = from[order[i]];
     from = std::move(to);
   };
   take(values_), take(term_of_), take(name_of_), take(fact_of_);
@@ -356,21 +369,23 @@ std::vector<ValueId> Dag::compact(std::span<const ValueId> roots) {
 }
 
 std::vector<ValueId> reachable(const Dag& dag, std::span<const ValueId> roots) {
-  std::vector<uint8_t> seen(dag.size(), 0);
   ValueId last = 0;
-  for (const ValueId root : roots) {
-    seen[root] = 1;
-    last = std::max(last, root + 1);
+  for (const ValueId root : roots) last = std::max(last, root + 1);
+  std::vector<uint8_t> seen(last, 0);
+  for (const ValueId root : roots) seen[root] = 1;
+  // Operands have smaller ids, so one descending sweep finds everything.
+  size_t count = 0;
+  for (ValueId i = last; i-- > 0;) {
+    if (seen[i] == 0) continue;
+    ++count;
+    const Value& value = dag[i];
+    for (size_t k = 0; k < value.count; ++k) seen[value.args[k]] = 1;
   }
   std::vector<ValueId> result;
-  result.reserve(last);
-  // Operands have smaller ids, so one descending sweep finds everything.
-  for (size_t i = last; i-- > 0;) {
-    if (!seen[i]) continue;
-    result.push_back(static_cast<ValueId>(i));
-    for (const ValueId operand : dag[static_cast<ValueId>(i)].operands()) seen[operand] = 1;
+  result.reserve(count);
+  for (ValueId i = 0; i < last; ++i) {
+    if (seen[i] != 0) result.push_back(i);
   }
-  std::reverse(result.begin(), result.end());
   return result;
 }
 

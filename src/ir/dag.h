@@ -168,7 +168,8 @@ public:
   static constexpr uint32_t kOwnRank = ~uint32_t{0};
   void setRank(uint32_t rank) { current_rank_ = rank; }
   uint32_t rankOf(ValueId id) const { return rank_of_[id]; }
-  void sortByRank(std::vector<ValueId>& ids) const;
+  /// Ascending ids in the order of their ranks.
+  std::vector<ValueId> byRank(std::span<const ValueId> ids) const;
   /// Drops what `roots` do not reach and numbers the rest by rank, operands first. Returns the new id of
   /// every old one (kNoValue: dropped).
   std::vector<ValueId> compact(std::span<const ValueId> roots);

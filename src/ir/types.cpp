@@ -17,21 +17,6 @@ std::string_view typeName(Type type) {
   return "";
 }
 
-int componentCount(Type type) {
-  switch (type) {
-    case Type::Bool:
-    case Type::Int:
-    case Type::Float: return 1;
-    case Type::Vec2: return 2;
-    case Type::Vec3: return 3;
-    case Type::Vec4: return 4;
-    case Type::Mat4: return 16;
-    case Type::Texture2D:
-    case Type::TextureCube: return 0;
-  }
-  return 0;
-}
-
 Type floatType(int components) { return static_cast<Type>(static_cast<int>(Type::Float) + components - 1); }
 
 std::string_view rateName(Rate rate) {

@@ -14,7 +14,10 @@ std::string_view typeName(Type type);
 
 /// Number of float components: 1 for Float, 2 to 4 for vectors, 16 for Mat4, 1 for Bool and Int, 0 for
 /// textures.
-int componentCount(Type type);
+constexpr int componentCount(Type type) {
+  constexpr int kCounts[] = {1, 1, 1, 2, 3, 4, 16, 0, 0};
+  return kCounts[static_cast<int>(type)];
+}
 
 inline bool isFloatVector(Type t) { return t == Type::Vec2 || t == Type::Vec3 || t == Type::Vec4; }
 inline bool isFloating(Type t) { return t == Type::Float || isFloatVector(t); }

@@ -215,6 +215,13 @@ struct GivenDecl {
   std::string_view prose;
   Span span;
   ExprPtr value;
+  Ties ties = 0;  ///< whether its values differ for each light or each vertex: tie()
+};
+
+/// One of a given's results.
+struct GivenResult {
+  const GivenDecl* given;
+  size_t index;
 };
 
 /// What a graph must deliver, or may where there is a default.
@@ -222,6 +229,7 @@ struct PortDecl {
   Param param;
   uint32_t slot = 0;
   ExprPtr default_value;  ///< any expression over what the template declares before it; null: must deliver
+  Ties refused = 0;       ///< what its value may not be tied to: tie()
 };
 
 enum class OutputRole : uint8_t { Position, Color, Discard };
@@ -249,6 +257,9 @@ struct TemplateDecl {
   std::optional<uint32_t> front_facing;  ///< the slot of gl_FrontFacing, where an expression uses it
   Origin origin;
   Span span;
+
+  /// The given of that name as a graph writes it: "uv0", "light_sample.L".
+  std::optional<GivenResult> find(std::string_view given) const;
 };
 
 }  // namespace lacquer::lang

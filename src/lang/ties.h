@@ -19,4 +19,9 @@ constexpr Ties untiedBy(ir::Op op) {
   return op == ir::Op::Interpolate ? kVertex : Ties{0};
 }
 
+struct TemplateDecl;
+
+/// Finds what the givens of a checked template are tied to, and what its ports refuse.
+void tie(TemplateDecl& decl);
+
 }  // namespace lacquer::lang

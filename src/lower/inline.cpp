@@ -17,15 +17,15 @@ using lang::Statement;
 /// One body being evaluated.
 struct Inliner::Frame {
   const lang::Body& body;
-  std::vector<ValueId> slots;
+  Values slots;
   ValueId path;  ///< Bool: whether the conditions of the enclosing arms hold
 
   /// The returns met so far. The first whose condition holds is the one taken.
   struct Return {
     ValueId path;
-    std::vector<ValueId> results;
+    Values results;
   };
-  std::vector<Return> returns;
+  std::pmr::vector<Return> returns;
 };
 
 namespace {
@@ -34,11 +34,11 @@ bool isTrue(const ir::Dag& dag, ValueId id) { return dag.isConstant(id) && dag.c
 
 }  // namespace
 
-std::vector<ValueId> Inliner::call(const lang::NodeDecl& node, std::string_view variant,
-                                   std::span<const ValueId> args) {
+Values Inliner::call(const lang::NodeDecl& node, std::string_view variant, std::span<const ValueId> args) {
   const lang::Body* body = node.find(variant);
   assert(body != nullptr && args.size() <= node.params.size());
-  Frame frame{*body, std::vector<ValueId>(body->slots.size(), kNoValue), dag_.boolean(true), {}};
+  Frame frame{*body, Values(body->slots.size(), kNoValue, &arena_), dag_.boolean(true),
+              std::pmr::vector<Frame::Return>(&arena_)};
   for (size_t i = 0; i < node.params.size(); ++i) {
     const lang::Param& param = node.params[i];
     const bool given = i < args.size() && args[i] != kNoValue;
@@ -50,7 +50,7 @@ std::vector<ValueId> Inliner::call(const lang::NodeDecl& node, std::string_view 
   [[maybe_unused]] const bool returned = run(body->statements, frame);
   assert(returned);
   // Every way returns (checked), so the last one is taken where no other is.
-  std::vector<ValueId> results = std::move(frame.returns.back().results);
+  Values results = std::move(frame.returns.back().results);
   frame.returns.pop_back();
   assert(results.size() == node.results.size());
   for (auto it = frame.returns.rbegin(); it != frame.returns.rend(); ++it) {
@@ -65,7 +65,7 @@ std::vector<ValueId> Inliner::call(const lang::NodeDecl& node, std::string_view 
 ValueId Inliner::evaluate(const Expr& expr, std::span<const ValueId> slots) { return value(expr, slots); }
 
 void Inliner::bind(const lang::GivenDecl& given, std::vector<ValueId>& slots) {
-  const std::vector<ValueId> results = values(*given.value, slots);
+  const Values results = values(*given.value, slots);
   for (size_t i = 0; i < results.size(); ++i) {
     slots[given.slot + i] = results[i];
     if (!given.multiple) dag_.name(results[i], given.name);
@@ -73,9 +73,9 @@ void Inliner::bind(const lang::GivenDecl& given, std::vector<ValueId>& slots) {
 }
 
 /// Several values for a call of a node with several results.
-std::vector<ValueId> Inliner::values(const Expr& expr, std::span<const ValueId> slots) {
-  if (expr.kind != Expr::Kind::Call) return {value(expr, slots)};
-  std::vector<ValueId> args(expr.args.size(), kNoValue);
+Values Inliner::values(const Expr& expr, std::span<const ValueId> slots) {
+  if (expr.kind != Expr::Kind::Call) return Values(1, value(expr, slots), &arena_);
+  Values args(expr.args.size(), kNoValue, &arena_);
   for (size_t i = 0; i < args.size(); ++i) {
     if (expr.args[i]) args[i] = value(*expr.args[i], slots);
   }
@@ -149,7 +149,7 @@ bool Inliner::run(const std::vector<Statement>& statements, Frame& frame) {
 }
 
 void Inliner::runLet(const Statement& statement, Frame& frame) {
-  const std::vector<ValueId> results = values(*statement.values[0], frame.slots);
+  const Values results = values(*statement.values[0], frame.slots);
   for (size_t i = 0; i < statement.results; ++i) frame.slots[statement.slot + i] = results[i];
   if (statement.results == 1) dag_.name(results[0], statement.name);
 }
@@ -160,10 +160,11 @@ bool Inliner::runIf(const Statement& statement, Frame& frame) {
     return run(isTrue(dag_, condition) ? statement.body : statement.otherwise, frame);
   ++conditional_;
   const ValueId path = frame.path;
-  const std::vector<ValueId> before = frame.slots;
+  const Values before(frame.slots, &arena_);
   frame.path = dag_.make(Op::And, {path, condition});
   const bool yes_returned = run(statement.body, frame);
-  const std::vector<ValueId> yes = std::exchange(frame.slots, before);
+  const Values yes(std::move(frame.slots), &arena_);
+  frame.slots = before;
   frame.path = dag_.make(Op::And, {path, dag_.make(Op::Not, {condition})});
   const bool no_returned = run(statement.otherwise, frame);
   frame.path = path;
@@ -180,7 +181,7 @@ bool Inliner::runIf(const Statement& statement, Frame& frame) {
 }
 
 void Inliner::runReturn(const Statement& statement, Frame& frame) {
-  std::vector<ValueId> results;
+  Values results(&arena_);
   if (statement.values.size() == 1) {
     results = values(*statement.values[0], frame.slots);
   } else {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <memory_resource>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "ir/dag.h"
 #include "lang/ast.h"
+#include "support/arena.h"
 
 namespace lacquer::lower {
 
@@ -20,14 +22,16 @@ namespace lacquer::lower {
 /// calls that count only under a condition, whose arguments may break the contract where they do not count.
 using OnCall = std::function<void(const lang::NodeDecl&, std::span<const ir::ValueId>)>;
 
+/// Values of a call, in the inliner's memory.
+using Values = std::pmr::vector<ir::ValueId>;
+
 class Inliner {
 public:
   explicit Inliner(ir::Dag& dag, OnCall on_call = {}) : dag_(dag), on_call_(std::move(on_call)) {}
 
   /// Values of the node's results, in order. `args` are those of the leading parameters; kNoValue, or none at
   /// the end, means the default. Types must fit and the variant must exist (asserted).
-  std::vector<ir::ValueId> call(const lang::NodeDecl& node, std::string_view variant,
-                                std::span<const ir::ValueId> args);
+  Values call(const lang::NodeDecl& node, std::string_view variant, std::span<const ir::ValueId> args);
 
   /// The value of an expression of a template. `slots` has TemplateDecl::slots entries; those that the
   /// expression reaches are set. An expression that is a multi-output call gives its first result.
@@ -39,13 +43,14 @@ public:
 private:
   struct Frame;
   ir::ValueId value(const lang::Expr& expr, std::span<const ir::ValueId> slots);
-  std::vector<ir::ValueId> values(const lang::Expr& expr, std::span<const ir::ValueId> slots);
+  Values values(const lang::Expr& expr, std::span<const ir::ValueId> slots);
   /// True when every way through the statements returns.
   bool run(const std::vector<lang::Statement>& statements, Frame& frame);
   void runLet(const lang::Statement& statement, Frame& frame);
   bool runIf(const lang::Statement& statement, Frame& frame);
   void runReturn(const lang::Statement& statement, Frame& frame);
 
+  Arena arena_;
   ir::Dag& dag_;
   OnCall on_call_;
   /// Above 0 while what is evaluated counts only under a condition that is not known: what a callee assumes

@@ -1,8 +1,8 @@
 #include "lower/lower.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <unordered_map>
 
 #include "graph/neutral.h"
 #include "lower/inline.h"
@@ -34,14 +34,6 @@ std::string joined(std::string_view a, std::string_view b) {
   text += '.';
   text += b;
   return text;
-}
-
-/// Node ids hold dots themselves, so a result's name is set off by another sign.
-std::string resultKey(std::string_view node, std::string_view output) {
-  std::string key(node);
-  key += '/';
-  key += output;
-  return key;
 }
 
 class Lowering {
@@ -100,9 +92,9 @@ private:
       slot.name = environment.name;
       slot.type = environment.type;
       slot.environment = true;
-      slots_[environment.slot] = addTexture(slot);
+      textures_[environment.name] = slots_[environment.slot] = addTexture(slot);
     }
-    for (const ir::TextureSlot& texture : graph_.textures) addTexture(texture);
+    for (const ir::TextureSlot& texture : graph_.textures) textures_[texture.name] = addTexture(texture);
     if (template_->front_facing) {
       slots_[*template_->front_facing] =
           dag().input({ir::InputKind::FrontFacing, "gl_FrontFacing", ir::Type::Bool, ir::Rate::Fragment, {}});
@@ -112,9 +104,9 @@ private:
   ir::ValueId addTexture(const ir::TextureSlot& slot) {
     const auto index = static_cast<uint32_t>(module_.textures.size());
     module_.textures.push_back(slot);
-    textures_[slot.name] =
+    const ir::ValueId value =
         dag().input({ir::InputKind::Texture, slot.name, slot.type, ir::Rate::Frame, {0, 1}, 0, index});
-    return textures_[slot.name];
+    return value;
   }
 
   void declareBlock(const lang::BlockDecl& decl) {
@@ -141,11 +133,6 @@ private:
       dag().setTerm(dag().addTerm({std::string(decl.name), node == nullptr ? "" : node->source,
                                    std::string(origin.file), origin.line}));
       inliner_.bind(decl, slots_);
-      for (uint32_t i = 0; i < decl.results.size(); ++i) {
-        const std::string name =
-            decl.multiple ? joined(decl.name, decl.results[i].name) : std::string(decl.name);
-        givens_[name] = slots_[decl.slot + i];
-      }
     }
   }
 
@@ -154,20 +141,18 @@ private:
       const Result<const lang::NodeDecl*> found = library_.node(node.type);
       if (!found) return found.error();
       const lang::NodeDecl& decl = **found;
-      std::vector<ir::ValueId> args;
+      std::pmr::vector<ir::ValueId> args(&arena_);
       for (const lang::Param& param : decl.params) {
         const auto it = std::find_if(node.inputs.begin(), node.inputs.end(),
                                      [&](const auto& input) { return input.first == param.name; });
         args.push_back(it == node.inputs.end() ? ir::kNoValue : source(it->second));
       }
       dag().setTerm(dag().addTerm({node.id, decl.source, std::string(decl.origin.file), decl.origin.line}));
-      const std::vector<ir::ValueId> results = inliner_.call(decl, node.variant, args);
-      for (size_t i = 0; i < results.size(); ++i) {
-        const std::string output = decl.results.size() == 1 ? "" : std::string(decl.results[i].name);
-        // A single result is called what the node is in the graph.
-        if (output.empty()) dag().name(results[i], node.id.substr(node.id.rfind('.') + 1));
-        results_[resultKey(node.id, output)] = results[i];
-      }
+      Values results = inliner_.call(decl, node.variant, args);
+      // A single result is called what the node is in the graph.
+      const std::string_view id = node.id;
+      if (results.size() == 1) dag().name(results[0], id.substr(id.rfind('.') + 1));
+      results_.emplace(id, Lowered{&decl, std::move(results)});
     }
     return {};
   }
@@ -175,21 +160,23 @@ private:
   ir::ValueId source(const graph::Source& source) {
     const ir::ValueId value = std::visit([this](const auto& from) { return this->from(from); }, source.from);
     if (source.swizzle.empty()) return value;
-    std::vector<int> components;
-    for (const char c : source.swizzle)
-      components.push_back(static_cast<int>(std::string_view("xyzwrgbastpq").find(c)) % 4);
-    return dag().swizzle(value, components);
+    std::array<int, 4> components{};
+    const size_t count = source.swizzle.size();
+    assert(count <= components.size());
+    for (size_t i = 0; i < count; ++i)
+      components[i] = static_cast<int>(std::string_view("xyzwrgbastpq").find(source.swizzle[i])) % 4;
+    return dag().swizzle(value, {components.data(), count});
   }
 
   ir::ValueId from(const graph::Literal& literal) { return dag().constant(literal.type, literal.value); }
 
   ir::ValueId from(const graph::ParameterRef& reference) {
+    const auto known = parameters_.find(reference.name);
+    if (known != parameters_.end()) return known->second;
     const auto it = std::find_if(graph_.parameters.begin(), graph_.parameters.end(),
                                  [&](const ir::Parameter& p) { return p.name == reference.name; });
     assert(it != graph_.parameters.end());
     if (options_.parameters == ParameterMode::Baked) return dag().constant(it->type, it->value);
-    const auto known = parameters_.find(it->name);
-    if (known != parameters_.end()) return known->second;
     const ir::ValueId value = dag().input({ir::InputKind::Parameter, it->name, it->type, ir::Rate::Material,
                                            it->range, 0, static_cast<uint32_t>(module_.parameters.size())});
     module_.parameters.push_back(*it);
@@ -199,12 +186,19 @@ private:
   }
 
   ir::ValueId from(const graph::TextureRef& reference) { return textures_.at(reference.name); }
-  ir::ValueId from(const graph::GivenRef& reference) { return givens_.at(reference.name); }
+  ir::ValueId from(const graph::GivenRef& reference) {
+    const auto found = template_->find(reference.name);
+    assert(found);
+    return slots_[found->given->slot + found->index];
+  }
 
   ir::ValueId from(const graph::NodeRef& reference) {
-    const auto named = results_.find(resultKey(reference.node, reference.output));
+    const Lowered& lowered = results_.at(reference.node);
+    const std::vector<lang::Param>& declared = lowered.decl->results;
     // A single result may be referred to by its name too.
-    return named != results_.end() ? named->second : results_.at(resultKey(reference.node, {}));
+    size_t index = 0;
+    while (declared.size() > 1 && declared[index].name != reference.output) ++index;
+    return lowered.results[index];
   }
 
   void ports() {
@@ -246,7 +240,13 @@ private:
   Inliner inliner_;
   const lang::TemplateDecl* template_ = nullptr;
   std::vector<ir::ValueId> slots_;
-  std::unordered_map<std::string, ir::ValueId> givens_, results_, textures_, parameters_;
+  struct Lowered {
+    const lang::NodeDecl* decl;
+    Values results;
+  };
+  Arena arena_;
+  NameMap<Lowered> results_{&arena_};  ///< of the graph's nodes
+  NameMap<ir::ValueId> textures_{&arena_}, parameters_{&arena_};
 };
 
 }  // namespace

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cfloat>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace lacquer::passes {
@@ -37,6 +39,14 @@ double quotientError(double a, double b, double q) {
   return b > 0 ? rest : -rest;
 }
 
+/// The next smaller float32. In floats of one sign the order of the bits is that of the magnitudes.
+float nextDown(float f) {
+  if (f == 0) return -std::numeric_limits<float>::denorm_min();
+  if (!(f > -std::numeric_limits<float>::infinity())) return f;
+  const auto bits = std::bit_cast<int32_t>(f);
+  return std::bit_cast<float>(f > 0 ? bits - 1 : bits + 1);
+}
+
 }  // namespace
 
 bool Range::finite() const { return !nan && std::isfinite(lo) && std::isfinite(hi); }
@@ -53,7 +63,7 @@ Range meet(const Range& a, const Range& b) {
 double RangeMath::down(double x, double error) const {
   if (!float_) return error < 0 ? std::nextafter(x, -kInf) : x;
   auto f = static_cast<float>(x);
-  if (f > x || (f == x && error < 0)) f = std::nextafter(f, -std::numeric_limits<float>::infinity());
+  if (f > x || (f == x && error < 0)) f = nextDown(f);
   // A subnormal number may be flushed to zero.
   return f > 0 && f < FLT_MIN ? 0 : f;
 }
@@ -195,6 +205,11 @@ Range RangeMath::add(const Range& a, const Range& b) const {
 Range RangeMath::mul(const Range& a, const Range& b) const {
   bool nan = a.nan || b.nan;
   if (float_) nan |= (mayBeInfinite(a) && b.contains(0)) || (mayBeInfinite(b) && a.contains(0));
+  if (a.lo >= 0 && b.lo >= 0 && a.hi < kInf && b.hi < kInf) {
+    const double least = a.lo * b.lo;
+    const double most = a.hi * b.hi;
+    return rounded(least, productError(a.lo, b.lo, least), most, productError(a.hi, b.hi, most), nan);
+  }
   double lo = kInf, hi = -kInf, lo_error = 0, hi_error = 0;
   for (const double x : {a.lo, a.hi}) {
     for (const double y : {b.lo, b.hi}) {

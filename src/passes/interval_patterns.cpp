@@ -91,7 +91,7 @@ void Intervals::pattern(ValueId id, int c, Range& range) const {
     blendPattern(value.args[0], value.args[1], true, c, range);
   } else if (value.op == Op::Div) {
     ratioPattern(id, c, range);
-  } else if (value.op == Op::Mul) {
+  } else if (value.op == Op::Mul && facets_[id].root) {
     unitPattern(id, c, range);
   }
 }
@@ -100,7 +100,7 @@ void Intervals::pattern(ValueId id, int c, Range& range) const {
 /// does not show.
 void Intervals::blendPattern(ValueId x, ValueId rest, bool negative, int c, Range& range) const {
   if (dag_[rest].op != Op::Mul && dag_[rest].op != Op::Div) return;
-  if (overflows(rest, c)) return;
+  if ((!negative && !facets_[rest].difference) || overflows(rest, c)) return;
   Factors found;
   collect(dag_, rest, x, 0, found);
   for (size_t i = 0; i < found.factors.size(); ++i) {

@@ -16,7 +16,7 @@ Intervals::Intervals(const ir::Module& module, const IntervalOptions& options)
       options_(options),
       math_(options.arithmetic),
       values_(module.dag.size()),
-      done_(module.dag.size(), false) {}
+      facets_(module.dag.size()) {}
 
 void Intervals::run() {
   std::vector<ValueId> preshader, varyings, roots;
@@ -34,13 +34,16 @@ void Intervals::run() {
 
 void Intervals::run(std::span<const ValueId> ids) {
   for (const ValueId id : ids) {
-    if (done_[id]) continue;
+    if (facets_[id].done) continue;
     const auto fixed = fixed_.find(id);
-    if (fixed != fixed_.end())
+    look(id);
+    if (fixed != fixed_.end()) {
       values_[id] = fixed->second;
-    else
+      facets_[id].alike = false;
+    } else {
       evaluate(id);
-    done_[id] = true;
+    }
+    facets_[id].done = true;
     const auto fact = dag_.assumed(id);
     if (!fact) continue;
     for (Range& range : values_[id]) range = meet(range, math_.fact(*fact));
@@ -51,6 +54,24 @@ Range Intervals::all(ValueId id) const {
   Range range = at(id, 0);
   for (int c = 1; c < ir::componentCount(dag_[id].type) && c < 4; ++c) range = hull(range, at(id, c));
   return range;
+}
+
+/// What a value is made of, from its operands.
+void Intervals::look(ValueId id) {
+  const ir::Value& value = dag_[id];
+  Facet& facet = facets_[id];
+  const bool product = value.op == Op::Mul;
+  const bool quotient = value.op == Op::Div && dag_.isConstant(value.args[1]);
+  const auto of = [&](size_t k) -> const Facet& { return facets_[value.args[k]]; };
+  facet.root =
+      value.op == Op::InverseSqrt || (product && (of(0).root || of(1).root)) || (quotient && of(0).root);
+  facet.difference = value.op == Op::Sub || (product && (of(0).difference || of(1).difference)) ||
+                     (quotient && of(0).difference);
+  // Patterns of a root look for the component's own square.
+  facet.alike =
+      !ir::isFloatVector(value.type) || ((value.op != Op::Construct || value.count == 1) &&
+                                         value.op != Op::Constant && value.op != Op::Cross && !facet.root);
+  for (size_t k = 0; k < value.count; ++k) facet.alike &= of(k).alike;
 }
 
 void Intervals::evaluate(ValueId id) {
@@ -71,6 +92,7 @@ void Intervals::evaluate(ValueId id) {
     Range range = component(id, c);
     pattern(id, c, range);
     values_[id][static_cast<size_t>(c)] = range;
+    if (facets_[id].alike) return values_[id].fill(range);
   }
 }
 
@@ -121,14 +143,17 @@ void Intervals::materialField(ValueId id, const ir::Input& input) {
   if (input.kind != ir::InputKind::BlockField || input.block >= module_.blocks.size()) return;
   if (module_.blocks[input.block].role != ir::BlockRole::Material) return;
   for (const ir::PreshaderField& field : module_.preshader) {
-    if (field.field == input.field && done_[field.value]) values_[id] = values_[field.value];
+    if (field.field != input.field || !known(field.value)) continue;
+    values_[id] = values_[field.value];
+    facets_[id].alike = facets_[field.value].alike;
   }
 }
 
 void Intervals::varying(ValueId id, const ir::Input& input) {
   if (input.kind != ir::InputKind::Varying || input.field >= module_.varyings.size()) return;
   const ValueId source = module_.varyings[input.field].source;
-  if (source == ir::kNoValue || !done_[source]) return;
+  if (source == ir::kNoValue || !known(source)) return;
+  facets_[id].alike = facets_[source].alike;
   for (int c = 0; c < ir::componentCount(dag_[id].type); ++c) {
     values_[id][static_cast<size_t>(c)] = interpolated(at(source, c));
   }

@@ -48,10 +48,20 @@ public:
   }
   /// All components at once.
   Range all(ir::ValueId id) const;
-  bool known(ir::ValueId id) const { return done_[id]; }
+  bool known(ir::ValueId id) const { return facets_[id].done; }
   const RangeMath& math() const { return math_; }
 
 private:
+  /// What is known of a value beside its ranges. The last two spare the search for patterns that are not
+  /// there.
+  struct Facet {
+    bool done = false;
+    bool alike = false;       ///< all components are computed alike from components that are
+    bool root = false;        ///< it may have a reciprocal square root among its factors
+    bool difference = false;  ///< or a difference
+  };
+
+  void look(ir::ValueId id);
   void evaluate(ir::ValueId id);
   Range input(const ir::Input& input) const;
   Range open(ir::Interval range) const;
@@ -86,7 +96,7 @@ private:
   IntervalOptions options_;
   RangeMath math_;
   std::vector<Ranges> values_;
-  std::vector<bool> done_;
+  std::vector<Facet> facets_;
   std::map<ir::ValueId, Ranges> fixed_;
 };
 

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 namespace lacquer::passes {
 
@@ -249,9 +251,27 @@ constexpr auto kReserved = std::to_array<std::string_view>({"abs",
                                                             "xor_eq"});
 static_assert(std::is_sorted(kReserved.begin(), kReserved.end()));
 
-bool reserved(std::string_view name) {
-  static const std::unordered_set<std::string_view> kWords(kReserved.begin(), kReserved.end());
-  return kWords.contains(name);
+uint64_t hashOf(std::string_view name) {
+  const uint64_t hash = XXH3_64bits(name.data(), name.size());
+  return hash == 0 ? 1 : hash;
+}
+
+/// The place of a hash in a table, or the empty one where it belongs.
+template <class Table>
+size_t slotOf(const Table& table, uint64_t hash) {
+  size_t slot = hash & (table.size() - 1);
+  while (table[slot] != 0 && table[slot] != hash) slot = (slot + 1) & (table.size() - 1);
+  return slot;
+}
+
+bool reserved(uint64_t hash) {
+  static const auto kTable = [] {
+    std::array<uint64_t, 1024> table{};
+    static_assert(kReserved.size() * 2 < table.size());
+    for (const std::string_view word : kReserved) table[slotOf(table, hashOf(word))] = hashOf(word);
+    return table;
+  }();
+  return kTable[slotOf(kTable, hash)] != 0;
 }
 
 /// The printers' own prefixes: attributes, varyings, outputs and what languages keep for themselves.
@@ -261,21 +281,24 @@ bool prefixed(std::string_view name) {
                      [&](std::string_view p) { return name.starts_with(p); });
 }
 
-}  // namespace
+/// Letters, digits and underscores, in every locale the same.
+bool plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
 
-namespace {
+bool digit(char c) { return c >= '0' && c <= '9'; }
 
 /// The name with only characters that every target takes, and none of the printers' prefixes.
 std::string cleaned(std::string_view wanted) {
   std::string name;
+  name.reserve(wanted.size());
   for (const char c : wanted) {
-    const char kept = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+    const char kept = plain(c) ? c : '_';
     // Two underscores in a row are reserved in GLSL.
     if (kept == '_' && !name.empty() && name.back() == '_') continue;
     name += kept;
   }
-  if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) || prefixed(name))
-    name = "value_" + name;
+  if (name.empty() || digit(name[0]) || prefixed(name)) name = "value_" + name;
   while (name.back() == '_') name.pop_back();
   // The helper functions of the C++ header are called min_of, max_of and so on.
   if (name.ends_with("_of")) name += "_value";
@@ -284,19 +307,42 @@ std::string cleaned(std::string_view wanted) {
 
 }  // namespace
 
-bool Names::free(std::string_view name) const { return !reserved(name) && !taken_.contains(name); }
+bool Names::grab(std::string_view name) {
+  const uint64_t hash = hashOf(name);
+  if (reserved(hash)) return false;
+  const size_t slot = slotOf(taken_, hash);
+  if (taken_[slot] != 0) return false;
+  take(name);
+  return true;
+}
+
+void Names::take(std::string_view name) {
+  const uint64_t hash = hashOf(name);
+  uint64_t& entry = taken_[slotOf(taken_, hash)];
+  if (entry != 0) return;
+  entry = hash;
+  if (++count_ * 2 < taken_.size()) return;
+  std::vector<uint64_t> wider(taken_.size() * 2, 0);
+  for (const uint64_t old : taken_) {
+    if (old != 0) wider[slotOf(wider, old)] = old;
+  }
+  taken_ = std::move(wider);
+}
 
 std::string Names::pick(std::string_view wanted, std::string_view layer) {
-  const std::string base = cleaned(wanted);
-  std::string name = base;
+  std::string base = cleaned(wanted);
+  if (grab(base)) return base;
   // "coat_alpha", but not "coat_coat_alpha": a second one of a layer's own is numbered.
   const bool of_layer =
       base.starts_with(layer) && base.substr(std::min(layer.size(), base.size())).starts_with('_');
-  if (!free(name) && !layer.empty() && !of_layer) name = cleaned(fmt::format("{}_{}", layer, base));
-  const std::string numbered = name;
-  for (int k = 2; !free(name); ++k) name = fmt::format("{}_{}", numbered, k);
-  taken_.insert(name);
-  return name;
+  if (!layer.empty() && !of_layer) {
+    base = cleaned(fmt::format("{}_{}", layer, base));
+    if (grab(base)) return base;
+  }
+  for (int k = 2;; ++k) {
+    std::string name = fmt::format("{}_{}", base, k);
+    if (grab(name)) return name;
+  }
 }
 
 std::string_view layerOf(std::string_view term) { return term.substr(0, term.find('.')); }

@@ -1,9 +1,10 @@
 // Identifiers that every target accepts.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
-#include <unordered_set>
+#include <vector>
 
 namespace lacquer::passes {
 
@@ -15,16 +16,16 @@ public:
   /// ("coat_alpha2"), or failing that a number.
   std::string pick(std::string_view wanted, std::string_view layer = {});
   /// Marks a name as taken without changing it.
-  void take(std::string_view name) { taken_.emplace(name); }
+  void take(std::string_view name);
 
 private:
-  struct Hash {
-    using is_transparent = void;
-    size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
-  };
-  bool free(std::string_view name) const;
+  /// Takes the name when it is free.
+  bool grab(std::string_view name);
 
-  std::unordered_set<std::string, Hash, std::equal_to<>> taken_;  ///< only asked, never listed
+  /// Hashes of the taken names, open addressing, 0 for none; a power of two. Two names with one hash of 64
+  /// bits would cost the second a number behind it, nothing else.
+  std::vector<uint64_t> taken_ = std::vector<uint64_t>(256, 0);
+  size_t count_ = 0;
 };
 
 /// The first part of a term's name: "coat" of "coat.distribution".

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <set>
 
 #include "passes/names.h"
 #include "passes/passes.h"
@@ -30,20 +29,21 @@ std::string_view layerFor(const ir::Dag& dag, ir::ValueId id) {
 /// The values of material rate that a faster value or an output reads.
 std::vector<ir::ValueId> frontier(const ir::Module& module) {
   const ir::Dag& dag = module.dag;
-  std::set<ir::ValueId> found;
+  std::vector<bool> found(dag.size(), false);
   const auto consider = [&](ir::ValueId id) {
-    if (dag[id].rate == ir::Rate::Material) found.insert(id);
+    if (dag[id].rate == ir::Rate::Material) found[id] = true;
   };
-  for (const ir::Stage stage : {ir::Stage::Vertex, ir::Stage::Fragment}) {
-    for (const ir::ValueId id : ir::reachable(module, stage)) {
-      if (dag[id].rate <= ir::Rate::Material) continue;
-      for (const ir::ValueId operand : dag[id].operands()) consider(operand);
-    }
+  std::vector<ir::ValueId> outputs, values;
+  for (const ir::Output& output : module.outputs) outputs.push_back(output.value);
+  for (const ir::ValueId id : ir::reachable(dag, outputs)) {
+    if (dag[id].rate <= ir::Rate::Material) continue;
+    for (const ir::ValueId operand : dag[id].operands()) consider(operand);
   }
-  for (const ir::Output& output : module.outputs) consider(output.value);
-  std::vector<ir::ValueId> values(found.begin(), found.end());
-  dag.sortByRank(values);
-  return values;
+  for (const ir::ValueId id : outputs) consider(id);
+  for (ir::ValueId id = 0; id < dag.size(); ++id) {
+    if (found[id]) values.push_back(id);
+  }
+  return dag.byRank(values);
 }
 
 /// An order without holes: the wide ones first, each vec3 followed by a float while there are any.
@@ -65,6 +65,7 @@ std::vector<ir::ValueId> packed(const ir::Dag& dag, const std::vector<ir::ValueI
 struct Placement {
   std::vector<uint32_t> field_of;    ///< of a value of material rate that faster ones read: its field
   std::vector<uint32_t> varying_of;  ///< of an Interpolate: its varying
+  std::vector<ir::ValueId> read_of;  ///< of a field: the value that reads it, once there is one
 };
 
 /// The material block and its preshader.
@@ -83,17 +84,21 @@ void chooseFields(ir::Module& module, Placement& placement) {
     module.preshader.push_back({field, id});
   }
   block.size = ir::layout(block.fields);
-  module.blocks.push_back(block);
+  placement.read_of.assign(block.fields.size(), ir::kNoValue);
+  module.blocks.push_back(std::move(block));
 }
 
 /// Reads the field of a value of material rate. The block is the last one.
-ir::ValueId readField(ir::Module& module, ir::ValueId id, uint32_t field) {
+ir::ValueId readField(ir::Module& module, Placement& placement, ir::ValueId id) {
+  const uint32_t field = placement.field_of[id];
+  ir::ValueId& known = placement.read_of[field];
+  if (known != ir::kNoValue) return known;
   const auto block = static_cast<uint32_t>(module.blocks.size() - 1);
   const ir::BlockField& f = module.blocks[block].fields[field];
   const ir::ValueId read = module.dag.input(
       {ir::InputKind::BlockField, "material." + f.name, f.type, ir::Rate::Frame, {}, block, field});
-  if (module.dag[id].type != ir::Type::Bool) return read;
-  return module.dag.make(ir::Op::Less, {module.dag.constant(0.5), read});
+  const bool truth = module.dag[id].type == ir::Type::Bool;
+  return known = truth ? module.dag.make(ir::Op::Less, {module.dag.constant(0.5), read}) : read;
 }
 
 /// Parameters that the preshader would have read become constants of the pipeline. Ids follow the names'
@@ -120,9 +125,8 @@ void chooseVaryings(ir::Module& module, Placement& placement) {
   Names names;
   std::vector<ir::ValueId> live = ir::reachable(module, ir::Stage::Fragment);
   std::erase_if(live, [&](ir::ValueId id) { return module.dag[id].op != ir::Op::Interpolate; });
-  module.dag.sortByRank(live);
   placement.varying_of.resize(module.dag.size(), 0);
-  for (const ir::ValueId id : live) {
+  for (const ir::ValueId id : module.dag.byRank(live)) {
     const auto index = static_cast<uint32_t>(module.varyings.size());
     placement.varying_of[id] = index;
     module.varyings.push_back(
@@ -130,8 +134,7 @@ void chooseVaryings(ir::Module& module, Placement& placement) {
   }
 }
 
-ir::ValueId placed(Rewriter& r, const Placement& placement, ir::ValueId id,
-                   std::span<const ir::ValueId> operands) {
+ir::ValueId placed(Rewriter& r, Placement& placement, ir::ValueId id, std::span<const ir::ValueId> operands) {
   const ir::Value value = r.dag()[id];
   const ir::Module& module = r.module();
   if (value.op == ir::Op::Interpolate) {
@@ -152,17 +155,17 @@ ir::ValueId placed(Rewriter& r, const Placement& placement, ir::ValueId id,
   for (size_t k = 0; k < operands.size(); ++k) {
     const ir::ValueId old = value.args[k];
     const bool low = r.dag()[old].rate == ir::Rate::Material;
-    read[k] = low ? readField(r.module(), old, placement.field_of[old]) : operands[k];
+    read[k] = low ? readField(r.module(), placement, old) : operands[k];
   }
   return r.copy(id, {read.data(), operands.size()});
 }
 
 /// What the rewrite does not see, since nothing reads it: outputs of material rate.
-void finish(ir::Module& module, const Placement& placement) {
+void finish(ir::Module& module, Placement& placement) {
   ir::Dag& dag = module.dag;
   for (ir::Output& output : module.outputs) {
     if (dag[output.value].rate == ir::Rate::Material)
-      output.value = readField(module, output.value, placement.field_of[output.value]);
+      output.value = readField(module, placement, output.value);
   }
   for (ir::PreshaderField& p : module.preshader) {
     if (dag[p.value].type != ir::Type::Bool) continue;

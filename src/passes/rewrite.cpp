@@ -2,22 +2,14 @@
 
 namespace lacquer::passes {
 
-void Rewriter::run(const Make& make) {
-  ir::Dag& dag = module_.dag;
-  const std::vector<ir::ValueId> roots = ir::roots(module_);
-  map_.assign(dag.size(), ir::kNoValue);
-  for (const ir::ValueId id : ir::reachable(dag, roots)) {
-    const ir::Value value = dag[id];
-    std::array<ir::ValueId, 4> operands{};
-    for (size_t k = 0; k < value.count; ++k) operands[k] = map_[value.args[k]];
-    dag.setTerm(dag.termOf(id));
-    dag.setRank(dag.rankOf(id));
-    const ir::ValueId made = make(*this, id, {operands.data(), value.count});
-    map_[id] = made;
-    if (made != id) dag.inherit(made, id);
-  }
-  dag.setTerm(0);
-  dag.setRank(ir::Dag::kOwnRank);
+std::vector<ir::ValueId> Rewriter::begin() {
+  map_.assign(module_.dag.size(), ir::kNoValue);
+  return ir::reachable(module_.dag, ir::roots(module_));
+}
+
+void Rewriter::end() {
+  module_.dag.setTerm(0);
+  module_.dag.setRank(ir::Dag::kOwnRank);
   ir::remap(module_, map_);
 }
 

@@ -1,6 +1,7 @@
 // Scalars that scale vectors: gathered, so that one product does the work of three, or left out where nobody
 // asks.
 #include <algorithm>
+#include <array>
 
 #include "passes/passes.h"
 #include "passes/rewrite.h"
@@ -115,7 +116,8 @@ void pullOutOfDots(ir::Module& module) {
   const ir::Dag& old = module.dag;
   std::vector<int> dots(old.size(), 0);
   std::vector<bool> needed(old.size(), false);
-  for (const ValueId id : ir::reachable(old, rootsOf(module))) {
+  const std::vector<ValueId> live = ir::reachable(old, rootsOf(module));
+  for (const ValueId id : live) {
     const ir::Value& value = old[id];
     for (const ValueId operand : value.operands()) {
       if (value.op == Op::Dot)
@@ -127,6 +129,10 @@ void pullOutOfDots(ir::Module& module) {
   }
   for (const ir::Output& output : module.outputs) needed[output.value] = true;
   const auto pays = [&](ValueId id) { return scaledVector(old, id) >= 0 && !needed[id] && dots[id] <= 2; };
+  const auto changes = [&](ValueId id) {
+    return old[id].op == Op::Dot && (pays(old[id].args[0]) || pays(old[id].args[1]));
+  };
+  if (std::none_of(live.begin(), live.end(), changes)) return;
   rewriter.run([&](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
     const ir::Value value = r.dag()[id];
     if (value.op != Op::Dot) return r.copy(id, operands);
@@ -150,17 +156,25 @@ public:
   explicit Directions(ir::Module& module) : module_(module) {}
 
   void run() {
-    Rewriter(module_).run([this](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
-      const ir::Value value = r.dag()[id];
-      const bool lookup = value.op == Op::Texture || value.op == Op::TextureLod;
-      if (!lookup || r.dag()[value.args[0]].type != ir::Type::TextureCube) return r.copy(id, operands);
-      std::vector<ValueId> changed(operands.begin(), operands.end());
+    const ir::Dag& dag = module_.dag;
+    const std::vector<ValueId> live = ir::reachable(dag, rootsOf(module_));
+    if (std::none_of(live.begin(), live.end(), [&](ValueId id) { return lookup(dag, id); })) return;
+    Rewriter(module_).run([](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
+      if (!lookup(r.dag(), id)) return r.copy(id, operands);
+      std::array<ValueId, 4> changed{};
+      std::copy(operands.begin(), operands.end(), changed.begin());
       changed[1] = stripped(r.dag(), changed[1]);
-      return r.copy(id, changed);
+      return r.copy(id, {changed.data(), operands.size()});
     });
   }
 
 private:
+  static bool lookup(const ir::Dag& dag, ValueId id) {
+    const ir::Value& value = dag[id];
+    return (value.op == Op::Texture || value.op == Op::TextureLod) &&
+           dag[value.args[0]].type == ir::Type::TextureCube;
+  }
+
   static ValueId stripped(ir::Dag& dag, ValueId direction) {
     std::vector<ValueId> candidates;
     collect(dag, direction, candidates, 0);

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
-#include <set>
 
 #include "passes/names.h"
 #include "passes/program.h"
@@ -12,6 +11,25 @@ namespace {
 
 /// An expression written in place has at most this many operations; beyond, a reader wants a name.
 constexpr int kLargestInline = 7;
+
+/// A set of small numbers.
+class Indices {
+public:
+  void insert(uint32_t index) {
+    if (has_.size() <= index) has_.resize(index + 1, false);
+    has_[index] = true;
+  }
+  std::vector<uint32_t> ascending() const {
+    std::vector<uint32_t> all;
+    for (uint32_t i = 0; i < has_.size(); ++i) {
+      if (has_[i]) all.push_back(i);
+    }
+    return all;
+  }
+
+private:
+  std::vector<bool> has_;
+};
 
 class Scheduler {
 public:
@@ -56,11 +74,7 @@ private:
   bool inLoop(ir::ValueId id) const { return dag_[id].rate == ir::Rate::Light; }
 
   void collectInterface() {
-    std::set<uint32_t> blocks;
-    std::set<uint32_t> textures;
-    std::set<uint32_t> varyings;
-    std::set<uint32_t> attributes;
-    std::set<uint32_t> parameters;
+    Indices blocks, textures, varyings, attributes, parameters;
     for (const ir::ValueId id : live_) {
       if (dag_[id].op == ir::Op::SumOverLights && module_.light_groups[dag_[id].payload].count < 0) {
         blocks.insert(frameBlock());
@@ -82,11 +96,11 @@ private:
       if (module_.outputs[o].kind == ir::OutputKind::Varying) varyings.insert(module_.outputs[o].location);
       if (module_.outputs[o].kind == ir::OutputKind::Color) program_.outputs.push_back(o);
     }
-    program_.blocks.assign(blocks.begin(), blocks.end());
-    program_.textures.assign(textures.begin(), textures.end());
-    program_.varyings.assign(varyings.begin(), varyings.end());
-    program_.attributes.assign(attributes.begin(), attributes.end());
-    program_.parameters.assign(parameters.begin(), parameters.end());
+    program_.blocks = blocks.ascending();
+    program_.textures = textures.ascending();
+    program_.varyings = varyings.ascending();
+    program_.attributes = attributes.ascending();
+    program_.parameters = parameters.ascending();
     std::sort(program_.parameters.begin(), program_.parameters.end(), [&](uint32_t a, uint32_t b) {
       return module_.parameters[a].constant_id < module_.parameters[b].constant_id;
     });
@@ -248,10 +262,9 @@ private:
     std::vector<ir::ValueId> bodies;
     for (const ir::ValueId sum : sums) bodies.push_back(dag_[sum].args[0]);
     const std::vector<ir::ValueId> needed = ir::reachable(dag_, bodies);
-    std::vector<ir::ValueId> before;
-    std::copy_if(needed.begin(), needed.end(), std::back_inserter(before),
-                 [&](ir::ValueId id) { return !inLoop(id); });
-    emitValues(before);
+    for (const ir::ValueId id : needed) {
+      if (!inLoop(id)) emit(id);
+    }
     for (const ir::ValueId sum : sums) {
       section(dag_.termOf(sum));
       program_.names[sum] = nameVariable(sum);
@@ -272,7 +285,7 @@ private:
     section_ = outer;
   }
 
-  void emitValues(std::vector<ir::ValueId> roots) {
+  void emitValues(const std::vector<ir::ValueId>& roots) {
     for (const ir::ValueId id : ir::reachable(dag_, roots)) {
       if (!inLoop(id)) emit(id);
     }

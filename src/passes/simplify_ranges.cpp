@@ -21,11 +21,18 @@ struct Decision {
 /// GPUs.
 class Decider {
 public:
-  explicit Decider(const ir::Module& module) : dag_(module.dag), intervals_(module) { intervals_.run(); }
+  explicit Decider(const ir::Module& module) : dag_(module.dag), intervals_(module) {
+    // Only what a decision rests on.
+    std::vector<ValueId> asked;
+    for (const ValueId id : ir::reachable(dag_, ir::roots(module))) {
+      if (decidable(dag_[id].op)) asked.push_back(id);
+    }
+    intervals_.run(ir::reachable(dag_, asked));
+  }
 
   Decision operator()(ValueId id) const {
-    if (!intervals_.known(id)) return {};
     const ir::Value& value = dag_[id];
+    if (!decidable(value.op) || !intervals_.known(id)) return {};
     const int width = ir::componentCount(value.type);
     switch (value.op) {
       case Op::Max: return operand(larger(value, width));
@@ -51,6 +58,11 @@ public:
   }
 
 private:
+  static bool decidable(Op op) {
+    return op == Op::Max || op == Op::Min || op == Op::Clamp || op == Op::Abs || op == Op::Select ||
+           op == Op::Less || op == Op::LessEqual || op == Op::Equal;
+  }
+
   static Decision operand(int index) {
     if (index < 0) return {};
     return {Decision::Kind::Operand, static_cast<uint8_t>(index)};

@@ -39,7 +39,7 @@ std::string evaluateAll(const Library& library) {
                               ir::Rate::Fragment, param.range};
         args.push_back(param.default_value ? ir::kNoValue : dag.input(input));
       }
-      const std::vector<ir::ValueId> results = inliner.call(node, variant, args);
+      const lower::Values results = inliner.call(node, variant, args);
       for (size_t i = 0; i < results.size(); ++i) {
         const std::string_view result = node.results[i].name;
         text += fmt::format("{}{}{}{}{} = {}", name, variant.empty() ? "" : "::", variant,

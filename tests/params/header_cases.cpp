@@ -78,8 +78,8 @@ std::vector<Member> membersOf(const std::string& header) {
     if ((type != "double" && type != "bool") || equals != "=") continue;
     const size_t bracket = name.find('[');
     const bool array = bracket != std::string::npos;
-    members.push_back({name.substr(0, bracket),
-                       array ? static_cast<size_t>(name.at(bracket + 1) - '0') : 1, type == "bool"});
+    members.push_back({name.substr(0, bracket), array ? static_cast<size_t>(name.at(bracket + 1) - '0') : 1,
+                       type == "bool"});
   }
   return members;
 }

@@ -1,14 +1,11 @@
-#include "graph/rates.h"
-
 #include <algorithm>
 
+#include "lang/ast.h"
 #include "lang/builtins.h"
 
-namespace lacquer::graph {
+namespace lacquer::lang {
 
 namespace {
-
-using lang::Expr;
 
 Ties untiedBy(const Expr& expr) {
   if (expr.kind == Expr::Kind::Call && expr.node != nullptr) return expr.node->unties;
@@ -40,50 +37,58 @@ Ties tiesOf(const Expr& root, Slots& slots, Ties refused) {
       if (slots.port[expr->slot]) slots.refused[expr->slot] |= refused & static_cast<Ties>(~outer);
     }
     const Ties untied = outer | untiedBy(*expr);
-    for (const lang::ExprPtr& arg : expr->args) open.push_back({arg.get(), untied});
+    for (const ExprPtr& arg : expr->args) open.push_back({arg.get(), untied});
   }
   return ties;
 }
 
 }  // namespace
 
-TemplateRates templateRates(const lang::TemplateDecl& decl) {
+void tie(TemplateDecl& decl) {
   const bool vertex_stage = std::any_of(decl.outputs.begin(), decl.outputs.end(), [](const auto& output) {
-    return output.role == lang::OutputRole::Position;
+    return output.role == OutputRole::Position;
   });
   Slots slots{std::vector<Ties>(decl.slots), std::vector<bool>(decl.slots), std::vector<Ties>(decl.slots)};
-  for (const lang::BlockDecl& block : decl.blocks) {
-    const Ties ties = block.role == lang::BlockRole::Lights                   ? kLight
-                      : block.role == lang::BlockRole::Object && vertex_stage ? kVertex
-                                                                              : Ties{0};
-    for (const lang::BlockFieldDecl& field : block.fields) slots.ties[field.slot] = ties;
+  for (const BlockDecl& block : decl.blocks) {
+    const Ties ties = block.role == BlockRole::Lights                   ? kLight
+                      : block.role == BlockRole::Object && vertex_stage ? kVertex
+                                                                        : Ties{0};
+    for (const BlockFieldDecl& field : block.fields) slots.ties[field.slot] = ties;
   }
   // Without a vertex stage the attributes come to the fragment as they are.
-  for (const lang::AttributeDecl& attribute : decl.attributes)
+  for (const AttributeDecl& attribute : decl.attributes)
     slots.ties[attribute.slot] = vertex_stage ? kVertex : 0;
-  TemplateRates rates;
-  for (const lang::GivenDecl& given : decl.givens) {
-    const Ties ties = given.value ? tiesOf(*given.value, slots, 0) : Ties{0};
-    for (size_t i = 0; i < given.results.size(); ++i) {
-      slots.ties[given.slot + i] = ties;
-      std::string name(given.name);
-      if (given.multiple) name += "." + std::string(given.results[i].name);
-      rates.givens[name] = ties;
-    }
+  for (GivenDecl& given : decl.givens) {
+    given.ties = given.value ? tiesOf(*given.value, slots, 0) : Ties{0};
+    for (size_t i = 0; i < given.results.size(); ++i) slots.ties[given.slot + i] = given.ties;
   }
-  for (const lang::PortDecl& port : decl.ports) slots.port[port.slot] = true;
-  for (const lang::OutputDecl& output : decl.outputs) {
-    if (output.role != lang::OutputRole::Position && output.value) {
+  for (const PortDecl& port : decl.ports) slots.port[port.slot] = true;
+  for (const OutputDecl& output : decl.outputs) {
+    if (output.role != OutputRole::Position && output.value) {
       tiesOf(*output.value, slots, kLight | kVertex);
     }
   }
   // A port's default may use the ports before it, in its place.
   for (size_t i = decl.ports.size(); i > 0; --i) {
-    const lang::PortDecl& port = decl.ports[i - 1];
+    PortDecl& port = decl.ports[i - 1];
     if (port.default_value) tiesOf(*port.default_value, slots, slots.refused[port.slot]);
-    rates.refused[port.param.name] = slots.refused[port.slot];
+    port.refused = slots.refused[port.slot];
   }
-  return rates;
 }
 
-}  // namespace lacquer::graph
+std::optional<GivenResult> TemplateDecl::find(std::string_view given) const {
+  const size_t dot = given.find('.');
+  const std::string_view head = given.substr(0, dot);
+  for (const GivenDecl& decl : givens) {
+    if (decl.name != head) continue;
+    if (decl.multiple == (dot == std::string_view::npos)) return std::nullopt;
+    if (!decl.multiple) return GivenResult{&decl, 0};
+    for (size_t i = 0; i < decl.results.size(); ++i) {
+      if (decl.results[i].name == given.substr(dot + 1)) return GivenResult{&decl, i};
+    }
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace lacquer::lang

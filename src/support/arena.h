@@ -1,0 +1,26 @@
+// Memory for one pass over a material: taken in one piece, given back at once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory_resource>
+#include <string_view>
+#include <unordered_map>
+
+namespace lacquer {
+
+/// A monotonic resource whose first block is within it; what does not fit comes from the heap. For the stack
+/// or as a member: containers that use it must go before it.
+class Arena : public std::pmr::monotonic_buffer_resource {
+public:
+  Arena() : std::pmr::monotonic_buffer_resource(first_.data(), first_.size()) {}
+
+private:
+  alignas(std::max_align_t) std::array<std::byte, 16384> first_;
+};
+
+/// By names that stay where they are.
+template <class T>
+using NameMap = std::pmr::unordered_map<std::string_view, T>;
+
+}  // namespace lacquer
