@@ -19,24 +19,24 @@ public:
       : graph_(graph), surface_(surface), options_(options) {}
 
   void direct() {
-    add("half", "half_vector", {{"V", given("view")}, {"L", given("light_sample.L")}});
+    graph_.add("half", "half_vector", {{"V", given("view")}, {"L", given("light_sample.L")}});
     Lobe base = isotropicLobe("base", surface_.normal, surface_.alpha, surface_.textured_alpha);
     std::optional<Lobe> coat;
     if (surface_.coat) coat = coatLobe();
     const bool clear = coat && clearCoat();
     if (clear) splitCosine(base, *coat);
-    Node& node = add("base.direct", "base_direct",
-                     {{"diffuse", ref("base.reflectance", "diffuse")},
-                      {"F0", ref("base.reflectance", "F0")},
-                      {"VdotH", ref("half", "VdotH")},
-                      {"NdotL", base.NdotL},
-                      {"lobe", base.lobe}});
+    Node& node = graph_.add("base.direct", "base_direct",
+                            {{"diffuse", ref("base.reflectance", "diffuse")},
+                             {"F0", ref("base.reflectance", "F0")},
+                             {"VdotH", ref("half", "VdotH")},
+                             {"NdotL", base.NdotL},
+                             {"lobe", base.lobe}});
     if (surface_.dielectric_f0) Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
     Source result = ref("base.direct");
     if (coat) {
-      add("coat.lobe", "coat_lobe", {{"lobe", coat->lobe}, {"NdotL", coat->NdotL}});
+      graph_.add("coat.lobe", "coat_lobe", {{"lobe", coat->lobe}, {"NdotL", coat->NdotL}});
       if (clear) {
-        add("coat.layer_direct", "coat_sum", {{"base", result}, {"layer", ref("coat.lobe")}});
+        graph_.add("coat.layer_direct", "coat_sum", {{"base", result}, {"layer", ref("coat.lobe")}});
         result = ref("coat.layer_direct");
       } else {
         const Profile& profile = *options_.profile;
@@ -48,31 +48,32 @@ public:
   }
 
   void indirect() {
-    add("base.reflection", "reflection", {{"V", given("view")}, {"N", surface_.normal}});
-    add("base.radiance", "prefiltered_environment",
-        {{"environment_specular", Source{TextureRef{"environment_specular"}, {}}},
-         {"R", ref("base.reflection")},
-         {"roughness", surface_.roughness},
-         {"max_lod", given("environment_max_lod")}});
-    add("base.irradiance", "irradiance",
-        {{"environment_irradiance", Source{TextureRef{"environment_irradiance"}, {}}},
-         {"N", surface_.normal}});
-    add("base.view_cosine", "view_cosine", {{"N", surface_.normal}, {"V", given("view")}});
+    graph_.add("base.reflection", "reflection", {{"V", given("view")}, {"N", surface_.normal}});
+    graph_.add("base.radiance", "prefiltered_environment",
+               {{"environment_specular", Source{TextureRef{"environment_specular"}, {}}},
+                {"R", ref("base.reflection")},
+                {"roughness", surface_.roughness},
+                {"max_lod", given("environment_max_lod")}});
+    graph_.add("base.irradiance", "irradiance",
+               {{"environment_irradiance", Source{TextureRef{"environment_irradiance"}, {}}},
+                {"N", surface_.normal}});
+    graph_.add("base.view_cosine", "view_cosine", {{"N", surface_.normal}, {"V", given("view")}});
     environmentBrdf("base", ref("base.view_cosine"), surface_.roughness);
     const bool compensated = options_.multiple_scattering;
-    Node& node = add("base.indirect", compensated ? "base_indirect_multiple_scattering" : "base_indirect",
-                     {{"diffuse", ref("base.reflectance", "diffuse")},
-                      {"F0", ref("base.reflectance", "F0")},
-                      {"radiance", ref("base.radiance")},
-                      {"irradiance", ref("base.irradiance")},
-                      {"scale", ref("base.environment_brdf", "scale")},
-                      {"bias", ref("base.environment_brdf", "bias")}});
+    Node& node =
+        graph_.add("base.indirect", compensated ? "base_indirect_multiple_scattering" : "base_indirect",
+                   {{"diffuse", ref("base.reflectance", "diffuse")},
+                    {"F0", ref("base.reflectance", "F0")},
+                    {"radiance", ref("base.radiance")},
+                    {"irradiance", ref("base.irradiance")},
+                    {"scale", ref("base.environment_brdf", "scale")},
+                    {"bias", ref("base.environment_brdf", "bias")}});
     if (surface_.dielectric_f0 && !compensated)
       Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
     Source result = ref("base.indirect");
     if (surface_.coat) result = coatIndirect(result);
     if (surface_.occlusion) {
-      add("occlusion.indirect", "occluded", {{"light", result}, {"visible", *surface_.occlusion}});
+      graph_.add("occlusion.indirect", "occluded", {{"light", result}, {"visible", *surface_.occlusion}});
       result = ref("occlusion.indirect");
     }
     graph_.outputs.emplace_back("indirect", result);
@@ -83,25 +84,19 @@ private:
     Source NdotL, lobe;
   };
 
-  Node& add(std::string id, std::string type, std::vector<std::pair<std::string, Source>> inputs) {
-    Node& node = graph_.add(std::move(id), std::move(type));
-    node.inputs = std::move(inputs);
-    return node;
-  }
-
   Source cosines(const std::string& layer, const Source& normal) {
-    add(layer + ".cosines", "lobe_cosines",
-        {{"N", normal}, {"V", given("view")}, {"L", given("light_sample.L")}});
+    graph_.add(layer + ".cosines", "lobe_cosines",
+               {{"N", normal}, {"V", given("view")}, {"L", given("light_sample.L")}});
     return ref(layer + ".cosines", "NdotL");
   }
 
   /// D and V of a layer, which are there, become its lobe.
   Lobe lobe(const std::string& layer, bool split = false) {
     const std::string visibility = layer + ".visibility";
-    Node& node = add(layer + ".specular", "specular_lobe",
-                     {{"numerator", ref(layer + ".distribution", "numerator")},
-                      {"denominator", ref(layer + ".distribution", "denominator")},
-                      {"inverse_visibility", split ? ref(visibility, "sum") : ref(visibility)}});
+    Node& node = graph_.add(layer + ".specular", "specular_lobe",
+                            {{"numerator", ref(layer + ".distribution", "numerator")},
+                             {"denominator", ref(layer + ".distribution", "denominator")},
+                             {"inverse_visibility", split ? ref(visibility, "sum") : ref(visibility)}});
     if (split) Graph::connect(node, "weight", ref(visibility, "weight"));
     return {ref(layer + ".cosines", "NdotL"), ref(layer + ".specular")};
   }
@@ -109,32 +104,32 @@ private:
   /// `textured`: alpha changes from pixel to pixel.
   Lobe isotropicLobe(const std::string& layer, const Source& normal, const Source& alpha, bool textured) {
     const Source NdotL = cosines(layer, normal);
-    add(layer + ".distribution", "ggx_distribution",
-        {{"N", normal},
-         {"sum", ref("half", "sum")},
-         {"length2", ref("half", "length2")},
-         {"NdotSum", ref(layer + ".cosines", "NdotSum")},
-         {"alpha", alpha}});
-    add(layer + ".visibility", textured ? "smith_visibility" : "smith_visibility_split",
-        {{"NdotL", NdotL}, {"NdotV", ref(layer + ".cosines", "NdotV")}, {"alpha", alpha}});
+    graph_.add(layer + ".distribution", "ggx_distribution",
+               {{"N", normal},
+                {"sum", ref("half", "sum")},
+                {"length2", ref("half", "length2")},
+                {"NdotSum", ref(layer + ".cosines", "NdotSum")},
+                {"alpha", alpha}});
+    graph_.add(layer + ".visibility", textured ? "smith_visibility" : "smith_visibility_split",
+               {{"NdotL", NdotL}, {"NdotV", ref(layer + ".cosines", "NdotV")}, {"alpha", alpha}});
     return lobe(layer, !textured);
   }
 
   Lobe anisotropicLobe(const CoatSources& coat) {
     const Anisotropy& a = *coat.anisotropy;
     const Source NdotL = cosines("coat", coat.normal);
-    add("coat.anisotropy_cosines", "anisotropy_cosines",
-        {{"T", a.T}, {"B", a.B}, {"V", given("view")}, {"L", given("light_sample.L")}});
+    graph_.add("coat.anisotropy_cosines", "anisotropy_cosines",
+               {{"T", a.T}, {"B", a.B}, {"V", given("view")}, {"L", given("light_sample.L")}});
     std::vector<std::pair<std::string, Source>> shared;
     for (const char* name : {"TdotV", "BdotV", "TdotL", "BdotL"}) {
       shared.emplace_back(name, ref("coat.anisotropy_cosines", name));
     }
     shared.emplace_back("alpha_t", a.alpha_t);
     shared.emplace_back("alpha_b", a.alpha_b);
-    Node& distribution = add("coat.distribution", "ggx_distribution_anisotropic", shared);
+    Node& distribution = graph_.add("coat.distribution", "ggx_distribution_anisotropic", shared);
     Graph::connect(distribution, "NdotSum", ref("coat.cosines", "NdotSum"));
     Graph::connect(distribution, "length2", ref("half", "length2"));
-    Node& visibility = add("coat.visibility", "smith_visibility_anisotropic", shared);
+    Node& visibility = graph_.add("coat.visibility", "smith_visibility_anisotropic", shared);
     Graph::connect(visibility, "NdotL", NdotL);
     Graph::connect(visibility, "NdotV", ref("coat.cosines", "NdotV"));
     return lobe("coat");
@@ -156,17 +151,17 @@ private:
   void splitCosine(Lobe& base, Lobe& lobe) {
     const CoatSources& coat = *surface_.coat;
     const std::string split = "coat.transmission_direct";
-    Node& node = add(split, coat.normal == surface_.normal ? "coat_split" : "coat_split_normals",
-                     {{"NdotL", base.NdotL}, {"weight", coat.weight}, {"fresnel", coat.fresnel}});
+    Node& node = graph_.add(split, coat.normal == surface_.normal ? "coat_split" : "coat_split_normals",
+                            {{"NdotL", base.NdotL}, {"weight", coat.weight}, {"fresnel", coat.fresnel}});
     if (!(coat.normal == surface_.normal)) Graph::connect(node, "coat_NdotL", lobe.NdotL);
     base.NdotL = ref(split, "transmitted");
     lobe.NdotL = ref(split, "reflected");
   }
 
   void environmentBrdf(const std::string& layer, const Source& cosine, const Source& roughness) {
-    Node& node =
-        add(layer + ".environment_brdf", options_.dfg_table ? "environment_brdf" : "environment_brdf_fit",
-            {{"NdotV", cosine}, {"roughness", roughness}});
+    Node& node = graph_.add(layer + ".environment_brdf",
+                            options_.dfg_table ? "environment_brdf" : "environment_brdf_fit",
+                            {{"NdotV", cosine}, {"roughness", roughness}});
     if (options_.dfg_table)
       Graph::connect(node, "environment_dfg", Source{TextureRef{"environment_dfg"}, {}});
   }
@@ -175,26 +170,26 @@ private:
     const CoatSources& coat = *surface_.coat;
     Source bent = coat.normal;
     if (coat.anisotropy) {
-      add("coat.bent_normal", "bent_normal",
-          {{"N", coat.normal},
-           {"B", coat.anisotropy->B},
-           {"V", given("view")},
-           {"strength", coat.anisotropy->strength},
-           {"roughness", coat.roughness}});
+      graph_.add("coat.bent_normal", "bent_normal",
+                 {{"N", coat.normal},
+                  {"B", coat.anisotropy->B},
+                  {"V", given("view")},
+                  {"strength", coat.anisotropy->strength},
+                  {"roughness", coat.roughness}});
       bent = ref("coat.bent_normal");
     }
-    add("coat.reflection", coat.anisotropy ? "reflection_unnormalized" : "reflection",
-        {{"V", given("view")}, {"N", bent}});
-    add("coat.radiance", "prefiltered_environment",
-        {{"environment_specular", Source{TextureRef{"environment_specular"}, {}}},
-         {"R", ref("coat.reflection")},
-         {"roughness", coat.roughness},
-         {"max_lod", given("environment_max_lod")}});
+    graph_.add("coat.reflection", coat.anisotropy ? "reflection_unnormalized" : "reflection",
+               {{"V", given("view")}, {"N", bent}});
+    graph_.add("coat.radiance", "prefiltered_environment",
+               {{"environment_specular", Source{TextureRef{"environment_specular"}, {}}},
+                {"R", ref("coat.reflection")},
+                {"roughness", coat.roughness},
+                {"max_lod", given("environment_max_lod")}});
     environmentBrdf("coat", coat.cosine, coat.roughness);
-    add("coat.lobe_indirect", "coat_lobe_indirect",
-        {{"radiance", ref("coat.radiance")},
-         {"scale", ref("coat.environment_brdf", "scale")},
-         {"bias", ref("coat.environment_brdf", "bias")}});
+    graph_.add("coat.lobe_indirect", "coat_lobe_indirect",
+               {{"radiance", ref("coat.radiance")},
+                {"scale", ref("coat.environment_brdf", "scale")},
+                {"bias", ref("coat.environment_brdf", "bias")}});
     const Profile& profile = *options_.profile;
     return layer("ibl", base, terms(profile.absorption_ibl, profile.darkening_ibl),
                  ref("coat.lobe_indirect"));
@@ -219,18 +214,18 @@ private:
     const CoatSources& coat = *surface_.coat;
     const std::string transmission = "coat.transmission_" + light;
     const bool clear = !terms.absorption && !terms.darkening;
-    Node& through =
-        add(transmission, clear ? "coat_transmission_clear" : std::string(options_.profile->transmission),
-            {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
+    Node& through = graph_.add(
+        transmission, clear ? "coat_transmission_clear" : std::string(options_.profile->transmission),
+        {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
     if (terms.absorption) Graph::connect(through, "absorption", *terms.absorption);
     if (terms.darkening) Graph::connect(through, "darkening", *terms.darkening);
     const std::string id = "coat.layer_" + light;
-    add(id, "coat_layer",
-        {{"base", base},
-         {"transmission", ref(transmission)},
-         {"layer", lobe},
-         {"weight", coat.weight},
-         {"fresnel", coat.fresnel}});
+    graph_.add(id, "coat_layer",
+               {{"base", base},
+                {"transmission", ref(transmission)},
+                {"layer", lobe},
+                {"weight", coat.weight},
+                {"fresnel", coat.fresnel}});
     return ref(id);
   }
 
@@ -269,6 +264,9 @@ Graph build(const gltf::Material& material, const gltf::VertexAttributes& attrib
   Graph graph;
   graph.name = material.name;
   graph.template_name = options.template_name;
+  // Room for a coat with all of its terms.
+  graph.nodes.reserve(64);
+  graph.parameters.reserve(48);
   SurfaceBuilder builder(graph, material, attributes, options, warnings);
   const Surface surface = builder.run();
   if (options.template_name == "surface") {

@@ -4,20 +4,18 @@
 
 namespace lacquer::graph {
 
-Source CoatTerms::node(const std::string& id, const std::string& type,
-                       std::vector<std::pair<std::string, Source>> inputs) {
-  if (graph_.find(id) == nullptr) graph_.add(id, type).inputs = std::move(inputs);
+Source CoatTerms::node(const std::string& id, const std::string& type, Inputs inputs) {
+  if (graph_.find(id) == nullptr) graph_.add(id, type, std::move(inputs));
   return ref(id);
 }
 
 Source CoatTerms::term(const Term& term) {
-  std::vector<std::pair<std::string, Source>> inputs;
+  Inputs inputs;
   for (const std::string_view name : term.inputs) inputs.emplace_back(name, input(name));
   return node(std::string(term.id), std::string(term.node), std::move(inputs));
 }
 
-std::vector<std::pair<std::string, Source>> CoatTerms::withDielectric(
-    std::vector<std::pair<std::string, Source>> inputs) const {
+Inputs CoatTerms::withDielectric(Inputs inputs) const {
   if (surface_.dielectric_f0) inputs.emplace_back("dielectric_f0", *surface_.dielectric_f0);
   return inputs;
 }

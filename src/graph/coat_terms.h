@@ -17,10 +17,8 @@ public:
 private:
   /// What an input of that name is connected to.
   Source input(std::string_view name);
-  Source node(const std::string& id, const std::string& type,
-              std::vector<std::pair<std::string, Source>> inputs);
-  std::vector<std::pair<std::string, Source>> withDielectric(
-      std::vector<std::pair<std::string, Source>> inputs) const;
+  Source node(const std::string& id, const std::string& type, Inputs inputs);
+  std::vector<std::pair<std::string, Source>> withDielectric(Inputs inputs) const;
 
   Graph& graph_;
   const Surface& surface_;

@@ -2,9 +2,12 @@
 // tool edits: add nodes, connect, set values, check, print.
 #pragma once
 
+#include <concepts>
+#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -53,13 +56,14 @@ struct Source {
   bool operator==(const Source&) const = default;
 };
 
+using Inputs = std::vector<std::pair<std::string, Source>>;
+
 /// A use of a library node: one term.
 struct Node {
   std::string id;       ///< unique in the graph, dotted: "coat.absorption"
   std::string type;     ///< the library node's name: "coat_absorption"
   std::string variant;  ///< empty for the reference body
-  std::vector<std::pair<std::string, Source>>
-      inputs;  ///< by parameter name; inputs with defaults may be absent
+  Inputs inputs;        ///< by parameter name; inputs with defaults may be absent
   bool operator==(const Node&) const = default;
 };
 
@@ -81,6 +85,18 @@ struct Graph {
 
   // Editing. Names and ids are checked by check(), not here.
   Node& add(std::string id, std::string type);
+  /// Not for a list in braces: std::vector would copy what is in it.
+  template <std::same_as<Inputs> T>
+  Node& add(std::string id, std::string type, T inputs) {
+    Node& node = add(std::move(id), std::move(type));
+    node.inputs = std::move(inputs);
+    return node;
+  }
+  template <size_t N>
+  Node& add(std::string id, std::string type, std::pair<std::string, Source> (&&inputs)[N]) {
+    return add(std::move(id), std::move(type),
+               Inputs(std::make_move_iterator(inputs), std::make_move_iterator(inputs + N)));
+  }
   /// Connects (or reconnects) an input.
   static void connect(Node& node, std::string_view input, Source source);
   Node* find(std::string_view id);

@@ -31,13 +31,6 @@ std::string_view propertyName(std::string_view pointer) { return pointer.substr(
 
 }  // namespace
 
-Node& SurfaceBuilder::add(std::string id, std::string type,
-                          std::vector<std::pair<std::string, Source>> inputs) {
-  Node& node = graph_.add(std::move(id), std::move(type));
-  node.inputs = std::move(inputs);
-  return node;
-}
-
 void SurfaceBuilder::skip(std::string term, std::string reason) {
   graph_.skipped.push_back({std::move(term), std::move(reason)});
 }
@@ -76,7 +69,7 @@ Source SurfaceBuilder::textureCoordinate(const gltf::TextureInfo& info, const st
   const gltf::TextureTransform t = info.transform.value_or(gltf::TextureTransform{});
   if (!t.identity()) {
     const std::string id = slot + ".uv";
-    Node& node = add(id, "uv_transform", {{"uv", uv}});
+    Node& node = graph_.add(id, "uv_transform", {{"uv", uv}});
     const std::string name = slot + "_uv";
     const std::string at = fmt::format("/materials/{}/", material_.index);
     const std::string property = info.pointer.substr(at.size()) + "/extensions/KHR_texture_transform";
@@ -113,10 +106,10 @@ Source SurfaceBuilder::texel(const gltf::TextureInfo& info, const std::string& s
   texture.pointer = info.pointer;
   graph_.textures.push_back(texture);
   const Source uv = textureCoordinate(info, slot);
-  add(slot + ".texel", "texture_sample", {{"image", {TextureRef{name}, {}}}, {"uv", uv}});
+  graph_.add(slot + ".texel", "texture_sample", {{"image", {TextureRef{name}, {}}}, {"uv", uv}});
   Source result = ref(slot + ".texel");
   if (color && options_.decode_srgb) {
-    add(slot + ".decoded", "srgb_decode", {{"encoded", result}});
+    graph_.add(slot + ".decoded", "srgb_decode", {{"encoded", result}});
     result = ref(slot + ".decoded");
   }
   sampled_.emplace_back(key, result);
@@ -132,10 +125,10 @@ static Source pick(Source source, std::string swizzle) {
 
 Source SurfaceBuilder::geometricNormal() {
   if (!attributes_.normal) {
-    add("normal.flat", "flat_normal", {{"position", given("position")}, {"V", given("view")}});
+    graph_.add("normal.flat", "flat_normal", {{"position", given("position")}, {"V", given("view")}});
     return ref("normal.flat");
   }
-  add("normal.unit", "unit_normal", {{"normal", given("normal")}});
+  graph_.add("normal.unit", "unit_normal", {{"normal", given("normal")}});
   return ref("normal.unit");
 }
 
@@ -148,13 +141,13 @@ std::optional<SurfaceBuilder::Frame> SurfaceBuilder::tangentFrame(const gltf::Te
   std::string id;
   if (attributes_.tangent) {
     id = "tangent.frame";
-    add(id, "tangent_frame", {{"N", geometric_normal_}, {"tangent", given("tangent")}});
+    graph_.add(id, "tangent_frame", {{"N", geometric_normal_}, {"tangent", given("tangent")}});
   } else {
     if (info == nullptr || !attributes_.texCoord[static_cast<size_t>(info->texCoord)]) return std::nullopt;
     id = slot + ".frame";
     const Source uv = textureCoordinate(*info, slot);
-    add(id, "tangent_frame_from_derivatives",
-        {{"N", geometric_normal_}, {"position", given("position")}, {"uv", uv}});
+    graph_.add(id, "tangent_frame_from_derivatives",
+               {{"N", geometric_normal_}, {"position", given("position")}, {"uv", uv}});
   }
   const Frame frame{ref(id, "T"), ref(id, "B")};
   frames_.emplace_back(key, frame);
@@ -164,7 +157,7 @@ std::optional<SurfaceBuilder::Frame> SurfaceBuilder::tangentFrame(const gltf::Te
 Source SurfaceBuilder::facing(const Source& normal, const std::string& layer) {
   if (!material_.doubleSided) return normal;
   const std::string id = layer + ".facing";
-  add(id, "double_sided_normal", {{"N", normal}, {"front_facing", given("front_facing")}});
+  graph_.add(id, "double_sided_normal", {{"N", normal}, {"front_facing", given("front_facing")}});
   return ref(id);
 }
 
@@ -191,8 +184,8 @@ Source SurfaceBuilder::mapped(const gltf::Texture& texture, const std::string& l
   }
   const Source image = texel(*texture, slot, false);
   Node& node =
-      add(term, "normal_map",
-          {{"texel", pick(image, "rgb")}, {"T", frame->T}, {"B", frame->B}, {"N", geometric_normal_}});
+      graph_.add(term, "normal_map",
+                 {{"texel", pick(image, "rgb")}, {"T", frame->T}, {"B", frame->B}, {"N", geometric_normal_}});
   if (texture->scale != 1 || live(term)) {
     const std::string property =
         texture->pointer.substr(fmt::format("/materials/{}/", material_.index).size());
@@ -213,19 +206,19 @@ void SurfaceBuilder::geometry() {
 
 void SurfaceBuilder::baseColor() {
   const gltf::Vec4& f = material_.baseColorFactor;
-  std::vector<std::pair<std::string, Source>> inputs;
+  Inputs inputs;
   inputs.emplace_back("factor", editable("base_color_factor", ir::Type::Vec4, {f[0], f[1], f[2], f[3]},
                                          {0, 1}, "pbrMetallicRoughness/baseColorFactor"));
   if (material_.baseColorTexture) {
     inputs.emplace_back("texel", texel(*material_.baseColorTexture, "base_color", true));
   }
   if (attributes_.color0) inputs.emplace_back("vertex_color", given("color0"));
-  add("base.color", "base_color", std::move(inputs));
+  graph_.add("base.color", "base_color", std::move(inputs));
   surface_.base_color = ref("base.color");
 }
 
 void SurfaceBuilder::metallicRoughness() {
-  std::vector<std::pair<std::string, Source>> inputs;
+  Inputs inputs;
   inputs.emplace_back("metallic_factor",
                       editable("metallic_factor", ir::Type::Float, {material_.metallicFactor}, {0, 1},
                                "pbrMetallicRoughness/metallicFactor"));
@@ -236,23 +229,24 @@ void SurfaceBuilder::metallicRoughness() {
     inputs.emplace_back("texel", texel(*material_.metallicRoughnessTexture, "metallic_roughness", false));
     surface_.textured_alpha = true;
   }
-  add("base.metallic_roughness", "metallic_roughness", std::move(inputs));
+  graph_.add("base.metallic_roughness", "metallic_roughness", std::move(inputs));
   surface_.metallic = ref("base.metallic_roughness", "metallic");
   surface_.roughness = ref("base.metallic_roughness", "roughness");
   if (options_.template_name == "surface") return;
 
-  add("base.alpha", "alpha_from_roughness", {{"roughness", surface_.roughness}});
+  graph_.add("base.alpha", "alpha_from_roughness", {{"roughness", surface_.roughness}});
   surface_.alpha = ref("base.alpha");
   if (material_.ior != 1.5 || live("base.f0")) {
-    add("base.f0", "f0_from_ior",
-        {{"ior",
-          editable("ior", ir::Type::Float, {material_.ior}, {0, 1e9}, "extensions/KHR_materials_ior/ior")}});
+    graph_.add("base.f0", "f0_from_ior",
+               {{"ior", editable("ior", ir::Type::Float, {material_.ior}, {0, 1e9},
+                                 "extensions/KHR_materials_ior/ior")}});
     surface_.dielectric_f0 = ref("base.f0");
   } else {
     skip("base.f0", "the IOR is 1.5: F0 is 0.04");
   }
-  Node& node = add("base.reflectance", "metallic_mix",
-                   {{"base_color", pick(surface_.base_color, "rgb")}, {"metallic", surface_.metallic}});
+  Node& node =
+      graph_.add("base.reflectance", "metallic_mix",
+                 {{"base_color", pick(surface_.base_color, "rgb")}, {"metallic", surface_.metallic}});
   if (surface_.dielectric_f0) Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
 }
 
@@ -265,7 +259,7 @@ void SurfaceBuilder::occlusion() {
     return skip("occlusion", "there is no indirect light");
   }
   const Source image = texel(*material_.occlusionTexture, "occlusion", false);
-  Node& node = add("occlusion", "occlusion", {{"texel", pick(image, "r")}});
+  Node& node = graph_.add("occlusion", "occlusion", {{"texel", pick(image, "r")}});
   if (material_.occlusionTexture->strength != 1 || live("occlusion")) {
     Graph::connect(node, "strength",
                    editable("occlusion_strength", ir::Type::Float, {material_.occlusionTexture->strength},
@@ -278,7 +272,7 @@ void SurfaceBuilder::emission() {
   const gltf::Vec3& f = material_.emissiveFactor;
   if (f == gltf::Vec3{0, 0, 0} && !live("emission")) return skip("emission", "emissiveFactor is black");
   if (material_.emissiveStrength == 0 && !live("emission")) return skip("emission", "emissiveStrength is 0");
-  std::vector<std::pair<std::string, Source>> inputs;
+  Inputs inputs;
   inputs.emplace_back(
       "factor", editable("emissive_factor", ir::Type::Vec3, {f[0], f[1], f[2]}, {0, 1}, "emissiveFactor"));
   if (material_.emissiveStrength != 1 || live("emission")) {
@@ -290,7 +284,7 @@ void SurfaceBuilder::emission() {
   if (material_.emissiveTexture) {
     inputs.emplace_back("texel", pick(texel(*material_.emissiveTexture, "emissive", true), "rgb"));
   }
-  add("emission", "emission", std::move(inputs));
+  graph_.add("emission", "emission", std::move(inputs));
   surface_.emission = ref("emission");
 }
 
@@ -301,10 +295,10 @@ void SurfaceBuilder::alpha() {
     case gltf::AlphaMode::Blend: surface_.alpha_out = alpha; return;
     case gltf::AlphaMode::Mask: break;
   }
-  add("alpha.mask", "alpha_mask",
-      {{"alpha", alpha},
-       {"cutoff", editable("alpha_cutoff", ir::Type::Float, {material_.alphaCutoff},
-                           {0, std::numeric_limits<double>::infinity()}, "alphaCutoff")}});
+  graph_.add("alpha.mask", "alpha_mask",
+             {{"alpha", alpha},
+              {"cutoff", editable("alpha_cutoff", ir::Type::Float, {material_.alphaCutoff},
+                                  {0, std::numeric_limits<double>::infinity()}, "alphaCutoff")}});
   surface_.hidden = ref("alpha.mask");
 }
 
@@ -327,7 +321,7 @@ void SurfaceBuilder::coat() {
 
 void SurfaceBuilder::coatShape(const CoatModel& model, CoatSources& coat) {
   const bool lit = options_.template_name != "surface";
-  std::vector<std::pair<std::string, Source>> inputs;
+  Inputs inputs;
   const std::string at = "extensions/";
   inputs.emplace_back("weight_factor", editable("coat_factor", ir::Type::Float, {model.weight}, {0, 1},
                                                 at + model.weight_name));
@@ -341,7 +335,7 @@ void SurfaceBuilder::coatShape(const CoatModel& model, CoatSources& coat) {
                         pick(texel(*model.roughness_texture, "coat_roughness", false), "g"));
     coat.textured_alpha = true;
   }
-  add("coat.surface", "coat_surface", std::move(inputs));
+  graph_.add("coat.surface", "coat_surface", std::move(inputs));
   coat.weight = ref("coat.surface", "weight");
   coat.roughness = ref("coat.surface", "roughness");
 
@@ -353,9 +347,9 @@ void SurfaceBuilder::coatShape(const CoatModel& model, CoatSources& coat) {
 
   coatIor(model, coat);
   if (!lit) return;
-  add("coat.alpha", "alpha_from_roughness", {{"roughness", coat.roughness}});
+  graph_.add("coat.alpha", "alpha_from_roughness", {{"roughness", coat.roughness}});
   coat.alpha = ref("coat.alpha");
-  add("coat.view_cosine", "view_cosine", {{"N", coat.normal}, {"V", given("view")}});
+  graph_.add("coat.view_cosine", "view_cosine", {{"N", coat.normal}, {"V", given("view")}});
   coat.cosine = ref("coat.view_cosine");
   coat.fresnel = CoatTerms(graph_, surface_, coat).term(options_.profile->fresnel);
 }
@@ -369,7 +363,7 @@ void SurfaceBuilder::coatIor(const CoatModel& model, CoatSources& coat) {
   if (options_.template_name != "surface" && options_.profile->fresnel_from != "F0") {
     return skip("coat.f0", fmt::format("the profile {} takes the IOR itself", options_.profile->name));
   }
-  add("coat.f0", "f0_from_ior", {{"ior", coat.ior}});
+  graph_.add("coat.f0", "f0_from_ior", {{"ior", coat.ior}});
   coat.F0 = ref("coat.f0");
 }
 
@@ -388,16 +382,16 @@ void SurfaceBuilder::coatColor(const CoatModel& model, CoatSources& coat) {
                            ? std::string("KHR_materials_clearcoat/extensions/"
                                          "EXT_materials_clearcoat_color/clearcoatColorFactor")
                            : model.color_name);
-  std::vector<std::pair<std::string, Source>> inputs;
+  Inputs inputs;
   inputs.emplace_back("factor",
                       editable("coat_color_factor", ir::Type::Vec3, {c[0], c[1], c[2]}, {0, 1}, pointer));
   if (model.color_texture)
     inputs.emplace_back("texel", pick(texel(*model.color_texture, "coat_color", true), "rgb"));
-  add("coat.color", "coat_color", std::move(inputs));
+  graph_.add("coat.color", "coat_color", std::move(inputs));
   coat.color = ref("coat.color");
   if (options_.template_name == "surface") return;
   if (model.has_tint) {
-    add(term, "coat_tint", {{"tint", *coat.color}});
+    graph_.add(term, "coat_tint", {{"tint", *coat.color}});
     coat.tint = ref(term);
     return;
   }
@@ -423,13 +417,13 @@ void SurfaceBuilder::coatDarkening(const CoatModel& model, CoatSources& coat) {
            ? std::string("KHR_materials_clearcoat/extensions/EXT_materials_clearcoat_darkening/"
                          "clearcoatDarkeningFactor")
            : model.darkening_name);
-  std::vector<std::pair<std::string, Source>> inputs;
+  Inputs inputs;
   inputs.emplace_back("factor",
                       editable("coat_darkening_factor", ir::Type::Float, {model.darkening}, {0, 1}, pointer));
   if (model.darkening_texture) {
     inputs.emplace_back("texel", pick(texel(*model.darkening_texture, "coat_darkening", false), "r"));
   }
-  add("coat.darkening_amount", "coat_darkening_amount", std::move(inputs));
+  graph_.add("coat.darkening_amount", "coat_darkening_amount", std::move(inputs));
   coat.darkening = ref("coat.darkening_amount");
 }
 
@@ -456,20 +450,21 @@ void SurfaceBuilder::coatAnisotropy(const CoatModel& model, CoatSources& coat) {
   }
   std::optional<Source> direction;
   if (model.anisotropy_rotation != 0 || live(term)) {
-    add("coat.rotation", "rotation_direction",
-        {{"angle", editable("coat_anisotropy_rotation", ir::Type::Float, {model.anisotropy_rotation}, {},
-                            "extensions/KHR_materials_coat/coatAnisotropyRotation")}});
+    graph_.add("coat.rotation", "rotation_direction",
+               {{"angle", editable("coat_anisotropy_rotation", ir::Type::Float, {model.anisotropy_rotation},
+                                   {}, "extensions/KHR_materials_coat/coatAnisotropyRotation")}});
     direction = ref("coat.rotation");
   }
   if (map) {
-    add("coat.anisotropy_texel", "anisotropy_texel",
-        {{"texel", pick(texel(*map, "coat_anisotropy", false), "rgb")}});
-    add("coat.anisotropy_strength", "scaled",
-        {{"value", ref("coat.anisotropy_texel", "strength")}, {"factor", strength}});
+    graph_.add("coat.anisotropy_texel", "anisotropy_texel",
+               {{"texel", pick(texel(*map, "coat_anisotropy", false), "rgb")}});
+    graph_.add("coat.anisotropy_strength", "scaled",
+               {{"value", ref("coat.anisotropy_texel", "strength")}, {"factor", strength}});
     strength = ref("coat.anisotropy_strength");
     const Source texel_direction = ref("coat.anisotropy_texel", "direction");
     if (direction) {
-      add("coat.direction", "rotate_direction", {{"direction", texel_direction}, {"rotation", *direction}});
+      graph_.add("coat.direction", "rotate_direction",
+                 {{"direction", texel_direction}, {"rotation", *direction}});
       direction = ref("coat.direction");
     } else {
       direction = texel_direction;
@@ -479,10 +474,10 @@ void SurfaceBuilder::coatAnisotropy(const CoatModel& model, CoatSources& coat) {
     coat.anisotropy = Anisotropy{{}, {}, {}, {}, strength};
     return;
   }
-  Node& node =
-      add("coat.anisotropy", "anisotropy_frame", {{"N", coat.normal}, {"T", frame->T}, {"B", frame->B}});
+  Node& node = graph_.add("coat.anisotropy", "anisotropy_frame",
+                          {{"N", coat.normal}, {"T", frame->T}, {"B", frame->B}});
   if (direction) Graph::connect(node, "direction", *direction);
-  add("coat.anisotropic_alpha", "anisotropic_alpha", {{"alpha", coat.alpha}, {"strength", strength}});
+  graph_.add("coat.anisotropic_alpha", "anisotropic_alpha", {{"alpha", coat.alpha}, {"strength", strength}});
   coat.anisotropy = Anisotropy{ref("coat.anisotropy", "T"), ref("coat.anisotropy", "B"),
                                ref("coat.anisotropic_alpha", "alpha_t"),
                                ref("coat.anisotropic_alpha", "alpha_b"), strength};
@@ -494,12 +489,12 @@ void SurfaceBuilder::coatEmission(const CoatModel& model, const CoatSources& coa
   std::optional<Source> absorption = coat.tint;
   const Profile& profile = *options_.profile;
   if (coat.absorbs) absorption = CoatTerms(graph_, surface_, coat).term(profile.absorption_emission);
-  Node& through =
-      add("emission.transmission", absorption ? std::string(profile.transmission) : "coat_transmission_clear",
-          {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
+  Node& through = graph_.add("emission.transmission",
+                             absorption ? std::string(profile.transmission) : "coat_transmission_clear",
+                             {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
   if (absorption) Graph::connect(through, "absorption", *absorption);
-  add("emission.coated", "coat_over_emission",
-      {{"emission", *surface_.emission}, {"transmission", ref("emission.transmission")}});
+  graph_.add("emission.coated", "coat_over_emission",
+             {{"emission", *surface_.emission}, {"transmission", ref("emission.transmission")}});
   surface_.emission = ref("emission.coated");
 }
 

@@ -51,7 +51,6 @@ private:
     Source T, B;
   };
 
-  Node& add(std::string id, std::string type, std::vector<std::pair<std::string, Source>> inputs);
   void skip(std::string term, std::string reason);
   bool live(std::string_view term) const { return options_.live.contains(std::string(term)); }
 

@@ -180,6 +180,12 @@ ValueId Dag::makeRaw(Op op, Type type, std::span<const ValueId> operands, uint32
   return intern(value);
 }
 
+void Dag::substitute(ValueId id, std::span<const ValueId> operands) {
+  Value& value = values_[id];
+  std::copy(operands.begin(), operands.end(), value.args.begin());
+  value.rate = rateOf(*this, value.op, operands);
+}
+
 ValueId Dag::make(Op op, std::span<const ValueId> operands, uint32_t payload) {
   assert(op != Op::Construct && op != Op::Swizzle && op != Op::Constant && op != Op::Input);
   std::array<Type, 4> types{};
@@ -322,10 +328,31 @@ std::vector<ValueId> Dag::byRank(std::span<const ValueId> ids) const {
   return sorted;
 }
 
+std::vector<ValueId> Dag::live(std::span<const ValueId> roots) const {
+  std::vector<uint8_t> seen(values_.size(), 0);
+  std::vector<ValueId> open, result;
+  const auto see = [&](ValueId id) {
+    if (seen[id] == 0) open.push_back(id);
+    seen[id] = 1;
+  };
+  size_t count = 0;
+  for (const ValueId root : roots) see(root);
+  for (; !open.empty(); ++count) {
+    const Value& value = values_[open.back()];
+    open.pop_back();
+    for (size_t k = 0; k < value.count; ++k) see(value.args[k]);
+  }
+  result.reserve(count);
+  for (ValueId id = 0; id < values_.size(); ++id) {
+    if (seen[id] != 0) result.push_back(id);
+  }
+  return result;
+}
+
 std::vector<ValueId> Dag::compact(std::span<const ValueId> roots) {
   std::vector<ValueId> moved(values_.size(), kNoValue);
   std::vector<ValueId> order, pending;
-  const std::vector<ValueId> live = byRank(reachable(*this, roots));
+  const std::vector<ValueId> live = byRank(this->live(roots));
   order.reserve(live.size());
   const auto place = [&](ValueId id) {
     moved[id] = static_cast<ValueId>(order.size());

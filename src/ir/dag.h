@@ -177,6 +177,9 @@ public:
   // What may change in a value that is there, since neither is seen by the algebra.
   /// Exchanges the operands of an operation that commutes.
   void exchangeOperands(ValueId id) { std::swap(values_[id].args[0], values_[id].args[1]); }
+  /// Puts other operands of the same types into a value. No rule looks at it again, and it is not found to be
+  /// equal to another one. The operands may have larger ids; only compact() may follow such values then.
+  void substitute(ValueId id, std::span<const ValueId> operands);
   /// Renumbers an input: its index in the module's table of that kind.
   void setInputField(ValueId id, uint32_t field) { inputs_[values_[id].payload].field = field; }
 
@@ -184,6 +187,8 @@ private:
   friend class Simplifier;
   ValueId intern(const Value& value);
   void rehash(size_t slots);
+  /// reachable() for operands in any order.
+  std::vector<ValueId> live(std::span<const ValueId> roots) const;
   uint32_t constantIndex(const Components& key);
   ValueId makeRaw(Op op, Type type, std::span<const ValueId> operands, uint32_t payload);
 

@@ -203,7 +203,8 @@ void Library::Impl::check(Entry& entry, Reporter& reporter) {
     case DeclKind::Node: checker.node(*entry.node); break;
     case DeclKind::Template: {
       std::vector<TemplateDecl> bases;
-      if (basesOf(entry, reporter, bases)) checker.templateDecl(*entry.template_decl, std::move(bases));
+      if (!basesOf(entry, reporter, bases)) break;
+      checker.templateDecl(*entry.template_decl, std::move(bases));
       if (reporter.count() == 0) tie(*entry.template_decl);
       break;
     }

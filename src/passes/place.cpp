@@ -3,7 +3,6 @@
 #include "passes/names.h"
 #include "passes/passes.h"
 #include "passes/program.h"
-#include "passes/rewrite.h"
 
 namespace lacquer::passes {
 
@@ -134,33 +133,69 @@ void chooseVaryings(ir::Module& module, Placement& placement) {
   }
 }
 
-ir::ValueId placed(Rewriter& r, Placement& placement, ir::ValueId id, std::span<const ir::ValueId> operands) {
-  const ir::Value value = r.dag()[id];
-  const ir::Module& module = r.module();
-  if (value.op == ir::Op::Interpolate) {
-    const uint32_t index = placement.varying_of[id];
-    const ir::Varying& varying = module.varyings[index];
-    return r.dag().input(
-        {ir::InputKind::Varying, varying.name, varying.type, ir::Rate::Fragment, {}, 0, index});
-  }
-  if (module.spec_constants) {
-    if (value.op != ir::Op::Input) return r.copy(id, operands);
-    const ir::Input input = r.dag().inputOf(id);
-    if (input.kind != ir::InputKind::Parameter) return r.copy(id, operands);
-    return r.dag().input({ir::InputKind::SpecConstant, module.parameters[input.field].constant_name,
-                          input.type, ir::Rate::Frame, input.range, 0, input.field});
-  }
-  if (value.rate <= ir::Rate::Material) return id;
-  std::array<ir::ValueId, 4> read{};
-  for (size_t k = 0; k < operands.size(); ++k) {
-    const ir::ValueId old = value.args[k];
-    const bool low = r.dag()[old].rate == ir::Rate::Material;
-    read[k] = low ? readField(r.module(), placement, old) : operands[k];
-  }
-  return r.copy(id, {read.data(), operands.size()});
-}
+/// Puts the varyings in for Interpolate and the fields in for what the preshader computes. Nothing simplifies
+/// by that, inputs being opaque: operands are exchanged where they stand.
+class Replacement {
+public:
+  Replacement(ir::Module& module, Placement& placement) : module_(module), placement_(placement) {}
 
-/// What the rewrite does not see, since nothing reads it: outputs of material rate.
+  void run() {
+    ir::Dag& dag = module_.dag;
+    replaced_.assign(dag.size(), ir::kNoValue);
+    std::vector<ir::ValueId> roots;
+    for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
+    for (const ir::ValueId id : ir::reachable(dag, roots)) {
+      dag.setTerm(dag.termOf(id));
+      dag.setRank(dag.rankOf(id));
+      visit(id);
+    }
+    dag.setTerm(0);
+    dag.setRank(ir::Dag::kOwnRank);
+    for (ir::Output& output : module_.outputs) output.value = now(output.value);
+  }
+
+private:
+  ir::ValueId now(ir::ValueId id) const { return replaced_[id] == ir::kNoValue ? id : replaced_[id]; }
+
+  void visit(ir::ValueId id) {
+    ir::Dag& dag = module_.dag;
+    const ir::Value value = dag[id];
+    if (value.op == ir::Op::Interpolate) return replace(id, varying(placement_.varying_of[id]));
+    if (value.op == ir::Op::Input) {
+      const ir::Input input = dag.inputOf(id);
+      if (module_.spec_constants && input.kind == ir::InputKind::Parameter) replace(id, constantOf(input));
+      return;
+    }
+    const bool reads = !module_.spec_constants && value.rate > ir::Rate::Material;
+    std::array<ir::ValueId, 4> operands = value.args;
+    for (size_t k = 0; k < value.count; ++k) {
+      const bool field = reads && dag[operands[k]].rate == ir::Rate::Material;
+      operands[k] = field ? readField(module_, placement_, operands[k]) : now(operands[k]);
+    }
+    if (operands != value.args) dag.substitute(id, {operands.data(), value.count});
+  }
+
+  void replace(ir::ValueId id, ir::ValueId by) {
+    replaced_[id] = by;
+    module_.dag.inherit(by, id);
+  }
+
+  ir::ValueId varying(uint32_t index) {
+    const ir::Varying& v = module_.varyings[index];
+    return module_.dag.input({ir::InputKind::Varying, v.name, v.type, ir::Rate::Fragment, {}, 0, index});
+  }
+
+  ir::ValueId constantOf(const ir::Input& parameter) {
+    return module_.dag.input({ir::InputKind::SpecConstant, module_.parameters[parameter.field].constant_name,
+                              parameter.type, ir::Rate::Frame, parameter.range, 0, parameter.field});
+  }
+
+  ir::Module& module_;
+  Placement& placement_;
+  std::vector<ir::ValueId> replaced_;
+};
+
+/// What no value reads: outputs of material rate, and Bools on their way to the block.
 void finish(ir::Module& module, Placement& placement) {
   ir::Dag& dag = module.dag;
   for (ir::Output& output : module.outputs) {
@@ -183,9 +218,7 @@ void place(ir::Module& module) {
     chooseFields(module, placement);
   const bool own_varyings = module.varyings.empty();
   chooseVaryings(module, placement);
-  Rewriter(module).run([&](Rewriter& r, ir::ValueId id, std::span<const ir::ValueId> operands) {
-    return placed(r, placement, id, operands);
-  });
+  Replacement(module, placement).run();
   if (!module.spec_constants) finish(module, placement);
   for (uint32_t i = 0; own_varyings && i < module.varyings.size(); ++i) {
     const ir::Varying& varying = module.varyings[i];

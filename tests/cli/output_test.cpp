@@ -40,7 +40,8 @@ TEST(Output, targetsAreThoseAskedFor) {
   std::set<std::string> folders;
   for (const auto& entry : fs::directory_iterator(place / "out")) folders.insert(entry.path().filename());
   EXPECT_EQ(folders, (std::set<std::string>{"essl", "manifest.json", "spirv"}));
-  for (const auto& [id, shader] : place.manifest("out")["shaders"].items()) {
+  const auto manifest = place.manifest("out");
+  for (const auto& [id, shader] : manifest["shaders"].items()) {
     EXPECT_EQ(shader["files"].size(), 2u);
     EXPECT_EQ(shader["validated"], (nlohmann::json{{"essl", true}, {"spirv", true}}));
   }
@@ -51,7 +52,8 @@ TEST(Output, withoutValidationTheManifestSaysSo) {
   const Outcome outcome = place.run({"gen", kFile, "-o", "out", "--no-validate"});
   EXPECT_EQ(outcome.status, 0) << outcome.all();
   EXPECT_NE(outcome.out.find("--no-validate"), std::string::npos);
-  for (const auto& [id, shader] : place.manifest("out")["shaders"].items()) {
+  const auto manifest = place.manifest("out");
+  for (const auto& [id, shader] : manifest["shaders"].items()) {
     for (const auto& [target, validated] : shader["validated"].items()) EXPECT_EQ(validated, false) << target;
   }
 }

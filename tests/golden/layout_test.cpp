@@ -286,7 +286,8 @@ TEST(Layout, packedBytesLieWhereTheManifestSays) {
   forEachShader(options, [&](const Shader& shader) {
     std::vector<float> packed(shader.uniformSize() / 4, -77.0f);
     shader.pack({}, packed.data());
-    for (const Json& block : Json::parse(shader.interfaceJson())["uniforms"]) {
+    const Json interface = Json::parse(shader.interfaceJson());
+    for (const Json& block : interface["uniforms"]) {
       if (block["role"] != "material") continue;
       EXPECT_EQ(block["size"], shader.uniformSize());
       for (const Json& field : block["fields"]) EXPECT_LT(field["offset"], shader.uniformSize());

@@ -110,7 +110,7 @@ void addParts(ir::Dag& dag, ValueId value, std::vector<ValueId>& parts) {
 }
 
 /// Makes the colours of a module from values, four numbers in each.
-void setColors(ir::Module& module, const std::vector<ValueId>& values) {
+void setColors(ir::Module& module, std::span<const ValueId> values) {
   std::vector<ValueId> parts;
   for (const ValueId value : values) addParts(module.dag, value, parts);
   while (parts.size() % 4 != 0) parts.push_back(module.dag.constant(0));
