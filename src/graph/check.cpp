@@ -52,10 +52,13 @@ struct Sink {
   const lang::Param* contract = nullptr;
 };
 
-/// The names that a list has had. Most lists are short: those are searched, and nothing is allocated for
-/// them.
+/// The names that a list has had. Most lists are short: those are searched.
 class Connected {
 public:
+  void clear() {
+    names_.clear();
+    many_.clear();
+  }
   /// False when it was there already.
   bool insert(std::string_view name) {
     if (names_.size() >= kShort) {
@@ -140,6 +143,7 @@ private:
   NameMap<size_t> parameters_{&arena_}, textures_{&arena_}, nodes_{&arena_};
   std::vector<const lang::NodeDecl*> decls_;  ///< of each node; null where it is unknown or wrong
   std::vector<size_t> order_;
+  Connected connected_;  ///< of the node or the list of outputs that is looked at
 };
 
 // -- reporting --
@@ -379,11 +383,11 @@ void GraphCheck::nodeInputs(size_t index) {
     for (const lang::Param& param : decl->params) names.push_back(param.name);
     return names;
   };
-  Connected connected;
+  connected_.clear();
   for (size_t i = 0; i < node.inputs.size(); ++i) {
     const auto& [name, source] = node.inputs[i];
     Sink sink{{Section::Nodes, index, i + 1}, name, nullptr};
-    if (!connected.insert(name)) {
+    if (!connected_.insert(name)) {
       error(sink, "duplicate-name", textOf(sink) + " is connected twice", "remove one of the two");
       continue;
     }
@@ -404,7 +408,7 @@ void GraphCheck::nodeInputs(size_t index) {
   if (decl == nullptr) return;
   Names missing;
   for (const lang::Param& param : decl->params) {
-    if (!param.default_value && !connected.contains(param.name)) missing.push_back(param.name);
+    if (!param.default_value && !connected_.contains(param.name)) missing.push_back(param.name);
   }
   if (missing.empty()) return;
   const std::string what = missing.size() == 1 ? "input" : "inputs";
@@ -415,7 +419,7 @@ void GraphCheck::nodeInputs(size_t index) {
 }
 
 void GraphCheck::outputs() {
-  Connected connected;
+  connected_.clear();
   Names ports;
   if (template_ != nullptr) {
     for (const lang::PortDecl& port : template_->ports) ports.push_back(port.param.name);
@@ -423,7 +427,7 @@ void GraphCheck::outputs() {
   for (size_t i = 0; i < graph_.outputs.size(); ++i) {
     const auto& [name, source] = graph_.outputs[i];
     Sink sink{{Section::Outputs, i, 0}, name, nullptr};
-    if (!connected.insert(name)) {
+    if (!connected_.insert(name)) {
       error(sink, "duplicate-name", textOf(sink) + " is connected twice", "remove one of the two");
       continue;
     }
@@ -440,7 +444,7 @@ void GraphCheck::outputs() {
   }
   if (template_ == nullptr) return;
   for (const lang::PortDecl& port : template_->ports) {
-    if (port.default_value || connected.contains(port.param.name)) continue;
+    if (port.default_value || connected_.contains(port.param.name)) continue;
     error({Section::Outputs, kLast, 0}, "/outputs", "missing-port",
           fmt::format("the graph does not deliver {}, {}", quote(port.param.name), article(port.param.type)),
           fmt::format("in the template {} this port has no default", quote(graph_.template_name)));
