@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "api/fingerprint.h"
+#include "check/check.h"
 
 namespace lacquer {
 
@@ -50,7 +51,7 @@ bool Run::open() {
   }
   library_ = *library;
   KeyBuilder base;
-  base.text(fingerprint());
+  base.text(fingerprint()).text(check::toolVersions());
   for (const std::string& folder : options_.node_directories) {
     const Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
     if (!files)
