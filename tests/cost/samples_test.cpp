@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <map>
 
-#include "build/random_gltf.h"
 #include "check/check.h"
 #include "cost/cost.h"
+#include "golden/random_material.h"
 #include "lacquer.h"
 #include "support/cases.h"
 
@@ -113,8 +113,9 @@ const std::vector<Sample>& ours() {
     Samples samples;
     for (const char* folder : {"examples", "bench/works", "tests/gltf/cases", "tests/physics"})
       addFiles(test::sourceFolder() / folder, settings(), samples);
-    constexpr size_t kRandomMaterials = 40;
-    addScene(test::RandomGltf(3).text(kRandomMaterials), "random", {settings()[kOneLight]}, samples);
+    constexpr size_t kRandomMaterials = 60;
+    addScene(test::RandomMaterial(3).valid(kRandomMaterials).dump(), "random", {settings()[kOneLight]},
+             samples);
     return optimizedOf(std::move(samples));
   }();
   return list;
