@@ -1,5 +1,5 @@
 # lacquer_fingerprint(TARGET TEXT): defines lacquer::fingerprint(), which stands for the sources, the node library and
-# TEXT (versions of what is linked).
+# TEXT (the version). What is linked says its version at run time.
 function(lacquer_fingerprint target text)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/*.cpp" "${PROJECT_SOURCE_DIR}/src/*.h"
        "${PROJECT_SOURCE_DIR}/src/*.def" "${PROJECT_SOURCE_DIR}/nodes/*.node" "${PROJECT_SOURCE_DIR}/templates/*.node")

@@ -81,6 +81,8 @@ public:
     });
     return all;
   }
+  /// What was read is wrong: it is not complete.
+  void refuse() { good_ = false; }
   /// True when nothing was missing and nothing is left.
   bool complete() const { return good_ && bytes_.empty(); }
 

@@ -50,19 +50,21 @@ std::string Cache::pathOf(const Key& key) const {
   return folder_ + "/" + name.substr(0, 2) + "/" + name;
 }
 
-std::optional<std::string> Cache::get(const Key& key) {
+std::optional<std::string> Cache::get(const Key& key, bool* rested) {
   const std::string path = pathOf(key);
   Result<std::string> bytes = readFile(path);
   if (!bytes || !isEntry(*bytes, key)) return std::nullopt;
   std::error_code ignored;
   const auto now = fs::file_time_type::clock::now();
   const auto used = fs::last_write_time(path, ignored);
-  if (!ignored && used + kUseGrain < now) fs::last_write_time(path, now, ignored);
+  const bool old = !ignored && used + kUseGrain < now;
+  if (old) fs::last_write_time(path, now, ignored);
+  if (rested != nullptr) *rested = old;
   bytes->erase(0, sizeof(Header));
   return std::move(*bytes);
 }
 
-void Cache::put(const Key& key, std::string_view payload) {
+void Cache::put(const Key& key, std::string_view payload, bool optional) {
   const Header header = headerOf(key, payload);
   std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
   bytes += payload;
@@ -70,7 +72,7 @@ void Cache::put(const Key& key, std::string_view payload) {
   const Result<bool> written = writeFile(pathOf(key), bytes, &scratch_);
   if (!written) {
     const std::lock_guard lock(mutex_);
-    if (!problems_.empty()) return;  // one will do
+    if (optional || !problems_.empty()) return;  // one will do
     problems_ = written.error();
     problems_[0].severity = Severity::Warning;
     problems_[0].code = "cache-unwritable";

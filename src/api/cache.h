@@ -26,10 +26,11 @@ public:
   /// Keeps the limit.
   ~Cache();
 
-  /// What was put; nothing when it is not there or damaged.
-  std::optional<std::string> get(const Key& key);
-  /// Keeps the payload. That it cannot be written costs time in the next run and nothing else.
-  void put(const Key& key, std::string_view payload);
+  /// What was put; nothing when it is not there or damaged. `rested`: it had not been used for an hour.
+  std::optional<std::string> get(const Key& key, bool* rested = nullptr);
+  /// Keeps the payload. That it cannot be written costs time in the next run and nothing else; it is a
+  /// problem unless `optional`.
+  void put(const Key& key, std::string_view payload, bool optional = false);
   /// Why an entry could not be written; empty when all went well.
   Diagnostics problems() const;
 

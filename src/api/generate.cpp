@@ -21,11 +21,32 @@ std::string depfileText(const std::string& target, const std::vector<std::string
   return text + "\n";
 }
 
-/// Reads with `read`, makes what is needed and writes the manifest.
-Report generateWith(const std::string& folder, const Options& options, Messages& messages,
-                    const std::function<void(size_t, size_t)>& progress,
-                    const std::function<void(Run&, const std::function<void(FileResult&)>&)>& read) {
+/// What generateWith() reads, and how.
+struct Inputs {
+  const Strings& files;
+  const Strings& materials;
+  bool scenes;
+
+  void read(Run& run, const std::function<void(FileResult&)>& each) const {
+    if (scenes)
+      run.readScenes(files, materials, each);
+    else
+      run.readGraphs(files, each);
+  }
+};
+
+/// Reads the inputs, makes what is needed and writes the manifest.
+Report generateWith(const Inputs& inputs, const std::string& folder, const Options& options,
+                    Messages& messages, const Progress& progress) {
   Run run(options, messages, progress);
+  if (!run.prepare()) return run.finish();
+  const bool shard = !options.shard.empty();
+  const std::optional<Receipt> receipt =
+      inputs.scenes && !shard ? run.receipt(inputs.files, inputs.materials, folder) : std::nullopt;
+  if (receipt && run.find(*receipt)) {
+    const Scratch left_by_killed_runs(folder);
+    return run.finish();
+  }
   if (!run.open()) return run.finish();
   // Said once here instead of for every file.
   if (const Result<bool> usable = makeFolder(folder); !usable) {
@@ -34,39 +55,35 @@ Report generateWith(const std::string& folder, const Options& options, Messages&
     return run.finish();
   }
   const Scratch scratch(folder);
-  const bool shard = !options.shard.empty();
   const std::string path = shard ? options.shard : folder + "/manifest.json";
   ManifestFile manifest(path, shard ? nullptr : &scratch);
-  read(run, [&](FileResult& file) {
+  inputs.read(run, [&](FileResult& file) {
     if (!shard) manifest.file(file.text);
   });
   run.make(folder, scratch, [&](const MadeShader& shader) { manifest.shader(shader.id, shader.text); });
   // A shard stands for its shader: without the one there is not the other.
   if (!shard || run.result().ok) run.wrote(manifest.finish());
   if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, depfileText(path, run.inputs())));
+  if (receipt) run.keep(*receipt);
   return run.finish();
 }
 
 }  // namespace
 
-Report generate(const std::vector<std::string>& files, const std::vector<std::string>& materials,
-                const std::string& folder, const Options& options, Messages& messages,
-                const std::function<void(size_t, size_t)>& progress) {
+Report generate(const Strings& files, const Strings& materials, const std::string& folder,
+                const Options& options, Messages& messages, const Progress& progress) {
   Report report;
   withJobs(options.jobs, [&] {
-    report = generateWith(folder, options, messages, progress,
-                          [&](Run& run, const auto& each) { run.readScenes(files, materials, each); });
+    report = generateWith({files, materials, true}, folder, options, messages, progress);
   });
   return report;
 }
 
-Report generateGraphs(const std::vector<std::string>& files, const std::string& folder,
-                      const Options& options, Messages& messages,
-                      const std::function<void(size_t, size_t)>& progress) {
+Report generateGraphs(const Strings& files, const std::string& folder, const Options& options,
+                      Messages& messages, const Progress& progress) {
   Report report;
   withJobs(options.jobs, [&] {
-    report = generateWith(folder, options, messages, progress,
-                          [&](Run& run, const auto& each) { run.readGraphs(files, each); });
+    report = generateWith({files, {}, false}, folder, options, messages, progress);
   });
   return report;
 }

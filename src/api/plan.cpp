@@ -22,6 +22,18 @@ std::string escaped(const std::string& path) {
   return text;
 }
 
+/// One word for a POSIX shell.
+std::string shellWord(const std::string& text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./,:=+@%").find(static_cast<char>(c)) != std::string::npos;
+  });
+  if (plain) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
 std::string lightsFlag(const passes::LightFacts& lights) {
   if (lights.any) return {};
   return fmt::format(" --lights directional:{},point:{},spot:{}", lights.directional, lights.point,
@@ -44,15 +56,15 @@ public:
         "# A command reads what is named here and nothing else, and writes what is named here.\n"
         "ninja_required_version = 1.7\n\n";
     text_ += fmt::format("rule shader\n  command = {} --graph $graph --shard $shard$lights\n",
-                         ninjaText(plan_.command));
+                         shellText(plan_.command));
     text_ += "  description = shader $id\n  restat = 1\n\n";
-    text_ += fmt::format("rule merge\n  command = {} merge -o {} $in\n", ninjaText(shellWord(plan_.program)),
-                         ninjaText(shellWord(folder_)));
+    text_ += fmt::format("rule merge\n  command = {} merge -o {} $in\n", shellText({plan_.program}),
+                         shellText({folder_}));
     text_ += "  description = merge $out\n  restat = 1\n\n";
     if (plan_.replan.empty()) return;
     text_ +=
         fmt::format("rule plan\n  command = {}\n  description = plan $out\n  generator = 1\n  restat = 1\n\n",
-                    ninjaText(plan_.replan));
+                    shellText(plan_.replan));
   }
 
   void shader(const std::string& id, const Structure& structure) {
@@ -65,8 +77,7 @@ public:
     text_ += ": shader " + escaped(stem(id) + ".graph.json");
     tools(text_);
     text_ += fmt::format("\n  id = {}\n  graph = {}\n  shard = {}\n", id,
-                         ninjaText(shellWord(stem(id) + ".graph.json")),
-                         ninjaText(shellWord(stem(id) + ".shard.json")));
+                         shellText({stem(id) + ".graph.json"}), shellText({stem(id) + ".shard.json"}));
     if (!structure.lights.any)
       text_ += "  lights =" + std::string("$ ") + lightsFlag(structure.lights).substr(1) + "\n";
     shards_.push_back(stem(id) + ".shard.json");
@@ -93,20 +104,11 @@ public:
     if (!program().empty()) text_ += " " + escaped(program());
   }
 
-  static std::string shellWord(const std::string& text) {
-    const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-      return std::isalnum(c) != 0 ||
-             std::string_view("_-./,:=+@%").find(static_cast<char>(c)) != std::string::npos;
-    });
-    if (plain) return text;
-    std::string word = "'";
-    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return word + "'";
-  }
-
 private:
-  /// Text of a variable or a command.
-  static std::string ninjaText(const std::string& text) {
+  /// Words of a command, or of a variable that is part of one.
+  static std::string shellText(const Strings& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + shellWord(word);
     std::string out;
     for (const char c : text) out += c == '$' ? std::string("$$") : std::string(1, c);
     return out;

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "api/fingerprint.h"
+#include "check/check.h"
 
 namespace lacquer {
 
@@ -33,15 +34,36 @@ Run::Run(const Options& options, Messages& messages, std::function<void(size_t, 
     : options_(options),
       messages_(messages),
       progress_(std::move(progress)),
-      shown_(std::chrono::steady_clock::now()) {}
+      shown_(std::chrono::steady_clock::now()),
+      said_before_(messages.size()) {}
 
-bool Run::open() {
-  const StageTimer timer(&times_, StageOfRun::Library);
+bool Run::prepare() {
+  prepared_ = true;
   if (const Diagnostics wrong = checkOptions(options_); !wrong.empty()) {
     report(wrong, {});
     report_.ok = false;
     return false;
   }
+  KeyBuilder base;
+  base.text(fingerprint()).text(check::toolVersions());
+  for (const std::string& folder : options_.node_directories) {
+    const Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
+    nodes_known_ &= files.has_value();
+    if (!files)
+      continue;  // open() says why, or can read them again: they were as the base has them a moment ago
+    for (const lang::SourceFile& file : *files) {
+      base.text(file.name).text(file.text);
+      node_files_.push_back(file.name);
+    }
+  }
+  base_ = base.finish();
+  if (!options_.cache.empty()) cache_ = std::make_unique<Cache>(options_.cache, options_.cache_size);
+  return true;
+}
+
+bool Run::open() {
+  if (!prepared_ && !prepare()) return false;
+  const StageTimer timer(&times_, StageOfRun::Library);
   const auto library = libraryFor(options_);
   if (!library) {
     report(library.error(), {});
@@ -49,21 +71,28 @@ bool Run::open() {
     return false;
   }
   library_ = *library;
-  KeyBuilder base;
-  base.text(fingerprint());
-  for (const std::string& folder : options_.node_directories) {
-    const Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
-    if (!files)
-      continue;  // it was there a moment ago: whatever is cached under this key is right for what was read
-    for (const lang::SourceFile& file : *files) {
-      base.text(file.name).text(file.text);
-      node_files_.push_back(file.name);
-    }
-  }
-  if (!options_.cache.empty()) cache_ = std::make_unique<Cache>(options_.cache, options_.cache_size);
-  setting_.emplace(Setting{options_, *library_, base.finish(), cache_.get(), &times_});
+  setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_});
   structures_.emplace(*setting_);
   return true;
+}
+
+std::optional<Receipt> Run::receipt(const Strings& files, const Strings& materials,
+                                    const std::string& folder) {
+  if (cache_ == nullptr || !nodes_known_) return std::nullopt;
+  const StageTimer timer(&times_, StageOfRun::Read);
+  return Receipt(files, materials, folder, options_, base_, *cache_);
+}
+
+bool Run::find(const Receipt& receipt) {
+  const StageTimer timer(&times_, StageOfRun::Cache);
+  if (!receipt.find(report_, messages_)) return false;
+  if (progress_) progress_(report_.shaders.size(), report_.shaders.size());
+  return true;
+}
+
+void Run::keep(const Receipt& receipt) {
+  const StageTimer timer(&times_, StageOfRun::Cache);
+  receipt.keep(report_, Messages(messages_.begin() + static_cast<ptrdiff_t>(said_before_), messages_.end()));
 }
 
 void Run::progress(size_t done, bool last) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "api/receipt.h"
 #include "api/shaders.h"
 #include "api/source_file.h"
 
@@ -13,8 +14,15 @@ public:
   Run(const Options& options, Messages& messages,
       std::function<void(size_t done, size_t known)> progress = {});
 
-  /// False, with a message, when the node library cannot be read.
+  /// False, with a message, when the options contradict each other. Opens the cache.
+  bool prepare();
+  /// False, with a message, when the node library cannot be read. Prepares, when that has not been done.
   bool open();
+  /// What an earlier run with these inputs and options has left behind; nothing without a cache.
+  std::optional<Receipt> receipt(const Strings& files, const Strings& materials, const std::string& folder);
+  /// True when that is all there still: then there is nothing to do but to finish().
+  bool find(const Receipt& receipt);
+  void keep(const Receipt& receipt);
 
   /// Reads the inputs, some at a time, and calls `each` with every result, in order, from this thread.
   void readScenes(const std::vector<std::string>& files, const std::vector<std::string>& only,
@@ -49,6 +57,10 @@ private:
   std::chrono::steady_clock::time_point shown_;
   std::shared_ptr<const lang::Library> library_;
   StageTimes times_;
+  Key base_;  ///< of this build and the node library
+  bool prepared_ = false;
+  bool nodes_known_ = true;  ///< the base covers every node file
+  size_t said_before_ = 0;   ///< messages that are not of this run
   std::unique_ptr<Cache> cache_;
   std::optional<Setting> setting_;
   std::optional<Structures> structures_;

@@ -29,7 +29,9 @@ std::string bytesOf(const std::vector<uint32_t>& words) {
 class Maker {
 public:
   Maker(const Setting& setting, const std::string& folder, const Scratch& scratch)
-      : setting_(setting), folder_(folder), scratch_(scratch) {}
+      : setting_(setting), folder_(folder), scratch_(scratch) {
+    if (setting.cache != nullptr && setting.options.validate) dxc_ = check::dxcIdentity();
+  }
 
   MadeShader make(const std::string& id, Distinct& shader) const;
 
@@ -47,6 +49,7 @@ private:
   const Setting& setting_;
   const std::string& folder_;
   const Scratch& scratch_;
+  std::string dxc_;  ///< that validates the HLSL, too; empty where there is none
 };
 
 /// The base covers this build with its compilers and validators, and the node library; the id covers the
@@ -56,7 +59,7 @@ Key Maker::keyOf(const std::string& id, Target target) const {
   KeyBuilder key;
   key.text("shader").key(setting_.base).text(id).text(targetName(target)).number(options.validate);
   if (target == Target::Spirv) key.number(options.spirv_route).number(options.debug);
-  if (target == Target::Hlsl && options.validate) key.number(check::haveDxc());
+  if (target == Target::Hlsl && options.validate) key.text(dxc_);
   return key.finish();
 }
 

@@ -10,6 +10,7 @@
 
 #include "api/budget.h"
 #include "api/manifest.h"
+#include "api/report_blob.h"
 #include "gltf/container.h"
 
 namespace lacquer {
@@ -322,22 +323,7 @@ std::string toBlob(const FileResult& result) {
   BlobWriter blob;
   blob.text(result.text);
   blob.diagnostics(result.diagnostics);
-  std::vector<const MaterialTerms*> terms;
-  const auto place = [&](const MaterialTerms* one) {
-    const auto it = std::find(terms.begin(), terms.end(), one);
-    if (it != terms.end()) return static_cast<uint64_t>(it - terms.begin());
-    terms.push_back(one);
-    return static_cast<uint64_t>(terms.size() - 1);
-  };
-  blob.list(result.materials, [&](const MaterialReport& m) {
-    blob.text(m.name), blob.number<uint64_t>(m.index), blob.number(m.ok), blob.number(place(m.terms.get()));
-    blob.list(m.shaders, [&](const std::string& id) { blob.text(id); });
-  });
-  blob.list(terms, [&](const MaterialTerms* one) {
-    blob.list(one->terms, [&](const std::string& term) { blob.text(term); });
-    blob.list(one->skipped, [&](const auto& s) { blob.text(s.first), blob.text(s.second); });
-    writeVariants(one->variants, blob);
-  });
+  writeMaterials(result.materials, blob);
   blob.list(result.structures, [&](const Key& key) { blob.number(key.high), blob.number(key.low); });
   return blob.take();
 }
@@ -347,35 +333,12 @@ std::optional<FileResult> fromBlob(const std::string& path, std::string_view byt
   FileResult result;
   result.text = blob.text();
   result.diagnostics = blob.diagnostics();
-  std::vector<uint64_t> places;
-  blob.list([&] {
-    MaterialReport m;
-    m.file = path, m.name = blob.text(), m.index = blob.number<uint64_t>(), m.ok = blob.number<bool>();
-    places.push_back(blob.number<uint64_t>());
-    blob.list([&] { m.shaders.push_back(blob.text()); });
-    result.materials.push_back(std::move(m));
-  });
-  std::vector<std::shared_ptr<const MaterialTerms>> terms;
-  blob.list([&] {
-    auto one = std::make_shared<MaterialTerms>();
-    blob.list([&] { one->terms.push_back(blob.text()); });
-    blob.list([&] {
-      std::string term = blob.text();
-      one->skipped.emplace_back(std::move(term), blob.text());
-    });
-    one->variants = readVariants(blob);
-    one->expected_error = expectedError(one->variants);
-    terms.push_back(std::move(one));
-  });
+  readMaterials(path, blob, result.materials);
   blob.list([&] {
     const auto high = blob.number<uint64_t>();
     result.structures.push_back({high, blob.number<uint64_t>()});
   });
   if (!blob.complete()) return std::nullopt;
-  for (size_t i = 0; i < places.size(); ++i) {
-    if (places[i] >= terms.size()) return std::nullopt;
-    result.materials[i].terms = terms[places[i]];
-  }
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "api/budget.h"
 #include "api/manifest.h"
+#include "api/report_blob.h"
 #include "lower/lower.h"
 
 namespace lacquer {
@@ -272,28 +273,6 @@ void writeBindings(const Structure& structure, const graph::Graph& graph, JsonTe
     json.key("pointer").string(graph.textures[i].pointer).endObject();
   }
   json.endObject();
-}
-
-void writeVariants(const std::vector<MaterialTerms::Variant>& variants, BlobWriter& blob) {
-  blob.list(variants, [&](const MaterialTerms::Variant& v) {
-    blob.text(v.node), blob.text(v.variant);
-    blob.list(v.terms, [&](const std::string& term) { blob.text(term); });
-    blob.number(v.error), blob.number(v.saved);
-  });
-}
-
-std::vector<MaterialTerms::Variant> readVariants(BlobReader& blob) {
-  std::vector<MaterialTerms::Variant> variants;
-  blob.list([&] {
-    MaterialTerms::Variant v{};
-    v.node = blob.text();
-    v.variant = blob.text();
-    blob.list([&] { v.terms.push_back(blob.text()); });
-    v.error = blob.number<double>();
-    v.saved = blob.number<double>();
-    variants.push_back(std::move(v));
-  });
-  return variants;
 }
 
 std::string toBlob(const Structure& s) {

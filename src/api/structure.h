@@ -60,9 +60,6 @@ std::string toBlob(const Structure& structure);
 /// False when the bytes are no structure.
 bool fromBlob(std::string_view bytes, Structure& structure);
 
-void writeVariants(const std::vector<MaterialTerms::Variant>& variants, BlobWriter& blob);
-std::vector<MaterialTerms::Variant> readVariants(BlobReader& blob);
-
 /// The members "parameters", "uniforms" and "textures" of a use of a material.
 void writeBindings(const Structure& structure, const graph::Graph& graph, JsonText& json);
 

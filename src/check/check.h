@@ -38,8 +38,15 @@ Diagnostics validate(const Spirv& words, bool open_gl, const std::string& name);
 /// spirv-opt -O (performance passes). Used for comparisons only; nothing the product writes goes through it.
 Result<Spirv> optimize(const Spirv& words, const std::string& name);
 
+/// What is linked, as it names itself: "glslang 12.0.0, SPIRV-Tools v2023.1 …".
+std::string toolVersions();
+
 /// True when `dxc` is on the PATH and can be run from here (on POSIX systems only).
 bool haveDxc();
+
+/// What tells the dxc on the PATH from another one without running it: the file that it leads to, its size
+/// and when it was modified. Empty where there is none.
+std::string dxcIdentity();
 
 /// Compiles HLSL with dxc (profile vs_6_0 / ps_6_0). An empty list when it compiles; without dxc one error,
 /// "dxc-missing". Code "dxc". Safe to call from several threads, as long as none changes the environment.

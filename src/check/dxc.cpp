@@ -154,6 +154,17 @@ std::optional<Diagnostic> diagnosticOf(std::string_view line, const std::string&
 
 bool haveDxc() { return findProgram("dxc").has_value(); }
 
+std::string dxcIdentity() {
+  const auto program = findProgram("dxc");
+  if (!program) return {};
+  // A package's links stay the same when what they lead to is replaced.
+  std::error_code ignored;
+  const fs::path file = fs::canonical(*program, ignored);
+  const uintmax_t size = fs::file_size(file, ignored);
+  const auto time = fs::last_write_time(file, ignored).time_since_epoch().count();
+  return fmt::format("{} {} {}", file.string(), size, time);
+}
+
 Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::string& name) {
   const auto program = findProgram("dxc");
   if (!program) return {plainError("dxc-missing", name, "there is no `dxc` on the PATH")};
@@ -177,6 +188,8 @@ Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::stri
 #else
 
 bool haveDxc() { return false; }
+
+std::string dxcIdentity() { return {}; }
 
 Diagnostics compileWithDxc(const std::string&, Stage, const std::string& name) {
   return {plainError("dxc-missing", name, "dxc is run on POSIX systems only")};

@@ -1,5 +1,6 @@
 // SPIRV-Tools: the validator and the optimizer.
 #include <fmt/format.h>
+#include <glslang/Public/ShaderLang.h>
 
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
@@ -38,6 +39,12 @@ Diagnostic withoutReason(const char* code, const std::string& name) {
 }
 
 }  // namespace
+
+std::string toolVersions() {
+  const glslang::Version glslang = glslang::GetVersion();
+  return fmt::format("glslang {}.{}.{}{}, {}", glslang.major, glslang.minor, glslang.patch, glslang.flavor,
+                     spvSoftwareVersionDetailsString());
+}
 
 Diagnostics validate(const Spirv& words, bool open_gl, const std::string& name) {
   Diagnostics list;

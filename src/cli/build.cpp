@@ -2,39 +2,25 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-
 namespace lacquer::cli {
 
 namespace {
 
-/// One word for a POSIX shell.
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("_-./,:=+@%").find(static_cast<char>(c)) != std::string::npos;
-  });
-  if (plain) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 /// How the program makes one graph with these options. What only decides which graph a material gets is not
 /// in it.
-std::string graphCommand(const std::string& program, const std::string& folder, const Options& options) {
-  std::string text = quoted(program) + " gen -q --jobs 1 -o " + quoted(folder) + " --target ";
-  for (size_t i = 0; i < options.targets.size(); ++i) {
-    text += fmt::format("{}{}", i == 0 ? "" : ",", targetName(options.targets[i]));
-  }
-  if (options.parameters == Parameters::Baked) text += " --params baked";
-  if (options.parameters == Parameters::Spec) text += " --params spec";
-  if (options.spirv_route == SpirvRoute::Glslang) text += " --spirv-from glslang";
-  if (options.debug) text += " --debug";
-  if (!options.validate) text += " --no-validate";
-  for (const std::string& nodes : options.node_directories) text += " --nodes " + quoted(nodes);
-  return text;
+Strings graphCommand(const std::string& program, const std::string& folder, const Options& options) {
+  std::string targets;
+  for (const Target target : options.targets)
+    targets += (targets.empty() ? "" : ",") + std::string(targetName(target));
+  Strings words{program, "gen", "-q", "--jobs", "1", "-o", folder, "--target", targets};
+  const auto add = [&](const Strings& more) { words.insert(words.end(), more.begin(), more.end()); };
+  if (options.parameters == Parameters::Baked) add({"--params", "baked"});
+  if (options.parameters == Parameters::Spec) add({"--params", "spec"});
+  if (options.spirv_route == SpirvRoute::Glslang) add({"--spirv-from", "glslang"});
+  if (options.debug) add({"--debug"});
+  if (!options.validate) add({"--no-validate"});
+  for (const std::string& nodes : options.node_directories) add({"--nodes", nodes});
+  return words;
 }
 
 }  // namespace
@@ -64,11 +50,9 @@ void ProgressLine::operator()(size_t done, size_t known) {
 Report makePlan(const std::string& ninja, const std::vector<std::string>& arguments, bool replan,
                 const std::vector<std::string>& files, const std::vector<std::string>& materials,
                 const std::string& folder, const Options& options, Messages& messages) {
-  std::string again;
-  for (const std::string& argument : arguments) again += (again.empty() ? "" : " ") + quoted(argument);
   const std::string& program = arguments[0];
-  return plan({ninja, program, graphCommand(program, folder, options), replan ? again : ""}, files, materials,
-              folder, options, messages);
+  return plan({ninja, program, graphCommand(program, folder, options), replan ? arguments : Strings()}, files,
+              materials, folder, options, messages);
 }
 
 }  // namespace lacquer::cli

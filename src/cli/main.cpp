@@ -174,6 +174,29 @@ void addGeneration(CLI::App& verb, Flags& flags) {
   addShared(verb, flags);
 }
 
+void addGen(CLI::App& verb, Flags& flags) {
+  auto* files = verb.add_option("files", flags.files, ".gltf or .glb files");
+  auto* graphs =
+      verb.add_option("--graph", flags.graphs, "a node graph in JSON instead of glTF files (may be repeated)")
+          ->allow_extra_args(false)
+          ->excludes(files);
+  verb.add_option("--depfile", flags.options.depfile,
+                  "a file for Make and Ninja: what manifest.json depends on");
+  verb.add_option("--shard", flags.options.shard, "in place of manifest.json: a file for `merge`");
+  addGeneration(verb, flags);
+  graphs->excludes(verb.get_option("--material"));
+  // A graph says itself which variants it has, and nothing was measured on it.
+  graphs->excludes(verb.get_option("--error-budget"));
+}
+
+void addPlan(CLI::App& verb, Flags& flags) {
+  verb.add_option("files", flags.files, ".gltf or .glb files")->required();
+  verb.add_option("--ninja", flags.ninja, "the Ninja file; what its commands read is put beside it")
+      ->required();
+  verb.add_flag("--replan", flags.replan, "the Ninja file makes itself anew when an input has changed");
+  addGeneration(verb, flags);
+}
+
 int gen(Flags& flags) {
   Messages messages;
   const auto begin = std::chrono::steady_clock::now();
@@ -321,27 +344,15 @@ int run(int argc, char** argv) {
   flags.arguments.assign(argv, argv + argc);
   std::string node_name;
 
+  // Options take longer to set up than a small cached run needs for all the rest: those of other verbs are
+  // left out.
+  const auto called = [&](const CLI::App* verb) {
+    return argc < 2 || argv[1][0] == '-' || verb->get_name() == argv[1];
+  };
   CLI::App* gen_verb = app.add_subcommand("gen", "shaders and manifest.json for the materials of glTF files");
-  auto* files = gen_verb->add_option("files", flags.files, ".gltf or .glb files");
-  auto* graphs = gen_verb
-                     ->add_option("--graph", flags.graphs,
-                                  "a node graph in JSON instead of glTF files (may be repeated)")
-                     ->allow_extra_args(false)
-                     ->excludes(files);
-  gen_verb->add_option("--depfile", flags.options.depfile,
-                       "a file for Make and Ninja: what manifest.json depends on");
-  gen_verb->add_option("--shard", flags.options.shard, "in place of manifest.json: a file for `merge`");
-  addGeneration(*gen_verb, flags);
-  graphs->excludes(gen_verb->get_option("--material"));
-  // A graph says itself which variants it has, and nothing was measured on it.
-  graphs->excludes(gen_verb->get_option("--error-budget"));
-
+  if (called(gen_verb)) addGen(*gen_verb, flags);
   CLI::App* plan_verb = app.add_subcommand("plan", "a Ninja file with one command for each distinct shader");
-  plan_verb->add_option("files", flags.files, ".gltf or .glb files")->required();
-  plan_verb->add_option("--ninja", flags.ninja, "the Ninja file; what its commands read is put beside it")
-      ->required();
-  plan_verb->add_flag("--replan", flags.replan, "the Ninja file makes itself anew when an input has changed");
-  addGeneration(*plan_verb, flags);
+  if (called(plan_verb)) addPlan(*plan_verb, flags);
 
   CLI::App* merge_verb =
       app.add_subcommand("merge", "manifest.json from the manifests or shards of several runs");
@@ -352,6 +363,7 @@ int run(int argc, char** argv) {
   CLI::App* graph_verb = app.add_subcommand("graph", "the node graph of a material");
   CLI::App* dump_verb = app.add_subcommand("dump", "the DAG of a material, with the rate of every value");
   for (CLI::App* verb : {graph_verb, dump_verb}) {
+    if (!called(verb)) continue;
     verb->add_option("file", flags.files, "a .gltf or .glb file")->required()->expected(1);
     verb->add_option("--material", flags.material, "the material's name; not needed for a file with one");
     addShared(*verb, flags);
@@ -367,7 +379,7 @@ int run(int argc, char** argv) {
   prove_verb->add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   prove_verb->add_flag("--json", flags.json, "as JSON, with everything that is proved");
-  addShared(*prove_verb, flags);
+  if (called(prove_verb)) addShared(*prove_verb, flags);
 
   CLI::App* nodes_verb =
       app.add_subcommand("nodes", "the node library: contracts, ranges, sources, variants");

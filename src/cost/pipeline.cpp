@@ -9,29 +9,15 @@
 #include <map>
 
 #include "vulkan/reflect.h"
+#include "vulkan/state.h"
 
 namespace lacquer::cost {
 namespace {
 
 using vulkan::Binding;
 using vulkan::Interface;
-using vulkan::Resource;
 using vulkan::Scalar;
 using vulkan::Slot;
-
-VkDescriptorType descriptorType(Resource resource) {
-  switch (resource) {
-    case Resource::UniformBuffer: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    case Resource::StorageBuffer: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    case Resource::Sampler: return VK_DESCRIPTOR_TYPE_SAMPLER;
-    case Resource::SampledImage: return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    case Resource::CombinedImageSampler: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    case Resource::StorageImage: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    case Resource::UniformTexelBuffer: return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    case Resource::StorageTexelBuffer: return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
-  }
-  return VK_DESCRIPTOR_TYPE_MAX_ENUM;
-}
 
 VkFormat attributeFormat(const Slot& slot) {
   static constexpr VkFormat kFormats[3][4] = {
@@ -101,7 +87,7 @@ VkResult Pipeline::makeSets() {
     std::vector<VkDescriptorSetLayoutBinding> rows;
     for (const auto& [key, binding] : bindings) {
       if (key.first != set) continue;
-      rows.push_back({key.second, descriptorType(binding.resource), binding.count,
+      rows.push_back({key.second, vulkan::descriptorType(binding.resource, false), binding.count,
                       VK_SHADER_STAGE_ALL_GRAPHICS, nullptr});
     }
     VkDescriptorSetLayoutCreateInfo info{};
@@ -168,26 +154,10 @@ VkResult Pipeline::makeModule(const Spirv& words, VkShaderModule& module) const 
   return device_.vk.CreateShaderModule(device_.handle, &info, nullptr, &module);
 }
 
-/// The fixed functions: triangles, one sample, no depth, no blending, all colour channels written.
-struct FixedState {
-  std::vector<VkVertexInputBindingDescription> vertex_bindings;
+/// Each in a buffer of its own.
+vulkan::FixedState fixedState(const std::vector<Slot>& inputs, uint32_t attachment_count) {
+  std::vector<VkVertexInputBindingDescription> bindings;
   std::vector<VkVertexInputAttributeDescription> attributes;
-  std::vector<VkPipelineColorBlendAttachmentState> blends;
-  std::array<VkDynamicState, 2> dynamic_states = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  VkPipelineVertexInputStateCreateInfo vertex_input{};
-  VkPipelineInputAssemblyStateCreateInfo assembly{};
-  VkPipelineViewportStateCreateInfo viewport{};
-  VkPipelineRasterizationStateCreateInfo raster{};
-  VkPipelineMultisampleStateCreateInfo samples{};
-  VkPipelineColorBlendStateCreateInfo blend{};
-  VkPipelineDynamicStateCreateInfo dynamic{};
-
-  FixedState(const std::vector<Slot>& inputs, uint32_t attachment_count);
-  FixedState(const FixedState&) = delete;  // it points into itself
-  FixedState& operator=(const FixedState&) = delete;
-};
-
-FixedState::FixedState(const std::vector<Slot>& inputs, uint32_t attachment_count) {
   for (const Slot& input : inputs) {
     // Variables that share a location by components share one attribute, the widest.
     if (!attributes.empty() && attributes.back().location == input.location) {
@@ -195,38 +165,14 @@ FixedState::FixedState(const std::vector<Slot>& inputs, uint32_t attachment_coun
       continue;
     }
     const auto binding = static_cast<uint32_t>(attributes.size());
-    vertex_bindings.push_back({binding, 16, VK_VERTEX_INPUT_RATE_VERTEX});
+    bindings.push_back({binding, 16, VK_VERTEX_INPUT_RATE_VERTEX});
     attributes.push_back({input.location, binding, attributeFormat(input), 0});
   }
-  vertex_input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-  vertex_input.vertexBindingDescriptionCount = static_cast<uint32_t>(vertex_bindings.size());
-  vertex_input.pVertexBindingDescriptions = vertex_bindings.data();
-  vertex_input.vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size());
-  vertex_input.pVertexAttributeDescriptions = attributes.data();
-  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-  viewport.viewportCount = viewport.scissorCount = 1;
-  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-  raster.polygonMode = VK_POLYGON_MODE_FILL;
-  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-  raster.lineWidth = 1.0F;
-  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  VkPipelineColorBlendAttachmentState opaque{};
-  opaque.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                          VK_COLOR_COMPONENT_A_BIT;
-  blends.assign(attachment_count, opaque);
-  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-  blend.attachmentCount = attachment_count;
-  blend.pAttachments = blends.data();
-  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-  dynamic.dynamicStateCount = static_cast<uint32_t>(dynamic_states.size());
-  dynamic.pDynamicStates = dynamic_states.data();
+  return {std::move(bindings), std::move(attributes), attachment_count, nullptr};
 }
 
 VkResult Pipeline::makePipeline(VkPipelineCreateFlags flags) {
-  const FixedState state(vertex_.inputs, attachmentCount());
+  const vulkan::FixedState state = fixedState(vertex_.inputs, attachmentCount());
   std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
   stages[0].sType = stages[1].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
   stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
@@ -235,18 +181,10 @@ VkResult Pipeline::makePipeline(VkPipelineCreateFlags flags) {
   stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
   stages[1].module = fragment_module_;
   stages[1].pName = fragment_.entry.c_str();
-  VkGraphicsPipelineCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  VkGraphicsPipelineCreateInfo info = state.info();
   info.flags = flags;
   info.stageCount = static_cast<uint32_t>(stages.size());
   info.pStages = stages.data();
-  info.pVertexInputState = &state.vertex_input;
-  info.pInputAssemblyState = &state.assembly;
-  info.pViewportState = &state.viewport;
-  info.pRasterizationState = &state.raster;
-  info.pMultisampleState = &state.samples;
-  info.pColorBlendState = &state.blend;
-  info.pDynamicState = &state.dynamic;
   info.layout = layout_;
   info.renderPass = render_pass_;
   return device_.vk.CreateGraphicsPipelines(device_.handle, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);

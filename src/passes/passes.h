@@ -21,7 +21,8 @@ struct LightFacts {
 void specializeLights(ir::Module& module, const LightFacts& facts);
 
 /// Removes clamps, minima, maxima, absolute values, comparisons and choices that interval analysis proves
-/// idle for every input in its range. What the outputs are does not change.
+/// idle for every input in its range. What the outputs are does not change, but for the colours of fragments
+/// that are always dropped, which become 0.
 void simplifyRanges(ir::Module& module);
 
 /// Gathers the Floats that scale vectors, takes them out of dot products, and leaves out what only scales the

@@ -1,4 +1,6 @@
 // Operations that do nothing for any input in its range, by interval analysis.
+#include <algorithm>
+
 #include "passes/intervals.h"
 #include "passes/passes.h"
 #include "passes/rewrite.h"
@@ -109,6 +111,21 @@ private:
   Intervals intervals_;
 };
 
+/// A discard that never happens goes. Where one always does, no colour is seen, so that none is computed.
+void settleDiscards(ir::Module& module) {
+  ir::Dag& dag = module.dag;
+  const auto always = [&](const ir::Output& o) {
+    return o.kind == ir::OutputKind::Discard && dag.isConstant(o.value, 1);
+  };
+  std::erase_if(module.outputs, [&](const ir::Output& o) {
+    return o.kind == ir::OutputKind::Discard && dag.isConstant(o.value, 0);
+  });
+  if (std::none_of(module.outputs.begin(), module.outputs.end(), always)) return;
+  for (ir::Output& o : module.outputs) {
+    if (o.kind == ir::OutputKind::Color) o.value = dag.constant(dag[o.value].type, {});
+  }
+}
+
 }  // namespace
 
 void simplifyRanges(ir::Module& module) {
@@ -126,6 +143,7 @@ void simplifyRanges(ir::Module& module) {
     const ir::Type type = rewriter.dag()[id].type;
     return rewriter.dag()[result].type == type ? result : rewriter.dag().construct(type, {result});
   });
+  settleDiscards(module);
 }
 
 }  // namespace lacquer::passes

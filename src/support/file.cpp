@@ -91,6 +91,25 @@ Result<std::string> readFile(const std::string& path) {
   return bytes;
 }
 
+std::optional<FileStamp> stampOf([[maybe_unused]] const std::string& path) {
+#ifdef LACQUER_POSIX
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+#ifdef __APPLE__
+  const auto [modified, changed] = std::pair(status.st_mtimespec, status.st_ctimespec);
+#else
+  const auto [modified, changed] = std::pair(status.st_mtim, status.st_ctim);
+#endif
+  const auto nanoseconds = [](const timespec& time) {
+    return static_cast<int64_t>(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
+  };
+  return FileStamp{static_cast<uint64_t>(status.st_dev), static_cast<uint64_t>(status.st_ino),
+                   static_cast<uint64_t>(status.st_size), nanoseconds(modified), nanoseconds(changed)};
+#else
+  return std::nullopt;
+#endif
+}
+
 Result<bool> makeFolder(const std::string& path) {
   const Place place{path, 0, 0, {}};
   if (path.empty()) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,16 @@ namespace lacquer {
 
 /// The bytes of a file. Errors: "file-unreadable".
 Result<std::string> readFile(const std::string& path);
+
+/// What the file system knows of a file, without a look at its bytes. Whoever changes them changes `changed`,
+/// which nobody can set.
+struct FileStamp {
+  uint64_t device = 0, inode = 0, size = 0;
+  int64_t modified = 0, changed = 0;  ///< nanoseconds since 1970
+  bool operator==(const FileStamp&) const = default;
+};
+/// Nothing where there is no such file, and on systems that do not tell.
+std::optional<FileStamp> stampOf(const std::string& path);
 
 /// Makes a folder with those above it (true), or finds it there, to be written to (false). Errors:
 /// "file-unwritable".

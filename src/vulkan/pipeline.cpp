@@ -5,21 +5,9 @@
 
 #include <array>
 
-namespace lacquer::vulkan {
+#include "vulkan/state.h"
 
-VkDescriptorType Pipeline::typeOf(Resource resource) {
-  switch (resource) {
-    case Resource::UniformBuffer: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
-    case Resource::StorageBuffer: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
-    case Resource::Sampler: return VK_DESCRIPTOR_TYPE_SAMPLER;
-    case Resource::SampledImage: return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    case Resource::CombinedImageSampler: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    case Resource::StorageImage: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    case Resource::UniformTexelBuffer: return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    case Resource::StorageTexelBuffer: return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
-  }
-  return VK_DESCRIPTOR_TYPE_MAX_ENUM;
-}
+namespace lacquer::vulkan {
 
 uint32_t Pipeline::vertexStride() const {
   uint32_t floats = 4;
@@ -37,7 +25,8 @@ void Pipeline::makeSets() {
     std::vector<VkDescriptorSetLayoutBinding> rows;
     for (const auto& [place, binding] : fragment_.bindings) {
       if (place.first != set) continue;
-      rows.push_back({place.second, typeOf(binding.resource), 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
+      rows.push_back(
+          {place.second, descriptorType(binding.resource, true), 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
     }
     VkDescriptorSetLayoutCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
@@ -112,28 +101,9 @@ VkFormat floatFormat(uint32_t components) {
   return kFormats[components - 1];
 }
 
-/// The fixed functions: triangles of both sides, one sample, no depth, no blending.
-struct FixedState {
-  VkVertexInputBindingDescription binding{};
+/// The inputs by location, then the position.
+std::vector<VkVertexInputAttributeDescription> attributesOf(const Interface& fragment) {
   std::vector<VkVertexInputAttributeDescription> attributes;
-  std::vector<VkPipelineColorBlendAttachmentState> blends;
-  VkViewport area{0, 0, float{kSide}, float{kSide}, 0, 1};
-  VkDynamicState dynamic_state = VK_DYNAMIC_STATE_SCISSOR;
-  VkPipelineVertexInputStateCreateInfo vertex_input{};
-  VkPipelineInputAssemblyStateCreateInfo assembly{};
-  VkPipelineViewportStateCreateInfo viewport{};
-  VkPipelineRasterizationStateCreateInfo raster{};
-  VkPipelineMultisampleStateCreateInfo samples{};
-  VkPipelineColorBlendStateCreateInfo blend{};
-  VkPipelineDynamicStateCreateInfo dynamic{};
-
-  FixedState(const Interface& fragment, uint32_t stride, uint32_t attachment_count);
-  FixedState(const FixedState&) = delete;  // it points into itself
-  FixedState& operator=(const FixedState&) = delete;
-};
-
-FixedState::FixedState(const Interface& fragment, uint32_t stride, uint32_t attachment_count) {
-  binding = {0, stride, VK_VERTEX_INPUT_RATE_VERTEX};
   uint32_t offset = 0;
   uint32_t location = 0;
   for (const Slot& slot : fragment.inputs) {
@@ -142,33 +112,7 @@ FixedState::FixedState(const Interface& fragment, uint32_t stride, uint32_t atta
     location = slot.location + 1;
   }
   attributes.push_back({location, 0, floatFormat(4), offset});
-  vertex_input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-  vertex_input.vertexBindingDescriptionCount = 1;
-  vertex_input.pVertexBindingDescriptions = &binding;
-  vertex_input.vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size());
-  vertex_input.pVertexAttributeDescriptions = attributes.data();
-  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-  viewport.viewportCount = viewport.scissorCount = 1;
-  viewport.pViewports = &area;
-  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-  raster.polygonMode = VK_POLYGON_MODE_FILL;
-  // The corners of run.cpp, in pixels with y downwards.
-  raster.frontFace = VK_FRONT_FACE_CLOCKWISE;
-  raster.lineWidth = 1.0F;
-  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  VkPipelineColorBlendAttachmentState opaque{};
-  opaque.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                          VK_COLOR_COMPONENT_A_BIT;
-  blends.assign(attachment_count, opaque);
-  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-  blend.attachmentCount = attachment_count;
-  blend.pAttachments = blends.data();
-  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-  dynamic.dynamicStateCount = 1;
-  dynamic.pDynamicStates = &dynamic_state;
+  return attributes;
 }
 
 }  // namespace
@@ -206,18 +150,12 @@ void Pipeline::make(const std::vector<uint32_t>& vertex, const std::vector<uint3
   stages[1].pName = fragment_.entry.c_str();
   stages[1].pSpecializationInfo = &special;
   if (!objects_.good()) return;
-  const FixedState state(fragment_, vertexStride(), outputs());
-  VkGraphicsPipelineCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  const VkViewport area{0, 0, float{kSide}, float{kSide}, 0, 1};
+  const FixedState state({{0, vertexStride(), VK_VERTEX_INPUT_RATE_VERTEX}}, attributesOf(fragment_),
+                         outputs(), &area);
+  VkGraphicsPipelineCreateInfo info = state.info();
   info.stageCount = static_cast<uint32_t>(stages.size());
   info.pStages = stages.data();
-  info.pVertexInputState = &state.vertex_input;
-  info.pInputAssemblyState = &state.assembly;
-  info.pViewportState = &state.viewport;
-  info.pRasterizationState = &state.raster;
-  info.pMultisampleState = &state.samples;
-  info.pColorBlendState = &state.blend;
-  info.pDynamicState = &state.dynamic;
   info.layout = layout_;
   info.renderPass = render_pass_;
   if (objects_.check(

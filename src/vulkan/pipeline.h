@@ -28,9 +28,6 @@ public:
   /// Bytes of a vertex: the inputs by location, then the position.
   uint32_t vertexStride() const;
 
-  /// Uniform blocks have dynamic offsets.
-  static VkDescriptorType typeOf(Resource resource);
-
 private:
   void makeSets();
   void makeLayout();

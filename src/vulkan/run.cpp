@@ -12,6 +12,7 @@
 #include "vulkan/passthrough.h"
 #include "vulkan/pipeline.h"
 #include "vulkan/reflect.h"
+#include "vulkan/state.h"
 
 namespace lacquer::vulkan {
 namespace {
@@ -286,7 +287,7 @@ void Running::write(VkDescriptorSet set, uint32_t number, const Buffer& uniform,
     write.dstSet = set;
     write.dstBinding = place.second;
     write.descriptorCount = 1;
-    write.descriptorType = Pipeline::typeOf(found->second.resource);
+    write.descriptorType = descriptorType(found->second.resource, true);
     writes.push_back(write);
     return &writes.back();
   };
@@ -316,7 +317,7 @@ std::vector<std::vector<VkDescriptorSet>> Running::sets(Objects& objects, const 
   if (!objects.good() || layouts.empty()) return result;
   std::vector<VkDescriptorPoolSize> sizes;
   for (const auto& [place, binding] : pipeline_.interface().bindings) {
-    sizes.push_back({Pipeline::typeOf(binding.resource), static_cast<uint32_t>(chunk.cubes.size())});
+    sizes.push_back({descriptorType(binding.resource, true), static_cast<uint32_t>(chunk.cubes.size())});
   }
   VkDescriptorPoolCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;

@@ -189,6 +189,7 @@ TEST_F(Build, UnwritableCacheIsAWarning) {
 
 TEST_F(Build, KilledRunsLeaveNothingWrong) {
   ASSERT_EQ(runProgram(gen("plain"), folder_), 0);
+  const auto plain = filesBelow(folder_ / "plain");
   std::mt19937_64 random(11);
   const Words words = gen("out", {"--cache", "cache"});
   int killed = 0;
@@ -200,7 +201,8 @@ TEST_F(Build, KilledRunsLeaveNothingWrong) {
     for (const auto& [name, state] : filesBelow(folder_ / "out")) {
       // Every file that is there is whole.
       if (name.find(".tmp") != std::string::npos) continue;
-      EXPECT_EQ(state.bytes, filesBelow(folder_ / "plain")[name].bytes) << name;
+      ASSERT_TRUE(plain.contains(name)) << name;
+      EXPECT_EQ(state.bytes, plain.at(name).bytes) << name;
     }
   }
   EXPECT_GT(killed, 0) << "every run was quicker than the signal";

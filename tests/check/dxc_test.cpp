@@ -76,6 +76,30 @@ TEST_F(Dxc, aFileThatCannotRunDoesNotCount) {
   EXPECT_FALSE(haveDxc());
 }
 
+TEST_F(Dxc, anotherFileIsAnotherDxc) {
+  EXPECT_EQ(dxcIdentity(), "");
+  install("exit 0\n");
+  const std::string first = dxcIdentity();
+  EXPECT_NE(first, "");
+  EXPECT_EQ(dxcIdentity(), first);
+  install("exit 00\n");
+  const std::string longer = dxcIdentity();
+  EXPECT_NE(longer, first);
+  const fs::path file = folder_ / "bin" / "dxc";
+  fs::last_write_time(file, fs::last_write_time(file) - std::chrono::hours(1));
+  const std::string older = dxcIdentity();
+  EXPECT_NE(older, longer);
+  // By a link, as packages install it: what counts is where it leads.
+  fs::rename(file, folder_ / "bin" / "dxc-1");
+  fs::create_symlink("dxc-1", file);
+  const std::string linked = dxcIdentity();
+  EXPECT_NE(linked, older);
+  fs::copy(folder_ / "bin" / "dxc-1", folder_ / "bin" / "dxc-2");
+  fs::remove(file);
+  fs::create_symlink("dxc-2", file);
+  EXPECT_NE(dxcIdentity(), linked);
+}
+
 TEST_F(Dxc, succeeds) {
   install(
       "log=\"${0%/bin/dxc}/log\"\n"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "check/check.h"
 #include "check/shaders.h"
@@ -176,6 +177,14 @@ TEST(ReflectBlocks, namesMayBeMissing) {
   const auto blocks = reflectBlocks(words);
   ASSERT_TRUE(blocks);
   EXPECT_EQ(blockText(*blocks), " set 1 binding 2 size 64\n   0+64\n");
+}
+
+TEST(ToolVersions, nameBothWithNumbers) {
+  const std::string text = toolVersions();
+  unsigned major = 0, year = 0;
+  EXPECT_EQ(std::sscanf(text.c_str(), "glslang %u.%*u.%*u, SPIRV-Tools v%u.", &major, &year), 2) << text;
+  EXPECT_GT(major, 0U);
+  EXPECT_GT(year, 2000U);
 }
 
 TEST(ReflectBlocks, brokenModulesFail) {

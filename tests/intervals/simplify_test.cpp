@@ -29,6 +29,12 @@ protected:
     return left(id).find(std::string(" ") + op + " ") != std::string::npos;
   }
 
+  void discard(ValueId condition, ValueId color) {
+    module_.outputs = {{ir::OutputKind::Color, ir::Stage::Fragment, "o", 0, color},
+                       {ir::OutputKind::Discard, ir::Stage::Fragment, "d", 0, condition}};
+    passes::simplifyRanges(module_);
+  }
+
   ir::Module module_;
   uint32_t next_ = 0;
 };
@@ -108,6 +114,28 @@ TEST_F(Ranges, FactsMayBePassedByRounding) {
   const ValueId x = dag().make(Op::Sin, {input("x", {})});
   dag().assume(x, {0, 1});
   EXPECT_TRUE(leaves(dag().make(Op::Min, {x, number(1)}), "min"));
+}
+
+TEST_F(Ranges, DiscardThatNeverHappensGoes) {
+  const ValueId x = input("x", {0.5, 1});
+  discard(dag().make(Op::Less, {x, number(0.25)}), x);
+  ASSERT_EQ(module_.outputs.size(), 1U);
+  EXPECT_EQ(module_.outputs[0].value, x);
+}
+
+TEST_F(Ranges, DiscardThatMayHappenStays) {
+  const ValueId x = input("x", {0, 1});
+  discard(dag().make(Op::Less, {x, number(0.25)}), x);
+  ASSERT_EQ(module_.outputs.size(), 2U);
+  EXPECT_EQ(module_.outputs[0].value, x);
+}
+
+TEST_F(Ranges, WhatIsAlwaysDroppedHasNoColour) {
+  const ValueId x = input("x", {0, 0.2});
+  discard(dag().make(Op::Less, {x, number(0.25)}), x);
+  ASSERT_EQ(module_.outputs.size(), 2U);
+  EXPECT_TRUE(dag().isConstant(module_.outputs[0].value, 0));
+  EXPECT_TRUE(dag().isConstant(module_.outputs[1].value, 1));
 }
 
 }  // namespace

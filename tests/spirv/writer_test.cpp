@@ -155,6 +155,16 @@ TEST(Writer, DerivativesComeBeforeADiscard) {
   EXPECT_GT(position(words, spv::OpFAdd), position(words, spv::OpKill)) << disassembly(words);
 }
 
+TEST(Writer, NothingComesAfterADiscardThatAlwaysHappens) {
+  Builder b;
+  b.discard(b.dag().boolean(true));
+  b.color("color", b.dag().constant(Type::Vec4, {}));
+  const check::Spirv words = write(b.module, Stage::Fragment);
+  EXPECT_EQ(opcodes(words),
+            (std::vector<uint32_t>{spv::OpFunction, spv::OpLabel, spv::OpKill, spv::OpFunctionEnd}))
+      << disassembly(words);
+}
+
 TEST(Writer, AFieldIsLoadedOnce) {
   Lit b;
   ir::Dag& dag = b.dag();

@@ -110,9 +110,14 @@ uint32_t Body::write() {
   const uint32_t function = globals_.newId();
   code_.op(spv::OpFunction, none, function, spv::FunctionControlMaskNone, type);
   label(globals_.newId());
-  for (const passes::Statement& s : program_.statements) statement(s);
+  bool dropped = false;
+  for (const passes::Statement& s : program_.statements) {
+    dropped = s.kind == passes::StatementKind::Discard && dag_.isConstant(s.value, 1);
+    if (dropped) break;  // nothing comes after it
+    statement(s);
+  }
   assert(!in_loop_);
-  code_.op(spv::OpReturn);
+  code_.op(dropped ? spv::OpKill : spv::OpReturn);
   code_.op(spv::OpFunctionEnd);
   return function;
 }

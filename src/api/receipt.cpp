@@ -1,0 +1,195 @@
+#include "api/receipt.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <span>
+
+#include "api/report_blob.h"
+#include "check/check.h"
+#include "gltf/container.h"
+
+namespace lacquer {
+
+namespace {
+
+/// A file that is changed twice within one tick of its file system's clock looks unchanged the second time.
+/// The longest ticks are FAT's, of two seconds.
+constexpr auto kTick = std::chrono::seconds(2);
+
+/// From this number on, files are looked at from several threads; starting these takes as long as some
+/// hundred looks.
+constexpr size_t kMany = 512;
+
+void forEach(size_t count, const std::function<void(size_t)>& work) {
+  if (count >= kMany) return tbb::parallel_for(size_t{0}, count, work);
+  for (size_t i = 0; i < count; ++i) work(i);
+}
+
+/// Everything that outputs or report depend on. An option that is added stops here until it has its place:
+/// the list of names must be all of Options.
+void addOptions(const Options& options, KeyBuilder& key) {
+  const auto& [profile, error_budget, template_name, targets, parameters, lights, ibl, multiple_scattering,
+               dfg_table, decode_srgb, permissive, validate, unused, spirv_route, debug, live,
+               node_directories, jobs, cache, cache_size, depfile, shard] = options;
+  key.text(profile).number(error_budget).text(template_name).number(targets.size());
+  bool hlsl = false;
+  for (const Target target : targets) {
+    key.number(target);
+    hlsl |= target == Target::Hlsl;
+  }
+  key.number(parameters).number(lights.mode).number(lights.directional).number(lights.point);
+  key.number(lights.spot).number(ibl).number(multiple_scattering).number(dfg_table).number(decode_srgb);
+  key.number(permissive).number(validate).number(unused).number(spirv_route).number(debug);
+  key.number(live.size());
+  for (const std::string& term : live) key.text(term);
+  // The base covers what is in these, but not their names, which the depfile has.
+  key.number(node_directories.size());
+  for (const std::string& folder : node_directories) key.text(folder);
+  key.text(depfile).text(shard);
+  key.text(hlsl && validate ? check::dxcIdentity() : "");
+  // Nothing depends on how many threads there are and on how large the cache may become.
+  static_cast<void>(jobs), static_cast<void>(cache), static_cast<void>(cache_size);
+}
+
+void writeMessages(const Messages& messages, BlobWriter& blob) {
+  blob.list(messages, [&](const Message& m) {
+    blob.number(m.level), blob.text(m.code), blob.text(m.file), blob.text(m.pointer);
+    blob.number(m.line), blob.number(m.column);
+    blob.text(m.message), blob.text(m.help), blob.text(m.text);
+  });
+}
+
+void readMessages(BlobReader& blob, Messages& messages) {
+  blob.list([&] {
+    Message m;
+    m.level = blob.number<Message::Level>(), m.code = blob.text(), m.file = blob.text(),
+    m.pointer = blob.text();
+    m.line = blob.number<uint32_t>(), m.column = blob.number<uint32_t>();
+    m.message = blob.text(), m.help = blob.text(), m.text = blob.text();
+    messages.push_back(std::move(m));
+  });
+}
+
+void writeReport(const Report& report, BlobWriter& blob) {
+  const std::span all(report.materials);
+  std::vector<std::span<const MaterialReport>> files;
+  for (size_t first = 0, end = 0; first < all.size(); first = end) {
+    while (end < all.size() && all[end].file == all[first].file) ++end;
+    files.push_back(all.subspan(first, end - first));
+  }
+  blob.list(files, [&](std::span<const MaterialReport> materials) {
+    blob.text(materials[0].file);
+    writeMaterials(materials, blob);
+  });
+  blob.list(report.shaders, [&](const ShaderReport& shader) {
+    blob.text(shader.id), blob.number(shader.validated);
+    blob.list(shader.files, [&](const auto& f) { blob.text(f.first), blob.number<uint64_t>(f.second); });
+  });
+}
+
+void readReport(BlobReader& blob, Report& report) {
+  blob.list([&] {
+    const std::string file = blob.text();
+    readMaterials(file, blob, report.materials);
+  });
+  blob.list([&] {
+    ShaderReport shader;
+    shader.id = blob.text(), shader.validated = blob.number<bool>();
+    blob.list([&] {
+      std::string path = blob.text();
+      shader.files.emplace_back(std::move(path), blob.number<uint64_t>());
+    });
+    report.shaders.push_back(std::move(shader));
+  });
+}
+
+void writeStamp(const FileStamp& stamp, BlobWriter& blob) {
+  blob.number(stamp.device), blob.number(stamp.inode), blob.number(stamp.size);
+  blob.number(stamp.modified), blob.number(stamp.changed);
+}
+
+FileStamp readStamp(BlobReader& blob) {
+  FileStamp stamp;
+  stamp.device = blob.number<uint64_t>(), stamp.inode = blob.number<uint64_t>();
+  stamp.size = blob.number<uint64_t>();
+  stamp.modified = blob.number<int64_t>(), stamp.changed = blob.number<int64_t>();
+  return stamp;
+}
+
+}  // namespace
+
+Receipt::Receipt(const Strings& files, const Strings& materials, const std::string& folder,
+                 const Options& options, const Key& base, Cache& cache)
+    : folder_(folder), options_(options), cache_(cache), begin_(std::chrono::system_clock::now()) {
+  std::vector<std::optional<Key>> contents(files.size());
+  forEach(files.size(), [&](size_t i) {
+    if (const Result<std::string> bytes = gltf::readBytes(files[i])) contents[i] = keyOf(*bytes);
+  });
+  if (!std::all_of(contents.begin(), contents.end(), [](const auto& key) { return key.has_value(); })) return;
+  std::error_code ignored;  // the working folder only keeps projects apart that name theirs alike
+  KeyBuilder key;
+  key.text("receipt").key(base).text(std::filesystem::current_path(ignored).string()).text(folder);
+  addOptions(options, key);
+  key.number(materials.size());
+  for (const std::string& name : materials) key.text(name);
+  for (size_t i = 0; i < files.size(); ++i) key.text(files[i]).key(*contents[i]);
+  key_ = key.finish();
+}
+
+std::vector<std::string> Receipt::outputs(const Report& report) const {
+  std::vector<std::string> paths{folder_ + "/manifest.json"};
+  if (!options_.depfile.empty()) paths.push_back(options_.depfile);
+  for (const ShaderReport& shader : report.shaders) {
+    for (const auto& [path, bytes] : shader.files) paths.push_back(folder_ + "/" + path);
+  }
+  return paths;
+}
+
+bool Receipt::find(Report& report, Messages& messages) const {
+  if (!key_) return false;
+  // Once in an hour the run is made in full, so that what it needs counts as used and stays in the cache.
+  bool rested = false;
+  const std::optional<std::string> bytes = cache_.get(*key_, &rested);
+  if (!bytes || rested) return false;
+  BlobReader blob(*bytes);
+  Report earlier;
+  Messages said;
+  std::vector<FileStamp> stamps;
+  readReport(blob, earlier);
+  readMessages(blob, said);
+  blob.list([&] { stamps.push_back(readStamp(blob)); });
+  const std::vector<std::string> paths = outputs(earlier);
+  if (!blob.complete() || stamps.size() != paths.size()) return false;
+  std::atomic<bool> same{true};
+  forEach(paths.size(), [&](size_t i) {
+    if (same && stampOf(paths[i]) != stamps[i]) same = false;
+  });
+  if (!same) return false;
+  report = std::move(earlier);
+  messages.insert(messages.end(), std::make_move_iterator(said.begin()), std::make_move_iterator(said.end()));
+  return true;
+}
+
+void Receipt::keep(const Report& report, const Messages& said) const {
+  if (!key_ || !report.ok || hasError(said)) return;
+  const std::vector<std::string> paths = outputs(report);
+  std::vector<std::optional<FileStamp>> stamps(paths.size());
+  forEach(paths.size(), [&](size_t i) { stamps[i] = stampOf(paths[i]); });
+  const int64_t settled =
+      std::chrono::duration_cast<std::chrono::nanoseconds>((begin_ - kTick).time_since_epoch()).count();
+  const bool all = std::all_of(stamps.begin(), stamps.end(), [&](const std::optional<FileStamp>& stamp) {
+    return stamp && std::max(stamp->modified, stamp->changed) < settled;
+  });
+  if (!all) return;
+  BlobWriter blob;
+  writeReport(report, blob);
+  writeMessages(said, blob);
+  blob.list(stamps, [&](const std::optional<FileStamp>& stamp) { writeStamp(*stamp, blob); });
+  cache_.put(*key_, blob.take(), true);
+}
+
+}  // namespace lacquer

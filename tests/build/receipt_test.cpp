@@ -1,0 +1,187 @@
+// A run that finds its outputs as an earlier one has left them does nothing, and whatever was done to them is
+// seen.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "processes.h"
+
+namespace lacquer::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/// Everything that a run of the program has to say.
+struct Said {
+  std::string text;
+  bool quick = false;  ///< it did not even need the node library
+};
+
+class Receipt : public testing::Test {
+protected:
+  void SetUp() override {
+    folder_ = freshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
+    // The second material has a warning.
+    writeText(folder_ / "two.gltf", R"({"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_materials_coat"],
+"materials": [{"pbrMetallicRoughness": {"roughnessFactor": 0.5}},
+  {"extensions": {"KHR_materials_coat": {"coatFactor": 1, "coatIor": 9}}}]})");
+    fs::create_directories(folder_ / "more");
+    writeText(folder_ / "more/extra.node", node("a"));
+  }
+  void TearDown() override { fs::remove_all(folder_.parent_path()); }
+
+  static std::string node(const std::string& argument) {
+    return "/// Twice as much.\n/// source: none\nnode twice_as_much(float " + argument +
+           ") -> float { return " + argument + " + " + argument + "; }\n";
+  }
+
+  Said run(const std::string& out, const Words& more = {}) const {
+    Words words{LACQUER_PROGRAM, "gen", "two.gltf", "-o", out, "--no-validate", "--cache", "cache", "--time"};
+    words.insert(words.end(), {"--depfile", out + ".d", "--nodes", "more"});
+    if (std::find(more.begin(), more.end(), "--target") == more.end())
+      words.insert(words.end(), {"--target", "spirv"});
+    words.insert(words.end(), more.begin(), more.end());
+    std::string output;
+    EXPECT_EQ(runProgram(words, folder_, &output), 0) << output;
+    Said said;
+    said.quick = output.find("\nlibrary ") == std::string::npos;
+    // Without the table of times.
+    size_t line = 0;
+    for (size_t end = output.find('\n'); end != std::string::npos;
+         line = end + 1, end = output.find('\n', line)) {
+      const std::string one = output.substr(line, end - line);
+      if (!one.ends_with(" ms")) said.text += one + "\n";
+    }
+    return said;
+  }
+
+  fs::path anyShader(const std::string& out) const {
+    for (const auto& [name, state] : filesBelow(folder_ / out)) {
+      if (name.ends_with(".frag.spv")) return folder_ / out / name;
+    }
+    ADD_FAILURE() << "no shader in " << out;
+    return {};
+  }
+
+  /// Runs into all these folders until each has a receipt, which takes outputs that have rested.
+  void prepare(const Words& outs) const {
+    for (const std::string& out : outs) EXPECT_FALSE(run(out).quick) << out;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+    for (const std::string& out : outs) EXPECT_FALSE(run(out).quick) << out;
+  }
+
+  fs::path folder_;
+};
+
+/// Another byte in the middle, and the time stamp as it was.
+void forge(const fs::path& file) {
+  const auto time = fs::last_write_time(file);
+  std::string bytes = filesBelow(file.parent_path()).at(file.filename().string()).bytes;
+  bytes[bytes.size() / 2] ^= 1;
+  writeText(file, bytes);
+  fs::last_write_time(file, time);
+}
+
+TEST_F(Receipt, WhatIsDoneToOutputsIsSeenAndRepaired) {
+  const std::vector<std::pair<std::string, std::function<void(const std::string& out)>>> changes = {
+      {"forged shader", [&](const std::string& out) { forge(anyShader(out)); }},
+      {"forged manifest", [&](const std::string& out) { forge(folder_ / out / "manifest.json"); }},
+      {"forged depfile", [&](const std::string& out) { forge(folder_ / (out + ".d")); }},
+      {"removed shader", [&](const std::string& out) { fs::remove(anyShader(out)); }},
+      {"removed manifest", [&](const std::string& out) { fs::remove(folder_ / out / "manifest.json"); }},
+      {"removed depfile", [&](const std::string& out) { fs::remove(folder_ / (out + ".d")); }},
+      {"removed folder", [&](const std::string& out) { fs::remove_all(folder_ / out); }},
+      {"longer shader", [&](const std::string& out) { writeText(anyShader(out), "something else"); }},
+      {"a copy in its place",
+       [&](const std::string& out) {
+         const fs::path file = anyShader(out), copy = folder_ / "copy";
+         const auto time = fs::last_write_time(file);
+         fs::copy_file(file, copy);
+         fs::last_write_time(copy, time);
+         forge(copy);
+         fs::rename(copy, file);
+       }},
+      {"touched shader", [&](const std::string& out) {
+         fs::last_write_time(anyShader(out), fs::file_time_type::clock::now());
+       }}};
+  Words outs{"good", "rested"};
+  for (const auto& [name, change] : changes) outs.push_back(name);
+  prepare(outs);
+  const auto before = filesBelow(folder_ / "good");
+  const Said quick = run("good");
+  EXPECT_TRUE(quick.quick) << quick.text;
+  EXPECT_NE(quick.text.find("0 shaders made, 2 from the cache, 0 files written"), std::string::npos)
+      << quick.text;
+  for (const auto& [name, state] : filesBelow(folder_ / "good"))
+    EXPECT_EQ(state.time, before.at(name).time) << name;
+  for (const auto& [name, change] : changes) {
+    SCOPED_TRACE(name);
+    const std::string depfile = filesBelow(folder_).at(name + ".d").bytes;
+    change(name);
+    const Said said = run(name);
+    EXPECT_FALSE(said.quick);
+    EXPECT_EQ(differences(folder_ / "good", folder_ / name), "");
+    EXPECT_EQ(filesBelow(folder_).at(name + ".d").bytes, depfile);
+  }
+  // What is quick says what is slow says: table, warning and all.
+  fs::last_write_time(anyShader("good"), fs::file_time_type::clock::now());
+  const Said slow = run("good");
+  EXPECT_FALSE(slow.quick);
+  EXPECT_NE(slow.text.find("[beyond-tested-range]"), std::string::npos) << slow.text;
+  EXPECT_EQ(slow.text, quick.text);
+  // Once an hour all that a run needs counts as used.
+  EXPECT_TRUE(run("rested").quick);
+  const auto now = fs::file_time_type::clock::now();
+  for (const auto& [name, state] : filesBelow(folder_ / "cache"))
+    fs::last_write_time(folder_ / "cache" / name, now - std::chrono::hours(2));
+  EXPECT_FALSE(run("rested").quick);
+  size_t used = 0;
+  for (const auto& [name, state] : filesBelow(folder_ / "cache"))
+    used += state.time >= now - std::chrono::hours(1);
+  EXPECT_GT(used, 5U) << "the file, its structures, their shaders and the receipt";
+  EXPECT_TRUE(run("rested").quick);
+}
+
+TEST_F(Receipt, OtherInputsAndOptionsAreOtherRuns) {
+  // Each in a folder of its own, whose outputs are as its receipt has them when the options differ.
+  const std::vector<Words> options = {{"--profile", "openpbr"},
+                                      {"--error-budget", "0.4"},
+                                      {"--template", "surface"},
+                                      {"--target", "glsl"},
+                                      {"--params", "baked"},
+                                      {"--lights", "point:2"},
+                                      {"--lights", "scene"},
+                                      {"--no-ibl"},
+                                      {"--no-multiple-scattering"},
+                                      {"--dfg", "fit"},
+                                      {"--decode-srgb"},
+                                      {"--permissive"},
+                                      {"--unused"},
+                                      {"--debug"},
+                                      {"--spirv-from", "glslang"},
+                                      {"--live", "coat.darkening"},
+                                      {"--target", "spirv,glsl"}};
+  Words outs{"again", "jobs", "node", "number"};
+  for (size_t i = 0; i < options.size(); ++i) outs.push_back("options" + std::to_string(i));
+  prepare(outs);
+  EXPECT_TRUE(run("again").quick);
+  EXPECT_TRUE(run("jobs", {"--jobs", "1", "--cache-size", "2GB"}).quick) << "these change no output";
+  for (size_t i = 0; i < options.size(); ++i) {
+    EXPECT_FALSE(run("options" + std::to_string(i), options[i]).quick) << options[i][0];
+  }
+  writeText(folder_ / "more/extra.node", node("b"));
+  EXPECT_FALSE(run("node").quick);
+  writeText(folder_ / "more/extra.node", node("a"));
+  std::string text = filesBelow(folder_).at("two.gltf").bytes;
+  text.replace(text.find("0.5"), 3, "0.6");
+  writeText(folder_ / "two.gltf", text);
+  const Said changed = run("number");
+  EXPECT_FALSE(changed.quick);
+  EXPECT_NE(changed.text.find("1 files written"), std::string::npos) << changed.text;
+}
+
+}  // namespace
+}  // namespace lacquer::test
