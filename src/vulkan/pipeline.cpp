@@ -117,7 +117,7 @@ struct FixedState {
   VkVertexInputBindingDescription binding{};
   std::vector<VkVertexInputAttributeDescription> attributes;
   std::vector<VkPipelineColorBlendAttachmentState> blends;
-  VkViewport area{0, 0, float{kSide}, float{kSide}, 0, 1};
+  VkViewport area{};
   VkDynamicState dynamic_state = VK_DYNAMIC_STATE_SCISSOR;
   VkPipelineVertexInputStateCreateInfo vertex_input{};
   VkPipelineInputAssemblyStateCreateInfo assembly{};
@@ -127,12 +127,13 @@ struct FixedState {
   VkPipelineColorBlendStateCreateInfo blend{};
   VkPipelineDynamicStateCreateInfo dynamic{};
 
-  FixedState(const Interface& fragment, uint32_t stride, uint32_t attachment_count);
+  FixedState(const Interface& fragment, uint32_t stride, uint32_t attachment_count, float side);
   FixedState(const FixedState&) = delete;  // it points into itself
   FixedState& operator=(const FixedState&) = delete;
 };
 
-FixedState::FixedState(const Interface& fragment, uint32_t stride, uint32_t attachment_count) {
+FixedState::FixedState(const Interface& fragment, uint32_t stride, uint32_t attachment_count, float side) {
+  area = {0, 0, side, side, 0, 1};
   binding = {0, stride, VK_VERTEX_INPUT_RATE_VERTEX};
   uint32_t offset = 0;
   uint32_t location = 0;
@@ -206,7 +207,7 @@ void Pipeline::make(const std::vector<uint32_t>& vertex, const std::vector<uint3
   stages[1].pName = fragment_.entry.c_str();
   stages[1].pSpecializationInfo = &special;
   if (!objects_.good()) return;
-  const FixedState state(fragment_, vertexStride(), outputs());
+  const FixedState state(fragment_, vertexStride(), outputs(), side_);
   VkGraphicsPipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
   info.stageCount = static_cast<uint32_t>(stages.size());
