@@ -12,6 +12,7 @@
 #include "bench/error_physics.h"
 #include "bench/error_plot.h"
 #include "bench/error_subjects.h"
+#include "bench/error_times.h"
 #include "cost/cost.h"
 #include "lacquer.h"
 #include "support/file.h"
@@ -38,6 +39,7 @@ struct Measured {
   std::string e2_at, e3_what;
   std::array<double, 2> color{};                     ///< worst relative error of a colour, with the margin
   cost::Statistics alone;                            ///< around the body alone
+  std::optional<double> nanoseconds;                 ///< of the body alone on lavapipe
   int64_t instructions = 0, inverse_throughput = 0;  ///< more in a whole material than with the reference
   std::string in;  ///< the profile of that material; empty when none uses the node
 };
@@ -114,6 +116,15 @@ std::optional<cost::Subject> materialWith(const Work& work, const std::string& n
   return cost::Subject{node + " " + variant, shader.vertexSpirv(), shader.fragmentSpirv()};
 }
 
+/// How long each body runs on this machine's processor; the driver's name.
+std::string measureTimes(const lang::Library& library, const std::vector<Subject>& all,
+                         std::vector<Measured>& measured) {
+  const Times times = lavapipeTimes(library, all);
+  if (!times.problem.empty()) fmt::print(stderr, "no times: {}\n", times.problem);
+  for (size_t i = 0; i < times.nanoseconds.size(); ++i) measured[i].nanoseconds = times.nanoseconds[i];
+  return times.device;
+}
+
 /// Every body alone, and in a whole material, in two runs of the driver.
 std::string measureCosts(const lang::Library& library, const std::vector<Subject>& all,
                          std::vector<Measured>& measured) {
@@ -125,7 +136,7 @@ std::string measureCosts(const lang::Library& library, const std::vector<Subject
     std::optional<size_t> reference;
     for (const std::string& body : subject.bodies) {
       Measured& m = measured[row++];
-      alone.push_back({subject.node + " " + body, {}, spirvOf(moduleOf(library, subject, body))});
+      alone.push_back({subject.node + " " + body, {}, bodyOf(moduleOf(library, subject, body)).spirv});
       pairs.emplace_back(0, 0);
       for (const Work& work : kWorks) {
         std::optional<cost::Subject> material = materialWith(work, subject.node, body);
@@ -181,9 +192,15 @@ Json toJson(const Difference& d, const std::string& at) {
   return json;
 }
 
-Json toJson(const std::vector<Measured>& measured, const std::string& driver) {
+/// Times are not the same twice: two digits.
+std::string timeText(const std::optional<double>& nanoseconds) {
+  return nanoseconds ? fmt::format("{:.{}f}", *nanoseconds, *nanoseconds < 10 ? 1 : 0) : "";
+}
+
+Json toJson(const std::vector<Measured>& measured, const std::string& driver, const std::string& device) {
   Json json;
   json["driver"] = driver;
+  json["device"] = device;
   json["gpu"] = kFamily;
   json["points"] = kPoints;
   for (const Measured& m : measured) {
@@ -198,6 +215,7 @@ Json toJson(const std::vector<Measured>& measured, const std::string& driver) {
     }
     row["alone"] = {{"instructions", m.alone.instructions},
                     {"inverse_throughput", m.alone.inverse_throughput}};
+    if (m.nanoseconds) row["alone"]["lavapipe_ns"] = timeText(m.nanoseconds);
     if (!m.in.empty()) {
       row["in_material"] = {
           {"material", m.in}, {"instructions", m.instructions}, {"inverse_throughput", m.inverse_throughput}};
@@ -211,8 +229,10 @@ std::string triple(const Spread& s) {
   return fmt::format("{} / {} / {}", number(s.max), number(s.p999), number(s.rms));
 }
 
-std::string markdown(const std::vector<Measured>& measured, const std::string& driver) {
-  std::string text = fmt::format("{}, {}; {} points.\n", driver, kFamily, kPoints);
+std::string markdown(const std::vector<Measured>& measured, const std::string& driver,
+                     const std::string& device) {
+  std::string text = fmt::format("{}, {}; {} points; times: {}.\n", driver, kFamily, kPoints,
+                                 device.empty() ? "not measured" : device);
   std::string node;
   for (const Measured& m : measured) {
     if (m.node != node) {
@@ -220,17 +240,17 @@ std::string markdown(const std::vector<Measured>& measured, const std::string& d
       text += fmt::format("\n### `{}`\n\n", node);
       if (m.e3) text += fmt::format("E3 against {}.\n\n", m.e3_what);
       text +=
-          "| body | E1, ULP | E2 | E2, ULP | E3 | colour | alone | in a material |\n"
-          "|---|---|---|---|---|---|---|---|\n";
+          "| body | E1, ULP | E2 | E2, ULP | E3 | colour | alone | ns | in a material |\n"
+          "|---|---|---|---|---|---|---|---|---|\n";
     }
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} / {} | {} |\n",
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} / {} | {} | {} |\n",
                         m.variant.empty() ? "reference" : "`" + m.variant + "`", triple(m.e1.ulp),
                         m.e2 ? triple(m.e2->absolute) : "", m.e2 ? number(m.e2->ulp.max) : "",
                         m.e3 ? triple(m.e3->absolute) : "",
                         m.variant.empty() || m.in.empty()
                             ? ""
                             : fmt::format("{:.3g} / {:.3g}", roundedUp(m.color[0]), roundedUp(m.color[1])),
-                        m.alone.instructions, m.alone.inverse_throughput,
+                        m.alone.instructions, m.alone.inverse_throughput, timeText(m.nanoseconds),
                         m.variant.empty() || m.in.empty()
                             ? ""
                             : fmt::format("{:+} / {:+}", m.instructions, m.inverse_throughput));
@@ -306,12 +326,14 @@ int runError() {
     }
   }
   const std::string driver = measureCosts(library, all, measured);
-  const std::string page = markdown(measured, driver);
+  const std::string device = measureTimes(library, all, measured);
+  const std::string page = markdown(measured, driver, device);
   fmt::print("{}", page);
-  const bool written = writeFile(kRoot + "/bench/error.json", toJson(measured, driver).dump(2) + "\n") &&
-                       writeFile(kRoot + "/docs/images/error.svg", svg(measured)) &&
-                       writeFile(kRoot + "/src/api/variants.def", table(measured)) &&
-                       renewPage(kRoot + "/docs/error.md", page);
+  const bool written =
+      writeFile(kRoot + "/bench/error.json", toJson(measured, driver, device).dump(2) + "\n") &&
+      writeFile(kRoot + "/docs/images/error.svg", svg(measured)) &&
+      writeFile(kRoot + "/src/api/variants.def", table(measured)) &&
+      renewPage(kRoot + "/docs/error.md", page);
   if (written) return 0;
   fmt::print(stderr, "bench error: the files could not be renewed\n");
   return 1;

@@ -29,6 +29,14 @@ double averageFresnel(double ior) {
   return 1 - in / (1 - accuracy::fresnel(ior, 1));
 }
 
+/// The part of a Lambertian base's light that the coat's underside returns.
+double diffuseReflection(double ior) { return 1 - (1 - averageFresnel(ior)) / (ior * ior); }
+
+/// A smooth clear coat over Lambert under an environment, without the Fresnel of the view.
+double darkening(double ior, double albedo, double cosine) {
+  return accuracy::smoothEnvironment({ior, albedo, 1, 0}, cosine) / (1 - accuracy::fresnel(ior, cosine));
+}
+
 double iorOf(double F0) { return (1 + std::sqrt(F0)) / (1 - std::sqrt(F0)); }
 
 /// What a GGX lobe with Smith's height-correlated masking reflects; `weighted` by Schlick's (1 - V.H)^5.
@@ -83,9 +91,8 @@ Sample drawDarkening(std::mt19937_64& random) {
   const double cosine = 0.1 + 0.9 * uniform(random);
   const double F0 = std::pow((ior - 1) / (ior + 1), 2);
   const double schlick = F0 + (1 - F0) * std::pow(1 - cosine, 5);
-  const double value =
-      accuracy::smoothEnvironment({ior, 0.5, 1, 0}, cosine) / (1 - accuracy::fresnel(ior, cosine));
-  return {{{"F0", F0}, {"fresnel_view", schlick}, {"roughness", 0}, {"amount", 1}}, value};
+  return {{{"F0", F0}, {"fresnel_view", schlick}, {"roughness", 0}, {"amount", 1}},
+          darkening(ior, 0.5, cosine)};
 }
 
 const std::map<std::string, Row>& rows() {
@@ -116,6 +123,23 @@ const std::map<std::string, Row>& rows() {
        {"quadrature of the lobe", [](std::mt19937_64& random) { return drawAlbedo(random, true); }}},
       {"coat_darkening_ibl",
        {"a smooth clear coat over Lambert of albedo 0.5, by quadrature", drawDarkening}},
+      {"coat_internal_reflection",
+       {"quadrature of the underside's reflection under a rough base",
+        [](std::mt19937_64& random) {
+          const double ior = 1 + 3 * uniform(random);
+          return Sample{{{"ior", ior}, {"fresnel_view", uniform(random)}, {"base_roughness", 1}},
+                        diffuseReflection(ior)};
+        }}},
+      {"coat_darkening_layered",
+       {"a smooth clear coat over Lambert of any albedo, by quadrature, K as well",
+        [](std::mt19937_64& random) {
+          const double ior = 1 + 2 * uniform(random);
+          const double albedo = uniform(random);
+          const double value = darkening(ior, albedo, 0.1 + 0.9 * uniform(random));
+          return Sample{
+              {{"base_albedo", albedo}, {"internal_reflection", diffuseReflection(ior)}, {"amount", 1}},
+              value};
+        }}},
   };
   return kRows;
 }
@@ -130,11 +154,14 @@ std::optional<Truth> truthOf(const Subject& subject) {
   std::map<std::string, std::vector<double>> inputs;
   for (size_t i = 0; i < kPoints; ++i) {
     const Sample sample = row->second.draw(random);
-    for (const auto& [name, value] : sample.inputs) inputs[name].push_back(value);
+    for (const SubjectInput& input : subject.inputs)
+      inputs[input.name].insert(inputs[input.name].end(), static_cast<size_t>(input.components),
+                                sample.inputs.at(input.name));
     truth.values.insert(truth.values.end(), 3, sample.value);
   }
-  for (auto& [name, values] : inputs) {
-    truth.columns["AT_" + name] = eval::Column::perPoint(1, std::move(values));
+  for (const SubjectInput& input : subject.inputs) {
+    truth.columns["AT_" + input.name] =
+        eval::Column::perPoint(input.components, std::move(inputs[input.name]));
   }
   return truth;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -237,9 +238,32 @@ std::vector<double> valuesOf(const ir::Module& module, const eval::Columns& colu
 template std::vector<double> valuesOf<float>(const ir::Module&, const eval::Columns&, size_t);
 template std::vector<double> valuesOf<double>(const ir::Module&, const eval::Columns&, size_t);
 
-std::vector<uint32_t> spirvOf(ir::Module module) {
+namespace {
+
+Body written(const ir::Module& module) {
+  const passes::Program program = passes::schedule(module, ir::Stage::Fragment);
+  Body body{targets::writeSpirv(module, program, {}), {}};
+  for (const uint32_t index : program.varyings) body.inputs.push_back(module.varyings[index].name);
+  return body;
+}
+
+}  // namespace
+
+Body bodyOf(ir::Module module) {
   passes::runPipeline(module, {});
-  return targets::writeSpirv(module, passes::schedule(module, ir::Stage::Fragment), {});
+  return written(module);
+}
+
+Body overheadOf(ir::Module module) {
+  passes::runPipeline(module, {});
+  ir::Dag& dag = module.dag;
+  ir::ValueId sum = dag.constant(0);
+  for (const ir::ValueId id : ir::reachable(dag, std::array{module.outputs[0].value})) {
+    if (dag[id].op != ir::Op::Input) continue;
+    for (int c = 0; c < ir::componentCount(dag[id].type); ++c) sum = dag.add(sum, dag.component(id, c));
+  }
+  module.outputs[0].value = dag.construct(ir::Type::Vec4, {sum});
+  return written(module);
 }
 
 }  // namespace lacquer::bench

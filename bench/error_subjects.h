@@ -65,7 +65,14 @@ ir::Module moduleOf(const lang::Library& library, const Subject& subject, const 
 template <class T>
 std::vector<double> valuesOf(const ir::Module& module, const eval::Columns& columns, size_t points);
 
-/// Fragment SPIR-V of a module around a body.
-std::vector<uint32_t> spirvOf(ir::Module module);
+/// A fragment shader.
+struct Body {
+  std::vector<uint32_t> spirv;
+  std::vector<std::string> inputs;  ///< that it reads, by location
+};
+/// Of a module around a body.
+Body bodyOf(ir::Module module);
+/// The same around no body: what that body reads, added up.
+Body overheadOf(ir::Module module);
 
 }  // namespace lacquer::bench

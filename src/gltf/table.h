@@ -51,7 +51,7 @@ inline constexpr Range kCoatIor{.min = 1, .orZero = true, .tested = 4};
 struct PropertyFacts {
   std::string_view name{};
   Kind kind = Kind::Number;
-  std::array<double, 4> byDefault{};  ///< of numbers and arrays; an array uses as many as it has elements
+  std::array<double, 4> by_default{};  ///< of numbers and arrays; an array uses as many as it has elements
   Range range;
   bool required = false;
 };
@@ -71,21 +71,21 @@ struct Property {
 
 // Spellings of rows. The member's type says which struct a row belongs to.
 template <class S>
-constexpr Property<S> number(std::string_view name, double byDefault, Range range, double S::*to) {
-  return {{name, Kind::Number, {byDefault}, range}, to, {}};
+constexpr Property<S> number(std::string_view name, double by_default, Range range, double S::*to) {
+  return {{name, Kind::Number, {by_default}, range}, to, {}};
 }
 template <class S>
-constexpr Property<S> vec2(std::string_view name, std::array<double, 4> byDefault,
+constexpr Property<S> vec2(std::string_view name, std::array<double, 4> by_default,
                            std::array<double, 2> S::*to) {
-  return {{name, Kind::Vec2, byDefault, kAny}, to, {}};
+  return {{name, Kind::Vec2, by_default, kAny}, to, {}};
 }
 template <class S>
-constexpr Property<S> color3(std::string_view name, std::array<double, 4> byDefault, Vec3 S::*to) {
-  return {{name, Kind::Color3, byDefault, kUnit}, to, {}};
+constexpr Property<S> color3(std::string_view name, std::array<double, 4> by_default, Vec3 S::*to) {
+  return {{name, Kind::Color3, by_default, kUnit}, to, {}};
 }
 template <class S>
-constexpr Property<S> color4(std::string_view name, std::array<double, 4> byDefault, Vec4 S::*to) {
-  return {{name, Kind::Color4, byDefault, kUnit}, to, {}};
+constexpr Property<S> color4(std::string_view name, std::array<double, 4> by_default, Vec4 S::*to) {
+  return {{name, Kind::Color4, by_default, kUnit}, to, {}};
 }
 template <class S>
 constexpr Property<S> texture(std::string_view name, Texture S::*to, Kind kind = Kind::Texture) {

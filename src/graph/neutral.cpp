@@ -61,7 +61,7 @@ ir::Components neutralValue(const ir::Parameter& parameter) {
   ir::Components value{};
   for (size_t i = 0; i < count; ++i) {
     double x = 0;
-    if (facts != nullptr) x = facts->byDefault[std::min(i, gltf::elementCount(facts->kind) - 1)];
+    if (facts != nullptr) x = facts->by_default[std::min(i, gltf::elementCount(facts->kind) - 1)];
     // Not std::clamp: a range of a graph by hand may be empty until it has been checked.
     value[i] = std::min(std::max(x, parameter.range.lo), parameter.range.hi);
   }

@@ -50,6 +50,7 @@ bool take(Device::State& state, VkPhysicalDevice physical) {
   if (properties.properties.apiVersion < VK_API_VERSION_1_1 || state.family == UINT32_MAX) return false;
   state.physical = physical;
   state.limits = properties.properties.limits;
+  state.processor = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   state.name = properties.properties.deviceName;
   state.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
   state.vk.GetPhysicalDeviceMemoryProperties(physical, &state.memory);
@@ -125,6 +126,9 @@ const std::string& Device::name() const { return state_->none; }
 const std::string& Device::driver() const { return state_->none; }
 uint32_t Device::subTexelBits() const { return 0; }
 Result<Outcome> Device::run(const Work&) const {
+  return lacquer::fail("vulkan-unavailable", {}, "there is no device");
+}
+Result<std::vector<double> > Device::time(const std::vector<Sweep>&, int) const {
   return lacquer::fail("vulkan-unavailable", {}, "there is no device");
 }
 

@@ -42,6 +42,7 @@ struct Device::State {
   VkPhysicalDeviceLimits limits{};
   VkPhysicalDeviceMemoryProperties memory{};
   bool filters_floats = false;  ///< bilinear filtering of 32-bit floats
+  bool processor = false;       ///< shaders run on the CPU, in this process
   std::string name, driver;
 };
 

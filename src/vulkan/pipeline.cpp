@@ -150,7 +150,8 @@ void Pipeline::make(const std::vector<uint32_t>& vertex, const std::vector<uint3
   stages[1].pName = fragment_.entry.c_str();
   stages[1].pSpecializationInfo = &special;
   if (!objects_.good()) return;
-  const VkViewport area{0, 0, float{kSide}, float{kSide}, 0, 1};
+  const auto side = static_cast<float>(side_);
+  const VkViewport area{0, 0, side, side, 0, 1};
   const FixedState state({{0, vertexStride(), VK_VERTEX_INPUT_RATE_VERTEX}}, attributesOf(fragment_),
                          outputs(), &area);
   VkGraphicsPipelineCreateInfo info = state.info();

@@ -11,9 +11,9 @@ namespace lacquer::vulkan {
 
 class Pipeline {
 public:
-  /// `objects` keeps what is made.
-  Pipeline(const Device::State& device, const Interface& fragment, Objects& objects)
-      : device_(device), fragment_(fragment), objects_(objects) {}
+  /// `objects` keeps what is made; the target has `side` pixels each way.
+  Pipeline(const Device::State& device, const Interface& fragment, Objects& objects, uint16_t side = kSide)
+      : device_(device), fragment_(fragment), objects_(objects), side_(side) {}
 
   void make(const std::vector<uint32_t>& vertex, const std::vector<uint32_t>& fragment,
             const std::map<uint32_t, uint32_t>& constants);
@@ -36,6 +36,7 @@ private:
   const Device::State& device_;
   const Interface& fragment_;
   Objects& objects_;
+  uint16_t side_;
   std::vector<VkDescriptorSetLayout> sets_;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   VkRenderPass render_pass_ = VK_NULL_HANDLE;

@@ -64,6 +64,13 @@ struct Outcome {
   std::vector<bool> discarded;              ///< by point
 };
 
+/// A fragment shader without descriptors to be timed: each pixel of a square is one invocation.
+struct Sweep {
+  std::vector<uint32_t> fragment;  ///< SPIR-V
+  /// At three corners, upper left, upper right and lower left; affine between them.
+  std::vector<Varying> inputs;
+};
+
 /// A device with a graphics queue, open for the rest of the process. Not to be used by two threads at once.
 class Device {
 public:
@@ -80,6 +87,12 @@ public:
   /// "vulkan-unsupported" when the device's limits do not suffice; "vulkan-failed" when a call fails. The
   /// module must be valid: drivers trust it.
   Result<Outcome> run(const Work& work) const;
+
+  /// Nanoseconds of processor time, all threads together, that one invocation takes, by sweep: the least of
+  /// `rounds`, in each of which every sweep has its turn, so that a slow moment meets them all. Interpolating
+  /// the inputs and writing a pixel of four floats are included. Errors: as of run(), and
+  /// "vulkan-unsupported" where shaders do not run on the processor.
+  Result<std::vector<double>> time(const std::vector<Sweep>& sweeps, int rounds) const;
 
   struct State;
 

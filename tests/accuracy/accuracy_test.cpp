@@ -1,6 +1,7 @@
 // The yardsticks agree with each other, and the profiles keep what they promise of physics.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "accuracy/profiles.h"
@@ -86,6 +87,35 @@ TEST(OpenPbr, IsExactForASmoothClearCoatInTheEnvironment) {
       }
     }
   }
+}
+
+/// The largest error of the darkening alone, seen from anywhere: what is over the Fresnel of the view.
+double tableError(const std::string& profile, const Body& body, double albedo) {
+  std::vector<Query> queries;
+  std::vector<double> exact;
+  std::vector<double> fresnels;
+  for (double ior = 1; ior < 6; ior *= 1.004) {
+    for (const double view : {1.0, 0.5, 0.2}) {
+      queries.push_back({{ior, albedo, 1, 0}, view, 1});
+      const double F0 = std::pow((ior - 1) / (ior + 1), 2);
+      const double schlick = F0 + (1 - F0) * std::pow(1 - view, 5);
+      fresnels.push_back(profile == "khr" ? schlick : fresnel(ior, view));
+      exact.push_back(smoothEnvironment(queries.back().coating, view) / (1 - fresnel(ior, view)));
+    }
+  }
+  const std::vector<double> values = transmissions(profile, Light::Environment, queries, body);
+  double worst = 0;
+  for (size_t i = 0; i < values.size(); ++i)
+    worst = std::max(worst, std::abs(values[i] / (1 - fresnels[i]) - exact[i]));
+  return worst;
+}
+
+/// As the nodes' comments say.
+TEST(Tables, DarkenExactlyButForTheirInterpolation) {
+  EXPECT_LT(tableError("khr", {"coat_darkening_ibl", "table"}, 0.5), 0.0009);
+  EXPECT_LT(tableError("openpbr", {"coat_internal_reflection", "table"}, 0.5), 0.0009);
+  EXPECT_LT(tableError("openpbr", {"coat_internal_reflection", "table"}, 0.9), 0.004);
+  EXPECT_GT(tableError("khr", {}, 0.5), 0.1) << "the variant was not asked";
 }
 
 TEST(OpenPbr, AbsorbsAlongViewAndLight) {

@@ -21,7 +21,7 @@ constexpr const char* kMaterial = R"({"asset": {"version": "2.0"}, "materials": 
     "KHR_materials_coat": {"coatFactor": 1, "coatIor": 1.4, "coatColorFactor": [0.5, 0.5, 0.5]}}}]})";
 
 /// A module whose colour is the coat's transmission.
-ir::Module moduleOf(const std::string& profile, Light light) {
+ir::Module moduleOf(const std::string& profile, Light light, const Body& body) {
   static const lang::Library kLibrary = lang::Library::embedded();
   const Result<gltf::Document> document = gltf::readText(kMaterial, "coated.gltf", {});
   if (!document) return {};
@@ -34,6 +34,9 @@ ir::Module moduleOf(const std::string& profile, Light light) {
   const bool direct = light == Light::Direct;
   const std::string node = direct ? "coat.transmission_direct" : "coat.transmission_ibl";
   graph.outputs = {{direct ? "direct" : "emission", {graph::NodeRef{node, {}}, {}}}};
+  for (graph::Node& one : graph.nodes) {
+    if (one.type == body.node) one.variant = body.variant;
+  }
   for (const Diagnostic& d : graph::check(graph, kLibrary)) ADD_FAILURE() << format(d);
   Result<ir::Module> module = lower::lower(graph, kLibrary, {});
   EXPECT_TRUE(module);
@@ -44,8 +47,9 @@ std::array<double, 3> tilted(double cosine) { return {std::sqrt(1 - cosine * cos
 
 }  // namespace
 
-std::vector<double> transmissions(const std::string& profile, Light light, std::span<const Query> queries) {
-  const ir::Module module = moduleOf(profile, light);
+std::vector<double> transmissions(const std::string& profile, Light light, std::span<const Query> queries,
+                                  const Body& body) {
+  const ir::Module module = moduleOf(profile, light, body);
   std::vector<eval::Point> points;
   std::vector<double> albedo;
   std::vector<double> tint;

@@ -17,8 +17,14 @@ struct Query {
   double cosine_light = 1;  ///< of direct light
 };
 
+/// Another body for every use of a node; none where `node` is empty.
+struct Body {
+  std::string node, variant;
+};
+
 /// By query, in double: what the profile multiplies the base's light with. The base is as nearly Lambertian
 /// as glTF has one: a dielectric of roughness 1 with an IOR of 1.
-std::vector<double> transmissions(const std::string& profile, Light light, std::span<const Query> queries);
+std::vector<double> transmissions(const std::string& profile, Light light, std::span<const Query> queries,
+                                  const Body& body = {});
 
 }  // namespace lacquer::accuracy

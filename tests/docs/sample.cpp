@@ -21,7 +21,7 @@ constexpr std::string_view kClearcoat = "KHR_materials_clearcoat";
 
 /// A value that is not the default; textures count up.
 Json valueOf(const gltf::PropertyFacts& facts, int& textures) {
-  const auto number = [&](size_t i) { return facts.range.max == 1 ? 0.5 : facts.byDefault[i] + 0.5; };
+  const auto number = [&](size_t i) { return facts.range.max == 1 ? 0.5 : facts.by_default[i] + 0.5; };
   switch (facts.kind) {
     case Kind::Number: return number(0);
     case Kind::Boolean: return true;

@@ -113,9 +113,9 @@ std::string defaultText(const gltf::PropertyFacts& facts) {
            : facts.kind == Kind::Boolean ? "`false`"
            : facts.required              ? "required"
                                          : "";
-  if (n == 1) return fmt::format("{}", facts.byDefault[0]);
-  return fmt::format(
-      "[{}]", fmt::join(facts.byDefault.begin(), facts.byDefault.begin() + static_cast<ptrdiff_t>(n), ", "));
+  if (n == 1) return fmt::format("{}", facts.by_default[0]);
+  return fmt::format("[{}]", fmt::join(facts.by_default.begin(),
+                                       facts.by_default.begin() + static_cast<ptrdiff_t>(n), ", "));
 }
 
 std::string rangeText(const gltf::PropertyFacts& facts) {

@@ -20,16 +20,16 @@ public:
     out_.append(2 * depth_, ' ').append(text);
     out_ += '\n';
   }
-  void number(std::string_view name, double value, double byDefault) {
-    if (value != byDefault) line(fmt::format("{} {}", name, value));
+  void number(std::string_view name, double value, double by_default) {
+    if (value != by_default) line(fmt::format("{} {}", name, value));
   }
   void flag(std::string_view name, bool value) {
     if (value) line(name);
   }
   template <size_t N>
   void numbers(std::string_view name, const std::array<double, N>& value,
-               const std::array<double, N>& byDefault) {
-    if (value != byDefault) line(fmt::format("{} {}", name, fmt::join(value, " ")));
+               const std::array<double, N>& by_default) {
+    if (value != by_default) line(fmt::format("{} {}", name, fmt::join(value, " ")));
   }
   void texture(std::string_view name, const Texture& texture) {
     if (!texture) return;

@@ -58,8 +58,8 @@ TEST(GltfTable, defaultsSpeltOutChangeNothing) {
       if (row.object != object) continue;
       const size_t count = elementCount(row.facts.kind);
       json& value = out[std::string(row.facts.name)];
-      if (count == 1) value = row.facts.byDefault[0];
-      for (size_t i = 0; count > 1 && i < count; ++i) value.push_back(row.facts.byDefault[i]);
+      if (count == 1) value = row.facts.by_default[0];
+      for (size_t i = 0; count > 1 && i < count; ++i) value.push_back(row.facts.by_default[i]);
       if (count == 0) out.erase(std::string(row.facts.name));
     }
     return out;
@@ -114,14 +114,14 @@ void checkProperty(const PropertyFacts& facts, const Schema& schema) {
     EXPECT_EQ(facts.kind, normal ? Kind::NormalTexture : Kind::Texture);
   } else if (facts.kind == Kind::Number) {
     EXPECT_EQ(schema["type"], "number");
-    EXPECT_EQ(schema["default"].get<double>(), facts.byDefault[0]);
+    EXPECT_EQ(schema["default"].get<double>(), facts.by_default[0]);
     checkRange(facts, schema);
   } else {
     ASSERT_EQ(schema["type"], "array");
     EXPECT_EQ(schema["minItems"], elementCount(facts.kind));
     EXPECT_EQ(schema["maxItems"], elementCount(facts.kind));
     for (size_t i = 0; i < elementCount(facts.kind); ++i) {
-      EXPECT_EQ(schema["default"][i].get<double>(), facts.byDefault[i]);
+      EXPECT_EQ(schema["default"][i].get<double>(), facts.by_default[i]);
     }
     checkRange(facts, schema);
   }

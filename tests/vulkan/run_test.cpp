@@ -247,6 +247,26 @@ TEST(VulkanRun, WhatCannotRunIsSaid) {
   EXPECT_NE(errorOf(work).find("one has 1048576 by 1 [vulkan-unsupported]"), std::string::npos);
 }
 
+/// How long is for nobody to say; that it is a time, and that a wrong shader is refused, is.
+TEST(VulkanRun, Times) {
+  NEEDS_DEVICE();
+  Sweep sweep;
+  sweep.fragment = compiled(
+      "layout(location = 0) in vec2 a;\nlayout(location = 0) out vec4 c;\nvoid main() { c = sin(a.xyxy); "
+      "}\n");
+  sweep.inputs = {{2, {0, 0, 1, 0, 0, 1}}};
+  const Result<std::vector<double>> times = device()->time({sweep, sweep}, 2);
+  if (!times && times.error()[0].code == "vulkan-unsupported")
+    GTEST_SKIP() << "NOT TESTED: " << device()->name() << " is no processor";
+  ASSERT_TRUE(times) << format(times.error()[0]);
+  ASSERT_EQ(times->size(), 2U);
+  for (const double nanoseconds : *times) EXPECT_TRUE(nanoseconds > 0 && nanoseconds < 1e6) << nanoseconds;
+  sweep.inputs[0].values.pop_back();
+  const Result<std::vector<double>> wrong = device()->time({sweep}, 1);
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error()[0].code, "vulkan-interface");
+}
+
 TEST(VulkanRun, NoPointsNoWork) {
   NEEDS_DEVICE();
   Work work;
