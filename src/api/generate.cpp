@@ -82,9 +82,10 @@ Report generate(const Strings& files, const Strings& materials, const std::strin
 
 Report generateGraphs(const Strings& files, const std::string& folder, const Options& options,
                       Messages& messages, const Progress& progress) {
+  const Strings all_materials;
   Report report;
   withJobs(options.jobs, [&] {
-    report = generateWith({files, {}, false}, folder, options, messages, progress);
+    report = generateWith({files, all_materials, false}, folder, options, messages, progress);
   });
   return report;
 }

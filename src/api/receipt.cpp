@@ -28,6 +28,15 @@ void forEach(size_t count, const std::function<void(size_t)>& work) {
   for (size_t i = 0; i < count; ++i) work(i);
 }
 
+/// The keys of the files' bytes; an empty key for a file that cannot be read.
+std::vector<Key> contentsOf(const Strings& files) {
+  std::vector<Key> contents(files.size());
+  forEach(files.size(), [&](size_t i) {
+    if (const Result<std::string> bytes = gltf::readBytes(files[i])) contents[i] = keyOf(*bytes);
+  });
+  return contents;
+}
+
 /// Everything that outputs or report depend on. An option that is added stops here until it has its place:
 /// the list of names must be all of Options.
 void addOptions(const Options& options, KeyBuilder& key) {
@@ -123,22 +132,20 @@ FileStamp readStamp(BlobReader& blob) {
 
 Receipt::Receipt(const Strings& files, const Strings& materials, const std::string& folder,
                  const Options& options, const Key& base, Cache& cache)
-    : folder_(folder), options_(options), cache_(cache), begin_(std::chrono::system_clock::now()) {
-  std::vector<std::optional<Key>> contents(files.size());
-  forEach(files.size(), [&](size_t i) {
-    if (const Result<std::string> bytes = gltf::readBytes(files[i])) contents[i] = keyOf(*bytes);
-  });
-  if (!std::all_of(contents.begin(), contents.end(), [](const auto& key) { return key.has_value(); })) return;
+    : files_(files),
+      folder_(folder),
+      options_(options),
+      cache_(cache),
+      begin_(std::chrono::system_clock::now()),
+      contents_(contentsOf(files)) {
+  if (std::find(contents_.begin(), contents_.end(), Key{}) != contents_.end()) return;
   std::error_code ignored;  // the working folder only keeps projects apart that name theirs alike
   KeyBuilder key;
   key.text("receipt").key(base).text(std::filesystem::current_path(ignored).string()).text(folder);
   addOptions(options, key);
   key.number(materials.size());
   for (const std::string& name : materials) key.text(name);
-  for (size_t i = 0; i < files.size(); ++i) {
-    key.text(files[i]);
-    contents_.push_back(*contents[i]);
-  }
+  for (const std::string& file : files) key.text(file);
   key_ = key.finish();
 }
 
@@ -208,7 +215,8 @@ void Receipt::keep(const Report& report, const Messages& said) const {
   const bool all = std::all_of(stamps.begin(), stamps.end(), [&](const std::optional<FileStamp>& stamp) {
     return stamp && std::max(stamp->modified, stamp->changed) < settled;
   });
-  if (!all) return;
+  // What the run has read must be what the receipt is for.
+  if (!all || contentsOf(files_) != contents_) return;
   BlobWriter blob;
   blob.list(contents_, [&](const Key& key) { blob.number(key.high), blob.number(key.low); });
   writeReport(report, blob);

@@ -36,12 +36,13 @@ private:
   std::vector<std::string> outputs(const Report& report) const;
   void note(Report& report, const std::vector<uint8_t>& same);
 
+  const Strings& files_;
   const std::string& folder_;
   const Options& options_;
   Cache& cache_;
   std::chrono::system_clock::time_point begin_;
-  std::optional<Key> key_;     ///< absent when an input cannot be read
   std::vector<Key> contents_;  ///< of the inputs
+  std::optional<Key> key_;     ///< absent when one of them cannot be read
   std::map<std::string, ShaderReport> untouched_;
 };
 
