@@ -41,7 +41,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   Run run(options, messages, progress);
   if (!run.prepare()) return run.finish();
   const bool shard = !options.shard.empty();
-  const std::optional<Receipt> receipt =
+  std::optional<Receipt> receipt =
       inputs.scenes && !shard ? run.receipt(inputs.files, inputs.materials, folder) : std::nullopt;
   if (receipt && run.find(*receipt)) {
     const Scratch left_by_killed_runs(folder);
@@ -60,7 +60,8 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   inputs.read(run, [&](FileResult& file) {
     if (!shard) manifest.file(file.text);
   });
-  run.make(folder, scratch, [&](const MadeShader& shader) { manifest.shader(shader.id, shader.text); });
+  run.make(folder, scratch, receipt ? &*receipt : nullptr,
+           [&](const MadeShader& shader) { manifest.shader(shader.id, shader.text); });
   // A shard stands for its shader: without the one there is not the other.
   if (!shard || run.result().ok) run.wrote(manifest.finish());
   if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, depfileText(path, run.inputs())));
@@ -81,9 +82,10 @@ Report generate(const Strings& files, const Strings& materials, const std::strin
 
 Report generateGraphs(const Strings& files, const std::string& folder, const Options& options,
                       Messages& messages, const Progress& progress) {
+  const Strings all_materials;
   Report report;
   withJobs(options.jobs, [&] {
-    report = generateWith({files, {}, false}, folder, options, messages, progress);
+    report = generateWith({files, all_materials, false}, folder, options, messages, progress);
   });
   return report;
 }

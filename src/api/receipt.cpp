@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -27,6 +26,15 @@ constexpr size_t kMany = 512;
 void forEach(size_t count, const std::function<void(size_t)>& work) {
   if (count >= kMany) return tbb::parallel_for(size_t{0}, count, work);
   for (size_t i = 0; i < count; ++i) work(i);
+}
+
+/// The keys of the files' bytes; an empty key for a file that cannot be read.
+std::vector<Key> contentsOf(const Strings& files) {
+  std::vector<Key> contents(files.size());
+  forEach(files.size(), [&](size_t i) {
+    if (const Result<std::string> bytes = gltf::readBytes(files[i])) contents[i] = keyOf(*bytes);
+  });
+  return contents;
 }
 
 /// Everything that outputs or report depend on. An option that is added stops here until it has its place:
@@ -124,22 +132,24 @@ FileStamp readStamp(BlobReader& blob) {
 
 Receipt::Receipt(const Strings& files, const Strings& materials, const std::string& folder,
                  const Options& options, const Key& base, Cache& cache)
-    : folder_(folder), options_(options), cache_(cache), begin_(std::chrono::system_clock::now()) {
-  std::vector<std::optional<Key>> contents(files.size());
-  forEach(files.size(), [&](size_t i) {
-    if (const Result<std::string> bytes = gltf::readBytes(files[i])) contents[i] = keyOf(*bytes);
-  });
-  if (!std::all_of(contents.begin(), contents.end(), [](const auto& key) { return key.has_value(); })) return;
+    : files_(files),
+      folder_(folder),
+      options_(options),
+      cache_(cache),
+      begin_(std::chrono::system_clock::now()),
+      contents_(contentsOf(files)) {
+  if (std::find(contents_.begin(), contents_.end(), Key{}) != contents_.end()) return;
   std::error_code ignored;  // the working folder only keeps projects apart that name theirs alike
   KeyBuilder key;
   key.text("receipt").key(base).text(std::filesystem::current_path(ignored).string()).text(folder);
   addOptions(options, key);
   key.number(materials.size());
   for (const std::string& name : materials) key.text(name);
-  for (size_t i = 0; i < files.size(); ++i) key.text(files[i]).key(*contents[i]);
+  for (const std::string& file : files) key.text(file);
   key_ = key.finish();
 }
 
+/// First those that belong to no shader.
 std::vector<std::string> Receipt::outputs(const Report& report) const {
   std::vector<std::string> paths{folder_ + "/manifest.json"};
   if (!options_.depfile.empty()) paths.push_back(options_.depfile);
@@ -149,7 +159,17 @@ std::vector<std::string> Receipt::outputs(const Report& report) const {
   return paths;
 }
 
-bool Receipt::find(Report& report, Messages& messages) const {
+/// Notes the shaders that have nothing but files for which `same` says so.
+void Receipt::note(Report& report, const std::vector<uint8_t>& same) {
+  auto end = same.end();
+  for (auto shader = report.shaders.rbegin(); shader != report.shaders.rend(); ++shader) {
+    const auto begin = end - static_cast<ptrdiff_t>(shader->files.size());
+    if (std::find(begin, end, 0) == end) untouched_.emplace(shader->id, std::move(*shader));
+    end = begin;
+  }
+}
+
+bool Receipt::find(Report& report, Messages& messages) {
   if (!key_) return false;
   // Once in an hour the run is made in full, so that what it needs counts as used and stays in the cache.
   bool rested = false;
@@ -158,20 +178,31 @@ bool Receipt::find(Report& report, Messages& messages) const {
   BlobReader blob(*bytes);
   Report earlier;
   Messages said;
+  std::vector<Key> contents;
   std::vector<FileStamp> stamps;
+  blob.list([&] {
+    const auto high = blob.number<uint64_t>();
+    contents.push_back({high, blob.number<uint64_t>()});
+  });
   readReport(blob, earlier);
   readMessages(blob, said);
   blob.list([&] { stamps.push_back(readStamp(blob)); });
   const std::vector<std::string> paths = outputs(earlier);
   if (!blob.complete() || stamps.size() != paths.size()) return false;
-  std::atomic<bool> same{true};
-  forEach(paths.size(), [&](size_t i) {
-    if (same && stampOf(paths[i]) != stamps[i]) same = false;
-  });
-  if (!same) return false;
+  std::vector<uint8_t> same(paths.size());
+  forEach(paths.size(), [&](size_t i) { same[i] = stampOf(paths[i]) == stamps[i] ? 1 : 0; });
+  if (contents != contents_ || std::find(same.begin(), same.end(), 0) != same.end()) {
+    note(earlier, same);
+    return false;
+  }
   report = std::move(earlier);
   messages.insert(messages.end(), std::make_move_iterator(said.begin()), std::make_move_iterator(said.end()));
   return true;
+}
+
+const ShaderReport* Receipt::untouched(const std::string& id) const {
+  const auto it = untouched_.find(id);
+  return it == untouched_.end() ? nullptr : &it->second;
 }
 
 void Receipt::keep(const Report& report, const Messages& said) const {
@@ -184,8 +215,10 @@ void Receipt::keep(const Report& report, const Messages& said) const {
   const bool all = std::all_of(stamps.begin(), stamps.end(), [&](const std::optional<FileStamp>& stamp) {
     return stamp && std::max(stamp->modified, stamp->changed) < settled;
   });
-  if (!all) return;
+  // What the run has read must be what the receipt is for.
+  if (!all || contentsOf(files_) != contents_) return;
   BlobWriter blob;
+  blob.list(contents_, [&](const Key& key) { blob.number(key.high), blob.number(key.low); });
   writeReport(report, blob);
   writeMessages(said, blob);
   blob.list(stamps, [&](const std::optional<FileStamp>& stamp) { writeStamp(*stamp, blob); });

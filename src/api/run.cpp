@@ -83,7 +83,7 @@ std::optional<Receipt> Run::receipt(const Strings& files, const Strings& materia
   return Receipt(files, materials, folder, options_, base_, *cache_);
 }
 
-bool Run::find(const Receipt& receipt) {
+bool Run::find(Receipt& receipt) {
   const StageTimer timer(&times_, StageOfRun::Cache);
   if (!receipt.find(report_, messages_)) return false;
   if (progress_) progress_(report_.shaders.size(), report_.shaders.size());
@@ -157,10 +157,10 @@ void Run::checkNames(const std::vector<std::string>& only, const std::vector<std
   }
 }
 
-void Run::make(const std::string& folder, const Scratch& scratch,
+void Run::make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
                const std::function<void(const MadeShader&)>& each) {
   const std::vector<MadeShader> made = makeShaders(structures_->shaders(), *setting_, folder, scratch,
-                                                   [&](size_t done) { progress(done, false); });
+                                                   receipt, [&](size_t done) { progress(done, false); });
   progress(made.size(), true);
   for (const MadeShader& shader : made) {
     report(shader.wrong, {});

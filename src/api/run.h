@@ -21,7 +21,7 @@ public:
   /// What an earlier run with these inputs and options has left behind; nothing without a cache.
   std::optional<Receipt> receipt(const Strings& files, const Strings& materials, const std::string& folder);
   /// True when that is all there still: then there is nothing to do but to finish().
-  bool find(const Receipt& receipt);
+  bool find(Receipt& receipt);
   void keep(const Receipt& receipt);
 
   /// Reads the inputs, some at a time, and calls `each` with every result, in order, from this thread.
@@ -29,8 +29,9 @@ public:
                   const std::function<void(FileResult&)>& each);
   void readGraphs(const std::vector<std::string>& files, const std::function<void(FileResult&)>& each);
 
-  /// Makes and writes what the inputs need; `each` gets every shader in the order of the ids.
-  void make(const std::string& folder, const Scratch& scratch,
+  /// Makes and writes what the inputs need; `each` gets every shader in the order of the ids. `receipt` may
+  /// be null.
+  void make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
             const std::function<void(const MadeShader&)>& each);
 
   void report(const Diagnostics& diagnostics, const std::string& file) {

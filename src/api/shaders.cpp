@@ -28,8 +28,8 @@ std::string bytesOf(const std::vector<uint32_t>& words) {
 
 class Maker {
 public:
-  Maker(const Setting& setting, const std::string& folder, const Scratch& scratch)
-      : setting_(setting), folder_(folder), scratch_(scratch) {
+  Maker(const Setting& setting, const std::string& folder, const Scratch& scratch, const Receipt* receipt)
+      : setting_(setting), folder_(folder), scratch_(scratch), receipt_(receipt) {
     if (setting.cache != nullptr && setting.options.validate) dxc_ = check::dxcIdentity();
   }
 
@@ -49,6 +49,7 @@ private:
   const Setting& setting_;
   const std::string& folder_;
   const Scratch& scratch_;
+  const Receipt* receipt_;
   std::string dxc_;  ///< that validates the HLSL, too; empty where there is none
 };
 
@@ -161,6 +162,15 @@ MadeShader Maker::make(const std::string& id, Distinct& shader) const {
   MadeShader made;
   made.id = id;
   std::map<Target, TargetCode> codes;
+  if (const ShaderReport* left = receipt_ == nullptr ? nullptr : receipt_->untouched(id)) {
+    made.cached = true;
+    made.validated = left->validated;
+    made.files = left->files;
+    for (const Target target : setting_.options.targets) codes[target].validated = left->validated;
+    made.text = entry(id, *shader.structure, codes);
+    shader.module.reset();
+    return made;
+  }
   std::vector<Target> missing;
   for (const Target target : setting_.options.targets) {
     codes[target] = load(keyOf(id, target));
@@ -182,14 +192,14 @@ MadeShader Maker::make(const std::string& id, Distinct& shader) const {
 }  // namespace
 
 std::vector<MadeShader> makeShaders(std::map<std::string, Distinct>& shaders, const Setting& setting,
-                                    const std::string& folder, const Scratch& scratch,
+                                    const std::string& folder, const Scratch& scratch, const Receipt* receipt,
                                     const std::function<void(size_t done)>& progress) {
   std::vector<std::pair<const std::string*, Distinct*>> list;
   for (auto& [id, shader] : shaders) list.emplace_back(&id, &shader);
   std::vector<MadeShader> made(list.size());
   std::atomic<size_t> done{0};
   std::mutex mutex;
-  const Maker maker(setting, folder, scratch);
+  const Maker maker(setting, folder, scratch, receipt);
   tbb::parallel_for(size_t{0}, list.size(), [&](size_t i) {
     made[i] = maker.make(*list[i].first, *list[i].second);
     const size_t finished = ++done;

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "api/receipt.h"
 #include "api/structures.h"
 
 namespace lacquer {
@@ -19,9 +20,9 @@ struct MadeShader {
 
 /// Makes the code of all shaders, in parallel, and writes it below `folder`. Modules are let go on the way.
 /// `progress` is called with the number done, from one thread at a time. The result is in the order of the
-/// ids.
+/// ids. `receipt`, where there is one, knows files that need no look.
 std::vector<MadeShader> makeShaders(std::map<std::string, Distinct>& shaders, const Setting& setting,
-                                    const std::string& folder, const Scratch& scratch,
+                                    const std::string& folder, const Scratch& scratch, const Receipt* receipt,
                                     const std::function<void(size_t done)>& progress);
 
 }  // namespace lacquer

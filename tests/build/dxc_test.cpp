@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include "processes.h"
 
@@ -59,6 +61,10 @@ TEST_F(Dxc, IsAskedOncePerShaderUntilItChanges) {
 TEST_F(Dxc, AnUpgradeThatRefusesTheShaderIsHeard) {
   install("exit 0");
   EXPECT_EQ(callsOfARun(), 2);
+  // Long enough for the next run to leave a receipt.
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+  EXPECT_EQ(callsOfARun(), 0);
+  EXPECT_EQ(callsOfARun(), 0);
   install("echo 'no such profile'; exit 1");
   EXPECT_EQ(callsOfARun(1), 2);
   EXPECT_NE(output_.find("[dxc]"), std::string::npos) << output_;

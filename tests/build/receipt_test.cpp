@@ -183,5 +183,42 @@ TEST_F(Receipt, OtherInputsAndOptionsAreOtherRuns) {
   EXPECT_NE(changed.text.find("1 files written"), std::string::npos) << changed.text;
 }
 
+/// Inputs that differ from the receipt's: what shaders have left is taken only where it is untouched.
+TEST_F(Receipt, OtherInputsLookAtTheFilesOfEachShader) {
+  const std::vector<std::pair<std::string, std::function<void(const std::string& out)>>> changes = {
+      {"nothing", [](const std::string&) {}},
+      {"forged shader", [&](const std::string& out) { forge(anyShader(out)); }},
+      {"removed shader", [&](const std::string& out) { fs::remove(anyShader(out)); }},
+      {"forged manifest", [&](const std::string& out) { forge(folder_ / out / "manifest.json"); }}};
+  Words outs;
+  for (const auto& [name, change] : changes) outs.push_back(name);
+  prepare(outs);
+  std::string text = filesBelow(folder_).at("two.gltf").bytes;
+  text.replace(text.find("0.5"), 3, "0.6");
+  // One more shader; the two that were there are needed still.
+  text.insert(text.rfind(']'), R"(, {"emissiveFactor": [1, 1, 1]})");
+  writeText(folder_ / "two.gltf", text);
+  ASSERT_EQ(runProgram({LACQUER_PROGRAM, "gen", "-q", "two.gltf", "-o", "plain", "--no-validate", "--target",
+                        "spirv", "--nodes", "more"},
+                       folder_),
+            0);
+  for (const auto& [name, change] : changes) {
+    SCOPED_TRACE(name);
+    const auto before = filesBelow(folder_ / name);
+    change(name);
+    const Said said = run(name);
+    EXPECT_FALSE(said.quick);
+    EXPECT_EQ(differences(folder_ / "plain", folder_ / name), "");
+    const bool first = name == changes[0].first;
+    EXPECT_NE(said.text.find(first ? "1 shaders made, 2 from" : "0 shaders made, 3 from"), std::string::npos)
+        << said.text;
+    EXPECT_EQ(said.text.find("NOT VALID"), std::string::npos) << said.text;
+    for (const auto& [file, state] : before) {
+      if (!first || file == "manifest.json") continue;
+      EXPECT_EQ(filesBelow(folder_ / name).at(file).time, state.time) << file;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lacquer::test
