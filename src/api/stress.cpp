@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "api/eval_material.h"
@@ -18,6 +19,9 @@ namespace {
 using gltf::Json;
 using stress::Finding;
 using stress::Subject;
+
+/// Stands for every node of the library.
+constexpr std::string_view kNodes = "nodes";
 
 bool ends(const std::string& text, std::string_view end) { return text.ends_with(end); }
 
@@ -42,6 +46,7 @@ public:
             const std::function<void(size_t, size_t)>& progress)
       : options_(options), messages_(messages), progress_(progress) {
     plan_ = {stress.samples, stress.seed, stress.mediump};
+    total_ = stress.total;
   }
 
   Result<std::string> make(const std::vector<std::string>& names) {
@@ -51,6 +56,7 @@ public:
     if (Diagnostics wrong = library_->checkAll(); lacquer::hasError(wrong))
       return tl::make_unexpected(std::move(wrong));
     if (Result<void> added = addAll(names); !added) return tl::make_unexpected(std::move(added.error()));
+    if (total_ > 0) plan_.samples = (total_ + work_.size() - 1) / std::max<size_t>(work_.size(), 1);
     Json subjects = Json::array();
     size_t faults = 0;
     for (size_t i = 0; i < work_.size(); ++i) {
@@ -75,11 +81,16 @@ private:
         work_.emplace_back([this, name](size_t& faults) { return replay(name, faults); });
       else if (ends(name, ".gltf") || ends(name, ".glb"))
         added = addFile(name);
+      else if (name == kNodes && !library_->node(name))
+        added = addLibrary();
       else
         added = addNode(name);
       if (!added) return added;
     }
-    if (!names.empty()) return {};
+    return names.empty() ? addLibrary() : Result<void>{};
+  }
+
+  Result<void> addLibrary() {
     for (const std::string_view name : library_->names(lang::DeclKind::Node)) {
       if (Result<void> added = addNode(std::string(name)); !added) return added;
     }
@@ -252,6 +263,7 @@ private:
   Messages& messages_;
   const std::function<void(size_t, size_t)>& progress_;
   stress::Plan plan_;
+  uint64_t total_ = 0;
   std::shared_ptr<const lang::Library> library_;
   std::vector<std::function<Result<Json>(size_t& faults)>> work_;
 };

@@ -12,10 +12,18 @@ namespace lacquer::cli {
 CLI::App* addStress(CLI::App& app, StressFlags& flags) {
   CLI::App* verb =
       app.add_subcommand("stress", "attacks nodes and materials with the inputs that break shaders");
-  verb->add_option("subjects", flags.subjects,
-                   "nodes, .gltf or .glb files, .json cases; every node of the library when absent");
-  verb->add_option("--samples", flags.stress.samples, "inputs for each node and each material")
+  verb->add_option(
+      "subjects", flags.subjects,
+      "nodes, .gltf or .glb files, .json cases; `nodes` is every node of the library, as when absent");
+  CLI::Option* samples =
+      verb->add_option("--samples", flags.stress.samples, "inputs for each node and each material")
+          ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+          ->capture_default_str();
+  verb->add_option("--total", flags.stress.total, "inputs for all of them together, the same number for each")
       ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+      ->excludes(samples);
+  verb->add_option("--profile", flags.options.profile, "the reading of the specification, of materials")
+      ->check(CLI::IsMember({"khr", "openpbr"}))
       ->capture_default_str();
   verb->add_option("--seed", flags.stress.seed, "another one draws other inputs")->capture_default_str();
   verb->add_flag("--mediump", flags.stress.mediump,

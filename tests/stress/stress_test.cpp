@@ -93,6 +93,26 @@ TEST(Stress, VariantsAreAttackedToo) {
   EXPECT_EQ(answer["subjects"][1]["findings"][0]["fault"], "range");
 }
 
+TEST(Stress, ATotalIsSharedByAllSubjects) {
+  const std::string file = (sourceFolder() / "examples/coat.gltf").string();
+  const size_t nodes = stressed({}, few(1), Options())["subjects"].size();
+  Stress stress;
+  stress.total = 4000;
+  const json answer = stressed({"nodes", file}, stress, Options());
+  EXPECT_GT(answer["subjects"].size(), nodes);
+  EXPECT_EQ(answer["samples"], (4000 + answer["subjects"].size() - 1) / answer["subjects"].size());
+}
+
+TEST(Stress, TheProfileIsThatOfTheMaterials) {
+  Options options;
+  const std::string file = (sourceFolder() / "examples/coat.gltf").string();
+  const json khr = stressed({file}, few(64), options);
+  options.profile = "openpbr";
+  const json openpbr = stressed({file}, few(64), options);
+  EXPECT_EQ(openpbr["faults"], 0);
+  EXPECT_NE(khr["subjects"][2]["energy"], openpbr["subjects"][2]["energy"]);
+}
+
 TEST(Stress, IsTheSameForEveryNumberOfThreads) {
   const std::vector<std::string> subjects = {"faulty_jump", "faulty_assume",
                                              (sourceFolder() / "examples/clearcoat_tint.gltf").string()};
