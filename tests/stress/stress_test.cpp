@@ -153,9 +153,10 @@ TEST(Stress, TheExamplesHold) {
     }
     base = std::max(base, subject["energy"]["base"].get<double>());
   }
-  // The text's Lambert under 1 - F(V.H) gives back more than it got at grazing.
-  EXPECT_GT(base, 1.05);
-  EXPECT_LT(base, 1.2);
+  // The text's Lambert under 1 - F(V.H) gives back more than it got at grazing: nearly all of it where the
+  // surface is smooth, besides the mirror's 0.78 at a cosine of 0.05.
+  EXPECT_GT(base, 1.6);
+  EXPECT_LT(base, 1.8);
 }
 
 TEST(Stress, MediumPrecisionOnlyReports) {
