@@ -191,8 +191,8 @@ Report generate(const Strings& files, const Strings& materials, const std::strin
 /// The same for graphs in their JSON form.
 Report generateGraphs(const Strings& files, const std::string& folder, const Options& options,
                       Messages& messages, const Progress& progress = {});
-/// A build for others to run (docs/builds.md). `command` calls the program for one graph with these options,
-/// word by word; `replan` makes the plan again when an input has changed (empty: nothing does).
+/// A build for others to run (docs/builds.md): in words, what calls the program for one graph with these
+/// options, and what makes the plan again when an input has changed (empty: nothing does).
 struct Plan {
   std::string ninja, program;
   Strings command, replan;

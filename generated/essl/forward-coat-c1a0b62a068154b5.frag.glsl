@@ -1,8 +1,13 @@
-#version 450
-// forward-coat-427680e203a874a0
+#version 300 es
+// forward-coat-c1a0b62a068154b5
 // Lacquer 0.1.0, template forward
 
-layout(std140, set = 0, binding = 0) uniform Frame {
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp samplerCube;
+
+layout(std140) uniform Frame {
     mat4 view_projection;
     vec3 camera_position;
     float environment_intensity;
@@ -20,11 +25,11 @@ struct Light {
     float spot_offset;
 };
 
-layout(std140, set = 0, binding = 1) uniform Lights {
+layout(std140) uniform Lights {
     Light lights[16];
 };
 
-layout(std140, set = 1, binding = 0) uniform Material {
+layout(std140) uniform Material {
     vec3 F0;
     float roughness_factor;
     vec3 diffuse;
@@ -32,25 +37,27 @@ layout(std140, set = 1, binding = 0) uniform Material {
     vec3 lambert;
     float alpha;
     vec3 mean_fresnel;
-    float coat_anisotropy_strength;
+    float coat_rotation;
     vec3 base_indirect;
+    float coat_rotation_2;
+    float alpha_t;
     float alpha2;
     float ratio;
     float base_specular;
+    float product;
+    float peak;
     float coat_transmission_direct;
     float coat_transmission_direct_2;
     float coat_bent_normal;
 } material;
 
-layout(set = 0, binding = 2) uniform samplerCube environment_specular;
-layout(set = 0, binding = 3) uniform samplerCube environment_irradiance;
-layout(set = 0, binding = 4) uniform sampler2D environment_dfg;
-layout(set = 1, binding = 1) uniform sampler2D coat_anisotropy_texture;
+uniform samplerCube environment_specular;
+uniform samplerCube environment_irradiance;
+uniform sampler2D environment_dfg;
 
-layout(location = 0) in vec3 v_position;
-layout(location = 1) in vec3 v_normal;
-layout(location = 2) in vec4 v_tangent;
-layout(location = 3) in vec2 v_uv0;
+in vec3 v_position;
+in vec3 v_normal;
+in vec4 v_tangent;
 
 layout(location = 0) out vec4 out_color;
 
@@ -72,28 +79,13 @@ void main() {
     float c = 1.0 - view_cosine;
     float c2 = c * c;
 
-    // coat_anisotropy.texel: glTF 2.0, "Textures"
-    vec4 texel = texture(coat_anisotropy_texture, v_uv0);
-
-    // coat.anisotropy_texel: KHR_materials_coat, "Anisotropy" (dequantization)
-    vec2 d = texel.xy * 2.0 - 1.0;
-    float length2 = dot(d, d);
-    vec2 coat_unit = d * inversesqrt(length2 + 1e-32);
-    vec2 direction = 1e-12 < length2 ? coat_unit : vec2(1.0, 0.0);
-
-    // coat.anisotropy_strength: KHR_materials_coat, "Parameter Combinations"
-    float anisotropy_strength = texel.z * material.coat_anisotropy_strength;
-
     // coat.anisotropy: KHR_materials_coat, "Anisotropy"
-    vec3 turned = v_tangent.xyz * direction.x + cross(N, v_tangent.xyz) * (v_tangent.w * direction.y);
+    vec3 turned = v_tangent.xyz * material.coat_rotation + cross(N, v_tangent.xyz) * (v_tangent.w * material.coat_rotation_2);
     vec3 coat_any = vec3(N.y - N.z, N.z - N.x, N.x - N.y);
     vec3 flattened = turned - N * dot(N, turned) + 1e-14 * coat_any;
     float anisotropy = flattened.y * flattened.y + (flattened.z * flattened.z + 1e-32);
     vec3 along = flattened * inversesqrt(flattened.x * flattened.x + anisotropy);
     vec3 across = cross(N, along);
-
-    // coat.anisotropic_alpha: KHR_materials_coat, "Anisotropy" (directionAlphaRoughness)
-    float alpha_t = mix(material.alpha, 1.0, anisotropy_strength * anisotropy_strength);
 
     // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
     float visibility = view_cosine * view_cosine;
@@ -103,12 +95,8 @@ void main() {
     float TV = dot(along, V);
     float BV = dot(across, V);
 
-    // coat.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
-    float product = alpha_t * material.alpha;
-    float peak = product / 3.1415927;
-
     // coat.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
-    float tv = alpha_t * TV;
+    float tv = material.alpha_t * TV;
     float bv = material.alpha * BV;
     float coat_masked_view = sqrt(tv * tv + bv * bv + visibility);
 
@@ -129,8 +117,8 @@ void main() {
 
         // half: glTF 2.0, Appendix B, "Overview"
         vec3 sum = V + L;
-        float half_length2 = dot(sum, sum);
-        float VdotH = clamp(0.5 * sqrt(half_length2), 0.0, 1.0);
+        float length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
 
         // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
         float NdotL = clamp(dot(N, L), 0.0, 1.0);
@@ -140,7 +128,7 @@ void main() {
         vec3 planar = sum - N * NdotSum;
         float planar2 = dot(planar, planar);
         float spread = planar2 + material.alpha2 * (NdotSum * NdotSum);
-        float facing = 0.0 < NdotSum ? half_length2 * half_length2 : 0.0;
+        float facing = 0.0 < NdotSum ? length2 * length2 : 0.0;
         float denominator = spread * spread;
 
         // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
@@ -157,14 +145,14 @@ void main() {
 
         // coat.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
         float coat_along = material.alpha * (TV + TL);
-        float coat_across = alpha_t * (BV + BL);
-        float up = product * NdotSum;
-        float coat_spread = (coat_along * coat_along + coat_across * coat_across + up * up) / product;
-        float numerator = facing * peak;
+        float coat_across = material.alpha_t * (BV + BL);
+        float up = material.product * NdotSum;
+        float coat_spread = (coat_along * coat_along + coat_across * coat_across + up * up) / material.product;
+        float numerator = facing * material.peak;
         float coat_denominator = coat_spread * coat_spread;
 
         // coat.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
-        float tl = alpha_t * TL;
+        float tl = material.alpha_t * TL;
         float bl = material.alpha * BL;
         float coat_masked_light = sqrt(tl * tl + bl * bl + base_visibility);
         float coat_visibility = 2.0 * (NdotL * coat_masked_view + view_cosine * coat_masked_light);
@@ -204,9 +192,7 @@ void main() {
 
     // coat.bent_normal: McAuley 2015, "Rendering the World of Far Cry 4"; as in the Khronos sample viewer's anisotropy
     vec3 towards = V - across * BV;
-    float straight = 1.0 - material.coat_bent_normal * texel.z;
-    float straight2 = straight * straight;
-    vec3 bent_normal = mix(towards, N, straight2 * straight2);
+    vec3 bent_normal = mix(towards, N, material.coat_bent_normal);
 
     // coat.reflection: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
     vec3 reflection = bent_normal * (2.0 * dot(bent_normal, V)) - V * dot(bent_normal, bent_normal);

@@ -1,8 +1,11 @@
-#version 450
-// forward-coat-427680e203a874a0
+#version 300 es
+// forward-coat-c1a0b62a068154b5
 // Lacquer 0.1.0, template forward
 
-layout(std140, binding = 0) uniform Frame {
+precision highp float;
+precision highp int;
+
+layout(std140) uniform Frame {
     mat4 view_projection;
     vec3 camera_position;
     float environment_intensity;
@@ -10,7 +13,7 @@ layout(std140, binding = 0) uniform Frame {
     int light_count;
 } frame;
 
-layout(std140, binding = 3) uniform Object {
+layout(std140) uniform Object {
     mat4 model;
     mat4 normal_matrix;
 } object;
@@ -18,12 +21,10 @@ layout(std140, binding = 3) uniform Object {
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_tangent;
-layout(location = 3) in vec2 in_texcoord_0;
 
-layout(location = 0) out vec3 v_position;
-layout(location = 1) out vec3 v_normal;
-layout(location = 2) out vec4 v_tangent;
-layout(location = 3) out vec2 v_uv0;
+out vec3 v_position;
+out vec3 v_normal;
+out vec4 v_tangent;
 
 void main() {
     // world
@@ -50,5 +51,4 @@ void main() {
 
     // tangent
     v_tangent = vec4(tangent_N, in_tangent.w);
-    v_uv0 = in_texcoord_0;
 }

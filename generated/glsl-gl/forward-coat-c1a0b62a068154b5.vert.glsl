@@ -1,11 +1,8 @@
-#version 300 es
-// forward-coat-24a32d7c850c7b6a
+#version 450
+// forward-coat-c1a0b62a068154b5
 // Lacquer 0.1.0, template forward
 
-precision highp float;
-precision highp int;
-
-layout(std140) uniform Frame {
+layout(std140, binding = 0) uniform Frame {
     mat4 view_projection;
     vec3 camera_position;
     float environment_intensity;
@@ -13,7 +10,7 @@ layout(std140) uniform Frame {
     int light_count;
 } frame;
 
-layout(std140) uniform Object {
+layout(std140, binding = 3) uniform Object {
     mat4 model;
     mat4 normal_matrix;
 } object;
@@ -22,9 +19,9 @@ layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_tangent;
 
-out vec3 v_position;
-out vec3 v_normal;
-out vec4 v_tangent;
+layout(location = 0) out vec3 v_position;
+layout(location = 1) out vec3 v_normal;
+layout(location = 2) out vec4 v_tangent;
 
 void main() {
     // world

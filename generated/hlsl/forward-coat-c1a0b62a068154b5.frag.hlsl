@@ -1,4 +1,4 @@
-// forward-coat-427680e203a874a0
+// forward-coat-c1a0b62a068154b5
 // Lacquer 0.1.0, template forward
 
 struct FrameBlock {
@@ -35,11 +35,15 @@ struct MaterialBlock {
     float3 lambert;
     float alpha;
     float3 mean_fresnel;
-    float coat_anisotropy_strength;
+    float coat_rotation;
     float3 base_indirect;
+    float coat_rotation_2;
+    float alpha_t;
     float alpha2;
     float ratio;
     float base_specular;
+    float product;
+    float peak;
     float coat_transmission_direct;
     float coat_transmission_direct_2;
     float coat_bent_normal;
@@ -55,14 +59,11 @@ TextureCube environment_irradiance : register(t1);
 SamplerState environment_irradiance_sampler : register(s1);
 Texture2D environment_dfg : register(t2);
 SamplerState environment_dfg_sampler : register(s2);
-Texture2D coat_anisotropy_texture : register(t3);
-SamplerState coat_anisotropy_texture_sampler : register(s3);
 
 void main(
     float3 v_position : TEXCOORD0,
     float3 v_normal : TEXCOORD1,
     float4 v_tangent : TEXCOORD2,
-    float2 v_uv0 : TEXCOORD3,
     out float4 out_color : SV_Target0) {
     // view: glTF 2.0, Appendix B, "Overview"
     float3 to_eye = frame.camera_position - v_position;
@@ -81,28 +82,13 @@ void main(
     float c = 1.0 - view_cosine;
     float c2 = c * c;
 
-    // coat_anisotropy.texel: glTF 2.0, "Textures"
-    float4 texel = coat_anisotropy_texture.Sample(coat_anisotropy_texture_sampler, v_uv0);
-
-    // coat.anisotropy_texel: KHR_materials_coat, "Anisotropy" (dequantization)
-    float2 d = texel.xy * 2.0 - 1.0;
-    float length2 = dot(d, d);
-    float2 coat_unit = d * rsqrt(length2 + 1e-32);
-    float2 direction = 1e-12 < length2 ? coat_unit : float2(1.0, 0.0);
-
-    // coat.anisotropy_strength: KHR_materials_coat, "Parameter Combinations"
-    float anisotropy_strength = texel.z * material.coat_anisotropy_strength;
-
     // coat.anisotropy: KHR_materials_coat, "Anisotropy"
-    float3 turned = v_tangent.xyz * direction.x + cross(N, v_tangent.xyz) * (v_tangent.w * direction.y);
+    float3 turned = v_tangent.xyz * material.coat_rotation + cross(N, v_tangent.xyz) * (v_tangent.w * material.coat_rotation_2);
     float3 coat_any = float3(N.y - N.z, N.z - N.x, N.x - N.y);
     float3 flattened = turned - N * dot(N, turned) + 1e-14 * coat_any;
     float anisotropy = flattened.y * flattened.y + (flattened.z * flattened.z + 1e-32);
     float3 along = flattened * rsqrt(flattened.x * flattened.x + anisotropy);
     float3 across = cross(N, along);
-
-    // coat.anisotropic_alpha: KHR_materials_coat, "Anisotropy" (directionAlphaRoughness)
-    float alpha_t = lerp(material.alpha, 1.0, anisotropy_strength * anisotropy_strength);
 
     // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
     float visibility = view_cosine * view_cosine;
@@ -112,12 +98,8 @@ void main(
     float TV = dot(along, V);
     float BV = dot(across, V);
 
-    // coat.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
-    float product = alpha_t * material.alpha;
-    float peak = product / 3.1415927;
-
     // coat.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
-    float tv = alpha_t * TV;
+    float tv = material.alpha_t * TV;
     float bv = material.alpha * BV;
     float coat_masked_view = sqrt(tv * tv + bv * bv + visibility);
 
@@ -138,8 +120,8 @@ void main(
 
         // half: glTF 2.0, Appendix B, "Overview"
         float3 sum = V + L;
-        float half_length2 = dot(sum, sum);
-        float VdotH = clamp(0.5 * sqrt(half_length2), 0.0, 1.0);
+        float length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
 
         // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
         float NdotL = clamp(dot(N, L), 0.0, 1.0);
@@ -149,7 +131,7 @@ void main(
         float3 planar = sum - N * NdotSum;
         float planar2 = dot(planar, planar);
         float spread = planar2 + material.alpha2 * (NdotSum * NdotSum);
-        float facing = 0.0 < NdotSum ? half_length2 * half_length2 : 0.0;
+        float facing = 0.0 < NdotSum ? length2 * length2 : 0.0;
         float denominator = spread * spread;
 
         // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
@@ -166,14 +148,14 @@ void main(
 
         // coat.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
         float coat_along = material.alpha * (TV + TL);
-        float coat_across = alpha_t * (BV + BL);
-        float up = product * NdotSum;
-        float coat_spread = (coat_along * coat_along + coat_across * coat_across + up * up) / product;
-        float numerator = facing * peak;
+        float coat_across = material.alpha_t * (BV + BL);
+        float up = material.product * NdotSum;
+        float coat_spread = (coat_along * coat_along + coat_across * coat_across + up * up) / material.product;
+        float numerator = facing * material.peak;
         float coat_denominator = coat_spread * coat_spread;
 
         // coat.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
-        float tl = alpha_t * TL;
+        float tl = material.alpha_t * TL;
         float bl = material.alpha * BL;
         float coat_masked_light = sqrt(tl * tl + bl * bl + base_visibility);
         float coat_visibility = 2.0 * (NdotL * coat_masked_view + view_cosine * coat_masked_light);
@@ -213,9 +195,7 @@ void main(
 
     // coat.bent_normal: McAuley 2015, "Rendering the World of Far Cry 4"; as in the Khronos sample viewer's anisotropy
     float3 towards = V - across * BV;
-    float straight = 1.0 - material.coat_bent_normal * texel.z;
-    float straight2 = straight * straight;
-    float3 bent_normal = lerp(towards, N, straight2 * straight2);
+    float3 bent_normal = lerp(towards, N, material.coat_bent_normal);
 
     // coat.reflection: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
     float3 reflection = bent_normal * (2.0 * dot(bent_normal, V)) - V * dot(bent_normal, bent_normal);

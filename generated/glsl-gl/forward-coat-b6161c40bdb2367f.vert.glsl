@@ -1,5 +1,5 @@
 #version 450
-// forward-coat-24a32d7c850c7b6a
+// forward-coat-b6161c40bdb2367f
 // Lacquer 0.1.0, template forward
 
 layout(std140, binding = 0) uniform Frame {
@@ -18,10 +18,12 @@ layout(std140, binding = 3) uniform Object {
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_tangent;
+layout(location = 3) in vec2 in_texcoord_0;
 
 layout(location = 0) out vec3 v_position;
 layout(location = 1) out vec3 v_normal;
 layout(location = 2) out vec4 v_tangent;
+layout(location = 3) out vec2 v_uv0;
 
 void main() {
     // world
@@ -48,4 +50,5 @@ void main() {
 
     // tangent
     v_tangent = vec4(tangent_N, in_tangent.w);
+    v_uv0 = in_texcoord_0;
 }

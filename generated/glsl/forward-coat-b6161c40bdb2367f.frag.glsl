@@ -1,13 +1,8 @@
-#version 300 es
-// forward-coat-427680e203a874a0
+#version 450
+// forward-coat-b6161c40bdb2367f
 // Lacquer 0.1.0, template forward
 
-precision highp float;
-precision highp int;
-precision highp sampler2D;
-precision highp samplerCube;
-
-layout(std140) uniform Frame {
+layout(std140, set = 0, binding = 0) uniform Frame {
     mat4 view_projection;
     vec3 camera_position;
     float environment_intensity;
@@ -25,11 +20,11 @@ struct Light {
     float spot_offset;
 };
 
-layout(std140) uniform Lights {
+layout(std140, set = 0, binding = 1) uniform Lights {
     Light lights[16];
 };
 
-layout(std140) uniform Material {
+layout(std140, set = 1, binding = 0) uniform Material {
     vec3 F0;
     float roughness_factor;
     vec3 diffuse;
@@ -47,15 +42,15 @@ layout(std140) uniform Material {
     float coat_bent_normal;
 } material;
 
-uniform samplerCube environment_specular;
-uniform samplerCube environment_irradiance;
-uniform sampler2D environment_dfg;
-uniform sampler2D coat_anisotropy_texture;
+layout(set = 0, binding = 2) uniform samplerCube environment_specular;
+layout(set = 0, binding = 3) uniform samplerCube environment_irradiance;
+layout(set = 0, binding = 4) uniform sampler2D environment_dfg;
+layout(set = 1, binding = 1) uniform sampler2D coat_anisotropy_texture;
 
-in vec3 v_position;
-in vec3 v_normal;
-in vec4 v_tangent;
-in vec2 v_uv0;
+layout(location = 0) in vec3 v_position;
+layout(location = 1) in vec3 v_normal;
+layout(location = 2) in vec4 v_tangent;
+layout(location = 3) in vec2 v_uv0;
 
 layout(location = 0) out vec4 out_color;
 

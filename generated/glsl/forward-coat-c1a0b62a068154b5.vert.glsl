@@ -1,5 +1,5 @@
 #version 450
-// forward-coat-24a32d7c850c7b6a
+// forward-coat-c1a0b62a068154b5
 // Lacquer 0.1.0, template forward
 
 layout(std140, set = 0, binding = 0) uniform Frame {

@@ -1,4 +1,4 @@
-// forward-coat-427680e203a874a0
+// forward-coat-b6161c40bdb2367f
 // Lacquer 0.1.0, template forward
 
 struct FrameBlock {
