@@ -41,7 +41,7 @@ protected:
               expected_status)
         << output_;
     if (!fs::exists(folder_ / "calls")) return 0;
-    const std::string calls = filesBelow(folder_).at("calls").bytes;
+    const std::string calls = readText(folder_ / "calls");
     return std::count(calls.begin(), calls.end(), '\n');
   }
 

@@ -13,7 +13,7 @@ namespace lacquer::test {
 
 namespace fs = std::filesystem;
 
-static std::string bytesOf(const fs::path& file) {
+std::string readText(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream bytes;
   bytes << in.rdbuf();
@@ -55,7 +55,7 @@ void Process::kill() {
   if (id_ > 0) ::kill(id_, SIGKILL);
 }
 
-std::string Process::output() const { return bytesOf(log_); }
+std::string Process::output() const { return readText(log_); }
 
 int runProgram(const std::vector<std::string>& arguments, const fs::path& folder, std::string* output) {
   Process process(arguments, folder);
@@ -70,7 +70,7 @@ std::map<std::string, FileState> filesBelow(const fs::path& folder) {
   if (!fs::exists(folder)) return files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;
-    files[fs::relative(entry.path(), folder).string()] = {bytesOf(entry.path()), entry.last_write_time()};
+    files[fs::relative(entry.path(), folder).string()] = {readText(entry.path()), entry.last_write_time()};
   }
   return files;
 }

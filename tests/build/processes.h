@@ -45,6 +45,8 @@ std::string differences(const std::filesystem::path& a, const std::filesystem::p
 /// An empty folder of that name, for the test that runs.
 std::filesystem::path freshFolder(const std::string& name);
 
+/// All bytes of a file; empty when it cannot be read.
+std::string readText(const std::filesystem::path& file);
 void writeText(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace lacquer::test
