@@ -235,7 +235,7 @@ std::string drawPreview(const Preview& preview, const Strings& files, const Stri
                         const Options& options, Messages& messages, const Progress& progress = {});
 /// Attacks nodes, materials or cases (docs/stress.md): what was found, as JSON; empty on an error.
 struct Stress {
-  uint64_t samples = 100000, total = 0, seed = 1;  ///< samples of each node and material; total: of all
+  uint64_t samples = 100000, seed = 1, total = 0;  ///< samples of each node and material; total: of all
   bool mediump = false;                            ///< every operation rounded to half precision
 };
 std::string stressNodes(const Stress& stress, const Strings& subjects, const Options& options,

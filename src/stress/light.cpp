@@ -181,7 +181,9 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report) {
       // Metal alone has nothing to gain from: one bounce of a perfect mirror at most.
       light.set(base, "metallic_factor", {1});
       for (const double cosine : kCosines) {
-        const double metal = light.furnace(base, view(cosine));
+        const Vec3 v = view(cosine);
+        const double metal = light.furnace(base, v);
+        light.set(base, "v", {v[0], v[1], v[2]});
         if (!(metal <= 1 + kTolerance)) tell(Fault::Energy, "metal", metal, base);
       }
     }
