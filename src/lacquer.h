@@ -191,11 +191,10 @@ Report generate(const Strings& files, const Strings& materials, const std::strin
 /// The same for graphs in their JSON form.
 Report generateGraphs(const Strings& files, const std::string& folder, const Options& options,
                       Messages& messages, const Progress& progress = {});
-/// A build for others to run (docs/builds.md): in words, what calls the program for one graph with these
-/// options, and what makes the plan again when an input has changed (empty: nothing does).
+/// A build for others to run (docs/builds.md).
 struct Plan {
   std::string ninja, program;
-  Strings command, replan;
+  Strings command, replan;  ///< words: of the call for one graph; of the plan's renewal, or none
 };
 /// Writes `plan.ninja` and, beside it, the graph of every distinct shader; makes no shader.
 Report plan(const Plan& plan, const Strings& files, const Strings& materials, const std::string& folder,
