@@ -1,6 +1,6 @@
 # Puts the .node files of a folder into a library as text, so that a built Lacquer needs no data files.
 
-# lacquer_embed(TARGET FOLDER NAME): defines `const lacquer::EmbeddedFile k<Name>[]` in embedded_<name>.cpp.
+# lacquer_embed(TARGET FOLDER NAME): defines `embedded<Name>()`, the folder's files, in embedded_<name>.cpp.
 function(lacquer_embed target folder name)
   file(GLOB files CONFIGURE_DEPENDS "${folder}/*.node")
   list(SORT files)

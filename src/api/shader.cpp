@@ -268,7 +268,7 @@ void Shader::pack(const std::function<bool(std::string_view, double*)>& value, v
     const Preshader::Field& field = preshader.fields()[i];
     for (int c = 0; c < ir::componentCount(field.type); ++c) {
       const auto x = static_cast<float>(values[i][static_cast<size_t>(c)]);
-      std::memcpy(static_cast<char*>(bytes) + field.offset + 4 * c, &x, 4);
+      std::memcpy(static_cast<char*>(bytes) + field.offset + size_t{4} * static_cast<size_t>(c), &x, 4);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <atomic>
 
 #include "api/manifest.h"
@@ -15,7 +16,7 @@ namespace {
 struct TargetCode {
   bool made = false;
   bool validated = false;
-  std::string bytes[2];  ///< by stage
+  std::array<std::string, 2> bytes;  ///< by stage
 };
 
 std::string bytesOf(const std::vector<uint32_t>& words) {

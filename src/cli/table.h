@@ -18,6 +18,6 @@ std::string printable(std::string_view text);
 void printReport(const Report& report, const Options& options);
 
 /// The library (or one node) as text or JSON, from nodesJson(). False when there is no node of that name.
-bool printNodes(const std::string& json, const std::string& name, bool as_json);
+bool printNodes(const std::string& text, const std::string& name, bool as_json);
 
 }  // namespace lacquer::cli

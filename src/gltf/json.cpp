@@ -19,14 +19,14 @@ constexpr size_t kDeepest = 512;
 /// Offset of the bracket that opens one level too many, npos when there is none.
 size_t tooDeep(std::string_view text) {
   size_t depth = 0;
-  bool inString = false;
+  bool in_string = false;
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (inString) {
+    if (in_string) {
       if (c == '\\') ++i;
-      if (c == '"') inString = false;
+      if (c == '"') in_string = false;
     } else if (c == '"') {
-      inString = true;
+      in_string = true;
     } else if (c == '[' || c == '{') {
       if (++depth > kDeepest) return i;
     } else if ((c == ']' || c == '}') && depth > 0) {

@@ -293,8 +293,8 @@ void MaterialReader::unknownExtension(std::string_view name, const Path& path) {
   }
   std::string help = fmt::format("move it to {}", place.where);
   if (place.now != name) help += fmt::format(", as {}", place.now);
-  const bool inClearcoat = place.where.starts_with(kNameClearcoat);
-  if (inClearcoat && (extensions_ == nullptr || member(*extensions_, kNameClearcoat) == nullptr))
+  const bool in_clearcoat = place.where.starts_with(kNameClearcoat);
+  if (in_clearcoat && (extensions_ == nullptr || member(*extensions_, kNameClearcoat) == nullptr))
     help += fmt::format(" ({} is missing too)", kNameClearcoat);
   report_.error("misplaced-extension", path, fmt::format("{} has no place here", name), std::move(help));
 }

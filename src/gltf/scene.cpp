@@ -113,15 +113,15 @@ std::vector<int> readScene(const Json& root, Document& document) {
   CheckedScene checked = checkScene(root, document.path, document.diagnostics);
   document.images = std::move(checked.images);
   document.uses.resize(arraySize(root, "materials"));
-  std::vector<int> textureImages(arraySize(root, "textures"), -1);
+  std::vector<int> texture_images(arraySize(root, "textures"), -1);
   tinygltf::Model model;
-  if (!loadModel(checked.json, model, document.path, document.diagnostics)) return textureImages;
+  if (!loadModel(checked.json, model, document.path, document.diagnostics)) return texture_images;
   collectUses(model, document);
   collectLights(model, document);
-  for (size_t i = 0; i < textureImages.size() && i < model.textures.size(); ++i) {
-    textureImages[i] = model.textures[i].source;
+  for (size_t i = 0; i < texture_images.size() && i < model.textures.size(); ++i) {
+    texture_images[i] = model.textures[i].source;
   }
-  return textureImages;
+  return texture_images;
 }
 
 }  // namespace lacquer::gltf

@@ -134,8 +134,8 @@ void SceneChecker::required(const Json& names, const Path& path) {
     }
     const auto& name = names[i].get_ref<const std::string&>();
     // Extensions of geometry, textures and so on are none of a shader generator's business.
-    const bool ofMaterials = name.find("_materials_") != std::string::npos;
-    if (!ofMaterials || name == kVariants || !placeOf(name).where.empty()) continue;
+    const bool of_materials = name.find("_materials_") != std::string::npos;
+    if (!of_materials || name == kVariants || !placeOf(name).where.empty()) continue;
     report_.warning("required-extension", here,
                     fmt::format("{} is required, but Lacquer does not implement it", printable(name)),
                     "materials that use it will look different");
@@ -159,7 +159,7 @@ void SceneChecker::rootExtensions(const Json& extensions, const Path& path) {
 
 Json SceneChecker::light(const Json& light, const Path& path) {
   static constexpr std::string_view kTypes[] = {"directional", "point", "spot"};
-  const Json unusable = {{"type", "unknown"}};
+  Json unusable = {{"type", "unknown"}};
   const Json* type = member(light, "type");
   if (type == nullptr) {
     if (!isStandIn(light))

@@ -71,11 +71,11 @@ std::string_view closest(std::string_view name, std::span<const std::string_view
   constexpr size_t kShortestStem = 3;
   if (name.empty() || name.size() > kLongest) return {};
   std::string_view best;
-  size_t bestDistance = std::max<size_t>(1, std::min<size_t>(4, name.size() / 3)) + 1;
+  size_t best_distance = std::max<size_t>(1, std::min<size_t>(4, name.size() / 3)) + 1;
   for (const std::string_view candidate : candidates) {
     const size_t distance = editDistance(name, candidate);
-    if (distance < bestDistance) {
-      bestDistance = distance;
+    if (distance < best_distance) {
+      best_distance = distance;
       best = candidate;
     }
   }

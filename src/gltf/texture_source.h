@@ -30,7 +30,7 @@ public:
 private:
   Result<std::string> uriBytes(const std::string& uri, const Place& place) const;
   Result<std::string> imageBytes(const Json& image, const Place& place) const;
-  Result<std::string> viewBytes(size_t view, const Place& place) const;
+  Result<std::string> viewBytes(size_t index, const Place& place) const;
 
   std::string path_, binary_;
   Json root_;

@@ -393,7 +393,7 @@ void GraphCheck::nodeInputs(size_t index) {
     }
     if (decl != nullptr) {
       const auto param = std::find_if(decl->params.begin(), decl->params.end(),
-                                      [&](const lang::Param& p) { return p.name == name; });
+                                      [&](const lang::Param& p) { return p.name == sink.name; });
       if (param != decl->params.end()) {
         sink.contract = &*param;
       } else {
@@ -585,7 +585,7 @@ void GraphCheck::unknownGiven(std::string_view name, const Sink& sink) {
     return error(sink, "unknown-given",
                  fmt::format("the given {} has no result {}", quote(head), quote(result)),
                  suggest(
-                     result, [&] { return names; }, all));
+                     result, [&names] { return Names(names); }, all));
   }
   std::sort(full.begin(), full.end());
   error(sink, "unknown-given",
@@ -703,8 +703,9 @@ void GraphCheck::rates() {
   for (size_t i = 0; i < graph_.outputs.size(); ++i) {
     const auto& [name, source] = graph_.outputs[i];
     const Tied tied = tiedOf(source, nodes);
-    const auto port = std::find_if(template_->ports.begin(), template_->ports.end(),
-                                   [&](const lang::PortDecl& p) { return p.param.name == name; });
+    const auto port =
+        std::find_if(template_->ports.begin(), template_->ports.end(),
+                     [&, &wanted = name](const lang::PortDecl& p) { return p.param.name == wanted; });
     const Ties wrong = tied.ties & port->refused;
     const Spot spot{Section::Outputs, i, 0};
     if ((wrong & kLight) != 0) {

@@ -98,9 +98,13 @@ int swizzleComponent(uint32_t payload, int index) { return static_cast<int>(payl
 /// Slots of a new DAG's tables: what most materials need without growing.
 static constexpr size_t kFirstSlots = 2048;
 static constexpr size_t kFirstConstantSlots = 256;
+static constexpr size_t kFirstTerms = 64;
 
 Dag::Dag() : constant_table_(kFirstConstantSlots, kNoValue), table_(kFirstSlots, kNoValue) {
+  terms_.reserve(kFirstTerms);
   terms_.push_back({});
+  inputs_.reserve(kFirstTerms);
+  names_.reserve(kFirstSlots / 8);
   for (auto* ids : {&term_of_, &name_of_, &fact_of_, &rank_of_}) ids->reserve(kFirstSlots / 2);
   values_.reserve(kFirstSlots / 2);
 }

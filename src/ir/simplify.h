@@ -13,7 +13,7 @@ public:
 
   ValueId simplify(Op op, Type type, std::span<const ValueId> operands, uint32_t payload);
   ValueId construct(Type type, std::span<const ValueId> parts);
-  ValueId swizzle(ValueId value, std::span<const int> components);
+  ValueId swizzle(ValueId id, std::span<const int> components);
 
 private:
   ValueId fold(Op op, Type type, std::span<const ValueId> operands);

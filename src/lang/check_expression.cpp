@@ -175,7 +175,7 @@ bool Checker::name(Expr& expr) {
     return false;
   }
   std::vector<std::string_view> candidates = around_.names(DeclKind::Const);
-  candidates.push_back("PI");
+  candidates.emplace_back("PI");
   for (const Name& n : names_) candidates.push_back(n.name);
   return unknown(expr.name, "value", std::move(candidates));
 }

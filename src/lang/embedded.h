@@ -12,9 +12,9 @@ struct EmbeddedFile {
 };
 
 /// The files of nodes/, sorted by name.
-std::vector<EmbeddedFile> embedded_nodes();
+std::vector<EmbeddedFile> embeddedNodes();
 
 /// The files of templates/, sorted by name.
-std::vector<EmbeddedFile> embedded_templates();
+std::vector<EmbeddedFile> embeddedTemplates();
 
 }  // namespace lacquer::lang

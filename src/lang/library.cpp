@@ -328,7 +328,7 @@ Result<Library> Library::fromFiles(std::vector<SourceFile> files) {
 
 Library Library::embedded() {
   auto impl = std::make_unique<Impl>();
-  for (const auto& list : {embedded_nodes(), embedded_templates()}) {
+  for (const auto& list : {embeddedNodes(), embeddedTemplates()}) {
     for (const EmbeddedFile& file : list) impl->files.push_back({{}, {}, file.name, file.text});
   }
   impl->scan_errors = impl->scanFrom(0);

@@ -20,7 +20,7 @@ constexpr int kDeepest = 4;
 /// A few values, without allocating.
 class Few {
 public:
-  void push_back(ValueId id) { ids_[size_++] = id; }
+  void add(ValueId id) { ids_[size_++] = id; }
   void erase(size_t index) {
     std::copy(ids_.begin() + index + 1, ids_.begin() + size_, ids_.begin() + index);
     --size_;
@@ -47,9 +47,9 @@ void collect(const ir::Dag& dag, ValueId id, ValueId stop, int depth, Factors& o
     collect(dag, value.args[1], stop, depth + 1, out);
   } else if (id != stop && value.op == Op::Div && dag.isConstant(value.args[1]) && depth < kDeepest) {
     collect(dag, value.args[0], stop, depth + 1, out);
-    out.divisors.push_back(value.args[1]);
+    out.divisors.add(value.args[1]);
   } else {
-    out.factors.push_back(id);
+    out.factors.add(id);
   }
 }
 
@@ -147,7 +147,7 @@ Range Intervals::productOf(std::span<const ValueId> factors, std::span<const Val
   Range product = math_.constant(1);
   small = divisors.empty();
   Few left;
-  for (const ValueId factor : factors) left.push_back(factor);
+  for (const ValueId factor : factors) left.add(factor);
   while (left.size() != 0) {
     const ValueId factor = left[left.size() - 1];
     left.erase(left.size() - 1);

@@ -15,7 +15,7 @@ Intervals::Intervals(const ir::Module& module, const IntervalOptions& options)
       dag_(module.dag),
       options_(options),
       math_(options.arithmetic),
-      values_(module.dag.size()),
+      values_(1),
       facets_(module.dag.size()) {}
 
 void Intervals::run() {
@@ -33,12 +33,15 @@ void Intervals::run() {
 }
 
 void Intervals::run(std::span<const ValueId> ids) {
+  values_.reserve(values_.size() + ids.size());
   for (const ValueId id : ids) {
     if (facets_[id].done) continue;
+    facets_[id].place = static_cast<uint32_t>(values_.size());
+    values_.emplace_back();
     const auto fixed = fixed_.find(id);
     look(id);
     if (fixed != fixed_.end()) {
-      values_[id] = fixed->second;
+      rangesOf(id) = fixed->second;
       facets_[id].alike = false;
     } else {
       evaluate(id);
@@ -46,7 +49,7 @@ void Intervals::run(std::span<const ValueId> ids) {
     facets_[id].done = true;
     const auto fact = dag_.assumed(id);
     if (!fact) continue;
-    for (Range& range : values_[id]) range = meet(range, math_.fact(*fact));
+    for (Range& range : rangesOf(id)) range = meet(range, math_.fact(*fact));
   }
 }
 
@@ -78,7 +81,7 @@ void Intervals::evaluate(ValueId id) {
   const ir::Value& value = dag_[id];
   if (value.op == Op::Input) {
     const ir::Input& in = dag_.inputOf(id);
-    values_[id].fill(input(in));
+    rangesOf(id).fill(input(in));
     materialField(id, in);
     varying(id, in);
     return;
@@ -91,8 +94,8 @@ void Intervals::evaluate(ValueId id) {
   for (int c = 0; c < std::min(ir::componentCount(value.type), 4); ++c) {
     Range range = component(id, c);
     pattern(id, c, range);
-    values_[id][static_cast<size_t>(c)] = range;
-    if (facets_[id].alike) return values_[id].fill(range);
+    rangesOf(id)[static_cast<size_t>(c)] = range;
+    if (facets_[id].alike) return rangesOf(id).fill(range);
   }
 }
 
@@ -144,7 +147,7 @@ void Intervals::materialField(ValueId id, const ir::Input& input) {
   if (module_.blocks[input.block].role != ir::BlockRole::Material) return;
   for (const ir::PreshaderField& field : module_.preshader) {
     if (field.field != input.field || !known(field.value)) continue;
-    values_[id] = values_[field.value];
+    rangesOf(id) = rangesOf(field.value);
     facets_[id].alike = facets_[field.value].alike;
   }
 }
@@ -155,7 +158,7 @@ void Intervals::varying(ValueId id, const ir::Input& input) {
   if (source == ir::kNoValue || !known(source)) return;
   facets_[id].alike = facets_[source].alike;
   for (int c = 0; c < ir::componentCount(dag_[id].type); ++c) {
-    values_[id][static_cast<size_t>(c)] = interpolated(at(source, c));
+    rangesOf(id)[static_cast<size_t>(c)] = interpolated(at(source, c));
   }
 }
 
@@ -163,12 +166,12 @@ void Intervals::matMul(ValueId id) {
   const Range element = at(dag_[id].args[0], 0);
   std::array<Range, 4> terms;
   for (int c = 0; c < 4; ++c) terms[static_cast<size_t>(c)] = math_.mul(element, at(dag_[id].args[1], c));
-  values_[id].fill(math_.sum(terms));
+  rangesOf(id).fill(math_.sum(terms));
 }
 
 void Intervals::vectorOp(ValueId id) {
   const ir::Value& value = dag_[id];
-  Ranges& out = values_[id];
+  Ranges& out = rangesOf(id);
   const ValueId a = value.args[0];
   if (value.op == Op::Swizzle) {
     for (int c = 0; c < ir::componentCount(value.type); ++c) {
@@ -233,7 +236,7 @@ Range Intervals::component(ValueId id, int c) const {
     case Op::Cross:
     case Op::Normalize:
     case Op::Construct:
-    case Op::Swizzle: return values_[id][static_cast<size_t>(c)];
+    case Op::Swizzle: return values_[facets_[id].place][static_cast<size_t>(c)];
     case Op::Neg:
     case Op::Abs:
     case Op::Sign:

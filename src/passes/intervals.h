@@ -44,7 +44,8 @@ public:
 
   /// The range of a component; every component of a Float or a Mat4 has that of component 0.
   const Range& at(ir::ValueId id, int component) const {
-    return values_[id][ir::isFloatVector(dag_[id].type) ? static_cast<size_t>(component) : 0];
+    const Ranges& ranges = values_[facets_[id].place];
+    return ranges[ir::isFloatVector(dag_[id].type) ? static_cast<size_t>(component) : 0];
   }
   /// All components at once.
   Range all(ir::ValueId id) const;
@@ -59,8 +60,10 @@ private:
     bool alike = false;       ///< all components are computed alike from components that are
     bool root = false;        ///< it may have a reciprocal square root among its factors
     bool difference = false;  ///< or a difference
+    uint32_t place = 0;       ///< of its ranges; 0 while there are none
   };
 
+  Ranges& rangesOf(ir::ValueId id) { return values_[facets_[id].place]; }
   void look(ir::ValueId id);
   void evaluate(ir::ValueId id);
   Range input(const ir::Input& input) const;
@@ -95,7 +98,7 @@ private:
   const ir::Dag& dag_;
   IntervalOptions options_;
   RangeMath math_;
-  std::vector<Ranges> values_;
+  std::vector<Ranges> values_;  ///< of the values that were evaluated, in that order; the first is nobody's
   std::vector<Facet> facets_;
   std::map<ir::ValueId, Ranges> fixed_;
 };

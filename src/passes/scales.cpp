@@ -109,66 +109,9 @@ private:
   std::vector<int> uses_;
 };
 
-/// dot(v s, w) = dot(v, w) s where the scaled vector is otherwise only added to something: then it never
-/// stands in registers, the sum being a fused multiply-add.
-void pullOutOfDots(ir::Module& module) {
-  Rewriter rewriter(module);
-  const ir::Dag& old = module.dag;
-  std::vector<int> dots(old.size(), 0);
-  std::vector<bool> needed(old.size(), false);
-  const std::vector<ValueId> live = ir::reachable(old, rootsOf(module));
-  for (const ValueId id : live) {
-    const ir::Value& value = old[id];
-    for (const ValueId operand : value.operands()) {
-      if (value.op == Op::Dot)
-        ++dots[operand];
-      else if (value.op != Op::Add && value.op != Op::Sub)
-        needed[operand] = true;
-    }
-    if (value.op == Op::Dot && value.args[0] == value.args[1]) needed[value.args[0]] = true;
-  }
-  for (const ir::Output& output : module.outputs) needed[output.value] = true;
-  const auto pays = [&](ValueId id) { return scaledVector(old, id) >= 0 && !needed[id] && dots[id] <= 2; };
-  const auto changes = [&](ValueId id) {
-    return old[id].op == Op::Dot && (pays(old[id].args[0]) || pays(old[id].args[1]));
-  };
-  if (std::none_of(live.begin(), live.end(), changes)) return;
-  rewriter.run([&](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
-    const ir::Value value = r.dag()[id];
-    if (value.op != Op::Dot) return r.copy(id, operands);
-    ValueId factor = r.dag().constant(1);
-    std::array<ValueId, 2> sides{operands[0], operands[1]};
-    for (size_t k = 0; k < 2; ++k) {
-      if (!pays(value.args[k])) continue;
-      const ir::Value scaled = r.dag()[sides[k]];
-      const int v = scaledVector(r.dag(), sides[k]);
-      if (v < 0) continue;
-      factor = r.dag().mul(factor, scaled.args[static_cast<size_t>(1 - v)]);
-      sides[k] = scaled.args[static_cast<size_t>(v)];
-    }
-    return r.dag().mul(r.dag().make(Op::Dot, {sides[0], sides[1]}), factor);
-  });
-}
-
 /// A cube map does not ask for its direction's length: a positive factor common to all of it is left out.
 class Directions {
 public:
-  explicit Directions(ir::Module& module) : module_(module) {}
-
-  void run() {
-    const ir::Dag& dag = module_.dag;
-    const std::vector<ValueId> live = ir::reachable(dag, rootsOf(module_));
-    if (std::none_of(live.begin(), live.end(), [&](ValueId id) { return lookup(dag, id); })) return;
-    Rewriter(module_).run([](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
-      if (!lookup(r.dag(), id)) return r.copy(id, operands);
-      std::array<ValueId, 4> changed{};
-      std::copy(operands.begin(), operands.end(), changed.begin());
-      changed[1] = stripped(r.dag(), changed[1]);
-      return r.copy(id, {changed.data(), operands.size()});
-    });
-  }
-
-private:
   static bool lookup(const ir::Dag& dag, ValueId id) {
     const ir::Value& value = dag[id];
     return (value.op == Op::Texture || value.op == Op::TextureLod) &&
@@ -185,6 +128,7 @@ private:
     return direction;
   }
 
+private:
   /// Reciprocal lengths among the factors: they are positive.
   static void collect(const ir::Dag& dag, ValueId id, std::vector<ValueId>& found, int depth) {
     const ir::Value& value = dag[id];
@@ -214,15 +158,61 @@ private:
   }
 
   static constexpr int kDeepest = 8;
-  ir::Module& module_;
 };
+
+/// dot(v s, w) = dot(v, w) s where the scaled vector is otherwise only added to something: then it never
+/// stands in registers, the sum being a fused multiply-add. And what only scales a cube map's direction goes.
+void pullOut(ir::Module& module) {
+  Rewriter rewriter(module);
+  const ir::Dag& old = module.dag;
+  std::vector<int> dots(old.size(), 0);
+  std::vector<bool> needed(old.size(), false);
+  const std::vector<ValueId> live = ir::reachable(old, rootsOf(module));
+  for (const ValueId id : live) {
+    const ir::Value& value = old[id];
+    for (const ValueId operand : value.operands()) {
+      if (value.op == Op::Dot)
+        ++dots[operand];
+      else if (value.op != Op::Add && value.op != Op::Sub)
+        needed[operand] = true;
+    }
+    if (value.op == Op::Dot && value.args[0] == value.args[1]) needed[value.args[0]] = true;
+  }
+  for (const ir::Output& output : module.outputs) needed[output.value] = true;
+  const auto pays = [&](ValueId id) { return scaledVector(old, id) >= 0 && !needed[id] && dots[id] <= 2; };
+  const auto changes = [&](ValueId id) {
+    if (old[id].op == Op::Dot) return pays(old[id].args[0]) || pays(old[id].args[1]);
+    return Directions::lookup(old, id);
+  };
+  if (std::none_of(live.begin(), live.end(), changes)) return;
+  rewriter.run([&](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
+    const ir::Value value = r.dag()[id];
+    if (Directions::lookup(r.dag(), id)) {
+      std::array<ValueId, 4> changed{};
+      std::copy(operands.begin(), operands.end(), changed.begin());
+      changed[1] = Directions::stripped(r.dag(), changed[1]);
+      return r.copy(id, {changed.data(), operands.size()});
+    }
+    if (value.op != Op::Dot) return r.copy(id, operands);
+    ValueId factor = r.dag().constant(1);
+    std::array<ValueId, 2> sides{operands[0], operands[1]};
+    for (size_t k = 0; k < 2; ++k) {
+      if (!pays(value.args[k])) continue;
+      const ir::Value scaled = r.dag()[sides[k]];
+      const int v = scaledVector(r.dag(), sides[k]);
+      if (v < 0) continue;
+      factor = r.dag().mul(factor, scaled.args[static_cast<size_t>(1 - v)]);
+      sides[k] = scaled.args[static_cast<size_t>(v)];
+    }
+    return r.dag().mul(r.dag().make(Op::Dot, {sides[0], sides[1]}), factor);
+  });
+}
 
 }  // namespace
 
 void placeScales(ir::Module& module) {
   Gather(module).run();
-  pullOutOfDots(module);
-  Directions(module).run();
+  pullOut(module);
 }
 
 }  // namespace lacquer::passes

@@ -60,8 +60,10 @@ Row rowOf(uint32_t y, uint32_t size) {
     const uint32_t k = i % kSamples;
     // Each row and each column of the grid's cells has its sample elsewhere: edges along an axis get all
     // shades.
-    const double dx = (k % kGrid + (k / kGrid + 0.5) / kGrid) / kGrid;
-    const double dy = (k / kGrid + (k % kGrid + 0.5) / kGrid) / kGrid;
+    const uint32_t column = k % kGrid;
+    const uint32_t line = k / kGrid;
+    const double dx = (column + (line + 0.5) / kGrid) / kGrid;
+    const double dy = (line + (column + 0.5) / kGrid) / kGrid;
     eval::Point point;
     if (!pointAt((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, point)) continue;
     row.points.push_back(point);

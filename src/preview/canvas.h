@@ -45,7 +45,7 @@ std::vector<std::string> fittedText(std::string_view text, int width, int scale,
 
 /// Linear light to a display's code: the Khronos PBR neutral tone mapper. Colours below 0.8 keep hue and
 /// brightness, so that a base colour is seen as the file has it.
-std::array<double, 3> toneMap(std::array<double, 3> linear);
+std::array<double, 3> toneMap(std::array<double, 3> c);
 /// IEC 61966-2-1, one channel, [0, 1] to 0…255.
 uint8_t encodeSrgb(double linear);
 

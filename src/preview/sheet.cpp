@@ -70,7 +70,8 @@ public:
     int height = kMargin;
     if (!title.empty()) height += textHeight(scale_) + kGap;
     for (const Section& section : sections_) height += heightOf(section);
-    const uint64_t width = static_cast<uint64_t>(columns_) * static_cast<uint64_t>(width_) + 2 * kMargin;
+    const uint64_t width =
+        static_cast<uint64_t>(columns_) * static_cast<uint64_t>(width_) + uint64_t{2} * kMargin;
     if (height < 0 || width * static_cast<uint64_t>(height) > kMostPixels) {
       return fail("sheet-too-large", {}, fmt::format("the sheet would have {} x {} pixels", width, height),
                   "choose a smaller --size, or fewer materials");

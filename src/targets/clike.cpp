@@ -63,7 +63,7 @@ private:
   Expression operation(const ir::Value& value) const;
 
   void statement(Text& text, const Statement& statement) const;
-  void section(Text& text, ir::TermId term) const;
+  void section(Text& text, ir::TermId id) const;
   void openLoop(Text& text, const Statement& statement) const;
   std::string lightCount() const;
   std::string target(const ir::Output& output) const;

@@ -1,0 +1,198 @@
+#version 450
+// forward-coat-eda1dd1f01be739c
+// Lacquer 0.1.0, template forward
+
+layout(std140, set = 0, binding = 0) uniform Frame {
+    mat4 view_projection;
+    vec3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+} frame;
+
+struct Light {
+    vec3 position;
+    float positional;
+    vec3 radiance;
+    float inverse_range_4;
+    vec3 direction;
+    float spot_scale;
+    float spot_offset;
+};
+
+layout(std140, set = 0, binding = 1) uniform Lights {
+    Light lights[16];
+};
+
+layout(std140, set = 1, binding = 0) uniform Material {
+    vec3 F0;
+    float roughness_factor;
+    vec3 diffuse;
+    float coat_roughness_factor;
+    vec3 lambert;
+    float coat_normal_scale;
+    vec3 mean_fresnel;
+    float alpha2;
+    vec3 base_indirect;
+    float ratio;
+    float base_specular;
+    float coat_alpha2;
+    float coat_ratio;
+    float coat_specular;
+    float coat_transmission_direct;
+    float coat_transmission_direct_2;
+} material;
+
+layout(set = 0, binding = 2) uniform samplerCube environment_specular;
+layout(set = 0, binding = 3) uniform samplerCube environment_irradiance;
+layout(set = 0, binding = 4) uniform sampler2D environment_dfg;
+layout(set = 1, binding = 1) uniform sampler2D coat_normal_texture;
+
+layout(location = 0) in vec3 v_position;
+layout(location = 1) in vec3 v_normal;
+layout(location = 2) in vec4 v_tangent;
+layout(location = 3) in vec2 v_uv0;
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    // view: glTF 2.0, Appendix B, "Overview"
+    vec3 to_eye = frame.camera_position - v_position;
+    float view = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_view = inversesqrt(to_eye.x * to_eye.x + view);
+    vec3 V = to_eye * view_view;
+
+    // normal.unit: glTF 2.0, "Meshes"
+    float unit = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit);
+
+    // normal.facing: glTF 2.0, "Double Sided"
+    vec3 facing = gl_FrontFacing ? N : -N;
+
+    // coat_normal.texel: glTF 2.0, "Textures"
+    vec4 texel = texture(coat_normal_texture, v_uv0);
+
+    // coat.normal_map: glTF 2.0, "Additional Textures" (normal)
+    vec3 t = texel.xyz * 2.0 - 1.0;
+    float z = t.z + 1e-14;
+    vec3 normal_map = v_tangent.xyz * (t.x * material.coat_normal_scale) + cross(N, v_tangent.xyz) * (v_tangent.w * (t.y * material.coat_normal_scale));
+    vec3 bent = normal_map + N * z;
+    float coat_normal_map = bent.y * bent.y + (bent.z * bent.z + 1e-32);
+    vec3 coat_unit = bent * inversesqrt(bent.x * bent.x + coat_normal_map);
+
+    // coat.facing: glTF 2.0, "Double Sided"
+    vec3 coat_facing = gl_FrontFacing ? coat_unit : -coat_unit;
+
+    // coat.view_cosine: KHR_materials_clearcoat, "Layering"
+    float view_cosine = dot(coat_facing, to_eye);
+    float NV = view_cosine * view_view;
+    float coat_view_cosine = abs(NV);
+
+    // coat.fresnel: glTF 2.0, Appendix B, "Fresnel"; Schlick 1994
+    float c = 1.0 - coat_view_cosine;
+    float c2 = c * c;
+
+    // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+    float cosines = dot(facing, to_eye);
+    float base_NV = cosines * view_view;
+    float NdotV = abs(base_NV);
+
+    // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float masked_view = sqrt(material.ratio + NdotV * NdotV);
+
+    // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float coat_masked_view = sqrt(material.coat_ratio + coat_view_cosine * coat_view_cosine);
+
+    // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+    float covered = material.coat_transmission_direct_2 + material.coat_transmission_direct * (c2 * c2 * abs(c));
+    float transmission_direct = clamp(1.0 - covered, 0.0, 1.0);
+
+    // output
+    vec3 light_sum = vec3(0.0);
+    for (int i = 0; i < frame.light_count; ++i) {
+        // light_sample: KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles"
+        vec3 to_light = lights[i].position - v_position * lights[i].positional;
+        float distance2 = max(dot(to_light, to_light), 1e-12);
+        float inverse_distance = mix(1.0, inversesqrt(distance2), lights[i].positional);
+        vec3 L = to_light * inverse_distance;
+        float window = clamp(1.0 - distance2 * (distance2 * lights[i].inverse_range_4), 0.0, 1.0);
+        float cone = clamp(lights[i].spot_offset - dot(L, lights[i].direction) * lights[i].spot_scale, 0.0, 1.0);
+        vec3 radiance = lights[i].radiance * (window * (cone * cone) * (inverse_distance * inverse_distance));
+
+        // half: glTF 2.0, Appendix B, "Overview"
+        vec3 sum = V + L;
+        float length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
+
+        // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+        float NdotL = clamp(dot(facing, L), 0.0, 1.0);
+        float NdotSum = NdotL + base_NV;
+
+        // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        vec3 planar = sum - facing * NdotSum;
+        float planar2 = dot(planar, planar);
+        float spread = planar2 + material.alpha2 * (NdotSum * NdotSum);
+        float distribution = length2 * length2;
+        float base_facing = 0.0 < NdotSum ? distribution : 0.0;
+        float denominator = spread * spread;
+
+        // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float masked_light = sqrt(material.ratio + NdotL * NdotL);
+        float base_sum = NdotL * masked_view + NdotV * masked_light;
+
+        // base.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float specular = material.base_specular * base_facing / (denominator * base_sum + 1e-30);
+
+        // coat.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+        float coat_NdotL = clamp(dot(coat_facing, L), 0.0, 1.0);
+        float coat_NdotSum = coat_NdotL + NV;
+
+        // coat.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        vec3 coat_planar = sum - coat_facing * coat_NdotSum;
+        float coat_planar2 = dot(coat_planar, coat_planar);
+        float coat_spread = coat_planar2 + material.coat_alpha2 * (coat_NdotSum * coat_NdotSum);
+        float coat_facing_2 = 0.0 < coat_NdotSum ? distribution : 0.0;
+        float coat_denominator = coat_spread * coat_spread;
+
+        // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float coat_masked_light = sqrt(material.coat_ratio + coat_NdotL * coat_NdotL);
+        float coat_sum = coat_NdotL * coat_masked_view + coat_view_cosine * coat_masked_light;
+
+        // coat.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float coat_specular = material.coat_specular * coat_facing_2 / (coat_denominator * coat_sum + 1e-30);
+
+        // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        float reflected = coat_NdotL * covered;
+        float transmitted = NdotL * transmission_direct;
+
+        // base.direct: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"
+        float base_c = 1.0 - VdotH;
+        float base_c2 = base_c * base_c;
+        float weight = base_c2 * base_c2 * base_c;
+        float glancing = weight * transmitted;
+
+        // coat.layer_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        vec3 layer_direct = (material.lambert + material.F0 * specular) * (transmitted - glancing) + (glancing * specular + coat_specular * reflected);
+
+        // output
+        light_sum += layer_direct * radiance;
+    }
+
+    // base.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    vec4 split = textureLod(environment_dfg, vec2(NdotV, material.roughness_factor), 0.0);
+
+    // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"
+    vec3 single = material.F0 * split.x + split.y;
+    float albedo = clamp(split.x + split.y, 0.25, 1.0);
+    vec3 base_all = single / (1.0 - material.mean_fresnel * (1.0 - albedo));
+    vec3 base_spread = clamp(base_all * material.base_indirect + (material.diffuse - single), 0.0, 1.0);
+    vec3 indirect = single * textureLod(environment_specular, cosines * 2.0 * facing - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, facing, 0.0).xyz;
+
+    // coat.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    vec4 coat_split = textureLod(environment_dfg, vec2(coat_view_cosine, material.coat_roughness_factor), 0.0);
+
+    // output
+    vec3 output_output = textureLod(environment_specular, view_cosine * 2.0 * coat_facing - to_eye, material.coat_roughness_factor * frame.environment_max_lod).xyz * ((coat_split.x + coat_split.y) * covered * frame.environment_intensity);
+
+    out_color = vec4(light_sum + (indirect * (transmission_direct * frame.environment_intensity) + output_output), 1.0);
+}

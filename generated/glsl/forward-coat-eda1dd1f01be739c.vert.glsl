@@ -1,0 +1,54 @@
+#version 450
+// forward-coat-eda1dd1f01be739c
+// Lacquer 0.1.0, template forward
+
+layout(std140, set = 0, binding = 0) uniform Frame {
+    mat4 view_projection;
+    vec3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+} frame;
+
+layout(std140, set = 2, binding = 0) uniform Object {
+    mat4 model;
+    mat4 normal_matrix;
+} object;
+
+layout(location = 0) in vec3 in_position;
+layout(location = 1) in vec3 in_normal;
+layout(location = 2) in vec4 in_tangent;
+layout(location = 3) in vec2 in_texcoord_0;
+
+layout(location = 0) out vec3 v_position;
+layout(location = 1) out vec3 v_normal;
+layout(location = 2) out vec4 v_tangent;
+layout(location = 3) out vec2 v_uv0;
+
+void main() {
+    // world
+    vec4 world = object.model * vec4(in_position, 1.0);
+
+    // normal
+    vec4 normal = object.normal_matrix * vec4(in_normal, 0.0);
+    float normal_normal = normal.y * normal.y + (normal.z * normal.z + 1e-32);
+    vec3 N = normal.xyz * inversesqrt(normal.x * normal.x + normal_normal);
+
+    // tangent
+    vec4 tangent = object.model * vec4(in_tangent.xyz, 0.0);
+    float tangent_tangent = tangent.y * tangent.y + (tangent.z * tangent.z + 1e-32);
+    vec3 tangent_N = tangent.xyz * inversesqrt(tangent.x * tangent.x + tangent_tangent);
+
+    // output
+    gl_Position = frame.view_projection * world;
+
+    // position
+    v_position = world.xyz;
+
+    // normal
+    v_normal = N;
+
+    // tangent
+    v_tangent = vec4(tangent_N, in_tangent.w);
+    v_uv0 = in_texcoord_0;
+}
