@@ -53,17 +53,17 @@ layout(location = 0) out vec4 out_color;
 void main() {
     // view: glTF 2.0, Appendix B, "Overview"
     vec3 to_eye = frame.camera_position - v_position;
-    float view = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
-    float view_view = inversesqrt(to_eye.x * to_eye.x + view);
-    vec3 V = to_eye * view_view;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_part_2 = inversesqrt(to_eye.x * to_eye.x + view_part);
+    vec3 V = to_eye * view_part_2;
 
     // normal.unit: glTF 2.0, "Meshes"
-    float unit = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
-    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit);
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit_part);
 
     // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
-    float cosines = dot(N, to_eye);
-    float NV = cosines * view_view;
+    float cosines_part = dot(N, to_eye);
+    float NV = cosines_part * view_part_2;
     float NdotV = abs(NV);
 
     // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
@@ -123,7 +123,7 @@ void main() {
     float albedo = clamp(split.x + split.y, 0.25, 1.0);
     vec3 base_all = single / (1.0 - material.mean_fresnel * (1.0 - albedo));
     vec3 base_spread = clamp(base_all * material.base_indirect + (material.diffuse - single), 0.0, 1.0);
-    vec3 indirect = single * textureLod(environment_specular, cosines * 2.0 * N - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, v_normal, 0.0).xyz;
+    vec3 indirect = single * textureLod(environment_specular, cosines_part * 2.0 * N - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, v_normal, 0.0).xyz;
 
     // output
     out_color = vec4(light_sum + indirect * frame.environment_intensity, 1.0);

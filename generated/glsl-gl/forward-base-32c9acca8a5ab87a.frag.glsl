@@ -56,9 +56,9 @@ void main() {
 
     // view: glTF 2.0, Appendix B, "Overview"
     vec3 to_eye = frame.camera_position - v_position;
-    float view = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
-    float view_view = inversesqrt(to_eye.x * to_eye.x + view);
-    vec3 V = to_eye * view_view;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_part_2 = inversesqrt(to_eye.x * to_eye.x + view_part);
+    vec3 V = to_eye * view_part_2;
 
     // base_color.texel: glTF 2.0, "Textures"
     vec4 texel = texture(base_color_texture, v_uv0);
@@ -67,8 +67,8 @@ void main() {
     vec4 color = material.base_color_factor * texel * color0;
 
     // normal.unit: glTF 2.0, "Meshes"
-    float unit = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
-    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit);
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit_part);
 
     // normal.frame: glTF 2.0, "Meshes" (tangents where none are given)
     vec3 px = dFdx(v_position);
@@ -76,14 +76,14 @@ void main() {
     vec2 uvx = dFdx(v_uv0);
     vec2 uvy = dFdy(v_uv0);
     float mirrored = uvx.x * uvy.y < uvy.x * uvx.y ? -1.0 : 1.0;
-    vec3 normal_frame = px * uvy.y - py * uvx.y;
-    vec3 along_u = normal_frame * mirrored;
-    vec3 normal_frame_2 = px * uvy.x - py * uvx.x;
-    vec3 along_v = normal_frame_2 * mirrored;
-    vec3 value_in_plane_u = along_u - N * (dot(N, normal_frame) * mirrored);
-    vec3 value_in_plane_v = along_v - N * (dot(N, normal_frame_2) * mirrored);
-    float normal_frame_3 = value_in_plane_u.y * value_in_plane_u.y + (value_in_plane_u.z * value_in_plane_u.z + 1e-32);
-    float normal_frame_4 = value_in_plane_v.y * value_in_plane_v.y + (value_in_plane_v.z * value_in_plane_v.z + 1e-32);
+    vec3 frame_part = px * uvy.y - py * uvx.y;
+    vec3 along_u = frame_part * mirrored;
+    vec3 normal_frame_part = px * uvy.x - py * uvx.x;
+    vec3 along_v = normal_frame_part * mirrored;
+    vec3 value_in_plane_u = along_u - N * (dot(N, frame_part) * mirrored);
+    vec3 value_in_plane_v = along_v - N * (dot(N, normal_frame_part) * mirrored);
+    float normal_frame_part_2 = value_in_plane_u.y * value_in_plane_u.y + (value_in_plane_u.z * value_in_plane_u.z + 1e-32);
+    float normal_frame_part_3 = value_in_plane_v.y * value_in_plane_v.y + (value_in_plane_v.z * value_in_plane_v.z + 1e-32);
 
     // normal.texel: glTF 2.0, "Textures"
     vec4 normal_texel = texture(normal_texture, v_uv0);
@@ -91,11 +91,11 @@ void main() {
     // base.normal_map: glTF 2.0, "Additional Textures" (normal)
     vec3 t = normal_texel.xyz * 2.0 - 1.0;
     float z = t.z + 1e-14;
-    vec3 normal_map = value_in_plane_u * (inversesqrt(value_in_plane_u.x * value_in_plane_u.x + normal_frame_3) * t.x);
-    vec3 base_normal_map = value_in_plane_v * (inversesqrt(value_in_plane_v.x * value_in_plane_v.x + normal_frame_4) * t.y);
-    vec3 bent = normal_map + base_normal_map + N * z;
-    float base_normal_map_2 = bent.y * bent.y + (bent.z * bent.z + 1e-32);
-    vec3 base_unit = bent * inversesqrt(bent.x * bent.x + base_normal_map_2);
+    vec3 normal_map_part = value_in_plane_u * (inversesqrt(value_in_plane_u.x * value_in_plane_u.x + normal_frame_part_2) * t.x);
+    vec3 base_normal_map_part = value_in_plane_v * (inversesqrt(value_in_plane_v.x * value_in_plane_v.x + normal_frame_part_3) * t.y);
+    vec3 bent = normal_map_part + base_normal_map_part + N * z;
+    float base_normal_map_part_2 = bent.y * bent.y + (bent.z * bent.z + 1e-32);
+    vec3 unit = bent * inversesqrt(bent.x * bent.x + base_normal_map_part_2);
 
     // metallic_roughness.texel: glTF 2.0, "Textures"
     vec4 metallic_roughness_texel = texture(metallic_roughness_texture, v_uv0);
@@ -112,8 +112,8 @@ void main() {
     vec3 diffuse = color.xyz * (1.0 - metallic);
 
     // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
-    float cosines = dot(base_unit, to_eye);
-    float NV = cosines * view_view;
+    float cosines_part = dot(unit, to_eye);
+    float NV = cosines_part * view_part_2;
     float NdotV = abs(NV);
 
     // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
@@ -142,11 +142,11 @@ void main() {
         float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
 
         // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
-        float NdotL = clamp(dot(base_unit, to_light) * inverse_distance, 0.0, 1.0);
+        float NdotL = clamp(dot(unit, to_light) * inverse_distance, 0.0, 1.0);
         float NdotSum = NdotL + NV;
 
         // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
-        vec3 planar = sum - base_unit * NdotSum;
+        vec3 planar = sum - unit * NdotSum;
         float planar2 = dot(planar, planar);
         float spread = planar2 + alpha2 * (NdotSum * NdotSum);
         float facing = 0.0 < NdotSum ? length2 * length2 : 0.0;
@@ -165,11 +165,11 @@ void main() {
         float c2 = c * c;
         float weight = c2 * c2 * c;
         float glancing = weight * NdotL;
-        float direct = NdotL - glancing;
-        vec3 base_direct = diffuse * (material.base_direct * direct) + F0 * (specular * direct) + glancing * specular;
+        float direct_part = NdotL - glancing;
+        vec3 direct = diffuse * (material.base_direct * direct_part) + F0 * (specular * direct_part) + glancing * specular;
 
         // output
-        light_sum += base_direct * radiance;
+        light_sum += direct * radiance;
     }
 
     // occlusion: glTF 2.0, "Additional Textures" (occlusion)
@@ -187,11 +187,11 @@ void main() {
     // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"
     vec3 single = F0 * split.x + split.y;
     float albedo = clamp(split.x + split.y, 0.25, 1.0);
-    float indirect = 1.0 - albedo;
-    vec3 base_all = single / (1.0 - (F0 * (0.95238096 * indirect) + 0.04761905 * indirect));
+    float indirect_part = 1.0 - albedo;
+    vec3 base_all = single / (1.0 - (F0 * (0.95238096 * indirect_part) + 0.04761905 * indirect_part));
     vec3 base_spread = clamp(base_all * (1.0 - diffuse) + (diffuse - single), 0.0, 1.0);
-    vec3 base_indirect = single * textureLod(environment_specular, cosines * 2.0 * base_unit - to_eye, roughness * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, bent, 0.0).xyz;
+    vec3 indirect = single * textureLod(environment_specular, cosines_part * 2.0 * unit - to_eye, roughness * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, bent, 0.0).xyz;
 
     // output
-    out_color = vec4(light_sum + base_indirect * (occlusion * frame.environment_intensity) + emission, 1.0);
+    out_color = vec4(light_sum + indirect * (occlusion * frame.environment_intensity) + emission, 1.0);
 }

@@ -58,13 +58,13 @@ layout(location = 0) out vec4 out_color;
 void main() {
     // view: glTF 2.0, Appendix B, "Overview"
     vec3 to_eye = frame.camera_position - v_position;
-    float view = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
-    float view_view = inversesqrt(to_eye.x * to_eye.x + view);
-    vec3 V = to_eye * view_view;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_part_2 = inversesqrt(to_eye.x * to_eye.x + view_part);
+    vec3 V = to_eye * view_part_2;
 
     // normal.unit: glTF 2.0, "Meshes"
-    float unit = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
-    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit);
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit_part);
 
     // normal.facing: glTF 2.0, "Double Sided"
     vec3 facing = gl_FrontFacing ? N : -N;
@@ -75,37 +75,37 @@ void main() {
     // coat.normal_map: glTF 2.0, "Additional Textures" (normal)
     vec3 t = texel.xyz * 2.0 - 1.0;
     float z = t.z + 1e-14;
-    vec3 normal_map = v_tangent.xyz * (t.x * material.coat_normal_scale) + cross(N, v_tangent.xyz) * (v_tangent.w * (t.y * material.coat_normal_scale));
-    vec3 bent = normal_map + N * z;
-    float coat_normal_map = bent.y * bent.y + (bent.z * bent.z + 1e-32);
-    vec3 coat_unit = bent * inversesqrt(bent.x * bent.x + coat_normal_map);
+    vec3 normal_map_part = v_tangent.xyz * (t.x * material.coat_normal_scale) + cross(N, v_tangent.xyz) * (v_tangent.w * (t.y * material.coat_normal_scale));
+    vec3 bent = normal_map_part + N * z;
+    float coat_normal_map_part = bent.y * bent.y + (bent.z * bent.z + 1e-32);
+    vec3 unit = bent * inversesqrt(bent.x * bent.x + coat_normal_map_part);
 
     // coat.facing: glTF 2.0, "Double Sided"
-    vec3 coat_facing = gl_FrontFacing ? coat_unit : -coat_unit;
+    vec3 coat_facing = gl_FrontFacing ? unit : -unit;
 
     // coat.view_cosine: KHR_materials_clearcoat, "Layering"
-    float view_cosine = dot(coat_facing, to_eye);
-    float NV = view_cosine * view_view;
-    float coat_view_cosine = abs(NV);
+    float view_cosine_part = dot(coat_facing, to_eye);
+    float NV = view_cosine_part * view_part_2;
+    float view_cosine = abs(NV);
 
     // coat.fresnel: glTF 2.0, Appendix B, "Fresnel"; Schlick 1994
-    float c = 1.0 - coat_view_cosine;
+    float c = 1.0 - view_cosine;
     float c2 = c * c;
 
     // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
-    float cosines = dot(facing, to_eye);
-    float base_NV = cosines * view_view;
+    float cosines_part = dot(facing, to_eye);
+    float base_NV = cosines_part * view_part_2;
     float NdotV = abs(base_NV);
 
     // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
     float masked_view = sqrt(material.ratio + NdotV * NdotV);
 
     // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
-    float coat_masked_view = sqrt(material.coat_ratio + coat_view_cosine * coat_view_cosine);
+    float coat_masked_view = sqrt(material.coat_ratio + view_cosine * view_cosine);
 
     // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
     float covered = material.coat_transmission_direct_2 + material.coat_transmission_direct * (c2 * c2 * abs(c));
-    float transmission_direct = clamp(1.0 - covered, 0.0, 1.0);
+    float transmission_direct_part = clamp(1.0 - covered, 0.0, 1.0);
 
     // output
     vec3 light_sum = vec3(0.0);
@@ -132,8 +132,8 @@ void main() {
         vec3 planar = sum - facing * NdotSum;
         float planar2 = dot(planar, planar);
         float spread = planar2 + material.alpha2 * (NdotSum * NdotSum);
-        float distribution = length2 * length2;
-        float base_facing = 0.0 < NdotSum ? distribution : 0.0;
+        float length22 = length2 * length2;
+        float base_facing = 0.0 < NdotSum ? length22 : 0.0;
         float denominator = spread * spread;
 
         // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
@@ -151,19 +151,19 @@ void main() {
         vec3 coat_planar = sum - coat_facing * coat_NdotSum;
         float coat_planar2 = dot(coat_planar, coat_planar);
         float coat_spread = coat_planar2 + material.coat_alpha2 * (coat_NdotSum * coat_NdotSum);
-        float coat_facing_2 = 0.0 < coat_NdotSum ? distribution : 0.0;
+        float coat_facing_2 = 0.0 < coat_NdotSum ? length22 : 0.0;
         float coat_denominator = coat_spread * coat_spread;
 
         // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
         float coat_masked_light = sqrt(material.coat_ratio + coat_NdotL * coat_NdotL);
-        float coat_sum = coat_NdotL * coat_masked_view + coat_view_cosine * coat_masked_light;
+        float coat_sum = coat_NdotL * coat_masked_view + view_cosine * coat_masked_light;
 
         // coat.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
         float coat_specular = material.coat_specular * coat_facing_2 / (coat_denominator * coat_sum + 1e-30);
 
         // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
         float reflected = coat_NdotL * covered;
-        float transmitted = NdotL * transmission_direct;
+        float transmitted = NdotL * transmission_direct_part;
 
         // base.direct: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"
         float base_c = 1.0 - VdotH;
@@ -186,13 +186,13 @@ void main() {
     float albedo = clamp(split.x + split.y, 0.25, 1.0);
     vec3 base_all = single / (1.0 - material.mean_fresnel * (1.0 - albedo));
     vec3 base_spread = clamp(base_all * material.base_indirect + (material.diffuse - single), 0.0, 1.0);
-    vec3 indirect = single * textureLod(environment_specular, cosines * 2.0 * facing - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, facing, 0.0).xyz;
+    vec3 indirect = single * textureLod(environment_specular, cosines_part * 2.0 * facing - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, facing, 0.0).xyz;
 
     // coat.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
-    vec4 coat_split = textureLod(environment_dfg, vec2(coat_view_cosine, material.coat_roughness_factor), 0.0);
+    vec4 coat_split = textureLod(environment_dfg, vec2(view_cosine, material.coat_roughness_factor), 0.0);
 
     // output
-    vec3 output_output = textureLod(environment_specular, view_cosine * 2.0 * coat_facing - to_eye, material.coat_roughness_factor * frame.environment_max_lod).xyz * ((coat_split.x + coat_split.y) * covered * frame.environment_intensity);
+    vec3 output_part = textureLod(environment_specular, view_cosine_part * 2.0 * coat_facing - to_eye, material.coat_roughness_factor * frame.environment_max_lod).xyz * ((coat_split.x + coat_split.y) * covered * frame.environment_intensity);
 
-    out_color = vec4(light_sum + (indirect * (transmission_direct * frame.environment_intensity) + output_output), 1.0);
+    out_color = vec4(light_sum + (indirect * (transmission_direct_part * frame.environment_intensity) + output_part), 1.0);
 }

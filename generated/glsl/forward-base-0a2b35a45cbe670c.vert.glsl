@@ -26,9 +26,9 @@ void main() {
     vec4 world = object.model * vec4(in_position, 1.0);
 
     // normal
-    vec4 normal = object.normal_matrix * vec4(in_normal, 0.0);
-    float normal_normal = normal.y * normal.y + (normal.z * normal.z + 1e-32);
-    vec3 N = normal.xyz * inversesqrt(normal.x * normal.x + normal_normal);
+    vec4 normal_part = object.normal_matrix * vec4(in_normal, 0.0);
+    float normal_part_2 = normal_part.y * normal_part.y + (normal_part.z * normal_part.z + 1e-32);
+    vec3 N = normal_part.xyz * inversesqrt(normal_part.x * normal_part.x + normal_part_2);
 
     // output
     gl_Position = frame.view_projection * world;

@@ -30,14 +30,14 @@ void main() {
     vec4 world = object.model * vec4(in_position, 1.0);
 
     // normal
-    vec4 normal = object.normal_matrix * vec4(in_normal, 0.0);
-    float normal_normal = normal.y * normal.y + (normal.z * normal.z + 1e-32);
-    vec3 N = normal.xyz * inversesqrt(normal.x * normal.x + normal_normal);
+    vec4 normal_part = object.normal_matrix * vec4(in_normal, 0.0);
+    float normal_part_2 = normal_part.y * normal_part.y + (normal_part.z * normal_part.z + 1e-32);
+    vec3 N = normal_part.xyz * inversesqrt(normal_part.x * normal_part.x + normal_part_2);
 
     // tangent
-    vec4 tangent = object.model * vec4(in_tangent.xyz, 0.0);
-    float tangent_tangent = tangent.y * tangent.y + (tangent.z * tangent.z + 1e-32);
-    vec3 tangent_N = tangent.xyz * inversesqrt(tangent.x * tangent.x + tangent_tangent);
+    vec4 tangent_part = object.model * vec4(in_tangent.xyz, 0.0);
+    float tangent_part_2 = tangent_part.y * tangent_part.y + (tangent_part.z * tangent_part.z + 1e-32);
+    vec3 tangent_N = tangent_part.xyz * inversesqrt(tangent_part.x * tangent_part.x + tangent_part_2);
 
     // output
     gl_Position = frame.view_projection * world;

@@ -56,17 +56,17 @@ void main(
     out float4 out_color : SV_Target0) {
     // view: glTF 2.0, Appendix B, "Overview"
     float3 to_eye = frame.camera_position - v_position;
-    float view = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
-    float view_view = rsqrt(to_eye.x * to_eye.x + view);
-    float3 V = to_eye * view_view;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_part_2 = rsqrt(to_eye.x * to_eye.x + view_part);
+    float3 V = to_eye * view_part_2;
 
     // normal.unit: glTF 2.0, "Meshes"
-    float unit = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
-    float3 N = v_normal * rsqrt(v_normal.x * v_normal.x + unit);
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    float3 N = v_normal * rsqrt(v_normal.x * v_normal.x + unit_part);
 
     // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
-    float cosines = dot(N, to_eye);
-    float NV = cosines * view_view;
+    float cosines_part = dot(N, to_eye);
+    float NV = cosines_part * view_part_2;
     float NdotV = abs(NV);
 
     // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
@@ -126,7 +126,7 @@ void main(
     float albedo = clamp(split.x + split.y, 0.25, 1.0);
     float3 base_all = single / (1.0 - material.mean_fresnel * (1.0 - albedo));
     float3 base_spread = clamp(base_all * material.base_indirect + (material.diffuse - single), 0.0, 1.0);
-    float3 indirect = single * environment_specular.SampleLevel(environment_specular_sampler, cosines * 2.0 * N - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * environment_irradiance.SampleLevel(environment_irradiance_sampler, v_normal, 0.0).xyz;
+    float3 indirect = single * environment_specular.SampleLevel(environment_specular_sampler, cosines_part * 2.0 * N - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * environment_irradiance.SampleLevel(environment_irradiance_sampler, v_normal, 0.0).xyz;
 
     // output
     out_color = float4(light_sum + indirect * frame.environment_intensity, 1.0);

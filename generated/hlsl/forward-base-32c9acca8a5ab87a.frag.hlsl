@@ -68,9 +68,9 @@ void main(
 
     // view: glTF 2.0, Appendix B, "Overview"
     float3 to_eye = frame.camera_position - v_position;
-    float view = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
-    float view_view = rsqrt(to_eye.x * to_eye.x + view);
-    float3 V = to_eye * view_view;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_part_2 = rsqrt(to_eye.x * to_eye.x + view_part);
+    float3 V = to_eye * view_part_2;
 
     // base_color.texel: glTF 2.0, "Textures"
     float4 texel = base_color_texture.Sample(base_color_texture_sampler, v_uv0);
@@ -79,8 +79,8 @@ void main(
     float4 color = material.base_color_factor * texel * color0;
 
     // normal.unit: glTF 2.0, "Meshes"
-    float unit = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
-    float3 N = v_normal * rsqrt(v_normal.x * v_normal.x + unit);
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    float3 N = v_normal * rsqrt(v_normal.x * v_normal.x + unit_part);
 
     // normal.frame: glTF 2.0, "Meshes" (tangents where none are given)
     float3 px = ddx(v_position);
@@ -88,14 +88,14 @@ void main(
     float2 uvx = ddx(v_uv0);
     float2 uvy = ddy(v_uv0);
     float mirrored = uvx.x * uvy.y < uvy.x * uvx.y ? -1.0 : 1.0;
-    float3 normal_frame = px * uvy.y - py * uvx.y;
-    float3 along_u = normal_frame * mirrored;
-    float3 normal_frame_2 = px * uvy.x - py * uvx.x;
-    float3 along_v = normal_frame_2 * mirrored;
-    float3 value_in_plane_u = along_u - N * (dot(N, normal_frame) * mirrored);
-    float3 value_in_plane_v = along_v - N * (dot(N, normal_frame_2) * mirrored);
-    float normal_frame_3 = value_in_plane_u.y * value_in_plane_u.y + (value_in_plane_u.z * value_in_plane_u.z + 1e-32);
-    float normal_frame_4 = value_in_plane_v.y * value_in_plane_v.y + (value_in_plane_v.z * value_in_plane_v.z + 1e-32);
+    float3 frame_part = px * uvy.y - py * uvx.y;
+    float3 along_u = frame_part * mirrored;
+    float3 normal_frame_part = px * uvy.x - py * uvx.x;
+    float3 along_v = normal_frame_part * mirrored;
+    float3 value_in_plane_u = along_u - N * (dot(N, frame_part) * mirrored);
+    float3 value_in_plane_v = along_v - N * (dot(N, normal_frame_part) * mirrored);
+    float normal_frame_part_2 = value_in_plane_u.y * value_in_plane_u.y + (value_in_plane_u.z * value_in_plane_u.z + 1e-32);
+    float normal_frame_part_3 = value_in_plane_v.y * value_in_plane_v.y + (value_in_plane_v.z * value_in_plane_v.z + 1e-32);
 
     // normal.texel: glTF 2.0, "Textures"
     float4 normal_texel = normal_texture.Sample(normal_texture_sampler, v_uv0);
@@ -103,11 +103,11 @@ void main(
     // base.normal_map: glTF 2.0, "Additional Textures" (normal)
     float3 t = normal_texel.xyz * 2.0 - 1.0;
     float z = t.z + 1e-14;
-    float3 normal_map = value_in_plane_u * (rsqrt(value_in_plane_u.x * value_in_plane_u.x + normal_frame_3) * t.x);
-    float3 base_normal_map = value_in_plane_v * (rsqrt(value_in_plane_v.x * value_in_plane_v.x + normal_frame_4) * t.y);
-    float3 bent = normal_map + base_normal_map + N * z;
-    float base_normal_map_2 = bent.y * bent.y + (bent.z * bent.z + 1e-32);
-    float3 base_unit = bent * rsqrt(bent.x * bent.x + base_normal_map_2);
+    float3 normal_map_part = value_in_plane_u * (rsqrt(value_in_plane_u.x * value_in_plane_u.x + normal_frame_part_2) * t.x);
+    float3 base_normal_map_part = value_in_plane_v * (rsqrt(value_in_plane_v.x * value_in_plane_v.x + normal_frame_part_3) * t.y);
+    float3 bent = normal_map_part + base_normal_map_part + N * z;
+    float base_normal_map_part_2 = bent.y * bent.y + (bent.z * bent.z + 1e-32);
+    float3 unit = bent * rsqrt(bent.x * bent.x + base_normal_map_part_2);
 
     // metallic_roughness.texel: glTF 2.0, "Textures"
     float4 metallic_roughness_texel = metallic_roughness_texture.Sample(metallic_roughness_texture_sampler, v_uv0);
@@ -124,8 +124,8 @@ void main(
     float3 diffuse = color.xyz * (1.0 - metallic);
 
     // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
-    float cosines = dot(base_unit, to_eye);
-    float NV = cosines * view_view;
+    float cosines_part = dot(unit, to_eye);
+    float NV = cosines_part * view_part_2;
     float NdotV = abs(NV);
 
     // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
@@ -154,11 +154,11 @@ void main(
         float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
 
         // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
-        float NdotL = clamp(dot(base_unit, to_light) * inverse_distance, 0.0, 1.0);
+        float NdotL = clamp(dot(unit, to_light) * inverse_distance, 0.0, 1.0);
         float NdotSum = NdotL + NV;
 
         // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
-        float3 planar = sum - base_unit * NdotSum;
+        float3 planar = sum - unit * NdotSum;
         float planar2 = dot(planar, planar);
         float spread = planar2 + alpha2 * (NdotSum * NdotSum);
         float facing = 0.0 < NdotSum ? length2 * length2 : 0.0;
@@ -177,11 +177,11 @@ void main(
         float c2 = c * c;
         float weight = c2 * c2 * c;
         float glancing = weight * NdotL;
-        float direct = NdotL - glancing;
-        float3 base_direct = diffuse * (material.base_direct * direct) + F0 * (specular * direct) + glancing * specular;
+        float direct_part = NdotL - glancing;
+        float3 direct = diffuse * (material.base_direct * direct_part) + F0 * (specular * direct_part) + glancing * specular;
 
         // output
-        light_sum += base_direct * radiance;
+        light_sum += direct * radiance;
     }
 
     // occlusion: glTF 2.0, "Additional Textures" (occlusion)
@@ -199,11 +199,11 @@ void main(
     // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"
     float3 single = F0 * split.x + split.y;
     float albedo = clamp(split.x + split.y, 0.25, 1.0);
-    float indirect = 1.0 - albedo;
-    float3 base_all = single / (1.0 - (F0 * (0.95238096 * indirect) + 0.04761905 * indirect));
+    float indirect_part = 1.0 - albedo;
+    float3 base_all = single / (1.0 - (F0 * (0.95238096 * indirect_part) + 0.04761905 * indirect_part));
     float3 base_spread = clamp(base_all * (1.0 - diffuse) + (diffuse - single), 0.0, 1.0);
-    float3 base_indirect = single * environment_specular.SampleLevel(environment_specular_sampler, cosines * 2.0 * base_unit - to_eye, roughness * frame.environment_max_lod).xyz + base_spread * environment_irradiance.SampleLevel(environment_irradiance_sampler, bent, 0.0).xyz;
+    float3 indirect = single * environment_specular.SampleLevel(environment_specular_sampler, cosines_part * 2.0 * unit - to_eye, roughness * frame.environment_max_lod).xyz + base_spread * environment_irradiance.SampleLevel(environment_irradiance_sampler, bent, 0.0).xyz;
 
     // output
-    out_color = float4(light_sum + base_indirect * (occlusion * frame.environment_intensity) + emission, 1.0);
+    out_color = float4(light_sum + indirect * (occlusion * frame.environment_intensity) + emission, 1.0);
 }

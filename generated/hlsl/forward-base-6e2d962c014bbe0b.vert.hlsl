@@ -34,9 +34,9 @@ void main(
     float4 world = mul(object.model, float4(in_position, 1.0));
 
     // normal
-    float4 normal = mul(object.normal_matrix, float4(in_normal, 0.0));
-    float normal_normal = normal.y * normal.y + (normal.z * normal.z + 1e-32);
-    float3 N = normal.xyz * rsqrt(normal.x * normal.x + normal_normal);
+    float4 normal_part = mul(object.normal_matrix, float4(in_normal, 0.0));
+    float normal_part_2 = normal_part.y * normal_part.y + (normal_part.z * normal_part.z + 1e-32);
+    float3 N = normal_part.xyz * rsqrt(normal_part.x * normal_part.x + normal_part_2);
 
     // output
     out_position = mul(frame.view_projection, world);

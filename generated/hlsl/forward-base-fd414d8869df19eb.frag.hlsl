@@ -75,13 +75,13 @@ void main(
 
     // view: glTF 2.0, Appendix B, "Overview"
     float3 to_eye = frame.camera_position - v_position;
-    float view = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
-    float view_view = rsqrt(to_eye.x * to_eye.x + view);
-    float3 V = to_eye * view_view;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_part_2 = rsqrt(to_eye.x * to_eye.x + view_part);
+    float3 V = to_eye * view_part_2;
 
     // normal.unit: glTF 2.0, "Meshes"
-    float unit = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
-    float3 N = v_normal * rsqrt(v_normal.x * v_normal.x + unit);
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    float3 N = v_normal * rsqrt(v_normal.x * v_normal.x + unit_part);
 
     // normal.facing: glTF 2.0, "Double Sided"
     float3 facing = in_front_facing ? N : -N;
@@ -91,8 +91,8 @@ void main(
     float3 diffuse = color.xyz * material.base_reflectance;
 
     // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
-    float cosines = dot(facing, to_eye);
-    float NV = cosines * view_view;
+    float cosines_part = dot(facing, to_eye);
+    float NV = cosines_part * view_part_2;
     float NdotV = abs(NV);
 
     // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
@@ -138,11 +138,11 @@ void main(
         float c2 = c * c;
         float weight = c2 * c2 * c;
         float glancing = weight * NdotL;
-        float direct = NdotL - glancing;
-        float3 base_direct = diffuse * (0.3055775 * direct) + F0 * (specular * direct) + glancing * specular;
+        float direct_part = NdotL - glancing;
+        float3 direct = diffuse * (0.3055775 * direct_part) + F0 * (specular * direct_part) + glancing * specular;
 
         // output
-        light_sum += base_direct * radiance;
+        light_sum += direct * radiance;
     }
 
     // base.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
@@ -151,11 +151,11 @@ void main(
     // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"
     float3 single = F0 * split.x + split.y;
     float albedo = clamp(split.x + split.y, 0.25, 1.0);
-    float indirect = 1.0 - albedo;
-    float3 base_all = single / (1.0 - (F0 * (0.95238096 * indirect) + 0.04761905 * indirect));
+    float indirect_part = 1.0 - albedo;
+    float3 base_all = single / (1.0 - (F0 * (0.95238096 * indirect_part) + 0.04761905 * indirect_part));
     float3 base_spread = clamp(base_all * (1.0 - diffuse) + (diffuse - single), 0.0, 1.0);
-    float3 base_indirect = single * environment_specular.SampleLevel(environment_specular_sampler, cosines * 2.0 * facing - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * environment_irradiance.SampleLevel(environment_irradiance_sampler, facing, 0.0).xyz;
+    float3 indirect = single * environment_specular.SampleLevel(environment_specular_sampler, cosines_part * 2.0 * facing - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * environment_irradiance.SampleLevel(environment_irradiance_sampler, facing, 0.0).xyz;
 
     // output
-    out_color = float4(light_sum + base_indirect * frame.environment_intensity, 1.0);
+    out_color = float4(light_sum + indirect * frame.environment_intensity, 1.0);
 }

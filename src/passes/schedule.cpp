@@ -310,10 +310,18 @@ private:
     const std::string& term = dag_.terms()[dag_.termOf(id)].name;
     const std::string_view layer = layerOf(term);
     if (const std::string_view name = dag_.nameOf(id); !name.empty()) return names_.pick(name, layer);
-    if (dag_[id].op == ir::Op::SumOverLights) return names_.pick("light_sum");
+    const ir::Value& value = dag_[id];
+    if (value.op == ir::Op::SumOverLights) return names_.pick("light_sum");
+    if (value.op == ir::Op::Mul && value.args[0] == value.args[1]) {
+      std::string_view root = program_.names[value.args[0]];
+      if (root.empty()) root = dag_.nameOf(value.args[0]);
+      if (!root.empty()) return names_.pick(std::string(root) + "2", layer);
+    }
+    // A term's results have names: what has none is on the way to one.
     const size_t dot = term.rfind('.');
-    if (!term.empty()) return names_.pick(dot == std::string::npos ? term : term.substr(dot + 1), layer);
-    return names_.pick(ir::info(dag_[id].op).name);
+    if (dot != std::string::npos) return names_.pick(term.substr(dot + 1) + "_part", layer);
+    if (!term.empty()) return names_.pick(term + "_part");
+    return names_.pick(ir::info(value.op).name);
   }
 
   const ir::Module& module_;

@@ -40,8 +40,8 @@ void main() {
     vec3 normal = gl_FrontFacing ? unit_normal : -unit_normal;
 
     // base.color: glTF 2.0, "Metallic-Roughness Material"
-    vec4 color = texture(base_color_texture, v_uv * material.uv_scale);
-    vec3 base_color = color.xyz * material.base_color;
+    vec4 color_part = texture(base_color_texture, v_uv * material.uv_scale);
+    vec3 base_color = color_part.xyz * material.base_color;
 
     // base.lambert: glTF 2.0, B.3.1
     vec3 direct = vec3(0.0);
@@ -51,7 +51,7 @@ void main() {
     }
 
     // environment.specular
-    vec4 specular = vec4((direct + textureLod(environment_texture, normalize(frame.camera_position - v_position), material.roughness * 8.0).xyz) * frame.exposure, color.w);
+    vec4 specular_part = vec4((direct + textureLod(environment_texture, normalize(frame.camera_position - v_position), material.roughness * 8.0).xyz) * frame.exposure, color_part.w);
 
-    out_color = specular;
+    out_color = specular_part;
 }

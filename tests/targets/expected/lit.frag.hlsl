@@ -48,8 +48,8 @@ void main(
     float3 normal = in_front_facing ? unit_normal : -unit_normal;
 
     // base.color: glTF 2.0, "Metallic-Roughness Material"
-    float4 color = base_color_texture.Sample(base_color_texture_sampler, v_uv * material.uv_scale);
-    float3 base_color = color.xyz * material.base_color;
+    float4 color_part = base_color_texture.Sample(base_color_texture_sampler, v_uv * material.uv_scale);
+    float3 base_color = color_part.xyz * material.base_color;
 
     // base.lambert: glTF 2.0, B.3.1
     float3 direct = float3(0.0, 0.0, 0.0);
@@ -59,7 +59,7 @@ void main(
     }
 
     // environment.specular
-    float4 specular = float4((direct + environment_texture.SampleLevel(environment_texture_sampler, normalize(frame.camera_position - v_position), material.roughness * 8.0).xyz) * frame.exposure, color.w);
+    float4 specular_part = float4((direct + environment_texture.SampleLevel(environment_texture_sampler, normalize(frame.camera_position - v_position), material.roughness * 8.0).xyz) * frame.exposure, color_part.w);
 
-    out_color = specular;
+    out_color = specular_part;
 }

@@ -1,0 +1,226 @@
+#version 300 es
+// forward-coat-c256eb458171efd9
+// Lacquer 0.1.0, template forward
+
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp samplerCube;
+
+layout(std140) uniform Frame {
+    mat4 view_projection;
+    vec3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+} frame;
+
+struct Light {
+    vec3 position;
+    float positional;
+    vec3 radiance;
+    float inverse_range_4;
+    vec3 direction;
+    float spot_scale;
+    float spot_offset;
+};
+
+layout(std140) uniform Lights {
+    Light lights[16];
+};
+
+layout(std140) uniform Material {
+    vec3 F0;
+    float roughness_factor;
+    vec3 diffuse;
+    float coat_roughness_factor;
+    vec3 lambert;
+    float alpha;
+    vec3 mean_fresnel;
+    float coat_anisotropy_strength;
+    vec3 base_indirect;
+    float alpha2;
+    float ratio;
+    float base_specular;
+    float coat_transmission_direct;
+    float coat_transmission_direct_2;
+    float coat_bent_normal;
+} material;
+
+uniform samplerCube environment_specular;
+uniform samplerCube environment_irradiance;
+uniform sampler2D environment_dfg;
+uniform sampler2D coat_anisotropy_texture;
+
+in vec3 v_position;
+in vec3 v_normal;
+in vec4 v_tangent;
+in vec2 v_uv0;
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    // view: glTF 2.0, Appendix B, "Overview"
+    vec3 to_eye = frame.camera_position - v_position;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    vec3 V = to_eye * inversesqrt(to_eye.x * to_eye.x + view_part);
+
+    // normal.unit: glTF 2.0, "Meshes"
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit_part);
+
+    // coat.view_cosine: KHR_materials_clearcoat, "Layering"
+    float NV = dot(N, V);
+    float view_cosine = abs(NV);
+
+    // coat.fresnel: glTF 2.0, Appendix B, "Fresnel"; Schlick 1994
+    float c = 1.0 - view_cosine;
+    float c2 = c * c;
+
+    // coat_anisotropy.texel: glTF 2.0, "Textures"
+    vec4 texel = texture(coat_anisotropy_texture, v_uv0);
+
+    // coat.anisotropy_texel: KHR_materials_coat, "Anisotropy" (dequantization)
+    vec2 d = texel.xy * 2.0 - 1.0;
+    float length2 = dot(d, d);
+    vec2 unit = d * inversesqrt(length2 + 1e-32);
+    vec2 direction = 1e-12 < length2 ? unit : vec2(1.0, 0.0);
+
+    // coat.anisotropy_strength: KHR_materials_coat, "Parameter Combinations"
+    float anisotropy_strength = texel.z * material.coat_anisotropy_strength;
+
+    // coat.anisotropy: KHR_materials_coat, "Anisotropy"
+    vec3 turned = v_tangent.xyz * direction.x + cross(N, v_tangent.xyz) * (v_tangent.w * direction.y);
+    vec3 coat_any = vec3(N.y - N.z, N.z - N.x, N.x - N.y);
+    vec3 flattened = turned - N * dot(N, turned) + 1e-14 * coat_any;
+    float anisotropy_part = flattened.y * flattened.y + (flattened.z * flattened.z + 1e-32);
+    vec3 along = flattened * inversesqrt(flattened.x * flattened.x + anisotropy_part);
+    vec3 across = cross(N, along);
+
+    // coat.anisotropic_alpha: KHR_materials_coat, "Anisotropy" (directionAlphaRoughness)
+    float alpha_t = mix(material.alpha, 1.0, anisotropy_strength * anisotropy_strength);
+
+    // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float view_cosine2 = view_cosine * view_cosine;
+    float masked_view = sqrt(material.ratio + view_cosine2);
+
+    // coat.anisotropy_cosines: KHR_materials_coat, "Anisotropy" (D, in h.t and h.b)
+    float TV = dot(along, V);
+    float BV = dot(across, V);
+
+    // coat.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
+    float product = alpha_t * material.alpha;
+    float peak = product / 3.1415927;
+
+    // coat.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
+    float tv = alpha_t * TV;
+    float bv = material.alpha * BV;
+    float coat_masked_view = sqrt(tv * tv + bv * bv + view_cosine2);
+
+    // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+    float reflectance = material.coat_transmission_direct_2 + material.coat_transmission_direct * (c2 * c2 * abs(c));
+
+    // output
+    vec3 light_sum = vec3(0.0);
+    for (int i = 0; i < frame.light_count; ++i) {
+        // light_sample: KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles"
+        vec3 to_light = lights[i].position - v_position * lights[i].positional;
+        float distance2 = max(dot(to_light, to_light), 1e-12);
+        float inverse_distance = mix(1.0, inversesqrt(distance2), lights[i].positional);
+        vec3 L = to_light * inverse_distance;
+        float window = clamp(1.0 - distance2 * (distance2 * lights[i].inverse_range_4), 0.0, 1.0);
+        float cone = clamp(lights[i].spot_offset - dot(L, lights[i].direction) * lights[i].spot_scale, 0.0, 1.0);
+        vec3 radiance = lights[i].radiance * (window * (cone * cone) * (inverse_distance * inverse_distance));
+
+        // half: glTF 2.0, Appendix B, "Overview"
+        vec3 sum = V + L;
+        float half_length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(half_length2), 0.0, 1.0);
+
+        // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+        float NdotL = clamp(dot(N, L), 0.0, 1.0);
+        float NdotSum = NdotL + NV;
+
+        // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        vec3 planar = sum - N * NdotSum;
+        float planar2 = dot(planar, planar);
+        float spread = planar2 + material.alpha2 * (NdotSum * NdotSum);
+        float facing = 0.0 < NdotSum ? half_length2 * half_length2 : 0.0;
+        float denominator = spread * spread;
+
+        // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float NdotL2 = NdotL * NdotL;
+        float masked_light = sqrt(material.ratio + NdotL2);
+        float base_sum = NdotL * masked_view + view_cosine * masked_light;
+
+        // base.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float specular = material.base_specular * facing / (denominator * base_sum + 1e-30);
+
+        // coat.anisotropy_cosines: KHR_materials_coat, "Anisotropy" (D, in h.t and h.b)
+        float TL = dot(along, L);
+        float BL = dot(across, L);
+
+        // coat.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
+        float coat_along = material.alpha * (TV + TL);
+        float coat_across = alpha_t * (BV + BL);
+        float up = product * NdotSum;
+        float coat_spread = (coat_along * coat_along + coat_across * coat_across + up * up) / product;
+        float numerator = facing * peak;
+        float coat_denominator = coat_spread * coat_spread;
+
+        // coat.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
+        float tl = alpha_t * TL;
+        float bl = material.alpha * BL;
+        float coat_masked_light = sqrt(tl * tl + bl * bl + NdotL2);
+        float visibility = 2.0 * (NdotL * coat_masked_view + view_cosine * coat_masked_light);
+
+        // coat.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float coat_specular = numerator / (coat_denominator * visibility + 1e-30);
+
+        // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        float reflected = NdotL * reflectance;
+        float transmitted = clamp(NdotL - reflected, 0.0, 1.0);
+
+        // base.direct: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"
+        float base_c = 1.0 - VdotH;
+        float base_c2 = base_c * base_c;
+        float weight = base_c2 * base_c2 * base_c;
+        float glancing = weight * transmitted;
+
+        // coat.layer_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        vec3 layer_direct = (material.lambert + material.F0 * specular) * (transmitted - glancing) + (glancing * specular + coat_specular * reflected);
+
+        // output
+        light_sum += layer_direct * radiance;
+    }
+
+    // base.reflection: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
+    vec3 R = 2.0 * NV * N - V;
+
+    // base.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    vec4 split = textureLod(environment_dfg, vec2(view_cosine, material.roughness_factor), 0.0);
+
+    // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"
+    vec3 single = material.F0 * split.x + split.y;
+    float albedo = clamp(split.x + split.y, 0.25, 1.0);
+    vec3 base_all = single / (1.0 - material.mean_fresnel * (1.0 - albedo));
+    vec3 base_spread = clamp(base_all * material.base_indirect + (material.diffuse - single), 0.0, 1.0);
+    vec3 indirect = single * textureLod(environment_specular, R, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, v_normal, 0.0).xyz;
+
+    // coat.bent_normal: McAuley 2015, "Rendering the World of Far Cry 4"; as in the Khronos sample viewer's anisotropy
+    vec3 towards = V - across * BV;
+    float straight = 1.0 - material.coat_bent_normal * texel.z;
+    float straight2 = straight * straight;
+    vec3 bent_normal = mix(towards, N, straight2 * straight2);
+
+    // coat.reflection: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
+    vec3 reflection = bent_normal * (2.0 * dot(bent_normal, V)) - V * dot(bent_normal, bent_normal);
+
+    // coat.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    vec4 coat_split = textureLod(environment_dfg, vec2(view_cosine, material.coat_roughness_factor), 0.0);
+
+    // output
+    vec3 output_part = textureLod(environment_specular, reflection, material.coat_roughness_factor * frame.environment_max_lod).xyz * ((coat_split.x + coat_split.y) * reflectance * frame.environment_intensity);
+
+    out_color = vec4(light_sum + (indirect * (clamp(1.0 - reflectance, 0.0, 1.0) * frame.environment_intensity) + output_part), 1.0);
+}
