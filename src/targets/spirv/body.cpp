@@ -61,8 +61,9 @@ Body::Body(const ir::Module& module, const passes::Program& program, const Inter
   findFusedProducts();
 }
 
-/// a b + c is one instruction where nothing else reads the product. GPUs have it, and its rounding is within
-/// what SPIR-V allows the two.
+/// a b + c is one instruction. GPUs have it, and its rounding is within what SPIR-V allows the two. Of two
+/// products the one that nothing else reads is preferred, since it need not be made at all; where something
+/// does, the sum at least does not wait for it.
 void Body::findFusedProducts() {
   std::vector<uint32_t> uses(dag_.size(), 0);
   for (const ValueId id : live_) {
@@ -70,15 +71,19 @@ void Body::findFusedProducts() {
   }
   for (const ir::Output& output : module_.outputs) ++uses[output.value];
   fused_.assign(dag_.size(), 0);
+  product_in_.assign(dag_.size(), 0);
   for (const ValueId id : live_) {
     const ir::Value& sum = dag_[id];
     if (sum.op != Op::Add || dag_[sum.args[0]].type != dag_[sum.args[1]].type) continue;
-    for (const ValueId operand : sum.operands()) {
+    for (const size_t k : {size_t{0}, size_t{1}}) {
+      const ValueId operand = sum.args[k];
       const ir::Value& product = dag_[operand];
       const bool alike = product.op == Op::Mul && dag_[product.args[0]].type == dag_[product.args[1]].type;
       // What does not change with the light stays outside of the loop.
       const bool together = (product.rate == Rate::Light) == (sum.rate == Rate::Light);
-      if (!alike || !together || uses[operand] != 1) continue;
+      if (!alike || !together) continue;
+      product_in_[id] = static_cast<uint8_t>(1 + k);
+      if (uses[operand] != 1) continue;
       fused_[operand] = 1;
       break;
     }
@@ -169,9 +174,7 @@ uint32_t Body::fusedSum(ValueId id, size_t product) {
 
 uint32_t Body::operation(ValueId id) {
   const ir::Value& v = dag_[id];
-  for (size_t k = 0; v.op == Op::Add && k < 2; ++k) {
-    if (fused_[v.args[k]] != 0) return fusedSum(id, k);
-  }
+  if (product_in_[id] != 0) return fusedSum(id, product_in_[id] - size_t{1});
   Instruction what{ir::info(v.op).spirv_set, kOpcodes[static_cast<size_t>(v.op)]};
   assert(what.set != ir::SpirvSet::None && "placed, and its loop is before it");
   std::array<uint32_t, 4> operands{};

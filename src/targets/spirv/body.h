@@ -78,6 +78,7 @@ private:
   Words code_;
 
   std::vector<ir::ValueId> live_;
+  std::vector<uint8_t> product_in_;      ///< by value: of a sum, 1 + the operand that it multiplies itself
   std::vector<uint8_t> fused_;           ///< by value: a product that is part of the one sum that reads it
   std::vector<uint32_t> ids_;            ///< by value: its id, 0 while it has none here
   std::vector<uint32_t> splats_;         ///< three a value: of 2, 3 and 4 components
