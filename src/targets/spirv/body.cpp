@@ -61,9 +61,9 @@ Body::Body(const ir::Module& module, const passes::Program& program, const Inter
   findFusedProducts();
 }
 
-/// a b + c is one instruction. GPUs have it, and its rounding is within what SPIR-V allows the two. Of two
-/// products the one that nothing else reads is preferred, since it need not be made at all; where something
-/// does, the sum at least does not wait for it.
+/// a b + c is one instruction, as are a b - c and c - a b. GPUs have it, and its rounding is within what
+/// SPIR-V allows the two. Of two products the one that nothing else reads is preferred, since it need not be
+/// made at all; where something does, the sum at least does not wait for it.
 void Body::findFusedProducts() {
   std::vector<uint32_t> uses(dag_.size(), 0);
   for (const ValueId id : live_) {
@@ -74,7 +74,8 @@ void Body::findFusedProducts() {
   product_in_.assign(dag_.size(), 0);
   for (const ValueId id : live_) {
     const ir::Value& sum = dag_[id];
-    if (sum.op != Op::Add || dag_[sum.args[0]].type != dag_[sum.args[1]].type) continue;
+    if ((sum.op != Op::Add && sum.op != Op::Sub) || dag_[sum.args[0]].type != dag_[sum.args[1]].type)
+      continue;
     for (const size_t k : {size_t{0}, size_t{1}}) {
       const ValueId operand = sum.args[k];
       const ir::Value& product = dag_[operand];
@@ -167,8 +168,12 @@ uint32_t Body::special(ValueId id) {
 uint32_t Body::fusedSum(ValueId id, size_t product) {
   const ir::Value& sum = dag_[id];
   const ir::Value& factors = dag_[sum.args[product]];
-  const std::array<uint32_t, 3> operands{value(factors.args[0]), value(factors.args[1]),
-                                         value(sum.args[1 - product])};
+  std::array<uint32_t, 3> operands{value(factors.args[0]), value(factors.args[1]),
+                                   value(sum.args[1 - product])};
+  if (sum.op == Op::Sub) {
+    uint32_t& negative = operands[product == 0 ? 2 : 0];
+    negative = instruction(id, {ir::SpirvSet::Core, spv::OpFNegate}, &negative, 1);
+  }
   return instruction(id, {ir::SpirvSet::Ext, GLSLstd450Fma}, operands.data(), operands.size());
 }
 
