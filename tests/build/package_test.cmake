@@ -83,7 +83,8 @@ file(COPY "${SOURCE}/examples/cmake/" DESTINATION "${project}")
 file(COPY "${SOURCE}/examples/core.gltf" DESTINATION "${project}")
 file(APPEND "${project}/CMakeLists.txt" "\nlacquer_add_shaders(second_shaders FILES core.gltf TARGETS spirv)\n")
 run(ignored "${CMAKE_COMMAND}" -S "${project}" -B "${WORK}/build" -G "${GENERATOR}"
-    "-DCMAKE_PREFIX_PATH=${WORK}/prefix" -DCMAKE_BUILD_TYPE=Release)
+    "-DCMAKE_PREFIX_PATH=${WORK}/prefix" -DCMAKE_BUILD_TYPE=Release
+    "-DCMAKE_CXX_FLAGS=${FLAGS}")  # a library with sanitizers wants a program that has them
 build(example_shaders second_shaders)
 run(text "${WORK}/build/viewer")
 if(NOT text MATCHES "^Lacquer [0-9.]+, shaders in ")
