@@ -51,7 +51,13 @@ bool findTarget(std::string_view name, Target& target) {
   return id.has_value();
 }
 
-std::vector<std::string> liveTerms() { return graph::liveTerms(); }
+std::vector<std::string> liveTerms() {
+  const auto language = libraryFor({});
+  const Result<const model::Model*> model = (*language)->models.of(Options{}.profile);
+  if (!model) return {};
+  const std::vector<std::string_view> terms = (*model)->liveTerms();
+  return {terms.begin(), terms.end()};
+}
 
 std::vector<std::string> passNames() {
   const auto names = passes::passNames();
@@ -77,25 +83,30 @@ Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {
   return files;
 }
 
-Result<std::shared_ptr<const lang::Library>> libraryFor(const Options& options) {
+Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
   if (options.node_directories.empty()) {
-    static const auto kBuiltIn = std::make_shared<const lang::Library>(lang::Library::embedded());
+    static const auto kBuiltIn = std::make_shared<const Language>(lang::Library::embedded());
     return kBuiltIn;
   }
-  auto library = std::make_shared<lang::Library>(lang::Library::embedded());
+  lang::Library library = lang::Library::embedded();
   for (const std::string& folder : options.node_directories) {
     Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
     if (!files) return tl::make_unexpected(files.error());
-    if (Result<void> added = library->add(std::move(*files)); !added)
-      return tl::make_unexpected(added.error());
+    if (Result<void> added = library.add(std::move(*files)); !added) return tl::make_unexpected(added.error());
   }
-  return library;
+  return std::make_shared<const Language>(std::move(library));
 }
 
-passes::LightFacts lightsOf(const gltf::Document& document) {
+Result<material::Document> readMaterials(const std::string& path, const Language& language, const Options& options) {
+  const Result<const material::Schema*> schema = language.models.schema();
+  if (!schema) return tl::make_unexpected(schema.error());
+  return material::read(path, **schema, {options.permissive});
+}
+
+passes::LightFacts lightsOf(const gltf::Scene& scene) {
   const auto count = [&](gltf::LightType type) {
-    const auto it = document.lights.find(type);
-    return it == document.lights.end() ? 0U : static_cast<uint32_t>(it->second);
+    const auto it = scene.lights.find(type);
+    return it == scene.lights.end() ? 0U : static_cast<uint32_t>(it->second);
   };
   return {false, count(gltf::LightType::Directional), count(gltf::LightType::Point),
           count(gltf::LightType::Spot)};
@@ -110,18 +121,21 @@ passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& 
   return {false, options.lights.directional, options.lights.point, options.lights.spot};
 }
 
-graph::Graph buildGraph(const gltf::Material& material, const gltf::VertexAttributes& attributes,
-                        const Options& options, Diagnostics& warnings) {
-  graph::BuildOptions build;
-  if (const graph::Profile* profile = graph::findProfile(options.profile)) build.profile = profile;
+Result<graph::Graph> buildGraph(const material::Material& material, const gltf::VertexAttributes& attributes,
+                                const Language& language, const Options& options, Diagnostics& warnings) {
+  const Result<const model::Model*> model = language.models.of(options.profile);
+  if (!model) return tl::make_unexpected(model.error());
+  const Result<const lang::TemplateDecl*> wanted = language.template_(options.template_name);
+  if (!wanted) return tl::make_unexpected(wanted.error());
+  model::BuildOptions build;
   build.template_name = options.template_name;
-  build.ibl = options.ibl;
-  build.multiple_scattering = options.multiple_scattering;
-  build.dfg_table = options.dfg_table;
   build.decode_srgb = options.decode_srgb;
+  build.switches = {{"ibl", options.ibl},
+                    {"multiple_scattering", options.multiple_scattering},
+                    {"dfg_table", options.dfg_table}};
   build.live = {options.live.begin(), options.live.end()};
-  graph::Graph graph = graph::build(material, attributes, build, warnings);
-  applyBudget(graph, options.error_budget);
+  Result<graph::Graph> graph = model::build(**model, **wanted, material, attributes, build, warnings);
+  if (graph) applyBudget(*graph, options.error_budget);
   return graph;
 }
 

@@ -162,10 +162,10 @@ Result<Colors> colorsOnGpu(const ir::Module& module, const eval::Bindings& bindi
 }
 
 /// The material of that name, or the only one where no name is given.
-Result<const gltf::Material*> findMaterial(const gltf::Document& document, const std::string& name) {
+Result<const material::Material*> findMaterial(const material::Document& document, const std::string& name) {
   if (name.empty() && document.materials.size() == 1) return document.materials.data();
   std::vector<std::string> names;
-  for (const gltf::Material& material : document.materials) {
+  for (const material::Material& material : document.materials) {
     if (!name.empty() && material.name == name) return &material;
     names.push_back("'" + gltf::printable(material.name) + "'");
   }
@@ -179,15 +179,15 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
                                 const EvalPoints& points, Engine engine,
                                 const std::vector<std::string>& texels, const Options& options,
                                 Messages& messages) {
-  const Result<gltf::Document> document = gltf::read(file, {options.permissive});
+  const auto library = libraryFor(options);
+  if (!library) return tl::make_unexpected(library.error());
+  const Result<material::Document> document = readMaterials(file, **library, options);
   if (!document) return tl::make_unexpected(document.error());
   report(document->diagnostics, file, messages);
-  const Result<const gltf::Material*> found = findMaterial(*document, material);
+  const Result<const material::Material*> found = findMaterial(*document, material);
   if (!found) return tl::make_unexpected(found.error());
   report((*found)->diagnostics, file, messages);
   if (lacquer::hasError((*found)->diagnostics)) return std::string();
-  const auto library = libraryFor(options);
-  if (!library) return tl::make_unexpected(library.error());
   FileImages images(file);
   EvalMaterial evaluated(images, options);
   if (Result<void> set = evaluated.setTexels(texels); !set)

@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "eval/dfg.h"
-#include "gltf/table.h"
 #include "gltf/text.h"
 #include "lower/lower.h"
 
@@ -15,36 +14,9 @@ namespace lacquer {
 
 namespace {
 
-/// The textures of a material, in an order of its own.
-std::vector<gltf::TextureInfo*> texturesOf(gltf::Material& m) {
-  std::vector<gltf::Texture*> all = {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture,
-                                     &m.occlusionTexture, &m.emissiveTexture};
-  if (m.clearcoat) {
-    gltf::Clearcoat& c = *m.clearcoat;
-    all.insert(all.end(), {&c.clearcoatTexture, &c.clearcoatRoughnessTexture, &c.clearcoatNormalTexture});
-    if (c.color) all.push_back(&c.color->clearcoatColorTexture);
-    if (c.darkening) all.push_back(&c.darkening->clearcoatDarkeningTexture);
-  }
-  if (m.clearcoatTint) all.push_back(&m.clearcoatTint->clearcoatTintTexture);
-  if (m.coat) {
-    gltf::Coat& c = *m.coat;
-    all.insert(all.end(), {&c.coatTexture, &c.coatRoughnessTexture, &c.coatNormalTexture, &c.coatColorTexture,
-                           &c.coatAnisotropyTexture});
-  }
-  std::vector<gltf::TextureInfo*> result;
-  for (gltf::Texture* texture : all) {
-    if (*texture) result.push_back(&**texture);
-  }
-  return result;
-}
-
-bool isTextureProperty(const std::string& name) {
-  const std::vector<gltf::TableRow> rows = gltf::tableRows();
-  return std::any_of(rows.begin(), rows.end(), [&](const gltf::TableRow& row) {
-    const bool texture = row.facts.kind == gltf::Kind::Texture ||
-                         row.facts.kind == gltf::Kind::NormalTexture ||
-                         row.facts.kind == gltf::Kind::OcclusionTexture;
-    return texture && row.facts.name == name;
+bool isTextureProperty(const material::Schema& schema, const std::string& name) {
+  return std::any_of(schema.properties.begin(), schema.properties.end(), [&](const material::Property& property) {
+    return property.decl->kind == material::Kind::Texture && property.decl->name == name;
   });
 }
 
@@ -107,20 +79,22 @@ Result<void> EvalMaterial::setTexels(const std::vector<std::string>& texts) {
   return {};
 }
 
-Result<void> EvalMaterial::lower(gltf::Material material, const lang::Library& library, bool environment,
+Result<void> EvalMaterial::lower(material::Material material, const Language& library, bool environment,
                                  const std::string& variant, Messages& messages) {
   // Every use of a texture gets a slot of its own, so that each can be given a texel.
-  for (gltf::TextureInfo* info : texturesOf(material)) {
-    originals_.push_back(info->texture);
-    info->texture = static_cast<int>(originals_.size()) - 1;
+  for (material::Material::Texture& texture : material.textures) {
+    originals_.push_back(texture.info.texture);
+    texture.info.texture = static_cast<int>(originals_.size()) - 1;
   }
   Options options = options_;
   options.template_name = "forward";
   options.ibl = options.ibl && environment;
   options.decode_srgb = false;
   Diagnostics warnings;
-  graph::Graph graph = buildGraph(material, {true, true, true, {true, true, true, true}}, options, warnings);
+  Result<graph::Graph> built = buildGraph(material, {true, true, true, {true, true, true, true}}, library, options, warnings);
   report(warnings, images_.file(), messages);
+  if (!built) return tl::make_unexpected(std::move(built.error()));
+  graph::Graph graph = std::move(*built);
   for (graph::Node& node : graph.nodes) {
     const Result<const lang::NodeDecl*> decl = library.node(node.type);
     if (decl && !variant.empty() && (*decl)->find(variant) != nullptr) node.variant = variant;
@@ -131,7 +105,7 @@ Result<void> EvalMaterial::lower(gltf::Material material, const lang::Library& l
   Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options)});
   if (!module) return tl::make_unexpected(std::move(module.error()));
   module_ = std::move(*module);
-  return checkTexels();
+  return checkTexels(**library.models.schema());
 }
 
 void EvalMaterial::place(const passes::LightFacts& lights) {
@@ -191,9 +165,9 @@ bool EvalMaterial::names(const std::string& name, const ir::TextureSlot& slot) {
 
 /// A texel for a texture that this material does not have is not used; a name that no texture has is a
 /// mistake.
-Result<void> EvalMaterial::checkTexels() const {
+Result<void> EvalMaterial::checkTexels(const material::Schema& schema) const {
   for (const Texel& texel : texels_) {
-    const bool known = isTextureProperty(texel.slot) ||
+    const bool known = isTextureProperty(schema, texel.slot) ||
                        std::any_of(module_.textures.begin(), module_.textures.end(),
                                    [&](const ir::TextureSlot& slot) { return names(texel.slot, slot); });
     if (known) continue;

@@ -53,7 +53,7 @@ public:
 
   /// The forward module as lowered, for a primitive with every attribute: points are given all of them. Nodes
   /// that have the variant of that name use it. Errors: "unknown-texture", those of a graph.
-  Result<void> lower(gltf::Material material, const lang::Library& library, bool environment,
+  Result<void> lower(material::Material material, const Language& library, bool environment,
                      const std::string& variant, Messages& messages);
 
   /// The float engine computes what the shader does: values of the material's rate in the preshader, then
@@ -79,7 +79,7 @@ private:
 
   static Result<Texel> parseTexel(const std::string& text);
   static bool names(const std::string& name, const ir::TextureSlot& slot);
-  Result<void> checkTexels() const;
+  Result<void> checkTexels(const material::Schema& schema) const;
   Result<BoundTexture> textureOf(const ir::TextureSlot& slot, const Substitute& substitute);
   std::vector<const ir::TextureSlot*> usedTextures() const;
 

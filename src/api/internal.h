@@ -5,13 +5,14 @@
 #include <memory>
 #include <optional>
 
+#include "api/language.h"
 #include "api/preshader.h"
 #include "api/times.h"
-#include "gltf/material.h"
-#include "graph/build.h"
 #include "lacquer.h"
 #include "lang/library.h"
 #include "lower/lower.h"
+#include "material/material.h"
+#include "model/build.h"
 #include "passes/pipeline.h"
 
 namespace lacquer {
@@ -24,9 +25,6 @@ Diagnostic toDiagnostic(const Message& message);
 /// The node files of a folder, sorted by name.
 Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder);
 
-/// The built-in library with the options' folders added. The built-in one alone is made once.
-Result<std::shared_ptr<const lang::Library>> libraryFor(const Options& options);
-
 struct Graph::Impl {
   graph::Graph graph;
   std::string file;  ///< for messages
@@ -34,7 +32,8 @@ struct Graph::Impl {
 };
 
 struct Scene::Impl {
-  gltf::Document document;
+  material::Document document;
+  std::shared_ptr<const Language> language;  ///< whose declarations the materials follow
 };
 
 inline constexpr size_t kTargetCount = static_cast<size_t>(Target::Cpp) + 1;
@@ -55,10 +54,10 @@ struct Shader::Impl : ShaderData {
 };
 
 passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& scene);
-passes::LightFacts lightsOf(const gltf::Document& document);
+passes::LightFacts lightsOf(const gltf::Scene& scene);
 /// The graph of a material as the options want it: the profile, then the variants that the budget allows.
-graph::Graph buildGraph(const gltf::Material& material, const gltf::VertexAttributes& attributes,
-                        const Options& options, Diagnostics& warnings);
+Result<graph::Graph> buildGraph(const material::Material& material, const gltf::VertexAttributes& attributes,
+                                const Language& language, const Options& options, Diagnostics& warnings);
 
 /// A checked graph to a placed module.
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
@@ -66,7 +65,7 @@ Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& libr
                             const std::function<void(std::string_view, const ir::Module&)>& after = {});
 
 /// "forward-coat-0123456789abcdef"
-std::string shaderId(const ir::Module& module);
+std::string shaderId(const ir::Module& module, const lang::Library& library);
 
 /// What is wrong with the code of each target.
 using Wrong = std::array<Diagnostics, kTargetCount>;

@@ -44,14 +44,14 @@ public:
 
   Result<std::string> make(const std::vector<std::string>& files, const std::vector<std::string>& materials) {
     if (Result<void> set = readSettings(); !set) return tl::make_unexpected(std::move(set.error()));
-    std::vector<gltf::Document> documents;
+    std::vector<material::Document> documents;
     if (Result<void> read = readFiles(files, materials, documents); !read)
       return tl::make_unexpected(std::move(read.error()));
     std::vector<preview::Section> sections;
-    for (const gltf::Document& document : documents) {
+    for (const material::Document& document : documents) {
       preview::Section section{documents.size() > 1 ? document.path : std::string(), {}};
       FileImages images(document.path);
-      for (const gltf::Material& material : document.materials) draw(material, images, section);
+      for (const material::Material& material : document.materials) draw(material, images, section);
       if (!section.cells.empty()) sections.push_back(std::move(section));
     }
     if (sections.empty()) return fail("nothing-to-show", {}, "there is no material to show");
@@ -87,16 +87,16 @@ private:
 
   /// The files with those of their materials that are wanted.
   Result<void> readFiles(const std::vector<std::string>& files, const std::vector<std::string>& only,
-                         std::vector<gltf::Document>& documents) {
+                         std::vector<material::Document>& documents) {
     std::vector<std::string> missing = only;
     for (const std::string& file : files) {
-      Result<gltf::Document> document = gltf::read(file, {options_.permissive});
+      Result<material::Document> document = readMaterials(file, *libraries_[0], options_);
       if (!document) {
         report(document.error(), file, messages_);
         continue;
       }
       report(document->diagnostics, file, messages_);
-      std::erase_if(document->materials, [&](const gltf::Material& material) {
+      std::erase_if(document->materials, [&](const material::Material& material) {
         std::erase(missing, material.name);
         return !only.empty() && std::find(only.begin(), only.end(), material.name) == only.end();
       });
@@ -108,7 +108,7 @@ private:
                 "`lacquer gen` lists the materials of a file");
   }
 
-  Result<preview::Shading> shading(const gltf::Material& material, FileImages& images, size_t setting,
+  Result<preview::Shading> shading(const material::Material& material, FileImages& images, size_t setting,
                                    size_t& substituted) {
     const PreviewSetting& of = settings_[setting];
     EvalMaterial evaluated(images, of.options);
@@ -137,7 +137,7 @@ private:
     return preview::Shading::make(std::move(look), studio_);
   }
 
-  void draw(const gltf::Material& material, FileImages& images, preview::Section& section) {
+  void draw(const material::Material& material, FileImages& images, preview::Section& section) {
     report(material.diagnostics, images.file(), messages_);
     ++done_;
     if (lacquer::hasError(material.diagnostics)) return;
@@ -167,7 +167,7 @@ private:
     if (progress_) progress_(done_, total_);
   }
 
-  void noteAbsent(const gltf::Material& material, const std::string& file, size_t count,
+  void noteAbsent(const material::Material& material, const std::string& file, size_t count,
                   preview::Cell& cell) {
     cell.lines.push_back(fmt::format("{} image{} absent", count, count == 1 ? "" : "s"));
     const std::string what = fmt::format("{} image{} absent", count, count == 1 ? " is" : "s are");
@@ -202,7 +202,7 @@ private:
   const std::function<void(size_t, size_t)>& progress_;
   preview::Studio studio_;
   std::vector<PreviewSetting> settings_;  ///< one, or the two to compare
-  std::vector<std::shared_ptr<const lang::Library>> libraries_;
+  std::vector<std::shared_ptr<const Language>> libraries_;
   std::vector<Measured> measured_;
   size_t done_ = 0, total_ = 0;
 };

@@ -70,6 +70,11 @@ bool Run::open() {
     report_.ok = false;
     return false;
   }
+  if (const auto model = (*library)->models.of(options_.profile); !model) {
+    report(model.error(), {});
+    report_.ok = false;
+    return false;
+  }
   library_ = *library;
   setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_});
   structures_.emplace(*setting_);

@@ -56,7 +56,7 @@ private:
   Messages& messages_;
   std::function<void(size_t, size_t)> progress_;
   std::chrono::steady_clock::time_point shown_;
-  std::shared_ptr<const lang::Library> library_;
+  std::shared_ptr<const Language> library_;
   StageTimes times_;
   Key base_;  ///< of this build and the node library
   bool prepared_ = false;

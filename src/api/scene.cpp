@@ -5,28 +5,56 @@
 
 namespace lacquer {
 
+namespace {
+
+/// Kept by the library, which the options' folders name; the built-in one's stays.
+struct SchemaOf {
+  std::shared_ptr<const Language> language;
+  const material::Schema* schema = nullptr;
+};
+
+Result<SchemaOf> schemaFor(const Options& options) {
+  const Result<std::shared_ptr<const Language>> language = libraryFor(options);
+  if (!language) return tl::make_unexpected(language.error());
+  const Result<const material::Schema*> schema = (*language)->models.schema();
+  if (!schema) return tl::make_unexpected(schema.error());
+  return SchemaOf{*language, *schema};
+}
+
+}  // namespace
+
 Scene Scene::load(const std::string& path, const Options& options, Messages& messages) {
   Scene scene;
-  Result<gltf::Document> document = gltf::read(path, {options.permissive});
+  const Result<SchemaOf> schema = schemaFor(options);
+  if (!schema) {
+    report(schema.error(), path, messages);
+    return scene;
+  }
+  Result<material::Document> document = material::read(path, *schema->schema, {options.permissive});
   if (!document) {
     report(document.error(), path, messages);
     return scene;
   }
   report(document->diagnostics, path, messages);
-  scene.impl_ = std::make_shared<Impl>(Impl{std::move(*document)});
+  scene.impl_ = std::make_shared<Impl>(Impl{std::move(*document), schema->language});
   return scene;
 }
 
 Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const Options& options,
                         Messages& messages) {
   Scene scene;
-  Result<gltf::Document> document = gltf::readText(bytes, name, {options.permissive});
+  const Result<SchemaOf> schema = schemaFor(options);
+  if (!schema) {
+    report(schema.error(), name, messages);
+    return scene;
+  }
+  Result<material::Document> document = material::readText(bytes, name, *schema->schema, {options.permissive});
   if (!document) {
     report(document.error(), name, messages);
     return scene;
   }
   report(document->diagnostics, name, messages);
-  scene.impl_ = std::make_shared<Impl>(Impl{std::move(*document)});
+  scene.impl_ = std::make_shared<Impl>(Impl{std::move(*document), schema->language});
   return scene;
 }
 
@@ -47,9 +75,11 @@ std::vector<Attributes> Scene::uses(size_t material) const {
 Graph Scene::graph(size_t material, const Attributes& attributes, const Options& options,
                    Messages& messages) const {
   Graph result;
-  const gltf::Material& m = impl_->document.materials[material];
+  const material::Material& m = impl_->document.materials[material];
   report(m.diagnostics, impl_->document.path, messages);
   if (lacquer::hasError(m.diagnostics)) return result;
+  const auto language = libraryFor(options);
+  if (!language) return report(language.error(), {}, messages), result;
   if (const Diagnostics wrong = checkOptions(options); !wrong.empty()) {
     report(wrong, {}, messages);
     return result;
@@ -57,10 +87,11 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   Diagnostics warnings;
   const gltf::VertexAttributes a{attributes.normal, attributes.tangent, attributes.color0,
                                  attributes.texCoord};
-  graph::Graph graph = buildGraph(m, a, options, warnings);
+  Result<graph::Graph> graph = buildGraph(m, a, **language, options, warnings);
   report(warnings, impl_->document.path, messages);
+  if (!graph) return report(graph.error(), {}, messages), result;
   result.impl_ = std::make_shared<Graph::Impl>(
-      Graph::Impl{std::move(graph), impl_->document.path, lightsOf(impl_->document)});
+      Graph::Impl{std::move(*graph), impl_->document.path, lightsOf(impl_->document)});
   return result;
 }
 
@@ -134,18 +165,20 @@ bool Graph::check(Messages& messages, const Options& options) {
 
 Shader Graph::generate(const Options& options, Messages& messages) {
   Shader shader;
+  const auto language = libraryFor(options);
+  if (!language) return report(language.error(), impl_->file, messages), shader;
   if (const Diagnostics wrong = checkOptions(options); !wrong.empty()) {
     report(wrong, impl_->file, messages);
     return shader;
   }
   if (!check(messages, options)) return shader;
-  Result<ir::Module> module = toModule(impl_->graph, **libraryFor(options), options, impl_->scene_lights);
+  Result<ir::Module> module = toModule(impl_->graph, **language, options, impl_->scene_lights);
   if (!module) {
     report(module.error(), impl_->file, messages);
     return shader;
   }
   auto impl = std::make_shared<Shader::Impl>();
-  impl->id = shaderId(*module);
+  impl->id = shaderId(*module, **language);
   impl->has_vertex = lacquer::hasVertexStage(*module);
   impl->interface = interfaceJson(*module, impl->has_vertex);
   impl->preshader = Preshader(*module);

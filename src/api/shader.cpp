@@ -34,18 +34,6 @@ lower::ParameterMode parameterMode(const Options& options) {
 
 Diagnostics checkOptions(const Options& options) {
   Diagnostics wrong;
-  if (graph::findProfile(options.profile) == nullptr) {
-    std::string known;
-    for (const graph::Profile& profile : graph::profiles()) {
-      known += (known.empty() ? "" : ", ") + std::string(profile.name);
-    }
-    wrong.push_back({"unknown-profile",
-                     Severity::Error,
-                     {},
-                     fmt::format("there is no profile '{}'", options.profile),
-                     "there are " + known,
-                     {}});
-  }
   if (options.spirv_route == SpirvRoute::Hlsl) {
     wrong.push_back({"wrong-route",
                      Severity::Error,
@@ -79,17 +67,27 @@ bool hasVertexStage(const ir::Module& module) {
                      [](const ir::Output& o) { return o.stage == ir::Stage::Vertex; });
 }
 
-std::string shaderId(const ir::Module& module) {
-  bool coat = false;
-  bool lit = false;
+/// The outermost layer that an extension has brought, or else the innermost of all.
+std::string shaderId(const ir::Module& module, const lang::Library& library) {
   std::vector<ir::ValueId> roots;
   for (const ir::Output& output : module.outputs) roots.push_back(output.value);
-  for (const ir::ValueId id : ir::reachable(module.dag, roots)) {
-    const std::string& term = module.dag.terms()[module.dag.termOf(id)].name;
-    coat |= term.starts_with("coat.");
-    lit |= term.starts_with("base.direct") || term.starts_with("base.indirect");
+  const std::vector<ir::ValueId> values = ir::reachable(module.dag, roots);
+  const auto has = [&](std::string_view part) {
+    const std::string prefix = std::string(part) + ".";
+    return std::any_of(values.begin(), values.end(), [&](ir::ValueId id) {
+      return module.dag.terms()[module.dag.termOf(id)].name.starts_with(prefix);
+    });
+  };
+  std::string_view kind = "graph";
+  for (const std::string_view name : library.names(lang::DeclKind::Layers)) {
+    const Result<const lang::LayersDecl*> layers = library.layers(name);
+    if (!layers || (*layers)->parts.empty()) continue;
+    kind = (*layers)->parts[0];
+    for (const std::string_view part : (*layers)->parts) {
+      const Result<const lang::PartDecl*> decl = library.part(part);
+      if (decl && !(*decl)->of.empty() && has(part)) kind = part;
+    }
   }
-  const std::string_view kind = coat ? "coat" : lit || module.template_name != "forward" ? "base" : "unlit";
   return fmt::format("{}-{}-{}", module.template_name, kind, passes::contentAddress(module));
 }
 

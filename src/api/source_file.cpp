@@ -30,7 +30,7 @@ gltf::VertexAttributes everything() {
 
 /// A material and the attribute sets that it is wanted for.
 struct Wanted {
-  const gltf::Material* material = nullptr;
+  const material::Material* material = nullptr;
   std::string name;
   int index = 0;
   std::vector<gltf::VertexAttributes> uses;
@@ -57,6 +57,8 @@ public:
   void use(graph::Graph& graph, const passes::LightFacts& lights, const gltf::VertexAttributes& attributes,
            const Diagnostics& said);
   Done finish(const Wanted& wanted);
+  /// No graph could be built.
+  void fail(const Diagnostics& why) { add(why); }
 
 private:
   void add(const Diagnostics& found) {
@@ -196,10 +198,10 @@ public:
             Structures& structures)
       : path_(path), only_(only), setting_(setting), structures_(structures) {}
 
-  FileResult run(const gltf::Document& document);
+  FileResult run(const material::Document& document);
 
 private:
-  std::vector<Wanted> wanted(const gltf::Document& document, FileResult& result) const;
+  std::vector<Wanted> wanted(const material::Document& document, FileResult& result) const;
   Done make(const Wanted& wanted) const;
 
   const std::string& path_;
@@ -209,14 +211,14 @@ private:
   passes::LightFacts lights_;
 };
 
-std::vector<Wanted> SceneFile::wanted(const gltf::Document& document, FileResult& result) const {
+std::vector<Wanted> SceneFile::wanted(const material::Document& document, FileResult& result) const {
   // A file of materials alone, without a primitive: every material is wanted.
   const bool no_primitives =
       document.defaultUses.empty() &&
       std::all_of(document.uses.begin(), document.uses.end(), [](const auto& uses) { return uses.empty(); });
   std::vector<Wanted> all;
   for (size_t i = 0; i < document.materials.size(); ++i) {
-    const gltf::Material& material = document.materials[i];
+    const material::Material& material = document.materials[i];
     if (!only_.empty()) result.names.push_back(material.name);
     const bool named = std::find(only_.begin(), only_.end(), material.name) != only_.end();
     if (!only_.empty() && !named) continue;
@@ -227,7 +229,7 @@ std::vector<Wanted> SceneFile::wanted(const gltf::Document& document, FileResult
     all.push_back(std::move(one));
   }
   if (!document.defaultUses.empty() && only_.empty()) {
-    static const gltf::Material kDefault;
+    static const material::Material kDefault;
     all.push_back({&kDefault, {}, -1, document.defaultUses, {}});
   }
   return all;
@@ -238,18 +240,21 @@ Done SceneFile::make(const Wanted& wanted) const {
   if (!hasError(wanted.material->diagnostics)) {
     for (const gltf::VertexAttributes& attributes : wanted.uses) {
       Diagnostics said;
-      graph::Graph graph;
+      Result<graph::Graph> graph;
       {
         const StageTimer timer(setting_.times, StageOfRun::Graph);
-        graph = buildGraph(*wanted.material, attributes, setting_.options, said);
+        graph = buildGraph(*wanted.material, attributes, setting_.library, setting_.options, said);
       }
-      text.use(graph, lights_, attributes, said);
+      if (graph)
+        text.use(*graph, lights_, attributes, said);
+      else
+        text.fail(graph.error());
     }
   }
   return text.finish(wanted);
 }
 
-FileResult SceneFile::run(const gltf::Document& document) {
+FileResult SceneFile::run(const material::Document& document) {
   FileResult result;
   lights_ = lightFacts(setting_.options, lightsOf(document));
   const std::vector<Wanted> all = wanted(document, result);
@@ -372,10 +377,12 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
     if (std::optional<FileResult> cached = cachedFile(path, key, setting, structures))
       return std::move(*cached);
   }
-  Result<gltf::Document> document;
+  const Result<const material::Schema*> schema = setting.library.models.schema();
+  if (!schema) return unreadable(path, schema.error());
+  Result<material::Document> document;
   {
     const StageTimer timer(setting.times, StageOfRun::Read);
-    document = gltf::readText(*bytes, path, {setting.options.permissive});
+    document = material::readText(*bytes, path, **schema, {setting.options.permissive});
     *bytes = {};
   }
   if (!document) return unreadable(path, document.error());
@@ -391,7 +398,7 @@ FileResult readGraph(const std::string& path, const Setting& setting, Structures
   const Result<std::string> text = readFile(path);
   Result<graph::Graph> graph = text ? graph::fromJson(*text, path) : tl::make_unexpected(text.error());
   if (!graph) return unreadable(path, graph.error());
-  static const gltf::Material kNone;
+  static const material::Material kNone;
   MaterialText material(path, setting, structures);
   const std::string name = graph->name;
   material.use(*graph, lightFacts(setting.options, {}), everything(), {});

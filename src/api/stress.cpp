@@ -135,7 +135,7 @@ private:
     });
   }
 
-  Result<std::unique_ptr<Subject>> materialSubject(const std::string& file, const gltf::Material& material) {
+  Result<std::unique_ptr<Subject>> materialSubject(const std::string& file, const material::Material& material) {
     FileImages images(file);
     EvalMaterial evaluated(images, options_);
     if (Result<void> lowered = evaluated.lower(material, *library_, true, {}, messages_); !lowered)
@@ -144,16 +144,16 @@ private:
     return stress::materialSubject(material.name, evaluated.module());
   }
 
-  Result<gltf::Document> read(const std::string& file) {
-    Result<gltf::Document> document = gltf::read(file, {options_.permissive});
+  Result<material::Document> read(const std::string& file) {
+    Result<material::Document> document = readMaterials(file, *library_, options_);
     if (document) report(document->diagnostics, file, messages_);
     return document;
   }
 
   Result<void> addFile(const std::string& file) {
-    const Result<gltf::Document> document = read(file);
+    const Result<material::Document> document = read(file);
     if (!document) return tl::make_unexpected(document.error());
-    for (const gltf::Material& material : document->materials) {
+    for (const material::Material& material : document->materials) {
       report(material.diagnostics, file, messages_);
       if (lacquer::hasError(material.diagnostics)) continue;
       Result<std::unique_ptr<Subject>> subject = materialSubject(file, material);
@@ -207,7 +207,7 @@ private:
     std::string file = test["file"].get<std::string>();
     const size_t slash = path.find_last_of('/');
     if (slash != std::string::npos && !file.starts_with('/')) file = path.substr(0, slash + 1) + file;
-    const Result<gltf::Document> document = read(file);
+    const Result<material::Document> document = read(file);
     if (!document) return tl::make_unexpected(document.error());
     const auto index = test["material"].get<size_t>();
     if (index >= document->materials.size()) return wrong("the file has no material of that index");
@@ -264,7 +264,7 @@ private:
   const std::function<void(size_t, size_t)>& progress_;
   stress::Plan plan_;
   uint64_t total_ = 0;
-  std::shared_ptr<const lang::Library> library_;
+  std::shared_ptr<const Language> library_;
   std::vector<std::function<Result<Json>(size_t& faults)>> work_;
 };
 

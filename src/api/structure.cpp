@@ -143,8 +143,9 @@ void renderTerms(Structure& structure) {
       textAt(kTermsDepth, [&](JsonText& json) { writeSkipped(structure.terms->skipped, json); });
 }
 
-void describe(const ir::Module& module, const graph::Graph& graph, Structure& structure) {
-  structure.shader = shaderId(module);
+void describe(const ir::Module& module, const graph::Graph& graph, const lang::Library& library,
+              Structure& structure) {
+  structure.shader = shaderId(module, library);
   structure.has_vertex = hasVertexStage(module);
   const Json interface = interfaceOf(module, structure.has_vertex);
   for (const auto& [name, value] : interface.items()) {
@@ -229,7 +230,7 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
   structure.graph = graph::toJson(plain);
   // Places are those in the graph as it comes, which check() may have ordered, but not its parameters and
   // textures.
-  describe(*module, graph, structure);
+  describe(*module, graph, setting.library, structure);
   return std::move(*module);
 }
 

@@ -38,7 +38,7 @@ struct Structure {
 /// Everything that the code depends on beside the graph: this build, the node library, options.
 struct Setting {
   const Options& options;
-  const lang::Library& library;
+  const Language& library;
   Key base;  ///< of this build and the node library
   Cache* cache = nullptr;
   StageTimes* times = nullptr;

@@ -76,48 +76,48 @@ void sortDistinct(std::vector<VertexAttributes>& sets) {
   sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
 }
 
-void collectUses(const tinygltf::Model& model, Document& document) {
+void collectUses(const tinygltf::Model& model, Scene& scene) {
   for (const tinygltf::Mesh& mesh : model.meshes) {
     for (const tinygltf::Primitive& primitive : mesh.primitives) {
       const VertexAttributes attributes = attributesOf(primitive);
       const auto use = [&](int material) {
         if (material < 0) {
-          document.defaultUses.push_back(attributes);
+          scene.defaultUses.push_back(attributes);
         } else {
-          document.uses.at(static_cast<size_t>(material)).push_back(attributes);
+          scene.uses.at(static_cast<size_t>(material)).push_back(attributes);
         }
       };
       use(primitive.material);
       for (const int material : variantsOf(primitive)) use(material);
     }
   }
-  for (std::vector<VertexAttributes>& sets : document.uses) sortDistinct(sets);
-  sortDistinct(document.defaultUses);
+  for (std::vector<VertexAttributes>& sets : scene.uses) sortDistinct(sets);
+  sortDistinct(scene.defaultUses);
 }
 
-void collectLights(const tinygltf::Model& model, Document& document) {
+void collectLights(const tinygltf::Model& model, Scene& scene) {
   for (const tinygltf::Node& node : model.nodes) {
     const auto found = node.extensions.find("KHR_lights_punctual");
     if (found == node.extensions.end() || !found->second.Has("light")) continue;
     const std::string& type =
         model.lights.at(static_cast<size_t>(found->second.Get("light").GetNumberAsInt())).type;
-    if (type == "directional") ++document.lights[LightType::Directional];
-    if (type == "point") ++document.lights[LightType::Point];
-    if (type == "spot") ++document.lights[LightType::Spot];
+    if (type == "directional") ++scene.lights[LightType::Directional];
+    if (type == "point") ++scene.lights[LightType::Point];
+    if (type == "spot") ++scene.lights[LightType::Spot];
   }
 }
 
 }  // namespace
 
-std::vector<int> readScene(const Json& root, Document& document) {
-  CheckedScene checked = checkScene(root, document.path, document.diagnostics);
-  document.images = std::move(checked.images);
-  document.uses.resize(arraySize(root, "materials"));
+std::vector<int> readScene(const Json& root, Scene& scene) {
+  CheckedScene checked = checkScene(root, scene.path, scene.diagnostics);
+  scene.images = std::move(checked.images);
+  scene.uses.resize(arraySize(root, "materials"));
   std::vector<int> texture_images(arraySize(root, "textures"), -1);
   tinygltf::Model model;
-  if (!loadModel(checked.json, model, document.path, document.diagnostics)) return texture_images;
-  collectUses(model, document);
-  collectLights(model, document);
+  if (!loadModel(checked.json, model, scene.path, scene.diagnostics)) return texture_images;
+  collectUses(model, scene);
+  collectLights(model, scene);
   for (size_t i = 0; i < texture_images.size() && i < model.textures.size(); ++i) {
     texture_images[i] = model.textures[i].source;
   }

@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "gltf/json.h"
-#include "gltf/material.h"
+#include "gltf/facts.h"
 
 namespace lacquer::gltf {
 
 /// Fills `uses`, `defaultUses`, `lights`, `images` and `diagnostics` of a document whose `path` is set, from
 /// the root of its JSON, and returns for each texture its image (-1 when it has none). What is wrong is left
 /// out.
-std::vector<int> readScene(const Json& root, Document& document);
+std::vector<int> readScene(const Json& root, Scene& scene);
 
 /// What SceneChecker leaves of a file's JSON: only what Lacquer asks tinygltf about, with every index in
 /// range.

@@ -7,7 +7,6 @@
 #include "gltf/path.h"
 #include "gltf/report.h"
 #include "gltf/scene.h"
-#include "gltf/table.h"
 #include "gltf/text.h"
 
 namespace lacquer::gltf {
@@ -130,24 +129,12 @@ void SceneChecker::required(const Json& names, const Path& path) {
     const Path here(path, i);
     if (!names[i].is_string()) {
       report_.wrongType(here, "the extension's name", names[i], "a string");
-      continue;
     }
-    const auto& name = names[i].get_ref<const std::string&>();
-    // Extensions of geometry, textures and so on are none of a shader generator's business.
-    const bool of_materials = name.find("_materials_") != std::string::npos;
-    if (!of_materials || name == kVariants || !placeOf(name).where.empty()) continue;
-    report_.warning("required-extension", here,
-                    fmt::format("{} is required, but Lacquer does not implement it", printable(name)),
-                    "materials that use it will look different");
   }
 }
 
 void SceneChecker::rootExtensions(const Json& extensions, const Path& path) {
   members(extensions, path, "extensions", [&](std::string_view name, const Json& value, const Path& here) {
-    if (const ExtensionPlace place = placeOf(name); !place.where.empty()) {
-      report_.error("misplaced-extension", here, fmt::format("{} has no place here", name),
-                    fmt::format("move it to {}", place.where));
-    }
     if (name != kLights) return;
     members(value, here, name, [&](std::string_view key, const Json& lights, const Path& p) {
       if (key != "lights") return;

@@ -136,7 +136,8 @@ private:
 
   bool version(const Json& json, const Path& path);
   void parameter(std::string_view name, const Json& json, const Path& path);
-  void parameterValue(const Json& json, const Path& path, ir::Parameter& parameter);
+  void parameterValue(const Json& json, const Path& path, std::string_view name, ir::Type type,
+                      ir::Components& out);
   void parameterRange(const Json& json, const Path& path, ir::Parameter& parameter);
   void texture(std::string_view name, const Json& json, const Path& path);
   void node(const Json& json, const Path& path);
@@ -301,24 +302,25 @@ std::optional<ir::Type> Reader::typeOf(const Json& json, const Path& path, std::
   return type;
 }
 
-void Reader::parameterValue(const Json& json, const Path& path, ir::Parameter& parameter) {
-  const int count = ir::componentCount(parameter.type);
-  if (parameter.type == ir::Type::Bool) {
-    if (!json.is_boolean()) return report_.wrongType(path, "value", json, "true or false, for a bool");
-    parameter.value[0] = json.get<bool>() ? 1 : 0;
+void Reader::parameterValue(const Json& json, const Path& path, std::string_view name, ir::Type type,
+                            ir::Components& out) {
+  const int count = ir::componentCount(type);
+  if (type == ir::Type::Bool) {
+    if (!json.is_boolean()) return report_.wrongType(path, name, json, "true or false, for a bool");
+    out[0] = json.get<bool>() ? 1 : 0;
   } else if (count == 1) {
-    if (!json.is_number()) return report_.wrongType(path, "value", json, "a number, for a float");
-    parameter.value[0] = json.get<double>();
+    if (!json.is_number()) return report_.wrongType(path, name, json, "a number, for a float");
+    out[0] = json.get<double>();
   } else {
     const std::string expected =
-        fmt::format("an array of {} numbers, for a {}", count, ir::typeName(parameter.type));
-    if (!json.is_array()) return report_.wrongType(path, "value", json, expected);
+        fmt::format("an array of {} numbers, for a {}", count, ir::typeName(type));
+    if (!json.is_array()) return report_.wrongType(path, name, json, expected);
     if (json.size() != static_cast<size_t>(count)) {
       return report_.error("wrong-count", path,
-                           fmt::format("value has {}", gltf::countOf(json.size(), "component")),
+                           fmt::format("{} has {}", name, gltf::countOf(json.size(), "component")),
                            "it must be " + expected);
     }
-    numbers(json, path, parameter.value);
+    numbers(json, path, out);
   }
 }
 
@@ -343,7 +345,7 @@ void Reader::parameterRange(const Json& json, const Path& path, ir::Parameter& p
 }
 
 void Reader::parameter(std::string_view name, const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 4> kKeys = {"type", "value", "range", "pointer"};
+  constexpr std::array<std::string_view, 5> kKeys = {"type", "value", "range", "pointer", "default"};
   if (!object(json, path, "a parameter", kKeys)) return;
   ir::Parameter parameter;
   parameter.name = name;
@@ -351,9 +353,17 @@ void Reader::parameter(std::string_view name, const Json& json, const Path& path
       typeOf(json, path, "parameter", valueType, "it is a float, vec2, vec3, vec4 or bool");
   parameter.type = known.value_or(ir::Type::Float);
   const Json* value = required(json, path, "the parameter", "value");
-  if (value != nullptr && known) parameterValue(*value, Path(path, "value"), parameter);
+  if (value != nullptr && known) 
+    parameterValue(*value, Path(path, "value"), "value", parameter.type, parameter.value);
   if (const Json* range = gltf::member(json, "range")) parameterRange(*range, Path(path, "range"), parameter);
   parameter.pointer = optionalText(json, path, "pointer");
+  if (const Json* by_default = gltf::member(json, "default"); by_default != nullptr && known)
+    parameterValue(*by_default, Path(path, "default"), "default", parameter.type, parameter.neutral);
+  // A range of a graph by hand may be empty until it has been checked: no std::clamp.
+  for (int i = 0; i < ir::componentCount(parameter.type); ++i) {
+    double& x = parameter.neutral[static_cast<size_t>(i)];
+    x = std::min(std::max(x, parameter.range.lo), parameter.range.hi);
+  }
   graph_.parameters.push_back(std::move(parameter));
 }
 

@@ -83,6 +83,8 @@ std::string parameter(const ir::Parameter& parameter) {
     text += fmt::format(", \"range\": [{}, {}]", number(parameter.range.lo), number(parameter.range.hi));
   }
   if (!parameter.pointer.empty()) text += ", " + member("pointer", jsonText(parameter.pointer));
+  if (parameter.neutral != ir::Components{})
+    text += fmt::format(", \"default\": {}", value(parameter.type, parameter.neutral));
   return text + "}";
 }
 

@@ -45,6 +45,9 @@ public:
   /// `bases` are what it extends, freshly parsed, the farthest first; they checked without an error on their
   /// own.
   void templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases);
+  void extension(ExtensionDecl& decl);
+  void part(PartDecl& decl);
+  void profile(ProfileDecl& decl);
 
 private:
   /// What an identifier in scope stands for.
@@ -83,6 +86,10 @@ private:
   Constant constantValue(ExprPtr& expr, ir::Type type, std::string_view what);
   std::optional<int> constantInt(ExprPtr& expr, std::string_view what);
   std::string_view written(Span span) const { return reporter_.text(span); }
+
+  // check_model.cpp
+  void modelDoc(const std::string& doc, const std::string* source, Span span, std::string_view what);
+  void property(PropertyDecl& item, bool texture_member);
 
   // check_template.cpp
   void parts(TemplateDecl& decl, uint32_t& slots);

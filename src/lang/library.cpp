@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <mutex>
 #include <unordered_map>
@@ -27,9 +28,20 @@ std::string_view kindName(DeclKind kind) {
     case DeclKind::Const: return "constant";
     case DeclKind::Node: return "node";
     case DeclKind::Template: return "template";
+    case DeclKind::Extension: return "extension";
+    case DeclKind::Part: return "part";
+    case DeclKind::Profile: return "profile";
+    case DeclKind::Layers: return "order of layers";
+    case DeclKind::Switch: return "switch";
   }
   return "";
 }
+
+/// Constants, nodes and templates share one namespace; each other kind has its own.
+size_t spaceOf(DeclKind kind) {
+  return kind <= DeclKind::Template ? 0 : static_cast<size_t>(kind) - static_cast<size_t>(DeclKind::Template);
+}
+constexpr size_t kSpaces = 6;
 
 struct File {
   std::string owned_name, owned_text;  ///< empty for an embedded file
@@ -49,6 +61,11 @@ struct Entry {
   std::unique_ptr<ConstDecl> constant;
   std::unique_ptr<NodeDecl> node;
   std::unique_ptr<TemplateDecl> template_decl;
+  std::unique_ptr<ExtensionDecl> extension;
+  std::unique_ptr<PartDecl> part;
+  std::unique_ptr<ProfileDecl> profile;
+  std::unique_ptr<LayersDecl> layers;
+  std::unique_ptr<SwitchDecl> switch_decl;
 };
 
 }  // namespace
@@ -87,7 +104,7 @@ private:
   bool basesOf(const Entry& entry, Reporter& reporter, std::vector<TemplateDecl>& bases);
   void collect(Entry& entry, std::unordered_set<const Entry*>& seen, Diagnostics& out);
 
-  std::unordered_map<std::string_view, Entry*> index_;
+  std::array<std::unordered_map<std::string_view, Entry*>, kSpaces> index_;
   std::vector<const Entry*> open_;
 };
 
@@ -111,7 +128,7 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
     for (const ScannedDecl& decl : scan(reporter)) {
       line += static_cast<uint32_t>(std::count(counted, decl.name.data(), '\n'));
       counted = decl.name.data();
-      const auto [it, fresh] = index_.try_emplace(decl.name, nullptr);
+      const auto [it, fresh] = index_[spaceOf(decl.kind)].try_emplace(decl.name, nullptr);
       if (!fresh) {
         const Entry& other = *it->second;
         reporter.error(
@@ -145,7 +162,7 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
     return errors;
   }
   while (entries.size() > old_entries) {
-    index_.erase(entries.back().name);
+    index_[spaceOf(entries.back().kind)].erase(entries.back().name);
     entries.pop_back();
   }
   while (files.size() > first) files.pop_back();
@@ -153,13 +170,14 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
 }
 
 Entry* Library::Impl::find(DeclKind kind, std::string_view name) {
-  const auto it = index_.find(name);
-  return it == index_.end() || it->second->kind != kind ? nullptr : it->second;
+  const auto& index = index_[spaceOf(kind)];
+  const auto it = index.find(name);
+  return it == index.end() || it->second->kind != kind ? nullptr : it->second;
 }
 
 std::optional<Surroundings::Found> Library::Impl::find(std::string_view name) const {
-  const auto it = index_.find(name);
-  if (it == index_.end()) return std::nullopt;
+  const auto it = index_[0].find(name);
+  if (it == index_[0].end()) return std::nullopt;
   const Entry& entry = *it->second;
   Found found;
   found.kind = entry.kind;
@@ -189,8 +207,9 @@ std::string Library::Impl::cycle(std::string_view name) const {
 
 tl::unexpected<Diagnostics> Library::Impl::missing(DeclKind kind, std::string_view name) const {
   const std::string_view what = kindName(kind);
-  const auto it = index_.find(name);
-  std::string help = it == index_.end() ? didYouMean(name, names(kind))
+  const auto& index = index_[spaceOf(kind)];
+  const auto it = index.find(name);
+  std::string help = it == index.end() ? didYouMean(name, names(kind))
                                         : fmt::format("'{}' is a {}", name, kindName(it->second->kind));
   return fail(fmt::format("unknown-{}", what), {}, fmt::format("there is no {} '{}'", what, name),
               std::move(help));
@@ -208,6 +227,11 @@ void Library::Impl::check(Entry& entry, Reporter& reporter) {
       if (reporter.count() == 0) tie(*entry.template_decl);
       break;
     }
+    case DeclKind::Extension: checker.extension(*entry.extension); break;
+    case DeclKind::Part: checker.part(*entry.part); break;
+    case DeclKind::Profile: checker.profile(*entry.profile); break;
+    case DeclKind::Layers:
+    case DeclKind::Switch: break;
   }
 }
 
@@ -277,6 +301,26 @@ void Library::Impl::parse(Entry& entry, Reporter& reporter) {
     case DeclKind::Template:
       entry.template_decl = std::make_unique<TemplateDecl>(parser.templateDecl());
       entry.template_decl->origin = origin;
+      break;
+    case DeclKind::Extension:
+      entry.extension = std::make_unique<ExtensionDecl>(parser.extension());
+      entry.extension->origin = origin;
+      break;
+    case DeclKind::Part:
+      entry.part = std::make_unique<PartDecl>(parser.part());
+      entry.part->origin = origin;
+      break;
+    case DeclKind::Profile:
+      entry.profile = std::make_unique<ProfileDecl>(parser.profile());
+      entry.profile->origin = origin;
+      break;
+    case DeclKind::Layers:
+      entry.layers = std::make_unique<LayersDecl>(parser.layers());
+      entry.layers->origin = origin;
+      break;
+    case DeclKind::Switch:
+      entry.switch_decl = std::make_unique<SwitchDecl>(parser.switchDecl());
+      entry.switch_decl->origin = origin;
       break;
   }
   const auto use = [&](std::string_view name, DeclKind kind) {
@@ -360,6 +404,26 @@ Result<const NodeDecl*> Library::node(std::string_view name) const {
 
 Result<const TemplateDecl*> Library::template_(std::string_view name) const {
   return impl_->get(DeclKind::Template, name, &Entry::template_decl);
+}
+
+Result<const ExtensionDecl*> Library::extension(std::string_view name) const {
+  return impl_->get(DeclKind::Extension, name, &Entry::extension);
+}
+
+Result<const PartDecl*> Library::part(std::string_view name) const {
+  return impl_->get(DeclKind::Part, name, &Entry::part);
+}
+
+Result<const ProfileDecl*> Library::profile(std::string_view name) const {
+  return impl_->get(DeclKind::Profile, name, &Entry::profile);
+}
+
+Result<const LayersDecl*> Library::layers(std::string_view name) const {
+  return impl_->get(DeclKind::Layers, name, &Entry::layers);
+}
+
+Result<const SwitchDecl*> Library::switch_(std::string_view name) const {
+  return impl_->get(DeclKind::Switch, name, &Entry::switch_decl);
 }
 
 bool Library::has(DeclKind kind, std::string_view name) const {

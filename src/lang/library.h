@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lang/ast.h"
+#include "lang/model_decl.h"
 #include "support/diagnostic.h"
 
 namespace lacquer::lang {
@@ -20,7 +21,7 @@ struct SourceFile {
   std::string text;
 };
 
-enum class DeclKind : uint8_t { Const, Node, Template };
+enum class DeclKind : uint8_t { Const, Node, Template, Extension, Part, Profile, Layers, Switch };
 
 class Library {
 public:
@@ -40,6 +41,11 @@ public:
   Result<const ConstDecl*> constant(std::string_view name) const;
   Result<const NodeDecl*> node(std::string_view name) const;
   Result<const TemplateDecl*> template_(std::string_view name) const;
+  Result<const ExtensionDecl*> extension(std::string_view name) const;
+  Result<const PartDecl*> part(std::string_view name) const;
+  Result<const ProfileDecl*> profile(std::string_view name) const;
+  Result<const LayersDecl*> layers(std::string_view name) const;
+  Result<const SwitchDecl*> switch_(std::string_view name) const;
 
   bool has(DeclKind kind, std::string_view name) const;
 

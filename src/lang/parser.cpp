@@ -47,7 +47,7 @@ void Parser::dropStrayDocs() {
       while (tokens_[next].kind == Token::Kind::Doc) ++next;
       if (!tokens_[next].is("variant")) {
         reporter_.error("misplaced-doc", tokens_[i].span, "this doc line documents nothing",
-                        "'///' goes before a const, a node, a variant or a template; use '//' here");
+                        "'///' goes before a declaration or a variant; use '//' here");
         continue;
       }
     }
@@ -169,7 +169,7 @@ void Parser::docs(std::string& doc, std::string* source) {
 
 void Parser::end() {
   if (token().kind == Token::Kind::End) return;
-  syntax("expected a const, a node or a template", is("}") ? "there is a '}' too many" : "");
+  syntax("expected a declaration", is("}") ? "there is a '}' too many" : "");
 }
 
 std::string_view Parser::proseBehind() const { return last().comment; }

@@ -9,6 +9,7 @@
 
 #include "lang/ast.h"
 #include "lang/lexer.h"
+#include "lang/model_decl.h"
 #include "lang/reporter.h"
 
 namespace lacquer::lang {
@@ -25,6 +26,11 @@ public:
   ConstDecl constant();
   NodeDecl node();
   TemplateDecl templateDecl();
+  ExtensionDecl extension();
+  PartDecl part();
+  ProfileDecl profile();
+  LayersDecl layers();
+  SwitchDecl switchDecl();
 
   /// Every name that is read as a value, and every name that is called: some are of other declarations.
   const std::vector<std::string_view>& namesRead() const { return names_read_; }
@@ -46,6 +52,23 @@ private:
   bool given(TemplateDecl& decl);
   bool port(TemplateDecl& decl);
   bool output(TemplateDecl& decl);
+
+  // parse_model.cpp
+  bool dottedName(std::string_view& out, Span& span, std::string_view what);
+  bool names(std::vector<std::string_view>& out, std::string_view what);
+  bool string(std::string_view& out, std::string_view what);
+  template <class Item>
+  void braces(std::string_view after, Item item);
+  bool extensionItem(ExtensionDecl& decl);
+  bool property(std::vector<PropertyDecl>& out);
+  bool role(PropertyDecl& item);
+  bool texture(PropertyDecl& item);
+  bool choice(PropertyDecl& item);
+  bool termConditions(TermDecl& term);
+  bool partItem(PartDecl& decl, uint32_t term, std::string_view& section);
+  bool line(LineDecl& line);
+  bool alternatives(LineDecl& line);
+  bool require(LineDecl& line);
 
   // parse_statement.cpp
   bool body(std::vector<Statement>& statements);

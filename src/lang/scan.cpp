@@ -1,11 +1,30 @@
 #include "lang/scan.h"
 
+#include <array>
 #include <optional>
+#include <utility>
 
 #include "lang/lexer.h"
 
 namespace lacquer::lang {
 namespace {
+
+/// What a word at the start of a declaration declares.
+std::optional<DeclKind> declaredBy(std::string_view word) {
+  constexpr std::array<std::pair<std::string_view, DeclKind>, 9> kWords = {{{"const", DeclKind::Const},
+                                                                            {"node", DeclKind::Node},
+                                                                            {"template", DeclKind::Template},
+                                                                            {"extension", DeclKind::Extension},
+                                                                            {"material", DeclKind::Extension},
+                                                                            {"part", DeclKind::Part},
+                                                                            {"profile", DeclKind::Profile},
+                                                                            {"layers", DeclKind::Layers},
+                                                                            {"switch", DeclKind::Switch}}};
+  for (const auto& [spelling, kind] : kWords) {
+    if (word == spelling) return kind;
+  }
+  return std::nullopt;
+}
 
 class Scanner {
 public:
@@ -74,10 +93,7 @@ private:
     const size_t begin = at_;
     const bool may_begin = outside() || atLineStart();
     const std::string_view word = takeWord();
-    std::optional<DeclKind> kind;
-    if (word == "const") kind = DeclKind::Const;
-    if (word == "node") kind = DeclKind::Node;
-    if (word == "template") kind = DeclKind::Template;
+    const std::optional<DeclKind> kind = declaredBy(word);
     if (!may_begin || !kind) {
       at_ = begin;
       stray(word.size());
@@ -113,7 +129,7 @@ private:
     if (!found_.empty() || said_) return;
     said_ = true;
     reporter_.error("syntax", {static_cast<uint32_t>(at_), static_cast<uint32_t>(length)},
-                    "expected a const, a node or a template");
+                    "expected a declaration: a const, a node, a template, an extension, a part or a profile");
   }
 
   Reporter& reporter_;

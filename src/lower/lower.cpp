@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 
-#include "graph/neutral.h"
 #include "lower/inline.h"
 
 namespace lacquer::lower {
@@ -180,7 +179,6 @@ private:
     const ir::ValueId value = dag().input({ir::InputKind::Parameter, it->name, it->type, ir::Rate::Material,
                                            it->range, 0, static_cast<uint32_t>(module_.parameters.size())});
     module_.parameters.push_back(*it);
-    module_.parameters.back().neutral = graph::neutralValue(*it);
     parameters_[it->name] = value;
     return value;
   }

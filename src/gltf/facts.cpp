@@ -1,0 +1,18 @@
+#include "gltf/facts.h"
+
+#include <fmt/format.h>
+
+namespace lacquer::gltf {
+
+std::vector<std::string> VertexAttributes::names() const {
+  std::vector<std::string> out;
+  if (normal) out.emplace_back("NORMAL");
+  if (tangent) out.emplace_back("TANGENT");
+  for (size_t i = 0; i < texCoord.size(); ++i) {
+    if (texCoord[i]) out.push_back(fmt::format("TEXCOORD_{}", i));
+  }
+  if (color0) out.emplace_back("COLOR_0");
+  return out;
+}
+
+}  // namespace lacquer::gltf

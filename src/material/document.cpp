@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <optional>
+#include <utility>
+
+#include "gltf/container.h"
+#include "gltf/json.h"
+#include "gltf/path.h"
+#include "gltf/report.h"
+#include "gltf/scene.h"
+#include "gltf/text.h"
+#include "material/material.h"
+#include "material/reader.h"
+
+namespace lacquer::material {
+
+using gltf::Json;
+using gltf::Path;
+using gltf::Report;
+
+namespace {
+
+/// The two numbers of "2.0"; nothing when it is no version.
+std::optional<std::pair<int, int>> versionOf(const std::string& text) {
+  constexpr size_t kLongest = 9;  // digits of "1234.5678" at most: no overflow to care for
+  const size_t dot = text.find('.');
+  const auto digits = [](const std::string& s) {
+    return !s.empty() && s.find_first_not_of("0123456789") == std::string::npos;
+  };
+  if (text.size() > kLongest || dot == std::string::npos) return std::nullopt;
+  const std::string major = text.substr(0, dot);
+  const std::string minor = text.substr(dot + 1);
+  if (!digits(major) || !digits(minor)) return std::nullopt;
+  return std::pair(std::stoi(major), std::stoi(minor));
+}
+
+/// Checks one of the asset's two versions. `newest` is the newest minor version that can be read.
+void checkVersion(const Json& version, std::string_view name, int newest, const Path& path, Report& report) {
+  if (!version.is_string()) return report.wrongType(path, name, version, "a string such as \"2.0\"");
+  const auto& text = version.get_ref<const std::string&>();
+  const std::optional<std::pair<int, int>> number = versionOf(text);
+  if (number && number->first == 2 && number->second <= newest) return;
+  report.error("unsupported-version", path, fmt::format("{} is {}", name, gltf::quote(text)),
+               "Lacquer reads glTF 2.0");
+}
+
+/// What makes the file as a whole unusable.
+void checkRoot(const Json& root, Report& report) {
+  const Path path;
+  if (!root.is_object()) return report.wrongType(path, "the file", root, "a JSON object");
+  const Path assetPath(path, "asset");
+  const Json* asset = gltf::member(root, "asset");
+  if (asset == nullptr) {
+    return report.error("missing-property", path, "the file has no \"asset\"",
+                        "every glTF has one: \"asset\": { \"version\": \"2.0\" }");
+  }
+  if (!asset->is_object()) return report.wrongType(assetPath, "asset", *asset, "an object");
+  if (const Json* version = gltf::member(*asset, "version")) {
+    // Any 2.x can be read as a 2.0, unless it says otherwise in minVersion.
+    checkVersion(*version, "version", 9999, Path(assetPath, "version"), report);
+  } else {
+    report.error("missing-property", assetPath, "the asset has no \"version\"", "Lacquer reads glTF 2.0");
+  }
+  if (const Json* least = gltf::member(*asset, "minVersion")) {
+    checkVersion(*least, "minVersion", 0, Path(assetPath, "minVersion"), report);
+  }
+  if (const Json* materials = gltf::member(root, "materials"); materials != nullptr && !materials->is_array()) {
+    report.wrongType(Path(path, "materials"), "materials", *materials, "an array");
+  }
+}
+
+/// What the file says of the material extensions as a whole: those it cannot do without, and those at its root.
+void checkExtensions(const Json& root, const Schema& schema, Report& report) {
+  const Path path;
+  const Path requiredPath(path, "extensionsRequired");
+  const Json* required = gltf::member(root, "extensionsRequired");
+  for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i) {
+    if (!(*required)[i].is_string()) continue;
+    const auto& name = (*required)[i].get_ref<const std::string&>();
+    // Extensions of geometry, textures and so on are none of a shader generator's business; variants choose a whole
+    // material, and never reach a shader.
+    const bool of_materials = name.find("_materials_") != std::string::npos;
+    if (!of_materials || name == "KHR_materials_variants" || schema.find(name)) continue;
+    report.warning("required-extension", Path(requiredPath, i),
+                   fmt::format("{} is required, but Lacquer does not implement it", gltf::printable(name)),
+                   "materials that use it will look different");
+  }
+  const Path extensionsPath(path, "extensions");
+  const Json* extensions = gltf::member(root, "extensions");
+  if (extensions == nullptr || !extensions->is_object()) return;
+  for (const auto& [name, ignored] : extensions->items()) {
+    const std::optional<uint16_t> index = schema.find(name);
+    if ((!index || *index == 0) && name != "KHR_texture_transform") continue;
+    const std::string place = name == "KHR_texture_transform" ? "a textureInfo's extensions"
+                              : schema.extensions[*index]->inside.empty()
+                                  ? "the material's extensions"
+                                  : fmt::format("{}.extensions", schema.extensions[*index]->inside);
+    report.error("misplaced-extension", Path(extensionsPath, name), fmt::format("{} has no place here", name),
+                 fmt::format("move it to {}", place));
+  }
+}
+
+Result<Document> readDocument(std::string_view bytes, const std::string& name, const Schema& schema,
+                              const ReadOptions& options) {
+  const Result<std::string_view> text = gltf::jsonText(bytes, name);
+  if (!text) return tl::make_unexpected(text.error());
+  Result<Json> root = gltf::parseJson(*text, name);
+  if (!root) {
+    if (text->data() != bytes.data()) {
+      for (Diagnostic& one : root.error()) one.message += " (in the GLB's JSON chunk)";
+    }
+    return tl::make_unexpected(std::move(root.error()));
+  }
+  Diagnostics fatal;
+  Report report(name, fatal);
+  checkRoot(*root, report);
+  if (hasError(fatal)) return tl::make_unexpected(std::move(fatal));
+
+  Document document;
+  document.path = name;
+  const FileFacts facts{name, gltf::readScene(*root, document), options.permissive};
+  Report of_scene(name, document.diagnostics);
+  checkExtensions(*root, schema, of_scene);
+  if (const Json* materials = gltf::member(*root, "materials")) {
+    document.materials.reserve(materials->size());
+    for (size_t i = 0; i < materials->size(); ++i)
+      document.materials.push_back(readMaterial((*materials)[i], i, schema, facts));
+  }
+  return document;
+}
+
+/// Turns what the libraries (or the lack of memory) may throw into an error, so that nothing passes the API.
+template <class Read>
+Result<Document> guarded(const std::string& name, Read read) {
+  try {
+    return read();
+  } catch (const std::exception& exception) {
+    return fail("cannot-read", {name, 0, 0, {}},
+                "the file cannot be read: " + gltf::printable(exception.what(), 400));
+  }
+}
+
+}  // namespace
+
+Result<Document> read(const std::string& path, const Schema& schema, const ReadOptions& options) {
+  return guarded(path, [&]() -> Result<Document> {
+    const Result<std::string> bytes = gltf::readBytes(path);
+    if (!bytes) return tl::make_unexpected(bytes.error());
+    return readDocument(*bytes, path, schema, options);
+  });
+}
+
+Result<Document> readText(const std::string& bytes, const std::string& name, const Schema& schema,
+                              const ReadOptions& options) {
+  return guarded(name, [&] { return readDocument(bytes, name, schema, options); });
+}
+
+bool Material::has(uint16_t extension) const {
+  return extension == 0 || std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
+const ir::Components* Material::number(uint16_t property) const {
+  const auto it = std::find_if(numbers.begin(), numbers.end(), [&](const Number& n) { return n.property == property; });
+  return it == numbers.end() ? nullptr : &it->value;
+}
+
+const gltf::TextureInfo* Material::texture(uint16_t property) const {
+  const auto it =
+      std::find_if(textures.begin(), textures.end(), [&](const Texture& t) { return t.property == property; });
+  return it == textures.end() ? nullptr : &it->info;
+}
+
+}  // namespace lacquer::material

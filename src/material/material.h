@@ -1,0 +1,54 @@
+// A glTF material as its file gives it: values and textures by their numbers in the schema, and nothing for what the
+// file leaves out. Numbers are doubles as the JSON has them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gltf/facts.h"
+#include "ir/dag.h"
+#include "material/schema.h"
+
+namespace lacquer::material {
+
+struct Material {
+  struct Number {
+    uint16_t property = 0;
+    ir::Components value{};  ///< a bool is 0 or 1, a choice the place of its value
+  };
+  struct Texture {
+    uint16_t property = 0;
+    gltf::TextureInfo info;
+  };
+
+  int index = -1;    ///< in the file's materials; -1 is the default material of primitives without one
+  std::string name;  ///< as in the file; may be empty or not unique
+  std::vector<Number> numbers;
+  std::vector<Texture> textures;     ///< in the order of the JSON
+  std::vector<uint16_t> extensions;  ///< those that have an effect; glTF's own (0) is not listed
+  std::vector<std::string> ignored;  ///< JSON pointers of extensions that are not implemented, sorted
+  Diagnostics diagnostics;  ///< of this material; one of severity Error means: generate nothing for it
+
+  bool has(uint16_t extension) const;
+  const ir::Components* number(uint16_t property) const;       ///< null where the file says nothing
+  const gltf::TextureInfo* texture(uint16_t property) const;  ///< null where there is none
+};
+
+/// A file's materials and the facts of its scene.
+struct Document : gltf::Scene {
+  std::vector<Material> materials;
+};
+
+struct ReadOptions {
+  bool permissive = false;  ///< exclusion violations become warnings and the extension is dropped
+};
+
+/// Reads a .gltf or .glb file. Buffers and images need not exist. Errors: what makes the whole file unusable
+/// (unreadable, not JSON, truncated GLB, wrong root type); errors of one material are in that material.
+Result<Document> read(const std::string& path, const Schema& schema, const ReadOptions& options);
+
+/// As read(), from memory; `name` stands for the path in diagnostics.
+Result<Document> readText(const std::string& bytes, const std::string& name, const Schema& schema,
+                          const ReadOptions& options);
+
+}  // namespace lacquer::material

@@ -1,0 +1,139 @@
+#include "material/schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+
+namespace lacquer::material {
+
+namespace {
+
+Diagnostic problem(const lang::Origin& origin, std::string code, std::string message, std::string help = {}) {
+  return {std::move(code), Severity::Error,  {std::string(origin.file), origin.line, 0, {}}, std::move(message),
+          std::move(help), {}};
+}
+
+void addProperties(Schema& schema, uint16_t extension, std::span<const lang::PropertyDecl> decls,
+                   const std::string& path) {
+  constexpr std::string_view kTexture = "_texture";
+  for (const lang::PropertyDecl& decl : decls) {
+    const std::string here = path + std::string(decl.name);
+    if (decl.kind == Kind::Object) {
+      addProperties(schema, extension, decl.members, here + "/");
+      continue;
+    }
+    std::string name = parameterName(decl.role);
+    if (decl.kind == Kind::Texture && name.ends_with(kTexture)) name.resize(name.size() - kTexture.size());
+    schema.roles[decl.role].push_back(static_cast<uint16_t>(schema.properties.size()));
+    schema.properties.push_back({&decl, extension, here, std::move(name)});
+  }
+}
+
+void addRows(std::vector<Row>& out, std::string_view object, std::span<const lang::PropertyDecl> decls) {
+  for (const lang::PropertyDecl& decl : decls) {
+    if (decl.kind != Kind::Object) out.push_back({object, &decl});
+    addRows(out, decl.name, decl.members);
+  }
+}
+
+void checkRoles(const Schema& schema, Diagnostics& wrong) {
+  for (const auto& [role, providers] : schema.roles) {
+    const lang::PropertyDecl& first = *schema.properties[providers[0]].decl;
+    for (size_t i = 1; i < providers.size(); ++i) {
+      const Property& other = schema.properties[providers[i]];
+      const bool alike = other.decl->type == first.type && other.decl->kind == first.kind &&
+                         other.decl->members.size() == first.members.size();
+      const bool meant = other.decl->role != other.decl->name || first.role != first.name;
+      if (alike && meant) continue;
+      wrong.push_back(problem(
+          schema.extensions[other.extension]->origin, "duplicate-name",
+          fmt::format("two extensions have a property '{}'{}", role, alike ? "" : " of different types"),
+          alike ? "where they mean the same, say so by `as`; else give one another name by `as`"
+                : "give one of them another name by `as`"));
+    }
+  }
+}
+
+}  // namespace
+
+std::string parameterName(std::string_view property) {
+  std::string name;
+  for (const char c : property) {
+    const bool upper = std::isupper(static_cast<unsigned char>(c)) != 0;
+    if (upper && !name.empty()) name += '_';
+    name += upper ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : c;
+  }
+  return name;
+}
+
+std::optional<uint16_t> Schema::find(std::string_view name) const {
+  for (size_t i = 0; i < extensions.size(); ++i) {
+    const auto& drafts = extensions[i]->drafts;
+    if (extensions[i]->name == name || std::find(drafts.begin(), drafts.end(), name) != drafts.end())
+      return static_cast<uint16_t>(i);
+  }
+  return std::nullopt;
+}
+
+std::string Schema::pathOf(uint16_t extension) const {
+  const lang::ExtensionDecl& decl = *extensions[extension];
+  if (decl.core) return {};
+  std::string outer;
+  if (const std::optional<uint16_t> around = decl.inside.empty() ? std::nullopt : find(decl.inside))
+    outer = pathOf(*around) + "/";
+  return outer + "extensions/" + std::string(decl.name);
+}
+
+uint16_t Schema::indexOf(const lang::PropertyDecl& decl) const {
+  const auto it = std::find_if(properties.begin(), properties.end(),
+                               [&](const Property& property) { return property.decl == &decl; });
+  return static_cast<uint16_t>(it - properties.begin());
+}
+
+std::vector<Row> Schema::rows() const {
+  std::vector<Row> rows;
+  for (const lang::ExtensionDecl* extension : extensions)
+    addRows(rows, extension->core ? "material" : extension->name, extension->properties);
+  return rows;
+}
+
+Result<Schema> schemaOf(const lang::Library& library) {
+  Schema schema;
+  Diagnostics wrong;
+  for (const std::string_view name : library.names(lang::DeclKind::Extension)) {
+    const Result<const lang::ExtensionDecl*> found = library.extension(name);
+    if (!found) {
+      wrong.insert(wrong.end(), found.error().begin(), found.error().end());
+    } else {
+      schema.extensions.push_back(*found);
+    }
+  }
+  std::stable_partition(schema.extensions.begin(), schema.extensions.end(),
+                        [](const lang::ExtensionDecl* decl) { return decl->core; });
+  for (size_t i = 1; i < schema.extensions.size(); ++i) {
+    const lang::ExtensionDecl& decl = *schema.extensions[i];
+    if (decl.core) {
+      wrong.push_back(problem(decl.origin, "duplicate-name", "there is another `material`",
+                              fmt::format("glTF's own is '{}'", schema.extensions[0]->name)));
+    }
+    // One level is all that glTF has; a longer chain could close in a circle.
+    const std::optional<uint16_t> around = decl.inside.empty() ? std::nullopt : schema.find(decl.inside);
+    if (!decl.inside.empty() && (!around || !schema.extensions[*around]->inside.empty() || *around == 0)) {
+      wrong.push_back(problem(decl.origin, "unknown-extension",
+                              fmt::format("there is no extension '{}' for it to stand in", decl.inside)));
+    }
+  }
+  if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  for (size_t i = 0; i < schema.extensions.size(); ++i) {
+    const auto index = static_cast<uint16_t>(i);
+    const std::string path = schema.pathOf(index);
+    addProperties(schema, index, schema.extensions[i]->properties, path.empty() ? "" : path + "/");
+  }
+  checkRoles(schema, wrong);
+  if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  return schema;
+}
+
+}  // namespace lacquer::material

@@ -1,0 +1,270 @@
+#include "model/build.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "model/resolve.h"
+
+namespace lacquer::model {
+
+using graph::Graph;
+using graph::Source;
+
+namespace {
+
+/// Texture transforms and UV sets are equal when the coordinates are.
+std::string coordinateKey(const gltf::TextureInfo& info) {
+  const gltf::TextureTransform t = info.transform.value_or(gltf::TextureTransform{});
+  return fmt::format("{} {} {} {} {} {}", info.texCoord, t.offset[0], t.offset[1], t.rotation, t.scale[0],
+                     t.scale[1]);
+}
+
+/// Puts out what the ports of the template reach: nodes, and before them the parameters and textures that they need.
+class Writer {
+public:
+  Writer(const Model& model, Resolver& resolver, const material::Material& material,
+         const gltf::VertexAttributes& attributes, const BuildOptions& options, Graph& graph, Diagnostics& warnings)
+      : model_(model),
+        resolver_(resolver),
+        material_(material),
+        attributes_(attributes),
+        options_(options),
+        graph_(graph),
+        warnings_(warnings),
+        marked_(model.ids.size()),
+        written_(model.ids.size()) {}
+
+  void run(const lang::TemplateDecl& template_decl);
+
+private:
+  void mark(const Found& value);
+  void write(uint32_t id);
+  void writeOrdered();
+  void notTaken();
+  Source source(const Found& value);
+  Source from(const Found& value);
+  Source number(const Found& value);
+  Source texel(uint16_t property);
+  Source coordinate(uint16_t property);
+  Source editable(std::string name, ir::Type type, ir::Components value, const ir::Interval& range,
+                  const std::string& pointer, const ir::Components& neutral);
+
+  const Model& model_;
+  Resolver& resolver_;
+  const material::Material& material_;
+  const gltf::VertexAttributes& attributes_;
+  const BuildOptions& options_;
+  Graph& graph_;
+  Diagnostics& warnings_;
+  std::vector<bool> marked_;
+  std::vector<std::string> written_;                         ///< the node's id in the graph, once it is there
+  std::vector<std::pair<std::string, Source>> texels_;       ///< texture, UV and colour space -> texel
+  std::vector<std::pair<std::string, Source>> coordinates_;  ///< UV set and transform -> coordinate
+};
+
+void Writer::mark(const Found& value) {
+  if (value.kind != Found::Kind::Node || marked_[value.index]) return;
+  marked_[value.index] = true;
+  for (const Found& input : resolver_.node(value.index)->inputs) mark(input);
+}
+
+// -- sources --
+
+Source Writer::editable(std::string name, ir::Type type, ir::Components value, const ir::Interval& range,
+                        const std::string& pointer, const ir::Components& neutral) {
+  if (graph_.findParameter(name) == nullptr) graph_.parameters.push_back({name, type, value, range, pointer, neutral});
+  return {graph::ParameterRef{std::move(name)}, {}};
+}
+
+Source Writer::number(const Found& value) {
+  const material::Property& property = model_.schema->properties[value.property];
+  const lang::PropertyDecl* decl = property.decl;
+  std::string name = property.parameter_name;
+  std::string pointer = fmt::format("/materials/{}/{}", material_.index, property.path);
+  if (value.kind == Found::Kind::Member) {
+    decl = &decl->members[static_cast<size_t>(value.member)];
+    name += "_" + material::parameterName(decl->name);
+    pointer = fmt::format("{}/{}", material_.texture(value.property)->pointer, decl->name);
+  }
+  ir::Interval range = decl->range;
+  if (decl->or_zero) range.lo = std::min(range.lo, 0.0);
+  return editable(std::move(name), decl->type, value.constant, range, pointer,
+                  decl->default_value.value_or(ir::Components{}));
+}
+
+Source Writer::coordinate(uint16_t property) {
+  const gltf::TextureInfo& info = *material_.texture(property);
+  const std::string& slot = model_.schema->properties[property].parameter_name;
+  const std::string key = coordinateKey(info);
+  for (const auto& [known, source] : coordinates_) {
+    if (known == key) return source;
+  }
+  Source uv{graph::GivenRef{fmt::format("uv{}", info.texCoord)}, {}};
+  if (!attributes_.texCoord[static_cast<size_t>(info.texCoord)]) {
+    warnings_.push_back({"texcoord-missing",
+                         Severity::Warning,
+                         {{}, 0, 0, info.pointer},
+                         fmt::format("the texture uses TEXCOORD_{}, which a primitive with this material does not have",
+                                     info.texCoord),
+                         "give the primitive that UV set, or another texCoord to the texture; (0, 0) is used",
+                         {}});
+    uv = {graph::Literal{ir::Type::Vec2, {0, 0}}, {}};
+  }
+  const gltf::TextureTransform t = info.transform.value_or(gltf::TextureTransform{});
+  if (!t.identity()) {
+    graph::Inputs inputs{{"uv", uv}};
+    const std::string pointer = info.pointer + "/extensions/KHR_texture_transform";
+    const auto add = [&](const char* input, ir::Type type, ir::Components value, bool wanted) {
+      if (!wanted) return;
+      inputs.emplace_back(input, editable(fmt::format("{}_uv_{}", slot, input), type, value, {},
+                                          fmt::format("{}/{}", pointer, input),
+                                          std::string_view(input) == "scale" ? ir::Components{1, 1} : ir::Components{}));
+    };
+    add("offset", ir::Type::Vec2, {t.offset[0], t.offset[1]}, t.offset != std::array<double, 2>{0, 0});
+    add("rotation", ir::Type::Float, {t.rotation}, t.rotation != 0);
+    add("scale", ir::Type::Vec2, {t.scale[0], t.scale[1]}, t.scale != std::array<double, 2>{1, 1});
+    graph_.add(slot + ".uv", "uv_transform", std::move(inputs));
+    uv = {graph::NodeRef{slot + ".uv", {}}, {}};
+  }
+  coordinates_.emplace_back(key, uv);
+  return uv;
+}
+
+/// The texel of a texture as a vec4; textures used twice in the same way are sampled once.
+Source Writer::texel(uint16_t property) {
+  const gltf::TextureInfo& info = *material_.texture(property);
+  const material::Property& row = model_.schema->properties[property];
+  const std::string& slot = row.parameter_name;
+  const std::string key = fmt::format("{} {} {}", info.texture, row.decl->srgb, coordinateKey(info));
+  for (const auto& [known, source] : texels_) {
+    if (known == key) return source;
+  }
+  ir::TextureSlot texture;
+  texture.name = slot + "_texture";
+  texture.srgb = row.decl->srgb && !options_.decode_srgb;
+  texture.texture = info.texture;
+  texture.pointer = info.pointer;
+  graph_.textures.push_back(texture);
+  const Source uv = coordinate(property);
+  graph_.add(slot + ".texel", "texture_sample",
+             graph::Inputs{{"image", {graph::TextureRef{texture.name}, {}}}, {"uv", uv}});
+  Source result{graph::NodeRef{slot + ".texel", {}}, {}};
+  if (row.decl->srgb && options_.decode_srgb) {
+    graph_.add(slot + ".decoded", "srgb_decode", graph::Inputs{{"encoded", result}});
+    result = {graph::NodeRef{slot + ".decoded", {}}, {}};
+  }
+  texels_.emplace_back(key, result);
+  return result;
+}
+
+Source Writer::from(const Found& value) {
+  switch (value.kind) {
+    case Found::Kind::Nothing:
+    case Found::Kind::Void: break;
+    case Found::Kind::Constant: return {graph::Literal{value.type, value.constant}, {}};
+    case Found::Kind::Number:
+    case Found::Kind::Member: return number(value);
+    case Found::Kind::Texel: return texel(value.property);
+    case Found::Kind::Uv: return coordinate(value.property);
+    case Found::Kind::Given: return {graph::GivenRef{model_.givens[value.index]}, {}};
+    case Found::Kind::Texture: return {graph::TextureRef{model_.givens[value.index]}, {}};
+    case Found::Kind::Node:
+      write(value.index);
+      return {graph::NodeRef{written_[value.index], std::string(value.output)}, {}};
+  }
+  return {};
+}
+
+Source Writer::source(const Found& value) {
+  Source source = from(value);
+  source.swizzle = value.swizzle;
+  return source;
+}
+
+// -- nodes --
+
+void Writer::write(uint32_t id) {
+  if (!written_[id].empty()) return;
+  const Resolver::Node& node = *resolver_.node(id);
+  graph::Inputs inputs;
+  for (size_t i = 0; i < node.inputs.size(); ++i) {
+    const Found& input = node.inputs[i];
+    const lang::Param& param = node.decl->params[i];
+    // A number that is the default is not worth a connection.
+    const bool same = input.kind == Found::Kind::Constant && param.default_value && input.type == param.type &&
+                      *param.default_value == input.constant;
+    if (input && !same) inputs.emplace_back(param.name, source(input));
+  }
+  if (node.shared) {
+    for (const graph::Node& other : graph_.nodes) {
+      if (other.type != node.decl->name || other.variant != node.variant || other.inputs != inputs) continue;
+      written_[id] = other.id;
+      return;
+    }
+  }
+  written_[id] = std::string(model_.ids[id].name);
+  graph_.add(written_[id], std::string(node.decl->name), std::move(inputs));
+  graph_.nodes.back().variant = std::string(node.variant);
+}
+
+void Writer::writeOrdered() {
+  for (const uint32_t index : model_.ordered) {
+    const Line& line = model_.lines[index];
+    // Of lines with one id, the one that the node is of says where it stands.
+    if (marked_[line.id] && resolver_.node(line.id)->order == line.order) write(line.id);
+  }
+}
+
+/// Terms that the material has, whose values no port of the template takes.
+void Writer::notTaken() {
+  std::vector<bool> used(model_.terms.size()), made(model_.terms.size());
+  for (const Line& line : model_.lines) {
+    if (line.term == Line::kNone || line.kind != lang::LineDecl::Kind::Value) continue;
+    const bool taken = marked_[line.id];
+    for (uint32_t term = line.term; term != Line::kNone; term = model_.terms[term].parent) {
+      used[term] = used[term] || taken;
+      made[term] = true;
+    }
+  }
+  for (uint32_t i = 0; i < model_.terms.size(); ++i) {
+    if (!made[i] || used[i] || !resolver_.alive(i)) continue;
+    const uint32_t parent = model_.terms[i].parent;
+    if ((parent != Line::kNone && !used[parent]) || !resolver_.gives(i)) continue;
+    graph_.skipped.push_back({std::string(model_.terms[i].name), "nothing that the template takes needs it"});
+  }
+}
+
+void Writer::run(const lang::TemplateDecl& template_decl) {
+  std::vector<std::pair<std::string_view, Found>> ports;
+  for (const lang::PortDecl& port : template_decl.ports) {
+    const Found value = resolver_.port(port.param.name);
+    if (!value) continue;
+    mark(value);
+    ports.emplace_back(port.param.name, value);
+  }
+  graph_.skipped = resolver_.skipped();
+  if (!resolver_.wrong().empty()) return;
+  writeOrdered();
+  for (const auto& [name, value] : ports) graph_.outputs.emplace_back(name, source(value));
+  notTaken();
+}
+
+}  // namespace
+
+Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl, const material::Material& material,
+                    const gltf::VertexAttributes& attributes, const BuildOptions& options, Diagnostics& warnings) {
+  Graph graph;
+  graph.name = material.name;
+  graph.template_name = options.template_name;
+  // Room for a coat with all of its terms.
+  graph.nodes.reserve(64);
+  graph.parameters.reserve(48);
+  Resolver resolver(model, template_decl, material, attributes, options, warnings);
+  Writer(model, resolver, material, attributes, options, graph, warnings).run(template_decl);
+  if (!resolver.wrong().empty()) return tl::make_unexpected(resolver.wrong());
+  return graph;
+}
+
+}  // namespace lacquer::model

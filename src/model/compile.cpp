@@ -1,0 +1,619 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "lang/parser.h"
+#include "lang/reporter.h"
+#include "lang/suggest.h"
+#include "model/model.h"
+#include "model/names.h"
+
+namespace lacquer::model {
+
+using lang::Expr;
+using lang::ExprPtr;
+using lang::LineDecl;
+using lang::Span;
+
+namespace {
+
+/// Turns the declarations of one library into a Model.
+class Compiler {
+public:
+  Compiler(const lang::Library& library, const material::Schema& schema) : library_(library), names_(library, schema, model_) {
+    model_.schema = &schema;
+  }
+  Result<Model> run(std::string_view profile);
+
+private:
+  /// The text that is being resolved.
+  struct Source {
+    std::string_view file, text;
+  };
+  struct PathUse {
+    uint32_t id;
+    std::string_view path;
+    Span span;
+    Source source;
+  };
+
+  void collectParts();
+  void insertOver(std::vector<const lang::PartDecl*>& parts);
+  void declare(const std::vector<LineDecl>& lines);
+  void part(uint32_t index);
+  void lines(uint32_t part, uint32_t first_term);
+  void profileLines();
+  const LineDecl* overriding(std::string_view id) const;
+  Line line(const LineDecl& decl, uint32_t part, uint32_t term);
+  void place(Line line);
+  Condition condition(const ExprPtr& expr);
+  Condition operation(const Expr& expr);
+  Condition comparison(const Expr& expr);
+  Condition named(const Expr& expr);
+  Value value(const ExprPtr& expr);
+  Value call(const Expr& expr);
+  void argument(Value& call, const Expr& expr, size_t at);
+  bool constant(const Expr& expr, Value& out);
+  Value reference(const Expr& expr);
+  void checkPaths();
+  bool fits(const Value& value, std::string_view path, int depth) const;
+  bool fits(uint32_t id, std::string_view path, int depth) const;
+  void findLive();
+  void order();
+
+  void error(Span span, std::string code, std::string message, std::string help = {});
+  void error(const Source& source, Span span, std::string code, std::string message, std::string help = {});
+
+  const lang::Library& library_;
+  Model model_;
+  Names names_;
+  Source source_;
+  Diagnostics wrong_;
+  std::vector<PathUse> paths_;
+  std::set<const LineDecl*> placed_;  ///< the profile's lines that stand in place of others
+};
+
+void Compiler::error(const Source& source, Span span, std::string code, std::string message, std::string help) {
+  lang::Reporter reporter(source.file, source.text);
+  reporter.error(code, span, std::move(message), std::move(help));
+  Diagnostics one = reporter.take();
+  wrong_.insert(wrong_.end(), one.begin(), one.end());
+}
+
+void Compiler::error(Span span, std::string code, std::string message, std::string help) {
+  error(source_, span, std::move(code), std::move(message), std::move(help));
+}
+
+// -- what there is --
+
+void Compiler::collectParts() {
+  std::vector<const lang::PartDecl*> parts;
+  const std::vector<std::string_view> orders = library_.names(lang::DeclKind::Layers);
+  for (const std::string_view name : orders) {
+    const Result<const lang::LayersDecl*> layers = library_.layers(name);
+    if (!layers) {
+      wrong_.insert(wrong_.end(), layers.error().begin(), layers.error().end());
+      continue;
+    }
+    source_ = {(*layers)->origin.file, (*layers)->text};
+    if (orders.size() > 1) {
+      error((*layers)->span, "duplicate-name", "there is another order of layers",
+            "a part of your own says `over PART` instead");
+    }
+    names_.sections((*layers)->sections);
+    for (size_t i = 0; i < (*layers)->parts.size(); ++i) {
+      const Result<const lang::PartDecl*> part = library_.part((*layers)->parts[i]);
+      if (part) {
+        parts.push_back(*part);
+      } else if (!library_.has(lang::DeclKind::Part, (*layers)->parts[i])) {
+        error((*layers)->spans[i], "unknown-part", fmt::format("there is no part '{}'", (*layers)->parts[i]),
+              lang::didYouMean((*layers)->parts[i], library_.names(lang::DeclKind::Part)));
+      } else {
+        wrong_.insert(wrong_.end(), part.error().begin(), part.error().end());
+      }
+    }
+  }
+  insertOver(parts);
+  for (const lang::PartDecl* decl : parts) {
+    Part part;
+    part.decl = decl;
+    source_ = {decl->origin.file, decl->text};
+    for (const std::string_view name : decl->of) {
+      if (const std::optional<uint16_t> extension = model_.schema->find(name)) {
+        part.of.push_back(*extension);
+      } else {
+        error(decl->span, "unknown-extension", fmt::format("there is no extension '{}'", name),
+              "declare it: `extension NAME { ... }`");
+      }
+    }
+    model_.parts.push_back(std::move(part));
+    declare(decl->lines);
+  }
+}
+
+/// Parts that the order does not list lie right above the part that they name.
+void Compiler::insertOver(std::vector<const lang::PartDecl*>& parts) {
+  std::vector<const lang::PartDecl*> left;
+  for (const std::string_view name : library_.names(lang::DeclKind::Part)) {
+    const Result<const lang::PartDecl*> part = library_.part(name);
+    if (!part) {
+      wrong_.insert(wrong_.end(), part.error().begin(), part.error().end());
+    } else if (std::find(parts.begin(), parts.end(), *part) == parts.end()) {
+      left.push_back(*part);
+    }
+  }
+  for (bool found = true; found && !left.empty();) {
+    found = false;
+    for (auto it = left.begin(); it != left.end();) {
+      const auto below = std::find_if(parts.begin(), parts.end(),
+                                      [&](const lang::PartDecl* part) { return part->name == (*it)->over; });
+      if (below == parts.end()) {
+        ++it;
+        continue;
+      }
+      // Behind those that lie over the same part already.
+      auto at = below + 1;
+      while (at != parts.end() && (*at)->over == (*it)->over && !(*it)->over.empty()) ++at;
+      parts.insert(at, *it);
+      it = left.erase(it);
+      found = true;
+    }
+  }
+  for (const lang::PartDecl* part : left) {
+    error({part->origin.file, part->text}, part->span, "unknown-part",
+          part->over.empty() ? fmt::format("the part '{}' has no place among the layers", part->name)
+                             : fmt::format("there is no part '{}' for it to lie over", part->over),
+          part->over.empty() ? "say `over PART` behind its name"
+                             : lang::didYouMean(part->over, library_.names(lang::DeclKind::Part)));
+  }
+}
+
+void Compiler::declare(const std::vector<LineDecl>& lines) {
+  for (const LineDecl& line : lines) {
+    if (line.kind == LineDecl::Kind::Value || line.kind == LineDecl::Kind::Flag) names_.addId(line.id);
+    if (line.kind == LineDecl::Kind::Flag) names_.addFlag(line.id);
+    if (line.kind == LineDecl::Kind::Out) names_.addOut(line.id);
+  }
+}
+
+// -- lines --
+
+const LineDecl* Compiler::overriding(std::string_view id) const {
+  for (const LineDecl& line : model_.profile->lines) {
+    if (line.kind == LineDecl::Kind::Value && line.id == id) return &line;
+  }
+  return nullptr;
+}
+
+Line Compiler::line(const LineDecl& decl, uint32_t part, uint32_t term) {
+  Line line;
+  line.kind = decl.kind;
+  line.shared = decl.shared;
+  line.part = part;
+  line.term = term;
+  line.code = decl.code;
+  line.message = decl.message;
+  line.help = decl.help;
+  line.reason = decl.reason;
+  if (decl.place) line.place = value(decl.place);
+  if (decl.kind == LineDecl::Kind::Replace) {
+    line.target = value(decl.target);
+    if (line.target.kind != Value::Kind::Id)
+      error(decl.target->span, "wrong-line", "only another line's value can be replaced");
+  }
+  if (decl.kind == LineDecl::Kind::Out) line.id = names_.out(decl.id);
+  if (decl.kind == LineDecl::Kind::Value || decl.kind == LineDecl::Kind::Flag) line.id = names_.id(decl.id);
+  for (const lang::Alternative& alternative : decl.alternatives) {
+    Alternative one;
+    if (decl.kind == LineDecl::Kind::Flag) {
+      one.condition = condition(alternative.value);
+    } else {
+      one.value = value(alternative.value);
+      if (alternative.condition) one.condition = condition(alternative.condition);
+      one.unless = alternative.unless;
+    }
+    line.alternatives.push_back(std::move(one));
+  }
+  return line;
+}
+
+void Compiler::place(Line line) {
+  const auto index = static_cast<uint32_t>(model_.lines.size());
+  switch (line.kind) {
+    case LineDecl::Kind::Value:
+    case LineDecl::Kind::Flag: model_.ids[line.id].lines.push_back(index); break;
+    case LineDecl::Kind::Out: model_.outs[line.id].lines.push_back(index); break;
+    case LineDecl::Kind::Replace:
+      if (line.target.kind == Value::Kind::Id) model_.ids[line.target.index].replaced.push_back(index);
+      break;
+    case LineDecl::Kind::Require:
+      if (line.term != Line::kNone) model_.terms[line.term].requirements.push_back(index);
+      break;
+  }
+  model_.lines.push_back(std::move(line));
+}
+
+void Compiler::part(uint32_t index) {
+  const lang::PartDecl& decl = *model_.parts[index].decl;
+  const auto first = static_cast<uint32_t>(model_.terms.size());
+  model_.parts[index].term = first;
+  for (const lang::TermDecl& term : decl.terms) {
+    Term made;
+    made.name = term.name;
+    made.part = index;
+    made.parent = &term == decl.terms.data() ? Line::kNone : first + term.parent;
+    made.when_reason = term.when_reason;
+    made.unless_reason = term.unless_reason;
+    made.has_unless = term.unless != nullptr;
+    names_.addTerm(term.name, static_cast<uint32_t>(model_.terms.size()));
+    model_.terms.push_back(std::move(made));
+  }
+}
+
+void Compiler::lines(uint32_t part, uint32_t first_term) {
+  const lang::PartDecl& decl = *model_.parts[part].decl;
+  source_ = {decl.origin.file, decl.text};
+  for (size_t i = 0; i < decl.terms.size(); ++i) {
+    Term& term = model_.terms[first_term + i];
+    if (decl.terms[i].when) term.when = condition(decl.terms[i].when);
+    if (decl.terms[i].unless) term.unless = condition(decl.terms[i].unless);
+  }
+  for (size_t i = 0; i < decl.lines.size(); ++i) {
+    const LineDecl& own = decl.lines[i];
+    const LineDecl* other = own.kind == LineDecl::Kind::Value ? overriding(own.id) : nullptr;
+    if (other != nullptr && !placed_.insert(other).second) continue;
+    const std::optional<uint32_t> section = names_.section(own.section);
+    if (!section) {
+      error(own.span, "unknown-section", fmt::format("there is no section '{}'", own.section),
+            "the layers say which sections there are");
+    }
+    const Source here = source_;
+    if (other != nullptr) source_ = {model_.profile->origin.file, model_.profile->text};
+    Line made = line(other == nullptr ? own : *other, part, first_term + own.term);
+    source_ = here;
+    constexpr uint32_t kLinesOfPart = 1024, kParts = 1024;
+    made.order = (section.value_or(0) * kParts + std::min(part, kParts - 1)) * kLinesOfPart +
+                 static_cast<uint32_t>(std::min<size_t>(i, kLinesOfPart - 1));
+    place(std::move(made));
+  }
+}
+
+/// What a profile adds beside the lines that it replaces stands outside of all parts.
+void Compiler::profileLines() {
+  source_ = {model_.profile->origin.file, model_.profile->text};
+  for (const LineDecl& decl : model_.profile->lines) {
+    if (placed_.contains(&decl)) continue;
+    if (decl.kind == LineDecl::Kind::Require) {
+      error(decl.span, "wrong-line", "a profile has no terms that could require something");
+      continue;
+    }
+    Line made = line(decl, static_cast<uint32_t>(model_.parts.size()), Line::kNone);
+    made.order = Line::kNone;
+    place(std::move(made));
+  }
+}
+
+// -- values --
+
+bool Compiler::constant(const Expr& expr, Value& out) {
+  out.kind = Value::Kind::Constant;
+  if (expr.kind == Expr::Kind::Literal) {
+    out.type = expr.type == ir::Type::Bool ? ir::Type::Bool : ir::Type::Float;
+    out.constant[0] = expr.number;
+    return true;
+  }
+  if (expr.kind == Expr::Kind::Operation && expr.name == "-" && expr.args.size() == 1) {
+    if (!constant(*expr.args[0], out)) return false;
+    for (double& x : out.constant) x = -x;
+    return true;
+  }
+  if (expr.kind == Expr::Kind::Name && library_.has(lang::DeclKind::Const, expr.name)) {
+    const Result<const lang::ConstDecl*> decl = library_.constant(expr.name);
+    if (!decl) return false;
+    out.type = (*decl)->type;
+    out.constant = (*decl)->value;
+    return true;
+  }
+  if (expr.kind != Expr::Kind::Construct || !ir::isFloating(expr.type)) return false;
+  out.type = expr.type;
+  size_t filled = 0;
+  const auto wanted = static_cast<size_t>(ir::componentCount(expr.type));
+  for (const ExprPtr& arg : expr.args) {
+    Value one;
+    if (!constant(*arg, one) || filled >= wanted) return false;
+    for (int i = 0; i < ir::componentCount(one.type) && filled < wanted; ++i)
+      out.constant[filled++] = one.constant[static_cast<size_t>(i)];
+  }
+  for (; filled == 1 && wanted > 1;) {
+    std::fill(out.constant.begin() + 1, out.constant.begin() + static_cast<ptrdiff_t>(wanted), out.constant[0]);
+    filled = wanted;
+  }
+  return filled == wanted;
+}
+
+Value Compiler::value(const ExprPtr& expr) {
+  if (expr->kind == Expr::Kind::Name && expr->name == "none") return {};
+  if (expr->kind == Expr::Kind::Call) return call(*expr);
+  Value number;
+  if (constant(*expr, number)) return number;
+  if (expr->kind == Expr::Kind::Name || expr->kind == Expr::Kind::Member) return reference(*expr);
+  error(expr->span, "wrong-line", "a line is one node, a name or a number",
+        "put the calculation into a node, or into a line of its own");
+  return {};
+}
+
+Value Compiler::reference(const Expr& expr) {
+  const std::string_view text = names_.textOf(source_.text, expr.span);
+  Value out;
+  std::vector<std::string_view> candidates;
+  if (!names_.resolve(text, out, candidates)) {
+    error(expr.span, "unknown-name", fmt::format("there is no line, property or given '{}'", text),
+          lang::didYouMean(text, candidates));
+    return {};
+  }
+  if (out.kind == Value::Kind::Id && !out.path.empty()) paths_.push_back({out.index, out.path, expr.span, source_});
+  return out;
+}
+
+Value Compiler::call(const Expr& expr) {
+  Value out;
+  out.kind = Value::Kind::Call;
+  const Result<const lang::NodeDecl*> node = library_.node(expr.name);
+  if (!node) {
+    if (library_.has(lang::DeclKind::Node, expr.name)) {
+      wrong_.insert(wrong_.end(), node.error().begin(), node.error().end());
+    } else {
+      error(expr.span, "unknown-node", fmt::format("there is no node '{}'", expr.name),
+            lang::didYouMean(expr.name, library_.names(lang::DeclKind::Node)));
+    }
+    return {};
+  }
+  out.node = *node;
+  out.variant = expr.variant;
+  if ((*node)->find(expr.variant) == nullptr) {
+    error(expr.span, "unknown-variant", fmt::format("'{}' has no variant '{}'", expr.name, expr.variant));
+  }
+  Value absent;
+  absent.absent = true;
+  out.args.assign((*node)->params.size(), absent);
+  for (size_t i = 0; i < expr.args.size(); ++i) argument(out, expr, i);
+  for (size_t i = 0; i < out.args.size(); ++i) {
+    const lang::Param& param = (*node)->params[i];
+    if (!out.args[i].absent || param.default_value) continue;
+    error(expr.span, "wrong-count", fmt::format("'{}' needs '{}'", expr.name, param.name), "it has no default");
+  }
+  return out;
+}
+
+void Compiler::argument(Value& call, const Expr& expr, size_t at) {
+  const std::vector<lang::Param>& params = call.node->params;
+  size_t index = at;
+  if (!expr.labels[at].empty()) {
+    const auto param = std::find_if(params.begin(), params.end(),
+                                    [&](const lang::Param& p) { return p.name == expr.labels[at]; });
+    index = static_cast<size_t>(param - params.begin());
+    if (param == params.end()) {
+      std::vector<std::string_view> candidates;
+      for (const lang::Param& p : params) candidates.push_back(p.name);
+      return error(expr.args[at]->span, "unknown-parameter",
+                   fmt::format("'{}' has no parameter '{}'", expr.name, expr.labels[at]),
+                   lang::didYouMean(expr.labels[at], candidates));
+    }
+  }
+  if (index >= params.size()) {
+    return error(expr.span, "wrong-count",
+                 fmt::format("'{}' takes {} arguments, not {}", expr.name, params.size(), expr.args.size()));
+  }
+  if (!call.args[index].absent) {
+    return error(expr.args[at]->span, "wrong-argument", fmt::format("'{}' is given twice", params[index].name));
+  }
+  if (expr.args[at]->kind == Expr::Kind::Call) {
+    return error(expr.args[at]->span, "wrong-line", "a line is one node", "give this one a line of its own");
+  }
+  call.args[index] = value(expr.args[at]);
+}
+
+// -- conditions --
+
+Condition Compiler::condition(const ExprPtr& expr) {
+  if (expr->kind == Expr::Kind::Operation) return operation(*expr);
+  Condition out;
+  if (expr->kind == Expr::Kind::Literal && expr->type == ir::Type::Bool) {
+    if (expr->number != 0) return out;
+    out.kind = Condition::Kind::Not;
+    out.conditions.emplace_back();
+    return out;
+  }
+  if (expr->kind == Expr::Kind::Call && expr->args.size() == 1) {
+    if (expr->name == "uniform") {
+      out.kind = Condition::Kind::Uniform;
+      out.values.push_back(value(expr->args[0]));
+      return out;
+    }
+    if (expr->name == "takes") {
+      out.kind = Condition::Kind::Takes;
+      out.name = names_.textOf(source_.text, expr->args[0]->span);
+      return out;
+    }
+  }
+  if (expr->kind == Expr::Kind::Name || expr->kind == Expr::Kind::Member) return named(*expr);
+  error(expr->span, "wrong-condition", "this is no condition",
+        "conditions are names, comparisons, uniform(x), takes(port), and '!', '&&', '||' of them");
+  return out;
+}
+
+Condition Compiler::operation(const Expr& expr) {
+  Condition out;
+  const bool logic = expr.name == "&&" || expr.name == "||" || expr.name == "!";
+  if (!logic) return comparison(expr);
+  out.kind = expr.name == "!" ? Condition::Kind::Not : expr.name == "&&" ? Condition::Kind::And : Condition::Kind::Or;
+  for (const ExprPtr& arg : expr.args) out.conditions.push_back(condition(arg));
+  return out;
+}
+
+Condition Compiler::comparison(const Expr& expr) {
+  Condition out;
+  const bool unlike = expr.name == "!=";
+  if (!unlike && expr.name != "==") {
+    error(expr.span, "wrong-condition", fmt::format("'{}' is no comparison of a condition", expr.name),
+          "write '==' or '!='");
+    return out;
+  }
+  const Value left = value(expr.args[0]);
+  const lang::PropertyDecl* choice = names_.choice(left);
+  Value right;
+  if (choice != nullptr) {
+    const std::string_view wanted = expr.args[1]->name;
+    const auto found = std::find(choice->choices.begin(), choice->choices.end(), wanted);
+    if (found == choice->choices.end()) {
+      error(expr.args[1]->span, "unknown-value", fmt::format("'{}' is no value of '{}'", wanted, choice->name),
+            lang::didYouMean(wanted, choice->choices));
+    }
+    right.kind = Value::Kind::Constant;
+    right.constant[0] = static_cast<double>(found - choice->choices.begin());
+    out.name = wanted;
+  } else {
+    right = value(expr.args[1]);
+  }
+  if (right.kind == Value::Kind::Constant) {
+    out.kind = Condition::Kind::Equal;
+    out.constant = right.constant;
+    if (right.type == ir::Type::Float) out.constant.fill(right.constant[0]);
+    if (left.kind != Value::Kind::Role) {
+      error(expr.args[0]->span, "wrong-condition", "only a property of the material can be compared with a number");
+    }
+    out.values = {left};
+  } else {
+    out.kind = Condition::Kind::Same;
+    out.values = {left, right};
+  }
+  if (!unlike) return out;
+  Condition negated;
+  negated.kind = Condition::Kind::Not;
+  negated.conditions.push_back(std::move(out));
+  return negated;
+}
+
+Condition Compiler::named(const Expr& expr) {
+  const std::string_view text = names_.textOf(source_.text, expr.span);
+  Condition out;
+  if (names_.condition(text, out)) return out;
+  out.kind = Condition::Kind::Present;
+  out.values.push_back(reference(expr));
+  return out;
+}
+
+// -- what holds across lines --
+
+/// Whether what is behind an id's point is an output of one of its nodes, or a swizzle.
+bool Compiler::fits(uint32_t id, std::string_view path, int depth) const {
+  constexpr int kDeepest = 32;
+  if (depth > kDeepest) return true;
+  for (const uint32_t line : model_.ids[id].lines) {
+    for (const Alternative& alternative : model_.lines[line].alternatives) {
+      if (fits(alternative.value, path, depth)) return true;
+    }
+  }
+  return false;
+}
+
+bool Compiler::fits(const Value& value, std::string_view path, int depth) const {
+  if (path.empty() || isSwizzle(path)) return true;
+  if (value.kind == Value::Kind::Id)
+    return value.path.empty() ? fits(value.index, path, depth + 1) : false;
+  if (value.kind == Value::Kind::Below) return true;
+  if (value.kind != Value::Kind::Call) return false;
+  const std::string_view head = path.substr(0, path.find('.'));
+  const bool output = std::any_of(value.node->results.begin(), value.node->results.end(),
+                                  [&](const lang::Param& result) { return result.name == head; });
+  return output && (head.size() == path.size() || isSwizzle(path.substr(head.size() + 1)));
+}
+
+void Compiler::checkPaths() {
+  for (const PathUse& use : paths_) {
+    if (fits(use.id, use.path, 0)) continue;
+    error(use.source, use.span, "unknown-output",
+          fmt::format("'{}' has no output '{}'", model_.ids[use.id].name, use.path));
+  }
+}
+
+namespace {
+
+/// Calls `see(role, member)` for every property in a value or a condition.
+template <class See>
+void rolesOf(const Value& value, const See& see) {
+  if (value.kind == Value::Kind::Role) see(value.index, value.member);
+  for (const Value& arg : value.args) rolesOf(arg, see);
+}
+
+template <class See>
+void rolesOf(const Condition& condition, const See& see) {
+  for (const Value& value : condition.values) rolesOf(value, see);
+  for (const Condition& inner : condition.conditions) rolesOf(inner, see);
+}
+
+}  // namespace
+
+/// A number stays editable for the terms whose `unless` asks for it, else for the terms that use it.
+void Compiler::findLive() {
+  std::set<std::pair<uint32_t, int>> asked;
+  const auto add = [&](uint32_t role, int member, std::string_view term) {
+    Role& to = model_.roles[role];
+    if (member >= static_cast<int>(to.member_live.size())) to.member_live.resize(static_cast<size_t>(member) + 1);
+    auto& list = member < 0 ? to.live : to.member_live[static_cast<size_t>(member)];
+    if (std::find(list.begin(), list.end(), term) == list.end()) list.push_back(term);
+  };
+  for (const Term& term : model_.terms) {
+    rolesOf(term.unless, [&](uint32_t role, int member) {
+      asked.emplace(role, member);
+      add(role, member, term.name);
+    });
+  }
+  for (const Line& line : model_.lines) {
+    if (line.term == Line::kNone) continue;
+    const auto see = [&](uint32_t role, int member) {
+      if (!asked.contains({role, member})) add(role, member, model_.terms[line.term].name);
+    };
+    for (const Alternative& alternative : line.alternatives) rolesOf(alternative.value, see);
+  }
+}
+
+void Compiler::order() {
+  for (size_t i = 0; i < model_.lines.size(); ++i) {
+    const Line& line = model_.lines[i];
+    if (line.kind == LineDecl::Kind::Value && line.order != Line::kNone)
+      model_.ordered.push_back(static_cast<uint32_t>(i));
+  }
+  std::stable_sort(model_.ordered.begin(), model_.ordered.end(),
+                   [&](uint32_t a, uint32_t b) { return model_.lines[a].order < model_.lines[b].order; });
+}
+
+Result<Model> Compiler::run(std::string_view profile) {
+  const Result<const lang::ProfileDecl*> found = library_.profile(profile);
+  if (!found) return tl::make_unexpected(found.error());
+  model_.profile = *found;
+  names_.addRoles();
+  names_.addSwitches(wrong_);
+  collectParts();
+  declare(model_.profile->lines);
+  for (uint32_t i = 0; i < model_.parts.size(); ++i) part(i);
+  for (uint32_t i = 0; i < model_.parts.size(); ++i) lines(i, model_.parts[i].term);
+  profileLines();
+  checkPaths();
+  if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
+  findLive();
+  order();
+  return std::move(model_);
+}
+
+}  // namespace
+
+Result<Model> compile(const lang::Library& library, const material::Schema& schema, std::string_view profile) {
+  return Compiler(library, schema).run(profile);
+}
+
+}  // namespace lacquer::model

@@ -1,0 +1,161 @@
+// The parts of the library under one profile, with every name resolved: what build() follows for each material.
+//
+// An id ("coat.fresnel") may be said by several lines; the first that holds counts. A reference is to an id, to a
+// property, to what a template gives, or to what lies below; each may come to nothing, and then the line that needs it
+// comes to nothing as well, unless the node's parameter has a default.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lang/library.h"
+#include "material/schema.h"
+
+namespace lacquer::model {
+
+/// What a line may be made of.
+struct Value {
+  enum class Kind : uint8_t {
+    None,      ///< `none`: nothing, and what lies below does not count either
+    Constant,  ///< `constant` of `type`
+    Id,        ///< `index` in Model::ids
+    Below,     ///< `index` in Model::outs: the value that the parts below put out
+    Role,      ///< `index` in Model::roles
+    Given,     ///< `index` in Model::givens: of the template
+    Call,      ///< of `node`, `args` by its parameters
+  };
+  Kind kind = Kind::None;
+  ir::Type type = ir::Type::Float;
+  uint32_t index = 0;
+  int member = -1;          ///< Role: of the textureInfo
+  bool coordinate = false;  ///< Role: the texture's coordinate
+  bool absent = false;      ///< of a Call's argument: not given
+  ir::Components constant{};
+  std::string_view path;  ///< Id, Below: an output, a swizzle, or both, from a point on; Role, Given: a swizzle
+  const lang::NodeDecl* node = nullptr;
+  std::string_view variant;
+  std::vector<Value> args;
+};
+
+struct Condition {
+  enum class Kind : uint8_t {
+    Always,
+    And,
+    Or,
+    Not,
+    Present,    ///< values[0] comes to something
+    Same,       ///< both values come to the same
+    Equal,      ///< the number values[0] is `constant`
+    Flag,       ///< `index` in Model::ids
+    Switch,     ///< `index` in Model::switches
+    Extension,  ///< `index` in the schema
+    Term,       ///< `index` in Model::terms
+    Uniform,    ///< values[0] does not change from pixel to pixel
+    Takes,      ///< the template has a port `name`
+  };
+  Kind kind = Kind::Always;
+  uint32_t index = 0;
+  ir::Type type = ir::Type::Float;
+  ir::Components constant{};
+  std::string_view name;  ///< Takes; Equal with a choice: the value
+  std::vector<Value> values;
+  std::vector<Condition> conditions;
+};
+
+struct Alternative {
+  Value value;
+  Condition condition;
+  bool unless = false;
+};
+
+/// A line, where its part's term is alive.
+struct Line {
+  lang::LineDecl::Kind kind = lang::LineDecl::Kind::Value;
+  bool shared = false;
+  uint32_t id = 0;        ///< in Model::ids; of an Out: in Model::outs
+  uint32_t part = 0;      ///< in Model::parts; for a line that a profile adds: their number
+  uint32_t term = kNone;  ///< in Model::terms
+  uint32_t order = 0;     ///< lines are put out in this order; kNone: where they are first used
+  std::vector<Alternative> alternatives;
+  Value target;  ///< Replace: an Id
+  std::string_view code, message, help, reason;
+  Value place;
+
+  static constexpr uint32_t kNone = ~uint32_t{0};
+};
+
+struct Id {
+  std::string_view name;
+  std::vector<uint32_t> lines;     ///< that say it
+  std::vector<uint32_t> replaced;  ///< lines that replace it, or one of its outputs, by part
+};
+
+struct Term {
+  std::string_view name;
+  uint32_t part = 0;
+  uint32_t parent = Line::kNone;
+  Condition when, unless;
+  bool has_unless = false;
+  std::string_view when_reason, unless_reason;
+  std::vector<uint32_t> requirements;  ///< lines
+};
+
+struct Part {
+  const lang::PartDecl* decl = nullptr;
+  std::vector<uint16_t> of;  ///< extensions; empty for any material
+  uint32_t term = 0;
+};
+
+/// What parts call a property.
+struct Role {
+  std::string_view name;
+  std::vector<uint16_t> providers;            ///< properties
+  std::vector<std::string_view> live;         ///< terms that keep its number editable
+  std::vector<std::vector<std::string_view>> member_live;  ///< the same for members of a textureInfo
+};
+
+struct Out {
+  std::string_view name;
+  std::vector<uint32_t> lines;  ///< from the inside outwards
+};
+
+struct Model {
+  const material::Schema* schema = nullptr;
+  const lang::ProfileDecl* profile = nullptr;
+  std::vector<Part> parts;  ///< from the inside outwards
+  std::vector<Term> terms;
+  std::vector<Line> lines;
+  std::vector<Id> ids;
+  std::vector<Out> outs;
+  std::vector<Role> roles;
+  std::vector<std::string> givens;  ///< what a template may give, or have as a texture: "view", "light_sample.L"
+  std::vector<std::string_view> switches;
+  std::vector<bool> switch_defaults;
+  std::vector<uint32_t> ordered;  ///< lines of Kind::Value with an order, sorted by it
+
+  /// The terms that stay though their value would remove them, when they are asked to: sorted.
+  std::vector<std::string_view> liveTerms() const;
+};
+
+/// Resolves the library's parts under a profile. Errors have the place in the text.
+Result<Model> compile(const lang::Library& library, const material::Schema& schema, std::string_view profile);
+
+/// The profiles' names, the default one first, then by name. Errors: a wrong profile, or not just one default.
+Result<std::vector<const lang::ProfileDecl*>> profiles(const lang::Library& library);
+
+/// What a library makes of materials, resolved once and kept. Lookups may run on several threads at once.
+class Models {
+public:
+  explicit Models(const lang::Library& library);
+  ~Models();
+  Result<const material::Schema*> schema() const;
+  Result<const Model*> of(std::string_view profile) const;
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lacquer::model

@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "model/model.h"
+
+namespace lacquer::model {
+
+struct Models::State {
+  const lang::Library& library;
+  std::mutex mutex;
+  std::optional<Result<material::Schema>> schema;
+  std::map<std::string, Result<Model>, std::less<>> models;
+};
+
+Models::Models(const lang::Library& library) : state_(new State{library, {}, {}, {}}) {}
+Models::~Models() = default;
+
+Result<const material::Schema*> Models::schema() const {
+  const std::lock_guard lock(state_->mutex);
+  if (!state_->schema) state_->schema = material::schemaOf(state_->library);
+  if (!*state_->schema) return tl::make_unexpected(state_->schema->error());
+  return &**state_->schema;
+}
+
+Result<const Model*> Models::of(std::string_view profile) const {
+  const Result<const material::Schema*> schema = this->schema();
+  if (!schema) return tl::make_unexpected(schema.error());
+  const std::lock_guard lock(state_->mutex);
+  auto it = state_->models.find(profile);
+  if (it == state_->models.end())
+    it = state_->models.emplace(std::string(profile), compile(state_->library, **schema, profile)).first;
+  if (!it->second) return tl::make_unexpected(it->second.error());
+  return &*it->second;
+}
+
+Result<std::vector<const lang::ProfileDecl*>> profiles(const lang::Library& library) {
+  std::vector<const lang::ProfileDecl*> all;
+  for (const std::string_view name : library.names(lang::DeclKind::Profile)) {
+    const Result<const lang::ProfileDecl*> found = library.profile(name);
+    if (!found) return tl::make_unexpected(found.error());
+    all.push_back(*found);
+  }
+  const auto rest = std::stable_partition(all.begin(), all.end(),
+                                          [](const lang::ProfileDecl* decl) { return decl->by_default; });
+  if (rest - all.begin() == 1) return all;
+  const lang::Origin origin = all.size() > 1 ? all[1]->origin : lang::Origin{};
+  return fail("wrong-profile", {std::string(origin.file), origin.line, 0, {}},
+              "one profile must be the default, and only one", "say `profile NAME default { ... }` of it");
+}
+
+std::vector<std::string_view> Model::liveTerms() const {
+  std::vector<std::string_view> names;
+  for (const Term& term : terms) {
+    if (term.has_unless) names.push_back(term.name);
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+}  // namespace lacquer::model

@@ -1,0 +1,516 @@
+#include "model/resolve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/names.h"
+
+namespace lacquer::model {
+
+using lang::LineDecl;
+using material::Kind;
+
+namespace {
+
+/// Whether a primitive has what a template's attribute of that name stands for; what glTF does not know is the
+/// application's, and there.
+bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name) {
+  if (name == "NORMAL") return attributes.normal;
+  if (name == "TANGENT") return attributes.tangent;
+  if (name == "COLOR_0") return attributes.color0;
+  constexpr std::string_view kTexCoord = "TEXCOORD_";
+  if (!name.starts_with(kTexCoord) || name.size() != kTexCoord.size() + 1) return true;
+  const auto set = static_cast<size_t>(name.back() - '0');
+  return set < attributes.texCoord.size() && attributes.texCoord[set];
+}
+
+/// Whether an expression of the template reads an attribute that the primitive lacks.
+bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr, const gltf::VertexAttributes& attributes) {
+  if (expr.kind == lang::Expr::Kind::Slot) {
+    for (const lang::AttributeDecl& attribute : decl.attributes) {
+      if (attribute.slot == expr.slot) return !hasAttribute(attributes, attribute.name);
+    }
+    for (const lang::GivenDecl& given : decl.givens) {
+      const bool this_one = expr.slot >= given.slot && expr.slot < given.slot + given.results.size();
+      if (this_one && given.value) return readsAbsent(decl, *given.value, attributes);
+    }
+    return false;
+  }
+  return std::any_of(expr.args.begin(), expr.args.end(), [&](const lang::ExprPtr& arg) {
+    return arg && readsAbsent(decl, *arg, attributes);
+  });
+}
+
+const Line kNoLine{};
+
+}  // namespace
+
+Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl, const material::Material& material,
+                   const gltf::VertexAttributes& attributes, const BuildOptions& options, Diagnostics& warnings)
+    : model_(model),
+      template_(template_decl),
+      material_(material),
+      attributes_(attributes),
+      options_(options),
+      warnings_(warnings),
+      states_(model.ids.size()),
+      values_(model.ids.size()),
+      nodes_(model.ids.size()),
+      terms_(model.terms.size(), -1),
+      unmet_(model.terms.size()) {}
+
+// -- the material's values --
+
+/// The property that has a say: of an extension that the material has; else of one that stands inside of such, whose
+/// place is known; else the first that needs nothing which is not there.
+uint16_t Resolver::provider(const Role& role) const {
+  const material::Schema& schema = *model_.schema;
+  const auto find = [&](const auto& good) -> std::optional<uint16_t> {
+    for (const uint16_t property : role.providers) {
+      if (good(schema.properties[property].extension)) return property;
+    }
+    return std::nullopt;
+  };
+  if (const auto there = find([&](uint16_t extension) { return material_.has(extension); })) return *there;
+  const auto within = find([&](uint16_t extension) {
+    const std::string_view around = schema.extensions[extension]->inside;
+    return !around.empty() && material_.has(*schema.find(around));
+  });
+  if (within) return *within;
+  const auto free = find([&](uint16_t extension) {
+    const lang::ExtensionDecl& decl = *schema.extensions[extension];
+    return decl.inside.empty() && decl.needs.empty();
+  });
+  return free.value_or(role.providers[0]);
+}
+
+ir::Components Resolver::numberOf(uint16_t property) const {
+  if (const ir::Components* given = material_.number(property)) return *given;
+  const material::Property& row = model_.schema->properties[property];
+  const ir::Components by_default = row.decl->default_value.value_or(ir::Components{});
+  return material_.has(row.extension) ? by_default : row.decl->neutral.value_or(by_default);
+}
+
+bool Resolver::live(const std::vector<std::string_view>& terms) const {
+  return std::any_of(terms.begin(), terms.end(), [&](std::string_view term) { return options_.live.contains(term); });
+}
+
+Found Resolver::number(const Role& role, const Value& value) {
+  Found out;
+  out.property = provider(role);
+  const lang::PropertyDecl* decl = model_.schema->properties[out.property].decl;
+  ir::Components now{};
+  if (value.member >= 0) {
+    const gltf::TextureInfo* info = material_.texture(out.property);
+    if (info == nullptr) return {};
+    decl = &decl->members[static_cast<size_t>(value.member)];
+    now[0] = info->members[static_cast<size_t>(value.member)];
+  } else {
+    now = numberOf(out.property);
+  }
+  const auto member = static_cast<size_t>(value.member);
+  const bool kept = value.member < 0 ? live(role.live)
+                                     : member < role.member_live.size() && live(role.member_live[member]);
+  const bool folded = decl->folded && now == decl->default_value.value_or(ir::Components{}) && !kept;
+  const bool fixed = decl->kind == Kind::Bool || decl->kind == Kind::Choice;
+  out.type = decl->type;
+  out.constant = now;
+  out.member = value.member;
+  out.kind = folded || fixed ? Found::Kind::Constant
+             : value.member >= 0 ? Found::Kind::Member
+                                 : Found::Kind::Number;
+  return out;
+}
+
+Found Resolver::role(const Value& value) {
+  const Role& role = model_.roles[value.index];
+  const lang::PropertyDecl& decl = *model_.schema->properties[role.providers[0]].decl;
+  if (decl.kind != Kind::Texture || value.member >= 0) return behind(number(role, value), value.path);
+  Found out;
+  out.property = provider(role);
+  const gltf::TextureInfo* info = material_.texture(out.property);
+  if (info == nullptr) return {};
+  out.kind = value.coordinate ? Found::Kind::Uv : Found::Kind::Texel;
+  if (value.coordinate) {
+    // A coordinate that the primitive lacks has no derivatives either.
+    if (!attributes_.texCoord[static_cast<size_t>(info->texCoord)]) return {};
+    out.type = ir::Type::Vec2;
+    return out;
+  }
+  out.type = ir::Type::Vec4;
+  out.swizzle = std::string(model_.schema->properties[out.property].decl->channels);
+  if (!value.path.empty()) out.swizzle = std::string(value.path);
+  return out;
+}
+
+Found Resolver::given(const Value& value) const {
+  const std::string& name = model_.givens[value.index];
+  Found out;
+  out.index = value.index;
+  for (const lang::EnvironmentDecl& one : template_.environments) {
+    if (one.name != name) continue;
+    out.kind = Found::Kind::Texture;
+    out.type = one.type;
+    return out;
+  }
+  const std::optional<lang::GivenResult> result = template_.find(name);
+  if (!result) return {};
+  if (result->given->value && readsAbsent(template_, *result->given->value, attributes_)) return {};
+  out.kind = Found::Kind::Given;
+  out.type = result->given->results[result->index].type;
+  return behind(std::move(out), value.path);
+}
+
+// -- lines --
+
+/// What stands behind a point: an output of a node, or a swizzle.
+Found Resolver::behind(Found value, std::string_view path) const {
+  if (!value || path.empty()) return value;
+  if (value.kind == Found::Kind::Node && value.output.empty() && value.swizzle.empty()) {
+    const std::string_view head = path.substr(0, path.find('.'));
+    for (const lang::Param& result : nodes_[value.index].decl->results) {
+      if (result.name != head || head.empty()) continue;
+      value.output = result.name;
+      return behind(std::move(value), head.size() == path.size() ? std::string_view{} : path.substr(head.size() + 1));
+    }
+    if (nodes_[value.index].decl->results.size() > 1) return {};
+  }
+  if (!isSwizzle(path) || !value.swizzle.empty()) return {};
+  value.swizzle = std::string(path);
+  return value;
+}
+
+Found Resolver::call(const Value& value, const Line& line) {
+  Node node;
+  node.decl = value.node;
+  node.variant = value.variant;
+  node.shared = line.shared;
+  node.order = line.order;
+  for (size_t i = 0; i < value.args.size(); ++i) {
+    node.inputs.push_back(value.args[i].absent ? Found{} : found(value.args[i], line));
+    if (!node.inputs.back() && !value.node->params[i].default_value) return {};
+  }
+  nodes_[line.id] = std::move(node);
+  Found out;
+  out.kind = Found::Kind::Node;
+  out.index = line.id;
+  return out;
+}
+
+Found Resolver::found(const Value& value, const Line& line) {
+  switch (value.kind) {
+    case Value::Kind::None: return Found::of(Found::Kind::Void);
+    case Value::Kind::Constant: return Found::of(Found::Kind::Constant, value.type, value.constant);
+    case Value::Kind::Id: return replaced(value, line.part, behind(id(value.index), value.path));
+    case Value::Kind::Below: return below(value, line.part);
+    case Value::Kind::Role: return role(value);
+    case Value::Kind::Given: return given(value);
+    case Value::Kind::Call: return call(value, line);
+  }
+  return {};
+}
+
+/// The value that parts have put in place of another. A part that replaces it sees what the parts below it see.
+Found Resolver::replaced(const Value& value, uint32_t part, Found original) {
+  const std::vector<uint32_t>& lines = model_.ids[value.index].replaced;
+  const auto names = [&](const Line& line) { return line.target.path == value.path; };
+  const bool own = std::any_of(lines.begin(), lines.end(), [&](uint32_t i) {
+    return model_.lines[i].part == part && names(model_.lines[i]);
+  });
+  for (auto it = lines.rbegin(); it != lines.rend(); ++it) {
+    const Line& line = model_.lines[*it];
+    if (!names(line) || (own && line.part >= part)) continue;
+    if (line.term != Line::kNone && !alive(line.term)) continue;
+    if (Found instead = fromLine(line)) return instead;
+  }
+  return original;
+}
+
+/// The first of a line's values whose condition holds and which is there.
+Found Resolver::fromLine(const Line& line) {
+  const bool live = line.term != Line::kNone && options_.live.contains(model_.terms[line.term].name);
+  for (const Alternative& alternative : line.alternatives) {
+    const bool asks = !alternative.unless || !live;
+    if (asks && holds(alternative.condition, line) == alternative.unless) continue;
+    const Found value = found(alternative.value, line);
+    if (value || value.kind == Found::Kind::Void) return value;
+  }
+  return {};
+}
+
+void Resolver::circle(uint32_t id) {
+  std::string path;
+  for (const uint32_t open : open_) {
+    if (path.empty() && open != id) continue;
+    path += fmt::format("{} -> ", model_.ids[open].name);
+  }
+  const lang::ProfileDecl& profile = *model_.profile;
+  const uint32_t part = model_.lines[model_.ids[id].lines[0]].part;
+  const lang::Origin& origin = part < model_.parts.size() ? model_.parts[part].decl->origin : profile.origin;
+  wrong_.push_back({"recursion",
+                    Severity::Error,
+                    {std::string(origin.file), origin.line, 0, {}},
+                    fmt::format("lines need each other: {}{}", path, model_.ids[id].name),
+                    "give one of them a value that does not need the other",
+                    {}});
+}
+
+Found Resolver::id(uint32_t id) {
+  if (states_[id] == State::Done) return values_[id];
+  if (states_[id] == State::Open) {
+    if (wrong_.empty()) circle(id);
+    return {};
+  }
+  states_[id] = State::Open;
+  open_.push_back(id);
+  Found value;
+  for (const uint32_t index : model_.ids[id].lines) {
+    const Line& line = model_.lines[index];
+    if (line.term != Line::kNone && !alive(line.term)) continue;
+    value = fromLine(line);
+    if (value || value.kind == Found::Kind::Void) break;
+  }
+  open_.pop_back();
+  states_[id] = State::Done;
+  return values_[id] = std::move(value);
+}
+
+Found Resolver::below(const Value& value, uint32_t part) {
+  const std::vector<uint32_t>& lines = model_.outs[value.index].lines;
+  for (auto it = lines.rbegin(); it != lines.rend(); ++it) {
+    const Line& line = model_.lines[*it];
+    if (line.part >= part) continue;
+    if (line.term != Line::kNone && !alive(line.term)) continue;
+    Found found = fromLine(line);
+    if (found.kind == Found::Kind::Void) return {};
+    if (found) return behind(std::move(found), value.path);
+  }
+  return {};
+}
+
+Found Resolver::port(std::string_view name) {
+  for (uint32_t i = 0; i < model_.outs.size(); ++i) {
+    Value value;
+    value.index = i;
+    if (model_.outs[i].name == name) return below(value, Line::kNone);
+  }
+  return {};
+}
+
+// -- conditions --
+
+bool Resolver::uniform(const Found& value) const {
+  switch (value.kind) {
+    case Found::Kind::Nothing:
+    case Found::Kind::Void:
+    case Found::Kind::Constant:
+    case Found::Kind::Number:
+    case Found::Kind::Member: return true;
+    case Found::Kind::Texel:
+    case Found::Kind::Uv:
+    case Found::Kind::Given:
+    case Found::Kind::Texture: return false;
+    case Found::Kind::Node: break;
+  }
+  const std::vector<Found>& inputs = nodes_[value.index].inputs;
+  return std::all_of(inputs.begin(), inputs.end(), [&](const Found& input) { return uniform(input); });
+}
+
+bool Resolver::equal(const Condition& condition, const Line&) {
+  const Found value = number(model_.roles[condition.values[0].index], condition.values[0]);
+  if (!value) return false;
+  const auto count = static_cast<size_t>(std::max(1, ir::componentCount(value.type)));
+  return std::equal(value.constant.begin(), value.constant.begin() + static_cast<ptrdiff_t>(count),
+                    condition.constant.begin());
+}
+
+bool Resolver::flag(uint32_t id) {
+  if (states_[id] == State::Open) {
+    if (wrong_.empty()) circle(id);
+    return false;
+  }
+  if (states_[id] == State::Unknown) {
+    states_[id] = State::Open;
+    open_.push_back(id);
+    for (const uint32_t index : model_.ids[id].lines) {
+      const Line& line = model_.lines[index];
+      if (line.term != Line::kNone && !alive(line.term)) continue;
+      for (const Alternative& one : line.alternatives) {
+        if (holds(one.condition, line)) values_[id] = Found::of(Found::Kind::Constant, ir::Type::Bool, {1});
+      }
+    }
+    open_.pop_back();
+    states_[id] = State::Done;
+  }
+  return static_cast<bool>(values_[id]);
+}
+
+bool Resolver::holds(const Condition& condition, const Line& line) {
+  const auto inner = [&](const Condition& one) { return holds(one, line); };
+  switch (condition.kind) {
+    case Condition::Kind::Always: return true;
+    case Condition::Kind::And: return std::all_of(condition.conditions.begin(), condition.conditions.end(), inner);
+    case Condition::Kind::Or: return std::any_of(condition.conditions.begin(), condition.conditions.end(), inner);
+    case Condition::Kind::Not: return !holds(condition.conditions[0], line);
+    case Condition::Kind::Present: {
+      const Found value = found(condition.values[0], line);
+      if (value.kind == Found::Kind::Constant && value.type == ir::Type::Bool) return value.constant[0] != 0;
+      return static_cast<bool>(value);
+    }
+    case Condition::Kind::Same: return found(condition.values[0], line) == found(condition.values[1], line);
+    case Condition::Kind::Equal: return equal(condition, line);
+    case Condition::Kind::Flag: return flag(condition.index);
+    case Condition::Kind::Switch: {
+      const auto it = options_.switches.find(model_.switches[condition.index]);
+      return it == options_.switches.end() ? model_.switch_defaults[condition.index] : it->second;
+    }
+    case Condition::Kind::Extension: return material_.has(static_cast<uint16_t>(condition.index));
+    case Condition::Kind::Term: return alive(condition.index);
+    case Condition::Kind::Uniform: return uniform(found(condition.values[0], line));
+    case Condition::Kind::Takes:
+      return std::any_of(template_.ports.begin(), template_.ports.end(),
+                         [&](const lang::PortDecl& port) { return port.param.name == condition.name; });
+  }
+  return false;
+}
+
+// -- terms --
+
+bool Resolver::has(const Part& part) const {
+  return part.of.empty() ||
+         std::any_of(part.of.begin(), part.of.end(), [&](uint16_t extension) { return material_.has(extension); });
+}
+
+/// False when something that the term needs is not there; that is a warning, once.
+bool Resolver::required(const Term& term) {
+  for (const uint32_t index : term.requirements) {
+    const Line& line = model_.lines[index];
+    if (fromLine(line)) continue;
+    std::string pointer = fmt::format("/materials/{}", material_.index);
+    if (line.place.kind == Value::Kind::Role) {
+      const uint16_t property = provider(model_.roles[line.place.index]);
+      const gltf::TextureInfo* info = material_.texture(property);
+      pointer = info != nullptr
+                    ? info->pointer
+                    : fmt::format("{}/{}", pointer, model_.schema->pathOf(model_.schema->properties[property].extension));
+    }
+    warnings_.push_back({std::string(line.code),
+                         Severity::Warning,
+                         {{}, 0, 0, std::move(pointer)},
+                         std::string(line.message),
+                         std::string(line.help),
+                         {}});
+    unmet_[static_cast<size_t>(&term - model_.terms.data())] = line.reason;
+    return false;
+  }
+  return true;
+}
+
+bool Resolver::alive(uint32_t index) {
+  if (terms_[index] >= 0) return terms_[index] != 0;
+  const Term& term = model_.terms[index];
+  Line context = kNoLine;
+  context.part = term.part;
+  context.term = index;
+  const bool inner = term.parent != Line::kNone;
+  bool good = inner ? alive(term.parent) : has(model_.parts[term.part]);
+  good = good && holds(term.when, context);
+  good = good && (!term.has_unless || options_.live.contains(term.name) || !holds(term.unless, context));
+  terms_[index] = good ? 1 : 0;
+  if (good && !term.requirements.empty()) {
+    // The requirements are lines of the term, so they are looked at as if it were alive.
+    good = required(term);
+    terms_[index] = good ? 1 : 0;
+  }
+  return good;
+}
+
+bool Resolver::gives(uint32_t term) {
+  return std::any_of(model_.lines.begin(), model_.lines.end(), [&](const Line& line) {
+    return line.term == term && line.kind == LineDecl::Kind::Value && id(line.id);
+  });
+}
+
+std::string Resolver::shown(const Condition& equal) const {
+  const Value& value = equal.values[0];
+  const Role& role = model_.roles[value.index];
+  const lang::PropertyDecl* decl = model_.schema->properties[provider(role)].decl;
+  const lang::ExtensionDecl& extension = *model_.schema->extensions[model_.schema->properties[provider(role)].extension];
+  if (!extension.core && !material_.has(*model_.schema->find(extension.name)))
+    return fmt::format("the material has no {}", extension.name);
+  std::string name(decl->name);
+  if (value.member >= 0) {
+    decl = &decl->members[static_cast<size_t>(value.member)];
+    name += fmt::format(".{}", decl->name);
+  }
+  if (!equal.name.empty()) return fmt::format("{} is {}", name, equal.name);
+  if (decl->type == ir::Type::Vec3 && equal.constant[0] == 1) return fmt::format("{} is white", name);
+  if (decl->type == ir::Type::Vec3 && equal.constant[0] == 0) return fmt::format("{} is black", name);
+  return fmt::format("{} is {}", name, equal.constant[0]);
+}
+
+/// Why a condition holds, or does not.
+std::string Resolver::because(const Condition& condition, const Line& line, bool as) {
+  switch (condition.kind) {
+    case Condition::Kind::Not: return because(condition.conditions[0], line, !as);
+    case Condition::Kind::And:
+    case Condition::Kind::Or: {
+      const bool all = (condition.kind == Condition::Kind::And) == as;
+      std::string text;
+      for (const Condition& one : condition.conditions) {
+        if (holds(one, line) != as) continue;
+        if (!all) return because(one, line, as);
+        const std::string next = because(one, line, as);
+        // One reason that says it all is enough.
+        if (next == text || next.starts_with("the material has no")) return next;
+        text += (text.empty() ? "" : " and ") + next;
+      }
+      return text;
+    }
+    case Condition::Kind::Equal: return shown(condition);
+    case Condition::Kind::Extension:
+      return fmt::format("the material has {}{}", as ? "" : "no ", model_.schema->extensions[condition.index]->name);
+    case Condition::Kind::Present: {
+      const Value& value = condition.values[0];
+      if (value.kind == Value::Kind::Role) {
+        const std::string_view name = model_.schema->properties[provider(model_.roles[value.index])].decl->name;
+        return fmt::format("there is {} {}", as ? "a" : "no", name);
+      }
+      return as ? "something else is there" : "nothing gives what it needs";
+    }
+    case Condition::Kind::Switch: return fmt::format("{} is {}", model_.switches[condition.index], as ? "on" : "off");
+    case Condition::Kind::Takes: return fmt::format("the template takes {} '{}'", as ? "a" : "no", condition.name);
+    case Condition::Kind::Always:
+    case Condition::Kind::Same:
+    case Condition::Kind::Flag:
+    case Condition::Kind::Term:
+    case Condition::Kind::Uniform: break;
+  }
+  return "the material does not ask for it";
+}
+
+std::vector<graph::Skipped> Resolver::skipped() {
+  std::vector<graph::Skipped> out;
+  for (uint32_t i = 0; i < model_.terms.size(); ++i) {
+    const Term& term = model_.terms[i];
+    const bool inner = term.parent != Line::kNone;
+    if (!(inner ? alive(term.parent) : has(model_.parts[term.part])) || alive(i)) continue;
+    Line context = kNoLine;
+    context.part = term.part;
+    std::string reason;
+    if (!holds(term.when, context)) {
+      // A `when` without a reason is a matter of which material it is, not of its values.
+      if (term.when_reason.empty()) continue;
+      reason = term.when_reason;
+    } else if (!unmet_[i].empty()) {
+      reason = unmet_[i];
+    } else {
+      reason = term.unless_reason.empty() ? because(term.unless, context, true) : std::string(term.unless_reason);
+    }
+    out.push_back({std::string(term.name), std::move(reason)});
+  }
+  return out;
+}
+
+}  // namespace lacquer::model

@@ -1,0 +1,113 @@
+// What the lines of a model come to for one material: which are there, and what each is made of.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/build.h"
+
+namespace lacquer::model {
+
+/// What a name comes to. A swizzle may stand behind any of them.
+struct Found {
+  enum class Kind : uint8_t {
+    Nothing,
+    Void,      ///< `none`: nothing, for good
+    Constant,  ///< `constant` of `type`
+    Number,    ///< an editable number: `property`
+    Member,    ///< one of a textureInfo: `property`, `member`
+    Texel,     ///< of the texture `property`
+    Uv,        ///< the coordinate of the texture `property`
+    Given,     ///< `index` in Model::givens
+    Texture,   ///< the template's: `index` in Model::givens
+    Node,      ///< `output` of the node `index`, an id
+  };
+  Kind kind = Kind::Nothing;
+  ir::Type type = ir::Type::Float;
+  uint32_t index = 0;
+  uint16_t property = 0;
+  int member = -1;
+  ir::Components constant{};
+  std::string_view output;
+  std::string swizzle;
+
+  static Found of(Kind kind, ir::Type type = ir::Type::Float, const ir::Components& constant = {}) {
+    Found found;
+    found.kind = kind;
+    found.type = type;
+    found.constant = constant;
+    return found;
+  }
+  explicit operator bool() const { return kind != Kind::Nothing && kind != Kind::Void; }
+  bool operator==(const Found&) const = default;
+};
+
+/// Resolves lazily: what nobody asks for is not looked at.
+class Resolver {
+public:
+  Resolver(const Model& model, const lang::TemplateDecl& template_decl, const material::Material& material,
+           const gltf::VertexAttributes& attributes, const BuildOptions& options, Diagnostics& warnings);
+
+  /// A node that an id stands for; null when it stands for nothing or for another value.
+  struct Node {
+    const lang::NodeDecl* decl = nullptr;
+    std::string_view variant;
+    bool shared = false;
+    uint32_t order = Line::kNone;
+    std::vector<Found> inputs;  ///< by the node's parameters
+  };
+  const Node* node(uint32_t id) const { return nodes_[id].decl == nullptr ? nullptr : &nodes_[id]; }
+
+  /// What the material is for a port of the template.
+  Found port(std::string_view name);
+  /// Looks at every term of the parts that the material has; those that it could have and has not, with the reasons.
+  std::vector<graph::Skipped> skipped();
+  bool has(const Part& part) const;
+  bool alive(uint32_t term);
+  /// Whether a line of the term comes to something.
+  bool gives(uint32_t term);
+  /// A property that stands for a role, and what it is when the file does not say.
+  uint16_t provider(const Role& role) const;
+  ir::Components numberOf(uint16_t property) const;
+  const Diagnostics& wrong() const { return wrong_; }
+
+private:
+  enum class State : uint8_t { Unknown, Open, Done };
+
+  Found id(uint32_t id);
+  Found fromLine(const Line& line);
+  Found found(const Value& value, const Line& line);
+  Found role(const Value& value);
+  Found number(const Role& role, const Value& value);
+  Found given(const Value& value) const;
+  Found below(const Value& value, uint32_t part);
+  Found call(const Value& value, const Line& line);
+  Found behind(Found value, std::string_view path) const;
+  Found replaced(const Value& value, uint32_t part, Found original);
+  bool holds(const Condition& condition, const Line& line);
+  bool equal(const Condition& condition, const Line& line);
+  bool flag(uint32_t id);
+  bool live(const std::vector<std::string_view>& terms) const;
+  bool uniform(const Found& value) const;
+  bool required(const Term& term);
+  std::string because(const Condition& condition, const Line& line, bool holds);
+  std::string shown(const Condition& equal) const;
+  void circle(uint32_t id);
+
+  const Model& model_;
+  const lang::TemplateDecl& template_;
+  const material::Material& material_;
+  const gltf::VertexAttributes& attributes_;
+  const BuildOptions& options_;
+  Diagnostics& warnings_;
+  Diagnostics wrong_;
+  std::vector<State> states_;
+  std::vector<Found> values_;
+  std::vector<Node> nodes_;
+  std::vector<signed char> terms_;        ///< -1 unknown, else whether it is alive
+  std::vector<std::string_view> unmet_;  ///< of a term: why a requirement is not met
+  std::vector<uint32_t> open_;
+};
+
+}  // namespace lacquer::model
