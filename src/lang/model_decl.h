@@ -56,7 +56,7 @@ struct LineDecl {
     Require,  ///< `require value else ...`: without it the term is absent
   };
   Kind kind = Kind::Value;
-  bool shared = false;  ///< one node for all shared lines with the same call
+  bool shared = false;  ///< one node for all shared lines with the same call, put out where it is first used
   std::string_view id;
   std::string_view section;
   uint32_t term = 0;  ///< in the part's list

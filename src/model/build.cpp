@@ -188,6 +188,9 @@ Source Writer::source(const Found& value) {
 void Writer::write(uint32_t id) {
   if (!written_[id].empty()) return;
   const Resolver::Node& node = *resolver_.node(id);
+  for (const Found& input : node.inputs) {
+    if (input.kind == Found::Kind::Node) write(input.index);
+  }
   graph::Inputs inputs;
   for (size_t i = 0; i < node.inputs.size(); ++i) {
     const Found& input = node.inputs[i];

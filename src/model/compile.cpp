@@ -278,6 +278,7 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
     constexpr uint32_t kLinesOfPart = 1024, kParts = 1024;
     made.order = (section.value_or(0) * kParts + std::min(part, kParts - 1)) * kLinesOfPart +
                  static_cast<uint32_t>(std::min<size_t>(i, kLinesOfPart - 1));
+    if (made.shared) made.order = Line::kNone;
     place(std::move(made));
   }
 }
