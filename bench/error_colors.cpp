@@ -12,8 +12,7 @@
 
 #include "eval/evaluate.h"
 #include "eval/points.h"
-#include "gltf/material.h"
-#include "graph/build.h"
+#include "tests/support/materials.h"
 #include "lower/lower.h"
 
 namespace lacquer::bench {
@@ -126,14 +125,14 @@ eval::Bindings bindingsOf(const std::vector<Place>& places, bool environment) {
 }
 
 graph::Graph graphOf(const Setting& setting) {
-  const Result<gltf::Document> document = gltf::readText(gltfOf(setting), "bench.gltf", {});
+  const Result<material::Document> document = test::materialsOf(gltfOf(setting), "bench.gltf");
   if (!document) throw std::runtime_error(format(document.error()[0]));
-  graph::BuildOptions options;
-  options.profile = graph::findProfile(setting.profile);
+  test::BuildSetup options;
+  options.profile = setting.profile;
   options.decode_srgb = setting.textured;
   options.dfg_table = false;  // the application's table is no variant
   Diagnostics warnings;
-  return graph::build(document->materials.at(0), {true, true, false, {true, false, false, false}}, options,
+  return test::buildGraph(document->materials.at(0), {true, true, false, {true, false, false, false}}, options,
                       warnings);
 }
 
@@ -223,9 +222,9 @@ double worstColorError(const lang::Library& library, const std::string& node, co
                        bool any_ior) {
   double worst = 0;
   std::vector<Setting> settings;
-  for (const graph::Profile& profile : graph::profiles()) {
-    settings.push_back({std::string(profile.name), any_ior, false, false});
-    settings.push_back({std::string(profile.name), any_ior, true, false});
+  for (const std::string_view profile : library.names(lang::DeclKind::Profile)) {
+    settings.push_back({std::string(profile), any_ior, false, false});
+    settings.push_back({std::string(profile), any_ior, true, false});
   }
   settings.push_back({"khr", any_ior, false, true});
   bool met = false;

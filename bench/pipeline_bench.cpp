@@ -14,8 +14,7 @@
 #include <sstream>
 
 #include "check/check.h"
-#include "gltf/material.h"
-#include "graph/build.h"
+#include "tests/support/materials.h"
 #include "lacquer.h"
 #include "lower/lower.h"
 #include "passes/legalize.h"
@@ -33,7 +32,7 @@ namespace fs = std::filesystem;
 /// What one material needs on its way.
 struct Subject {
   std::string name;
-  gltf::Material material;
+  material::Material material;
   gltf::VertexAttributes attributes;
 };
 
@@ -44,7 +43,7 @@ const lang::Library& library() {
 
 graph::Graph toGraph(const Subject& subject) {
   Diagnostics said;
-  graph::Graph graph = graph::build(subject.material, subject.attributes, {}, said);
+  graph::Graph graph = test::buildGraph(subject.material, subject.attributes, {}, said);
   if (hasError(graph::check(graph, library()))) fmt::print(stderr, "{} does not check\n", subject.name);
   return graph;
 }
@@ -86,7 +85,7 @@ std::vector<Subject> subjects() {
   std::vector<Subject> all;
   for (const char* work : {"w0", "w1", "w2", "w3"}) {
     const std::string path = fmt::format("{}/bench/works/{}.gltf", LACQUER_SOURCE_FOLDER, work);
-    Result<gltf::Document> document = gltf::read(path, {});
+    Result<material::Document> document = test::readMaterials(path);
     if (!document || document->materials.empty()) throw std::runtime_error(path + " cannot be read");
     gltf::VertexAttributes attributes;
     attributes.normal = attributes.tangent = true;

@@ -6,8 +6,7 @@
 
 #include "eval/evaluate.h"
 #include "eval/points.h"
-#include "gltf/material.h"
-#include "graph/build.h"
+#include "support/materials.h"
 #include "lower/lower.h"
 
 namespace lacquer::accuracy {
@@ -23,14 +22,12 @@ constexpr const char* kMaterial = R"({"asset": {"version": "2.0"}, "materials": 
 /// A module whose colour is the coat's transmission.
 ir::Module moduleOf(const std::string& profile, Light light, const Body& body) {
   static const lang::Library kLibrary = lang::Library::embedded();
-  const Result<gltf::Document> document = gltf::readText(kMaterial, "coated.gltf", {});
+  const Result<material::Document> document = test::materialsOf(kMaterial, "coated.gltf");
   if (!document) return {};
-  graph::BuildOptions options;
-  options.profile = graph::findProfile(profile);
-  EXPECT_NE(options.profile, nullptr) << profile;
-  if (options.profile == nullptr) return {};
+  test::BuildSetup options;
+  options.profile = profile;
   Diagnostics warnings;
-  graph::Graph graph = graph::build(document->materials.at(0), {true, true, false, {}}, options, warnings);
+  graph::Graph graph = test::buildGraph(document->materials.at(0), {true, true, false, {}}, options, warnings);
   const bool direct = light == Light::Direct;
   const std::string node = direct ? "coat.transmission_direct" : "coat.transmission_ibl";
   graph.outputs = {{direct ? "direct" : "emission", {graph::NodeRef{node, {}}, {}}}};

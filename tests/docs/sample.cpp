@@ -4,79 +4,72 @@
 
 #include <filesystem>
 #include <fstream>
-#include <set>
 
 #include "docs/page.h"
-#include "gltf/table.h"
 #include "support/cases.h"
+#include "support/materials.h"
 
 namespace lacquer::test {
 
 namespace {
 
-using gltf::Kind;
-using gltf::TableRow;
+using lang::PropertyDecl;
+using material::Kind;
+using material::Row;
 
-constexpr std::string_view kClearcoat = "KHR_materials_clearcoat";
-
-/// A value that is not the default; textures count up.
-Json valueOf(const gltf::PropertyFacts& facts, int& textures) {
-  const auto number = [&](size_t i) { return facts.range.max == 1 ? 0.5 : facts.by_default[i] + 0.5; };
-  switch (facts.kind) {
-    case Kind::Number: return number(0);
-    case Kind::Boolean: return true;
-    case Kind::String: return "everything";
-    case Kind::AlphaMode: return "MASK";
-    case Kind::TextureIndex:
-    case Kind::TexCoord: return 0;
-    case Kind::Vec2:
-    case Kind::Color3:
-    case Kind::Color4: {
-      Json array = Json::array();
-      for (size_t i = 0; i < gltf::elementCount(facts.kind); ++i) array.push_back(number(i));
-      return array;
+/// A value that is not the default; textures count up, and take a UV set each in turn, so that all are used.
+Json valueOf(const PropertyDecl& decl, int& textures) {
+  const ir::Components by_default = decl.default_value.value_or(ir::Components{});
+  const auto number = [&](size_t i) { return decl.range.hi == 1 ? 0.5 : by_default[i] + 0.5; };
+  switch (decl.kind) {
+    case Kind::Bool: return true;
+    case Kind::Choice: return decl.choices.at(1);
+    case Kind::Texture: {
+      Json info = {{"index", textures}, {"texCoord", textures++ % 4}};
+      for (const PropertyDecl& member : decl.members) info[std::string(member.name)] = valueOf(member, textures);
+      return info;
     }
-    // A UV set each in turn, so that all are used.
-    case Kind::Texture: return {{"index", textures}, {"texCoord", textures++ % 4}};
-    case Kind::NormalTexture: return {{"index", textures}, {"texCoord", textures++ % 4}, {"scale", 1.5}};
-    case Kind::OcclusionTexture:
-      return {{"index", textures}, {"texCoord", textures++ % 4}, {"strength", 0.5}};
-    case Kind::Object: break;
+    case Kind::Object: {
+      Json object = Json::object();
+      for (const PropertyDecl& member : decl.members) object[std::string(member.name)] = valueOf(member, textures);
+      return object;
+    }
+    case Kind::Number: break;
   }
-  return {};
+  if (decl.type == ir::Type::Float) return number(0);
+  Json array = Json::array();
+  for (int i = 0; i < ir::componentCount(decl.type); ++i) array.push_back(number(static_cast<size_t>(i)));
+  return array;
 }
 
-Json objectOf(std::string_view name, int& textures) {
+Json objectOf(const lang::ExtensionDecl& decl, int& textures) {
   Json object = Json::object();
-  for (const TableRow& row : gltf::tableRows()) {
-    if (row.object == name) object[std::string(row.facts.name)] = valueOf(row.facts, textures);
-  }
+  for (const PropertyDecl& one : decl.properties) object[std::string(one.name)] = valueOf(one, textures);
   return object;
 }
 
-/// Puts an extension's object where it belongs; returns its pointer.
+const lang::ExtensionDecl& extensionOf(std::string_view name) {
+  const material::Schema& schema = builtInSchema();
+  return *schema.extensions.at(schema.find(name).value_or(0));
+}
+
+/// Puts an extension's object where it belongs, and beside it what it needs; returns its pointer.
 std::string place(Json& material, const std::string& name, int& textures) {
-  const std::string_view where = gltf::placeOf(name).where;
-  Json& extensions = material["extensions"];
-  if (extensions.is_null()) extensions = Json::object();
-  if (name.find("clearcoat") != std::string::npos)
-    extensions[std::string(kClearcoat)] = objectOf(kClearcoat, textures);
-  if (where.starts_with(kClearcoat)) {
-    extensions[std::string(kClearcoat)]["extensions"][name] = objectOf(name, textures);
-    return "/extensions/KHR_materials_clearcoat/extensions/" + name;
-  }
-  if (where == "a textureInfo's extensions") {
-    material["pbrMetallicRoughness"]["baseColorTexture"]["extensions"][name] = objectOf(name, textures);
-    return "/pbrMetallicRoughness/baseColorTexture/extensions/" + name;
-  }
-  if (name != kClearcoat) extensions[name] = objectOf(name, textures);
-  return "/extensions/" + name;
+  const material::Schema& schema = builtInSchema();
+  const lang::ExtensionDecl& decl = extensionOf(name);
+  for (const std::string_view other : decl.needs)
+    material["extensions"][std::string(other)] = objectOf(extensionOf(other), textures);
+  if (!decl.inside.empty())
+    material["extensions"][std::string(decl.inside)] = objectOf(extensionOf(decl.inside), textures);
+  const std::string pointer = "/" + schema.pathOf(*schema.find(name));
+  material[Json::json_pointer(pointer)] = objectOf(decl, textures);
+  return pointer;
 }
 
 FullMaterial fullMaterial(const std::string& extension) {
   int textures = 0;
-  Json material = objectOf("material", textures);
-  material["pbrMetallicRoughness"] = objectOf("pbrMetallicRoughness", textures);
+  Json material = objectOf(extensionOf({}), textures);
+  material["name"] = "everything";
   FullMaterial full{extension, {}, {}};
   if (!extension.empty()) full.place = place(material, extension, textures);
   Json root = {{"asset", {{"version", "2.0"}}}, {"materials", Json::array({material})}};
@@ -167,11 +160,9 @@ const std::vector<FullMaterial>& fullMaterials() {
   static const std::vector<FullMaterial> kAll = [] {
     std::vector<FullMaterial> all;
     all.push_back(fullMaterial({}));
-    std::set<std::string> seen;
-    for (const TableRow& row : gltf::tableRows()) {
-      const std::string name(row.object);
-      if (gltf::placeOf(name).where.empty() || !seen.insert(name).second) continue;
-      all.push_back(fullMaterial(name));
+    for (const lang::ExtensionDecl* decl : builtInSchema().extensions) {
+      // What shows the base colour alone has nothing else to show.
+      if (!decl->core && !decl->properties.empty()) all.push_back(fullMaterial(std::string(decl->name)));
     }
     return all;
   }();

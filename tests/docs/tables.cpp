@@ -12,15 +12,16 @@
 
 #include "docs/page.h"
 #include "docs/sample.h"
-#include "gltf/table.h"
+#include "support/materials.h"
 #include "support/cases.h"
 
 namespace lacquer::test {
 
 namespace {
 
-using gltf::Kind;
-using gltf::TableRow;
+using lang::PropertyDecl;
+using material::Kind;
+using material::Row;
 
 std::string text(const Json& value) { return value.get<std::string>(); }
 
@@ -106,24 +107,21 @@ std::string structural(std::string_view name) {
   return it == kWhat.end() ? "?" : std::string(it->second);
 }
 
-std::string defaultText(const gltf::PropertyFacts& facts) {
-  const size_t n = gltf::elementCount(facts.kind);
-  if (n == 0)
-    return facts.kind == Kind::AlphaMode ? "`OPAQUE`"
-           : facts.kind == Kind::Boolean ? "`false`"
-           : facts.required              ? "required"
-                                         : "";
-  if (n == 1) return fmt::format("{}", facts.by_default[0]);
-  return fmt::format("[{}]", fmt::join(facts.by_default.begin(),
-                                       facts.by_default.begin() + static_cast<ptrdiff_t>(n), ", "));
+std::string defaultText(const PropertyDecl& decl) {
+  if (decl.kind == Kind::Texture) return "";
+  const ir::Components value = decl.default_value.value_or(ir::Components{});
+  if (decl.kind == Kind::Choice) return fmt::format("`{}`", decl.choices.at(static_cast<size_t>(value[0])));
+  if (decl.kind == Kind::Bool) return value[0] != 0 ? "`true`" : "`false`";
+  const int count = ir::componentCount(decl.type);
+  if (count == 1) return fmt::format("{}", value[0]);
+  return fmt::format("[{}]", fmt::join(value.begin(), value.begin() + count, ", "));
 }
 
-std::string rangeText(const gltf::PropertyFacts& facts) {
-  if (gltf::elementCount(facts.kind) == 0) return "";
-  const gltf::Range& r = facts.range;
-  if (std::isinf(r.min) && std::isinf(r.max)) return "";
-  return fmt::format("{}[{}, {}]", r.orZero ? "0 or " : "", r.min,
-                     std::isinf(r.max) ? "∞" : fmt::format("{}", r.max));
+std::string rangeText(const PropertyDecl& decl) {
+  const ir::Interval& r = decl.range;
+  if (decl.kind != Kind::Number || (std::isinf(r.lo) && std::isinf(r.hi))) return "";
+  return fmt::format("{}[{}, {}]", decl.or_zero ? "0 or " : "", r.lo,
+                     std::isinf(r.hi) ? "∞" : fmt::format("{}", r.hi));
 }
 
 const FullMaterial& fullMaterialOf(std::string_view object) {
@@ -133,21 +131,26 @@ const FullMaterial& fullMaterialOf(std::string_view object) {
   return fullMaterials()[0];
 }
 
-std::string pointerOf(const FullMaterial& full, std::string_view object, std::string_view property) {
-  if (object == "normalTextureInfo") return fmt::format("/materials/0/normalTexture/{}", property);
-  if (object == "occlusionTextureInfo") return fmt::format("/materials/0/occlusionTexture/{}", property);
-  if (object == "pbrMetallicRoughness") return fmt::format("/materials/0/pbrMetallicRoughness/{}", property);
-  return fmt::format("/materials/0{}/{}", full.place, property);
+std::string pointerOf(const FullMaterial& full, const Row& row) {
+  for (const material::Property& property : builtInSchema().properties) {
+    const std::string pointer = "/materials/0/" + property.path;
+    if (property.decl == row.property) return pointer;
+    for (const PropertyDecl& member : property.decl->members) {
+      if (&member == row.property) return fmt::format("{}/{}", pointer, member.name);
+    }
+  }
+  return fmt::format("/materials/0{}/{}", full.place, row.property->name);
 }
 
-std::string propertyRow(const TableRow& row) {
-  const FullMaterial& full = fullMaterialOf(row.object);
-  const Use use = useOf(full.made.graph_json, pointerOf(full, row.object, row.facts.name));
+std::string propertyRow(const Row& row, const FullMaterial& full) {
+  const PropertyDecl& decl = *row.property;
+  const Use use = useOf(full.made.graph_json, pointerOf(full, row));
   const std::string name = use.name.empty() ? "" : "`" + use.name + "`";
   const std::string to =
-      use.name.empty() ? structural(row.facts.name) : fmt::format("{}", fmt::join(use.inputs, ", "));
-  return fmt::format("| `{}` | {} | {} | {} | {} |\n", row.facts.name, defaultText(row.facts),
-                     rangeText(row.facts), name, to);
+      use.name.empty() ? structural(decl.name) : fmt::format("{}", fmt::join(use.inputs, ", "));
+  const bool member = row.object.ends_with("Texture");
+  const std::string property = member ? fmt::format("{}.{}", row.object, decl.name) : std::string(decl.name);
+  return fmt::format("| `{}` | {} | {} | {} | {} |\n", property, defaultText(decl), rangeText(decl), name, to);
 }
 
 }  // namespace
@@ -259,29 +262,32 @@ std::string slotsTable() {
 std::string propertiesTable(std::string_view of) {
   std::string out = "| property | default | range | in the graph | goes to |\n|---|---|---|---|---|\n";
   const size_t head = out.size();
-  for (const TableRow& row : gltf::tableRows()) {
-    const bool core = gltf::placeOf(row.object).where.empty();
-    if (row.object == of || (core && of == "core")) out += propertyRow(row);
+  const material::Schema& schema = builtInSchema();
+  std::vector<Row> rows;
+  for (const material::Property& property : schema.properties) {
+    const lang::ExtensionDecl& extension = *schema.extensions[property.extension];
+    if (extension.core ? of != "core" : extension.name != of) continue;
+    rows.push_back({extension.name, property.decl});
+    for (const PropertyDecl& member : property.decl->members) rows.push_back({property.decl->name, &member});
   }
+  const FullMaterial& full = fullMaterialOf(of);
+  for (const Row& row : rows) out += propertyRow(row, full);
   if (out.size() == head) ADD_FAILURE() << "no properties of " << of;
   return out;
 }
 
 std::string extensionsTable() {
-  std::map<std::string, std::vector<std::string>> objects;
-  std::vector<std::string> order;
-  for (const TableRow& row : gltf::tableRows()) {
-    const std::string name(row.object);
-    if (gltf::placeOf(name).where.empty()) continue;
-    if (objects[name].empty()) order.push_back(name);
-    objects[name].push_back(fmt::format("`{}`", row.facts.name));
-  }
+  const material::Schema& schema = builtInSchema();
   std::string out = "| extension | stands in | properties |\n|---|---|---|\n";
-  for (const std::string& name : order) {
-    out +=
-        fmt::format("| `{}` | {} | {} |\n", name, gltf::placeOf(name).where, fmt::join(objects[name], ", "));
+  for (const lang::ExtensionDecl* decl : schema.extensions) {
+    if (decl->core) continue;
+    std::vector<std::string> names;
+    for (const PropertyDecl& property : decl->properties) names.push_back(fmt::format("`{}`", property.name));
+    out += fmt::format("| `{}` | {} | {} |\n", decl->name,
+                       decl->inside.empty() ? "the material's extensions" : fmt::format("{}.extensions", decl->inside),
+                       fmt::join(names, ", "));
   }
-  return out;
+  return out + "| `KHR_texture_transform` | a textureInfo's extensions | `offset`, `rotation`, `scale`, `texCoord` |\n";
 }
 
 std::string templateOutputs(std::string_view of) {

@@ -3,16 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "gltf/dump.h"
-#include "gltf/material.h"
+#include "support/materials.h"
 #include "support/cases.h"
 
 namespace lacquer::test {
 namespace {
 
 void readCase(const std::filesystem::path& file) {
-  gltf::ReadOptions options;
-  options.permissive = file.parent_path().filename() == "permissive";
-  const auto document = gltf::readText(readFile(file), file.filename().string(), options);
+  const bool permissive = file.parent_path().filename() == "permissive";
+  const auto document = materialsOf(readFile(file), file.filename().string(), permissive);
   std::string text;
   if (document) {
     text = formatAll(*document) + "----\n" + dump(*document);

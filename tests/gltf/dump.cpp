@@ -5,13 +5,17 @@
 
 #include <string_view>
 
+#include "support/materials.h"
+
 namespace lacquer::test {
 namespace {
 
 using namespace gltf;
+using material::Document;
+using material::Kind;
+using material::Material;
 
-/// Writes the fields of one struct, indented. The names are spelt out here, and not taken from the reader's
-/// table, so that a row that points to the wrong field shows.
+/// Writes lines, indented.
 class Fields {
 public:
   Fields(std::string& out, size_t depth) : out_(out), depth_(depth) {}
@@ -20,88 +24,42 @@ public:
     out_.append(2 * depth_, ' ').append(text);
     out_ += '\n';
   }
-  void number(std::string_view name, double value, double by_default) {
-    if (value != by_default) line(fmt::format("{} {}", name, value));
-  }
-  void flag(std::string_view name, bool value) {
-    if (value) line(name);
-  }
-  template <size_t N>
-  void numbers(std::string_view name, const std::array<double, N>& value,
-               const std::array<double, N>& by_default) {
-    if (value != by_default) line(fmt::format("{} {}", name, fmt::join(value, " ")));
-  }
-  void texture(std::string_view name, const Texture& texture) {
-    if (!texture) return;
-    std::string text = fmt::format("{} texture {}, image {}", name, texture->texture, texture->image);
-    if (texture->texCoord != 0) text += fmt::format(", texCoord {}", texture->texCoord);
-    if (texture->scale != 1) text += fmt::format(", scale {}", texture->scale);
-    if (texture->strength != 1) text += fmt::format(", strength {}", texture->strength);
-    line(text + ", at " + texture->pointer);
-    if (!texture->transform) return;
-    const TextureTransform& transform = *texture->transform;
-    line(fmt::format("  transform offset {}, rotation {}, scale {}", fmt::join(transform.offset, " "),
-                     transform.rotation, fmt::join(transform.scale, " ")));
-  }
 
 private:
   std::string& out_;
   size_t depth_;
 };
 
-void dumpClearcoat(const Clearcoat& clearcoat, std::string& out) {
-  Fields fields(out, 2);
-  fields.number("clearcoatFactor", clearcoat.clearcoatFactor, 0);
-  fields.texture("clearcoatTexture", clearcoat.clearcoatTexture);
-  fields.number("clearcoatRoughnessFactor", clearcoat.clearcoatRoughnessFactor, 0);
-  fields.texture("clearcoatRoughnessTexture", clearcoat.clearcoatRoughnessTexture);
-  fields.texture("clearcoatNormalTexture", clearcoat.clearcoatNormalTexture);
-  Fields inner(out, 3);
-  if (clearcoat.color) {
-    fields.line("color");
-    inner.numbers("clearcoatColorFactor", clearcoat.color->clearcoatColorFactor, {1, 1, 1});
-    inner.texture("clearcoatColorTexture", clearcoat.color->clearcoatColorTexture);
-  }
-  if (clearcoat.darkening) {
-    fields.line("darkening");
-    inner.number("clearcoatDarkeningFactor", clearcoat.darkening->clearcoatDarkeningFactor, 1);
-    inner.texture("clearcoatDarkeningTexture", clearcoat.darkening->clearcoatDarkeningTexture);
-  }
+std::string valueText(const lang::PropertyDecl& decl, const ir::Components& value) {
+  if (decl.kind == Kind::Choice) return std::string(decl.choices.at(static_cast<size_t>(value[0])));
+  if (decl.kind == Kind::Bool) return value[0] != 0 ? "true" : "false";
+  return fmt::format("{}", fmt::join(value.begin(), value.begin() + ir::componentCount(decl.type), " "));
 }
 
-void dumpCoat(const Coat& coat, std::string& out) {
-  Fields fields(out, 2);
-  fields.number("coatFactor", coat.coatFactor, 0);
-  fields.texture("coatTexture", coat.coatTexture);
-  fields.number("coatRoughnessFactor", coat.coatRoughnessFactor, 0);
-  fields.texture("coatRoughnessTexture", coat.coatRoughnessTexture);
-  fields.texture("coatNormalTexture", coat.coatNormalTexture);
-  fields.number("coatIor", coat.coatIor, 1.5);
-  fields.numbers("coatColorFactor", coat.coatColorFactor, {1, 1, 1});
-  fields.texture("coatColorTexture", coat.coatColorTexture);
-  fields.number("coatDarkeningFactor", coat.coatDarkeningFactor, 1);
-  fields.number("coatAnisotropyStrength", coat.coatAnisotropyStrength, 0);
-  fields.number("coatAnisotropyRotation", coat.coatAnisotropyRotation, 0);
-  fields.texture("coatAnisotropyTexture", coat.coatAnisotropyTexture);
+void dumpTexture(const lang::PropertyDecl& decl, const TextureInfo& info, Fields& fields) {
+  std::string text = fmt::format("{} texture {}, image {}", decl.name, info.texture, info.image);
+  if (info.texCoord != 0) text += fmt::format(", texCoord {}", info.texCoord);
+  for (size_t i = 0; i < decl.members.size(); ++i) {
+    if (info.members.at(i) != (*decl.members[i].default_value)[0])
+      text += fmt::format(", {} {}", decl.members[i].name, info.members[i]);
+  }
+  fields.line(text + ", at " + info.pointer);
+  if (!info.transform) return;
+  const TextureTransform& transform = *info.transform;
+  fields.line(fmt::format("  transform offset {}, rotation {}, scale {}", fmt::join(transform.offset, " "),
+                          transform.rotation, fmt::join(transform.scale, " ")));
 }
 
-void dumpCore(const Material& material, Fields& fields) {
-  fields.numbers("baseColorFactor", material.baseColorFactor, {1, 1, 1, 1});
-  fields.texture("baseColorTexture", material.baseColorTexture);
-  fields.number("metallicFactor", material.metallicFactor, 1);
-  fields.number("roughnessFactor", material.roughnessFactor, 1);
-  fields.texture("metallicRoughnessTexture", material.metallicRoughnessTexture);
-  fields.texture("normalTexture", material.normalTexture);
-  fields.texture("occlusionTexture", material.occlusionTexture);
-  fields.texture("emissiveTexture", material.emissiveTexture);
-  fields.numbers("emissiveFactor", material.emissiveFactor, {0, 0, 0});
-  fields.flag("alphaMode MASK", material.alphaMode == AlphaMode::Mask);
-  fields.flag("alphaMode BLEND", material.alphaMode == AlphaMode::Blend);
-  fields.number("alphaCutoff", material.alphaCutoff, 0.5);
-  fields.flag("doubleSided", material.doubleSided);
-  fields.number("ior", material.ior, 1.5);
-  fields.number("emissiveStrength", material.emissiveStrength, 1);
-  fields.flag("unlit", material.unlit);
+/// What the material says of one extension, by its properties' own names; defaults that are spelt out are left out.
+void dumpExtension(const Material& material, uint16_t extension, Fields& fields) {
+  const material::Schema& schema = test::builtInSchema();
+  for (uint16_t i = 0; i < schema.properties.size(); ++i) {
+    if (schema.properties[i].extension != extension) continue;
+    const lang::PropertyDecl& decl = *schema.properties[i].decl;
+    if (const TextureInfo* info = material.texture(i)) dumpTexture(decl, *info, fields);
+    const ir::Components* value = material.number(i);
+    if (value != nullptr && *value != decl.default_value) fields.line(fmt::format("{} {}", decl.name, valueText(decl, *value)));
+  }
 }
 
 std::string usesText(const std::vector<VertexAttributes>& uses) {
@@ -128,20 +86,11 @@ std::string dump(const Document& document) {
     Fields(out, 0).line(fmt::format("material {}{} \"{}\"", material.index,
                                     hasError(material.diagnostics) ? " (unusable)" : "", material.name));
     Fields fields(out, 1);
-    dumpCore(material, fields);
-    if (material.clearcoat) {
-      fields.line("clearcoat");
-      dumpClearcoat(*material.clearcoat, out);
-    }
-    if (material.clearcoatTint) {
-      fields.line("clearcoatTint");
+    dumpExtension(material, 0, fields);
+    for (const uint16_t extension : material.extensions) {
+      fields.line(test::builtInSchema().extensions[extension]->name);
       Fields inner(out, 2);
-      inner.numbers("clearcoatTintFactor", material.clearcoatTint->clearcoatTintFactor, {1, 1, 1});
-      inner.texture("clearcoatTintTexture", material.clearcoatTint->clearcoatTintTexture);
-    }
-    if (material.coat) {
-      fields.line("coat");
-      dumpCoat(*material.coat, out);
+      dumpExtension(material, extension, inner);
     }
     for (const std::string& pointer : material.ignored) fields.line("ignored " + pointer);
     if (!document.uses.at(i).empty()) fields.line("uses " + usesText(document.uses[i]));

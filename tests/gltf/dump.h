@@ -3,15 +3,15 @@
 
 #include <string>
 
-#include "gltf/material.h"
+#include "material/material.h"
 
 namespace lacquer::test {
 
 /// All diagnostics in full, first the file's, then each material's.
-std::string formatAll(const gltf::Document& document);
+std::string formatAll(const material::Document& document);
 
 /// What differs from the defaults, one fact per line: materials with their uses and ignored extensions,
 /// default uses, lights, images.
-std::string dump(const gltf::Document& document);
+std::string dump(const material::Document& document);
 
 }  // namespace lacquer::test

@@ -5,16 +5,14 @@
 #include <fstream>
 
 #include "gltf/dump.h"
-#include "gltf/material.h"
+#include "support/materials.h"
 #include "support/cases.h"
 
 namespace lacquer::test {
 namespace {
 
 namespace fs = std::filesystem;
-using gltf::Document;
-using gltf::read;
-using gltf::readText;
+using material::Document;
 
 const std::string kMinimal = R"({"asset":{"version":"2.0"},"materials":[{"name":"m"}]})";
 
@@ -44,10 +42,10 @@ std::string outcome(const Result<Document>& document) {
   return text;
 }
 
-std::string outcomeOf(const std::string& bytes) { return outcome(readText(bytes, "x", {})); }
+std::string outcomeOf(const std::string& bytes) { return outcome(materialsOf(bytes, "x")); }
 
 TEST(GltfContainer, glbIsRead) {
-  const auto document = readText(glb(kMinimal, "12345678"), "x.glb", {});
+  const auto document = materialsOf(glb(kMinimal, "12345678"), "x.glb");
   ASSERT_TRUE(document) << outcome(document);
   EXPECT_EQ(document->materials.at(0).name, "m");
   EXPECT_EQ(outcomeOf(glb(kMinimal + std::string(3, '\0'))), "read");
@@ -58,7 +56,7 @@ TEST(GltfContainer, glbIsRead) {
 TEST(GltfContainer, everyTruncationOfAGlbIsAnError) {
   const std::string whole = glb(kMinimal, "12345678");
   for (size_t size = 0; size < whole.size(); ++size) {
-    const auto document = readText(whole.substr(0, size), "x.glb", {});
+    const auto document = materialsOf(whole.substr(0, size), "x.glb");
     ASSERT_FALSE(document) << "the first " << size << " bytes";
     ASSERT_TRUE(hasError(document.error()));
   }
@@ -88,13 +86,13 @@ TEST(GltfContainer, chunksMustFit) {
 }
 
 TEST(GltfContainer, whatIsNoFileIsAnError) {
-  EXPECT_EQ(outcome(read("/nonexistent/x.gltf", {})),
+  EXPECT_EQ(outcome(readMaterials("/nonexistent/x.gltf")),
             "/nonexistent/x.gltf: error: there is no such file [cannot-read]");
-  EXPECT_EQ(outcome(read("", {})), "error: there is no such file [cannot-read]");
+  EXPECT_EQ(outcome(readMaterials("")), "error: there is no such file [cannot-read]");
   const std::string folder = sourceFolder().string();
-  EXPECT_EQ(outcome(read(folder, {})), folder + ": error: this is a folder, not a file [cannot-read]");
+  EXPECT_EQ(outcome(readMaterials(folder)), folder + ": error: this is a folder, not a file [cannot-read]");
   if (fs::exists("/dev/zero")) {
-    EXPECT_EQ(outcome(read("/dev/zero", {})),
+    EXPECT_EQ(outcome(readMaterials("/dev/zero")),
               "/dev/zero: error: this is neither a file nor a pipe [cannot-read]");
   }
 }
@@ -108,7 +106,7 @@ TEST(GltfContainer, byteOrderMarkIsSkipped) {
 }
 
 void readAsset(const fs::path& file) {
-  const auto document = read(file.string(), {});
+  const auto document = readMaterials(file.string());
   ASSERT_TRUE(document) << outcome(document);
   const std::string diagnostics = formatAll(*document);
   EXPECT_EQ(diagnostics.find(": error: "), std::string::npos) << diagnostics;
@@ -139,8 +137,8 @@ TEST(GltfAssets, areReadWithoutErrors) {
 TEST(GltfAssets, glbAndGltfAgree) {
   const fs::path folder = assetFolder() / "ClearCoatCarPaint";
   if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no " << folder;
-  const auto text = read((folder / "ClearCoatCarPaint.gltf").string(), {});
-  const auto binary = read((folder / "ClearCoatCarPaint.glb").string(), {});
+  const auto text = readMaterials((folder / "ClearCoatCarPaint.gltf").string());
+  const auto binary = readMaterials((folder / "ClearCoatCarPaint.glb").string());
   ASSERT_TRUE(text && binary);
   const auto withoutImages = [](Document document) {
     document.images.clear();

@@ -5,13 +5,12 @@
 #include <ctime>
 
 #include "gltf/dump.h"
-#include "gltf/material.h"
+#include "support/materials.h"
 
 namespace lacquer::test {
 namespace {
 
-using gltf::Document;
-using gltf::readText;
+using material::Document;
 
 std::string repeated(const std::string& text, size_t count) {
   std::string out;
@@ -31,7 +30,7 @@ std::string nested(size_t depth) {
 }
 
 std::string failure(const std::string& text) {
-  const auto document = readText(text, "x", {});
+  const auto document = materialsOf(text, "x");
   if (document) return "read";
   std::string out;
   for (const Diagnostic& one : document.error()) out.append(out.empty() ? "" : "\n").append(format(one));
@@ -115,14 +114,14 @@ TEST(GltfLimits, rootMustBeAGltf) {
 }
 
 TEST(GltfLimits, namesAreKept) {
-  const auto document = readText(withMaterial(R"("name":"a\u0000b/../\n\ud83d\ude00")"), "x", {});
+  const auto document = materialsOf(withMaterial(R"("name":"a\u0000b/../\n\ud83d\ude00")"), "x");
   ASSERT_TRUE(document);
   EXPECT_EQ(document->materials[0].name, std::string("a\0b/../\n\xF0\x9F\x98\x80", 12));
 }
 
 TEST(GltfLimits, lastOfDoubleMembersCounts) {
   const auto document =
-      readText(withMaterial(R"("alphaCutoff":0.1,"name":"a","alphaCutoff":0.2,"alphaCutoff":0.3)"), "x", {});
+      materialsOf(withMaterial(R"("alphaCutoff":0.1,"name":"a","alphaCutoff":0.2,"alphaCutoff":0.3)"), "x");
   ASSERT_TRUE(document);
   EXPECT_EQ(document->materials[0].alphaCutoff, 0.3);
   EXPECT_EQ(document->materials[0].name, "a");
@@ -131,7 +130,7 @@ TEST(GltfLimits, lastOfDoubleMembersCounts) {
 TEST(GltfLimits, unknownPropertiesAreCounted) {
   std::string members = "\"doubleSided\":true";
   for (int i = 0; i < 1000; ++i) members += fmt::format(",\"unknown {}\":1", i);
-  const auto document = readText(withMaterial(members), "x", {});
+  const auto document = materialsOf(withMaterial(members), "x");
   ASSERT_TRUE(document);
   ASSERT_EQ(document->materials[0].diagnostics.size(), 17u);
   EXPECT_EQ(document->materials[0].diagnostics.back().message,
@@ -141,7 +140,7 @@ TEST(GltfLimits, unknownPropertiesAreCounted) {
 /// Of this process, whatever else the machine does.
 double secondsFor(const std::string& text) {
   const std::clock_t start = std::clock();
-  const auto document = readText(text, "x", {});
+  const auto document = materialsOf(text, "x");
   EXPECT_TRUE(document);
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }

@@ -2,43 +2,41 @@
 // reads back.
 #include <gtest/gtest.h>
 
-#include "gltf/material.h"
-#include "graph/build.h"
+#include "support/materials.h"
 #include "graph/sample.h"
 #include "support/cases.h"
 
 namespace lacquer::test {
 namespace {
 
-void buildAndCheck(const gltf::Material& material, const gltf::VertexAttributes& attributes,
-                   const graph::BuildOptions& options) {
-  static const lang::Library library = lang::Library::embedded();
+void buildAndCheck(const material::Material& material, const gltf::VertexAttributes& attributes,
+                   const BuildSetup& setup) {
   Diagnostics warnings;
-  graph::Graph graph = graph::build(material, attributes, options, warnings);
+  graph::Graph graph = buildGraph(material, attributes, setup, warnings);
   EXPECT_FALSE(hasError(warnings)) << formatAll(warnings);
   const std::vector<graph::Node> built = graph.nodes;
-  EXPECT_EQ(formatAll(graph::check(graph, library)), "") << toJson(graph);
+  EXPECT_EQ(formatAll(graph::check(graph, builtInLibrary())), "") << toJson(graph);
   EXPECT_EQ(graph.nodes, built) << "sources stand before their users already";
   const std::string text = toJson(graph);
   EXPECT_EQ(toJson(graphOf(text)), text);
 }
 
 void buildMaterials(const std::filesystem::path& file) {
-  const auto document = gltf::readText(readFile(file), file.filename().string(), {});
+  const auto document = materialsOf(readFile(file), file.filename().string());
   if (!document) GTEST_SKIP() << "is about a file that cannot be read";
-  for (const gltf::Material& material : document->materials) {
+  for (const material::Material& material : document->materials) {
     if (hasError(material.diagnostics)) continue;
     for (const std::string template_name : {"forward", "surface", "bsdf"}) {
       for (const bool rich : {false, true}) {
         gltf::VertexAttributes attributes;
         attributes.normal = attributes.tangent = rich;
         attributes.texCoord = {true, rich, rich, rich};
-        graph::BuildOptions options;
-        options.template_name = template_name;
-        options.decode_srgb = options.multiple_scattering = rich;
+        BuildSetup setup;
+        setup.template_name = template_name;
+        setup.decode_srgb = setup.multiple_scattering = rich;
         SCOPED_TRACE(template_name + (rich ? ", with all attributes, " : ", with few attributes, ") +
                      material.name);
-        buildAndCheck(material, attributes, options);
+        buildAndCheck(material, attributes, setup);
       }
     }
   }

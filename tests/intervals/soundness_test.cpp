@@ -7,8 +7,7 @@
 #include <random>
 
 #include "api/node_proofs.h"
-#include "gltf/material.h"
-#include "graph/build.h"
+#include "support/materials.h"
 #include "intervals/evaluator.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
@@ -171,18 +170,18 @@ void eachExample(F f) {
   const lang::Library library = lang::Library::embedded();
   size_t count = 0;
   for (const auto& file : findFiles(sourceFolder() / "examples", ".gltf")) {
-    const Result<gltf::Document> document = gltf::read(file.string(), {});
+    const Result<material::Document> document = readMaterials(file.string());
     ASSERT_TRUE(document) << file;
-    for (const gltf::Material& material : document->materials) {
+    for (const material::Material& material : document->materials) {
       if (hasError(material.diagnostics)) continue;
       for (const char* name : {"forward", "surface", "bsdf"}) {
         gltf::VertexAttributes attributes;
         attributes.normal = attributes.tangent = true;
         attributes.texCoord = {true, true, false, false};
-        graph::BuildOptions options;
+        BuildSetup options;
         options.template_name = name;
         Diagnostics warnings;
-        graph::Graph graph = graph::build(material, attributes, options, warnings);
+        graph::Graph graph = buildGraph(material, attributes, options, warnings);
         ASSERT_FALSE(hasError(graph::check(graph, library))) << file << " " << name;
         Result<ir::Module> module = lower::lower(graph, library, {});
         ASSERT_TRUE(module);

@@ -13,8 +13,7 @@
 #include "eval/evaluate.h"
 #include "eval/image.h"
 #include "eval/points.h"
-#include "gltf/material.h"
-#include "graph/build.h"
+#include "support/materials.h"
 #include "lower/lower.h"
 #include "passes/intervals.h"
 #include "passes/pipeline.h"
@@ -305,16 +304,16 @@ std::vector<Subject> operationSubjects(size_t points) {
 namespace {
 
 /// Appends the materials of a document that have no errors.
-void addGraphs(const gltf::Document& document, const std::string& name, const MaterialSetting& setting,
+void addGraphs(const material::Document& document, const std::string& name, const MaterialSetting& setting,
                std::vector<NamedGraph>& graphs) {
-  for (const gltf::Material& material : document.materials) {
-    graph::BuildOptions options;
+  for (const material::Material& material : document.materials) {
+    test::BuildSetup options;
     options.template_name = setting.template_name;
     options.decode_srgb = setting.decode_srgb;
     Diagnostics warnings;
     NamedGraph made{
         fmt::format("{}, {}, {}", name, material.name, setting.template_name),
-        graph::build(material, {true, setting.tangents, true, {true, true, true, true}}, options, warnings)};
+        test::buildGraph(material, {true, setting.tangents, true, {true, true, true, true}}, options, warnings)};
     EXPECT_FALSE(hasError(material.diagnostics)) << made.name;
     EXPECT_FALSE(hasError(graph::check(made.graph, library()))) << made.name;
     graphs.push_back(std::move(made));
@@ -331,7 +330,7 @@ std::vector<NamedGraph> exampleGraphs(const MaterialSetting& setting) {
   }
   std::sort(files.begin(), files.end());
   for (const std::filesystem::path& file : files) {
-    const Result<gltf::Document> document = gltf::read(file.string(), {});
+    const Result<material::Document> document = test::readMaterials(file.string());
     EXPECT_TRUE(document) << file;
     if (document) addGraphs(*document, file.stem().string(), setting, graphs);
   }
@@ -342,7 +341,7 @@ std::vector<NamedGraph> randomGraphs(const MaterialSetting& setting, uint64_t fi
   std::vector<NamedGraph> graphs;
   for (uint64_t seed = 1; seed <= files; ++seed) {
     const std::string text = test::RandomMaterial(seed).valid(4).dump();
-    const Result<gltf::Document> document = gltf::readText(text, "random.gltf", {});
+    const Result<material::Document> document = test::materialsOf(text, "random.gltf");
     EXPECT_TRUE(document) << text;
     if (document) addGraphs(*document, fmt::format("seed {}", seed), setting, graphs);
   }

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "gltf/material.h"
+#include "support/materials.h"
 #include "physics/subject.h"
 #include "support/cases.h"
 
@@ -61,7 +61,7 @@ Sample dark(double view_cosine) {
 bool rejected(const std::string& extensions, bool permissive = false) {
   const std::string text =
       R"({"asset":{"version":"2.0"},"materials":[{"name":"M","extensions":)" + extensions + "}]}";
-  const Result<gltf::Document> document = gltf::readText(text, "test.gltf", {permissive});
+  const Result<material::Document> document = test::materialsOf(text, "test.gltf", permissive);
   return !document || hasError(document->diagnostics) || hasError(document->materials.at(0).diagnostics);
 }
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "eval/dfg.h"
-#include "gltf/material.h"
+#include "support/materials.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
 
@@ -35,19 +35,19 @@ Subject::Subject(const std::string& gltf, size_t material, std::map<std::string,
 }
 
 void Subject::make(const std::string& gltf, size_t material, const Configuration& setup) {
-  const Result<gltf::Document> document = gltf::readText(gltf, "test.gltf", {});
+  const Result<material::Document> document = test::materialsOf(gltf, "test.gltf");
   ASSERT_TRUE(document) << textOf(document.error());
-  const gltf::Material& m = document->materials.at(material);
+  const material::Material& m = document->materials.at(material);
   ASSERT_FALSE(hasError(m.diagnostics)) << textOf(m.diagnostics);
-  graph::BuildOptions options;
+  test::BuildSetup options;
   options.template_name = setup.template_name;
-  options.profile = graph::findProfile(setup.profile);
+  options.profile = setup.profile;
   options.ibl = setup.ibl;
   options.multiple_scattering = setup.multiple_scattering;
   options.dfg_table = setup.dfg_table;
   options.live = setup.live;
   Diagnostics warnings;
-  graph_ = graph::build(m, {true, setup.tangents, true, {true, true, true, true}}, options, warnings);
+  graph_ = test::buildGraph(m, {true, setup.tangents, true, {true, true, true, true}}, options, warnings);
   const Diagnostics wrong = graph::check(graph_, library());
   ASSERT_FALSE(hasError(wrong)) << textOf(wrong);
   Result<ir::Module> module = lower::lower(graph_, library(), {});

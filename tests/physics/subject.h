@@ -7,7 +7,7 @@
 
 #include "eval/evaluate.h"
 #include "eval/points.h"
-#include "graph/build.h"
+#include "support/materials.h"
 #include "physics/model.h"
 
 namespace lacquer::physics {
