@@ -26,8 +26,8 @@ public:
     const bool clear = coat && clearCoat();
     if (clear) splitCosine(base, *coat);
     Node& node = graph_.add("base.direct", "base_direct",
-                            {{"diffuse", ref("base.reflectance", "diffuse")},
-                             {"F0", ref("base.reflectance", "F0")},
+                            {{"base_color", baseColor()},
+                             {"metallic", surface_.metallic},
                              {"VdotH", ref("half", "VdotH")},
                              {"NdotL", base.NdotL},
                              {"lobe", base.lobe}});
@@ -62,14 +62,14 @@ public:
     const bool compensated = options_.multiple_scattering;
     Node& node =
         graph_.add("base.indirect", compensated ? "base_indirect_multiple_scattering" : "base_indirect",
-                   {{"diffuse", ref("base.reflectance", "diffuse")},
-                    {"F0", ref("base.reflectance", "F0")},
+                   {{"base_color", baseColor()},
+                    {"metallic", surface_.metallic},
                     {"radiance", ref("base.radiance")},
                     {"irradiance", ref("base.irradiance")},
                     {"scale", ref("base.environment_brdf", "scale")},
                     {"bias", ref("base.environment_brdf", "bias")}});
-    if (surface_.dielectric_f0 && !compensated)
-      Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
+    if (compensated && !surface_.textured_base) node.variant = "factors";
+    if (surface_.dielectric_f0) Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
     Source result = ref("base.indirect");
     if (surface_.coat) result = coatIndirect(result);
     if (surface_.occlusion) {
@@ -83,6 +83,12 @@ private:
   struct Lobe {
     Source NdotL, lobe;
   };
+
+  Source baseColor() const {
+    Source color = surface_.base_color;
+    color.swizzle = "rgb";
+    return color;
+  }
 
   Source cosines(const std::string& layer, const Source& normal) {
     graph_.add(layer + ".cosines", "lobe_cosines",

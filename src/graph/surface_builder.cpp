@@ -213,6 +213,7 @@ void SurfaceBuilder::baseColor() {
     inputs.emplace_back("texel", texel(*material_.baseColorTexture, "base_color", true));
   }
   if (attributes_.color0) inputs.emplace_back("vertex_color", given("color0"));
+  surface_.textured_base = material_.baseColorTexture || attributes_.color0;
   graph_.add("base.color", "base_color", std::move(inputs));
   surface_.base_color = ref("base.color");
 }
@@ -228,6 +229,7 @@ void SurfaceBuilder::metallicRoughness() {
   if (material_.metallicRoughnessTexture) {
     inputs.emplace_back("texel", texel(*material_.metallicRoughnessTexture, "metallic_roughness", false));
     surface_.textured_alpha = true;
+    surface_.textured_base = true;
   }
   graph_.add("base.metallic_roughness", "metallic_roughness", std::move(inputs));
   surface_.metallic = ref("base.metallic_roughness", "metallic");

@@ -33,6 +33,7 @@ struct CoatSources {
 struct Surface {
   bool unlit = false;
   bool textured_alpha = false;
+  bool textured_base = false;  ///< colour or metalness change from pixel to pixel
   Source base_color, metallic, roughness, alpha, normal;
   std::optional<Source> dielectric_f0, occlusion, emission, hidden, alpha_out;
   std::optional<CoatSources> coat;
