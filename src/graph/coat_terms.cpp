@@ -29,7 +29,7 @@ Source CoatTerms::input(std::string_view name) {
   if (name == "tint") return *coat_.color;
   if (name == "amount") return *coat_.darkening;
   if (name == "cosine_light") {
-    return node("coat.light_cosine", "view_cosine", {{"N", coat_.normal}, {"V", given("light_sample.L")}});
+    return node("coat.light_cosine", "light_cosine", {{"N", coat_.normal}, {"L", given("light_sample.L")}});
   }
   if (name == "base_albedo") {
     return node("coat.base_albedo", "coat_base_albedo",
