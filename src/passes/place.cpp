@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "passes/names.h"
@@ -8,11 +10,50 @@ namespace lacquer::passes {
 
 namespace {
 
-/// A short name for a value that leaves its stage: its own, its parameter's, or its term's.
-std::string nameFor(const ir::Dag& dag, ir::ValueId id) {
+/// What stands for an operand in the name of what is made of it: its own name, its parameter's, or its
+/// number.
+std::string operandName(const ir::Dag& dag, ir::ValueId id) {
   if (const std::string_view name = dag.nameOf(id); !name.empty()) return std::string(name);
   const ir::Value& value = dag[id];
   if (value.op == ir::Op::Input) return dag.inputOf(id).name;
+  if (dag.isConstant(id) && value.type == ir::Type::Float)
+    return fmt::format("{:.3g}", dag.constantOf(id)[0]);
+  if (value.op != ir::Op::Swizzle || value.type != ir::Type::Float) return {};
+  const std::string vector = operandName(dag, value.args[0]);
+  return vector.empty() ? vector : vector + "_" + "xyzw"[ir::swizzleComponent(value.payload, 0)];
+}
+
+/// A value without a name of its own, said by its operands: "weight_times_peak", "sin_rotation". Empty where
+/// that would be long, or an operand has no name either.
+std::string describedName(const ir::Dag& dag, ir::ValueId id) {
+  constexpr size_t kLongest = 44;
+  const ir::Value& value = dag[id];
+  const std::string a = value.count > 0 ? operandName(dag, value.args[0]) : "";
+  const std::string b = value.count > 1 ? operandName(dag, value.args[1]) : "";
+  std::string name;
+  switch (value.op) {
+    case ir::Op::Sin: name = "sin_" + a; break;
+    case ir::Op::Cos: name = "cos_" + a; break;
+    case ir::Op::Mul:
+      // The number last: a name does not begin with a digit.
+      name = value.args[0] == value.args[1]  ? a + "_squared"
+             : dag.isConstant(value.args[0]) ? b + "_times_" + a
+                                             : a + "_times_" + b;
+      break;
+    case ir::Op::Div: name = a + "_over_" + b; break;
+    case ir::Op::Add: name = a + "_plus_" + b; break;
+    case ir::Op::Sub: name = (a == "1" ? "one" : a) + "_minus_" + b; break;
+    default: return {};
+  }
+  return a.empty() || (value.count == 2 && b.empty()) || name.size() > kLongest ? std::string() : name;
+}
+
+/// A short name for a value that leaves its stage: its own, its parameter's, what it is made of, or its
+/// term's.
+std::string nameFor(const ir::Dag& dag, ir::ValueId id) {
+  if (std::string name = operandName(dag, id); !name.empty() && !dag.isConstant(id)) return name;
+  if (std::string name = describedName(dag, id); !name.empty()) return name;
+  const ir::Value& value = dag[id];
   if (value.op == ir::Op::Swizzle || value.op == ir::Op::Interpolate) return nameFor(dag, value.args[0]);
   std::string name = dag.terms()[dag.termOf(id)].name;
   std::replace_if(

@@ -208,11 +208,35 @@ void pullOut(ir::Module& module) {
   });
 }
 
+/// |x s| = |x| s for a reciprocal length s, which is positive: where the product's sign is asked for in sums
+/// alone, each of which is a fused multiply-add, only its magnitude ever stands in a register.
+void takeMagnitudes(ir::Module& module) {
+  Rewriter rewriter(module);
+  const ir::Dag& old = module.dag;
+  std::vector<bool> needed(old.size(), false);
+  for (const ValueId id : ir::reachable(old, rootsOf(module))) {
+    const Op op = old[id].op;
+    if (op == Op::Abs || op == Op::Add || op == Op::Sub) continue;
+    for (const ValueId operand : old[id].operands()) needed[operand] = true;
+  }
+  rewriter.run([&](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
+    if (r.dag()[id].op != Op::Abs || needed[old[id].args[0]]) return r.copy(id, operands);
+    const ir::Value product = r.dag()[operands[0]];
+    if (product.op != Op::Mul) return r.copy(id, operands);
+    for (const size_t k : {size_t{0}, size_t{1}}) {
+      if (r.dag()[product.args[k]].op != Op::InverseSqrt) continue;
+      return r.dag().mul(r.dag().make(Op::Abs, {product.args[1 - k]}), product.args[k]);
+    }
+    return r.copy(id, operands);
+  });
+}
+
 }  // namespace
 
 void placeScales(ir::Module& module) {
   Gather(module).run();
   pullOut(module);
+  takeMagnitudes(module);
 }
 
 }  // namespace lacquer::passes

@@ -198,6 +198,23 @@ TEST(Properties, TheCoatsLobeIsReciprocalButForItsFresnel) {
   }
 }
 
+/// What MIN_LOBE takes from the smoothest lobe, as its comment says: little, until both angles are grazing.
+TEST(Properties, TheLeastDenominatorTakesLittleFromALobe) {
+  Material m;
+  m.roughness = 0;
+  const Subject subject(m);
+  const auto share = [&](double cosine) {
+    Sample s;
+    s.v = tilted(cosine);
+    s.l = tilted(cosine, kPi);
+    return subject.color<double>(s)[0] / reference(m, s)[0];
+  };
+  EXPECT_NEAR(share(0.01), 1, 1e-6);
+  EXPECT_NEAR(share(0.001), 1, 0.001);
+  EXPECT_NEAR(share(0.0005), 0.97, 0.005);
+  EXPECT_NEAR(share(0.0002), 0.25, 0.02);
+}
+
 /// The share of a white sky's light that comes back: the BSDF times the cosine over the hemisphere, by the
 /// midpoint rule in sin^2 (uniform in projected area) and azimuth, the polar cells graded towards the mirror
 /// direction being left to their number.
