@@ -107,15 +107,13 @@ Expression Printer::constant(ValueId id) const {
   }
   if (type == Type::Float) return dialect_.literal(c[0]);
   assert(ir::isFloatVector(type));
-  const auto* end = c.begin() + ir::componentCount(type);
+  const std::span numbers(c.data(), static_cast<size_t>(ir::componentCount(type)));
   std::string list;
-  for (const auto* x = c.begin(); x != end; ++x) {
-    list += (list.empty() ? "" : ", ") + dialect_.literal(*x).text;
-  }
+  for (const double x : numbers) list += (list.empty() ? "" : ", ") + dialect_.literal(x).text;
   // By text: numbers that are one float are one number here.
   const Expression first = dialect_.literal(c[0]);
-  const bool equal =
-      std::all_of(c.begin(), end, [&](double x) { return dialect_.literal(x).text == first.text; });
+  const bool equal = std::all_of(numbers.begin(), numbers.end(),
+                                 [&](double x) { return dialect_.literal(x).text == first.text; });
   if (equal) return dialect_.splat(type, first, true);
   return {fmt::format("{}({})", dialect_.type(type), list)};
 }
