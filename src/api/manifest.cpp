@@ -31,13 +31,22 @@ Json blockJson(const ir::Module& module, const ir::Block& block) {
     json["stride"] = block.size;
   }
   json["size"] = block.array == 0 ? block.size : block.array * block.size;
+  const bool computed = block.role == ir::BlockRole::Material;
+  const targets::PreshaderText preshader =
+      computed ? targets::preshaderText(module) : targets::PreshaderText{};
+  if (!preshader.values.empty()) {
+    Json& values = json["values"] = Json::array();
+    for (const auto& [name, type, expression] : preshader.values) {
+      values.push_back({{"name", name}, {"type", ir::typeName(type)}, {"expression", expression}});
+    }
+  }
   Json fields = Json::array();
   for (uint32_t i = 0; i < block.fields.size(); ++i) {
     const ir::BlockField& field = block.fields[i];
     Json row = {{"name", field.name}, {"type", ir::typeName(field.type)}, {"offset", field.offset}};
-    if (block.role == ir::BlockRole::Material) {
-      for (const ir::PreshaderField& p : module.preshader) {
-        if (p.field == i) row["expression"] = targets::expressionText(module, p.value);
+    if (computed) {
+      for (size_t p = 0; p < module.preshader.size(); ++p) {
+        if (module.preshader[p].field == i) row["expression"] = preshader.fields[p];
       }
     } else if (!field.prose.empty()) {
       row["meaning"] = field.prose;

@@ -59,10 +59,9 @@ ValueId parameterInput(ir::Module& module, const lang::Param& param) {
   return module.dag.input({ir::InputKind::Parameter, name, param.type, ir::Rate::Fragment, range, 0, index});
 }
 
-Claim operationClaim(const ir::Module& module, const passes::Proof& proof) {
-  const std::string text = targets::expressionText(module, proof.operand);
-  Claim claim{fmt::format("{} of {}", ir::info(module.dag[proof.id].op).name, text), std::string(proof.need),
-              proof.reached, proof.safe};
+Claim operationClaim(const ir::Module& module, const passes::Proof& proof, const std::string& operand) {
+  Claim claim{fmt::format("{} of {}", ir::info(module.dag[proof.id].op).name, operand),
+              std::string(proof.need), proof.reached, proof.safe};
   if (claim.proved) return claim;
   // One evaluation may not see it; the same on pieces of the ranges may.
   passes::RefineOptions refine;
@@ -85,6 +84,12 @@ Claim operationClaim(const ir::Module& module, const passes::Proof& proof) {
 }
 
 }  // namespace
+
+std::vector<std::string> operandTexts(const ir::Module& module, const std::vector<passes::Proof>& proofs) {
+  std::vector<ValueId> operands;
+  for (const passes::Proof& proof : proofs) operands.push_back(proof.operand);
+  return targets::expressionTexts(module, operands);
+}
 
 std::string rangeText(const ir::Interval& range) { return fmt::format("in [{}, {}]", range.lo, range.hi); }
 
@@ -121,10 +126,11 @@ NodeProof proveNode(const lang::NodeDecl& node, std::string_view variant) {
   NodeProof proof{std::string(node.name), std::string(variant), {}, {}, {}};
   const NodeModule made = nodeModule(node, variant);
   const ir::Module& module = made.module;
-  for (const passes::Proof& p :
-       passes::prove(module, {Arithmetic::Float32, passes::kSceneLimit, true}).operations) {
-    proof.operations.push_back(operationClaim(module, p));
-  }
+  const std::vector<passes::Proof> operations =
+      passes::prove(module, {Arithmetic::Float32, passes::kSceneLimit, true}).operations;
+  const std::vector<std::string> operands = operandTexts(module, operations);
+  for (size_t i = 0; i < operands.size(); ++i)
+    proof.operations.push_back(operationClaim(module, operations[i], operands[i]));
   passes::Intervals exact(module, {Arithmetic::Real});
   exact.run();
   for (size_t i = 0; i < node.results.size(); ++i) {

@@ -46,6 +46,9 @@ NodeProof proveNode(const lang::NodeDecl& node, std::string_view variant);
 /// Every variant of every node, by name. The library must check.
 std::vector<NodeProof> proveNodes(const lang::Library& library);
 
+/// What must keep to its domain, for people.
+std::vector<std::string> operandTexts(const ir::Module& module, const std::vector<passes::Proof>& proofs);
+
 /// "in [0, 1]"
 std::string rangeText(const ir::Interval& range);
 

@@ -14,8 +14,6 @@ namespace lacquer {
 
 namespace {
 
-constexpr size_t kLongestExpression = 160;
-
 Json endJson(double x) { return std::isfinite(x) ? Json(x) : Json(x < 0 ? "-inf" : "inf"); }
 
 Json rangeJson(const passes::Range& range) {
@@ -25,29 +23,21 @@ Json rangeJson(const passes::Range& range) {
   return json;
 }
 
-std::string shortened(std::string text) {
-  if (text.size() <= kLongestExpression) return text;
-  text.resize(kLongestExpression);
-  // Not within a character.
-  while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
-  return text + "…";
-}
-
-Json operationJson(const ir::Module& module, const passes::Proof& proof) {
-  const ir::Dag& dag = module.dag;
+/// `operand`: the text of what must keep to the domain.
+Json operationJson(const ir::Dag& dag, const passes::Proof& proof, const std::string& operand) {
   const std::string& term = dag.terms()[dag.termOf(proof.id)].name;
   Json json = {{"term", term}};
   if (const std::string_view name = dag.nameOf(proof.id); !name.empty()) json["name"] = name;
   json["operation"] = ir::info(dag[proof.id].op).name;
   json["rate"] = ir::rateName(dag[proof.id].rate);
-  json["operand"] = shortened(targets::expressionText(module, proof.operand));
+  json["operand"] = operand;
   json["need"] = proof.need;
   json["reached"] = rangeJson(proof.reached);
   return json;
 }
 
 Json claimJson(const Claim& claim) {
-  return {{"what", shortened(claim.what)},
+  return {{"what", claim.what},
           {"need", claim.need},
           {"reached", rangeJson(claim.reached)},
           {"proved", claim.proved}};
@@ -78,14 +68,12 @@ Result<std::vector<Claim>> contractClaims(const graph::Graph& graph, const lang:
 }  // namespace
 
 Json proofsJson(const ir::Module& module) {
-  size_t safe = 0;
+  std::vector<passes::Proof> proofs = passes::prove(module).operations;
+  const size_t safe = std::erase_if(proofs, [](const passes::Proof& proof) { return proof.safe; });
+  const std::vector<std::string> operands = operandTexts(module, proofs);
   Json unproved = Json::array();
-  for (const passes::Proof& proof : passes::prove(module).operations) {
-    if (proof.safe)
-      ++safe;
-    else
-      unproved.push_back(operationJson(module, proof));
-  }
+  for (size_t i = 0; i < proofs.size(); ++i)
+    unproved.push_back(operationJson(module.dag, proofs[i], operands[i]));
   return {{"safe", safe}, {"unproved", std::move(unproved)}};
 }
 
@@ -99,10 +87,11 @@ std::string Graph::prove(const Options& options, Messages& messages) {
     return {};
   }
   const passes::Proofs proofs = passes::prove(*module);
+  const std::vector<std::string> operands = operandTexts(*module, proofs.operations);
   Json operations = Json::array();
-  for (const passes::Proof& proof : proofs.operations) {
-    Json row = operationJson(*module, proof);
-    row["safe"] = proof.safe;
+  for (size_t i = 0; i < operands.size(); ++i) {
+    Json row = operationJson(module->dag, proofs.operations[i], operands[i]);
+    row["safe"] = proofs.operations[i].safe;
     operations.push_back(std::move(row));
   }
   Json outputs = Json::array();

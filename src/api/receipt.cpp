@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 
+#include "api/option_key.h"
 #include "api/report_blob.h"
 #include "check/check.h"
 #include "gltf/container.h"
@@ -37,30 +38,11 @@ std::vector<Key> contentsOf(const Strings& files) {
   return contents;
 }
 
-/// Everything that outputs or report depend on. An option that is added stops here until it has its place:
-/// the list of names must be all of Options.
-void addOptions(const Options& options, KeyBuilder& key) {
-  const auto& [profile, error_budget, template_name, targets, parameters, lights, ibl, multiple_scattering,
-               dfg_table, decode_srgb, permissive, validate, unused, spirv_route, debug, live,
-               node_directories, jobs, cache, cache_size, depfile, shard] = options;
-  key.text(profile).number(error_budget).text(template_name).number(targets.size());
-  bool hlsl = false;
-  for (const Target target : targets) {
-    key.number(target);
-    hlsl |= target == Target::Hlsl;
-  }
-  key.number(parameters).number(lights.mode).number(lights.directional).number(lights.point);
-  key.number(lights.spot).number(ibl).number(multiple_scattering).number(dfg_table).number(decode_srgb);
-  key.number(permissive).number(validate).number(unused).number(spirv_route).number(debug);
-  key.number(live.size());
-  for (const std::string& term : live) key.text(term);
-  // The base covers what is in these, but not their names, which the depfile has.
-  key.number(node_directories.size());
-  for (const std::string& folder : node_directories) key.text(folder);
-  key.text(depfile).text(shard);
-  key.text(hlsl && validate ? check::dxcIdentity() : "");
-  // Nothing depends on how many threads there are and on how large the cache may become.
-  static_cast<void>(jobs), static_cast<void>(cache), static_cast<void>(cache_size);
+/// The compiler that checks the HLSL a second time, where it does.
+std::string dxcOf(const Options& options) {
+  const auto& targets = options.targets;
+  const bool hlsl = std::find(targets.begin(), targets.end(), Target::Hlsl) != targets.end();
+  return hlsl && options.validate ? check::dxcIdentity() : "";
 }
 
 void writeMessages(const Messages& messages, BlobWriter& blob) {
@@ -142,7 +124,9 @@ Receipt::Receipt(const Strings& files, const Strings& materials, const std::stri
   std::error_code ignored;  // the working folder only keeps projects apart that name theirs alike
   KeyBuilder key;
   key.text("receipt").key(base).text(std::filesystem::current_path(ignored).string()).text(folder);
-  addOptions(options, key);
+  addOptions(options, {Decides::Graph, Decides::Module, Decides::Code, Decides::SpirvCode, Decides::Run},
+             key);
+  key.text(dxcOf(options));
   key.number(materials.size());
   for (const std::string& name : materials) key.text(name);
   for (const std::string& file : files) key.text(file);

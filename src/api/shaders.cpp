@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "api/manifest.h"
+#include "api/option_key.h"
 #include "check/check.h"
 
 namespace lacquer {
@@ -59,8 +60,9 @@ private:
 Key Maker::keyOf(const std::string& id, Target target) const {
   const Options& options = setting_.options;
   KeyBuilder key;
-  key.text("shader").key(setting_.base).text(id).text(targetName(target)).number(options.validate);
-  if (target == Target::Spirv) key.number(options.spirv_route).number(options.debug);
+  key.text("shader").key(setting_.base).text(id).text(targetName(target));
+  addOptions(options, {Decides::Code}, key);
+  if (target == Target::Spirv) addOptions(options, {Decides::SpirvCode}, key);
   if (target == Target::Hlsl && options.validate) key.text(dxc_);
   return key.finish();
 }

@@ -10,6 +10,7 @@
 
 #include "api/budget.h"
 #include "api/manifest.h"
+#include "api/option_key.h"
 #include "api/report_blob.h"
 #include "gltf/container.h"
 
@@ -309,18 +310,9 @@ FileResult unreadable(const std::string& path, const Diagnostics& why) {
 // -- whole files in the cache --
 
 Key fileKey(const std::string& path, const std::string& bytes, const Setting& setting) {
-  const Options& o = setting.options;
   KeyBuilder key;
-  key.text("file").key(setting.base).text(path).key(keyOf(bytes)).text(o.template_name).number(o.parameters);
-  key.text(o.profile).number(o.error_budget);
-  key.number(o.lights.mode).number(o.lights.directional).number(o.lights.point).number(o.lights.spot);
-  key.number(o.ibl)
-      .number(o.multiple_scattering)
-      .number(o.dfg_table)
-      .number(o.decode_srgb)
-      .number(o.permissive)
-      .number(o.unused);
-  for (const std::string& term : o.live) key.text(term);
+  key.text("file").key(setting.base).text(path).key(keyOf(bytes));
+  addOptions(setting.options, {Decides::Graph, Decides::Module}, key);
   return key.finish();
 }
 

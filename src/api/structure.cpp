@@ -6,6 +6,7 @@
 
 #include "api/budget.h"
 #include "api/manifest.h"
+#include "api/option_key.h"
 #include "api/report_blob.h"
 #include "lower/lower.h"
 
@@ -203,7 +204,8 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
   thread_local KeyBuilder key;
   key.reset();
   const bool baked = setting.options.parameters == Parameters::Baked;
-  key.text("structure").key(setting.base).number(setting.options.parameters);
+  key.text("structure").key(setting.base);
+  addOptions(setting.options, {Decides::Module}, key);
   key.number(lights.any).number(lights.directional).number(lights.point).number(lights.spot);
   StructureKey(key, baked).graph(graph);
   return key.finish();

@@ -173,7 +173,8 @@ private:
     for (size_t i = 0; i < 3; ++i) {
       const size_t j = (i + 1) % 3;
       const size_t k = (i + 2) % 3;
-      result.push_back(map(Op::Sub, map(Op::Mul, of(a)[j], of(b)[k]), map(Op::Mul, of(a)[k], of(b)[j])));
+      const Register second = map(Op::Mul, of(a)[k], of(b)[j]);
+      result.push_back(map(Op::Sub, map(Op::Mul, of(a)[j], of(b)[k]), second));
     }
     return result;
   }

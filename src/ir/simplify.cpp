@@ -201,8 +201,9 @@ ValueId Simplifier::extremum(Op op, Type type, ValueId a, ValueId b) {
 ValueId Simplifier::power(Type type, ValueId a, ValueId b) {
   if (dag_.isConstant(b, 1)) return as(type, a);
   if (dag_.isConstant(b, 0) || dag_.isConstant(a, 1)) return dag_.constant(type, {1, 1, 1, 1});
-  if (dag_.isConstant(b, 2)) return dag_.mul(as(type, a), as(type, a));
-  return kNoValue;
+  if (!dag_.isConstant(b, 2)) return kNoValue;
+  const ValueId base = as(type, a);
+  return dag_.mul(base, base);
 }
 
 ValueId Simplifier::logic(Op op, ValueId a, ValueId b) {

@@ -115,8 +115,10 @@ ValueId saturated(Dag& dag, ValueId x) { return dag.make(Op::Clamp, {x, dag.cons
 ValueId makeSaturate(const Builtin&, Dag& dag, Values args) { return saturated(dag, args[0]); }
 
 ValueId makeSmoothstep(const Builtin&, Dag& dag, Values args) {
-  const ValueId t = saturated(dag, dag.div(dag.sub(args[2], args[0]), dag.sub(args[1], args[0])));
-  const ValueId slope = dag.sub(dag.constant(3), dag.mul(dag.constant(2), t));
+  const ValueId width = dag.sub(args[1], args[0]);
+  const ValueId t = saturated(dag, dag.div(dag.sub(args[2], args[0]), width));
+  const ValueId twice = dag.mul(dag.constant(2), t);
+  const ValueId slope = dag.sub(dag.constant(3), twice);
   return dag.mul(dag.mul(t, t), slope);
 }
 
@@ -125,7 +127,8 @@ std::optional<Type> typeOfReflect(const Builtin&, Types types) {
   return types[0];
 }
 ValueId makeReflect(const Builtin&, Dag& dag, Values args) {
-  const ValueId twice = dag.mul(dag.constant(2), dag.make(Op::Dot, {args[1], args[0]}));
+  const ValueId along = dag.make(Op::Dot, {args[1], args[0]});
+  const ValueId twice = dag.mul(dag.constant(2), along);
   return dag.sub(args[0], dag.mul(twice, args[1]));
 }
 
@@ -142,7 +145,8 @@ ValueId makeDegrees(const Builtin&, Dag& dag, Values args) {
   return dag.mul(args[0], dag.constant(180 / kPi));
 }
 ValueId makeTan(const Builtin&, Dag& dag, Values args) {
-  return dag.div(dag.make(Op::Sin, args), dag.make(Op::Cos, args));
+  const ValueId cosine = dag.make(Op::Cos, args);
+  return dag.div(dag.make(Op::Sin, args), cosine);
 }
 
 std::string_view shapeOf(ir::Signature signature) {

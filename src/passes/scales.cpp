@@ -76,7 +76,9 @@ private:
         const size_t q = low(product.args[0]) ? 0 : 1;
         if (!low(product.args[q])) continue;
         const ValueId slope = dag.mul(operands[k], product.args[q]);
-        return dag.add(dag.mul(operands[k], sum.args[p]), dag.mul(slope, product.args[1 - q]));
+        const ValueId rise = dag.mul(slope, product.args[1 - q]);
+        const ValueId start = dag.mul(operands[k], sum.args[p]);
+        return dag.add(start, rise);
       }
     }
     return ir::kNoValue;
@@ -101,8 +103,10 @@ private:
     if (const int v = scaledVector(dag, vector); v >= 0) {
       return dag.mul(value.args[static_cast<size_t>(v)], dag.mul(value.args[static_cast<size_t>(1 - v)], s));
     }
-    if (worthwhile(dag, vector)) return dag.add(scale(dag, value.args[0], s), scale(dag, value.args[1], s));
-    return dag.mul(vector, s);
+    if (!worthwhile(dag, vector)) return dag.mul(vector, s);
+    const ValueId second = scale(dag, value.args[1], s);
+    const ValueId first = scale(dag, value.args[0], s);
+    return dag.add(first, second);
   }
 
   ir::Module& module_;

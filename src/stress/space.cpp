@@ -46,7 +46,8 @@ Vec3 anyDirection(Random& random) {
 /// Equal, opposite, almost so, at right angles, almost so (grazing, above and below), or anything.
 Vec3 relatedTo(const Vec3& a, Random& random) {
   const Vec3 any = anyDirection(random);
-  const double little = std::exp2(-30 * random.unit()) * (random.below(2) == 0 ? 1 : -1);
+  const double size = std::exp2(-30 * random.unit());
+  const double little = random.below(2) == 0 ? size : -size;
   const Vec3 across = unit(combined(any, 1, a, -dot(a, any)));
   switch (random.below(10)) {
     case 0: return a;
@@ -65,6 +66,11 @@ double exact(double x, const ir::Interval& range) {
   if (static_cast<double>(f) > range.hi) f = std::nextafter(f, -INFINITY);
   if (static_cast<double>(f) < range.lo) f = std::nextafter(f, INFINITY);
   return static_cast<double>(f);
+}
+
+/// Half of the numbers with the other sign, where the range has negative ones.
+double signedOf(double x, const ir::Interval& range, Random& random) {
+  return range.lo < 0 && random.below(2) == 0 ? -x : x;
 }
 
 }  // namespace
@@ -93,13 +99,11 @@ double drawNumber(Random& random, const ir::Interval& range) {
     case 1: x = range.hi; break;
     case 2: x = range.lo + size * std::exp2(-40 * random.unit()); break;
     case 3: x = range.hi - size * std::exp2(-40 * random.unit()); break;
-    case 4:
-      x = kEdges[random.below(std::size(kEdges))] * (range.lo < 0 && random.below(2) == 0 ? -1 : 1);
-      break;
+    case 4: x = signedOf(kEdges[random.below(std::size(kEdges))], range, random); break;
     case 5:
     case 6:
     case 7: x = range.lo + size * random.unit(); break;
-    default: x = std::exp2(40 * random.unit() - 20) * (range.lo < 0 && random.below(2) == 0 ? -1 : 1); break;
+    default: x = signedOf(std::exp2(40 * random.unit() - 20), range, random); break;
   }
   return exact(x, range);
 }

@@ -39,20 +39,30 @@ Precedence binaryPrecedence(std::string_view spelling) {
   return Precedence::Or;
 }
 
+/// A text's first bytes, at most so many, without a part of a character.
+std::string beginning(std::string text, size_t longest) {
+  if (text.size() <= longest) return text;
+  while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0U) == 0x80U) --longest;
+  text.resize(longest);
+  return text;
+}
+
 /// The printer of one stage: expressions and statements.
 class Printer {
 public:
-  Printer(const Dialect& dialect, const ir::Module& module, const passes::Program& program)
-      : dialect_(dialect), module_(module), dag_(module.dag), program_(program) {}
+  /// `written`: by value id, what stands for a value in place of its variable or its computation.
+  Printer(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+          const std::vector<Expression>* written = nullptr)
+      : dialect_(dialect), module_(module), dag_(module.dag), program_(program), written_(written) {}
 
   void statements(Text& text) const;
   std::string root(ValueId id) const { return use(id).text; }
+  /// The value as it is computed.
+  Expression compute(ValueId id) const;
 
 private:
   /// The value where it is used: its variable if it has one.
   Expression use(ValueId id) const;
-  /// The value as it is computed.
-  Expression compute(ValueId id) const;
   Expression constant(ValueId id) const;
   Expression input(const ir::Input& input) const;
   Expression blockField(const ir::Input& input) const;
@@ -74,9 +84,11 @@ private:
   const ir::Module& module_;
   const ir::Dag& dag_;
   const passes::Program& program_;
+  const std::vector<Expression>* written_;
 };
 
 Expression Printer::use(ValueId id) const {
+  if (written_ != nullptr) return (*written_)[id];
   const std::string& name = program_.names[id];
   return name.empty() ? compute(id) : Expression{name};
 }
@@ -107,15 +119,13 @@ Expression Printer::constant(ValueId id) const {
   }
   if (type == Type::Float) return dialect_.literal(c[0]);
   assert(ir::isFloatVector(type));
-  const auto* end = c.begin() + ir::componentCount(type);
+  const std::span numbers(c.data(), static_cast<size_t>(ir::componentCount(type)));
   std::string list;
-  for (const auto* x = c.begin(); x != end; ++x) {
-    list += (list.empty() ? "" : ", ") + dialect_.literal(*x).text;
-  }
+  for (const double x : numbers) list += (list.empty() ? "" : ", ") + dialect_.literal(x).text;
   // By text: numbers that are one float are one number here.
   const Expression first = dialect_.literal(c[0]);
-  const bool equal =
-      std::all_of(c.begin(), end, [&](double x) { return dialect_.literal(x).text == first.text; });
+  const bool equal = std::all_of(numbers.begin(), numbers.end(),
+                                 [&](double x) { return dialect_.literal(x).text == first.text; });
   if (equal) return dialect_.splat(type, first, true);
   return {fmt::format("{}({})", dialect_.type(type), list)};
 }
@@ -186,7 +196,9 @@ std::string Printer::arguments(const ir::Value& value) const {
 
 Expression Printer::operation(const ir::Value& value) const {
   const std::string_view spelling = dialect_.spelling(value.op);
-  assert(!spelling.empty() && "not an op that a text can say");
+  if (written_ != nullptr && spelling.empty())
+    return {fmt::format("{}({})", ir::info(value.op).name, arguments(value))};
+  assert(!spelling.empty() && "not an op that a shader can say");
   const auto& args = value.args;
   if (value.op == Op::Select) {
     // A choice in the middle is in parentheses for the reader's sake, one at the end reads as a list of
@@ -423,10 +435,27 @@ std::string printValue(const Dialect& dialect, const ir::Module& module, const p
   return Printer(dialect, module, program).root(value);
 }
 
-std::string printExpression(const Dialect& dialect, const ir::Module& module, ValueId value) {
-  passes::Program nameless{};
-  nameless.names.resize(module.dag.size());
-  return Printer(dialect, module, nameless).root(value);
+std::string printDefinition(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+                            ValueId value) {
+  return Printer(dialect, module, program).compute(value).text;
+}
+
+std::vector<std::string> printExpressions(const Dialect& dialect, const ir::Module& module,
+                                          std::span<const ValueId> values, size_t longest) {
+  constexpr size_t kCharacter = 4;  // bytes, at most: enough is left to see that something is missing
+  const passes::Program nameless{};
+  std::vector<Expression> written(module.dag.size());
+  const Printer printer(dialect, module, nameless, &written);
+  for (const ValueId id : ir::reachable(module.dag, values)) {
+    written[id] = printer.compute(id);
+    written[id].text = beginning(std::move(written[id].text), longest + kCharacter);
+  }
+  std::vector<std::string> texts;
+  for (const ValueId id : values) {
+    const std::string& text = written[id].text;
+    texts.push_back(text.size() <= longest ? text : beginning(text, longest) + "…");
+  }
+  return texts;
 }
 
 }  // namespace lacquer::targets

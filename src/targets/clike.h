@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ir/module.h"
 #include "passes/program.h"
@@ -113,8 +114,14 @@ void printStatements(Text& text, const Dialect& dialect, const ir::Module& modul
 std::string printValue(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
                        ir::ValueId value);
 
-/// A value as one expression, everything written where it is used; parameters of the material by their names.
-std::string printExpression(const Dialect& dialect, const ir::Module& module, ir::ValueId value);
+/// What a Let computes into the value's variable.
+std::string printDefinition(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+                            ir::ValueId value);
+
+/// Each value as one expression, everything written where it is used; parameters of the material by their
+/// names. Of each, at most `longest` bytes and '…' for what is left: written out, what is used twice doubles.
+std::vector<std::string> printExpressions(const Dialect& dialect, const ir::Module& module,
+                                          std::span<const ir::ValueId> values, size_t longest);
 
 /// The C++ header that packs the material's block (cpp.cpp).
 std::string printHeader(const ir::Module& module, std::string_view name, std::string_view head);

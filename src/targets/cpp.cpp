@@ -9,6 +9,7 @@
 #include <cctype>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "passes/names.h"
 #include "targets/clike.h"
@@ -135,7 +136,9 @@ private:
     Type result;
     std::array<Type, 4> types;
     size_t count;
-    auto operator<=>(const Use&) const = default;
+    bool operator<(const Use& other) const {
+      return std::tie(op, result, types, count) < std::tie(other.op, other.result, other.types, other.count);
+    }
   };
 
   void need(ValueId id) {

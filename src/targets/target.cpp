@@ -55,8 +55,24 @@ std::string headerText(const ir::Module& module, std::string_view name, std::str
   return printHeader(module, name, head);
 }
 
-std::string expressionText(const ir::Module& module, ir::ValueId value) {
-  return printExpression(glslVulkan(), module, value);
+PreshaderText preshaderText(const ir::Module& module) {
+  std::vector<std::string> taken;
+  for (const uint32_t index : ir::usedParameters(module)) taken.push_back(module.parameters[index].name);
+  const passes::Program program = passes::schedulePreshader(module, taken);
+  PreshaderText text;
+  for (const passes::Statement& s : program.statements) {
+    if (s.kind != passes::StatementKind::Let) continue;
+    text.values.push_back({program.names[s.value], module.dag[s.value].type,
+                           printDefinition(glslVulkan(), module, program, s.value)});
+  }
+  for (const ir::PreshaderField& field : module.preshader)
+    text.fields.push_back(printValue(glslVulkan(), module, program, field.value));
+  return text;
+}
+
+std::vector<std::string> expressionTexts(const ir::Module& module, std::span<const ir::ValueId> values) {
+  constexpr size_t kLongest = 160;
+  return printExpressions(glslVulkan(), module, values, kLongest);
 }
 
 }  // namespace lacquer::targets

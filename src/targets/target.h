@@ -37,9 +37,20 @@ std::string printText(const ir::Module& module, const passes::Program& program, 
 /// shader's id. `head` as above.
 std::string headerText(const ir::Module& module, std::string_view name, std::string_view head);
 
-/// A value as one GLSL expression over parameters, for people and for other tools: the preshader in the
-/// manifest.
-std::string expressionText(const ir::Module& module, ir::ValueId value);
+/// The preshader in GLSL, for people and for other tools. Its length is linear in the number of operations.
+struct PreshaderText {
+  struct Value {
+    std::string name;
+    ir::Type type;
+    std::string expression;  ///< over the parameters and the values before it
+  };
+  std::vector<Value> values;        ///< with names that no parameter has
+  std::vector<std::string> fields;  ///< the expressions of Module::preshader, over parameters and values
+};
+PreshaderText preshaderText(const ir::Module& module);
+
+/// Each value as one GLSL expression, for people: the first 160 bytes and '…' for what is left.
+std::vector<std::string> expressionTexts(const ir::Module& module, std::span<const ir::ValueId> values);
 
 /// The SPIR-V words of one stage, written directly: SPIR-V 1.3, Vulkan 1.1.
 struct SpirvOptions {

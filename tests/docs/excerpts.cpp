@@ -52,10 +52,14 @@ std::string dustyPart(std::string_view of) {
   const Made& made = dustyExample();
   if (of == "field") {
     for (const Json& block : made.interface["uniforms"]) {
-      for (const Json& field : block["fields"]) {
-        if (field.value("expression", "").find("dust_amount") != std::string::npos)
-          return fenced("text", field.dump() + "\n");
+      std::string rows;
+      for (const char* list : {"values", "fields"}) {
+        for (const Json& row : block.value(list, Json::array())) {
+          const bool dusty = row.value("expression", "").find("dust_amount") != std::string::npos;
+          if (dusty || row["name"] == "coat_dust") rows += row.dump() + "\n";
+        }
       }
+      if (!rows.empty()) return fenced("text", rows);
     }
   }
   const std::string& text = made.shader.fragmentText(Target::Glsl);

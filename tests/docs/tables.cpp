@@ -200,7 +200,12 @@ std::string materialTable() {
   const Json block = blockOf(made.interface, "material");
   std::vector<char> bytes(made.shader.uniformSize());
   made.shader.pack({}, bytes.data());
-  std::string out = "| offset | type | field | expression | today |\n|---|---|---|---|---|\n";
+  std::string out = "| type | value | expression |\n|---|---|---|\n";
+  for (const Json& value : block["values"]) {
+    out += fmt::format("| `{}` | `{}` | `{}` |\n", text(value["type"]), text(value["name"]),
+                       text(value["expression"]));
+  }
+  out += "\n| offset | type | field | expression | today |\n|---|---|---|---|---|\n";
   for (const Json& field : block["fields"]) {
     const std::string type = text(field["type"]);
     const size_t count = type == "float" ? 1 : static_cast<size_t>(type.back() - '0');

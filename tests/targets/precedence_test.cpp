@@ -235,6 +235,11 @@ std::optional<std::string> withoutPair(const std::string& text, size_t open) {
   return result;
 }
 
+std::string printExpression(const Dialect& dialect, const ir::Module& module, ValueId value) {
+  constexpr size_t kAll = 1 << 30;
+  return printExpressions(dialect, module, {{value}}, kAll)[0];
+}
+
 void expectSameTrees(const Dialect& dialect) {
   int parentheses = 0;
   for (uint32_t seed = 0; seed < 3000; ++seed) {
@@ -280,7 +285,7 @@ TEST(Precedence, TheCommonCases) {
   const ValueId x = b.field("frame.a");
   const ValueId y = b.field("frame.b");
   const ValueId z = b.field("frame.c");
-  const auto text = [&](ValueId id) { return expressionText(b.module, id); };
+  const auto text = [&](ValueId id) { return expressionTexts(b.module, {{id}})[0]; };
   EXPECT_EQ(text(dag.sub(x, dag.sub(y, z))), "frame.a - (frame.b - frame.c)");
   EXPECT_EQ(text(dag.sub(dag.sub(x, y), z)), "frame.a - frame.b - frame.c");
   EXPECT_EQ(text(dag.div(x, dag.mul(y, z))), "frame.a / (frame.b * frame.c)");
@@ -299,6 +304,18 @@ TEST(Precedence, TheCommonCases) {
       dag.input({ir::InputKind::Parameter, "coat_ior", Type::Float, ir::Rate::Material, {}, 0, 0});
   EXPECT_EQ(text(dag.sub(factor, dag.constant(1))), "coat_ior - 1.0");
   EXPECT_EQ(printExpression(hlsl(), b.module, dag.constant(Type::Vec2, {1, 1})), "float2(1.0, 1.0)");
+}
+
+TEST(Precedence, WhatDoublesIsCutShort) {
+  Builder b;
+  b.block(ir::BlockRole::Frame, "Frame", "frame", {{"a", Type::Float}});
+  ir::Dag& dag = b.dag();
+  ValueId x = b.field("frame.a");
+  for (int i = 0; i < 100; ++i) x = dag.mul(x, dag.add(x, dag.constant(1)));
+  EXPECT_EQ(printExpressions(glslVulkan(), b.module, {{x, b.field("frame.a")}}, 30),
+            (std::vector<std::string>{"frame.a * (frame.a + 1.0) * (f…", "frame.a"}));
+  const ValueId sum = dag.make(Op::SumOverLights, {x});
+  EXPECT_EQ(printExpressions(glslVulkan(), b.module, {{sum}}, 30)[0], "sum_over_lights(frame.a * (fra…");
 }
 
 }  // namespace lacquer::targets

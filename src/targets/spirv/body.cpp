@@ -503,7 +503,8 @@ void Body::closeLoop() {
   assert(in_loop_);
   code_.op(spv::OpBranch, loop_.next_step);
   label(loop_.next_step);
-  code_.op(spv::OpIAdd, globals_.type(Kind::Int), loop_.next_index, loop_.index, globals_.integer(1));
+  const uint32_t one = globals_.integer(1);
+  code_.op(spv::OpIAdd, globals_.type(Kind::Int), loop_.next_index, loop_.index, one);
   code_.op(spv::OpBranch, loop_.head);
   label(loop_.merge);
   // The body does not dominate what follows: what it computed is unknown here.

@@ -1,0 +1,99 @@
+// What is kept between runs is found again under a key: an option that decides it must change the key.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "api/option_key.h"
+
+namespace lacquer::test {
+namespace {
+
+struct Row {
+  const char* option;
+  Decides decides;
+  std::function<void(Options&)> change;
+};
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> kRows = {
+      {"profile", Decides::Graph, [](Options& o) { o.profile = "openpbr"; }},
+      {"error_budget", Decides::Graph, [](Options& o) { o.error_budget = 0.01; }},
+      {"template_name", Decides::Graph, [](Options& o) { o.template_name = "surface"; }},
+      {"targets", Decides::Run, [](Options& o) { o.targets = {Target::Hlsl}; }},
+      {"parameters", Decides::Module, [](Options& o) { o.parameters = Parameters::Baked; }},
+      {"lights", Decides::Graph, [](Options& o) { o.lights.mode = Lights::Mode::Scene; }},
+      {"ibl", Decides::Graph, [](Options& o) { o.ibl = false; }},
+      {"multiple_scattering", Decides::Graph, [](Options& o) { o.multiple_scattering = false; }},
+      {"dfg_table", Decides::Graph, [](Options& o) { o.dfg_table = false; }},
+      {"decode_srgb", Decides::Graph, [](Options& o) { o.decode_srgb = true; }},
+      {"permissive", Decides::Graph, [](Options& o) { o.permissive = true; }},
+      {"validate", Decides::Code, [](Options& o) { o.validate = false; }},
+      {"unused", Decides::Graph, [](Options& o) { o.unused = true; }},
+      {"spirv_route", Decides::SpirvCode, [](Options& o) { o.spirv_route = SpirvRoute::Glslang; }},
+      {"debug", Decides::SpirvCode, [](Options& o) { o.debug = true; }},
+      {"live", Decides::Graph, [](Options& o) { o.live = {"coat.darkening"}; }},
+      {"node_directories", Decides::Run, [](Options& o) { o.node_directories = {"nodes"}; }},
+      {"jobs", Decides::Nothing, [](Options& o) { o.jobs = 2; }},
+      {"cache", Decides::Nothing, [](Options& o) { o.cache = "cache"; }},
+      {"cache_size", Decides::Nothing, [](Options& o) { o.cache_size = 1; }},
+      {"depfile", Decides::Run, [](Options& o) { o.depfile = "a.d"; }},
+      {"shard", Decides::Run, [](Options& o) { o.shard = "a.json"; }},
+  };
+  return kRows;
+}
+
+Options changed(const Row& row) {
+  Options options;
+  row.change(options);
+  return options;
+}
+
+Key keyOf(const Options& options, Decides what) {
+  KeyBuilder key;
+  addOptions(options, {what}, key);
+  return key.finish();
+}
+
+constexpr Decides kAll[] = {Decides::Graph,     Decides::Module, Decides::Code,
+                            Decides::SpirvCode, Decides::Run,    Decides::Nothing};
+
+TEST(OptionKeys, HoldWhatTheOptionDecides) {
+  for (const Row& row : rows()) {
+    const Options options = changed(row);
+    for (const Decides what : kAll) {
+      EXPECT_EQ(keyOf(options, what) != keyOf({}, what), what == row.decides)
+          << row.option << " " << static_cast<int>(what);
+    }
+  }
+}
+
+TEST(OptionKeys, EveryOptionIsTried) {
+  size_t count = 0;
+  eachOption(Options{}, [&](Decides, const auto&) { ++count; });
+  EXPECT_EQ(rows().size(), count);
+}
+
+TEST(OptionKeys, EachPartOfTheLightsCounts) {
+  const std::function<void(Lights&)> changes[] = {
+      [](Lights& l) { l.mode = Lights::Mode::Fixed; }, [](Lights& l) { l.directional = 1; },
+      [](Lights& l) { l.point = 1; }, [](Lights& l) { l.spot = 1; }};
+  std::vector<Key> keys{keyOf({}, Decides::Graph)};
+  for (const auto& change : changes) {
+    Options options;
+    change(options.lights);
+    keys.push_back(keyOf(options, Decides::Graph));
+    EXPECT_EQ(std::count(keys.begin(), keys.end(), keys.back()), 1);
+  }
+}
+
+TEST(OptionKeys, ListsDoNotRunIntoOneAnother) {
+  Options one, other;
+  one.live = {"coat", "emission"};
+  other.live = {"coat"};
+  other.profile = "emission";
+  EXPECT_NE(keyOf(one, Decides::Graph), keyOf(other, Decides::Graph));
+}
+
+}  // namespace
+}  // namespace lacquer::test
