@@ -79,7 +79,7 @@ std::string Graph::toJson() const { return graph::toJson(impl_->graph); }
 std::string Graph::toDot() const { return graph::toDot(impl_->graph); }
 
 bool Graph::addNode(const std::string& id, const std::string& type) {
-  if (impl_->graph.find(id) != nullptr) return false;
+  if (impl_->graph.find(id)) return false;
   impl_->graph.add(id, type);
   return true;
 }
@@ -87,11 +87,11 @@ bool Graph::addNode(const std::string& id, const std::string& type) {
 bool Graph::removeNode(const std::string& id) { return impl_->graph.remove(id); }
 
 bool Graph::connect(const std::string& node, const std::string& input, std::string_view source) {
-  graph::Node* found = impl_->graph.find(node);
-  if (found == nullptr) return false;
+  const std::optional<size_t> found = impl_->graph.find(node);
+  if (!found) return false;
   const Result<graph::Source> parsed = graph::sourceFromJson(source);
   if (!parsed) return false;
-  graph::Graph::connect(*found, input, *parsed);
+  impl_->graph.connect(*found, input, *parsed);
   return true;
 }
 
@@ -112,9 +112,10 @@ bool Graph::setParameter(const std::string& name, const std::vector<double>& val
   ir::Components components{};
   std::copy(value.begin(), value.end(), components.begin());
   const ir::Type type = ir::floatType(static_cast<int>(value.size()));
-  if (ir::Parameter* parameter = impl_->graph.findParameter(name)) {
-    if (parameter->type != type) return false;
-    parameter->value = components;
+  if (const std::optional<size_t> found = impl_->graph.findParameter(name)) {
+    ir::Parameter& parameter = impl_->graph.parameters[*found];
+    if (parameter.type != type) return false;
+    parameter.value = components;
     return true;
   }
   impl_->graph.parameters.push_back({name, type, components, {}, {}});

@@ -25,13 +25,13 @@ public:
     if (surface_.coat) coat = coatLobe();
     const bool clear = coat && clearCoat();
     if (clear) splitCosine(base, *coat);
-    Node& node = graph_.add("base.direct", "base_direct",
-                            {{"diffuse", ref("base.reflectance", "diffuse")},
-                             {"F0", ref("base.reflectance", "F0")},
-                             {"VdotH", ref("half", "VdotH")},
-                             {"NdotL", base.NdotL},
-                             {"lobe", base.lobe}});
-    if (surface_.dielectric_f0) Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
+    const size_t node = graph_.add("base.direct", "base_direct",
+                                   {{"diffuse", ref("base.reflectance", "diffuse")},
+                                    {"F0", ref("base.reflectance", "F0")},
+                                    {"VdotH", ref("half", "VdotH")},
+                                    {"NdotL", base.NdotL},
+                                    {"lobe", base.lobe}});
+    if (surface_.dielectric_f0) graph_.connect(node, "dielectric_f0", *surface_.dielectric_f0);
     Source result = ref("base.direct");
     if (coat) {
       graph_.add("coat.lobe", "coat_lobe", {{"lobe", coat->lobe}, {"NdotL", coat->NdotL}});
@@ -60,7 +60,7 @@ public:
     graph_.add("base.view_cosine", "view_cosine", {{"N", surface_.normal}, {"V", given("view")}});
     environmentBrdf("base", ref("base.view_cosine"), surface_.roughness);
     const bool compensated = options_.multiple_scattering;
-    Node& node =
+    const size_t node =
         graph_.add("base.indirect", compensated ? "base_indirect_multiple_scattering" : "base_indirect",
                    {{"diffuse", ref("base.reflectance", "diffuse")},
                     {"F0", ref("base.reflectance", "F0")},
@@ -69,7 +69,7 @@ public:
                     {"scale", ref("base.environment_brdf", "scale")},
                     {"bias", ref("base.environment_brdf", "bias")}});
     if (surface_.dielectric_f0 && !compensated)
-      Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
+      graph_.connect(node, "dielectric_f0", *surface_.dielectric_f0);
     Source result = ref("base.indirect");
     if (surface_.coat) result = coatIndirect(result);
     if (surface_.occlusion) {
@@ -93,11 +93,12 @@ private:
   /// D and V of a layer, which are there, become its lobe.
   Lobe lobe(const std::string& layer, bool split = false) {
     const std::string visibility = layer + ".visibility";
-    Node& node = graph_.add(layer + ".specular", "specular_lobe",
-                            {{"numerator", ref(layer + ".distribution", "numerator")},
-                             {"denominator", ref(layer + ".distribution", "denominator")},
-                             {"inverse_visibility", split ? ref(visibility, "sum") : ref(visibility)}});
-    if (split) Graph::connect(node, "weight", ref(visibility, "weight"));
+    const size_t node =
+        graph_.add(layer + ".specular", "specular_lobe",
+                   {{"numerator", ref(layer + ".distribution", "numerator")},
+                    {"denominator", ref(layer + ".distribution", "denominator")},
+                    {"inverse_visibility", split ? ref(visibility, "sum") : ref(visibility)}});
+    if (split) graph_.connect(node, "weight", ref(visibility, "weight"));
     return {ref(layer + ".cosines", "NdotL"), ref(layer + ".specular")};
   }
 
@@ -126,12 +127,12 @@ private:
     }
     shared.emplace_back("alpha_t", a.alpha_t);
     shared.emplace_back("alpha_b", a.alpha_b);
-    Node& distribution = graph_.add("coat.distribution", "ggx_distribution_anisotropic", shared);
-    Graph::connect(distribution, "NdotSum", ref("coat.cosines", "NdotSum"));
-    Graph::connect(distribution, "length2", ref("half", "length2"));
-    Node& visibility = graph_.add("coat.visibility", "smith_visibility_anisotropic", shared);
-    Graph::connect(visibility, "NdotL", NdotL);
-    Graph::connect(visibility, "NdotV", ref("coat.cosines", "NdotV"));
+    const size_t distribution = graph_.add("coat.distribution", "ggx_distribution_anisotropic", shared);
+    graph_.connect(distribution, "NdotSum", ref("coat.cosines", "NdotSum"));
+    graph_.connect(distribution, "length2", ref("half", "length2"));
+    const size_t visibility = graph_.add("coat.visibility", "smith_visibility_anisotropic", shared);
+    graph_.connect(visibility, "NdotL", NdotL);
+    graph_.connect(visibility, "NdotV", ref("coat.cosines", "NdotV"));
     return lobe("coat");
   }
 
@@ -151,19 +152,20 @@ private:
   void splitCosine(Lobe& base, Lobe& lobe) {
     const CoatSources& coat = *surface_.coat;
     const std::string split = "coat.transmission_direct";
-    Node& node = graph_.add(split, coat.normal == surface_.normal ? "coat_split" : "coat_split_normals",
-                            {{"NdotL", base.NdotL}, {"weight", coat.weight}, {"fresnel", coat.fresnel}});
-    if (!(coat.normal == surface_.normal)) Graph::connect(node, "coat_NdotL", lobe.NdotL);
+    const size_t node =
+        graph_.add(split, coat.normal == surface_.normal ? "coat_split" : "coat_split_normals",
+                   {{"NdotL", base.NdotL}, {"weight", coat.weight}, {"fresnel", coat.fresnel}});
+    if (!(coat.normal == surface_.normal)) graph_.connect(node, "coat_NdotL", lobe.NdotL);
     base.NdotL = ref(split, "transmitted");
     lobe.NdotL = ref(split, "reflected");
   }
 
   void environmentBrdf(const std::string& layer, const Source& cosine, const Source& roughness) {
-    Node& node = graph_.add(layer + ".environment_brdf",
-                            options_.dfg_table ? "environment_brdf" : "environment_brdf_fit",
-                            {{"NdotV", cosine}, {"roughness", roughness}});
+    const size_t node = graph_.add(layer + ".environment_brdf",
+                                   options_.dfg_table ? "environment_brdf" : "environment_brdf_fit",
+                                   {{"NdotV", cosine}, {"roughness", roughness}});
     if (options_.dfg_table)
-      Graph::connect(node, "environment_dfg", Source{TextureRef{"environment_dfg"}, {}});
+      graph_.connect(node, "environment_dfg", Source{TextureRef{"environment_dfg"}, {}});
   }
 
   Source coatIndirect(const Source& base) {
@@ -214,11 +216,11 @@ private:
     const CoatSources& coat = *surface_.coat;
     const std::string transmission = "coat.transmission_" + light;
     const bool clear = !terms.absorption && !terms.darkening;
-    Node& through = graph_.add(
+    const size_t through = graph_.add(
         transmission, clear ? "coat_transmission_clear" : std::string(options_.profile->transmission),
         {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
-    if (terms.absorption) Graph::connect(through, "absorption", *terms.absorption);
-    if (terms.darkening) Graph::connect(through, "darkening", *terms.darkening);
+    if (terms.absorption) graph_.connect(through, "absorption", *terms.absorption);
+    if (terms.darkening) graph_.connect(through, "darkening", *terms.darkening);
     const std::string id = "coat.layer_" + light;
     graph_.add(id, "coat_layer",
                {{"base", base},

@@ -5,7 +5,7 @@
 namespace lacquer::graph {
 
 Source CoatTerms::node(const std::string& id, const std::string& type, Inputs inputs) {
-  if (graph_.find(id) == nullptr) graph_.add(id, type, std::move(inputs));
+  if (!graph_.find(id)) graph_.add(id, type, std::move(inputs));
   return ref(id);
 }
 

@@ -44,7 +44,7 @@ void SurfaceBuilder::warn(std::string code, std::string pointer, std::string mes
                        {}});
 }
 
-Source SurfaceBuilder::editable(std::string name, ir::Type type, ir::Components value, ir::Interval range,
+Source SurfaceBuilder::editable(std::string name, ir::Type type, ir::Components value, ir::Range range,
                                 std::string property) {
   graph_.parameters.push_back(
       {name, type, value, range, fmt::format("/materials/{}/{}", material_.index, property)});
@@ -69,21 +69,21 @@ Source SurfaceBuilder::textureCoordinate(const gltf::TextureInfo& info, const st
   const gltf::TextureTransform t = info.transform.value_or(gltf::TextureTransform{});
   if (!t.identity()) {
     const std::string id = slot + ".uv";
-    Node& node = graph_.add(id, "uv_transform", {{"uv", uv}});
+    const size_t node = graph_.add(id, "uv_transform", {{"uv", uv}});
     const std::string name = slot + "_uv";
     const std::string at = fmt::format("/materials/{}/", material_.index);
     const std::string property = info.pointer.substr(at.size()) + "/extensions/KHR_texture_transform";
     if (t.offset != std::array<double, 2>{0, 0}) {
-      Graph::connect(
+      graph_.connect(
           node, "offset",
           editable(name + "_offset", ir::Type::Vec2, {t.offset[0], t.offset[1]}, {}, property + "/offset"));
     }
     if (t.rotation != 0) {
-      Graph::connect(node, "rotation",
+      graph_.connect(node, "rotation",
                      editable(name + "_rotation", ir::Type::Float, {t.rotation}, {}, property + "/rotation"));
     }
     if (t.scale != std::array<double, 2>{1, 1}) {
-      Graph::connect(
+      graph_.connect(
           node, "scale",
           editable(name + "_scale", ir::Type::Vec2, {t.scale[0], t.scale[1]}, {}, property + "/scale"));
     }
@@ -183,13 +183,13 @@ Source SurfaceBuilder::mapped(const gltf::Texture& texture, const std::string& l
     return geometric_normal_;
   }
   const Source image = texel(*texture, slot, false);
-  Node& node =
+  const size_t node =
       graph_.add(term, "normal_map",
                  {{"texel", pick(image, "rgb")}, {"T", frame->T}, {"B", frame->B}, {"N", geometric_normal_}});
   if (texture->scale != 1 || live(term)) {
     const std::string property =
         texture->pointer.substr(fmt::format("/materials/{}/", material_.index).size());
-    Graph::connect(node, "scale",
+    graph_.connect(node, "scale",
                    editable(scale_name, ir::Type::Float, {texture->scale}, {}, property + "/scale"));
   }
   return ref(term);
@@ -244,10 +244,10 @@ void SurfaceBuilder::metallicRoughness() {
   } else {
     skip("base.f0", "the IOR is 1.5: F0 is 0.04");
   }
-  Node& node =
+  const size_t node =
       graph_.add("base.reflectance", "metallic_mix",
                  {{"base_color", pick(surface_.base_color, "rgb")}, {"metallic", surface_.metallic}});
-  if (surface_.dielectric_f0) Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
+  if (surface_.dielectric_f0) graph_.connect(node, "dielectric_f0", *surface_.dielectric_f0);
 }
 
 void SurfaceBuilder::occlusion() {
@@ -259,9 +259,9 @@ void SurfaceBuilder::occlusion() {
     return skip("occlusion", "there is no indirect light");
   }
   const Source image = texel(*material_.occlusionTexture, "occlusion", false);
-  Node& node = graph_.add("occlusion", "occlusion", {{"texel", pick(image, "r")}});
+  const size_t node = graph_.add("occlusion", "occlusion", {{"texel", pick(image, "r")}});
   if (material_.occlusionTexture->strength != 1 || live("occlusion")) {
-    Graph::connect(node, "strength",
+    graph_.connect(node, "strength",
                    editable("occlusion_strength", ir::Type::Float, {material_.occlusionTexture->strength},
                             {0, 1}, "occlusionTexture/strength"));
   }
@@ -358,8 +358,8 @@ void SurfaceBuilder::coatIor(const CoatModel& model, CoatSources& coat) {
   coat.ior = number(1.5);
   coat.F0 = number(0.04);
   if (model.ior == 1.5 && !live("coat.f0")) return skip("coat.f0", "the coat's IOR is 1.5: F0 is 0.04");
-  coat.ior =
-      editable("coat_ior", ir::Type::Float, {model.ior}, {0, 1e9}, "extensions/KHR_materials_coat/coatIor");
+  coat.ior = editable("coat_ior", ir::Type::Float, {model.ior}, {{0, 1e9}, 1},
+                      "extensions/KHR_materials_coat/coatIor");
   if (options_.template_name != "surface" && options_.profile->fresnel_from != "F0") {
     return skip("coat.f0", fmt::format("the profile {} takes the IOR itself", options_.profile->name));
   }
@@ -474,9 +474,9 @@ void SurfaceBuilder::coatAnisotropy(const CoatModel& model, CoatSources& coat) {
     coat.anisotropy = Anisotropy{{}, {}, {}, {}, strength};
     return;
   }
-  Node& node = graph_.add("coat.anisotropy", "anisotropy_frame",
-                          {{"N", coat.normal}, {"T", frame->T}, {"B", frame->B}});
-  if (direction) Graph::connect(node, "direction", *direction);
+  const size_t node = graph_.add("coat.anisotropy", "anisotropy_frame",
+                                 {{"N", coat.normal}, {"T", frame->T}, {"B", frame->B}});
+  if (direction) graph_.connect(node, "direction", *direction);
   graph_.add("coat.anisotropic_alpha", "anisotropic_alpha", {{"alpha", coat.alpha}, {"strength", strength}});
   coat.anisotropy = Anisotropy{ref("coat.anisotropy", "T"), ref("coat.anisotropy", "B"),
                                ref("coat.anisotropic_alpha", "alpha_t"),
@@ -489,10 +489,10 @@ void SurfaceBuilder::coatEmission(const CoatModel& model, const CoatSources& coa
   std::optional<Source> absorption = coat.tint;
   const Profile& profile = *options_.profile;
   if (coat.absorbs) absorption = CoatTerms(graph_, surface_, coat).term(profile.absorption_emission);
-  Node& through = graph_.add("emission.transmission",
-                             absorption ? std::string(profile.transmission) : "coat_transmission_clear",
-                             {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
-  if (absorption) Graph::connect(through, "absorption", *absorption);
+  const size_t through = graph_.add(
+      "emission.transmission", absorption ? std::string(profile.transmission) : "coat_transmission_clear",
+      {{"weight", coat.weight}, {"fresnel", coat.fresnel}});
+  if (absorption) graph_.connect(through, "absorption", *absorption);
   graph_.add("emission.coated", "coat_over_emission",
              {{"emission", *surface_.emission}, {"transmission", ref("emission.transmission")}});
   surface_.emission = ref("emission.coated");

@@ -55,7 +55,7 @@ private:
   bool live(std::string_view term) const { return options_.live.contains(std::string(term)); }
 
   /// An editable parameter; its source.
-  Source editable(std::string name, ir::Type type, ir::Components value, ir::Interval range,
+  Source editable(std::string name, ir::Type type, ir::Components value, ir::Range range,
                   std::string property);
   /// The texel of a texture slot as a vec4 source; textures used twice in the same way are sampled once.
   Source texel(const gltf::TextureInfo& info, const std::string& slot, bool color);

@@ -214,7 +214,7 @@ RangeSyntax Parser::range() {
   return range;
 }
 
-/// `TYPE [name] [in [lo, hi]]`. The name's absence from the result marks an error.
+/// `TYPE [name] [in [lo, hi] [or 0]]`. The name's absence from the result marks an error.
 Param Parser::param(bool named) {
   Param param;
   const uint32_t begin = token().span.offset;
@@ -224,6 +224,10 @@ Param Parser::param(bool named) {
   if (is("in")) {
     param.range_syntax = range();
     if (!param.range_syntax) param.name = {};
+    if (param.range_syntax && accept("or")) {
+      param.range_syntax.or_zero = true;
+      if (!expect("0", "'or'")) param.name = {};
+    }
   }
   return param;
 }
