@@ -175,6 +175,8 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
     module = lower::lower(graph, setting.library, {parameterMode(setting.options)});
   }
   if (!module) return module;
+  if (Diagnostics wrong = checkLights(*module, lights); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
   const StageTimer timer(setting.times, StageOfRun::Passes);
   passes::runPipeline(*module, {lights, {}});
   return module;
