@@ -225,8 +225,13 @@ Param Parser::param(bool named) {
     param.range_syntax = range();
     if (!param.range_syntax) param.name = {};
     if (param.range_syntax && accept("or")) {
-      param.range_syntax.or_zero = true;
-      if (!expect("0", "'or'")) param.name = {};
+      param.range_syntax.or_zero = token().integer && token().number == 0;
+      if (param.range_syntax.or_zero) {
+        ++at_;
+      } else {
+        syntax("expected 0 after 'or'", "a range may have 0 beside it: `in [1, inf] or 0`");
+        param.name = {};
+      }
     }
   }
   return param;

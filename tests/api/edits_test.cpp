@@ -104,8 +104,8 @@ TEST(Edits, ofAnIndexOfRefractionHaveItsExactRange) {
     EXPECT_TRUE(graph.setRange("my_ior", {1, 1e9, true}, messages));
     EXPECT_EQ(graph.check(messages), good) << ior;
     EXPECT_EQ(errorsOf(messages), good ? "" : "out-of-range out-of-range") << ior;
-    if (!good)
-      EXPECT_NE(messages[0].message.find("[1, 1000000000] or 0"), std::string::npos) << messages[0].message;
+    if (good) continue;
+    EXPECT_NE(messages[0].message.find("[1, 1000000000] or 0"), std::string::npos) << messages[0].message;
   }
 }
 
