@@ -31,12 +31,14 @@ function(lacquer_folder name)
                         PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:lacquer_warnings>)
 endfunction()
 
-# The one public header, by itself.
+# The public headers, by themselves.
 set(public_view "${PROJECT_BINARY_DIR}/include/public")
 file(MAKE_DIRECTORY "${public_view}")
-if(NOT EXISTS "${public_view}/lacquer.h")
-  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/src/lacquer.h" "${public_view}/lacquer.h" SYMBOLIC COPY_ON_ERROR)
-endif()
+foreach(part lacquer.h lacquer)
+  if(NOT EXISTS "${public_view}/${part}")
+    file(CREATE_LINK "${PROJECT_SOURCE_DIR}/src/${part}" "${public_view}/${part}" SYMBOLIC COPY_ON_ERROR)
+  endif()
+endforeach()
 add_library(lacquer_public INTERFACE)
 target_include_directories(lacquer_public INTERFACE "$<BUILD_INTERFACE:${public_view}>")
 

@@ -1,5 +1,5 @@
 # What is installed: one library (the objects of all folders, so that nobody links a dozen archives in the right order),
-# its one header, the program, and the files for find_package(lacquer).
+# its public headers, the program, and the files for find_package(lacquer).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -22,6 +22,7 @@ add_executable(lacquer::lacquer_cli ALIAS lacquer_cli)
 set(package "${CMAKE_INSTALL_LIBDIR}/cmake/lacquer")
 install(TARGETS lacquer_library lacquer_cli EXPORT lacquer_targets)
 install(FILES src/lacquer.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(DIRECTORY src/lacquer DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(EXPORT lacquer_targets NAMESPACE lacquer:: FILE lacquer-targets.cmake DESTINATION "${package}")
 configure_package_config_file(cmake/lacquer-config.cmake.in "${PROJECT_BINARY_DIR}/lacquer-config.cmake"
                               INSTALL_DESTINATION "${package}")

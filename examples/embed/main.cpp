@@ -17,11 +17,11 @@ int main(int argc, char** argv) {
   }
   if (graph) {
     // The base glows a little, in the colour of its diffuse part.
-    graph.addNode("glow", "occluded");
-    graph.connect("glow", "light", R"({"node": "base.reflectance", "output": "diffuse"})");
-    graph.setParameter("glow_amount", {0.1});
-    graph.connect("glow", "visible", R"({"parameter": "glow_amount"})");
-    graph.setOutput("emission", R"({"node": "glow"})");
+    graph.addNode("glow", "occluded", messages);
+    graph.connect("glow", "light", R"({"node": "base.reflectance", "output": "diffuse"})", messages);
+    graph.setParameter("glow_amount", {0.1}, messages);
+    graph.connect("glow", "visible", R"({"parameter": "glow_amount"})", messages);
+    graph.setOutput("emission", R"({"node": "glow"})", messages);
 
     const lacquer::Shader shader = graph.generate(options, messages);
     if (shader) std::fputs(shader.fragmentText(lacquer::Target::Glsl).c_str(), stdout);

@@ -1,6 +1,6 @@
 #version 300 es
 // forward-base-6e2d962c014bbe0b
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 precision highp float;
 precision highp int;

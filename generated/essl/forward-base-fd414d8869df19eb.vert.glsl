@@ -1,6 +1,6 @@
 #version 300 es
 // forward-base-fd414d8869df19eb
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 precision highp float;
 precision highp int;

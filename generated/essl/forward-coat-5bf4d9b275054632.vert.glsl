@@ -1,6 +1,6 @@
 #version 300 es
 // forward-coat-5bf4d9b275054632
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 precision highp float;
 precision highp int;

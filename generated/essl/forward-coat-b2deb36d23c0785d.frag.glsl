@@ -1,6 +1,6 @@
 #version 300 es
 // forward-coat-b2deb36d23c0785d
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 precision highp float;
 precision highp int;

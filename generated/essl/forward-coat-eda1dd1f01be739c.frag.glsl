@@ -1,6 +1,6 @@
 #version 300 es
 // forward-coat-eda1dd1f01be739c
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 precision highp float;
 precision highp int;

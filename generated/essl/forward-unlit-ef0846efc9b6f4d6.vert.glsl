@@ -1,6 +1,6 @@
 #version 300 es
 // forward-unlit-ef0846efc9b6f4d6
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 precision highp float;
 precision highp int;

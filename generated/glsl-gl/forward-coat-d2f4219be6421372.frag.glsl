@@ -1,6 +1,6 @@
 #version 450
 // forward-coat-d2f4219be6421372
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 layout(std140, binding = 0) uniform Frame {
     mat4 view_projection;

@@ -1,6 +1,6 @@
 #version 450
 // forward-unlit-ef0846efc9b6f4d6
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 layout(std140, binding = 2) uniform Material {
     vec4 base_color_factor;

@@ -1,6 +1,6 @@
 #version 450
 // forward-base-32c9acca8a5ab87a
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 layout(std140, set = 0, binding = 0) uniform Frame {
     mat4 view_projection;

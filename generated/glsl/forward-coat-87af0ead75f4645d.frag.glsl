@@ -1,6 +1,6 @@
 #version 450
 // forward-coat-87af0ead75f4645d
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 layout(std140, set = 0, binding = 0) uniform Frame {
     mat4 view_projection;

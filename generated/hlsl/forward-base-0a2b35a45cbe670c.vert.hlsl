@@ -1,5 +1,5 @@
 // forward-base-0a2b35a45cbe670c
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 struct FrameBlock {
     column_major float4x4 view_projection;

@@ -1,5 +1,5 @@
 // forward-base-6e2d962c014bbe0b
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 struct FrameBlock {
     column_major float4x4 view_projection;

@@ -1,5 +1,5 @@
 // forward-coat-bdba8852b5a24866
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 struct FrameBlock {
     column_major float4x4 view_projection;

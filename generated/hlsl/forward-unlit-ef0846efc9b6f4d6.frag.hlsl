@@ -1,5 +1,5 @@
 // forward-unlit-ef0846efc9b6f4d6
-// Lacquer 0.1.0, template forward
+// Lacquer 0.2.0, template forward
 
 struct MaterialBlock {
     float4 base_color_factor;

@@ -42,6 +42,7 @@ bool hasError(const Messages& messages) {
 static_assert(static_cast<int>(Target::Cpp) == static_cast<int>(targets::TargetId::Cpp));
 
 std::string_view targetName(Target target) {
+  if (static_cast<size_t>(target) >= kTargetCount) return {};
   return targets::row(static_cast<targets::TargetId>(target)).name;
 }
 
@@ -60,8 +61,9 @@ std::vector<std::string> liveTerms() {
 }
 
 std::vector<std::string> passNames() {
-  const auto names = passes::passNames();
-  return {names.begin(), names.end()};
+  std::vector<std::string> names = {"lower"};
+  for (const std::string_view pass : passes::passNames()) names.emplace_back(pass);
+  return names;
 }
 
 Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {

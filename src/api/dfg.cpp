@@ -41,12 +41,25 @@ std::string ddsHeader(uint32_t size) {
 
 }  // namespace
 
-std::vector<float> environmentDfg(uint32_t size) { return eval::environmentDfgTable(size); }
+std::vector<float> environmentDfg(uint32_t size, Messages& messages) {
+  constexpr uint32_t kLeastSize = 2;
+  constexpr uint32_t kMostSize = 1024;
+  if (const Result<void> good = inRange("the table's size", size, kLeastSize, kMostSize, "texels"); !good) {
+    report(good.error(), {}, messages);
+    return {};
+  }
+  return eval::environmentDfgTable(size);
+}
 
 bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messages) {
+  if (const Result<void> named = hasPath("the table's file", path); !named) {
+    report(named.error(), {}, messages);
+    return false;
+  }
+  const std::vector<float> table = environmentDfg(size, messages);
+  if (table.empty()) return false;
   std::string bytes = ddsHeader(size);
-  for (const float x : environmentDfg(size))
-    append(bytes, static_cast<uint32_t>(std::lround(x * 65535.0F)), 2);
+  for (const float x : table) append(bytes, static_cast<uint32_t>(std::lround(x * 65535.0F)), 2);
   const Result<bool> written = writeFile(path, bytes);
   if (!written) report(written.error(), {}, messages);
   return written.has_value();

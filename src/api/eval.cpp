@@ -41,9 +41,19 @@ std::string_view nameOf(Engine engine) {
   switch (engine) {
     case Engine::Double: return "double";
     case Engine::Float: return "float";
-    case Engine::Vulkan: return "vulkan";
+    case Engine::Vulkan:
+    case Engine::VulkanGlsl:
+    case Engine::VulkanHlsl: return "vulkan";
   }
-  return {};
+  return {};  // no enumerator
+}
+
+bool onDevice(Engine engine) { return engine != Engine::Double && engine != Engine::Float; }
+
+FragmentRoute routeOf(Engine engine) {
+  return engine == Engine::VulkanHlsl   ? FragmentRoute::Hlsl
+         : engine == Engine::VulkanGlsl ? FragmentRoute::Glsl
+                                        : FragmentRoute::Direct;
 }
 
 std::string answerOf(const Colors& colors, const std::string& material, const std::string& profile,
@@ -58,7 +68,7 @@ std::string answerOf(const Colors& colors, const std::string& material, const st
   for (size_t i = 0; 4 * i < colors.rgba.size(); ++i) {
     text += i == 0 ? "\n    [" : ",\n    [";
     // A device leaves no colour where it has dropped the fragment.
-    const bool none = engine == Engine::Vulkan && !colors.discarded.empty() && colors.discarded[i];
+    const bool none = onDevice(engine) && !colors.discarded.empty() && colors.discarded[i];
     for (size_t c = 0; c < 4; ++c) {
       const double x = colors.rgba[4 * i + c];
       if (c > 0) text += ", ";
@@ -147,7 +157,7 @@ Result<Colors> colors(const ir::Module& module, const eval::Bindings& bindings, 
 }
 
 Result<Colors> colorsOnGpu(const ir::Module& module, const eval::Bindings& bindings,
-                           const GpuTextures& textures, size_t points, SpirvRoute route) {
+                           const GpuTextures& textures, size_t points, FragmentRoute route) {
   const Result<vulkan::Work> work = gpuWork(module, bindings, textures, points, route);
   if (!work) return tl::make_unexpected(work.error());
   const Result<vulkan::Device> device = vulkan::Device::open();
@@ -161,20 +171,6 @@ Result<Colors> colorsOnGpu(const ir::Module& module, const eval::Bindings& bindi
   return result;
 }
 
-/// The material of that name, or the only one where no name is given.
-Result<const material::Material*> findMaterial(const material::Document& document, const std::string& name) {
-  if (name.empty() && document.materials.size() == 1) return document.materials.data();
-  std::vector<std::string> names;
-  for (const material::Material& material : document.materials) {
-    if (!name.empty() && material.name == name) return &material;
-    names.push_back("'" + gltf::printable(material.name) + "'");
-  }
-  return fail("unknown-material", {document.path, 0, 0, {}},
-              name.empty() ? std::string("the file does not have exactly one material: name one")
-                           : fmt::format("no material is named '{}'", gltf::printable(name)),
-              names.empty() ? "there are none" : fmt::format("there are {}", fmt::join(names, ", ")));
-}
-
 Result<std::string> evaluateOne(const std::string& file, const std::string& material,
                                 const EvalPoints& points, Engine engine,
                                 const std::vector<std::string>& texels, const Options& options,
@@ -184,15 +180,19 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
   const Result<material::Document> document = readMaterials(file, **library, options);
   if (!document) return tl::make_unexpected(document.error());
   report(document->diagnostics, file, messages);
-  const Result<const material::Material*> found = findMaterial(*document, material);
-  if (!found) return tl::make_unexpected(found.error());
-  report((*found)->diagnostics, file, messages);
-  if (lacquer::hasError((*found)->diagnostics)) return std::string();
+  Diagnostics warnings;
+  const Result<size_t> place =
+      findMaterial(*document, material.empty() ? std::nullopt : std::optional(material), warnings);
+  if (!place) return tl::make_unexpected(place.error());
+  report(warnings, file, messages);
+  const material::Material& found = document->materials[*place];
+  report(found.diagnostics, file, messages);
+  if (lacquer::hasError(found.diagnostics)) return std::string();
   FileImages images(file);
   EvalMaterial evaluated(images, options);
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
-  if (Result<void> lowered = evaluated.lower(**found, **library, points.has_environment, {}, messages);
+  if (Result<void> lowered = evaluated.lower(found, **library, points.has_environment, {}, messages);
       !lowered) {
     return tl::make_unexpected(std::move(lowered.error()));
   }
@@ -206,9 +206,30 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
       engine == Engine::Double ? colors<double>(module, bindings, count)
       : engine == Engine::Float
           ? colors<float>(module, bindings, count)
-          : colorsOnGpu(module, bindings, gpuTextures(evaluated, points), count, options.spirv_route);
+          : colorsOnGpu(module, bindings, gpuTextures(evaluated, points), count, routeOf(engine));
   if (!answer) return tl::make_unexpected(answer.error());
-  return answerOf(*answer, (*found)->name, options.profile, engine);
+  return answerOf(*answer, found.name, options.profile, engine);
+}
+
+Diagnostics checkEvaluation(Engine engine, const Options& options) {
+  Diagnostics wrong = checkReading(options);
+  if (nameOf(engine).empty()) {
+    wrong.push_back({"unknown-enumerator",
+                     Severity::Error,
+                     {},
+                     fmt::format("the engine is {}, which is no enumerator", static_cast<int>(engine)),
+                     "they are 0 to 4",
+                     {}});
+  }
+  if (engine == Engine::VulkanHlsl && options.parameters == Parameters::Spec) {
+    wrong.push_back({"no-specialization-constants",
+                     Severity::Error,
+                     {},
+                     "HLSL has no specialization constants",
+                     "let the parameters be uniform or baked, or go by the direct SPIR-V or the GLSL",
+                     {}});
+  }
+  return wrong;
 }
 
 }  // namespace
@@ -216,10 +237,7 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
 std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
                      const std::string& points_name, Engine engine, const std::vector<std::string>& texels,
                      const Options& options, Messages& messages) {
-  Options checked = options;
-  checked.targets = {Target::Spirv};
-  checked.spirv_route = SpirvRoute::Direct;  // the engine takes every route
-  if (const Diagnostics wrong = checkOptions(checked); !wrong.empty()) {
+  if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty()) {
     report(wrong, {}, messages);
     return {};
   }

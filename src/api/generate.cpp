@@ -39,6 +39,11 @@ struct Inputs {
 Report generateWith(const Inputs& inputs, const std::string& folder, const Options& options,
                     Messages& messages, const Progress& progress) {
   Run run(options, messages, progress);
+  if (const Result<void> named = hasPath("the output folder", folder); !named) {
+    run.report(named.error(), {});
+    run.result().ok = false;
+    return run.finish();
+  }
   if (!run.prepare()) return run.finish();
   const bool shard = !options.shard.empty();
   std::optional<Receipt> receipt =

@@ -30,8 +30,8 @@ Result<std::vector<uint32_t>> compiledText(ir::Module module, bool hlsl) {
 
 class WorkBuilder {
 public:
-  WorkBuilder(const ir::Module& module, const eval::Bindings& bindings, size_t points, SpirvRoute route)
-      : module_(module), bindings_(bindings), points_(points), hlsl_(route == SpirvRoute::Hlsl) {
+  WorkBuilder(const ir::Module& module, const eval::Bindings& bindings, size_t points, FragmentRoute route)
+      : module_(module), bindings_(bindings), points_(points), hlsl_(route == FragmentRoute::Hlsl) {
     work_.points = points;
     work_.quads = bindings.quads;
   }
@@ -163,11 +163,11 @@ private:
 
 }  // namespace
 
-Result<std::vector<uint32_t>> fragmentWords(const ir::Module& module, SpirvRoute route) {
+Result<std::vector<uint32_t>> fragmentWords(const ir::Module& module, FragmentRoute route) {
   Result<std::vector<uint32_t>> words =
-      route == SpirvRoute::Direct
+      route == FragmentRoute::Direct
           ? targets::writeSpirv(module, passes::schedule(module, ir::Stage::Fragment), {})
-          : compiledText(module, route == SpirvRoute::Hlsl);
+          : compiledText(module, route == FragmentRoute::Hlsl);
   if (!words) return words;
   // Drivers trust what they are given.
   if (Diagnostics invalid = check::validate(*words, false, "eval"); !invalid.empty()) {
@@ -177,7 +177,7 @@ Result<std::vector<uint32_t>> fragmentWords(const ir::Module& module, SpirvRoute
 }
 
 Result<vulkan::Work> gpuWork(const ir::Module& module, const eval::Bindings& bindings,
-                             const GpuTextures& textures, size_t points, SpirvRoute route) {
+                             const GpuTextures& textures, size_t points, FragmentRoute route) {
   Result<vulkan::Work> work = WorkBuilder(module, bindings, points, route).build(textures);
   if (!work) return work;
   Result<std::vector<uint32_t>> words = fragmentWords(module, route);

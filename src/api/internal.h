@@ -25,10 +25,18 @@ Diagnostic toDiagnostic(const Message& message);
 /// The node files of a folder, sorted by name.
 Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder);
 
+using AfterPass = std::function<void(std::string_view pass, const ir::Module&)>;
+
 struct Graph::Impl {
   graph::Graph graph;
   std::string file;  ///< for messages
   passes::LightFacts scene_lights;
+
+  /// Checks the options and the graph, lowers it and runs the passes.
+  Result<ir::Module> module(const Options& options, Diagnostics (*check)(const Options&),
+                            const AfterPass& after = {});
+  bool refuse(std::string code, std::string message, std::string help, Messages& messages) const;
+  std::optional<graph::Source> source(std::string_view text, Messages& messages) const;
 };
 
 struct Scene::Impl {
@@ -61,8 +69,7 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
 
 /// A checked graph to a placed module.
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
-                            const passes::LightFacts& scene_lights,
-                            const std::function<void(std::string_view, const ir::Module&)>& after = {});
+                            const passes::LightFacts& scene_lights, const AfterPass& after = {});
 
 /// "forward-coat-0123456789abcdef"
 std::string shaderId(const ir::Module& module, const lang::Library& library);
@@ -83,8 +90,26 @@ inline int firstStage(Target target, bool has_vertex) { return has_vertex && tar
 /// Some compiler or validator checks the target's code.
 inline bool hasValidator(Target target) { return target != Target::Cpp; }
 
-/// What the options ask for and cannot be had together; empty when all is well.
+/// What is wrong with the options that a graph and its module depend on; empty when all is well.
+Diagnostics checkReading(const Options& options);
+/// The same, and what is wrong with the targets.
 Diagnostics checkOptions(const Options& options);
+
+/// "out-of-range" where a number of an argument is.
+Result<void> inRange(std::string_view what, uint64_t value, uint64_t least, uint64_t most,
+                     std::string_view unit);
+/// "no-path" where a file or folder to write has no name: it would be the root of the file system, or
+/// nothing.
+Result<void> hasPath(std::string_view what, const std::string& path);
+/// "empty-handle" where there is nothing behind a handle.
+bool filled(const void* impl, std::string_view what, Messages& messages);
+
+/// Scene::findMaterial().
+Result<size_t> findMaterial(const material::Document& document, const std::optional<std::string>& name,
+                            Diagnostics& warnings);
+
+/// "too-many-lights" where the facts have more than the light array holds.
+Diagnostics checkLights(const ir::Module& module, const passes::LightFacts& lights);
 
 lower::ParameterMode parameterMode(const Options& options);
 

@@ -36,6 +36,10 @@ std::string entryText(const Json& json) { return JsonText(kEntryDepth).json(json
 
 bool merge(const std::vector<std::string>& shards, const std::string& folder, Messages& messages) {
   std::map<std::string, std::pair<std::string, std::string>> shaders;  // id: entry, where it comes from
+  if (const Result<void> named = hasPath("the output folder", folder); !named) {
+    report(named.error(), {}, messages);
+    return false;
+  }
   if (const Result<bool> usable = makeFolder(folder); !usable) {
     report(usable.error(), {}, messages);
     return false;

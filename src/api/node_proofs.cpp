@@ -52,8 +52,8 @@ ValueId parameterInput(ir::Module& module, const lang::Param& param) {
     module.textures.push_back(slot);
     return module.dag.input({ir::InputKind::Texture, name, param.type, ir::Rate::Frame, {0, 1}, 0, index});
   }
-  ir::Interval range = param.range;
-  if (param.type == ir::Type::Bool) range = {0, 1};
+  ir::Range range = param.range;
+  if (param.type == ir::Type::Bool) range = {{0, 1}, 0};
   const auto index = static_cast<uint32_t>(module.parameters.size());
   module.parameters.push_back({name, param.type, {}, range, {}});
   return module.dag.input({ir::InputKind::Parameter, name, param.type, ir::Rate::Fragment, range, 0, index});

@@ -6,14 +6,15 @@ namespace lacquer {
 
 namespace {
 
-Json rangeJson(const ir::Interval& range) {
+Json rangeJson(const ir::Range& range) {
   const auto end = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
-  return Json::array({end(range.lo), end(range.hi)});
+  return Json::array({end(range.gap > 0 ? range.gap : range.lo), end(range.hi)});
 }
 
 Json paramJson(const lang::Param& param, std::string_view fallback) {
   Json json = {{"name", param.name.empty() ? fallback : param.name}, {"type", ir::typeName(param.type)}};
   if (param.has_range) json["range"] = rangeJson(param.range);
+  if (param.range.gap > 0) json["or_zero"] = true;
   if (param.default_value) json["default"] = componentsJson(param.type, *param.default_value);
   if (!param.prose.empty()) json["meaning"] = param.prose;
   return json;
@@ -35,8 +36,10 @@ Json nodeJson(const lang::NodeDecl& node) {
   }
   Json assumptions = Json::array();
   for (const lang::Assumption& a : node.assumptions) {
-    assumptions.push_back(
-        {{"value", a.value}, {"range", rangeJson(a.range)}, {"reason", a.reason}, {"variant", a.variant}});
+    assumptions.push_back({{"value", a.value},
+                           {"range", rangeJson({a.range, 0})},
+                           {"reason", a.reason},
+                           {"variant", a.variant}});
   }
   json["inputs"] = std::move(inputs);
   json["outputs"] = std::move(outputs);

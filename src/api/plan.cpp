@@ -144,6 +144,14 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
                 const std::vector<std::string>& materials, const std::string& folder, const Options& options,
                 Messages& messages) {
   Run run(options, messages);
+  Result<void> named = hasPath("the output folder", folder);
+  if (named) named = hasPath("the Ninja file", plan.ninja);
+  if (named) named = hasPath("the program", plan.program);
+  if (!named) {
+    run.report(named.error(), {});
+    run.result().ok = false;
+    return run.finish();
+  }
   if (!run.open()) return run.finish();
   ManifestFile manifest(plan.ninja + ".plan/materials.json");
   run.readScenes(files, materials, [&](FileResult& file) { manifest.file(file.text); });

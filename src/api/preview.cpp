@@ -16,8 +16,9 @@ namespace lacquer {
 
 namespace {
 
-constexpr uint32_t kLeastSize = 16;
+constexpr uint32_t kLeastSize = 16;  ///< pixels of a ball
 constexpr uint32_t kMostSize = 2048;
+constexpr uint32_t kMostColumns = 100;
 
 /// White, but where white would bend something: a flat normal, and an anisotropy along the tangent.
 std::array<double, 4> neutralTexel(const ir::TextureSlot& slot) {
@@ -67,10 +68,7 @@ public:
 
 private:
   Result<void> readSettings() {
-    if (preview_.size < kLeastSize || preview_.size > kMostSize) {
-      return fail("out-of-range", {}, fmt::format("the size of a ball is {}", preview_.size),
-                  fmt::format("it must be from {} to {} pixels", kLeastSize, kMostSize));
-    }
+    if (Result<void> good = checkNumbers(); !good) return good;
     if (preview_.compare.empty()) settings_.push_back({"", options_, preview_.in_float, ""});
     for (const std::string& text : preview_.compare) {
       Result<PreviewSetting> setting = previewSetting(text, {text, options_, preview_.in_float, ""});
@@ -78,11 +76,25 @@ private:
       settings_.push_back(std::move(*setting));
     }
     for (const PreviewSetting& setting : settings_) {
+      if (Diagnostics wrong = checkReading(setting.options); !wrong.empty())
+        return tl::make_unexpected(std::move(wrong));
       auto library = libraryFor(setting.options);
       if (!library) return tl::make_unexpected(std::move(library.error()));
       libraries_.push_back(std::move(*library));
     }
     return {};
+  }
+
+  Result<void> checkNumbers() const {
+    if (Result<void> path = hasPath("the picture", preview_.output); !path) return path;
+    if (Result<void> size = inRange("the size of a ball", preview_.size, kLeastSize, kMostSize, "pixels");
+        !size)
+      return size;
+    if (preview_.compare.size() == 1 || preview_.compare.size() > 2) {
+      return fail("wrong-count", {}, fmt::format("{} settings are to be compared", preview_.compare.size()),
+                  "name two, or none");
+    }
+    return inRange("the number of columns", preview_.columns, 0, kMostColumns, {});
   }
 
   /// The files with those of their materials that are wanted.

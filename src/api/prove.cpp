@@ -78,12 +78,15 @@ Json proofsJson(const ir::Module& module) {
 }
 
 std::string Graph::prove(const Options& options, Messages& messages) {
-  if (!check(messages, options)) return {};
-  const auto library = libraryFor(options);
-  const Result<ir::Module> module = toModule(impl_->graph, **library, options, impl_->scene_lights);
-  const Result<std::vector<Claim>> claims = contractClaims(impl_->graph, **library, options);
-  if (!module || !claims) {
-    report(module ? claims.error() : module.error(), impl_->file, messages);
+  if (!filled(impl_.get(), "graph", messages)) return {};
+  const Result<ir::Module> module = impl_->module(options, checkReading);
+  if (!module) {
+    report(module.error(), impl_->file, messages);
+    return {};
+  }
+  const Result<std::vector<Claim>> claims = contractClaims(impl_->graph, **libraryFor(options), options);
+  if (!claims) {
+    report(claims.error(), impl_->file, messages);
     return {};
   }
   const passes::Proofs proofs = passes::prove(*module);

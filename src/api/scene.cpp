@@ -1,7 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "api/internal.h"
-#include "passes/pipeline.h"
+#include "gltf/text.h"
 
 namespace lacquer {
 
@@ -21,15 +22,58 @@ Result<SchemaOf> schemaFor(const Options& options) {
   return SchemaOf{*language, *schema};
 }
 
+constexpr size_t kMostNames = 20;  ///< so many materials are named when the one asked for is not there
+
+/// "'Paint', 'Trim', …"
+std::string listed(const std::vector<material::Material>& materials) {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < materials.size() && i < kMostNames; ++i)
+    names.push_back("'" + gltf::printable(materials[i].name) + "'");
+  std::string text = fmt::format("there are {}", fmt::join(names, ", "));
+  if (materials.size() > kMostNames) text += fmt::format(", … ({} in all)", materials.size());
+  return text;
+}
+
 }  // namespace
+
+Result<size_t> findMaterial(const material::Document& document, const std::optional<std::string>& name,
+                            Diagnostics& warnings) {
+  const std::vector<material::Material>& materials = document.materials;
+  const Place place{document.path, 0, 0, {}};
+  std::vector<size_t> found;
+  for (size_t i = 0; i < materials.size(); ++i) {
+    if (!name || materials[i].name == *name) found.push_back(i);
+  }
+  if (materials.empty()) return fail("no-such-material", place, "the file has no materials");
+  if (found.empty()) {
+    return fail("no-such-material", place, fmt::format("no material is named '{}'", gltf::printable(*name)),
+                listed(materials));
+  }
+  if (found.size() > 1 && !name) {
+    return fail("no-such-material", place, "the file has several materials, and none is named",
+                listed(materials));
+  }
+  if (found.size() > 1) {
+    warnings.push_back({"duplicate-name",
+                        Severity::Warning,
+                        place,
+                        fmt::format("{} materials are named '{}': this is /materials/{}", found.size(),
+                                    gltf::printable(*name), found[0]),
+                        {},
+                        {}});
+  }
+  return found[0];
+}
+
+const Scene::Impl& Scene::impl() const {
+  static const Impl kNone;
+  return impl_ ? *impl_ : kNone;
+}
 
 Scene Scene::load(const std::string& path, const Options& options, Messages& messages) {
   Scene scene;
   const Result<SchemaOf> schema = schemaFor(options);
-  if (!schema) {
-    report(schema.error(), path, messages);
-    return scene;
-  }
+  if (!schema) return report(schema.error(), path, messages), scene;
   Result<material::Document> document = material::read(path, *schema->schema, {options.permissive});
   if (!document) {
     report(document.error(), path, messages);
@@ -44,10 +88,7 @@ Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const
                         Messages& messages) {
   Scene scene;
   const Result<SchemaOf> schema = schemaFor(options);
-  if (!schema) {
-    report(schema.error(), name, messages);
-    return scene;
-  }
+  if (!schema) return report(schema.error(), name, messages), scene;
   Result<material::Document> document = material::readText(bytes, name, *schema->schema, {options.permissive});
   if (!document) {
     report(document.error(), name, messages);
@@ -58,15 +99,27 @@ Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const
   return scene;
 }
 
-size_t Scene::materialCount() const { return impl_->document.materials.size(); }
+size_t Scene::materialCount() const { return impl().document.materials.size(); }
 
 const std::string& Scene::materialName(size_t material) const {
-  return impl_->document.materials[material].name;
+  static const std::string kNone;
+  return material < materialCount() ? impl().document.materials[material].name : kNone;
+}
+
+std::optional<size_t> Scene::findMaterial(const std::optional<std::string>& name, Messages& messages) const {
+  if (!filled(impl_.get(), "scene", messages)) return std::nullopt;
+  Diagnostics warnings;
+  const Result<size_t> found = lacquer::findMaterial(impl().document, name, warnings);
+  report(warnings, {}, messages);
+  if (found) return *found;
+  report(found.error(), {}, messages);
+  return std::nullopt;
 }
 
 std::vector<Attributes> Scene::uses(size_t material) const {
   std::vector<Attributes> uses;
-  for (const gltf::VertexAttributes& a : impl_->document.uses[material]) {
+  if (material >= materialCount()) return uses;
+  for (const gltf::VertexAttributes& a : impl().document.uses[material]) {
     uses.push_back({a.normal, a.tangent, a.color0, a.texCoord});
   }
   return uses;
@@ -75,131 +128,33 @@ std::vector<Attributes> Scene::uses(size_t material) const {
 Graph Scene::graph(size_t material, const Attributes& attributes, const Options& options,
                    Messages& messages) const {
   Graph result;
-  const material::Material& m = impl_->document.materials[material];
-  report(m.diagnostics, impl_->document.path, messages);
+  if (!filled(impl_.get(), "scene", messages)) return result;
+  const material::Document& document = impl_->document;
+  if (material >= document.materials.size()) {
+    report(fail("no-such-material", {}, fmt::format("there is no material {}", material),
+                fmt::format("the file has {}, counted from 0", document.materials.size()))
+               .value(),
+           document.path, messages);
+    return result;
+  }
+  const material::Material& m = document.materials[material];
+  report(m.diagnostics, document.path, messages);
   if (lacquer::hasError(m.diagnostics)) return result;
-  const auto language = libraryFor(options);
-  if (!language) return report(language.error(), {}, messages), result;
-  if (const Diagnostics wrong = checkOptions(options); !wrong.empty()) {
+  if (const Diagnostics wrong = checkReading(options); !wrong.empty()) {
     report(wrong, {}, messages);
     return result;
   }
+  const auto language = libraryFor(options);
+  if (!language) return report(language.error(), {}, messages), result;
   Diagnostics warnings;
   const gltf::VertexAttributes a{attributes.normal, attributes.tangent, attributes.color0,
                                  attributes.texCoord};
   Result<graph::Graph> graph = buildGraph(m, a, **language, options, warnings);
-  report(warnings, impl_->document.path, messages);
+  report(warnings, document.path, messages);
   if (!graph) return report(graph.error(), {}, messages), result;
-  result.impl_ = std::make_shared<Graph::Impl>(
-      Graph::Impl{std::move(*graph), impl_->document.path, lightsOf(impl_->document)});
+  result.impl_ =
+      std::make_shared<Graph::Impl>(Graph::Impl{std::move(*graph), document.path, lightsOf(document)});
   return result;
-}
-
-Graph Graph::fromJson(std::string_view text, const std::string& name, Messages& messages) {
-  Graph result;
-  Result<graph::Graph> graph = graph::fromJson(text, name);
-  if (!graph) {
-    report(graph.error(), name, messages);
-    return result;
-  }
-  result.impl_ = std::make_shared<Impl>(Impl{std::move(*graph), name, {}});
-  return result;
-}
-
-std::string Graph::toJson() const { return graph::toJson(impl_->graph); }
-std::string Graph::toDot() const { return graph::toDot(impl_->graph); }
-
-bool Graph::addNode(const std::string& id, const std::string& type) {
-  if (impl_->graph.find(id) != nullptr) return false;
-  impl_->graph.add(id, type);
-  return true;
-}
-
-bool Graph::removeNode(const std::string& id) { return impl_->graph.remove(id); }
-
-bool Graph::connect(const std::string& node, const std::string& input, std::string_view source) {
-  graph::Node* found = impl_->graph.find(node);
-  if (found == nullptr) return false;
-  const Result<graph::Source> parsed = graph::sourceFromJson(source);
-  if (!parsed) return false;
-  graph::Graph::connect(*found, input, *parsed);
-  return true;
-}
-
-bool Graph::setOutput(const std::string& port, std::string_view source) {
-  const Result<graph::Source> parsed = graph::sourceFromJson(source);
-  if (!parsed) return false;
-  for (auto& [name, value] : impl_->graph.outputs) {
-    if (name != port) continue;
-    value = *parsed;
-    return true;
-  }
-  impl_->graph.outputs.emplace_back(port, *parsed);
-  return true;
-}
-
-bool Graph::setParameter(const std::string& name, const std::vector<double>& value) {
-  if (value.empty() || value.size() > 4) return false;
-  ir::Components components{};
-  std::copy(value.begin(), value.end(), components.begin());
-  const ir::Type type = ir::floatType(static_cast<int>(value.size()));
-  if (ir::Parameter* parameter = impl_->graph.findParameter(name)) {
-    if (parameter->type != type) return false;
-    parameter->value = components;
-    return true;
-  }
-  impl_->graph.parameters.push_back({name, type, components, {}, {}});
-  return true;
-}
-
-bool Graph::check(Messages& messages, const Options& options) {
-  const auto library = libraryFor(options);
-  if (!library) {
-    report(library.error(), {}, messages);
-    return false;
-  }
-  const Diagnostics found = graph::check(impl_->graph, **library);
-  report(found, impl_->file, messages);
-  return !lacquer::hasError(found);
-}
-
-Shader Graph::generate(const Options& options, Messages& messages) {
-  Shader shader;
-  const auto language = libraryFor(options);
-  if (!language) return report(language.error(), impl_->file, messages), shader;
-  if (const Diagnostics wrong = checkOptions(options); !wrong.empty()) {
-    report(wrong, impl_->file, messages);
-    return shader;
-  }
-  if (!check(messages, options)) return shader;
-  Result<ir::Module> module = toModule(impl_->graph, **language, options, impl_->scene_lights);
-  if (!module) {
-    report(module.error(), impl_->file, messages);
-    return shader;
-  }
-  auto impl = std::make_shared<Shader::Impl>();
-  impl->id = shaderId(*module, **language);
-  impl->has_vertex = lacquer::hasVertexStage(*module);
-  impl->interface = interfaceJson(*module, impl->has_vertex);
-  impl->preshader = Preshader(*module);
-  impl->module = std::move(*module);
-  Wrong wrong;
-  print(*impl, options, wrong);
-  for (const Diagnostics& of_target : wrong) report(of_target, impl_->file, messages);
-  shader.impl_ = std::move(impl);
-  return shader;
-}
-
-std::string Graph::dump(const Options& options, std::string_view pass, Messages& messages) {
-  if (!check(messages, options)) return {};
-  std::string text;
-  const auto keep = [&](std::string_view name, const ir::Module& module) {
-    if (pass.empty() || name == pass) text = ir::dump(module);
-  };
-  const Result<ir::Module> module =
-      toModule(impl_->graph, **libraryFor(options), options, impl_->scene_lights, keep);
-  if (!module) report(module.error(), impl_->file, messages);
-  return text;
 }
 
 }  // namespace lacquer

@@ -14,12 +14,14 @@
 namespace lacquer {
 
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
-                            const passes::LightFacts& scene_lights,
-                            const std::function<void(std::string_view, const ir::Module&)>& after) {
+                            const passes::LightFacts& scene_lights, const AfterPass& after) {
   Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options)});
   if (!module) return module;
+  const passes::LightFacts lights = lightFacts(options, scene_lights);
+  if (Diagnostics wrong = checkLights(*module, lights); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
   if (after) after("lower", *module);
-  passes::runPipeline(*module, {lightFacts(options, scene_lights), after});
+  passes::runPipeline(*module, {lights, after});
   return module;
 }
 
@@ -30,36 +32,6 @@ lower::ParameterMode parameterMode(const Options& options) {
     case Parameters::Spec: return lower::ParameterMode::Spec;
   }
   return lower::ParameterMode::Uniform;
-}
-
-Diagnostics checkOptions(const Options& options) {
-  Diagnostics wrong;
-  if (options.spirv_route == SpirvRoute::Hlsl) {
-    wrong.push_back({"wrong-route",
-                     Severity::Error,
-                     {},
-                     "SPIR-V by way of the HLSL has other bindings than Lacquer's",
-                     "it is written directly or by way of the GLSL; evaluate() alone takes this way",
-                     {}});
-  }
-  if (!(options.error_budget >= 0 && options.error_budget <= 1)) {
-    wrong.push_back({"bad-error-budget",
-                     Severity::Error,
-                     {},
-                     fmt::format("the error budget is {}", options.error_budget),
-                     "it is a relative error from 0 to 1",
-                     {}});
-  }
-  for (const Target target : options.targets) {
-    if (options.parameters != Parameters::Spec || target == Target::Glsl || target == Target::Spirv) continue;
-    wrong.push_back({"no-specialization-constants",
-                     Severity::Error,
-                     {},
-                     fmt::format("the target {} has no specialization constants", targetName(target)),
-                     "glsl and spirv have them; for the others, parameters are uniform or baked",
-                     {}});
-  }
-  return wrong;
 }
 
 bool hasVertexStage(const ir::Module& module) {
@@ -230,45 +202,56 @@ void print(ShaderData& shader, const Options& options, Wrong& wrong, StageTimes*
   Printing(shader, options, wrong, times).run();
 }
 
-const std::string& Shader::id() const { return impl_->id; }
-bool Shader::hasVertexStage() const { return impl_->has_vertex; }
-const std::vector<uint32_t>& Shader::vertexSpirv() const { return impl_->spirv[0]; }
-const std::vector<uint32_t>& Shader::fragmentSpirv() const { return impl_->spirv[1]; }
-const std::string& Shader::headerText() const { return impl_->text[static_cast<int>(Target::Cpp)][1]; }
-const std::string& Shader::interfaceJson() const { return impl_->interface; }
+const Shader::Impl& Shader::impl() const {
+  static const Impl kNone;
+  return impl_ ? *impl_ : kNone;
+}
+
+const std::string& Shader::id() const { return impl().id; }
+bool Shader::hasVertexStage() const { return impl().has_vertex; }
+const std::vector<uint32_t>& Shader::vertexSpirv() const { return impl().spirv[0]; }
+const std::vector<uint32_t>& Shader::fragmentSpirv() const { return impl().spirv[1]; }
+const std::string& Shader::headerText() const { return impl().text[static_cast<size_t>(Target::Cpp)][1]; }
+const std::string& Shader::interfaceJson() const { return impl().interface; }
 
 static const std::string& textOf(const std::string (&text)[kTargetCount][2], Target target, int stage) {
   static const std::string kNone;
-  return target == Target::Spirv || target == Target::Cpp ? kNone : text[static_cast<int>(target)][stage];
+  const auto row = static_cast<size_t>(target);
+  return target == Target::Cpp || row >= kTargetCount ? kNone : text[row][stage];
 }
 
-const std::string& Shader::vertexText(Target target) const { return textOf(impl_->text, target, 0); }
-const std::string& Shader::fragmentText(Target target) const { return textOf(impl_->text, target, 1); }
+const std::string& Shader::vertexText(Target target) const { return textOf(impl().text, target, 0); }
+const std::string& Shader::fragmentText(Target target) const { return textOf(impl().text, target, 1); }
 
 size_t Shader::uniformSize() const {
-  for (const ir::Block& block : impl_->module.blocks) {
+  for (const ir::Block& block : impl().module.blocks) {
     if (block.role == ir::BlockRole::Material) return block.size;
   }
   return 0;
 }
 
-void Shader::pack(const std::function<bool(std::string_view, double*)>& value, void* bytes) const {
+bool Shader::pack(const Values& value, std::span<std::byte> block) const {
+  const size_t size = uniformSize();
+  if (block.size() < size) return false;
   std::vector<ir::Components> parameters;
-  for (const ir::Parameter& parameter : impl_->module.parameters) {
+  for (const ir::Parameter& parameter : impl().module.parameters) {
     ir::Components components = parameter.value;
-    parameters.push_back(value && value(parameter.name, components.data()) ? components : parameter.value);
+    const std::span<double> numbers(components.data(),
+                                    static_cast<size_t>(ir::componentCount(parameter.type)));
+    parameters.push_back(value && value(parameter.name, numbers) ? components : parameter.value);
   }
-  std::memset(bytes, 0, uniformSize());
-  const Preshader& preshader = impl_->preshader;
+  std::fill_n(block.begin(), size, std::byte{0});
+  const Preshader& preshader = impl().preshader;
   const std::vector<ir::Components> values =
       preshader.evaluate([&](uint32_t i) -> const ir::Components& { return parameters[i]; });
   for (size_t i = 0; i < values.size(); ++i) {
     const Preshader::Field& field = preshader.fields()[i];
     for (int c = 0; c < ir::componentCount(field.type); ++c) {
       const auto x = static_cast<float>(values[i][static_cast<size_t>(c)]);
-      std::memcpy(static_cast<char*>(bytes) + field.offset + size_t{4} * static_cast<size_t>(c), &x, 4);
+      std::memcpy(block.data() + field.offset + size_t{4} * static_cast<size_t>(c), &x, 4);
     }
   }
+  return true;
 }
 
 }  // namespace lacquer

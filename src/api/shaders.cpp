@@ -201,13 +201,14 @@ std::vector<MadeShader> makeShaders(std::map<std::string, Distinct>& shaders, co
   for (auto& [id, shader] : shaders) list.emplace_back(&id, &shader);
   std::vector<MadeShader> made(list.size());
   std::atomic<size_t> done{0};
-  std::mutex mutex;
+  std::atomic_flag reporting;  // not a mutex: what is called may wait by taking work of this very loop
   const Maker maker(setting, folder, scratch, receipt);
   tbb::parallel_for(size_t{0}, list.size(), [&](size_t i) {
     made[i] = maker.make(*list[i].first, *list[i].second);
     const size_t finished = ++done;
-    const std::unique_lock lock(mutex, std::try_to_lock);
-    if (lock.owns_lock()) progress(finished);
+    if (reporting.test_and_set(std::memory_order_acquire)) return;
+    progress(finished);  // when it throws, nothing is reported any more
+    reporting.clear(std::memory_order_release);
   });
   return made;
 }

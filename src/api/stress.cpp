@@ -20,6 +20,8 @@ using gltf::Json;
 using stress::Finding;
 using stress::Subject;
 
+constexpr uint64_t kMostSamples = uint64_t{1} << 40;
+
 /// Stands for every node of the library.
 constexpr std::string_view kNodes = "nodes";
 
@@ -50,6 +52,12 @@ public:
   }
 
   Result<std::string> make(const std::vector<std::string>& names) {
+    if (Diagnostics wrong = checkReading(options_); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    if (Result<void> samples = inRange("the number of samples", plan_.samples, 1, kMostSamples, {}); !samples)
+      return tl::make_unexpected(std::move(samples.error()));
+    if (Result<void> total = inRange("the number of all samples", total_, 0, kMostSamples, {}); !total)
+      return tl::make_unexpected(std::move(total.error()));
     auto library = libraryFor(options_);
     if (!library) return tl::make_unexpected(std::move(library.error()));
     library_ = std::move(*library);

@@ -46,7 +46,7 @@ public:
   void graph(const graph::Graph& graph) {
     key_.text(graph.template_name).number(graph.parameters.size());
     for (const ir::Parameter& p : graph.parameters) {
-      key_.text(p.name).number(p.type).number(p.range.lo).number(p.range.hi);
+      key_.text(p.name).number(p.type).number(p.range.lo).number(p.range.hi).number(p.range.gap);
       for (size_t i = 0; values_ && i < p.value.size(); ++i) key_.number(p.value[i]);
     }
     key_.number(graph.textures.size());
@@ -68,14 +68,16 @@ private:
   bool values_;
 };
 
-void narrow(ir::Interval& range, const ir::Interval& by) {
+void narrow(ir::Range& range, const ir::Range& by) {
   range.lo = std::max(range.lo, by.lo);
   range.hi = std::min(range.hi, by.hi);
+  range.gap = std::max(range.gap, by.gap);
+  if (range.lo > 0) range.lo = std::max(range.lo, range.gap);
 }
 
 /// For each parameter the values that its own range and every input or port it goes to accept.
-std::vector<ir::Interval> limitsOf(const graph::Graph& graph, const lang::Library& library) {
-  std::vector<ir::Interval> limits;
+std::vector<ir::Range> limitsOf(const graph::Graph& graph, const lang::Library& library) {
+  std::vector<ir::Range> limits;
   for (const ir::Parameter& p : graph.parameters) limits.push_back(p.range);
   const auto meet = [&](const graph::Source& source, const lang::Param& contract) {
     const auto* ref = std::get_if<graph::ParameterRef>(&source.from);
@@ -104,7 +106,7 @@ std::vector<ir::Interval> limitsOf(const graph::Graph& graph, const lang::Librar
 }
 
 /// Takes away what belongs to one material.
-graph::Graph withoutMaterial(graph::Graph graph, const std::vector<ir::Interval>& limits, bool values) {
+graph::Graph withoutMaterial(graph::Graph graph, const std::vector<ir::Range>& limits, bool values) {
   graph.name.clear();
   for (size_t i = 0; i < graph.parameters.size(); ++i) {
     ir::Parameter& p = graph.parameters[i];
@@ -175,6 +177,8 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
     module = lower::lower(graph, setting.library, {parameterMode(setting.options)});
   }
   if (!module) return module;
+  if (Diagnostics wrong = checkLights(*module, lights); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
   const StageTimer timer(setting.times, StageOfRun::Passes);
   passes::runPipeline(*module, {lights, {}});
   return module;
@@ -250,7 +254,7 @@ bool withinLimits(const Structure& structure, const graph::Graph& graph) {
     const ir::Parameter& p = graph.parameters[i];
     for (int c = 0; c < ir::componentCount(p.type); ++c) {
       const double x = p.value[static_cast<size_t>(c)];
-      if (!std::isfinite(x) || !(x >= structure.limits[i].lo && x <= structure.limits[i].hi)) return false;
+      if (!std::isfinite(x) || !structure.limits[i].contains(x)) return false;
     }
   }
   return true;
@@ -290,7 +294,9 @@ std::string toBlob(const Structure& s) {
   s.preshader.write(blob);
   blob.list(s.parameters, [&](uint32_t i) { blob.number(i); });
   blob.list(s.textures, [&](const auto& t) { blob.text(t.first), blob.number(t.second); });
-  blob.list(s.limits, [&](const ir::Interval& range) { blob.number(range.lo), blob.number(range.hi); });
+  blob.list(s.limits, [&](const ir::Range& range) {
+    blob.number(range.lo), blob.number(range.hi), blob.number(range.gap);
+  });
   blob.text(s.graph);
   blob.number(s.lights.any), blob.number(s.lights.directional), blob.number(s.lights.point),
       blob.number(s.lights.spot);
@@ -320,7 +326,8 @@ bool fromBlob(std::string_view bytes, Structure& s) {
   });
   blob.list([&] {
     const auto lo = blob.number<double>();
-    s.limits.push_back({lo, blob.number<double>()});
+    const auto hi = blob.number<double>();
+    s.limits.push_back({{lo, hi}, blob.number<double>()});
   });
   s.graph = blob.text();
   s.lights.any = blob.number<bool>(), s.lights.directional = blob.number<uint32_t>();

@@ -29,7 +29,7 @@ struct Structure {
   Preshader preshader;
   std::vector<uint32_t> parameters;                        ///< of the module, as places in the graph's list
   std::vector<std::pair<std::string, uint32_t>> textures;  ///< the module's material textures, the same way
-  std::vector<ir::Interval>
+  std::vector<ir::Range>
       limits;         ///< for each of the graph's parameters: values for which the check has no complaint
   std::string graph;  ///< JSON form of the graph without what belongs to one material
   passes::LightFacts lights;

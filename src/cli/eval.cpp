@@ -55,6 +55,13 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
 
 namespace {
 
+Engine engineOf(const EvalFlags& flags) {
+  if (flags.engine == "double") return Engine::Double;
+  if (flags.engine == "float") return Engine::Float;
+  if (flags.spirv_from == "glslang") return Engine::VulkanGlsl;
+  return flags.spirv_from == "hlsl" ? Engine::VulkanHlsl : Engine::Vulkan;
+}
+
 bool readAll(const std::string& path, std::string& text) {
   if (path == "-") {
     text.assign(std::istreambuf_iterator<char>(std::cin), {});
@@ -70,15 +77,6 @@ bool readAll(const std::string& path, std::string& text) {
 }  // namespace
 
 int runEval(EvalFlags& flags) {
-  if (flags.params == "spec" && flags.spirv_from == "hlsl") {
-    fmt::print(stderr,
-               "eval: HLSL has no specialization constants: --params spec goes with --spirv-from direct or "
-               "glslang\n");
-    return 2;
-  }
-  flags.options.spirv_route = flags.spirv_from == "hlsl"      ? SpirvRoute::Hlsl
-                              : flags.spirv_from == "glslang" ? SpirvRoute::Glslang
-                                                              : SpirvRoute::Direct;
   flags.options.parameters = flags.params == "baked"  ? Parameters::Baked
                              : flags.params == "spec" ? Parameters::Spec
                                                       : Parameters::Uniform;
@@ -90,10 +88,7 @@ int runEval(EvalFlags& flags) {
   flags.options.multiple_scattering = !flags.no_multiple_scattering;
   flags.options.dfg_table = flags.dfg == "table";
   Messages messages;
-  const std::string answer = evaluate(flags.file, flags.material, points, flags.points,
-                                      flags.engine == "vulkan"  ? Engine::Vulkan
-                                      : flags.engine == "float" ? Engine::Float
-                                                                : Engine::Double,
+  const std::string answer = evaluate(flags.file, flags.material, points, flags.points, engineOf(flags),
                                       flags.texels, flags.options, messages);
   for (const Message& message : messages) {
     if (message.level != Message::Level::Note) fmt::print(stderr, "{}\n", printable(message.text));

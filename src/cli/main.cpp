@@ -29,8 +29,7 @@ using lacquer::Options;
 constexpr int kGood = 0;
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
-constexpr int kMostJobs = 1024;    ///< more threads than that are a mistyped number
-constexpr size_t kMostNames = 20;  ///< so many materials are named when the one asked for is not there
+constexpr int kMostJobs = 1024;  ///< more threads than that are a mistyped number
 
 /// An empty folder name is a script's unset variable, and would lead to the root of the file system.
 const CLI::Validator kNotEmpty(
@@ -239,53 +238,13 @@ int merge(const Flags& flags) {
   return merged ? kGood : kFailed;
 }
 
-/// "'Paint', 'Trim', …"
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (size_t i = 0; i < names.size() && i < kMostNames; ++i)
-    text += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
-  if (names.size() > kMostNames) text += fmt::format(", … ({} in all)", names.size());
-  return lacquer::cli::printable(text);
-}
-
-/// The place of the material that `graph` and `dump` are about, or no place and a message.
-std::optional<size_t> onlyMaterial(const lacquer::Scene& scene, const Flags& flags) {
-  std::vector<std::string> names;
-  std::vector<size_t> found;
-  for (size_t i = 0; i < scene.materialCount(); ++i) {
-    names.push_back(scene.materialName(i));
-    if (!flags.material || names[i] == *flags.material) found.push_back(i);
-  }
-  if (found.size() == 1) return found[0];
-  const std::string& file = flags.files[0];
-  if (names.empty()) {
-    fmt::print(stderr, "{}: error: the file has no materials [no-such-material]\n", file);
-  } else if (!flags.material) {
-    fmt::print(stderr,
-               "{}: error: the file has several materials: say which with --material [no-such-material]\n",
-               file);
-    fmt::print(stderr, "  help: there are {}\n", listed(names));
-  } else if (found.empty()) {
-    fmt::print(stderr, "{}: error: no material is named '{}' [no-such-material]\n", file, *flags.material);
-    fmt::print(stderr, "  help: there are {}\n", listed(names));
-  } else {
-    fmt::print(stderr, "{}: warning: {} materials are named '{}': this is /materials/{} [duplicate-name]\n",
-               file, found.size(), *flags.material, found[0]);
-    return found[0];
-  }
-  return std::nullopt;
-}
-
 lacquer::Graph onlyGraph(const Flags& flags, Messages& messages) {
   const lacquer::Scene scene = lacquer::Scene::load(flags.files[0], flags.options, messages);
   if (!scene) return {};
-  const std::optional<size_t> material = onlyMaterial(scene, flags);
+  const std::optional<size_t> material = scene.findMaterial(flags.material, messages);
   if (!material) return {};
   const std::vector<lacquer::Attributes> uses = scene.uses(*material);
-  lacquer::Attributes attributes;
-  attributes.tangent = true;
-  attributes.texCoord = {true, true, false, false};
-  return scene.graph(*material, uses.empty() ? attributes : uses[0], flags.options, messages);
+  return scene.graph(*material, uses.empty() ? lacquer::kUnusedAttributes : uses[0], flags.options, messages);
 }
 
 int graph(const Flags& flags) {
@@ -297,13 +256,6 @@ int graph(const Flags& flags) {
 }
 
 int dump(const Flags& flags) {
-  const std::vector<std::string> passes = lacquer::passNames();
-  if (!flags.pass.empty() && flags.pass != "lower" &&
-      std::find(passes.begin(), passes.end(), flags.pass) == passes.end()) {
-    fmt::print(stderr, "--after: there is no pass '{}'; passes are lower, {}\n", flags.pass,
-               fmt::join(passes, ", "));
-    return kUsage;
-  }
   Messages messages;
   lacquer::Graph graph = onlyGraph(flags, messages);
   if (graph) fmt::print("{}", graph.dump(flags.options, flags.pass, messages));
@@ -371,7 +323,8 @@ int run(int argc, char** argv) {
   graph_verb->add_option("--format", flags.format, "json or dot")
       ->check(CLI::IsMember({"json", "dot"}))
       ->capture_default_str();
-  dump_verb->add_option("--after", flags.pass, "the pass after which to look; the last when absent");
+  dump_verb->add_option("--after", flags.pass, "the pass after which to look; the last when absent")
+      ->check(CLI::IsMember(lacquer::passNames()));
 
   CLI::App* prove_verb =
       app.add_subcommand("prove", "which operations are safe for all inputs; of the nodes without FILE");

@@ -76,12 +76,7 @@ bool proveNodes(bool as_json, const Options& options, Messages& messages) {
 bool proveMaterial(const Scene& scene, size_t material, bool as_json, const Options& options,
                    Messages& messages) {
   std::vector<Attributes> uses = scene.uses(material);
-  if (uses.empty()) {
-    Attributes everything;
-    everything.tangent = true;
-    everything.texCoord = {true, true, false, false};
-    uses.push_back(everything);
-  }
+  if (uses.empty()) uses.push_back(kUnusedAttributes);
   bool good = true;
   for (const Attributes& attributes : uses) {
     Graph graph = scene.graph(material, attributes, options, messages);

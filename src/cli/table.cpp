@@ -78,7 +78,8 @@ std::string range(const nlohmann::json& item) {
   const auto end = [](const nlohmann::json& x, const char* infinite) {
     return x.is_null() ? std::string(infinite) : fmt::format("{}", x.get<double>());
   };
-  return fmt::format(" in [{}, {}]", end(item["range"][0], "-inf"), end(item["range"][1], "inf"));
+  return fmt::format(" in [{}, {}]{}", end(item["range"][0], "-inf"), end(item["range"][1], "inf"),
+                     item.contains("or_zero") ? " or 0" : "");
 }
 
 void printNode(const nlohmann::json& node) {

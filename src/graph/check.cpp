@@ -211,10 +211,6 @@ std::string GraphCheck::textOf(const Sink& sink) const {
   return fmt::format("{} of the node {}", quote(sink.name), quote(graph_.nodes[sink.spot.item].id));
 }
 
-std::string rangeText(const ir::Interval& range) { return fmt::format("[{}, {}]", range.lo, range.hi); }
-
-bool contains(const ir::Interval& range, double x) { return x >= range.lo && x <= range.hi; }
-
 std::string article(Type type) {
   return fmt::format("{} {}", type == Type::Int ? "an" : "a", typeName(type));
 }
@@ -270,8 +266,8 @@ void GraphCheck::parameter(size_t index) {
     return error(spot, at("/type"), "wrong-type", fmt::format("a parameter cannot be {}", article(p.type)),
                  "it is a float, vec2, vec3, vec4 or bool");
   }
-  if (!(p.range.lo <= p.range.hi)) {
-    return error(spot, at("/range"), "wrong-range", fmt::format("{} is no range", rangeText(p.range)),
+  if (!(p.range.lo <= p.range.hi) || p.range.gap > p.range.hi) {
+    return error(spot, at("/range"), "wrong-range", fmt::format("{} is no range", ir::rangeText(p.range)),
                  "write the lowest value, then the highest");
   }
   for (int i = 0; i < ir::componentCount(p.type); ++i) {
@@ -279,10 +275,10 @@ void GraphCheck::parameter(size_t index) {
     if (!std::isfinite(x)) {
       return error(spot, at("/value"), "not-finite", fmt::format("the value of {} is {}", quote(p.name), x));
     }
-    if (!contains(p.range, x)) {
+    if (!p.range.contains(x)) {
       return error(
           spot, at("/value"), "out-of-range",
-          fmt::format("the value {} of {} is not in its range {}", x, quote(p.name), rangeText(p.range)));
+          fmt::format("the value {} of {} is not in its range {}", x, quote(p.name), ir::rangeText(p.range)));
     }
   }
 }
@@ -496,13 +492,13 @@ void GraphCheck::range(const Source& source, const Sink& sink) {
   }
   for (const char component : picked) {
     const double x = (*value)[static_cast<size_t>(component)];
-    if (contains(sink.contract->range, x)) continue;
+    if (sink.contract->range.contains(x)) continue;
     const std::string what =
         ref != nullptr ? fmt::format("the parameter {} has the value", quote(ref->name)) : "the value";
     return error(sink, "out-of-range",
                  fmt::format("{} {}{} not in the range of {}", what, x, ref != nullptr ? ", which is" : " is",
                              textOf(sink)),
-                 fmt::format("the range is {}", rangeText(sink.contract->range)));
+                 fmt::format("the range is {}", ir::rangeText(sink.contract->range)));
   }
 }
 

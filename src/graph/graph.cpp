@@ -1,41 +1,50 @@
 #include "graph/graph.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace lacquer::graph {
 
-Node& Graph::add(std::string id, std::string type) {
-  return nodes.emplace_back(Node{std::move(id), std::move(type), {}, {}});
+size_t Graph::add(std::string id, std::string type) {
+  nodes.push_back({std::move(id), std::move(type), {}, {}});
+  return nodes.size() - 1;
 }
 
-void Graph::connect(Node& node, std::string_view input, Source source) {
-  const auto it = std::find_if(node.inputs.begin(), node.inputs.end(),
+void Graph::connect(size_t node, std::string_view input, Source source) {
+  Inputs& inputs = nodes[node].inputs;
+  const auto it = std::find_if(inputs.begin(), inputs.end(),
                                [&](const auto& connected) { return connected.first == input; });
-  if (it != node.inputs.end()) {
+  if (it != inputs.end()) {
     it->second = std::move(source);
   } else {
-    node.inputs.emplace_back(input, std::move(source));
+    inputs.emplace_back(input, std::move(source));
   }
 }
 
-const Node* Graph::find(std::string_view id) const {
-  const auto it = std::find_if(nodes.begin(), nodes.end(), [&](const Node& node) { return node.id == id; });
-  return it == nodes.end() ? nullptr : &*it;
+namespace {
+
+/// The place of the first element that has a name.
+template <class List, class Name>
+std::optional<size_t> placeOf(const List& list, Name name, std::string_view wanted) {
+  const auto it = std::find_if(list.begin(), list.end(),
+                               [&](const auto& element) { return std::invoke(name, element) == wanted; });
+  if (it == list.end()) return std::nullopt;
+  return static_cast<size_t>(it - list.begin());
 }
 
-Node* Graph::find(std::string_view id) { return const_cast<Node*>(std::as_const(*this).find(id)); }
+}  // namespace
 
-ir::Parameter* Graph::findParameter(std::string_view name) {
-  const auto it = std::find_if(parameters.begin(), parameters.end(),
-                               [&](const ir::Parameter& parameter) { return parameter.name == name; });
-  return it == parameters.end() ? nullptr : &*it;
+std::optional<size_t> Graph::find(std::string_view id) const { return placeOf(nodes, &Node::id, id); }
+
+std::optional<size_t> Graph::findParameter(std::string_view name) const {
+  return placeOf(parameters, &ir::Parameter::name, name);
 }
 
 bool Graph::remove(std::string_view id) {
-  const auto it = std::find_if(nodes.begin(), nodes.end(), [&](const Node& node) { return node.id == id; });
-  if (it == nodes.end()) return false;
-  nodes.erase(it);
+  const std::optional<size_t> node = find(id);
+  if (!node) return false;
+  nodes.erase(nodes.begin() + static_cast<ptrdiff_t>(*node));
   return true;
 }
 

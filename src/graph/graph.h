@@ -4,7 +4,7 @@
 
 #include <concepts>
 #include <iterator>
-#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -83,25 +83,27 @@ struct Graph {
   std::vector<std::pair<std::string, Source>> outputs;  ///< the template's ports
   std::vector<Skipped> skipped;
 
-  // Editing. Names and ids are checked by check(), not here.
-  Node& add(std::string id, std::string type);
+  // Editing. Names and ids are checked by check(), not here. Nodes and parameters are spoken of by their
+  // places in the lists above, which hold until one is removed or check() sorts the nodes.
+
+  /// Adds a node and returns its place.
+  size_t add(std::string id, std::string type);
   /// Not for a list in braces: std::vector would copy what is in it.
   template <std::same_as<Inputs> T>
-  Node& add(std::string id, std::string type, T inputs) {
-    Node& node = add(std::move(id), std::move(type));
-    node.inputs = std::move(inputs);
+  size_t add(std::string id, std::string type, T inputs) {
+    const size_t node = add(std::move(id), std::move(type));
+    nodes[node].inputs = std::move(inputs);
     return node;
   }
   template <size_t N>
-  Node& add(std::string id, std::string type, std::pair<std::string, Source> (&&inputs)[N]) {
+  size_t add(std::string id, std::string type, std::pair<std::string, Source> (&&inputs)[N]) {
     return add(std::move(id), std::move(type),
                Inputs(std::make_move_iterator(inputs), std::make_move_iterator(inputs + N)));
   }
-  /// Connects (or reconnects) an input.
-  static void connect(Node& node, std::string_view input, Source source);
-  Node* find(std::string_view id);
-  const Node* find(std::string_view id) const;
-  ir::Parameter* findParameter(std::string_view name);
+  /// Connects (or reconnects) an input of the node at a place.
+  void connect(size_t node, std::string_view input, Source source);
+  std::optional<size_t> find(std::string_view id) const;
+  std::optional<size_t> findParameter(std::string_view name) const;
   /// Removes a node; its users keep dangling edges, which check() reports.
   bool remove(std::string_view id);
 };

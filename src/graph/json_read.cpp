@@ -139,6 +139,7 @@ private:
   void parameterValue(const Json& json, const Path& path, std::string_view name, ir::Type type,
                       ir::Components& out);
   void parameterRange(const Json& json, const Path& path, ir::Parameter& parameter);
+  void parameterOrZero(const Json& json, const Path& path, ir::Parameter& parameter);
   void texture(std::string_view name, const Json& json, const Path& path);
   void node(const Json& json, const Path& path);
   std::optional<Source> reference(const Json& json, const Path& path);
@@ -340,12 +341,23 @@ void Reader::parameterRange(const Json& json, const Path& path, ir::Parameter& p
                          fmt::format("it must be {}", kExpected));
   }
   const ir::Interval all;
-  parameter.range = {bound(json[0], Path(path, size_t{0}), all.lo),
-                     bound(json[1], Path(path, size_t{1}), all.hi)};
+  parameter.range = {
+      {bound(json[0], Path(path, size_t{0}), all.lo), bound(json[1], Path(path, size_t{1}), all.hi)}, 0};
+}
+
+/// 0 beside a range that begins above it.
+void Reader::parameterOrZero(const Json& json, const Path& path, ir::Parameter& parameter) {
+  if (!json.is_boolean()) return report_.wrongType(path, "or_zero", json, "true or false");
+  if (!json.get<bool>()) return;
+  if (!(parameter.range.lo > 0)) {
+    return report_.error("wrong-range", path, "\"or_zero\" stands beside a range that does not begin above 0",
+                         "leave it out: the range says by itself whether it holds 0");
+  }
+  parameter.range = {{0, parameter.range.hi}, parameter.range.lo};
 }
 
 void Reader::parameter(std::string_view name, const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 5> kKeys = {"type", "value", "range", "pointer", "default"};
+  constexpr std::array<std::string_view, 6> kKeys = {"type", "value", "range", "or_zero", "pointer", "default"};
   if (!object(json, path, "a parameter", kKeys)) return;
   ir::Parameter parameter;
   parameter.name = name;
@@ -356,6 +368,8 @@ void Reader::parameter(std::string_view name, const Json& json, const Path& path
   if (value != nullptr && known) 
     parameterValue(*value, Path(path, "value"), "value", parameter.type, parameter.value);
   if (const Json* range = gltf::member(json, "range")) parameterRange(*range, Path(path, "range"), parameter);
+  if (const Json* zero = gltf::member(json, "or_zero"))
+    parameterOrZero(*zero, Path(path, "or_zero"), parameter);
   parameter.pointer = optionalText(json, path, "pointer");
   if (const Json* by_default = gltf::member(json, "default"); by_default != nullptr && known)
     parameterValue(*by_default, Path(path, "default"), "default", parameter.type, parameter.neutral);

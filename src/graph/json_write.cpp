@@ -79,9 +79,12 @@ std::string sources(size_t indent, const std::vector<std::pair<std::string, Sour
 std::string parameter(const ir::Parameter& parameter) {
   std::string text = fmt::format("{{\"type\": \"{}\", \"value\": {}", ir::typeName(parameter.type),
                                  value(parameter.type, parameter.value));
-  if (!(parameter.range == ir::Interval{})) {
-    text += fmt::format(", \"range\": [{}, {}]", number(parameter.range.lo), number(parameter.range.hi));
+  const ir::Range& range = parameter.range;
+  if (!(range == ir::Range{})) {
+    text +=
+        fmt::format(", \"range\": [{}, {}]", number(range.gap > 0 ? range.gap : range.lo), number(range.hi));
   }
+  if (range.gap > 0) text += ", \"or_zero\": true";
   if (!parameter.pointer.empty()) text += ", " + member("pointer", jsonText(parameter.pointer));
   if (parameter.neutral != ir::Components{})
     text += fmt::format(", \"default\": {}", value(parameter.type, parameter.neutral));

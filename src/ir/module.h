@@ -50,8 +50,8 @@ struct Block {
 struct Parameter {
   std::string name;  ///< "coat_roughness"
   Type type;
-  Components value{};  ///< today's value
-  Interval range;
+  Components value{};    ///< today's value
+  Range range;           ///< of each component
   std::string pointer;   ///< JSON pointer of the glTF property
   Components neutral{};  ///< what stands for no material in particular: defaults in code that materials share
   int32_t constant_id =

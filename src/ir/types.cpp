@@ -1,5 +1,7 @@
 #include "ir/types.h"
 
+#include <fmt/format.h>
+
 namespace lacquer::ir {
 
 std::string_view typeName(Type type) {
@@ -15,6 +17,11 @@ std::string_view typeName(Type type) {
     case Type::TextureCube: return "samplerCube";
   }
   return "";
+}
+
+std::string rangeText(const Range& range) {
+  if (range.gap > 0) return fmt::format("[{}, {}] or 0", range.gap, range.hi);
+  return fmt::format("[{}, {}]", range.lo, range.hi);
 }
 
 Type floatType(int components) { return static_cast<Type>(static_cast<int>(Type::Float) + components - 1); }

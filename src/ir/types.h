@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 
 namespace lacquer::ir {
@@ -40,5 +41,17 @@ struct Interval {
   bool operator==(const Interval&) const = default;
   bool bounded() const { return lo > -1e300 && hi < 1e300; }
 };
+
+/// The numbers that something may be given: an interval without those between 0 and `gap`. An index of
+/// refraction is 0, which stands for an infinite one, or at least 1: [0, inf] with a gap of 1. What is
+/// derived from a range takes the interval.
+struct Range : Interval {
+  double gap = 0;  ///< 0 for none; else `lo` is 0
+  bool operator==(const Range&) const = default;
+  bool contains(double x) const { return x >= lo && x <= hi && !(x > 0 && x < gap); }
+};
+
+/// "[0, 1]", or "[1, inf] or 0" where there is a gap.
+std::string rangeText(const Range& range);
 
 }  // namespace lacquer::ir

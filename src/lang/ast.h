@@ -69,10 +69,11 @@ struct Expr {
   std::vector<int> components;           ///< Swizzle
 };
 
-/// `in [lo, hi]`, as written.
+/// `in [lo, hi]` or `in [lo, hi] or 0`, as written.
 struct RangeSyntax {
   ExprPtr lo, hi;
   Span span;
+  bool or_zero = false;
   explicit operator bool() const { return lo != nullptr; }
 };
 
@@ -106,7 +107,7 @@ struct Param {
   ir::Type type = ir::Type::Float;
   std::string_view name;  ///< empty for the result of a node that has one
   bool has_range = false;
-  ir::Interval range;
+  ir::Range range;
   std::optional<ir::Components> default_value;
   std::string_view prose;
   Span span;

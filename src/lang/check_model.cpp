@@ -44,11 +44,7 @@ void Checker::property(PropertyDecl& item, bool texture_member) {
     return;
   }
   rangeOf(item);
-  // 0 beside the range is a good default, too.
-  const ir::Interval stated = item.range;
-  if (item.or_zero) item.range = {std::min(stated.lo, 0.0), std::max(stated.hi, 0.0)};
   defaultOf(item);
-  item.range = stated;
   const auto value = [&](ExprPtr& syntax, Type type, std::string_view what) {
     return syntax ? constantValue(syntax, type, what) : Constant{};
   };

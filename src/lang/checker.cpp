@@ -104,7 +104,15 @@ void Checker::rangeOf(Param& param) {
   }
   if (const auto range = interval(param.range_syntax, param.type == Type::Int ? Type::Int : Type::Float)) {
     param.has_range = true;
-    param.range = *range;
+    param.range = {*range, 0};
+    if (!param.range_syntax.or_zero) return;
+    if (range->lo <= 0) {
+      reporter_.error("wrong-range", param.range_syntax.span,
+                      fmt::format("'or 0' stands beside {}", ir::rangeText(param.range)),
+                      "it is for ranges that begin above 0");
+      return;
+    }
+    param.range = {{0, range->hi}, range->lo};
   }
 }
 
@@ -119,10 +127,9 @@ void Checker::defaultOf(Param& param) {
   if (!param.default_value || !param.has_range) return;
   for (int i = 0; i < ir::componentCount(param.type); ++i) {
     const double x = (*param.default_value)[static_cast<size_t>(i)];
-    if (x >= param.range.lo && x <= param.range.hi) continue;
+    if (param.range.contains(x)) continue;
     reporter_.error("default-out-of-range", param.default_syntax->span,
-                    fmt::format("the default {} lies outside [{}, {}]", shown(x), shown(param.range.lo),
-                                shown(param.range.hi)));
+                    fmt::format("the default {} lies outside {}", shown(x), ir::rangeText(param.range)));
     return;
   }
 }

@@ -11,7 +11,6 @@ struct PropertyDecl : Param {
   enum class Kind : uint8_t { Number, Bool, Choice, Texture, Object };
   Kind kind = Kind::Number;
   std::string_view role;      ///< what parts call it: `name`, or another property's after `as`
-  bool or_zero = false;       ///< 0 is allowed although it lies outside of the range
   bool folded = false;        ///< at its default it is a number in the shader, unless its term is live
   std::optional<double> tested;  ///< larger values are valid, but no contract speaks of them
   /// What it is for a material without the extension; the default where nothing is said.

@@ -108,12 +108,6 @@ bool Parser::property(std::vector<PropertyDecl>& out) {
   if (is("in")) {
     item.range_syntax = range();
     if (!item.range_syntax) return false;
-    if (accept("or")) {
-      if (token().kind != Token::Kind::Number || token().number != 0)
-        return syntax("expected 0", "a range may be followed by `or 0`");
-      ++at_;
-      item.or_zero = true;
-    }
   }
   if (accept("tested")) {
     if (!expect("to", "'tested'")) return false;

@@ -200,7 +200,7 @@ ExprPtr Parser::bound() {
   return expression();
 }
 
-/// `in [lo, hi]`; empty after an error, or when there is none.
+/// `in [lo, hi] [or 0]`; empty after an error, or when there is none.
 RangeSyntax Parser::range() {
   RangeSyntax range;
   if (!accept("in")) return range;
@@ -211,10 +211,17 @@ RangeSyntax Parser::range() {
   range.hi = bound();
   if (!range.hi || !expect("]", "the upper bound")) return {};
   range.span = since(begin);
+  if (!accept("or")) return range;
+  range.or_zero = token().integer && token().number == 0;
+  if (!range.or_zero) {
+    syntax("expected 0 after 'or'", "a range may have 0 beside it: `in [1, inf] or 0`");
+    return {};
+  }
+  ++at_;
   return range;
 }
 
-/// `TYPE [name] [in [lo, hi]]`. The name's absence from the result marks an error.
+/// `TYPE [name] [in [lo, hi] [or 0]]`. The name's absence from the result marks an error.
 Param Parser::param(bool named) {
   Param param;
   const uint32_t begin = token().span.offset;

@@ -29,12 +29,13 @@ constexpr std::string_view kTransform = "KHR_texture_transform";
 /// "a number from 0 to 1", for messages about numbers and elements of arrays.
 std::string rangeWords(const PropertyDecl& decl) {
   std::string words = "a number";
-  if (std::isfinite(decl.range.lo) && std::isfinite(decl.range.hi)) {
-    words += fmt::format(" from {} to {}", decl.range.lo, decl.range.hi);
-  } else if (std::isfinite(decl.range.lo)) {
-    words += fmt::format(" of at least {}", decl.range.lo);
+  const double least = decl.range.gap > 0 ? decl.range.gap : decl.range.lo;
+  if (std::isfinite(least) && std::isfinite(decl.range.hi)) {
+    words += fmt::format(" from {} to {}", least, decl.range.hi);
+  } else if (std::isfinite(least)) {
+    words += fmt::format(" of at least {}", least);
   }
-  if (decl.or_zero) words += ", or 0";
+  if (decl.range.gap > 0) words += ", or 0";
   return words;
 }
 
@@ -161,8 +162,7 @@ void MaterialReader::number(const PropertyDecl& decl, std::string_view name, con
                             double& out) {
   if (!json.is_number()) return report_.wrongType(path, name, json, rangeWords(decl));
   out = json.get<double>();
-  if (out == 0 && decl.or_zero) return;
-  if (out < decl.range.lo || out > decl.range.hi) {
+  if (!decl.range.contains(out)) {
     report_.error("out-of-range", path, fmt::format("{} is {}", name, out),
                   fmt::format("it must be {}", rangeWords(decl)));
   } else if (std::abs(out) > static_cast<double>(std::numeric_limits<float>::max())) {

@@ -48,7 +48,7 @@ private:
   Source number(const Found& value);
   Source texel(uint16_t property);
   Source coordinate(uint16_t property);
-  Source editable(std::string name, ir::Type type, ir::Components value, const ir::Interval& range,
+  Source editable(std::string name, ir::Type type, ir::Components value, const ir::Range& range,
                   const std::string& pointer, const ir::Components& neutral);
 
   const Model& model_;
@@ -72,9 +72,9 @@ void Writer::mark(const Found& value) {
 
 // -- sources --
 
-Source Writer::editable(std::string name, ir::Type type, ir::Components value, const ir::Interval& range,
+Source Writer::editable(std::string name, ir::Type type, ir::Components value, const ir::Range& range,
                         const std::string& pointer, const ir::Components& neutral) {
-  if (graph_.findParameter(name) == nullptr) graph_.parameters.push_back({name, type, value, range, pointer, neutral});
+  if (!graph_.findParameter(name)) graph_.parameters.push_back({name, type, value, range, pointer, neutral});
   return {graph::ParameterRef{std::move(name)}, {}};
 }
 
@@ -88,9 +88,7 @@ Source Writer::number(const Found& value) {
     name += "_" + material::parameterName(decl->name);
     pointer = fmt::format("{}/{}", material_.texture(value.property)->pointer, decl->name);
   }
-  ir::Interval range = decl->range;
-  if (decl->or_zero) range.lo = std::min(range.lo, 0.0);
-  return editable(std::move(name), decl->type, value.constant, range, pointer,
+  return editable(std::move(name), decl->type, value.constant, decl->range, pointer,
                   decl->default_value.value_or(ir::Components{}));
 }
 

@@ -103,16 +103,17 @@ Made makeDusty() {
   Made made = make(readFile(sourceFolder() / "examples/clearcoat.gltf"), options);
   Graph& graph = made.graph;
   Messages messages;
-  bool done = graph && graph.setParameter("dust_amount", {0.4}) && graph.addNode("coat.dust", "coat_dust");
+  bool done = graph && graph.setParameter("dust_amount", {0.4}, messages) &&
+              graph.addNode("coat.dust", "coat_dust", messages);
   for (const auto& [input, source] : std::initializer_list<std::pair<const char*, const char*>>{
            {"below", R"({"node": "coat.layer_direct"})"},
            {"color", "[0.5, 0.45, 0.4]"},
            {"amount", R"({"parameter": "dust_amount"})"},
            {"NdotL", R"({"node": "base.cosines", "output": "NdotL"})"},
            {"cosine", R"({"node": "coat.view_cosine"})"}}) {
-    done = done && graph.connect("coat.dust", input, source);
+    done = done && graph.connect("coat.dust", input, source, messages);
   }
-  done = done && graph.setOutput("direct", R"({"node": "coat.dust"})");
+  done = done && graph.setOutput("direct", R"({"node": "coat.dust"})", messages);
   EXPECT_TRUE(done);
   if (done) made.shader = graph.generate(options, messages);
   for (const Message& message : messages) ADD_FAILURE() << message.text;

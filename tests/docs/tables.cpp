@@ -118,9 +118,9 @@ std::string defaultText(const PropertyDecl& decl) {
 }
 
 std::string rangeText(const PropertyDecl& decl) {
-  const ir::Interval& r = decl.range;
+  const ir::Range& r = decl.range;
   if (decl.kind != Kind::Number || (std::isinf(r.lo) && std::isinf(r.hi))) return "";
-  return fmt::format("{}[{}, {}]", decl.or_zero ? "0 or " : "", r.lo,
+  return fmt::format("{}[{}, {}]", r.gap > 0 ? "0 or " : "", r.gap > 0 ? r.gap : r.lo,
                      std::isinf(r.hi) ? "∞" : fmt::format("{}", r.hi));
 }
 

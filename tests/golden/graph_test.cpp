@@ -49,6 +49,7 @@ protected:
 TEST_P(Graphs, jsonReadsBackAsTheSameShader) {
   forEach([&](Graph& graph) {
     const Shader before = made(graph);
+    Messages messages;
     const std::string json = graph.toJson();
     Messages messages;
     Graph again = Graph::fromJson(json, "graph.json", messages);
@@ -86,30 +87,29 @@ TEST_P(Graphs, editsReachTheShader) {
   options_.validate = true;
   forEach([&](Graph& graph) {
     const Shader before = made(graph);
-    ASSERT_TRUE(graph.addNode("my.glow", "occluded"));
-    EXPECT_FALSE(graph.addNode("my.glow", "occluded"));
-    EXPECT_TRUE(graph.setParameter("my_light", {0.25, 0.5, 1}));
-    EXPECT_TRUE(graph.setParameter("my_amount", {0.5}));
-    EXPECT_FALSE(graph.setParameter("my_amount", {0.5, 1}));
-    EXPECT_TRUE(graph.connect("my.glow", "light", R"({"parameter": "my_light"})"));
-    EXPECT_TRUE(graph.connect("my.glow", "visible", R"({"parameter": "my_amount"})"));
-    EXPECT_FALSE(graph.connect("nobody", "visible", "1"));
-    EXPECT_FALSE(graph.connect("my.glow", "visible", R"({"nothing": 1})"));
-    EXPECT_FALSE(graph.setOutput("emission", R"({"node": )"));
-    EXPECT_TRUE(graph.setOutput("emission", R"({"node": "my.glow"})"));
+    ASSERT_TRUE(graph.addNode("my.glow", "occluded", messages));
+    EXPECT_FALSE(graph.addNode("my.glow", "occluded", messages));
+    EXPECT_TRUE(graph.setParameter("my_light", {0.25, 0.5, 1}, messages));
+    EXPECT_TRUE(graph.setParameter("my_amount", {0.5}, messages));
+    EXPECT_FALSE(graph.setParameter("my_amount", {0.5, 1}, messages));
+    EXPECT_TRUE(graph.connect("my.glow", "light", R"({"parameter": "my_light"})", messages));
+    EXPECT_TRUE(graph.connect("my.glow", "visible", R"({"parameter": "my_amount"})", messages));
+    EXPECT_FALSE(graph.connect("nobody", "visible", "1", messages));
+    EXPECT_FALSE(graph.connect("my.glow", "visible", R"({"nothing": 1})", messages));
+    EXPECT_FALSE(graph.setOutput("emission", R"({"node": )", messages));
+    EXPECT_TRUE(graph.setOutput("emission", R"({"node": "my.glow"})", messages));
     const Shader after = made(graph);
     EXPECT_NE(before.id(), after.id());
     EXPECT_NE(after.fragmentText(Target::Glsl), before.fragmentText(Target::Glsl));
     // Another number is another uniform, not another shader.
-    EXPECT_TRUE(graph.setParameter("my_amount", {0.125}));
+    EXPECT_TRUE(graph.setParameter("my_amount", {0.125}, messages));
     EXPECT_EQ(made(graph).id(), after.id());
     // The edit survives the JSON form.
-    Messages messages;
     Graph again = Graph::fromJson(graph.toJson(), "graph.json", messages);
     EXPECT_EQ(codeOf(made(again)), codeOf(after));
     // Taken back, all is as before.
-    EXPECT_TRUE(graph.removeNode("my.glow"));
-    EXPECT_FALSE(graph.removeNode("my.glow"));
+    EXPECT_TRUE(graph.removeNode("my.glow", messages));
+    EXPECT_FALSE(graph.removeNode("my.glow", messages));
     EXPECT_FALSE(graph.check(messages));
     EXPECT_NE(textOf(messages).find("my.glow"), std::string::npos) << textOf(messages);
   });

@@ -285,7 +285,7 @@ TEST(Layout, packedBytesLieWhereTheManifestSays) {
   options.targets = {Target::Glsl};
   forEachShader(options, [&](const Shader& shader) {
     std::vector<float> packed(shader.uniformSize() / 4, -77.0f);
-    shader.pack({}, packed.data());
+    EXPECT_TRUE(shader.pack({}, std::as_writable_bytes(std::span(packed))));
     const Json interface = Json::parse(shader.interfaceJson());
     for (const Json& block : interface["uniforms"]) {
       if (block["role"] != "material") continue;

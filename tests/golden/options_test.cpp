@@ -154,18 +154,5 @@ TEST(LightOptions, sceneLightsAreThoseOfTheFile) {
   EXPECT_NE(one["shaders"].begin().key(), any["shaders"].begin().key());
 }
 
-TEST(SpirvRoutes, filesAreNotMadeByWayOfTheHlsl) {
-  const Folder folder;
-  Options options;
-  options.spirv_route = SpirvRoute::Hlsl;
-  Messages messages;
-  const Report report =
-      generate({(sourceFolder() / "examples/coat.gltf").string()}, {}, folder / "out", options, messages);
-  EXPECT_FALSE(report.ok);
-  ASSERT_EQ(messages.size(), 1U) << textOf(messages);
-  EXPECT_EQ(messages[0].code, "wrong-route");
-  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
-}
-
 }  // namespace
 }  // namespace lacquer::test

@@ -24,7 +24,7 @@ std::string checked(Graph graph) { return formatAll(graph::check(graph, sampleLi
 
 TEST(GraphCheck, inputsAndPortsAreConnectedOnce) {
   Graph graph = litGraph();
-  graph.add("a", "f0").inputs = {{"ior", number(2)}, {"ior", number(9)}};
+  graph.add("a", "f0", {{"ior", number(2)}, {"ior", number(9)}});
   graph.outputs.emplace_back("alpha", number(1));
   EXPECT_EQ(checked(graph),
             "/nodes/0/inputs/ior: error: 'ior' of the node 'a' is connected twice [duplicate-name]\n"
@@ -35,9 +35,9 @@ TEST(GraphCheck, inputsAndPortsAreConnectedOnce) {
 
 TEST(GraphCheck, literalsAreFiniteFloatsVectorsAndBools) {
   Graph graph = litGraph();
-  graph.add("a", "f0").inputs = {{"ior", {Literal{Type::Int, {2}}, {}}}};
-  graph.add("b", "f0").inputs = {{"ior", number(std::numeric_limits<double>::quiet_NaN())}};
-  graph.add("c", "f0").inputs = {{"ior", {Literal{Type::Mat4, {}}, "x"}}};
+  graph.add("a", "f0", {{"ior", {Literal{Type::Int, {2}}, {}}}});
+  graph.add("b", "f0", {{"ior", number(std::numeric_limits<double>::quiet_NaN())}});
+  graph.add("c", "f0", {{"ior", {Literal{Type::Mat4, {}}, "x"}}});
   graph.outputs[0].second = number(std::numeric_limits<double>::infinity());
   EXPECT_EQ(checked(graph),
             "/nodes/0/inputs/ior: error: the value written for 'ior' of the node 'a' is an int [wrong-type]\n"
@@ -61,7 +61,7 @@ TEST(GraphCheck, parametersAndTexturesHaveTypesOfAGraph) {
   graph.textures[1].texture = -7;
   graph.textures[2].name = "u";
   graph.textures[2].environment = true;
-  graph.add("a", "f0").inputs = {{"ior", {graph::ParameterRef{"m"}, {}}}};
+  graph.add("a", "f0", {{"ior", {graph::ParameterRef{"m"}, {}}}});
   EXPECT_EQ(checked(graph),
             "/parameters/m/type: error: a parameter cannot be a mat4 [wrong-type]\n"
             "  help: it is a float, vec2, vec3, vec4 or bool\n"
@@ -80,8 +80,8 @@ TEST(GraphCheck, parametersAndTexturesHaveTypesOfAGraph) {
 
 TEST(GraphCheck, theLibrarysErrorsStandWhereTheyAre) {
   Graph graph = litGraph();
-  graph.add("a", "broken").inputs = {{"x", number(2)}};
-  graph.add("b", "broken").inputs = {{"y", number(2)}};
+  graph.add("a", "broken", {{"x", number(2)}});
+  graph.add("b", "broken", {{"y", number(2)}});
   Diagnostics found = graph::check(graph, sampleLibrary());
   ASSERT_EQ(found.size(), 1U) << formatAll(found);
   EXPECT_EQ(found[0].place.file, "library.node");
@@ -91,8 +91,8 @@ TEST(GraphCheck, theLibrarysErrorsStandWhereTheyAre) {
 TEST(GraphCheck, aFloodOfErrorsIsCutAndCheap) {
   Graph graph = litGraph();
   for (int i = 0; i < 20000; ++i) {
-    graph.add("node_with_a_long_name_" + std::to_string(i), "wieghted").inputs = {
-        {"color", ref("node_with_a_lnog_name_" + std::to_string(i))}};
+    graph.add("node_with_a_long_name_" + std::to_string(i), "wieghted",
+              {{"color", ref("node_with_a_lnog_name_" + std::to_string(i))}});
   }
   const auto begin = std::chrono::steady_clock::now();
   const Diagnostics found = graph::check(graph, sampleLibrary());

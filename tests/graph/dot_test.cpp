@@ -20,7 +20,7 @@ TEST(GraphDots, areOnTheirLines) {
   graph::Graph graph;
   graph.name = "a\"b\\\n";
   graph.template_name = "<b>&";
-  graph.add("x\"><br/>\n", "t&\xff").inputs.emplace_back("in]>;", ref("gone\"", "out\\"));
+  graph.add("x\"><br/>\n", "t&\xff", {{"in]>;", ref("gone\"", "out\\")}});
   const std::string text = graph::toDot(graph);
   EXPECT_NE(text.find("digraph \"a\\\"b\\\\?\" {\n"), std::string::npos) << text;
   EXPECT_NE(text.find("x&quot;&gt;&lt;br/&gt;?"), std::string::npos) << text;

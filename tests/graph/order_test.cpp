@@ -77,9 +77,9 @@ TEST(GraphOrder, longChainsAndManyCyclesTakeNoStackAndLittleTime) {
 TEST(GraphOrder, checkSortsTheNodes) {
   graph::Graph graph;
   graph.template_name = "lit";
-  graph.add("late", "weighted").inputs = {{"color", ref("early")}};
-  graph.add("other", "f0").inputs = {{"ior", number(2)}};
-  graph.add("early", "weighted").inputs = {{"color", {graph::Literal{ir::Type::Vec3, {1, 1, 1}}, {}}}};
+  graph.add("late", "weighted", {{"color", ref("early")}});
+  graph.add("other", "f0", {{"ior", number(2)}});
+  graph.add("early", "weighted", {{"color", {graph::Literal{ir::Type::Vec3, {1, 1, 1}}, {}}}});
   graph.outputs = {{"alpha", ref("other")}, {"emission", ref("late")}};
   EXPECT_EQ(formatAll(graph::check(graph, sampleLibrary())), "");
   ASSERT_EQ(graph.nodes.size(), 3U);

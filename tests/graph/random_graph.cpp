@@ -22,7 +22,7 @@ public:
     for (size_t i = pick(4); i > 0; --i) graph.parameters.push_back(parameter(i));
     for (size_t i = pick(4); i > 0; --i) graph.textures.push_back(texture(i));
     for (size_t i = pick(6); i > 0; --i) {
-      graph::Node& node = graph.add(text(), text());
+      graph::Node& node = graph.nodes[graph.add(text(), text())];
       if (pick(2) == 0) node.variant = text();
       node.inputs = sources();
     }
@@ -67,6 +67,7 @@ private:
     ir::Parameter parameter{unique(i), type, components(type), {}, text()};
     if (pick(2) == 0) parameter.range.lo = randomDouble(random_);
     if (pick(2) == 0) parameter.range.hi = randomDouble(random_);
+    if (pick(3) == 0) parameter.range = {{0, parameter.range.hi}, std::abs(randomDouble(random_)) + 1e-300};
     return parameter;
   }
 

@@ -21,7 +21,7 @@ std::string dumpNumbers(ir::Type type, const ir::Components& value) {
 std::string dumpParam(const lang::Param& param) {
   std::string text(ir::typeName(param.type));
   if (!param.name.empty()) text += fmt::format(" {}", param.name);
-  if (param.has_range) text += fmt::format(" in [{}, {}]", param.range.lo, param.range.hi);
+  if (param.has_range) text += " in " + ir::rangeText(param.range);
   if (param.default_value) text += fmt::format(" = {}", dumpNumbers(param.type, *param.default_value));
   if (!param.prose.empty()) text += fmt::format("  // {}", param.prose);
   return text;

@@ -92,13 +92,14 @@ Numbers randomValues(const Json& parameters, std::mt19937& random) {
 
 std::string packedByLibrary(const Shader& shader, const Numbers& numbers) {
   std::vector<uint8_t> bytes(shader.uniformSize());
-  shader.pack(
-      [&](std::string_view name, double* components) {
+  const bool packed = shader.pack(
+      [&](std::string_view name, std::span<double> components) {
         const auto& values = numbers.at(std::string(name));
-        std::copy(values.begin(), values.end(), components);
+        std::copy_n(values.begin(), components.size(), components.begin());
         return true;
       },
-      bytes.data());
+      std::as_writable_bytes(std::span(bytes)));
+  EXPECT_TRUE(packed);
   return hexOf(bytes);
 }
 

@@ -35,12 +35,12 @@ TEST(ParityParameters, UniformBakedAndSpecialized) {
     const Subject special = made(ParameterMode::Spec);
     const Bounds right = boundsOf(uniform, true);
     Comparison comparison;
-    compare(uniform, right, onDevice(uniform, SpirvRoute::Direct), "uniform", comparison);
+    compare(uniform, right, onDevice(uniform, FragmentRoute::Direct), "uniform", comparison);
     const Bounds of_baked = boundsOf(baked, true);
-    compare(baked, of_baked, onDevice(baked, SpirvRoute::Direct), "baked", comparison);
+    compare(baked, of_baked, onDevice(baked, FragmentRoute::Direct), "baked", comparison);
     const Bounds of_special = boundsOf(special, true);
-    compare(special, of_special, onDevice(special, SpirvRoute::Direct), "spec", comparison);
-    compare(special, of_special, onDevice(special, SpirvRoute::Glslang), "spec by way of the GLSL",
+    compare(special, of_special, onDevice(special, FragmentRoute::Direct), "spec", comparison);
+    compare(special, of_special, onDevice(special, FragmentRoute::Glsl), "spec by way of the GLSL",
             comparison);
     EXPECT_EQ(comparison.outside, 0U) << comparison.first;
     EXPECT_EQ(apart(right, of_baked), 0U) << graph.name;
@@ -58,12 +58,12 @@ TEST(ParityParameters, OtherValuesGiveOtherColors) {
   const std::vector<NamedGraph> graphs = exampleGraphs(setting);
   for (size_t i = 0; i < graphs.size(); i += 3) {
     Subject subject = materialSubject(graphs[i], setting, 64, 4);
-    const std::vector<float> before = onDevice(subject, SpirvRoute::Direct)[0];
+    const std::vector<float> before = onDevice(subject, FragmentRoute::Direct)[0];
     for (const uint32_t index : ir::usedParameters(subject.module)) {
       for (double& x : subject.module.parameters[index].value) x = 0.5 * x + 0.2;
     }
     Comparison comparison;
-    const std::vector<std::vector<float>> after = onDevice(subject, SpirvRoute::Direct);
+    const std::vector<std::vector<float>> after = onDevice(subject, FragmentRoute::Direct);
     compare(subject, boundsOf(subject), after, "spec", comparison);
     EXPECT_EQ(comparison.outside, 0U) << comparison.first;
     EXPECT_NE(before, after[0]) << subject.name;

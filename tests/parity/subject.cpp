@@ -507,7 +507,7 @@ std::vector<std::vector<float>> onCpu(const Subject& subject) {
   return values.value_or(std::vector<std::vector<float>>{});
 }
 
-std::vector<std::vector<float>> onDevice(const Subject& subject, SpirvRoute route) {
+std::vector<std::vector<float>> onDevice(const Subject& subject, FragmentRoute route) {
   const Result<vulkan::Work> work =
       gpuWork(subject.module, subject.bindings, subject.textures, subject.points, route);
   EXPECT_TRUE(work) << subject.name << ": " << (work ? "" : format(work.error()[0]));
@@ -566,9 +566,9 @@ Comparison compareEngines(const Subject& subject) {
   const auto bounds = boundsOf(subject);
   Comparison comparison;
   compare(subject, bounds, onCpu(subject), "the CPU", comparison);
-  compare(subject, bounds, onDevice(subject, SpirvRoute::Direct), "the direct SPIR-V", comparison);
-  compare(subject, bounds, onDevice(subject, SpirvRoute::Glslang), "the GLSL", comparison);
-  compare(subject, bounds, onDevice(subject, SpirvRoute::Hlsl), "the HLSL", comparison);
+  compare(subject, bounds, onDevice(subject, FragmentRoute::Direct), "the direct SPIR-V", comparison);
+  compare(subject, bounds, onDevice(subject, FragmentRoute::Glsl), "the GLSL", comparison);
+  compare(subject, bounds, onDevice(subject, FragmentRoute::Hlsl), "the HLSL", comparison);
   return comparison;
 }
 

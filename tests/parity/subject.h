@@ -74,7 +74,7 @@ const vulkan::Device* device();
 
 /// All outputs, RGBA after RGBA, of each point: by the CPU in float, and by the device.
 std::vector<std::vector<float>> onCpu(const Subject& subject);
-std::vector<std::vector<float>> onDevice(const Subject& subject, SpirvRoute route);
+std::vector<std::vector<float>> onDevice(const Subject& subject, FragmentRoute route);
 
 struct Comparison {
   size_t numbers = 0;  ///< compared

@@ -41,7 +41,7 @@ public:
   }
 
   const ir::Module& module() const { return module_; }
-  bool has(const std::string& node) const { return graph_.find(node) != nullptr; }
+  bool has(const std::string& node) const { return graph_.find(node).has_value(); }
   explicit operator bool() const { return !module_.outputs.empty(); }
 
 private:

@@ -1,0 +1,119 @@
+// What callers can get wrong without any file: options, enumerators, numbers, names, empty handles.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "api/internal.h"
+
+namespace lacquer {
+
+namespace {
+
+void add(Diagnostics& to, std::string code, std::string message, std::string help) {
+  to.push_back({std::move(code), Severity::Error, {}, std::move(message), std::move(help), {}});
+}
+
+/// An enumeration may hold any number: `count` of them have a name.
+template <class Enum>
+void checkEnumerator(std::string_view what, Enum value, size_t count, Diagnostics& wrong) {
+  const auto number = static_cast<size_t>(value);
+  if (number < count) return;
+  add(wrong, "unknown-enumerator", fmt::format("{} is {}, which is no enumerator", what, number),
+      fmt::format("they are 0 to {}", count - 1));
+}
+
+/// What the library says of the options' names.
+void checkNames(const Options& options, Diagnostics& wrong) {
+  const auto language = libraryFor(options);
+  if (!language) {
+    wrong.insert(wrong.end(), language.error().begin(), language.error().end());
+    return;
+  }
+  if (!(*language)->has(lang::DeclKind::Profile, options.profile)) {
+    return add(wrong, "unknown-profile", fmt::format("there is no profile '{}'", options.profile),
+               fmt::format("there are {}", fmt::join((*language)->names(lang::DeclKind::Profile), ", ")));
+  }
+  // Only who asks for terms waits here for the parts to be read.
+  if (options.live.empty()) return;
+  const Result<const model::Model*> model = (*language)->models.of(options.profile);
+  if (!model) {
+    wrong.insert(wrong.end(), model.error().begin(), model.error().end());
+    return;
+  }
+  const std::vector<std::string_view> known = (*model)->liveTerms();
+  for (const std::string& term : options.live) {
+    if (std::find(known.begin(), known.end(), term) != known.end()) continue;
+    add(wrong, "unknown-term", fmt::format("no term that can be kept live is named '{}'", term),
+        fmt::format("there are {}", fmt::join(known, ", ")));
+  }
+}
+
+}  // namespace
+
+Diagnostics checkReading(const Options& options) {
+  Diagnostics wrong;
+  checkNames(options, wrong);
+  if (!(options.error_budget >= 0 && options.error_budget <= 1)) {
+    add(wrong, "bad-error-budget", fmt::format("the error budget is {}", options.error_budget),
+        "it is a relative error from 0 to 1");
+  }
+  checkEnumerator("Options::parameters", options.parameters, 3, wrong);
+  checkEnumerator("Lights::mode", options.lights.mode, 3, wrong);
+  return wrong;
+}
+
+Diagnostics checkOptions(const Options& options) {
+  Diagnostics wrong = checkReading(options);
+  checkEnumerator("Options::spirv_route", options.spirv_route, 2, wrong);
+  std::set<Target> seen;
+  for (const Target target : options.targets) {
+    if (targetName(target).empty()) {
+      checkEnumerator("a target", target, kTargetCount, wrong);
+    } else if (!seen.insert(target).second) {
+      add(wrong, "duplicate-target", fmt::format("the target {} is asked for twice", targetName(target)),
+          "name each once");
+    } else if (options.parameters == Parameters::Spec && target != Target::Glsl && target != Target::Spirv) {
+      add(wrong, "no-specialization-constants",
+          fmt::format("the target {} has no specialization constants", targetName(target)),
+          "glsl and spirv have them; for the others, parameters are uniform or baked");
+    }
+  }
+  return wrong;
+}
+
+Result<void> inRange(std::string_view what, uint64_t value, uint64_t least, uint64_t most,
+                     std::string_view unit) {
+  if (value >= least && value <= most) return {};
+  return fail("out-of-range", {}, fmt::format("{} is {}", what, value),
+              fmt::format("it must be from {} to {}{}{}", least, most, unit.empty() ? "" : " ", unit));
+}
+
+Result<void> hasPath(std::string_view what, const std::string& path) {
+  if (!path.empty()) return {};
+  return fail("no-path", {}, fmt::format("{} has no name", what), "name one; the current folder is .");
+}
+
+bool filled(const void* impl, std::string_view what, Messages& messages) {
+  if (impl != nullptr) return true;
+  report(fail("empty-handle", {}, fmt::format("the {} is empty", what),
+              "it was never made, was moved from, or could not be made: earlier messages say why")
+             .value(),
+         {}, messages);
+  return false;
+}
+
+Diagnostics checkLights(const ir::Module& module, const passes::LightFacts& lights) {
+  Diagnostics wrong;
+  if (lights.any) return wrong;
+  const uint64_t count = uint64_t{lights.directional} + lights.point + lights.spot;
+  for (const ir::Block& block : module.blocks) {
+    if (block.role != ir::BlockRole::Lights || count <= block.array) continue;
+    add(wrong, "too-many-lights", fmt::format("there are {} lights", count),
+        fmt::format("the template {} has room for {}", module.template_name, block.array));
+  }
+  return wrong;
+}
+
+}  // namespace lacquer

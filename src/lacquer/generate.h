@@ -1,0 +1,153 @@
+/// From files to shaders: scenes, shaders, and runs that write whole folders. lacquer.h says what holds for
+/// every declaration.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "lacquer/graph.h"
+
+namespace lacquer {
+
+/// The vertex attributes of a primitive beside POSITION.
+struct Attributes {
+  bool normal = true, tangent = false, color0 = false;
+  std::array<bool, 4> texCoord{};
+};
+/// What a material that no primitive uses is read with.
+inline constexpr Attributes kUnusedAttributes{true, true, false, {true, true, false, false}};
+
+/// The materials of a glTF file.
+class Scene {
+public:
+  explicit operator bool() const { return impl_ != nullptr; }
+
+  /// Reads .gltf or .glb. Buffers and images need not exist. Empty when the whole file is unusable; the
+  /// errors of single materials come with graph(). Of the options, `permissive`.
+  static Scene load(const std::string& path, const Options& options, Messages& messages);
+  /// The same from the bytes of either; `name` stands for the file in messages.
+  static Scene fromMemory(const std::string& bytes, const std::string& name, const Options& options,
+                          Messages& messages);
+
+  size_t materialCount() const;
+  /// As in the file, which may hold any text, empty and equal ones; empty for an index that does not exist.
+  const std::string& materialName(size_t material) const;
+  /// The index of the first material of that name or, without a name, of the only material.
+  /// "no-such-material" when there is none, or without a name several; the warning "duplicate-name" when
+  /// several have the name.
+  std::optional<size_t> findMaterial(const std::optional<std::string>& name, Messages& messages) const;
+  /// Of the primitives that use a material, each kind once; empty for one that none uses or that does not
+  /// exist.
+  std::vector<Attributes> uses(size_t material) const;
+
+  /// The graph of a material on primitives with these attributes. Empty when the material has an error, when
+  /// the options have, and for an index that does not exist: "no-such-material".
+  Graph graph(size_t material, const Attributes& attributes, const Options& options,
+              Messages& messages) const;
+
+private:
+  struct Impl;
+  const Impl& impl() const;
+  std::shared_ptr<Impl> impl_;
+};
+
+/// The code of a graph.
+class Shader {
+public:
+  explicit operator bool() const { return impl_ != nullptr; }
+
+  /// Equal for equal code and different for different code: "forward-coat-1f0a9b1c2d3e4f50", a file name's
+  /// stem.
+  const std::string& id() const;
+  bool hasVertexStage() const;
+  /// Empty for a target that was not asked for, that has no text of a stage (Spirv, Cpp) or does not exist,
+  /// and where there is no vertex stage.
+  const std::string& vertexText(Target target) const;
+  const std::string& fragmentText(Target target) const;
+  /// Words in the machine's byte order; empty when Target::Spirv was not asked for.
+  const std::vector<uint32_t>& vertexSpirv() const;
+  const std::vector<uint32_t>& fragmentSpirv() const;
+  const std::string& headerText() const;     ///< of Target::Cpp; empty when it was not asked for
+  const std::string& interfaceJson() const;  ///< the shader's entry in manifest.json (docs/manifest.md)
+
+  /// Bytes of the material's uniform block, a multiple of 16; 0 when there is none.
+  size_t uniformSize() const;
+  /// Fills `components`, as many as the parameter of that name has, in which today's value stands; false
+  /// keeps that. It is called by pack() alone, on its thread, once for each parameter. It may throw. Numbers
+  /// are taken as they are: for those outside of a parameter's range nothing holds of the shader's colours.
+  using Values = std::function<bool(std::string_view name, std::span<double> components)>;
+  /// The preshader: material values in, the first uniformSize() bytes of `block` out, for any alignment.
+  /// Without `value` all parameters have today's. False, and nothing written, when `block` is smaller.
+  bool pack(const Values& value, std::span<std::byte> block) const;
+
+private:
+  friend class Graph;
+  struct Impl;
+  const Impl& impl() const;
+  std::shared_ptr<Impl> impl_;
+};
+
+/// What a material's graph is made of.
+struct MaterialTerms {
+  Strings terms;                                             ///< ids of the nodes: "coat.absorption"
+  std::vector<std::pair<std::string, std::string>> skipped;  ///< term, why it is not there
+  /// A cheaper body in place of the reference.
+  struct Variant {
+    std::string node, variant;
+    Strings terms;  ///< that have it
+    double error;   ///< expected, relative, of the colour
+    double saved;   ///< cycles on navi21 (docs/error.md)
+  };
+  std::vector<Variant> variants;  ///< what Options::error_budget took
+  double expected_error = 0;      ///< of all of them together
+};
+struct MaterialReport {
+  std::string file, name;
+  size_t index = 0;                            ///< in the file
+  std::shared_ptr<const MaterialTerms> terms;  ///< shared by materials of one structure; never null
+  Strings shaders;                             ///< ids, one for each use
+  bool ok = true;
+};
+struct ShaderReport {
+  std::string id;
+  std::vector<std::pair<std::string, size_t>> files;  ///< path below the output folder, bytes
+  bool validated = false;                             ///< everything was compiled and validated, and is good
+};
+struct Report {
+  std::vector<MaterialReport> materials;              ///< in the order of the files
+  std::vector<ShaderReport> shaders;                  ///< by id
+  size_t made = 0;                                    ///< shaders that were not in the cache
+  size_t written = 0;                                 ///< files that were not there with the same bytes
+  std::vector<std::pair<std::string, double>> times;  ///< stage, seconds summed over the threads
+  bool ok = true;                                     ///< no file, material or shader failed
+};
+
+/// Makes shaders and manifest.json below `folder`, which is made when it is not there, for all materials of
+/// the files, or for those of the names in `materials` where that is not empty. Each file is written whole or
+/// not at all, and left alone when it holds the same bytes. A material or file that fails does not stop the
+/// others. Uses threads.
+Report generate(const Strings& files, const Strings& materials, const std::string& folder,
+                const Options& options, Messages& messages, const Progress& progress = {});
+/// The same for graphs in their JSON form.
+Report generateGraphs(const Strings& files, const std::string& folder, const Options& options,
+                      Messages& messages, const Progress& progress = {});
+
+/// A build for others to run (docs/builds.md).
+struct Plan {
+  std::string ninja;    ///< the Ninja file to write; what its commands read is put into a folder beside it
+  std::string program;  ///< the command line program, as a command names it
+  Strings command;      ///< the words of its call for one graph, to which the graph and the shard are added
+  Strings replan;       ///< the words of the plan's renewal; none for a plan that does not renew itself
+};
+/// Writes the plan and, beside it, the graph of every distinct shader; makes no shader. `folder` is the one
+/// that the commands write to. Uses threads.
+Report plan(const Plan& plan, const Strings& files, const Strings& materials, const std::string& folder,
+            const Options& options, Messages& messages);
+/// Merges manifests and shards into `folder`/manifest.json: files in the order given, shaders by id. False on
+/// an error, such as a shader that two of them describe differently.
+bool merge(const Strings& shards, const std::string& folder, Messages& messages);
+
+}  // namespace lacquer

@@ -1,0 +1,116 @@
+/// What all calls share: messages, callbacks, targets, options. lacquer.h says what holds for every
+/// declaration.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lacquer {
+
+/// The library's version: "0.2.0". Manifests and generated texts name it.
+std::string_view version();
+
+/// Something that is wrong with the input, or worth knowing.
+struct Message {
+  enum class Level : uint8_t { Note, Warning, Error };
+  Level level = Level::Error;
+  std::string code;               ///< stable, lower-case, dash-separated: "factor-out-of-range"
+  std::string file;               ///< as it was given; empty where no file is meant
+  std::string pointer;            ///< JSON pointer (RFC 6901) into the file; may be empty
+  uint32_t line = 0, column = 0;  ///< from 1, the column in bytes; 0 where there is no place in a text
+  std::string message;            ///< what is wrong
+  std::string help;               ///< what is right; may be empty
+  std::string text;               ///< all of it as the command line prints it, of several lines
+};
+/// Calls append; they never look at what is there.
+using Messages = std::vector<Message>;
+/// True when one of them is an error.
+bool hasError(const Messages& messages);
+
+using Strings = std::vector<std::string>;
+
+/// Called now and then while a call works, and at its end: `done` of the `known` pieces (shaders, materials,
+/// subjects) are finished; `known` may grow. Calls come one at a time, from any of the call's threads. It may
+/// call Lacquer. It may throw, which ends the call: what it threw leaves the call, files that are written
+/// already stay, each of them whole, and what the call makes last (manifest.json, a picture, an answer) is
+/// not made. May be empty.
+using Progress = std::function<void(size_t done, size_t known)>;
+
+/// What is made of a graph.
+enum class Target : uint8_t {
+  Glsl,    ///< GLSL 4.50 for Vulkan
+  GlslGl,  ///< GLSL 4.50 for OpenGL 4.5
+  Essl,    ///< GLSL ES 3.00 for WebGL 2
+  Hlsl,    ///< HLSL for Shader Model 5 and 6
+  Spirv,   ///< SPIR-V 1.3 for Vulkan 1.1
+  Cpp,     ///< no shader: a C++11 header that packs the material's uniform block (docs/parameters.md)
+};
+/// "glsl", "glsl-gl", "essl", "hlsl", "spirv", "cpp": the names of `--target` and of the output folders.
+/// Empty for what is no enumerator.
+std::string_view targetName(Target target);
+/// False, and `target` untouched, when there is none of that name.
+bool findTarget(std::string_view name, Target& target);
+
+/// What becomes of a material's numbers. The structure of the shader is specialised in each.
+enum class Parameters : uint8_t {
+  Uniform,  ///< editable through a uniform block
+  Baked,    ///< constants in the shader
+  Spec,     ///< specialization constants; Target::Glsl and Target::Spirv alone have them
+};
+
+/// Where SPIR-V comes from. The shaders compute the same.
+enum class SpirvRoute : uint8_t {
+  Direct,   ///< written from the DAG
+  Glslang,  ///< through glslang from the GLSL; slower, a cross-check
+};
+
+/// What is known of the lights.
+struct Lights {
+  enum class Mode : uint8_t {
+    Any,    ///< a run-time count of all types
+    Scene,  ///< as many as the file's KHR_lights_punctual; of a graph from JSON nothing is known: as Any
+    Fixed,  ///< the counts below, in the light array in their order; at most as many as it holds (16)
+  };
+  Mode mode = Mode::Any;
+  uint32_t directional = 0, point = 0, spot = 0;
+};
+
+/// How shaders are made. Each call reads what concerns it and leaves the rest alone. The defaults are what
+/// the command line does without flags.
+struct Options {
+  std::string profile = "khr";  ///< how a coat is read: "khr" or "openpbr" (docs/accuracy.md)
+  /// Relative error of colours, from 0 to 1, that cheaper variants of terms may bring (docs/error.md); 0 for
+  /// none.
+  double error_budget = 0;
+  /// What Scene::graph() builds for: "forward", "surface", "bsdf", or a template of `node_directories`.
+  std::string template_name = "forward";
+  /// Each at most once; none makes a manifest without code.
+  std::vector<Target> targets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl, Target::Spirv};
+  Parameters parameters = Parameters::Uniform;
+  Lights lights;
+  bool ibl = true;                  ///< image-based light (forward)
+  bool multiple_scattering = true;  ///< compensate it for multiple scattering
+  bool dfg_table = true;            ///< read the texture environment_dfg (docs/bindings.md); else a fit
+  bool decode_srgb = false;         ///< decode colour textures in the shader, not by their format
+  bool permissive = false;          ///< exclusion violations drop the coat with a warning instead of failing
+  bool validate = true;             ///< compile and validate everything with glslang and SPIRV-Tools
+  bool unused = false;              ///< also materials that no primitive uses, as with kUnusedAttributes
+  SpirvRoute spirv_route = SpirvRoute::Direct;
+  bool debug = false;        ///< SPIR-V has the names of values and the lines of the nodes (Direct)
+  Strings live;              ///< terms kept though today's value would remove them, of liveTerms()
+  Strings node_directories;  ///< folders with more node files (*.node) beside the built-in library
+  uint32_t jobs = 0;         ///< threads, at most 1024; 0 for one on each core
+  std::string cache;         ///< folder that keeps results between runs (docs/builds.md); empty for none
+  uint64_t cache_size = uint64_t{1} << 30;  ///< bytes that the cache may take
+  std::string
+      depfile;  ///< of generate(), generateGraphs(): a file for Make and Ninja, what the manifest depends on
+  std::string shard;  ///< of the same: the shaders' part of the manifest alone, written here, for merge()
+};
+
+/// The terms that Options::live can keep: "coat.darkening", in alphabetical order.
+Strings liveTerms();
+
+}  // namespace lacquer

@@ -1,0 +1,83 @@
+/// What else is known of a material, a shader or a node: colours, pictures, faults, proofs, costs. lacquer.h
+/// says what holds for every declaration.
+#pragma once
+
+#include "lacquer/options.h"
+
+namespace lacquer {
+
+/// What computes colours.
+enum class Engine : uint8_t {
+  Double,      ///< on the CPU, the reference
+  Float,       ///< on the CPU, in the shader's precision
+  Vulkan,      ///< the direct SPIR-V on the first Vulkan device
+  VulkanGlsl,  ///< the same, with the GLSL through glslang
+  VulkanHlsl,  ///< the same, with the HLSL through glslang; not for Parameters::Spec
+};
+/// A material's linear forward colours at points, JSON in and out (docs/eval.md); empty on an error.
+/// `material`: its name, or empty for a file with one. `points`: the text, for which `points_name` stands in
+/// messages. `texels`: "SLOT=r,g,b,a" each, constants instead of images.
+std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
+                     const std::string& points_name, Engine engine, const Strings& texels,
+                     const Options& options, Messages& messages);
+
+/// A contact sheet (docs/preview.md).
+struct Preview {
+  std::string output;    ///< the PNG file to write
+  Strings compare;       ///< none, or the names of the two settings to put side by side
+  Strings texels;        ///< as for evaluate()
+  uint32_t size = 160;   ///< pixels of a ball, from 16 to 2048
+  uint32_t columns = 0;  ///< balls in a row, at most 100; 0 for a good number
+  bool in_float = true;  ///< the arithmetic; else double
+};
+/// Draws a ball for each material of the files, or for those of the names in `materials` where that is not
+/// empty. Writes the sheet and returns what was measured as JSON; empty on an error. A material that fails is
+/// left out, with messages. Uses threads.
+std::string drawPreview(const Preview& preview, const Strings& files, const Strings& materials,
+                        const Options& options, Messages& messages, const Progress& progress = {});
+
+/// How an attack is made (docs/stress.md).
+struct Stress {
+  uint64_t samples = 100000;  ///< inputs for each node and material, from 1 to 2^40
+  uint64_t total = 0;    ///< instead, inputs for all of them together, at most 2^40; 0 for `samples` of each
+  uint64_t seed = 1;     ///< another one draws other inputs
+  bool mediump = false;  ///< every operation rounded to half precision
+};
+/// Attacks nodes (names; "nodes" for every one, as when there are no subjects), the materials of .gltf and
+/// .glb files, and .json cases: what was found, as JSON; empty on an error. Uses threads.
+std::string stressNodes(const Stress& stress, const Strings& subjects, const Options& options,
+                        Messages& messages, const Progress& progress = {});
+
+/// What a fragment shader costs on a GPU as Mesa's RADV compiles it, which takes no GPU (docs/cost.md).
+struct GpuCost {
+  std::string gpu;      ///< "navi21" (RDNA 2) or "gfx1100" (RDNA 3)
+  std::string problem;  ///< why nothing is known, else empty
+  uint64_t instructions = 0, sgprs = 0, vgprs = 0, spilled_sgprs = 0, spilled_vgprs = 0;
+  uint64_t code_size = 0;                        ///< bytes
+  uint64_t latency = 0, inverse_throughput = 0;  ///< cycles, static estimates
+  std::string disassembly;                       ///< empty unless it was asked for
+};
+struct ShaderCost {
+  std::string name;               ///< the shader's id, or the file
+  size_t spirv_instructions = 0;  ///< of the fragment shader
+  std::vector<GpuCost> gpus;      ///< empty, and a warning given, where there is no RADV
+};
+/// `paths`: SPIR-V files (X.frag.spv with X.vert.spv beside it), folders of such, or folders that generate()
+/// wrote. What cannot be read is left out, with a message. Starts processes.
+std::vector<ShaderCost> measureCost(const Strings& paths, bool disassembly, Messages& messages);
+
+/// The table behind environment_dfg (docs/bindings.md): `size` rows of roughness with `size` columns of N.V
+/// at texel centres, scale and bias of F0 in each, all in [0, 1]. `size` is from 2 to 1024; else empty, and
+/// "out-of-range".
+std::vector<float> environmentDfg(uint32_t size, Messages& messages);
+/// The same as a DDS file, R16G16_UNORM. False on an error.
+bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messages);
+
+/// The node library as JSON: contracts, ranges, sources, variants. Of the options, `node_directories`. Empty
+/// on an error.
+std::string nodesJson(const Options& options, Messages& messages);
+/// What is proved of each of its nodes for all inputs in their ranges, as JSON (docs/intervals.md). The same
+/// options. Empty on an error.
+std::string proveNodesJson(const Options& options, Messages& messages);
+
+}  // namespace lacquer
