@@ -8,7 +8,7 @@
 #include "api/internal.h"
 #include "api/points.h"
 #include "eval/evaluate.h"
-#include "gltf/text.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -49,7 +49,7 @@ std::string_view nameOf(Engine engine) {
 std::string answerOf(const Colors& colors, const std::string& material, const std::string& profile,
                      Engine engine) {
   const auto quoted = [](const std::string& text) {
-    return gltf::Json(text).dump(-1, ' ', false, gltf::Json::error_handler_t::replace);
+    return json::Json(text).dump(-1, ' ', false, json::Json::error_handler_t::replace);
   };
   std::string text =
       fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n", quoted(material), nameOf(engine));
@@ -167,11 +167,11 @@ Result<const gltf::Material*> findMaterial(const gltf::Document& document, const
   std::vector<std::string> names;
   for (const gltf::Material& material : document.materials) {
     if (!name.empty() && material.name == name) return &material;
-    names.push_back("'" + gltf::printable(material.name) + "'");
+    names.push_back("'" + printable(material.name) + "'");
   }
   return fail("unknown-material", {document.path, 0, 0, {}},
               name.empty() ? std::string("the file does not have exactly one material: name one")
-                           : fmt::format("no material is named '{}'", gltf::printable(name)),
+                           : fmt::format("no material is named '{}'", printable(name)),
               names.empty() ? "there are none" : fmt::format("there are {}", fmt::join(names, ", ")));
 }
 

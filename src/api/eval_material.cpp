@@ -8,8 +8,8 @@
 
 #include "eval/dfg.h"
 #include "gltf/table.h"
-#include "gltf/text.h"
 #include "lower/lower.h"
+#include "support/text.h"
 
 namespace lacquer {
 
