@@ -8,7 +8,7 @@
 #include "api/internal.h"
 #include "api/points.h"
 #include "eval/evaluate.h"
-#include "gltf/text.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -59,7 +59,7 @@ FragmentRoute routeOf(Engine engine) {
 std::string answerOf(const Colors& colors, const std::string& material, const std::string& profile,
                      Engine engine) {
   const auto quoted = [](const std::string& text) {
-    return gltf::Json(text).dump(-1, ' ', false, gltf::Json::error_handler_t::replace);
+    return json::Json(text).dump(-1, ' ', false, json::Json::error_handler_t::replace);
   };
   std::string text =
       fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n", quoted(material), nameOf(engine));

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "eval/dfg.h"
-#include "gltf/text.h"
 #include "lower/lower.h"
+#include "support/text.h"
 
 namespace lacquer {
 

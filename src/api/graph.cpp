@@ -3,14 +3,14 @@
 #include <algorithm>
 
 #include "api/internal.h"
-#include "gltf/text.h"
+#include "support/text.h"
 #include "passes/pipeline.h"
 
 namespace lacquer {
 
 namespace {
 
-std::string quote(std::string_view name) { return "'" + gltf::printable(name) + "'"; }
+std::string quote(std::string_view name) { return "'" + printable(name) + "'"; }
 
 }  // namespace
 

@@ -6,15 +6,15 @@
 #include <cmath>
 #include <span>
 
-#include "gltf/report.h"
-#include "gltf/text.h"
+#include "json/report.h"
+#include "support/text.h"
 
 namespace lacquer {
 
 namespace {
 
-using gltf::Json;
-using gltf::Path;
+using json::Json;
+using json::Path;
 using Vec3 = std::array<double, 3>;
 
 constexpr std::string_view kKeys[] = {"n",   "t",      "v",     "l",   "uv0",      "uv1",         "uv2",
@@ -48,9 +48,9 @@ public:
     for (const auto& [key, value] : json.get_ref<const Json::object_t&>()) {
       const Path here(path, key);
       if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys)) continue;
-      const std::string_view close = gltf::closest(key, kKeys);
-      report_.error("unknown-property", here, fmt::format("a point has no {}", gltf::quote(key)),
-                    close.empty() ? fmt::format("it has {}", gltf::listOf(kKeys))
+      const std::string_view close = closest(key, kKeys);
+      report_.error("unknown-property", here, fmt::format("a point has no {}", quote(key)),
+                    close.empty() ? fmt::format("it has {}", listOf(kKeys))
                                   : fmt::format("did you mean \"{}\"?", close));
     }
     if (vector(json, path, "n", point.n) && !(length(point.n) > 1e-12 && length(point.n) < 1e12)) {
@@ -70,7 +70,7 @@ public:
       to.has_environment = true;
     }
     vector(json, path, "position", point.position);
-    if (const Json* facing = gltf::member(json, "front_facing")) {
+    if (const Json* facing = json::member(json, "front_facing")) {
       if (!facing->is_boolean())
         report_.wrongType(Path(path, "front_facing"), "front_facing", *facing, "true or false");
       else
@@ -101,7 +101,7 @@ private:
   /// True when the member is there and good.
   template <size_t N>
   bool vector(const Json& point, const Path& path, std::string_view name, std::array<double, N>& to) {
-    const Json* json = gltf::member(point, name);
+    const Json* json = json::member(point, name);
     std::array<double, N> value{};
     if (json == nullptr || !numbers(*json, Path(path, name), name, value)) return false;
     to = value;
@@ -140,7 +140,7 @@ private:
 
   /// Three or four numbers; alpha is 1 where it is not given.
   void color(const Json& point, const Path& path, std::array<double, 4>& to) {
-    const Json* json = gltf::member(point, "color0");
+    const Json* json = json::member(point, "color0");
     if (json == nullptr) return;
     const Path here(path, "color0");
     const size_t count = json->is_array() && json->size() == 3 ? 3 : 4;
@@ -164,19 +164,19 @@ private:
     }
   }
 
-  gltf::Report report_;
+  json::Report report_;
 };
 
 }  // namespace
 
 Result<EvalPoints> readPoints(std::string_view text, const std::string& file) {
-  const Result<Json> root = gltf::parseJson(text, file);
+  const Result<Json> root = json::parse(text, file);
   if (!root) return tl::make_unexpected(root.error());
   Diagnostics wrong;
-  gltf::Report report(file, wrong);
+  json::Report report(file, wrong);
   const Path top;
   const Path inside(top, "points");
-  const Json* member = gltf::member(*root, "points");
+  const Json* member = json::member(*root, "points");
   const Json& points = member == nullptr ? *root : *member;
   const Path& path = member == nullptr ? top : inside;
   EvalPoints result;

@@ -7,10 +7,10 @@
 #include "api/internal.h"
 #include "api/preview_setting.h"
 #include "api/run.h"
-#include "gltf/text.h"
 #include "preview/ball.h"
 #include "preview/sheet.h"
 #include "support/file.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -116,7 +116,7 @@ private:
       documents.push_back(std::move(*document));
     }
     if (missing.empty()) return {};
-    return fail("no-such-material", {}, fmt::format("no material is named '{}'", gltf::printable(missing[0])),
+    return fail("no-such-material", {}, fmt::format("no material is named '{}'", printable(missing[0])),
                 "`lacquer gen` lists the materials of a file");
   }
 
@@ -193,10 +193,10 @@ private:
   }
 
   std::string answer(const std::string& title) const {
-    gltf::Json json = {{"output", preview_.output}, {"materials", done_}};
+    json::Json json = {{"output", preview_.output}, {"materials", done_}};
     if (!title.empty()) {
-      json["compared"] = gltf::Json::array({settings_[0].name, settings_[1].name});
-      json["differences"] = gltf::Json::array();
+      json["compared"] = json::Json::array({settings_[0].name, settings_[1].name});
+      json["differences"] = json::Json::array();
       for (const Measured& m : measured_) {
         json["differences"].push_back({{"file", m.file},
                                        {"material", m.name},
@@ -205,7 +205,7 @@ private:
                                        {"rms", m.difference.root_mean_square}});
       }
     }
-    return json.dump(2, ' ', false, gltf::Json::error_handler_t::replace) + "\n";
+    return json.dump(2, ' ', false, json::Json::error_handler_t::replace) + "\n";
   }
 
   const Preview& preview_;

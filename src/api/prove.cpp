@@ -102,7 +102,7 @@ std::string Graph::prove(const Options& options, Messages& messages) {
     outputs.push_back({{"name", module->outputs[range.output].name}, {"reached", rangeJson(range.reached)}});
   }
   return Json{{"material", impl_->graph.name},
-              {"shader", shaderId(*module, **library)},
+              {"shader", shaderId(*module, **libraryFor(options))},
               {"operations", std::move(operations)},
               {"outputs", std::move(outputs)},
               {"contracts", claimsJson(*claims)}}

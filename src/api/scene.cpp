@@ -2,7 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "api/internal.h"
-#include "gltf/text.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -28,7 +28,7 @@ constexpr size_t kMostNames = 20;  ///< so many materials are named when the one
 std::string listed(const std::vector<material::Material>& materials) {
   std::vector<std::string> names;
   for (size_t i = 0; i < materials.size() && i < kMostNames; ++i)
-    names.push_back("'" + gltf::printable(materials[i].name) + "'");
+    names.push_back("'" + printable(materials[i].name) + "'");
   std::string text = fmt::format("there are {}", fmt::join(names, ", "));
   if (materials.size() > kMostNames) text += fmt::format(", … ({} in all)", materials.size());
   return text;
@@ -46,7 +46,7 @@ Result<size_t> findMaterial(const material::Document& document, const std::optio
   }
   if (materials.empty()) return fail("no-such-material", place, "the file has no materials");
   if (found.empty()) {
-    return fail("no-such-material", place, fmt::format("no material is named '{}'", gltf::printable(*name)),
+    return fail("no-such-material", place, fmt::format("no material is named '{}'", printable(*name)),
                 listed(materials));
   }
   if (found.size() > 1 && !name) {
@@ -58,7 +58,7 @@ Result<size_t> findMaterial(const material::Document& document, const std::optio
                         Severity::Warning,
                         place,
                         fmt::format("{} materials are named '{}': this is /materials/{}", found.size(),
-                                    gltf::printable(*name), found[0]),
+                                    printable(*name), found[0]),
                         {},
                         {}});
   }

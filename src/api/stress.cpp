@@ -9,14 +9,14 @@
 #include "api/internal.h"
 #include "api/node_proofs.h"
 #include "api/run.h"
-#include "gltf/text.h"
 #include "support/file.h"
+#include "support/text.h"
 
 namespace lacquer {
 
 namespace {
 
-using gltf::Json;
+using json::Json;
 using stress::Finding;
 using stress::Subject;
 
@@ -108,7 +108,7 @@ private:
   Result<std::unique_ptr<Subject>> nodeSubject(const std::string& name, const std::string& variant) {
     const Result<const lang::NodeDecl*> found = library_->node(name);
     if (!found || (*found)->find(variant) == nullptr) {
-      return fail("unknown-node", {}, fmt::format("there is no node '{}'", gltf::printable(name)),
+      return fail("unknown-node", {}, fmt::format("there is no node '{}'", printable(name)),
                   "`lacquer nodes` lists them");
     }
     const lang::NodeDecl& node = **found;
@@ -228,7 +228,7 @@ private:
       return fail("bad-case", {path, 0, 0, {}}, std::move(what), "docs/stress.md");
     };
     const size_t width = subject.space.width();
-    const Json* samples = gltf::member(test, "samples");
+    const Json* samples = json::member(test, "samples");
     const size_t least = subject.group;
     if (samples == nullptr || !samples->is_array() || samples->empty() || samples->size() > 2 * least ||
         samples->size() % least != 0)
@@ -236,7 +236,7 @@ private:
     std::vector<double> input(samples->size() * width);
     for (size_t i = 0; i < samples->size(); ++i) {
       for (const stress::Variable& variable : subject.space.variables()) {
-        const Json* value = gltf::member((*samples)[i], variable.name);
+        const Json* value = json::member((*samples)[i], variable.name);
         if (value == nullptr) return wrong(fmt::format("a sample lacks \"{}\"", variable.name));
         const auto n = static_cast<size_t>(variable.components);
         for (size_t c = 0; c < n; ++c) {
@@ -254,7 +254,7 @@ private:
   Result<Json> replay(const std::string& path, size_t& faults) {
     const Result<std::string> text = readFile(path);
     if (!text) return tl::make_unexpected(text.error());
-    const Result<Json> test = gltf::parseJson(*text, path);
+    const Result<Json> test = json::parse(*text, path);
     if (!test) return tl::make_unexpected(test.error());
     if (!test->is_object())
       return fail("bad-case", {path, 0, 0, {}}, "a case is an object", "docs/stress.md");

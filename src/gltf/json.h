@@ -1,29 +1,22 @@
-// The file's JSON as a tree that keeps the order of its members (diagnostics come in document order), and the
-// little that readers ask of it.
+// What the readers of glTF take from json/, by its short names.
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-#include <string_view>
-
-#include "support/diagnostic.h"
+#include "json/json.h"
+#include "json/path.h"
+#include "json/report.h"
 
 namespace lacquer::gltf {
 
-using Json = nlohmann::ordered_json;
+using json::arraySize;
+using json::describe;
+using json::Json;
+using json::member;
+using json::Path;
+using json::Report;
 
-/// Parses strict JSON (a byte order mark is skipped; of members with the same name the last one counts).
-/// Errors carry line, column and the offending text, cut to a window where the line is long. Takes time and
-/// memory in proportion to the text, whatever it holds, and no stack.
-Result<Json> parseJson(std::string_view text, const std::string& file);
-
-/// The member of an object; nullptr when there is none or when it is not an object.
-const Json* member(const Json& object, std::string_view key);
-
-/// "a number", "an array", "null", …
-std::string_view describe(const Json& value);
-
-/// Size of the array that is the member `key` of an object; 0 when there is none or it is not an array.
-size_t arraySize(const Json& object, std::string_view key);
+/// As json::parse().
+inline Result<Json> parseJson(std::string_view text, const std::string& file) {
+  return json::parse(text, file);
+}
 
 }  // namespace lacquer::gltf

@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "gltf/path.h"
-#include "gltf/report.h"
-#include "gltf/text.h"
+#include "json/path.h"
+#include "json/report.h"
+#include "support/text.h"
 
 namespace lacquer::gltf {
 

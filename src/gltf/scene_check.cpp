@@ -4,10 +4,10 @@
 #include <string_view>
 #include <utility>
 
-#include "gltf/path.h"
-#include "gltf/report.h"
 #include "gltf/scene.h"
-#include "gltf/text.h"
+#include "json/path.h"
+#include "json/report.h"
+#include "support/text.h"
 
 namespace lacquer::gltf {
 

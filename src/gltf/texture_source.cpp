@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "gltf/container.h"
-#include "gltf/text.h"
+#include "support/text.h"
 
 namespace lacquer::gltf {
 

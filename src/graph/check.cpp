@@ -9,21 +9,21 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "gltf/path.h"
-#include "gltf/text.h"
 #include "graph/graph.h"
 #include "graph/order.h"
 #include "graph/text.h"
+#include "json/path.h"
 #include "lang/suggest.h"
 #include "support/arena.h"
+#include "support/text.h"
 
 namespace lacquer::graph {
 
 namespace {
 
-using gltf::Path;
 using ir::Type;
 using ir::typeName;
+using json::Path;
 using lang::kLight;
 using lang::kVertex;
 using lang::Ties;
@@ -31,7 +31,7 @@ using lang::Ties;
 constexpr size_t kLast = std::numeric_limits<size_t>::max();
 
 /// A name from the graph as it stands in a message.
-std::string quote(std::string_view name) { return "'" + gltf::printable(name) + "'"; }
+std::string quote(std::string_view name) { return "'" + printable(name) + "'"; }
 
 /// The sections of the JSON form, in its order.
 enum class Section : uint8_t { Template, Parameters, Textures, Nodes, Outputs };
@@ -224,7 +224,7 @@ std::string listOf(const std::vector<std::string_view>& names) {
       quoted.begin(), quoted.begin() + static_cast<ptrdiff_t>(std::min(kMost, quoted.size())));
   const std::string rest = fmt::format("{} more", quoted.size() - shown.size());
   if (shown.size() < quoted.size()) shown.push_back(rest);
-  return gltf::listOf(shown);
+  return lacquer::listOf(shown);
 }
 
 // -- the template, parameters and textures --
@@ -655,9 +655,9 @@ void GraphCheck::order() {
         path += fmt::format("... ({} more) -> ", cycle.nodes.size() - k);
         break;
       }
-      path += gltf::printable(graph_.nodes[cycle.nodes[k]].id) + " -> ";
+      path += printable(graph_.nodes[cycle.nodes[k]].id) + " -> ";
     }
-    path += gltf::printable(graph_.nodes[cycle.nodes[0]].id);
+    path += printable(graph_.nodes[cycle.nodes[0]].id);
     const size_t last = cycle.nodes.back();
     error({Section::Nodes, last, cycle.input + 1},
           inputPointer(last, graph_.nodes[last].inputs[cycle.input].first), "cycle",

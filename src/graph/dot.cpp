@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "gltf/text.h"
 #include "graph/graph.h"
+#include "support/text.h"
 
 namespace lacquer::graph {
 
@@ -13,7 +13,7 @@ namespace {
 /// Text inside an HTML-like label, which must be UTF-8 and on one line.
 std::string html(std::string_view text) {
   std::string out;
-  for (const char c : gltf::printable(text)) {
+  for (const char c : printable(text)) {
     switch (c) {
       case '&': out += "&amp;"; break;
       case '<': out += "&lt;"; break;
@@ -28,7 +28,7 @@ std::string html(std::string_view text) {
 /// Text inside double quotes. A backslash would begin an escape sequence.
 std::string quoted(std::string_view text) {
   std::string out = "\"";
-  for (const char c : gltf::printable(text)) {
+  for (const char c : printable(text)) {
     if (c == '"' || c == '\\') out += '\\';
     out += c;
   }

@@ -6,20 +6,19 @@
 #include <limits>
 #include <unordered_set>
 
-#include "gltf/json.h"
-#include "gltf/path.h"
-#include "gltf/report.h"
-#include "gltf/text.h"
 #include "graph/graph.h"
 #include "graph/text.h"
+#include "json/json.h"
+#include "json/path.h"
+#include "json/report.h"
+#include "support/text.h"
 
 namespace lacquer::graph {
 
 namespace {
 
-using gltf::Json;
-using gltf::Path;
-using gltf::quote;
+using json::Json;
+using json::Path;
 
 constexpr int kVersion = 1;
 
@@ -92,7 +91,7 @@ private:
 
 /// The tree of a text without duplicate keys.
 Result<Json> parse(std::string_view text, const std::string& file) {
-  Result<Json> json = gltf::parseJson(text, file);
+  Result<Json> json = json::parse(text, file);
   if (!json) {
     for (Diagnostic& one : json.error()) {
       if (one.code == "json-too-deep") one.help = "a graph needs five levels";
@@ -144,7 +143,7 @@ private:
   void node(const Json& json, const Path& path);
   std::optional<Source> reference(const Json& json, const Path& path);
 
-  gltf::Report report_;
+  json::Report report_;
   Graph graph_;
 };
 
@@ -157,17 +156,17 @@ bool Reader::object(const Json& json, const Path& path, std::string_view what, K
   }
   for (const auto& [key, value] : json.get_ref<const Json::object_t&>()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const std::string_view close = gltf::closest(key, known);
+    const std::string_view close = closest(key, known);
     report_.error(
         "unknown-key", Path(path, key), fmt::format("{} has no {}", what, quote(key)),
-        close.empty() ? "it can have " + gltf::listOf(known) : fmt::format("did you mean \"{}\"?", close));
+        close.empty() ? "it can have " + listOf(known) : fmt::format("did you mean \"{}\"?", close));
   }
   return true;
 }
 
 template <class Body>
 void Reader::eachMember(const Json& root, const Path& path, std::string_view name, Body body) {
-  const Json* json = gltf::member(root, name);
+  const Json* json = json::member(root, name);
   if (json == nullptr) return;
   const Path here(path, name);
   if (!json->is_object()) return report_.wrongType(here, name, *json, "an object");
@@ -176,7 +175,7 @@ void Reader::eachMember(const Json& root, const Path& path, std::string_view nam
 
 const Json* Reader::required(const Json& json, const Path& path, std::string_view what,
                              std::string_view name) {
-  const Json* found = gltf::member(json, name);
+  const Json* found = json::member(json, name);
   if (found == nullptr) report_.error("missing-key", path, fmt::format("{} has no \"{}\"", what, name));
   return found;
 }
@@ -194,7 +193,7 @@ std::string Reader::requiredText(const Json& json, const Path& path, std::string
 }
 
 std::string Reader::optionalText(const Json& json, const Path& path, std::string_view name) {
-  const Json* found = gltf::member(json, name);
+  const Json* found = json::member(json, name);
   return found == nullptr ? std::string() : textOf(*found, Path(path, name), name);
 }
 
@@ -226,7 +225,7 @@ std::optional<Source> Reader::source(const Json& json, const Path& path) {
   }
   if (json.size() < 2 || json.size() > 4) {
     report_.error("wrong-count", path,
-                  fmt::format("a vector cannot have {}", gltf::countOf(json.size(), "component")),
+                  fmt::format("a vector cannot have {}", countOf(json.size(), "component")),
                   "it has 2 to 4; a single number stands without brackets");
     return std::nullopt;
   }
@@ -242,21 +241,20 @@ std::optional<Source> Reader::reference(const Json& json, const Path& path) {
   if (!object(json, path, "a source", kKeys)) return std::nullopt;
   std::vector<std::string_view> kinds;
   for (const std::string_view kind : Keys(kKeys).first(kKinds)) {
-    if (gltf::member(json, kind) != nullptr) kinds.push_back(kind);
+    if (json::member(json, kind) != nullptr) kinds.push_back(kind);
   }
   if (kinds.size() != 1) {
-    const std::string one_of = "it has one of " + gltf::listOf(Keys(kKeys).first(kKinds), "or");
+    const std::string one_of = "it has one of " + listOf(Keys(kKeys).first(kKinds), "or");
     if (kinds.empty())
       report_.error("wrong-source", path, "the source does not say what it takes", one_of);
     else
-      report_.error("wrong-source", path, fmt::format("the source has {} at once", gltf::listOf(kinds)),
-                    one_of);
+      report_.error("wrong-source", path, fmt::format("the source has {} at once", listOf(kinds)), one_of);
     return std::nullopt;
   }
   const std::string_view kind = kinds[0];
   Source result;
   if (kind == "value") {
-    const Json& value = *gltf::member(json, kind);
+    const Json& value = *json::member(json, kind);
     const Path here(path, kind);
     if (value.is_object()) {
       report_.wrongType(here, kind, value, "a number, true, false or an array of 2 to 4 numbers");
@@ -266,13 +264,13 @@ std::optional<Source> Reader::reference(const Json& json, const Path& path) {
     if (!literal) return std::nullopt;
     result = *literal;
   } else {
-    const std::string name = textOf(*gltf::member(json, kind), Path(path, kind), kind);
+    const std::string name = textOf(*json::member(json, kind), Path(path, kind), kind);
     if (kind == "parameter") result.from = ParameterRef{name};
     if (kind == "texture") result.from = TextureRef{name};
     if (kind == "given") result.from = GivenRef{name};
     if (kind == "node") result.from = NodeRef{name, optionalText(json, path, "output")};
   }
-  if (kind != "node" && gltf::member(json, "output") != nullptr) {
+  if (kind != "node" && json::member(json, "output") != nullptr) {
     report_.error("wrong-source", Path(path, "output"), fmt::format("a {} has no \"output\"", kind),
                   kind == "given" ? "write the result behind a dot: {\"given\": \"light_sample.L\"}"
                                   : "only a node has outputs");
@@ -318,7 +316,7 @@ void Reader::parameterValue(const Json& json, const Path& path, std::string_view
     if (!json.is_array()) return report_.wrongType(path, name, json, expected);
     if (json.size() != static_cast<size_t>(count)) {
       return report_.error("wrong-count", path,
-                           fmt::format("{} has {}", name, gltf::countOf(json.size(), "component")),
+                           fmt::format("{} has {}", name, countOf(json.size(), "component")),
                            "it must be " + expected);
     }
     numbers(json, path, out);
@@ -336,8 +334,7 @@ void Reader::parameterRange(const Json& json, const Path& path, ir::Parameter& p
   constexpr std::string_view kExpected = "an array of the lowest and the highest value";
   if (!json.is_array()) return report_.wrongType(path, "range", json, kExpected);
   if (json.size() != 2) {
-    return report_.error("wrong-count", path,
-                         fmt::format("range has {}", gltf::countOf(json.size(), "element")),
+    return report_.error("wrong-count", path, fmt::format("range has {}", countOf(json.size(), "element")),
                          fmt::format("it must be {}", kExpected));
   }
   const ir::Interval all;
@@ -367,11 +364,11 @@ void Reader::parameter(std::string_view name, const Json& json, const Path& path
   const Json* value = required(json, path, "the parameter", "value");
   if (value != nullptr && known) 
     parameterValue(*value, Path(path, "value"), "value", parameter.type, parameter.value);
-  if (const Json* range = gltf::member(json, "range")) parameterRange(*range, Path(path, "range"), parameter);
-  if (const Json* zero = gltf::member(json, "or_zero"))
+  if (const Json* range = json::member(json, "range")) parameterRange(*range, Path(path, "range"), parameter);
+  if (const Json* zero = json::member(json, "or_zero"))
     parameterOrZero(*zero, Path(path, "or_zero"), parameter);
   parameter.pointer = optionalText(json, path, "pointer");
-  if (const Json* by_default = gltf::member(json, "default"); by_default != nullptr && known)
+  if (const Json* by_default = json::member(json, "default"); by_default != nullptr && known)
     parameterValue(*by_default, Path(path, "default"), "default", parameter.type, parameter.neutral);
   // A range of a graph by hand may be empty until it has been checked: no std::clamp.
   for (int i = 0; i < ir::componentCount(parameter.type); ++i) {
@@ -389,13 +386,13 @@ void Reader::texture(std::string_view name, const Json& json, const Path& path) 
   const std::optional<ir::Type> known =
       typeOf(json, path, "texture", textureType, "it is a sampler2D or a samplerCube");
   slot.type = known.value_or(ir::Type::Texture2D);
-  if (const Json* srgb = gltf::member(json, "srgb")) {
+  if (const Json* srgb = json::member(json, "srgb")) {
     if (srgb->is_boolean())
       slot.srgb = srgb->get<bool>();
     else
       report_.wrongType(Path(path, "srgb"), "srgb", *srgb, "true or false");
   }
-  if (const Json* index = gltf::member(json, "texture")) {
+  if (const Json* index = json::member(json, "texture")) {
     const Path here(path, "texture");
     constexpr std::string_view kExpected = "a whole number, the index of a glTF texture";
     const std::optional<double> whole = report_.wholeNumber(here, "texture", *index, kExpected);
@@ -430,7 +427,7 @@ bool Reader::version(const Json& json, const Path& path) {
     report_.wrongType(path, "the graph", json, "an object");
     return false;
   }
-  const Json* version = gltf::member(json, "lacquer_graph");
+  const Json* version = json::member(json, "lacquer_graph");
   if (version == nullptr) {
     report_.error("not-a-graph", path, "there is no \"lacquer_graph\", so this is no graph",
                   fmt::format("a graph begins with \"lacquer_graph\": {}", kVersion));
@@ -462,7 +459,7 @@ Graph Reader::graph(const Json& json) {
   eachMember(json, root, "textures", [&](const std::string& name, const Json& value, const Path& here) {
     texture(name, value, here);
   });
-  if (const Json* nodes = gltf::member(json, "nodes")) {
+  if (const Json* nodes = json::member(json, "nodes")) {
     const Path here(root, "nodes");
     if (!nodes->is_array()) report_.wrongType(here, "nodes", *nodes, "an array");
     for (size_t i = 0; nodes->is_array() && i < nodes->size(); ++i) node((*nodes)[i], Path(here, i));

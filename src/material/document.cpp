@@ -6,19 +6,19 @@
 #include <utility>
 
 #include "gltf/container.h"
-#include "gltf/json.h"
-#include "gltf/path.h"
-#include "gltf/report.h"
+#include "json/json.h"
+#include "json/path.h"
+#include "json/report.h"
 #include "gltf/scene.h"
-#include "gltf/text.h"
+#include "support/text.h"
 #include "material/material.h"
 #include "material/reader.h"
 
 namespace lacquer::material {
 
-using gltf::Json;
-using gltf::Path;
-using gltf::Report;
+using json::Json;
+using json::Path;
+using json::Report;
 
 namespace {
 
@@ -42,7 +42,7 @@ void checkVersion(const Json& version, std::string_view name, int newest, const 
   const auto& text = version.get_ref<const std::string&>();
   const std::optional<std::pair<int, int>> number = versionOf(text);
   if (number && number->first == 2 && number->second <= newest) return;
-  report.error("unsupported-version", path, fmt::format("{} is {}", name, gltf::quote(text)),
+  report.error("unsupported-version", path, fmt::format("{} is {}", name, quote(text)),
                "Lacquer reads glTF 2.0");
 }
 
@@ -51,22 +51,22 @@ void checkRoot(const Json& root, Report& report) {
   const Path path;
   if (!root.is_object()) return report.wrongType(path, "the file", root, "a JSON object");
   const Path assetPath(path, "asset");
-  const Json* asset = gltf::member(root, "asset");
+  const Json* asset = json::member(root, "asset");
   if (asset == nullptr) {
     return report.error("missing-property", path, "the file has no \"asset\"",
                         "every glTF has one: \"asset\": { \"version\": \"2.0\" }");
   }
   if (!asset->is_object()) return report.wrongType(assetPath, "asset", *asset, "an object");
-  if (const Json* version = gltf::member(*asset, "version")) {
+  if (const Json* version = json::member(*asset, "version")) {
     // Any 2.x can be read as a 2.0, unless it says otherwise in minVersion.
     checkVersion(*version, "version", 9999, Path(assetPath, "version"), report);
   } else {
     report.error("missing-property", assetPath, "the asset has no \"version\"", "Lacquer reads glTF 2.0");
   }
-  if (const Json* least = gltf::member(*asset, "minVersion")) {
+  if (const Json* least = json::member(*asset, "minVersion")) {
     checkVersion(*least, "minVersion", 0, Path(assetPath, "minVersion"), report);
   }
-  if (const Json* materials = gltf::member(root, "materials"); materials != nullptr && !materials->is_array()) {
+  if (const Json* materials = json::member(root, "materials"); materials != nullptr && !materials->is_array()) {
     report.wrongType(Path(path, "materials"), "materials", *materials, "an array");
   }
 }
@@ -75,7 +75,7 @@ void checkRoot(const Json& root, Report& report) {
 void checkExtensions(const Json& root, const Schema& schema, Report& report) {
   const Path path;
   const Path requiredPath(path, "extensionsRequired");
-  const Json* required = gltf::member(root, "extensionsRequired");
+  const Json* required = json::member(root, "extensionsRequired");
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i) {
     if (!(*required)[i].is_string()) continue;
     const auto& name = (*required)[i].get_ref<const std::string&>();
@@ -84,11 +84,11 @@ void checkExtensions(const Json& root, const Schema& schema, Report& report) {
     const bool of_materials = name.find("_materials_") != std::string::npos;
     if (!of_materials || name == "KHR_materials_variants" || schema.find(name)) continue;
     report.warning("required-extension", Path(requiredPath, i),
-                   fmt::format("{} is required, but Lacquer does not implement it", gltf::printable(name)),
+                   fmt::format("{} is required, but Lacquer does not implement it", printable(name)),
                    "materials that use it will look different");
   }
   const Path extensionsPath(path, "extensions");
-  const Json* extensions = gltf::member(root, "extensions");
+  const Json* extensions = json::member(root, "extensions");
   if (extensions == nullptr || !extensions->is_object()) return;
   for (const auto& [name, ignored] : extensions->items()) {
     const std::optional<uint16_t> index = schema.find(name);
@@ -106,7 +106,7 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
                               const ReadOptions& options) {
   const Result<std::string_view> text = gltf::jsonText(bytes, name);
   if (!text) return tl::make_unexpected(text.error());
-  Result<Json> root = gltf::parseJson(*text, name);
+  Result<Json> root = json::parse(*text, name);
   if (!root) {
     if (text->data() != bytes.data()) {
       for (Diagnostic& one : root.error()) one.message += " (in the GLB's JSON chunk)";
@@ -123,7 +123,7 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
   const FileFacts facts{name, gltf::readScene(*root, document), options.permissive};
   Report of_scene(name, document.diagnostics);
   checkExtensions(*root, schema, of_scene);
-  if (const Json* materials = gltf::member(*root, "materials")) {
+  if (const Json* materials = json::member(*root, "materials")) {
     document.materials.reserve(materials->size());
     for (size_t i = 0; i < materials->size(); ++i)
       document.materials.push_back(readMaterial((*materials)[i], i, schema, facts));
@@ -138,7 +138,7 @@ Result<Document> guarded(const std::string& name, Read read) {
     return read();
   } catch (const std::exception& exception) {
     return fail("cannot-read", {name, 0, 0, {}},
-                "the file cannot be read: " + gltf::printable(exception.what(), 400));
+                "the file cannot be read: " + printable(exception.what(), 400));
   }
 }
 

@@ -7,18 +7,15 @@
 #include <limits>
 #include <utility>
 
-#include "gltf/path.h"
-#include "gltf/report.h"
-#include "gltf/text.h"
+#include "json/path.h"
+#include "json/report.h"
+#include "support/text.h"
 
 namespace lacquer::material {
 
-using gltf::countOf;
-using gltf::Json;
-using gltf::listOf;
-using gltf::member;
-using gltf::Path;
-using gltf::quote;
+using json::Json;
+using json::member;
+using json::Path;
 using lang::ExtensionDecl;
 using lang::PropertyDecl;
 
@@ -89,7 +86,7 @@ private:
   const Schema& schema_;
   const FileFacts& file_;
   Material& material_;
-  gltf::Report report_;
+  json::Report report_;
   const Json* extensions_ = nullptr;      ///< the material's own
   gltf::TextureInfo* texture_ = nullptr;  ///< the one that is read
   bool used_ = true;                      ///< what is read has an effect
@@ -182,7 +179,7 @@ bool MaterialReader::choice(const PropertyDecl& decl, const Json& json, const Pa
     out[0] = static_cast<double>(found - decl.choices.begin());
     return true;
   }
-  const std::string_view meant = gltf::closest(name, decl.choices);
+  const std::string_view meant = closest(name, decl.choices);
   report_.error("unknown-value", path, fmt::format("{} is {}", decl.name, quote(name)),
                 meant.empty() ? fmt::format("it must be {}", listOf(decl.choices, "or"))
                               : fmt::format("did you mean {}?", quote(meant)));
@@ -392,7 +389,7 @@ void MaterialReader::unknownExtension(std::string_view name, const Path& path) {
 void MaterialReader::unknownProperty(std::string_view name, std::string_view what,
                                      const std::vector<std::string_view>& known, const Path& path) {
   std::string help;
-  if (const std::string_view meant = gltf::closest(name, known); !meant.empty()) {
+  if (const std::string_view meant = closest(name, known); !meant.empty()) {
     help = fmt::format("did you mean {}?", quote(meant));
   } else if (known.empty()) {
     help = "it has no properties";

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gltf/json.h"
+#include "json/json.h"
 #include "material/material.h"
 
 namespace lacquer::material {
@@ -17,6 +17,6 @@ struct FileFacts {
 };
 
 /// Reads materials[index]. What is wrong with it goes to its diagnostics.
-Material readMaterial(const gltf::Json& json, size_t index, const Schema& schema, const FileFacts& file);
+Material readMaterial(const json::Json& json, size_t index, const Schema& schema, const FileFacts& file);
 
 }  // namespace lacquer::material

@@ -23,7 +23,7 @@ std::string_view severityName(Severity severity) {
 }
 
 /// Bytes that would act on a terminal are shown, not sent.
-static std::string printable(const std::string& text) {
+static std::string shown(const std::string& text) {
   std::string safe;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -49,7 +49,7 @@ std::string format(const Diagnostic& diagnostic) {
   text += fmt::format("{}: {} [{}]", severityName(diagnostic.severity), diagnostic.message, diagnostic.code);
   if (!diagnostic.excerpt.empty()) text += "\n" + diagnostic.excerpt;
   if (!diagnostic.help.empty()) text += "\n  help: " + diagnostic.help;
-  return printable(text);
+  return shown(text);
 }
 
 bool hasError(const Diagnostics& diagnostics) {

@@ -1,6 +1,6 @@
-#include "gltf/path.h"
+#include "json/path.h"
 
-namespace lacquer::gltf {
+namespace lacquer::json {
 
 std::string Path::text() const {
   if (parent_ == nullptr) return {};
@@ -18,4 +18,4 @@ std::string Path::text() const {
   return out;
 }
 
-}  // namespace lacquer::gltf
+}  // namespace lacquer::json

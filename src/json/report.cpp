@@ -1,4 +1,4 @@
-#include "gltf/report.h"
+#include "json/report.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "gltf/text.h"
+#include "support/text.h"
 
-namespace lacquer::gltf {
+namespace lacquer::json {
 
 void Report::error(std::string_view code, const Path& path, std::string message, std::string help) {
   add(Severity::Error, code, path, std::move(message), std::move(help));
@@ -64,4 +64,4 @@ void Report::add(Severity severity, std::string_view code, const Path& path, std
       {std::string(code), severity, {file_, 0, 0, path.text()}, std::move(message), std::move(help), {}});
 }
 
-}  // namespace lacquer::gltf
+}  // namespace lacquer::json

@@ -1,4 +1,4 @@
-#include "gltf/text.h"
+#include "support/text.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace lacquer::gltf {
+namespace lacquer {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::string countOf(size_t count, std::string_view noun) {
   return fmt::format("{} {}", count, count == 1 ? std::string(noun) : pluralOf(noun));
 }
 
-}  // namespace lacquer::gltf
+}  // namespace lacquer

@@ -1,4 +1,4 @@
-#include "gltf/json.h"
+#include "json/json.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "gltf/text.h"
+#include "support/text.h"
 
-namespace lacquer::gltf {
+namespace lacquer::json {
 
 namespace {
 
@@ -205,7 +205,7 @@ Diagnostic syntaxError(const TreeBuilder& builder, std::string_view text, const 
 
 }  // namespace
 
-Result<Json> parseJson(std::string_view text, const std::string& file) {
+Result<Json> parse(std::string_view text, const std::string& file) {
   if (const size_t offset = tooDeep(text); offset != std::string_view::npos) {
     Diagnostic diagnostic{"json-too-deep", Severity::Error, {file, 0, 0, {}}, {}, {}, {}};
     diagnostic.message = fmt::format("nested more than {} levels deep", kDeepest);
@@ -249,4 +249,4 @@ size_t arraySize(const Json& object, std::string_view key) {
   return array != nullptr && array->is_array() ? array->size() : 0;
 }
 
-}  // namespace lacquer::gltf
+}  // namespace lacquer::json

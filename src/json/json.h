@@ -1,0 +1,29 @@
+// The file's JSON as a tree that keeps the order of its members (diagnostics come in document order), and the
+// little that readers ask of it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "support/diagnostic.h"
+
+namespace lacquer::json {
+
+using Json = nlohmann::ordered_json;
+
+/// Parses strict JSON (a byte order mark is skipped; of members with the same name the last one counts).
+/// Errors carry line, column and the offending text, cut to a window where the line is long. Takes time and
+/// memory in proportion to the text, whatever it holds, and no stack.
+Result<Json> parse(std::string_view text, const std::string& file);
+
+/// The member of an object; nullptr when there is none or when it is not an object.
+const Json* member(const Json& object, std::string_view key);
+
+/// "a number", "an array", "null", …
+std::string_view describe(const Json& value);
+
+/// Size of the array that is the member `key` of an object; 0 when there is none or it is not an array.
+size_t arraySize(const Json& object, std::string_view key);
+
+}  // namespace lacquer::json
