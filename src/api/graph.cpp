@@ -10,7 +10,7 @@ namespace lacquer {
 
 namespace {
 
-std::string quote(std::string_view name) { return "'" + printable(name) + "'"; }
+std::string quoted(std::string_view name) { return "'" + printable(name) + "'"; }
 
 }  // namespace
 
@@ -60,7 +60,7 @@ std::vector<Parameter> Graph::parameters() const {
 bool Graph::addNode(const std::string& id, const std::string& type, Messages& messages) {
   if (!filled(impl_.get(), "graph", messages)) return false;
   if (impl_->graph.find(id)) {
-    return impl_->refuse("duplicate-name", fmt::format("there is a node {} already", quote(id)),
+    return impl_->refuse("duplicate-name", fmt::format("there is a node {} already", quoted(id)),
                          "give the new one another id", messages);
   }
   impl_->graph.add(id, type);
@@ -70,7 +70,7 @@ bool Graph::addNode(const std::string& id, const std::string& type, Messages& me
 bool Graph::removeNode(const std::string& id, Messages& messages) {
   if (!filled(impl_.get(), "graph", messages)) return false;
   return impl_->graph.remove(id) ||
-         impl_->refuse("no-such-node", fmt::format("there is no node {}", quote(id)), {}, messages);
+         impl_->refuse("no-such-node", fmt::format("there is no node {}", quoted(id)), {}, messages);
 }
 
 bool Graph::connect(const std::string& node, const std::string& input, std::string_view source,
@@ -78,7 +78,7 @@ bool Graph::connect(const std::string& node, const std::string& input, std::stri
   if (!filled(impl_.get(), "graph", messages)) return false;
   const std::optional<size_t> found = impl_->graph.find(node);
   if (!found)
-    return impl_->refuse("no-such-node", fmt::format("there is no node {}", quote(node)), {}, messages);
+    return impl_->refuse("no-such-node", fmt::format("there is no node {}", quoted(node)), {}, messages);
   std::optional<graph::Source> from = impl_->source(source, messages);
   if (!from) return false;
   impl_->graph.connect(*found, input, std::move(*from));
@@ -107,13 +107,13 @@ bool Graph::setParameter(const std::string& name, const std::vector<double>& val
   const auto count = found ? static_cast<size_t>(ir::componentCount(parameters[*found].type)) : value.size();
   if (value.size() != count || value.empty() || value.size() > 4) {
     return impl_->refuse("wrong-count",
-                         fmt::format("{} is given {} numbers", quote(name), value.size()),
+                         fmt::format("{} is given {} numbers", quoted(name), value.size()),
                          found ? fmt::format("it is a {}", ir::typeName(parameters[*found].type))
                                : "a parameter has 1 to 4",
                          messages);
   }
   if (found && parameters[*found].type == ir::Type::Bool && value[0] != 0 && value[0] != 1) {
-    return impl_->refuse("wrong-type", fmt::format("{} is given {}", quote(name), value[0]),
+    return impl_->refuse("wrong-type", fmt::format("{} is given {}", quoted(name), value[0]),
                          "it is a bool, 0 or 1", messages);
   }
   if (!found) parameters.push_back({name, ir::floatType(static_cast<int>(count)), {}, {}, {}});
@@ -125,13 +125,13 @@ bool Graph::setRange(const std::string& parameter, const Range& range, Messages&
   if (!filled(impl_.get(), "graph", messages)) return false;
   const std::optional<size_t> found = impl_->graph.findParameter(parameter);
   if (!found) {
-    return impl_->refuse("no-such-parameter", fmt::format("there is no parameter {}", quote(parameter)), {},
+    return impl_->refuse("no-such-parameter", fmt::format("there is no parameter {}", quoted(parameter)), {},
                          messages);
   }
   if (!(range.low <= range.high) || (range.or_zero && !(range.low > 0))) {
     return impl_->refuse("wrong-range",
                          fmt::format("[{}, {}]{} is no range of {}", range.low, range.high,
-                                     range.or_zero ? " or 0" : "", quote(parameter)),
+                                     range.or_zero ? " or 0" : "", quoted(parameter)),
                          "the lowest number comes first; 0 stands beside a range that begins above it",
                          messages);
   }
@@ -192,7 +192,7 @@ std::string Graph::dump(const Options& options, std::string_view pass, Messages&
   if (!pass.empty() && std::find(known.begin(), known.end(), pass) == known.end()) {
     std::string help = "there are";
     for (const std::string& name : known) help += (&name == known.data() ? " " : ", ") + name;
-    impl_->refuse("unknown-pass", fmt::format("there is no pass {}", quote(pass)), help, messages);
+    impl_->refuse("unknown-pass", fmt::format("there is no pass {}", quoted(pass)), help, messages);
     return {};
   }
   std::string text;
