@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -44,17 +45,19 @@ enum class Parameters : uint8_t { Uniform, Baked, Spec };
 /// SPIR-V written from the DAG, or through glslang from the GLSL (slower, a cross-check) or the HLSL (for
 /// evaluate() alone).
 enum class SpirvRoute : uint8_t { Direct, Glslang, Hlsl };
-/// What is known of the lights. Fixed counts lie in the light array as directional, point, spot.
+/// What is known of the lights. Fixed counts lie in the light array in the order of the template's kinds of
+/// light: directional, point, spot.
 struct Lights {
   enum class Mode : uint8_t { Any, Scene, Fixed };
-  Mode mode = Mode::Any;  ///< Any: a run-time count of all types; Scene: the file's KHR_lights_punctual
-  uint32_t directional = 0, point = 0, spot = 0;  ///< Fixed
+  Mode mode = Mode::Any;  ///< Any: a run-time count of all kinds; Scene: the file's KHR_lights_punctual
+  std::map<std::string, uint32_t, std::less<>> counts{};  ///< Fixed: by the kind's name
 };
 
 struct Options {
   std::string profile = "khr";  ///< how a coat is read: "khr" or "openpbr" (docs/accuracy.md)
   double error_budget = 0;      ///< relative error of colours that cheaper variants may bring (docs/error.md)
-  std::string template_name = "forward";  ///< "forward", "surface", "bsdf", or one of `node_directories`
+  std::string
+      template_name;  ///< forward, surface, bsdf, or one of `node_directories`; empty: the default one
   std::vector<Target> targets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl, Target::Spirv};
   Parameters parameters = Parameters::Uniform;
   Lights lights;

@@ -92,13 +92,23 @@ Result<std::shared_ptr<const lang::Library>> libraryFor(const Options& options) 
   return library;
 }
 
+Result<void> resolveTemplate(const lang::Library& library, Options& options) {
+  if (!options.template_name.empty()) return {};
+  Result<std::string> name = library.defaultTemplate();
+  if (!name) return tl::make_unexpected(std::move(name.error()));
+  options.template_name = std::move(*name);
+  return {};
+}
+
 passes::LightFacts lightsOf(const gltf::Document& document) {
   const auto count = [&](gltf::LightType type) {
     const auto it = document.lights.find(type);
     return it == document.lights.end() ? 0U : static_cast<uint32_t>(it->second);
   };
-  return {false, count(gltf::LightType::Directional), count(gltf::LightType::Point),
-          count(gltf::LightType::Spot)};
+  return {false,
+          {{"directional", count(gltf::LightType::Directional)},
+           {"point", count(gltf::LightType::Point)},
+           {"spot", count(gltf::LightType::Spot)}}};
 }
 
 passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& scene) {
@@ -107,7 +117,7 @@ passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& 
     case Lights::Mode::Scene: return scene;
     case Lights::Mode::Fixed: break;
   }
-  return {false, options.lights.directional, options.lights.point, options.lights.spot};
+  return {false, options.lights.counts};
 }
 
 graph::Graph buildGraph(const gltf::Material& material, const gltf::VertexAttributes& attributes,

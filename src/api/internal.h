@@ -54,6 +54,8 @@ struct Shader::Impl : ShaderData {
   Preshader preshader;
 };
 
+/// Puts the library's default template in for none.
+Result<void> resolveTemplate(const lang::Library& library, Options& options);
 passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& scene);
 passes::LightFacts lightsOf(const gltf::Document& document);
 /// The graph of a material as the options want it: the profile, then the variants that the budget allows.
@@ -64,6 +66,10 @@ graph::Graph buildGraph(const gltf::Material& material, const gltf::VertexAttrib
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
                             const passes::LightFacts& scene_lights,
                             const std::function<void(std::string_view, const ir::Module&)>& after = {});
+
+/// The passes over a lowered module. Errors: "unknown-light", where the template does not have the lights;
+/// "slot-clash".
+Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options);
 
 /// "forward-coat-0123456789abcdef"
 std::string shaderId(const ir::Module& module);

@@ -49,8 +49,9 @@ void addOptions(const Options& options, KeyBuilder& key) {
     key.number(target);
     hlsl |= target == Target::Hlsl;
   }
-  key.number(parameters).number(lights.mode).number(lights.directional).number(lights.point);
-  key.number(lights.spot).number(ibl).number(multiple_scattering).number(dfg_table).number(decode_srgb);
+  key.number(parameters).number(lights.mode).number(lights.counts.size());
+  for (const auto& [kind, count] : lights.counts) key.text(kind).number(count);
+  key.number(ibl).number(multiple_scattering).number(dfg_table).number(decode_srgb);
   key.number(permissive).number(validate).number(unused).number(spirv_route).number(debug);
   key.number(live.size());
   for (const std::string& term : live) key.text(term);

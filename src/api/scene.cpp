@@ -57,7 +57,15 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   Diagnostics warnings;
   const gltf::VertexAttributes a{attributes.normal, attributes.tangent, attributes.color0,
                                  attributes.texCoord};
-  graph::Graph graph = buildGraph(m, a, options, warnings);
+  Options named = options;
+  const auto library = libraryFor(options);
+  const Result<void> resolved =
+      library ? resolveTemplate(**library, named) : Result<void>(tl::make_unexpected(library.error()));
+  if (!resolved) {
+    report(resolved.error(), impl_->document.path, messages);
+    return result;
+  }
+  graph::Graph graph = buildGraph(m, a, named, warnings);
   report(warnings, impl_->document.path, messages);
   result.impl_ = std::make_shared<Graph::Impl>(
       Graph::Impl{std::move(graph), impl_->document.path, lightsOf(impl_->document)});

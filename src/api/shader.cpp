@@ -19,7 +19,15 @@ Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& libr
   Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options)});
   if (!module) return module;
   if (after) after("lower", *module);
-  passes::runPipeline(*module, {lightFacts(options, scene_lights), after});
+  return throughPasses(std::move(*module), {lightFacts(options, scene_lights), after});
+}
+
+Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options) {
+  if (Diagnostics wrong = passes::checkLights(module, options.lights); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  passes::runPipeline(module, options);
+  if (Diagnostics wrong = passes::checkPlaces(module); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
   return module;
 }
 
@@ -89,7 +97,7 @@ std::string shaderId(const ir::Module& module) {
     coat |= term.starts_with("coat.");
     lit |= term.starts_with("base.direct") || term.starts_with("base.indirect");
   }
-  const std::string_view kind = coat ? "coat" : lit || module.template_name != "forward" ? "base" : "unlit";
+  const std::string_view kind = coat ? "coat" : lit || !module.sums_lights ? "base" : "unlit";
   return fmt::format("{}-{}-{}", module.template_name, kind, passes::contentAddress(module));
 }
 
@@ -125,7 +133,10 @@ void checkText(const std::string& text, Target target, int stage, const std::str
   const check::Language language = languageOf(target);
   const Result<check::Spirv> words = check::compile(text, language, check_stage, name);
   if (!words) return append(wrong, words.error());
-  if (target != Target::Essl) append(wrong, check::validate(*words, target == Target::GlslGl, name));
+  if (target != Target::Essl) {
+    append(wrong, check::validate(*words, target == Target::GlslGl, name));
+    append(wrong, check::checkSlots(*words, name));
+  }
   if (target == Target::Hlsl && check::haveDxc())
     append(wrong, check::compileWithDxc(text, check_stage, name));
 }
@@ -205,6 +216,7 @@ private:
       if (!options_.validate) continue;
       const StageTimer timer(times_, StageOfRun::Validate, Target::Spirv);
       append(wrongOf(Target::Spirv), check::validate(shader_.spirv[stage], false, path));
+      append(wrongOf(Target::Spirv), check::checkSlots(shader_.spirv[stage], path));
     }
   }
 

@@ -308,7 +308,8 @@ Key fileKey(const std::string& path, const std::string& bytes, const Setting& se
   KeyBuilder key;
   key.text("file").key(setting.base).text(path).key(keyOf(bytes)).text(o.template_name).number(o.parameters);
   key.text(o.profile).number(o.error_budget);
-  key.number(o.lights.mode).number(o.lights.directional).number(o.lights.point).number(o.lights.spot);
+  key.number(o.lights.mode).number(o.lights.counts.size());
+  for (const auto& [kind, count] : o.lights.counts) key.text(kind).number(count);
   key.number(o.ibl)
       .number(o.multiple_scattering)
       .number(o.dfg_table)

@@ -174,8 +174,7 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
   }
   if (!module) return module;
   const StageTimer timer(setting.times, StageOfRun::Passes);
-  passes::runPipeline(*module, {lights, {}});
-  return module;
+  return throughPasses(std::move(*module), {lights, {}});
 }
 
 }  // namespace
@@ -203,7 +202,8 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
   key.reset();
   const bool baked = setting.options.parameters == Parameters::Baked;
   key.text("structure").key(setting.base).number(setting.options.parameters);
-  key.number(lights.any).number(lights.directional).number(lights.point).number(lights.spot);
+  key.number(lights.any).number(lights.counts.size());
+  for (const auto& [kind, count] : lights.counts) key.text(kind).number(count);
   StructureKey(key, baked).graph(graph);
   return key.finish();
 }
@@ -289,8 +289,8 @@ std::string toBlob(const Structure& s) {
   blob.list(s.textures, [&](const auto& t) { blob.text(t.first), blob.number(t.second); });
   blob.list(s.limits, [&](const ir::Interval& range) { blob.number(range.lo), blob.number(range.hi); });
   blob.text(s.graph);
-  blob.number(s.lights.any), blob.number(s.lights.directional), blob.number(s.lights.point),
-      blob.number(s.lights.spot);
+  blob.number(s.lights.any);
+  blob.list(s.lights.counts, [&](const auto& c) { blob.text(c.first), blob.number(c.second); });
   return blob.take();
 }
 
@@ -320,8 +320,11 @@ bool fromBlob(std::string_view bytes, Structure& s) {
     s.limits.push_back({lo, blob.number<double>()});
   });
   s.graph = blob.text();
-  s.lights.any = blob.number<bool>(), s.lights.directional = blob.number<uint32_t>();
-  s.lights.point = blob.number<uint32_t>(), s.lights.spot = blob.number<uint32_t>();
+  s.lights.any = blob.number<bool>();
+  blob.list([&] {
+    std::string kind = blob.text();
+    s.lights.counts[kind] = blob.number<uint32_t>();
+  });
   renderTerms(s);
   return blob.complete();
 }

@@ -41,6 +41,10 @@ public:
   Result<const NodeDecl*> node(std::string_view name) const;
   Result<const TemplateDecl*> template_(std::string_view name) const;
 
+  /// The last template that says `default;`, in the order of the files: what is added comes after what is
+  /// there.
+  Result<std::string> defaultTemplate() const;
+
   bool has(DeclKind kind, std::string_view name) const;
 
   /// The declared names of that kind, sorted.
