@@ -97,7 +97,7 @@ std::optional<cost::Subject> materialWith(const Work& work, const std::string& n
   options.dfg_table = work.dfg_table;
   options.targets = {Target::Spirv};
   options.lights.mode = Lights::Mode::Fixed;
-  options.lights.directional = 1;
+  options.lights.counts = {{"directional", 1}};
   options.validate = false;
   Messages messages;
   const Scene scene = Scene::load(kRoot + "/bench/works/" + work.file, options, messages);

@@ -104,7 +104,7 @@ eval::Bindings bindingsOf(const std::vector<Place>& places, bool environment) {
     if (environment) point.light = {0, 0, 0};
     points.push_back(point);
   }
-  eval::bindPoints(points, bindings);
+  eval::bindPoints(module, points, bindings);
   // Texels multiply the factors, which go over all their range all the same.
   const auto texel = [&](const char* name, Axis r, Axis g, Axis b) {
     bindings.textures[name] = [&places, r, g, b](size_t point, const std::array<double, 3>&, double) {
@@ -142,7 +142,7 @@ std::vector<double> colors(const graph::Graph& from, const lang::Library& librar
   for (const Diagnostic& d : graph::check(graph, library)) {
     if (d.severity == Severity::Error) throw std::runtime_error(format(d));
   }
-  const Result<ir::Module> module = lower::lower(graph, library, {});
+  const Result<ir::Module> module = lower::lower(graph, library, {.evaluable = true});
   if (!module) throw std::runtime_error(format(module.error()[0]));
   for (const ir::Output& output : module->outputs) {
     if (output.kind != ir::OutputKind::Color) continue;

@@ -40,7 +40,7 @@ cost::Subject build(const Work& work, const std::string& folder, bool multiple_s
   Options options;
   options.targets = {Target::Spirv};
   options.lights.mode = Lights::Mode::Fixed;
-  options.lights.directional = 1;
+  options.lights.counts = {{"directional", 1}};
   options.ibl = work.ibl;
   options.multiple_scattering = multiple_scattering;
   options.validate = false;

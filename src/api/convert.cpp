@@ -105,13 +105,23 @@ Result<material::Document> readMaterials(const std::string& path, const Language
   return material::read(path, **schema, {options.permissive});
 }
 
+Result<void> resolveTemplate(const lang::Library& library, Options& options) {
+  if (!options.template_name.empty()) return {};
+  Result<std::string> name = library.defaultTemplate();
+  if (!name) return tl::make_unexpected(std::move(name.error()));
+  options.template_name = std::move(*name);
+  return {};
+}
+
 passes::LightFacts lightsOf(const gltf::Scene& scene) {
   const auto count = [&](gltf::LightType type) {
     const auto it = scene.lights.find(type);
     return it == scene.lights.end() ? 0U : static_cast<uint32_t>(it->second);
   };
-  return {false, count(gltf::LightType::Directional), count(gltf::LightType::Point),
-          count(gltf::LightType::Spot)};
+  return {false,
+          {{"directional", count(gltf::LightType::Directional)},
+           {"point", count(gltf::LightType::Point)},
+           {"spot", count(gltf::LightType::Spot)}}};
 }
 
 passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& scene) {
@@ -120,7 +130,7 @@ passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& 
     case Lights::Mode::Scene: return scene;
     case Lights::Mode::Fixed: break;
   }
-  return {false, options.lights.directional, options.lights.point, options.lights.spot};
+  return {false, options.lights.counts};
 }
 
 Result<graph::Graph> buildGraph(const material::Material& material, const gltf::VertexAttributes& attributes,

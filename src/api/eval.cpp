@@ -14,9 +14,50 @@ namespace lacquer {
 
 namespace {
 
+/// The values that the points' file gives to fields of the template's blocks.
+Result<void> bindUniforms(const ir::Module& module, const EvalPoints& points, const std::string& file,
+                          eval::Bindings& bindings) {
+  for (const auto& [name, values] : points.uniforms) {
+    const ir::BlockField* field = nullptr;
+    for (const ir::Block& block : module.blocks) {
+      if (block.role == ir::BlockRole::Material) continue;
+      for (const ir::BlockField& f : block.fields) {
+        for (uint32_t i = 0; i < f.elements(); ++i) {
+          if (block.instance + "." + f.elementName(i) == name) field = &f;
+        }
+      }
+    }
+    const auto wrong = [&, &known = name](std::string code, std::string message, std::string help) {
+      return fail(std::move(code), {file, 0, 0, "/uniforms/" + known}, std::move(message), std::move(help));
+    };
+    if (field == nullptr) {
+      return wrong(
+          "unknown-uniform",
+          fmt::format("the template '{}' has no field '{}'", module.template_name, printable(name)),
+          "write BLOCK.FIELD as the template names them, BLOCK.FIELD[0] of an array");
+    }
+    const auto width = static_cast<size_t>(ir::componentCount(field->type));
+    if (values.size() != width) {
+      return wrong("wrong-type", fmt::format("'{}' is given {} numbers", name, values.size()),
+                   fmt::format("a {} has {}", ir::typeName(field->type), width));
+    }
+    for (const double x : values) {
+      if (x >= field->range.lo && x <= field->range.hi) continue;
+      return wrong("out-of-range", fmt::format("'{}' is {}", name, x),
+                   fmt::format("it must be in [{}, {}]", field->range.lo, field->range.hi));
+    }
+    eval::Columns& columns = bindings.lights.at(0).contains(name) ? bindings.lights[0] : bindings.columns;
+    columns[name] = eval::Column::constant(values);
+  }
+  return {};
+}
+
 /// The points' own values, the environment of each, and what comes from the stages before the fragment's.
-Result<void> bind(EvalMaterial& material, const EvalPoints& points, eval::Bindings& bindings) {
-  eval::bindPoints(points.points, bindings);
+Result<void> bind(EvalMaterial& material, const EvalPoints& points, const std::string& file,
+                  eval::Bindings& bindings) {
+  eval::bindPoints(material.module(), points.points, bindings);
+  if (Result<void> uniforms = bindUniforms(material.module(), points, file, bindings); !uniforms)
+    return uniforms;
   if (Result<void> block = eval::bindMaterialBlock(material.module(), bindings); !block) return block;
   if (Result<void> varyings = eval::bindVaryings<float>(material.module(), points.points.size(), bindings);
       !varyings) {
@@ -95,16 +136,24 @@ vulkan::Texture environmentOf(const EvalPoints& points) {
     texels.push_back({static_cast<float>(e[0]), static_cast<float>(e[1]), static_cast<float>(e[2]), 1});
   }
   vulkan::Texture texture;
-  texture.cube = true;
+  texture.shape = vulkan::Shape::Cube;
   texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(std::move(texels));
   return texture;
 }
 
-vulkan::Texture constantOf(const std::array<double, 4>& value) {
+vulkan::Shape shapeOf(ir::Type type) {
+  if (type == ir::Type::TextureCube) return vulkan::Shape::Cube;
+  if (type == ir::Type::Texture2DArray) return vulkan::Shape::Array;
+  return type == ir::Type::Texture3D ? vulkan::Shape::Volume : vulkan::Shape::Plane;
+}
+
+vulkan::Texture constantOf(const std::array<double, 4>& value, ir::Type type) {
   vulkan::Texel texel{};
   for (size_t i = 0; i < 4; ++i) texel[i] = static_cast<float>(value[i]);
   vulkan::Texture texture;
   texture.nearest = true;
+  texture.shape = shapeOf(type);
+  texture.compares = type == ir::Type::Texture2DShadow;
   texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(1, texel);
   return texture;
 }
@@ -131,7 +180,8 @@ GpuTextures gpuTextures(const EvalMaterial& material, const EvalPoints& points) 
   GpuTextures textures;
   for (const ir::TextureSlot* slot : material.environments()) textures[slot->name] = environmentOf(points);
   for (const auto& [name, bound] : material.textures()) {
-    textures[name] = bound.constant ? constantOf(*bound.constant) : imageOf(*bound.image, bound.lookup);
+    textures[name] =
+        bound.constant ? constantOf(*bound.constant, bound.type) : imageOf(*bound.image, bound.lookup);
   }
   return textures;
 }
@@ -172,7 +222,7 @@ Result<Colors> colorsOnGpu(const ir::Module& module, const eval::Bindings& bindi
 }
 
 Result<std::string> evaluateOne(const std::string& file, const std::string& material,
-                                const EvalPoints& points, Engine engine,
+                                const EvalPoints& points, const std::string& points_file, Engine engine,
                                 const std::vector<std::string>& texels, const Options& options,
                                 Messages& messages) {
   const auto library = libraryFor(options);
@@ -196,9 +246,9 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
       !lowered) {
     return tl::make_unexpected(std::move(lowered.error()));
   }
-  if (engine != Engine::Double) evaluated.place({false, 1, 0, 0});
+  if (engine != Engine::Double) evaluated.place({false, {{"directional", 1}}});
   eval::Bindings bindings;
-  if (Result<void> bound = bind(evaluated, points, bindings); !bound)
+  if (Result<void> bound = bind(evaluated, points, points_file, bindings); !bound)
     return tl::make_unexpected(std::move(bound.error()));
   const size_t count = points.points.size();
   const ir::Module& module = evaluated.module();
@@ -246,7 +296,8 @@ std::string evaluate(const std::string& file, const std::string& material, const
     report(read.error(), points_name, messages);
     return {};
   }
-  Result<std::string> text = evaluateOne(file, material, *read, engine, texels, options, messages);
+  Result<std::string> text =
+      evaluateOne(file, material, *read, points_name, engine, texels, options, messages);
   if (text) return std::move(*text);
   report(text.error(), file, messages);
   return {};

@@ -87,7 +87,7 @@ Result<void> EvalMaterial::lower(material::Material material, const Language& li
     texture.info.texture = static_cast<int>(originals_.size()) - 1;
   }
   Options options = options_;
-  options.template_name = "forward";
+  if (Result<void> named = resolveTemplate(library, options); !named) return named;
   options.ibl = options.ibl && environment;
   options.decode_srgb = false;
   Diagnostics warnings;
@@ -102,7 +102,7 @@ Result<void> EvalMaterial::lower(material::Material material, const Language& li
   if (Diagnostics wrong = graph::check(graph, library); lacquer::hasError(wrong)) {
     return tl::make_unexpected(std::move(wrong));
   }
-  Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options)});
+  Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options), true});
   if (!module) return tl::make_unexpected(std::move(module.error()));
   module_ = std::move(*module);
   return checkTexels(**library.models.schema());
@@ -142,7 +142,7 @@ Result<void> EvalMaterial::bindTextures(const Substitute& substitute, eval::Bind
   Diagnostics wrong;
   for (const ir::TextureSlot* slot : usedTextures()) {
     if (slot->environment && slot->type == ir::Type::TextureCube) continue;
-    Result<BoundTexture> bound = textureOf(*slot, substitute);
+    Result<BoundTexture> bound = slot->environment ? environmentOf(*slot) : textureOf(*slot, substitute);
     if (!bound) {
       wrong.insert(wrong.end(), bound.error().begin(), bound.error().end());
       continue;
@@ -153,6 +153,7 @@ Result<void> EvalMaterial::bindTextures(const Substitute& substitute, eval::Bind
     } else {
       bindings.textures[slot->name] = eval::makeSampler(bound->image, bound->lookup);
     }
+    bound->type = slot->type;
     bound_[slot->name] = std::move(*bound);
   }
   if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
@@ -160,7 +161,8 @@ Result<void> EvalMaterial::bindTextures(const Substitute& substitute, eval::Bind
 }
 
 bool EvalMaterial::names(const std::string& name, const ir::TextureSlot& slot) {
-  return !slot.environment && (name == propertyOf(slot) || name == slot.name);
+  if (slot.environment) return name == slot.name && slot.type != ir::Type::TextureCube;
+  return name == propertyOf(slot) || name == slot.name;
 }
 
 /// A texel for a texture that this material does not have is not used; a name that no texture has is a
@@ -182,11 +184,24 @@ Result<void> EvalMaterial::checkTexels(const material::Schema& schema) const {
   return {};
 }
 
-Result<BoundTexture> EvalMaterial::textureOf(const ir::TextureSlot& slot, const Substitute& substitute) {
-  if (slot.environment) {
+/// A texture of the template's: a constant that is given, the table of factors, or a depth map in which
+/// nothing stands.
+Result<BoundTexture> EvalMaterial::environmentOf(const ir::TextureSlot& slot) const {
+  for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
+    if (names(it->slot, slot)) return BoundTexture{it->value, {}, {}};
+  }
+  if (slot.name == "environment_dfg" && slot.type == ir::Type::Texture2D) {
     return BoundTexture{
         {}, eval::environmentDfgImage(), {eval::Wrap::Clamp, eval::Wrap::Clamp, false, false}};
   }
+  if (slot.type == ir::Type::Texture2DShadow) return BoundTexture{std::array<double, 4>{1, 0, 0, 0}, {}, {}};
+  return fail("image-missing", {},
+              fmt::format("the template '{}' is given a texture '{}' that has no texels here",
+                          module_.template_name, slot.name),
+              fmt::format("give a constant: --texel {}=r,g,b,a", slot.name));
+}
+
+Result<BoundTexture> EvalMaterial::textureOf(const ir::TextureSlot& slot, const Substitute& substitute) {
   for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
     if (names(it->slot, slot)) return BoundTexture{it->value, {}, {}};
   }

@@ -38,6 +38,7 @@ struct BoundTexture {
   std::optional<std::array<double, 4>> constant;
   std::shared_ptr<const eval::Image> image;
   eval::Lookup lookup;
+  ir::Type type = ir::Type::Texture2D;
 };
 
 class EvalMaterial {
@@ -51,8 +52,9 @@ public:
   /// "baseColorTexture=0.5,0.5,0.5,1", each. Errors: "bad-texel".
   Result<void> setTexels(const std::vector<std::string>& texts);
 
-  /// The forward module as lowered, for a primitive with every attribute: points are given all of them. Nodes
-  /// that have the variant of that name use it. Errors: "unknown-texture", those of a graph.
+  /// The module of the options' template as lowered, for a primitive with every attribute: points are given
+  /// all of them. Nodes that have the variant of that name use it. Errors: "unknown-texture", those of a
+  /// graph.
   Result<void> lower(material::Material material, const Language& library, bool environment,
                      const std::string& variant, Messages& messages);
 
@@ -80,6 +82,7 @@ private:
   static Result<Texel> parseTexel(const std::string& text);
   static bool names(const std::string& name, const ir::TextureSlot& slot);
   Result<void> checkTexels(const material::Schema& schema) const;
+  Result<BoundTexture> environmentOf(const ir::TextureSlot& slot) const;
   Result<BoundTexture> textureOf(const ir::TextureSlot& slot, const Substitute& substitute);
   std::vector<const ir::TextureSlot*> usedTextures() const;
 

@@ -48,7 +48,7 @@ public:
   }
 
 private:
-  vulkan::BindingPlace placeOf(const passes::Binding& binding, uint32_t shift) const {
+  vulkan::BindingPlace placeOf(const ir::Binding& binding, uint32_t shift) const {
     return hlsl_ ? vulkan::BindingPlace{0, binding.flat + shift}
                  : vulkan::BindingPlace{binding.set, binding.binding};
   }
@@ -92,14 +92,17 @@ private:
     const size_t elements = lights ? std::min<size_t>(bindings_.lights.size(), block.array) : 1;
     std::vector<Filled> filled;
     vulkan::UniformBlock made;
-    made.place = placeOf(passes::blockBinding(block.role), check::kHlslBufferShift);
+    made.place = placeOf(block.binding, check::kHlslBufferShift);
     for (size_t element = 0; element < elements; ++element) {
       const eval::Columns& columns = lights ? bindings_.lights[element] : bindings_.columns;
       for (const ir::BlockField& field : block.fields) {
-        const eval::Column* column = columnOf(columns, block.instance + "." + field.name, field.type);
-        if (column == nullptr) continue;
-        filled.push_back({&field, column, element * block.size + field.offset});
-        made.per_point |= column->per_point;
+        for (uint32_t k = 0; k < field.elements(); ++k) {
+          const eval::Column* column =
+              columnOf(columns, block.instance + "." + field.elementName(k), field.type);
+          if (column == nullptr) continue;
+          filled.push_back({&field, column, element * block.size + field.offset + k * field.stride()});
+          made.per_point |= column->per_point;
+        }
       }
     }
     const size_t size = size_t{block.size} * (lights ? block.array : 1);
@@ -119,9 +122,8 @@ private:
     const auto found = textures.find(slot.name);
     if (found == textures.end()) return missing(slot.name);
     vulkan::Texture texture = found->second;
-    const passes::Binding binding = passes::textureBinding(module_, slot);
-    texture.image = placeOf(binding, check::kHlslTextureShift);
-    texture.sampler = placeOf(binding, check::kHlslSamplerShift);
+    texture.image = placeOf(slot.binding, check::kHlslTextureShift);
+    texture.sampler = placeOf(slot.binding, check::kHlslSamplerShift);
     work_.textures.push_back(std::move(texture));
   }
 

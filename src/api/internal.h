@@ -61,6 +61,8 @@ struct Shader::Impl : ShaderData {
   Preshader preshader;
 };
 
+/// Puts the library's default template in for none.
+Result<void> resolveTemplate(const lang::Library& library, Options& options);
 passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& scene);
 passes::LightFacts lightsOf(const gltf::Scene& scene);
 /// The graph of a material as the options want it: the profile, then the variants that the budget allows.
@@ -70,6 +72,10 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
 /// A checked graph to a placed module.
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
                             const passes::LightFacts& scene_lights, const AfterPass& after = {});
+
+/// The passes over a lowered module. Errors: "unknown-light", where the template does not have the lights;
+/// "slot-clash".
+Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options);
 
 /// "forward-coat-0123456789abcdef"
 std::string shaderId(const ir::Module& module, const lang::Library& library);
@@ -107,9 +113,6 @@ bool filled(const void* impl, std::string_view what, Messages& messages);
 /// Scene::findMaterial().
 Result<size_t> findMaterial(const material::Document& document, const std::optional<std::string>& name,
                             Diagnostics& warnings);
-
-/// "too-many-lights" where the facts have more than the light array holds.
-Diagnostics checkLights(const ir::Module& module, const passes::LightFacts& lights);
 
 lower::ParameterMode parameterMode(const Options& options);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "passes/program.h"
 #include "targets/target.h"
 
 namespace lacquer {
@@ -19,13 +18,13 @@ std::string_view roleName(ir::BlockRole role) {
   return "";
 }
 
-Json bindingJson(const passes::Binding& binding) {
+Json bindingJson(const ir::Binding& binding) {
   return {{"set", binding.set}, {"binding", binding.binding}, {"flat", binding.flat}};
 }
 
 Json blockJson(const ir::Module& module, const ir::Block& block) {
   Json json = {{"block", block.name}, {"role", roleName(block.role)}};
-  json.update(bindingJson(passes::blockBinding(block.role)));
+  json.update(bindingJson(block.binding));
   if (block.array != 0) {
     json["array"] = block.array;
     json["stride"] = block.size;
@@ -44,6 +43,10 @@ Json blockJson(const ir::Module& module, const ir::Block& block) {
   for (uint32_t i = 0; i < block.fields.size(); ++i) {
     const ir::BlockField& field = block.fields[i];
     Json row = {{"name", field.name}, {"type", ir::typeName(field.type)}, {"offset", field.offset}};
+    if (field.array != 0) {
+      row["array"] = field.array;
+      row["stride"] = field.stride();
+    }
     if (computed) {
       for (size_t p = 0; p < module.preshader.size(); ++p) {
         if (module.preshader[p].field == i) row["expression"] = preshader.fields[p];
@@ -108,7 +111,7 @@ Json interfaceOf(const ir::Module& module, bool has_vertex) {
   Json uniforms = Json::array();
   for (uint32_t i = 0; i < module.blocks.size(); ++i) {
     const ir::Block& block = module.blocks[i];
-    const bool count_needed = block.role == ir::BlockRole::Frame && counted;
+    const bool count_needed = counted && i == module.light_count.block;
     if (uses(ir::InputKind::BlockField, i, true) || count_needed)
       uniforms.push_back(blockJson(module, block));
   }
@@ -117,7 +120,7 @@ Json interfaceOf(const ir::Module& module, bool has_vertex) {
   Json textures = Json::array();
   for (const ir::TextureSlot& slot : module.textures) {
     Json row = {{"name", slot.name}, {"type", ir::typeName(slot.type)}};
-    row.update(bindingJson(passes::textureBinding(module, slot)));
+    row.update(bindingJson(slot.binding));
     row["role"] = slot.environment ? "environment" : "material";
     if (!slot.environment) row["color_space"] = slot.srgb ? "srgb" : "linear";
     textures.push_back(std::move(row));

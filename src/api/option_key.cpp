@@ -14,8 +14,9 @@ void add(const T& number, KeyBuilder& key) {
 void add(const std::string& text, KeyBuilder& key) { key.text(text); }
 
 void add(const Lights& lights, KeyBuilder& key) {
-  const auto& [mode, directional, point, spot] = lights;
-  key.number(mode).number(directional).number(point).number(spot);
+  const auto& [mode, counts] = lights;
+  key.number(mode).number(counts.size());
+  for (const auto& [kind, count] : counts) key.text(kind).number(count);
 }
 
 template <class T>

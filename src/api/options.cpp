@@ -104,16 +104,4 @@ bool filled(const void* impl, std::string_view what, Messages& messages) {
   return false;
 }
 
-Diagnostics checkLights(const ir::Module& module, const passes::LightFacts& lights) {
-  Diagnostics wrong;
-  if (lights.any) return wrong;
-  const uint64_t count = uint64_t{lights.directional} + lights.point + lights.spot;
-  for (const ir::Block& block : module.blocks) {
-    if (block.role != ir::BlockRole::Lights || count <= block.array) continue;
-    add(wrong, "too-many-lights", fmt::format("there are {} lights", count),
-        fmt::format("the template {} has room for {}", module.template_name, block.array));
-  }
-  return wrong;
-}
-
 }  // namespace lacquer

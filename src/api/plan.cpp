@@ -36,8 +36,10 @@ std::string shellWord(const std::string& text) {
 
 std::string lightsFlag(const passes::LightFacts& lights) {
   if (lights.any) return {};
-  return fmt::format(" --lights directional:{},point:{},spot:{}", lights.directional, lights.point,
-                     lights.spot);
+  std::string flag;
+  for (const auto& [kind, count] : lights.counts)
+    flag += fmt::format("{}{}:{}", flag.empty() ? " --lights " : ",", kind, count);
+  return flag.empty() ? " --lights none" : flag;
 }
 
 class NinjaFile {

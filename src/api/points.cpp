@@ -167,6 +167,26 @@ private:
   json::Report report_;
 };
 
+/// The object "uniforms" beside "points": a number, or an array of them, by field.
+void readUniforms(const Json& root, json::Report& report, EvalPoints& to) {
+  const Json* uniforms = json::member(root, "uniforms");
+  if (uniforms == nullptr) return;
+  const Path top;
+  const Path path(top, "uniforms");
+  if (!uniforms->is_object()) return report.wrongType(path, "uniforms", *uniforms, "an object");
+  for (const auto& [name, value] : uniforms->get_ref<const Json::object_t&>()) {
+    const Json list = value.is_array() ? value : Json::array({value});
+    for (const Json& x : list) {
+      if (x.is_number() && std::isfinite(x.get<double>())) {
+        to.uniforms[name].push_back(x.get<double>());
+        continue;
+      }
+      report.wrongType(Path(path, name), name, value, "a number or an array of finite numbers");
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 Result<EvalPoints> readPoints(std::string_view text, const std::string& file) {
@@ -186,6 +206,7 @@ Result<EvalPoints> readPoints(std::string_view text, const std::string& file) {
     PointReader reader(file, wrong);
     for (size_t i = 0; i < points.size(); ++i) reader.read(points[i], Path(path, i), result);
   }
+  if (member != nullptr) readUniforms(*root, report, result);
   if (hasError(wrong)) return tl::make_unexpected(std::move(wrong));
   return result;
 }

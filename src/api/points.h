@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@ struct EvalPoints {
   std::vector<eval::Point> points;
   std::vector<std::array<double, 3>> environment;  ///< radiance, one per point; black where none is given
   bool has_environment = false;                    ///< a point names one
+  std::map<std::string, std::vector<double>> uniforms;  ///< fields of the template's blocks: "frame.exposure"
 };
 
 /// Reads an array of points, or an object whose "points" is one (docs/eval.md). `file` stands for the text in

@@ -132,7 +132,7 @@ private:
     if (Result<void> lowered = evaluated.lower(material, *libraries_[setting], true, of.variant, to);
         !lowered)
       return tl::make_unexpected(std::move(lowered.error()));
-    if (of.in_float) evaluated.place({false, preview::Studio::kLights, 0, 0});
+    if (of.in_float) evaluated.place({false, {{"directional", preview::Studio::kLights}}});
     preview::Look look;
     look.in_float = of.in_float;
     for (const ir::TextureSlot* slot : evaluated.environments()) {

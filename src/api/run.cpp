@@ -76,6 +76,11 @@ bool Run::open() {
     return false;
   }
   library_ = *library;
+  if (const Result<void> named = resolveTemplate(*library_, options_); !named) {
+    report(named.error(), {});
+    report_.ok = false;
+    return false;
+  }
   setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_});
   structures_.emplace(*setting_);
   return true;

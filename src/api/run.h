@@ -52,7 +52,7 @@ private:
   void checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen);
   void progress(size_t done, bool last);
 
-  const Options& options_;
+  Options options_;  ///< with the name of the default template where none was given
   Messages& messages_;
   std::function<void(size_t, size_t)> progress_;
   std::chrono::steady_clock::time_point shown_;

@@ -149,7 +149,10 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   Diagnostics warnings;
   const gltf::VertexAttributes a{attributes.normal, attributes.tangent, attributes.color0,
                                  attributes.texCoord};
-  Result<graph::Graph> graph = buildGraph(m, a, **language, options, warnings);
+  Options named = options;
+  if (const Result<void> resolved = resolveTemplate(**language, named); !resolved)
+    return report(resolved.error(), document.path, messages), result;
+  Result<graph::Graph> graph = buildGraph(m, a, **language, named, warnings);
   report(warnings, document.path, messages);
   if (!graph) return report(graph.error(), {}, messages), result;
   result.impl_ =

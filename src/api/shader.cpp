@@ -17,11 +17,16 @@ Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& libr
                             const passes::LightFacts& scene_lights, const AfterPass& after) {
   Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options)});
   if (!module) return module;
-  const passes::LightFacts lights = lightFacts(options, scene_lights);
-  if (Diagnostics wrong = checkLights(*module, lights); !wrong.empty())
-    return tl::make_unexpected(std::move(wrong));
   if (after) after("lower", *module);
-  passes::runPipeline(*module, {lights, after});
+  return throughPasses(std::move(*module), {lightFacts(options, scene_lights), after});
+}
+
+Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options) {
+  if (Diagnostics wrong = passes::checkLights(module, options.lights); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  passes::runPipeline(module, options);
+  if (Diagnostics wrong = passes::checkPlaces(module); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
   return module;
 }
 
@@ -95,7 +100,10 @@ void checkText(const std::string& text, Target target, int stage, const std::str
   const check::Language language = languageOf(target);
   const Result<check::Spirv> words = check::compile(text, language, check_stage, name);
   if (!words) return append(wrong, words.error());
-  if (target != Target::Essl) append(wrong, check::validate(*words, target == Target::GlslGl, name));
+  if (target != Target::Essl) {
+    append(wrong, check::validate(*words, target == Target::GlslGl, name));
+    append(wrong, check::checkSlots(*words, name));
+  }
   if (target == Target::Hlsl && check::haveDxc())
     append(wrong, check::compileWithDxc(text, check_stage, name));
 }
@@ -175,6 +183,7 @@ private:
       if (!options_.validate) continue;
       const StageTimer timer(times_, StageOfRun::Validate, Target::Spirv);
       append(wrongOf(Target::Spirv), check::validate(shader_.spirv[stage], false, path));
+      append(wrongOf(Target::Spirv), check::checkSlots(shader_.spirv[stage], path));
     }
   }
 

@@ -148,7 +148,7 @@ private:
     EvalMaterial evaluated(images, options_);
     if (Result<void> lowered = evaluated.lower(material, *library_, true, {}, messages_); !lowered)
       return tl::make_unexpected(std::move(lowered.error()));
-    evaluated.place({false, 1, 0, 0});
+    evaluated.place({false, {{"directional", 1}}});
     return stress::materialSubject(material.name, evaluated.module());
   }
 

@@ -177,11 +177,8 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
     module = lower::lower(graph, setting.library, {parameterMode(setting.options)});
   }
   if (!module) return module;
-  if (Diagnostics wrong = checkLights(*module, lights); !wrong.empty())
-    return tl::make_unexpected(std::move(wrong));
   const StageTimer timer(setting.times, StageOfRun::Passes);
-  passes::runPipeline(*module, {lights, {}});
-  return module;
+  return throughPasses(std::move(*module), {lights, {}});
 }
 
 }  // namespace
@@ -210,7 +207,8 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
   const bool baked = setting.options.parameters == Parameters::Baked;
   key.text("structure").key(setting.base);
   addOptions(setting.options, {Decides::Module}, key);
-  key.number(lights.any).number(lights.directional).number(lights.point).number(lights.spot);
+  key.number(lights.any).number(lights.counts.size());
+  for (const auto& [kind, count] : lights.counts) key.text(kind).number(count);
   StructureKey(key, baked).graph(graph);
   return key.finish();
 }
@@ -298,8 +296,8 @@ std::string toBlob(const Structure& s) {
     blob.number(range.lo), blob.number(range.hi), blob.number(range.gap);
   });
   blob.text(s.graph);
-  blob.number(s.lights.any), blob.number(s.lights.directional), blob.number(s.lights.point),
-      blob.number(s.lights.spot);
+  blob.number(s.lights.any);
+  blob.list(s.lights.counts, [&](const auto& c) { blob.text(c.first), blob.number(c.second); });
   return blob.take();
 }
 
@@ -330,8 +328,11 @@ bool fromBlob(std::string_view bytes, Structure& s) {
     s.limits.push_back({{lo, hi}, blob.number<double>()});
   });
   s.graph = blob.text();
-  s.lights.any = blob.number<bool>(), s.lights.directional = blob.number<uint32_t>();
-  s.lights.point = blob.number<uint32_t>(), s.lights.spot = blob.number<uint32_t>();
+  s.lights.any = blob.number<bool>();
+  blob.list([&] {
+    std::string kind = blob.text();
+    s.lights.counts[kind] = blob.number<uint32_t>();
+  });
   renderTerms(s);
   return blob.complete();
 }

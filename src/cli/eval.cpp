@@ -22,6 +22,8 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
                    "double or float: on the CPU; vulkan: the shader on a Vulkan device")
       ->check(CLI::IsMember({"float", "double", "vulkan"}))
       ->capture_default_str();
+  verb->add_option("--template", flags.options.template_name,
+                   "forward, or another template that puts out a colour (see --nodes)");
   verb->add_option("--profile", flags.options.profile, "the reading of the specification")
       ->check(CLI::IsMember({"khr", "openpbr"}))
       ->capture_default_str();

@@ -54,29 +54,28 @@ void print(const Messages& messages) {
   }
 }
 
-/// "any", "scene" or "directional:1,point:4".
+/// "any", "scene", "none" or "directional:1,point:4".
 std::string parseLights(const std::string& text, lacquer::Lights& lights) {
   using Mode = lacquer::Lights::Mode;
   lights.mode = text == "any" ? Mode::Any : text == "scene" ? Mode::Scene : Mode::Fixed;
-  if (lights.mode != Mode::Fixed) return {};
+  if (lights.mode != Mode::Fixed || text == "none") return {};
+  constexpr unsigned long kMostLights = 4096;  // of a block in the node language
   std::stringstream parts(text);
   for (std::string part; std::getline(parts, part, ',');) {
     const size_t colon = part.find(':');
     const std::string type = part.substr(0, colon);
     const std::string number = colon == std::string::npos ? "1" : part.substr(colon + 1);
     const bool digits = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
-    const unsigned long count = digits && number.size() < 4 ? std::stoul(number) : 17;
-    uint32_t* slot = type == "directional" ? &lights.directional
-                     : type == "point"     ? &lights.point
-                     : type == "spot"      ? &lights.spot
-                                           : nullptr;
-    if (slot == nullptr || count > 16) {
-      return fmt::format("--lights: '{}' is not TYPE:COUNT with directional, point or spot and up to 16",
-                         part);
+    const unsigned long count = digits && number.size() < 5 ? std::stoul(number) : kMostLights + 1;
+    const bool name = !type.empty() && std::all_of(type.begin(), type.end(), [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    });
+    if (!name || count > kMostLights) {
+      return fmt::format("--lights: '{}' is not KIND:COUNT with a kind of the template's and up to {}", part,
+                         kMostLights);
     }
-    *slot += static_cast<uint32_t>(count);
+    lights.counts[type] += static_cast<uint32_t>(count);
   }
-  if (lights.directional + lights.point + lights.spot > 16) return "--lights: there is room for 16 lights";
   return {};
 }
 
@@ -113,8 +112,8 @@ std::string finish(Flags& flags) {
 }
 
 void addShared(CLI::App& app, Flags& flags) {
-  app.add_option("--template", flags.options.template_name, "forward, surface or bsdf")
-      ->capture_default_str();
+  app.add_option("--template", flags.options.template_name,
+                 "forward, surface, bsdf, or one in --nodes; without it the library's default, forward");
   app.add_option("--profile", flags.options.profile, "the reading of the specification")
       ->check(CLI::IsMember({"khr", "openpbr"}))
       ->capture_default_str();
@@ -126,7 +125,7 @@ void addShared(CLI::App& app, Flags& flags) {
          "uniform: numbers stay editable; baked: they are constants; spec: they are specialization constants")
       ->check(CLI::IsMember({"uniform", "baked", "spec"}))
       ->capture_default_str();
-  app.add_option("--lights", flags.lights, "any, scene, or fixed counts such as directional:1,point:4")
+  app.add_option("--lights", flags.lights, "any, scene, none, or fixed counts such as directional:1,point:4")
       ->capture_default_str();
   // Options that may be repeated take one argument each time: the next one may be a file.
   app.add_option("--live", flags.options.live, "terms to keep though today's value would remove them")

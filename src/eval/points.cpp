@@ -1,5 +1,8 @@
 #include "eval/points.h"
 
+#include <algorithm>
+#include <cassert>
+
 #include "eval/evaluate.h"
 
 namespace lacquer::eval {
@@ -19,20 +22,61 @@ Column column(std::span<const Point> points, int components, Get get) {
 
 using Vec3 = std::array<double, 3>;
 
+/// Each field's own value; of a matrix the identity.
+void bindDefaults(const ir::Block& block, Columns& to) {
+  for (const ir::BlockField& field : block.fields) {
+    std::vector<double> value(field.value.begin(),
+                              field.value.begin() + std::min(ir::componentCount(field.type), 4));
+    if (field.type == ir::Type::Mat4) value = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    for (uint32_t i = 0; i < field.elements(); ++i)
+      to[block.instance + "." + field.elementName(i)] = Column::constant(value);
+  }
+}
+
 }  // namespace
 
-void bindPoints(std::span<const Point> points, Bindings& bindings) {
-  Columns& to = bindings.columns;
-  const std::vector<double> identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  for (const char* name : {"object.model", "object.normal_matrix", "frame.view_projection"}) {
-    to[name] = Column::constant(identity);
+Columns lightOf(const ir::Module& module, std::string_view kind, Columns properties, size_t points) {
+  Columns columns;
+  for (const ir::Block& block : module.blocks) {
+    if (block.role != ir::BlockRole::Lights) continue;
+    bindDefaults(block, columns);
+    for (const ir::LightKind& known : module.light_kinds) {
+      if (known.name != kind) continue;
+      assert(known.fill && "lowered for evaluations");
+      const bool per_point = std::any_of(properties.begin(), properties.end(),
+                                         [](const auto& property) { return property.second.per_point; });
+      Bindings bindings;
+      bindings.columns = std::move(properties);
+      std::vector<ir::ValueId> roots;
+      for (const ir::Output& output : known.fill->outputs) roots.push_back(output.value);
+      const auto values = evaluate<double>(*known.fill, roots, bindings, per_point ? points : 1);
+      assert(values && "its inputs are parameters");
+      for (size_t i = 0; i < roots.size(); ++i) {
+        const ir::Output& output = known.fill->outputs[i];
+        const int components = ir::componentCount(known.fill->dag[output.value].type);
+        Column& column = columns[block.instance + "." + output.name];
+        column = Column::perPoint(components, (*values)[i]);
+        const bool same = !per_point || known.fill->dag.isConstant(output.value);
+        if (same) column = Column::constant({column.values.begin(), column.values.begin() + components});
+      }
+      return columns;
+    }
   }
-  to["frame.environment_intensity"] = Column::constant({1});
-  to["frame.environment_max_lod"] = Column::constant({0});
-  to["frame.light_count"] = Column::constant({1});
-  to["frame.camera_position"] = column(points, 3, [](const Point& p) {
-    return Vec3{p.position[0] + p.v[0], p.position[1] + p.v[1], p.position[2] + p.v[2]};
-  });
+  return columns;
+}
+
+void bindPoints(const ir::Module& module, std::span<const Point> points, Bindings& bindings) {
+  Columns& to = bindings.columns;
+  for (const ir::Block& block : module.blocks) {
+    if (block.role != ir::BlockRole::Frame && block.role != ir::BlockRole::Object) continue;
+    bindDefaults(block, to);
+    for (const ir::BlockField& field : block.fields) {
+      if (field.name != "camera_position" || field.type != ir::Type::Vec3) continue;
+      to[block.instance + "." + field.name] = column(points, 3, [](const Point& p) {
+        return Vec3{p.position[0] + p.v[0], p.position[1] + p.v[1], p.position[2] + p.v[2]};
+      });
+    }
+  }
   to["POSITION"] = column(points, 3, [](const Point& p) { return p.position; });
   to["NORMAL"] = column(points, 3, [](const Point& p) { return p.n; });
   to["TANGENT"] = column(points, 4, [](const Point& p) { return p.t; });
@@ -46,14 +90,10 @@ void bindPoints(std::span<const Point> points, Bindings& bindings) {
   to["gl_FrontFacing"] =
       column(points, 1, [](const Point& p) { return std::array<double, 1>{p.front_facing ? 1.0 : 0.0}; });
   Columns light;
-  light["light.position"] = column(points, 3, [](const Point& p) { return p.l; });
-  light["light.positional"] = Column::constant({0});
-  light["light.direction"] = Column::constant({0, 0, -1});
-  light["light.inverse_range_4"] = Column::constant({0});
-  light["light.radiance"] = column(points, 3, [](const Point& p) { return p.light; });
-  light["light.spot_scale"] = Column::constant({0});
-  light["light.spot_offset"] = Column::constant({1});
-  bindings.lights = {std::move(light)};
+  light["direction"] = column(points, 3, [](const Point& p) { return Vec3{-p.l[0], -p.l[1], -p.l[2]}; });
+  light["color"] = column(points, 3, [](const Point& p) { return p.light; });
+  light["intensity"] = Column::constant({1});
+  bindings.lights = {lightOf(module, "directional", std::move(light), points.size())};
 }
 
 Result<void> bindMaterialBlock(const ir::Module& module, Bindings& bindings) {

@@ -23,10 +23,17 @@ struct Point {
   bool front_facing = true;
 };
 
-/// Binds what `mesh.node` declares (and with it the forward and surface templates) and what `bsdf.node` does:
-/// the attributes, the identity as every transform, the eye at position + v, one directional light, an
-/// environment of full intensity. Environment maps are textures and stay unbound.
-void bindPoints(std::span<const Point> points, Bindings& bindings);
+/// Binds what the module's template is given: the glTF attributes, VIEW and LIGHT; every field of its blocks,
+/// with the value that the template's text says, but for a `camera_position`, which is at position + v; and
+/// one light of the kind `directional`, towards l. The module must have been lowered for evaluations.
+/// Textures stay unbound.
+void bindPoints(const ir::Module& module, std::span<const Point> points, Bindings& bindings);
+
+/// An element of the light array for a light of that kind, by its properties of KHR_lights_punctual ("color",
+/// "intensity", "range", "innerConeAngle", "outerConeAngle", and "position" and "direction" of its node; what
+/// is not there is 0), each constant or one for each of the points. What the kind does not fill has the
+/// template's value.
+Columns lightOf(const ir::Module& module, std::string_view kind, Columns properties, size_t points);
 
 /// Evaluates a placed module's preshader, in double, and binds the fields of the material block, rounded to
 /// float as they lie in the block. Parameters come from the bindings' columns or from the module.

@@ -198,6 +198,12 @@ private:
     if (value.op == Op::TextureLod) instruction.args[3] = of(value.args[2])[0];
     for (Register& out : instruction.outs) out = fresh(false);
     program_.body.push_back(instruction);
+    if (value.op == Op::TextureCompare || value.op == Op::TextureCompareLod) {
+      // One texel, or a constant: what passes the comparison is all or nothing.
+      const Register passes = map(Op::LessEqual, coordinate[2], instruction.outs[0]);
+      return {emit({Step::Select, Op::Select, 0, -1, 0, {}, {passes, literal(1), literal(0), kNoRegister}},
+                   false)};
+    }
     return {instruction.outs.begin(), instruction.outs.end()};
   }
 
@@ -298,7 +304,9 @@ private:
       case Op::MatMul: return matrixTimesVector(value.args[0], value.args[1]);
       case Op::Select: return select(value);
       case Op::Texture:
-      case Op::TextureLod: return texture(value);
+      case Op::TextureLod:
+      case Op::TextureCompare:
+      case Op::TextureCompareLod: return texture(value);
       case Op::DFdx: return derivative(value, Step::DerivativeX);
       case Op::DFdy: return derivative(value, Step::DerivativeY);
       case Op::SumOverLights: return sumOverLights(value);

@@ -43,10 +43,15 @@ std::optional<Type> mapType(std::span<const Type> operands) {
 
 std::optional<Type> specialType(Op op, std::span<const Type> operands) {
   if (op == Op::MatMul && operands[0] == Type::Mat4 && operands[1] == Type::Vec4) return Type::Vec4;
-  const bool flat = operands.size() > 1 && operands[0] == Type::Texture2D && operands[1] == Type::Vec2;
-  const bool cube = operands.size() > 1 && operands[0] == Type::TextureCube && operands[1] == Type::Vec3;
-  if (op == Op::Texture && (flat || cube)) return Type::Vec4;
-  if (op == Op::TextureLod && (flat || cube) && operands[2] == Type::Float) return Type::Vec4;
+  const bool lookup =
+      operands.size() > 1 && isTexture(operands[0]) && operands[1] == coordinateType(operands[0]);
+  if (!lookup) return std::nullopt;
+  const bool compares = operands[0] == Type::Texture2DShadow;
+  if (op == Op::TextureCompare || op == Op::TextureCompareLod)
+    return compares ? std::optional(Type::Float) : std::nullopt;
+  if (compares) return std::nullopt;
+  if (op == Op::Texture) return Type::Vec4;
+  if (op == Op::TextureLod && operands[2] == Type::Float) return Type::Vec4;
   return std::nullopt;
 }
 
@@ -267,7 +272,8 @@ ValueId Dag::input(const Input& input) {
     const Input& other = inputs_[i];
     // Names last: numbers differ first.
     if (other.kind == input.kind && other.field == input.field && other.block == input.block &&
-        other.element == input.element && other.group == input.group && other.name == input.name) {
+        other.element == input.element && other.group == input.group && other.index == input.index &&
+        other.name == input.name) {
       return intern({Op::Input, other.type, other.rate, 0, i, {}});
     }
   }

@@ -44,6 +44,15 @@ constexpr int kOpCount = 0
 
 const OpInfo& info(Op op);
 
+/// Whether the value depends on its neighbours on the screen.
+constexpr bool takesDerivatives(Op op) {
+  return op == Op::Texture || op == Op::TextureCompare || op == Op::DFdx || op == Op::DFdy;
+}
+/// Whether it is a lookup of a texture, its first operand.
+constexpr bool readsTexture(Op op) {
+  return op == Op::Texture || op == Op::TextureLod || op == Op::TextureCompare || op == Op::TextureCompareLod;
+}
+
 /// The op of that name in the node language or a dump.
 std::optional<Op> findOp(std::string_view name);
 
@@ -79,6 +88,7 @@ struct Input {
                          ///< Attribute, Varying: index into the module's table of that kind
   int32_t element = -1;  ///< light array: a fixed element, or -1 for the loop's index
   int32_t group = 0;     ///< light array: which SumOverLights (its payload) it belongs to
+  uint32_t index = 0;    ///< BlockField that is an array: which element of it
 };
 
 struct Value {

@@ -8,15 +8,18 @@
 
 namespace lacquer::ir {
 
+std::string BlockField::elementName(uint32_t index) const {
+  return array == 0 ? name : fmt::format("{}[{}]", name, index);
+}
+
 uint32_t layout(std::vector<BlockField>& fields) {
   uint32_t offset = 0;
   for (BlockField& field : fields) {
-    const auto bytes = static_cast<uint32_t>(componentCount(field.type)) * 4;
-    const uint32_t alignment = bytes >= 12 ? 16 : bytes;
+    const uint32_t alignment = field.stride() >= 12 ? 16 : field.stride();
     offset = (offset + alignment - 1) / alignment * alignment;
     field.offset = offset;
-    offset += bytes;
-    assert(field.offset / 16 == (offset - 1) / 16 || field.type == Type::Mat4);
+    offset += field.stride() * field.elements();
+    assert(field.offset / 16 == (offset - 1) / 16 || field.type == Type::Mat4 || field.array != 0);
   }
   return (offset + 15) / 16 * 16;
 }

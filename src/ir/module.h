@@ -2,6 +2,7 @@
 // it, printers print it.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,15 +27,35 @@ struct Output {
   ValueId value = kNoValue;
 };
 
+/// Where something is bound: descriptor set and binding for Vulkan; `flat` for the targets without sets
+/// (OpenGL's block binding or texture unit, HLSL's register number). See docs/bindings.md.
+struct Binding {
+  uint32_t set = 0;
+  uint32_t binding = 0;
+  uint32_t flat = 0;
+};
+
+/// The material's own block and textures in that contract.
+inline constexpr Binding kMaterialBinding = {1, 0, 2};
+inline constexpr uint32_t kLeastMaterialTexture = 3;  ///< flat; more where the template has more textures
+
 struct BlockField {
   std::string name;
   Type type;
   uint32_t offset = 0;  ///< bytes; std140 and HLSL packing agree (asserted by layout())
   Interval range;
-  std::string prose;  ///< one line for the documentation
+  std::string prose;   ///< one line for the documentation
+  uint32_t array = 0;  ///< 0, or the number of elements, each a Vec4 or a Mat4
+  Components value{};  ///< what stands for it where nobody says: in evaluations; a Mat4's is the identity
+
+  uint32_t elements() const { return array == 0 ? 1 : array; }
+  /// Bytes of one element.
+  uint32_t stride() const { return static_cast<uint32_t>(componentCount(type)) * 4; }
+  /// What the element is called in evaluations and dumps: "model", "cascade[2]".
+  std::string elementName(uint32_t index) const;
 };
 
-/// Who fills a block, and how often; also its place in the binding contract (docs/bindings.md).
+/// Who fills a block, and how often.
 enum class BlockRole : uint8_t { Frame, Lights, Material, Object };
 
 struct Block {
@@ -44,6 +65,7 @@ struct Block {
   std::vector<BlockField> fields;
   uint32_t array = 0;  ///< 0, or the number of elements: the block holds `Light lights[16]`
   uint32_t size = 0;   ///< bytes of one element, a multiple of 16
+  Binding binding{};   ///< by the template; the material's by the place pass
 };
 
 /// An editable number of the material. Only those that the DAG reaches matter.
@@ -66,7 +88,7 @@ struct TextureSlot {
   bool environment = false;  ///< given by the template (per frame), not by the material
   int texture = -1;          ///< glTF texture index, -1 when none
   std::string pointer;       ///< JSON pointer of the textureInfo
-  uint32_t binding = 0;      ///< within its set; filled by the bind pass
+  Binding binding{};         ///< an environment's by the template, a material's by the bind pass
 };
 
 struct Attribute {
@@ -94,6 +116,22 @@ struct LightGroup {
   int32_t count = -1;  ///< -1: a run-time count (frame.light_count)
 };
 
+struct Module;
+
+/// A kind of light, and how it fills its element of the light array.
+struct LightKind {
+  std::string name;                                    ///< "spot"
+  std::vector<std::pair<uint32_t, Components>> fixed;  ///< fields of the array that are always the same
+  /// All that the kind fills, for evaluations; null where the module was not made for one. A module without a
+  /// stage: outputs are called as the fields, parameters as the lights' properties ("outerConeAngle").
+  std::shared_ptr<const Module> fill;
+};
+
+/// The number of lights in use, where it is known at run time alone: a field of a block.
+struct LightCount {
+  uint32_t block = 0, field = 0;
+};
+
 struct Module {
   std::string template_name;
   Dag dag;
@@ -105,6 +143,10 @@ struct Module {
   std::vector<Varying> varyings;
   std::vector<PreshaderField> preshader;
   std::vector<LightGroup> light_groups;
+  std::vector<LightKind> light_kinds;  ///< in the order in which they lie in the light array
+  LightCount light_count;              ///< of a template with lights
+  uint32_t material_textures = 0;      ///< the flat number of the material's first texture
+  bool sums_lights = false;            ///< an output of the template is a sum over the lights
   bool spec_constants =
       false;  ///< parameters are specialization constants: there is no material block and no preshader
 };

@@ -15,6 +15,9 @@ std::string_view typeName(Type type) {
     case Type::Mat4: return "mat4";
     case Type::Texture2D: return "sampler2D";
     case Type::TextureCube: return "samplerCube";
+    case Type::Texture2DShadow: return "sampler2DShadow";
+    case Type::Texture2DArray: return "sampler2DArray";
+    case Type::Texture3D: return "sampler3D";
   }
   return "";
 }

@@ -1,6 +1,7 @@
 // The few types, rates and intervals that every later folder speaks of.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -8,21 +9,43 @@
 
 namespace lacquer::ir {
 
-enum class Type : uint8_t { Bool, Int, Float, Vec2, Vec3, Vec4, Mat4, Texture2D, TextureCube };
+enum class Type : uint8_t {
+  Bool,
+  Int,
+  Float,
+  Vec2,
+  Vec3,
+  Vec4,
+  Mat4,
+  Texture2D,
+  TextureCube,
+  Texture2DShadow,  ///< a depth map with a sampler that compares
+  Texture2DArray,
+  Texture3D,
+};
 
-/// GLSL's name: "bool", "int", "float", "vec2", …, "mat4", "sampler2D", "samplerCube".
+/// All of them, in the order of the enumeration.
+inline constexpr std::array kTypes = {
+    Type::Bool,           Type::Int,      Type::Float,     Type::Vec2,        Type::Vec3,
+    Type::Vec4,           Type::Mat4,     Type::Texture2D, Type::TextureCube, Type::Texture2DShadow,
+    Type::Texture2DArray, Type::Texture3D};
+
+/// GLSL's name: "bool", "int", "float", "vec2", …, "mat4", "sampler2D", "samplerCube", "sampler2DShadow", ….
 std::string_view typeName(Type type);
 
 /// Number of float components: 1 for Float, 2 to 4 for vectors, 16 for Mat4, 1 for Bool and Int, 0 for
 /// textures.
 constexpr int componentCount(Type type) {
-  constexpr int kCounts[] = {1, 1, 1, 2, 3, 4, 16, 0, 0};
+  constexpr int kCounts[] = {1, 1, 1, 2, 3, 4, 16, 0, 0, 0, 0, 0};
   return kCounts[static_cast<int>(type)];
 }
 
 inline bool isFloatVector(Type t) { return t == Type::Vec2 || t == Type::Vec3 || t == Type::Vec4; }
 inline bool isFloating(Type t) { return t == Type::Float || isFloatVector(t); }
-inline bool isTexture(Type t) { return t == Type::Texture2D || t == Type::TextureCube; }
+inline bool isTexture(Type t) { return t >= Type::Texture2D; }
+/// What a lookup is given: u and v; a direction; u, v and the value to compare; u, v and the layer; u, v and
+/// w.
+inline Type coordinateType(Type texture) { return texture == Type::Texture2D ? Type::Vec2 : Type::Vec3; }
 
 /// Float, Vec2, Vec3 or Vec4 for 1 to 4 components.
 Type floatType(int components);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -72,10 +73,12 @@ struct Lights {
   enum class Mode : uint8_t {
     Any,    ///< a run-time count of all types
     Scene,  ///< as many as the file's KHR_lights_punctual; of a graph from JSON nothing is known: as Any
-    Fixed,  ///< the counts below, in the light array in their order; at most as many as it holds (16)
+    Fixed,  ///< the counts below; at most as many as the template's light array holds
   };
   Mode mode = Mode::Any;
-  uint32_t directional = 0, point = 0, spot = 0;
+  /// By the name of the template's kind of light ("directional", "point", "spot"); they lie in the light array in
+  /// the order in which the template declares the kinds.
+  std::map<std::string, uint32_t, std::less<>> counts{};
 };
 
 /// How shaders are made. Each call reads what concerns it and leaves the rest alone. The defaults are what
@@ -85,8 +88,9 @@ struct Options {
   /// Relative error of colours, from 0 to 1, that cheaper variants of terms may bring (docs/error.md); 0 for
   /// none.
   double error_budget = 0;
-  /// What Scene::graph() builds for: "forward", "surface", "bsdf", or a template of `node_directories`.
-  std::string template_name = "forward";
+  /// What Scene::graph() builds for: a template of the library or of `node_directories`; empty for the one that says it
+  /// is the default.
+  std::string template_name;
   /// Each at most once; none makes a manifest without code.
   std::vector<Target> targets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl, Target::Spirv};
   Parameters parameters = Parameters::Uniform;

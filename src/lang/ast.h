@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ir/dag.h"
+#include "ir/module.h"
 #include "lang/ties.h"
 
 namespace lacquer::lang {
@@ -46,6 +46,7 @@ struct Expr {
     Construct,  ///< a value of `type` from args: vec3(a, b), float(i)
     Swizzle,    ///< components of args[0]
     Member,     ///< as parsed; the checker makes it a Slot, a Swizzle or a Field
+    Index,      ///< args[0], a Member, at args[1]; as parsed: the checker makes it a Slot
     Field,      ///< result `slot` of args[0], which is a Call
     Call,       ///< of `node`; args in the order of its parameters, null where the default is meant
     Select,     ///< args[0] ? args[1] : args[2]
@@ -174,11 +175,16 @@ struct NodeDecl {
 enum class BlockRole : uint8_t { Frame, Lights, Object };
 
 struct BlockFieldDecl : Param {
-  uint32_t slot = 0;
+  uint32_t slot = 0;   ///< of an array, the first element's; the others follow
+  uint32_t array = 0;  ///< 0: not an array
+  ExprPtr array_syntax;
+
+  uint32_t elements() const { return array == 0 ? 1 : array; }
 };
 
 struct BlockDecl {
   BlockRole role = BlockRole::Frame;
+  bool extension = false;      ///< `extend block`: fields of a block of the base; gone after checking
   std::string_view type_name;  ///< "Light"
   std::string_view instance;   ///< "light"
   uint32_t array = 0;          ///< 0: not an array
@@ -186,6 +192,9 @@ struct BlockDecl {
   std::string_view prose;
   Span span;
   ExprPtr array_syntax;
+  ExprPtr count_syntax;     ///< of the lights: how many are in use
+  uint32_t count_slot = 0;  ///< the field that `count_syntax` names
+  ir::Binding binding;
 };
 
 struct AttributeDecl {
@@ -197,6 +206,31 @@ struct AttributeDecl {
   Span span;
 };
 
+/// `FIELD = value;` of a kind of light.
+struct LightFieldDecl {
+  std::string_view name;
+  Span span;
+  ExprPtr value;  ///< over the properties of KHR_lights_punctual, whose slots are those of lightProperties()
+  std::optional<ir::Components> constant;  ///< the value where it is the same for all lights of the kind
+};
+
+/// How a light of a type of KHR_lights_punctual fills its element of the light array.
+struct LightKindDecl {
+  std::string_view name;  ///< as in glTF: "spot"
+  std::vector<LightFieldDecl> fields;
+  std::string_view prose;
+  Span span;
+};
+
+/// What a light kind's values are made of, in the order of their slots: the properties of
+/// KHR_lights_punctual, and where the light's node is.
+struct LightProperty {
+  std::string_view name;
+  ir::Type type;
+  std::string_view prose;
+};
+std::span<const LightProperty> lightProperties();
+
 /// A texture that the application gives once per frame.
 struct EnvironmentDecl {
   ir::Type type = ir::Type::TextureCube;
@@ -204,6 +238,7 @@ struct EnvironmentDecl {
   uint32_t slot = 0;
   std::string_view prose;
   Span span;
+  ir::Binding binding;
 };
 
 /// What a graph may refer to.
@@ -237,6 +272,7 @@ enum class OutputRole : uint8_t { Position, Color, Discard };
 
 struct OutputDecl {
   OutputRole role = OutputRole::Color;
+  bool replaces = false;  ///< `replace output`: it takes the place of the base's of that name
   ir::Type type = ir::Type::Vec4;
   std::string_view name;
   std::string_view prose;
@@ -246,7 +282,8 @@ struct OutputDecl {
 
 struct TemplateDecl {
   std::string_view name;
-  std::string_view base;  ///< `extends`: its parts come first in the lists below; empty for none
+  bool is_default = false;  ///< `default;`: it is meant where no template is named
+  std::string_view base;    ///< `extends`: its parts come first in the lists below; empty for none
   std::string doc;
   std::vector<BlockDecl> blocks;
   std::vector<AttributeDecl> attributes;
@@ -254,6 +291,9 @@ struct TemplateDecl {
   std::vector<GivenDecl> givens;
   std::vector<PortDecl> ports;
   std::vector<OutputDecl> outputs;
+  std::vector<LightKindDecl> light_kinds;  ///< in the order in which lights lie in the array
+  uint32_t material_textures = 0;          ///< the flat number of the material's first texture
+  bool sums_lights = false;                ///< an output is a sum over the lights
   uint32_t slots = 0;
   std::optional<uint32_t> front_facing;  ///< the slot of gl_FrontFacing, where an expression uses it
   Origin origin;

@@ -149,6 +149,21 @@ ValueId makeTan(const Builtin&, Dag& dag, Values args) {
   return dag.div(dag.make(Op::Sin, args), cosine);
 }
 
+/// A lookup of a depth map compares; which of two operations it is follows from the texture.
+Op lookupOf(const Builtin& builtin, Type texture) {
+  if (texture != Type::Texture2DShadow) return builtin.op;
+  return builtin.op == Op::Texture ? Op::TextureCompare : Op::TextureCompareLod;
+}
+std::optional<Type> typeOfLookup(const Builtin& builtin, Types types) {
+  const Op op = lookupOf(builtin, types[0]);
+  if (op == Op::TextureCompareLod && types[2] != Type::Float) return std::nullopt;
+  return ir::resultType(op, types.first(static_cast<size_t>(ir::info(op).arity)));
+}
+ValueId makeLookup(const Builtin& builtin, Dag& dag, Values args) {
+  const Op op = lookupOf(builtin, dag[args[0]].type);
+  return dag.make(op, args.first(static_cast<size_t>(ir::info(op).arity)));
+}
+
 std::string_view shapeOf(ir::Signature signature) {
   switch (signature) {
     case ir::Signature::Map: return "floats or vectors of one size";
@@ -173,7 +188,7 @@ bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 
 std::vector<Builtin> makeTable() {
   constexpr std::string_view kNumbers = "floats or vectors of one size";
-  constexpr std::string_view kLookup = "a sampler2D and a vec2, or a samplerCube and a vec3";
+  constexpr std::string_view kLookup = "a sampler2D and a vec2, or another sampler and a vec3";
   std::vector<Builtin> table;
   const auto arithmetic = [&](std::string_view spelling, Op op, auto type, auto make) {
     table.push_back({spelling, ir::info(op).arity, true, ir::info(op).prose, kNumbers, op, type, make});
@@ -210,9 +225,10 @@ std::vector<Builtin> makeTable() {
   }
   table.push_back(ofOp("atan", Op::Atan2, false));
   for (const auto& [name, op] : {std::pair{"texture", Op::Texture}, {"textureLod", Op::TextureLod}}) {
-    table.push_back(ofOp(name, op, false));
-    table.back().shape =
-        op == Op::Texture ? kLookup : "a sampler2D and a vec2, or a samplerCube and a vec3; a float";
+    table.push_back(
+        {name, ir::info(op).arity, false, ir::info(op).prose,
+         op == Op::Texture ? kLookup : "a sampler2D and a vec2, or another sampler and a vec3; a float", op,
+         typeOfLookup, makeLookup});
   }
 
   const auto derived = [&](std::string_view name, int arity, std::string_view shape, auto type, auto make,

@@ -141,7 +141,7 @@ void Checker::let(Statement& statement) {
     if (good) makeFloat(*value);
     if (good && value->kind == Expr::Kind::Call && value->node->results.size() > 1) {
       name.multiple = true;
-      for (const Param& result : value->node->results) name.members.emplace_back(result.name, result.type);
+      for (const Param& result : value->node->results) name.members.push_back({result.name, result.type});
       statement.results = static_cast<uint32_t>(name.members.size());
     }
     if (good) name.type = value->type;
@@ -158,7 +158,10 @@ void Checker::let(Statement& statement) {
   statement.type = name.type;
   statement.slot = name.slot = slotCount();
   if (name.members.empty()) slots_.push_back(name.name);
-  for (const auto& [member, type] : name.members) slots_.push_back(member);
+  for (Member& member : name.members) {
+    member.slot = slotCount();
+    slots_.push_back(member.name);
+  }
   declare(std::move(name));
 }
 

@@ -60,6 +60,7 @@ bool Checker::expression(ExprPtr& expr) {
     case Expr::Kind::Literal: return true;
     case Expr::Kind::Name: return name(*expr);
     case Expr::Kind::Member: return member(expr);
+    case Expr::Kind::Index: return index(expr);
     case Expr::Kind::Operation: return operation(*expr);
     case Expr::Kind::Construct: return construct(*expr);
     case Expr::Kind::Select: return select(*expr);
@@ -134,8 +135,7 @@ bool Checker::name(Expr& expr) {
     if (found->broken) return false;
     if (found->multiple) {
       std::string help;
-      if (!found->members.empty())
-        help = fmt::format("name one: `{}.{}`", expr.name, found->members[0].first);
+      if (!found->members.empty()) help = fmt::format("name one: `{}.{}`", expr.name, found->members[0].name);
       reporter_.error("wrong-type", expr.span, fmt::format("'{}' is several values", expr.name),
                       std::move(help));
       return false;
@@ -180,24 +180,73 @@ bool Checker::name(Expr& expr) {
   return unknown(expr.name, "value", std::move(candidates));
 }
 
+const Checker::Member* Checker::memberOf(Expr& expr) {
+  Name* found = find(expr.args[0]->name);
+  found->used = true;
+  if (found->broken) return nullptr;
+  for (const Member& member : found->members) {
+    if (member.name == expr.name) return &member;
+  }
+  std::vector<std::string_view> candidates;
+  for (const Member& member : found->members) candidates.push_back(member.name);
+  std::string all = fmt::format("it has {}", fmt::join(candidates, ", "));
+  unknown(expr.name, "field", std::move(candidates), std::move(all));
+  return nullptr;
+}
+
+bool Checker::hasMembers(const Expr& expr) {
+  const Expr* base = expr.kind == Expr::Kind::Member ? expr.args[0].get() : nullptr;
+  const Name* found = base != nullptr && base->kind == Expr::Kind::Name ? find(base->name) : nullptr;
+  return found != nullptr && found->multiple;
+}
+
+/// An element of a block's array: which one is known when the shader is made, so that it is a value like a
+/// field.
+bool Checker::index(ExprPtr& expr) {
+  Expr& base = *expr->args[0];
+  if (!hasMembers(base)) {
+    reporter_.error("wrong-index", expr->span, "only a block's arrays have elements",
+                    "components of a vector are `.x` to `.w`");
+    return false;
+  }
+  const Member* found = memberOf(base);
+  if (found == nullptr) return false;
+  const Member member = *found;
+  if (member.array == 0) {
+    reporter_.error("wrong-index", expr->span, fmt::format("'{}' is not an array", member.name));
+    return false;
+  }
+  const std::optional<int> index = constantInt(expr->args[1], "the index");
+  if (!index) return false;
+  if (*index < 0 || static_cast<uint32_t>(*index) >= member.array) {
+    reporter_.error("wrong-index", expr->args[1]->span,
+                    fmt::format("'{}' has no element {}", member.name, *index),
+                    fmt::format("it has {}: 0 to {}", member.array, member.array - 1));
+    return false;
+  }
+  expr->kind = Expr::Kind::Slot;
+  expr->type = member.type;
+  expr->slot = member.slot + static_cast<uint32_t>(*index);
+  expr->args.clear();
+  return true;
+}
+
 bool Checker::member(ExprPtr& expr) {
   Expr& base = *expr->args[0];
-  Name* found = base.kind == Expr::Kind::Name ? find(base.name) : nullptr;
-  if (found != nullptr && found->multiple) {
-    found->used = true;
-    if (found->broken) return false;
-    for (size_t i = 0; i < found->members.size(); ++i) {
-      if (found->members[i].first != expr->name) continue;
-      expr->kind = Expr::Kind::Slot;
-      expr->type = found->members[i].second;
-      expr->slot = found->slot + static_cast<uint32_t>(i);
-      expr->args.clear();
-      return true;
+  if (hasMembers(*expr)) {
+    const Member* found = memberOf(*expr);
+    if (found == nullptr) return false;
+    if (found->array != 0) {
+      reporter_.error("wrong-index", spanOf(expr->name),
+                      fmt::format("'{}' is an array of {}", found->name, found->array),
+                      fmt::format("choose an element: `{}[0]`", expr->name));
+      return false;
     }
-    std::vector<std::string_view> candidates;
-    for (const auto& [name, type] : found->members) candidates.push_back(name);
-    std::string all = fmt::format("it has {}", fmt::join(candidates, ", "));
-    return unknown(expr->name, "field", std::move(candidates), std::move(all));
+    expr->kind = Expr::Kind::Slot;
+    expr->type = found->type;
+    expr->slot = found->slot;
+    expr->args.clear();
+    return true;
   }
   if (!expression(expr->args[0])) return false;
   makeFloat(base);
@@ -417,6 +466,12 @@ bool Checker::function(Expr& expr) {
   if (!type) {
     reporter_.error("wrong-type", expr.span, fmt::format("'{}' does not take {}", expr.name, list(expr.args)),
                     fmt::format("it takes {}", builtin->shape));
+    return false;
+  }
+  const bool at_level = builtin->op == ir::Op::TextureLod && types[0] == Type::Texture2DShadow;
+  if (at_level && !(expr.args[2]->kind == Expr::Kind::Literal && expr.args[2]->number == 0)) {
+    reporter_.error("wrong-level", expr.args[2]->span, "a sampler2DShadow is read at level 0",
+                    "Direct3D compares at no other: write the number 0");
     return false;
   }
   expr.kind = Expr::Kind::Operation;

@@ -4,7 +4,10 @@
 #include <iterator>
 #include <utility>
 
+#include "lang/builtins.h"
 #include "lang/checker.h"
+#include "lang/evaluate.h"
+#include "lang/suggest.h"
 
 namespace lacquer::lang {
 
@@ -19,7 +22,75 @@ void prepend(std::vector<T>& list, std::vector<T>&& base) {
   list.insert(list.begin(), std::make_move_iterator(base.begin()), std::make_move_iterator(base.end()));
 }
 
+/// The blocks' fields that `extend block` adds go to the block, and what `replace output` declares to the
+/// output's place. `decl` has the parts of its bases already.
+void merge(TemplateDecl& decl) {
+  for (size_t i = 0; i < decl.blocks.size(); ++i) {
+    BlockDecl& extension = decl.blocks[i];
+    const auto base = std::find_if(decl.blocks.begin(), decl.blocks.end(), [&](const BlockDecl& block) {
+      return !block.extension && block.instance == extension.instance;
+    });
+    if (!extension.extension || base == decl.blocks.end()) continue;
+    std::move(extension.fields.begin(), extension.fields.end(), std::back_inserter(base->fields));
+  }
+  std::erase_if(decl.blocks, [](const BlockDecl& block) { return block.extension; });
+  for (size_t i = 0; i < decl.outputs.size();) {
+    OutputDecl& output = decl.outputs[i];
+    const auto end = decl.outputs.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto base = std::find_if(decl.outputs.begin(), end,
+                                   [&](const OutputDecl& other) { return other.name == output.name; });
+    if (output.replaces && base != end && base->role == output.role) {
+      *base = std::move(output);
+      base->replaces = false;
+      decl.outputs.erase(end);
+    } else {
+      ++i;
+    }
+  }
+}
+
+/// The binding contract (docs/bindings.md): set 0 has what is filled once a frame, in the order of the text,
+/// the blocks of each template before its textures; set 2 the objects' blocks. What a template adds comes
+/// after what it extends, so that this stays where it was.
+class Places {
+public:
+  void take(TemplateDecl& decl) {
+    for (BlockDecl& block : decl.blocks) {
+      if (block.extension) continue;
+      const bool object = block.role == BlockRole::Object;
+      block.binding = {object ? 2U : 0U, object ? object_++ : frame_++, buffer_++};
+      if (buffer_ == ir::kMaterialBinding.flat) ++buffer_;
+    }
+    for (EnvironmentDecl& environment : decl.environments) environment.binding = {0, frame_++, unit_++};
+  }
+  /// Behind the environment's units, of which there are never fewer than the first contract had.
+  uint32_t materialTextures() const { return std::max(unit_, ir::kLeastMaterialTexture); }
+
+private:
+  uint32_t frame_ = 0, object_ = 0, buffer_ = 0, unit_ = 0;
+};
+
+bool sumsLights(const Expr& expr) {
+  const bool sum = expr.kind == Expr::Kind::Operation && expr.builtin != nullptr &&
+                   expr.builtin->op == ir::Op::SumOverLights;
+  return sum || std::any_of(expr.args.begin(), expr.args.end(),
+                            [](const ExprPtr& arg) { return arg && sumsLights(*arg); });
+}
+
 }  // namespace
+
+std::span<const LightProperty> lightProperties() {
+  static constexpr std::array kProperties = {
+      LightProperty{"color", Type::Vec3, "linear"},
+      LightProperty{"intensity", Type::Float, "candela of a point or a spot, lux of a directional light"},
+      LightProperty{"range", Type::Float, "metres; 0 without a range"},
+      LightProperty{"innerConeAngle", Type::Float, "radians, of a spot"},
+      LightProperty{"outerConeAngle", Type::Float, "radians, of a spot"},
+      LightProperty{"position", Type::Vec3, "of the light's node, world space"},
+      LightProperty{"direction", Type::Vec3, "unit, where the light's node looks: its -Z axis, world space"},
+  };
+  return kProperties;
+}
 
 void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) {
   template_ = &decl;
@@ -31,13 +102,22 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
   uint32_t slots = 0;
   names_.push_back({"gl_FrontFacing", Name::Kind::Builtin, Type::Bool, slots++, decl.span, true, false, {}});
   auto locations = uint32_t{0};
+  Places places;
   for (TemplateDecl& base : bases) {
     parts(base, slots);
+    places.take(base);
     for (AttributeDecl& attribute : base.attributes) attribute.location = locations++;
   }
   for (Name& name : names_) name.inherited = true;
   parts(decl, slots);
+  places.take(decl);
+  decl.material_textures = places.materialTextures();
   for (AttributeDecl& attribute : decl.attributes) attribute.location = locations++;
+  // Where the properties of a light stand in every template: behind its own slots.
+  for (TemplateDecl& base : bases) {
+    for (LightKindDecl& kind : base.light_kinds) lightKind(kind, slots);
+  }
+  for (LightKindDecl& kind : decl.light_kinds) lightKind(kind, slots);
   decl.slots = slots;
   for (auto base = bases.rbegin(); base != bases.rend(); ++base) {
     prepend(decl.blocks, std::move(base->blocks));
@@ -46,17 +126,38 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
     prepend(decl.givens, std::move(base->givens));
     prepend(decl.ports, std::move(base->ports));
     prepend(decl.outputs, std::move(base->outputs));
+    prepend(decl.light_kinds, std::move(base->light_kinds));
   }
+  merge(decl);
+  outputRules(decl);
+}
+
+void Checker::outputRules(TemplateDecl& decl) {
   for (size_t i = 0; i < decl.outputs.size(); ++i) {
+    const OutputDecl& output = decl.outputs[i];
+    if (output.value && sumsLights(*output.value)) decl.sums_lights = true;
+    if (output.replaces) {
+      reporter_.error("unknown-output", output.span,
+                      fmt::format("there is no output '{}' of that kind to replace", output.name),
+                      "it must come from the template that this one extends");
+      continue;
+    }
     for (size_t j = 0; j < i; ++j) {
-      if (decl.outputs[i].name != decl.outputs[j].name) continue;
-      reporter_.error("duplicate-name", decl.outputs[i].span,
-                      fmt::format("there are two outputs '{}'", decl.outputs[i].name));
+      if (output.name != decl.outputs[j].name) continue;
+      reporter_.error("duplicate-name", output.span, fmt::format("there are two outputs '{}'", output.name),
+                      "to put another value in its place, write `replace output`");
     }
   }
   if (decl.outputs.empty()) {
     reporter_.error("no-output", decl.span, fmt::format("the template '{}' puts nothing out", decl.name),
                     "end it with an `output color vec4 NAME = ...;` or another output");
+  }
+  const bool lit = std::any_of(decl.blocks.begin(), decl.blocks.end(),
+                               [](const BlockDecl& block) { return block.role == BlockRole::Lights; });
+  if (decl.sums_lights && !lit) {
+    reporter_.error("no-lights", decl.span,
+                    fmt::format("the template '{}' sums over lights and has none", decl.name),
+                    "declare them: `block lights Light light[16] count frame.light_count { ... }`");
   }
 }
 
@@ -73,23 +174,12 @@ void Checker::parts(TemplateDecl& decl, uint32_t& slots) {
                   p < decl.ports.size() ? decl.ports[p].param.span.offset : ~uint32_t{0}});
     if (next == ~uint32_t{0}) break;
     if (next == offset(decl.blocks, b)) {
-      block(decl.blocks[b++], slots);
+      BlockDecl& item = decl.blocks[b++];
+      item.extension ? extendedBlock(item, slots) : block(item, slots);
     } else if (next == offset(decl.attributes, a)) {
-      AttributeDecl& item = decl.attributes[a++];
-      if (!ir::isFloating(item.type)) {
-        reporter_.error("wrong-type", item.span, fmt::format("an attribute cannot be {}", aType(item.type)),
-                        "attributes are floats and vectors");
-      }
-      item.slot = slots++;
-      declare({item.name, Name::Kind::Attribute, item.type, item.slot, item.span, true, false, {}});
+      attribute(decl.attributes[a++], slots);
     } else if (next == offset(decl.environments, e)) {
-      EnvironmentDecl& item = decl.environments[e++];
-      if (!ir::isTexture(item.type)) {
-        reporter_.error("wrong-type", item.span, fmt::format("an environment cannot be {}", aType(item.type)),
-                        "it is a sampler2D or a samplerCube");
-      }
-      item.slot = slots++;
-      declare({item.name, Name::Kind::Environment, item.type, item.slot, item.span, true, false, {}});
+      environment(decl.environments[e++], slots);
     } else if (next == offset(decl.givens, g)) {
       given(decl.givens[g++], slots);
     } else if (p < decl.ports.size() && next == decl.ports[p].param.span.offset) {
@@ -100,7 +190,26 @@ void Checker::parts(TemplateDecl& decl, uint32_t& slots) {
   }
 }
 
-void Checker::block(BlockDecl& decl, uint32_t& slots) {
+void Checker::attribute(AttributeDecl& decl, uint32_t& slots) {
+  if (!ir::isFloating(decl.type)) {
+    reporter_.error("wrong-type", decl.span, fmt::format("an attribute cannot be {}", aType(decl.type)),
+                    "attributes are floats and vectors");
+  }
+  decl.slot = slots++;
+  declare({decl.name, Name::Kind::Attribute, decl.type, decl.slot, decl.span, true, false, {}});
+}
+
+void Checker::environment(EnvironmentDecl& decl, uint32_t& slots) {
+  if (!ir::isTexture(decl.type)) {
+    reporter_.error("wrong-type", decl.span, fmt::format("an environment cannot be {}", aType(decl.type)),
+                    "it is a sampler2D, a samplerCube or another sampler");
+  }
+  decl.slot = slots++;
+  declare({decl.name, Name::Kind::Environment, decl.type, decl.slot, decl.span, true, false, {}});
+}
+
+/// `light[16]` of the lights.
+void Checker::blockArray(BlockDecl& decl) {
   if (decl.array_syntax) {
     const std::optional<int> count = constantInt(decl.array_syntax, "the number of elements");
     if (count && (*count < 1 || *count > 4096)) {
@@ -109,35 +218,163 @@ void Checker::block(BlockDecl& decl, uint32_t& slots) {
     }
     decl.array = count ? static_cast<uint32_t>(std::max(*count, 1)) : 1;
   }
-  if (decl.array_syntax && decl.role != BlockRole::Lights) {
-    reporter_.error("wrong-block", decl.span, "only the lights can be an array");
+  const bool lights = decl.role == BlockRole::Lights;
+  if (decl.array_syntax && !lights) {
+    reporter_.error("wrong-block", decl.span, "only the lights can be an array",
+                    "fields can be arrays: `mat4 cascade[4];`");
   }
-  if (!decl.array_syntax && decl.role == BlockRole::Lights) {
+  if (!decl.array_syntax && lights) {
     reporter_.error("wrong-block", decl.span, "the lights must be an array",
                     fmt::format("write how many there can be: `{}[16]`", decl.instance));
   }
-  for (const auto& [role, instance] : blocks_) {
-    if (role != decl.role) continue;
-    reporter_.error("wrong-block", decl.span, "the template has a block of this role already",
-                    fmt::format("it is '{}'", instance));
+  if (lights) return lightCount(decl);
+  if (decl.count_syntax) {
+    reporter_.error("wrong-block", decl.count_syntax->span, "only the lights are counted");
   }
-  blocks_.emplace_back(decl.role, decl.instance);
+}
+
+/// `count frame.light_count`
+void Checker::lightCount(BlockDecl& decl) {
+  constexpr std::string_view kHelp =
+      "name an int field of a frame block declared before: `count frame.light_count`";
+  if (!decl.count_syntax) {
+    reporter_.error("wrong-block", decl.span, "nothing says how many of the lights are in use",
+                    std::string(kHelp));
+    return;
+  }
+  if (!typed(decl.count_syntax, Type::Int, "the number of lights")) return;
+  for (const BlockDecl* block : blocks_) {
+    if (block->role != BlockRole::Frame) continue;
+    for (const BlockFieldDecl& field : block->fields) {
+      const bool same = decl.count_syntax->kind == Expr::Kind::Slot && decl.count_syntax->slot == field.slot;
+      if (!same) continue;
+      decl.count_slot = field.slot;
+      return;
+    }
+  }
+  reporter_.error("wrong-block", decl.count_syntax->span, "the number of lights is no field of a frame block",
+                  std::string(kHelp));
+}
+
+/// A block is known by its type and its own name; in the texts an array of it has an `s` behind both.
+void Checker::blockName(const BlockDecl& decl) {
+  if (decl.type_name == "Material" || decl.instance == "material") {
+    reporter_.error("duplicate-name", decl.span, "the block of the material's numbers is called so",
+                    "give this one another name");
+  }
+  for (const BlockDecl* other : blocks_) {
+    if (other->role == BlockRole::Lights && decl.role == BlockRole::Lights) {
+      reporter_.error("wrong-block", decl.span, "the template has lights already",
+                      fmt::format("add fields to them: `extend block {} {{ ... }}`", other->instance));
+    }
+    const auto plural = [](const BlockDecl& block, std::string_view name) {
+      return std::string(name) + (block.role == BlockRole::Lights ? "s" : "");
+    };
+    if (other->type_name != decl.type_name &&
+        plural(*other, other->type_name) != plural(decl, decl.type_name))
+      continue;
+    reporter_.error("duplicate-name", decl.span, fmt::format("there are two blocks '{}'", decl.type_name));
+  }
+}
+
+void Checker::block(BlockDecl& decl, uint32_t& slots) {
+  blockArray(decl);
+  blockName(decl);
+  blocks_.push_back(&decl);
   Name instance{decl.instance, Name::Kind::Instance, Type::Float, slots, decl.span, true, true, {}};
+  fields(decl, instance, slots);
+  declare(std::move(instance));
+}
+
+void Checker::extendedBlock(BlockDecl& decl, uint32_t& slots) {
+  Name* base = find(decl.instance);
+  const bool block = base != nullptr && base->kind == Name::Kind::Instance;
+  if (!block || !base->inherited) {
+    std::vector<std::string_view> candidates;
+    for (const BlockDecl* other : blocks_) candidates.push_back(other->instance);
+    if (block) {
+      reporter_.error("wrong-block", decl.span,
+                      fmt::format("'{}' is this template's own block", decl.instance),
+                      "write its fields where it is declared");
+    } else {
+      unknown(decl.instance, "block", std::move(candidates));
+    }
+    return;
+  }
+  fields(decl, *base, slots);
+}
+
+void Checker::fields(BlockDecl& decl, Name& instance, uint32_t& slots) {
   for (BlockFieldDecl& field : decl.fields) {
     const bool good = ir::isFloating(field.type) || field.type == Type::Int || field.type == Type::Mat4;
     if (!good) {
       reporter_.error("wrong-type", field.span, fmt::format("a field cannot be {}", aType(field.type)),
                       "fields are ints, floats, vectors and matrices");
     }
-    for (const auto& [name, type] : instance.members) {
-      if (name != field.name) continue;
-      reporter_.error("duplicate-name", field.span, fmt::format("there are two fields '{}'", name));
+    for (const Member& member : instance.members) {
+      if (member.name != field.name) continue;
+      reporter_.error("duplicate-name", field.span, fmt::format("there are two fields '{}'", field.name));
     }
+    fieldArray(field);
     rangeOf(field);
-    field.slot = slots++;
-    instance.members.emplace_back(field.name, field.type);
+    defaultOf(field);
+    field.slot = slots;
+    slots += field.elements();
+    instance.members.push_back({field.name, field.type, field.slot, field.array});
   }
-  declare(std::move(instance));
+}
+
+void Checker::fieldArray(BlockFieldDecl& field) {
+  if (!field.array_syntax) return;
+  const std::optional<int> count = constantInt(field.array_syntax, "the number of elements");
+  if (count && (*count < 1 || *count > 256)) {
+    reporter_.error("wrong-count", field.array_syntax->span,
+                    fmt::format("a field cannot have {} elements", *count), "1 to 256 are possible");
+  }
+  field.array = count ? static_cast<uint32_t>(std::clamp(*count, 1, 256)) : 1;
+  if (field.type == Type::Vec4 || field.type == Type::Mat4) return;
+  reporter_.error("wrong-type", field.span, fmt::format("an array cannot be of {}", typeName(field.type)),
+                  "GLSL and HLSL lay out arrays of vec4 and mat4 alone in one way");
+}
+
+void Checker::lightKind(LightKindDecl& decl, uint32_t first_property) {
+  const auto lights = std::find_if(blocks_.begin(), blocks_.end(),
+                                   [](const BlockDecl* block) { return block->role == BlockRole::Lights; });
+  if (lights == blocks_.end()) {
+    reporter_.error("no-lights", decl.span, "the template has no lights",
+                    "declare them: `block lights Light light[16] count frame.light_count { ... }`");
+    return;
+  }
+  for (const LightKindDecl* other : light_kinds_) {
+    if (other->name != decl.name) continue;
+    reporter_.error("duplicate-name", decl.span, fmt::format("there are two kinds of light '{}'", decl.name));
+  }
+  light_kinds_.push_back(&decl);
+  const std::vector<Member> members = find((*lights)->instance)->members;
+  // Only the properties of the light are in scope.
+  std::vector<Name> outer = std::exchange(names_, {});
+  for (const LightProperty& property : lightProperties()) {
+    names_.push_back(
+        {property.name, Name::Kind::Given, property.type, first_property++, decl.span, true, false, {}});
+  }
+  for (size_t i = 0; i < decl.fields.size(); ++i) {
+    LightFieldDecl& field = decl.fields[i];
+    const auto member =
+        std::find_if(members.begin(), members.end(), [&](const Member& m) { return m.name == field.name; });
+    const auto twice = std::find_if(decl.fields.begin(), decl.fields.begin() + static_cast<std::ptrdiff_t>(i),
+                                    [&](const LightFieldDecl& f) { return f.name == field.name; });
+    if (twice != decl.fields.begin() + static_cast<std::ptrdiff_t>(i)) {
+      reporter_.error("duplicate-name", field.span, fmt::format("'{}' is given twice", field.name));
+    } else if (member == members.end() || member->array != 0) {
+      std::vector<std::string_view> candidates;
+      for (const Member& m : members) candidates.push_back(m.name);
+      unknown(field.name, "field", std::move(candidates));
+    } else if (typed(field.value, member->type, fmt::format("'{}'", field.name))) {
+      if (!scratch_) scratch_.emplace();
+      field.constant = evaluateConstant(*scratch_, *field.value);
+    }
+  }
+  names_ = std::move(outer);
 }
 
 /// Whether a value is of another type than the one it is to have; reports it.
@@ -173,7 +410,9 @@ void Checker::given(GivenDecl& decl, uint32_t& slots) {
         copy.range = result.range;
         copy.prose = result.prose;
         copy.span = decl.span;
-        if (decl.multiple) name.members.emplace_back(result.name, result.type);
+        if (decl.multiple)
+          name.members.push_back(
+              {result.name, result.type, slots + static_cast<uint32_t>(name.members.size())});
       }
     }
   }

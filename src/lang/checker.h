@@ -51,6 +51,12 @@ public:
 
 private:
   /// What an identifier in scope stands for.
+  struct Member {
+    std::string_view name;
+    ir::Type type = ir::Type::Float;
+    uint32_t slot = 0;
+    uint32_t array = 0;  ///< 0: not an array
+  };
   struct Name {
     enum class Kind : uint8_t {
       Param,
@@ -70,7 +76,7 @@ private:
     Span span;
     bool used = false;
     bool multiple = false;  ///< reached as `name.result`
-    std::vector<std::pair<std::string_view, ir::Type>> members;
+    std::vector<Member> members;
     bool broken = false;     ///< its value was wrong: every use of it fails, without another report
     bool inherited = false;  ///< from a template that this one extends
   };
@@ -93,10 +99,20 @@ private:
 
   // check_template.cpp
   void parts(TemplateDecl& decl, uint32_t& slots);
+  void attribute(AttributeDecl& decl, uint32_t& slots);
+  void environment(EnvironmentDecl& decl, uint32_t& slots);
   void block(BlockDecl& decl, uint32_t& slots);
+  void extendedBlock(BlockDecl& decl, uint32_t& slots);
+  void blockName(const BlockDecl& decl);
+  void blockArray(BlockDecl& decl);
+  void lightCount(BlockDecl& decl);
+  void fields(BlockDecl& decl, Name& instance, uint32_t& slots);
+  void fieldArray(BlockFieldDecl& field);
+  void lightKind(LightKindDecl& decl, uint32_t first_property);
   void given(GivenDecl& decl, uint32_t& slots);
   void port(PortDecl& decl, uint32_t& slots);
   void output(OutputDecl& decl);
+  void outputRules(TemplateDecl& decl);
   bool unlike(const Param& param, const Expr& value, std::string_view what);
 
   // check_body.cpp
@@ -119,6 +135,11 @@ private:
   bool expression(ExprPtr& expr);
   bool name(Expr& expr);
   bool member(ExprPtr& expr);
+  bool index(ExprPtr& expr);
+  /// `name.member` where the name stands for several values.
+  bool hasMembers(const Expr& expr);
+  /// Which one of the several; null after a report.
+  const Member* memberOf(Expr& expr);
   bool swizzle(Expr& expr);
   bool operation(Expr& expr);
   bool integers(Expr& expr, bool& done);
@@ -145,10 +166,11 @@ private:
   const Surroundings& around_;
   std::optional<ir::Dag> scratch_;  ///< for constants; made when the first is met
   std::vector<Name> names_;
-  std::vector<std::pair<std::string_view, Span>> unused_;       ///< locals of the body
-  NodeDecl* node_ = nullptr;                                    ///< whose body is checked
-  TemplateDecl* template_ = nullptr;                            ///< whose parts are checked
-  std::vector<std::pair<BlockRole, std::string_view>> blocks_;  ///< of the template, so far
+  std::vector<std::pair<std::string_view, Span>> unused_;  ///< locals of the body
+  NodeDecl* node_ = nullptr;                               ///< whose body is checked
+  TemplateDecl* template_ = nullptr;                       ///< whose parts are checked
+  std::vector<const BlockDecl*> blocks_;                   ///< of the template, so far
+  std::vector<const LightKindDecl*> light_kinds_;          ///< of the template, so far
   std::string_view variant_;
   bool constants_only_ = false;          ///< the expression must be a constant
   bool ports_allowed_ = false;           ///< the expression is an output's

@@ -26,6 +26,7 @@ ValueId makeValue(Dag& dag, const Expr& expr, std::span<const ValueId> args) {
     case Expr::Kind::Name:
     case Expr::Kind::Slot:
     case Expr::Kind::Member:
+    case Expr::Kind::Index:
     case Expr::Kind::Field:
     case Expr::Kind::Call:
     case Expr::Kind::Select: break;

@@ -224,7 +224,7 @@ void Library::Impl::check(Entry& entry, Reporter& reporter) {
       std::vector<TemplateDecl> bases;
       if (!basesOf(entry, reporter, bases)) break;
       checker.templateDecl(*entry.template_decl, std::move(bases));
-      if (reporter.count() == 0) tie(*entry.template_decl);
+      if (reporter.count() == 0) tie(*entry.template_decl, reporter);
       break;
     }
     case DeclKind::Extension: checker.extension(*entry.extension); break;
@@ -424,6 +424,17 @@ Result<const LayersDecl*> Library::layers(std::string_view name) const {
 
 Result<const SwitchDecl*> Library::switch_(std::string_view name) const {
   return impl_->get(DeclKind::Switch, name, &Entry::switch_decl);
+}
+
+Result<std::string> Library::defaultTemplate() const {
+  const std::lock_guard lock(impl_->mutex);
+  for (auto entry = impl_->entries.rbegin(); entry != impl_->entries.rend(); ++entry) {
+    if (entry->kind != DeclKind::Template) continue;
+    Reporter silent(entry->file->name, entry->file->text);
+    if (Parser(silent, entry->begin, entry->end).templateDecl().is_default) return std::string(entry->name);
+  }
+  return fail("unknown-template", {}, "no template is named, and none is the default",
+              "a template is that which says `default;`");
 }
 
 bool Library::has(DeclKind kind, std::string_view name) const {

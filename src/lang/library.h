@@ -47,6 +47,10 @@ public:
   Result<const LayersDecl*> layers(std::string_view name) const;
   Result<const SwitchDecl*> switch_(std::string_view name) const;
 
+  /// The last template that says `default;`, in the order of the files: what is added comes after what is
+  /// there.
+  Result<std::string> defaultTemplate() const;
+
   bool has(DeclKind kind, std::string_view name) const;
 
   /// The declared names of that kind, sorted.

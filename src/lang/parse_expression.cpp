@@ -114,7 +114,16 @@ ExprPtr Parser::unary() {
 ExprPtr Parser::postfix() {
   const uint32_t begin = token().span.offset;
   ExprPtr expr = primary();
-  while (expr && accept(".")) {
+  while (expr && (is(".") || is("["))) {
+    if (accept("[")) {
+      std::vector<ExprPtr> args;
+      args.push_back(std::move(expr));
+      args.push_back(expression());
+      if (!args[1] || !expect("]", "the index")) return nullptr;
+      expr = make(Expr::Kind::Index, begin, {}, std::move(args));
+      continue;
+    }
+    ++at_;
     if (token().kind != Token::Kind::Name) {
       syntax("expected components or a field behind '.'");
       return nullptr;

@@ -10,12 +10,9 @@
 namespace lacquer::lang {
 
 std::optional<ir::Type> findType(std::string_view name) {
-  constexpr std::array kTypes = {ir::Type::Bool, ir::Type::Int,       ir::Type::Float,
-                                 ir::Type::Vec2, ir::Type::Vec3,      ir::Type::Vec4,
-                                 ir::Type::Mat4, ir::Type::Texture2D, ir::Type::TextureCube};
   constexpr std::string_view kFirstLetters = "bifvms";
   if (name.empty() || kFirstLetters.find(name[0]) == std::string_view::npos) return std::nullopt;
-  for (const ir::Type type : kTypes) {
+  for (const ir::Type type : ir::kTypes) {
     if (ir::typeName(type) == name) return type;
   }
   return std::nullopt;
@@ -138,7 +135,8 @@ bool Parser::type(ir::Type& out, std::string_view what) {
     const bool unknown = token().kind == Token::Kind::Name && !isReserved(token().text);
     if (unknown) {
       reporter_.error("unknown-type", token().span, fmt::format("there is no type '{}'", token().text),
-                      "types are bool, int, float, vec2, vec3, vec4, mat4, sampler2D and samplerCube");
+                      "types are bool, int, float, vec2, vec3, vec4, mat4, sampler2D, samplerCube, "
+                      "sampler2DShadow, sampler2DArray and sampler3D");
       return false;
     }
     return syntax(fmt::format("expected {}", what));
@@ -320,10 +318,23 @@ TemplateDecl Parser::templateDecl() {
 }
 
 bool Parser::templateItem(TemplateDecl& decl) {
+  if (is("default") && token(1).is(";")) {
+    at_ += 2;
+    decl.is_default = true;
+    return true;
+  }
   if (accept("block")) return block(decl);
   if (accept("given")) return given(decl);
   if (accept("port")) return port(decl);
   if (accept("output")) return output(decl);
+  if (is("extend") && token(1).is("block")) return extendedBlock(decl);
+  if (is("light") && token(1).is("kind")) return lightKind(decl);
+  if (is("replace") && token(1).is("output")) {
+    at_ += 2;
+    if (!output(decl)) return false;
+    decl.outputs.back().replaces = true;
+    return true;
+  }
   if (accept("attribute")) {
     AttributeDecl item;
     item.location = static_cast<uint32_t>(decl.attributes.size());
@@ -343,8 +354,10 @@ bool Parser::templateItem(TemplateDecl& decl) {
     decl.environments.push_back(item);
     return true;
   }
-  return syntax("expected a part of a template",
-                "its parts are block, attribute, environment, given, port and output");
+  return syntax(
+      "expected a part of a template",
+      "its parts are default, block, extend block, light kind, attribute, environment, given, port, "
+      "output and replace output");
 }
 
 bool Parser::block(TemplateDecl& decl) {
@@ -362,22 +375,80 @@ bool Parser::block(TemplateDecl& decl) {
     item.array_syntax = expression();
     if (!item.array_syntax || !expect("]", "the number of elements")) return false;
   }
+  if (accept("count")) {
+    item.count_syntax = expression();
+    if (!item.count_syntax) return false;
+  }
+  if (!blockFields(item)) return false;
+  decl.blocks.push_back(std::move(item));
+  return true;
+}
+
+bool Parser::extendedBlock(TemplateDecl& decl) {
+  at_ += 2;
+  BlockDecl item;
+  item.extension = true;
+  if (!name(item.instance, item.span, "the name of the block that it extends") || !blockFields(item))
+    return false;
+  decl.blocks.push_back(std::move(item));
+  return true;
+}
+
+bool Parser::blockFields(BlockDecl& block) {
   const Span open = token().span;
   if (!expect("{", "the block's name")) return false;
+  block.prose = proseBehind();
+  while (!is("}")) {
+    if (token().kind == Token::Kind::End) return unclosed(open);
+    if (!blockField(block)) skipStatement();
+  }
+  accept("}");
+  return true;
+}
+
+/// `TYPE name [ [elements] ] [in [lo, hi]] [= default];`
+bool Parser::blockField(BlockDecl& block) {
+  BlockFieldDecl field;
+  if (!type(field.type, "a type") || !name(field.name, field.span, "a name")) return false;
+  if (accept("[")) {
+    field.array_syntax = expression();
+    if (!field.array_syntax || !expect("]", "the number of elements")) return false;
+  }
+  if (is("in")) {
+    field.range_syntax = range();
+    if (!field.range_syntax) return false;
+  }
+  if (accept("=")) {
+    field.default_syntax = expression();
+    if (!field.default_syntax) return false;
+  }
+  if (!expect(";", "the field")) return false;
+  field.prose = proseBehind();
+  block.fields.push_back(std::move(field));
+  return true;
+}
+
+/// `light kind NAME { FIELD = value; ... }`
+bool Parser::lightKind(TemplateDecl& decl) {
+  at_ += 2;
+  LightKindDecl item;
+  if (!name(item.name, item.span, "the name of the kind of light")) return false;
+  const Span open = token().span;
+  if (!expect("{", "the kind's name")) return false;
   item.prose = proseBehind();
   while (!is("}")) {
     if (token().kind == Token::Kind::End) return unclosed(open);
-    BlockFieldDecl field;
-    static_cast<Param&>(field) = param(true);
-    if (field.name.empty() || !expect(";", "the field")) {
+    LightFieldDecl field;
+    const bool named = name(field.name, field.span, "a field of the lights") && expect("=", "the field");
+    if (named) field.value = expression();
+    if (!field.value || !expect(";", "the value")) {
       skipStatement();
       continue;
     }
-    field.prose = proseBehind();
     item.fields.push_back(std::move(field));
   }
   accept("}");
-  decl.blocks.push_back(std::move(item));
+  decl.light_kinds.push_back(std::move(item));
   return true;
 }
 

@@ -49,6 +49,10 @@ private:
   std::string_view proseBehind() const;
   bool templateItem(TemplateDecl& decl);
   bool block(TemplateDecl& decl);
+  bool blockFields(BlockDecl& block);
+  bool blockField(BlockDecl& block);
+  bool extendedBlock(TemplateDecl& decl);
+  bool lightKind(TemplateDecl& decl);
   bool given(TemplateDecl& decl);
   bool port(TemplateDecl& decl);
   bool output(TemplateDecl& decl);

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "lang/ast.h"
 #include "lang/builtins.h"
+#include "lang/reporter.h"
 
 namespace lacquer::lang {
 
@@ -44,7 +47,7 @@ Ties tiesOf(const Expr& root, Slots& slots, Ties refused) {
 
 }  // namespace
 
-void tie(TemplateDecl& decl) {
+void tie(TemplateDecl& decl, Reporter& reporter) {
   const bool vertex_stage = std::any_of(decl.outputs.begin(), decl.outputs.end(), [](const auto& output) {
     return output.role == OutputRole::Position;
   });
@@ -53,7 +56,8 @@ void tie(TemplateDecl& decl) {
     const Ties ties = block.role == BlockRole::Lights                   ? kLight
                       : block.role == BlockRole::Object && vertex_stage ? kVertex
                                                                         : Ties{0};
-    for (const BlockFieldDecl& field : block.fields) slots.ties[field.slot] = ties;
+    for (const BlockFieldDecl& field : block.fields)
+      std::fill_n(slots.ties.begin() + field.slot, field.elements(), ties);
   }
   // Without a vertex stage the attributes come to the fragment as they are.
   for (const AttributeDecl& attribute : decl.attributes)
@@ -64,8 +68,16 @@ void tie(TemplateDecl& decl) {
   }
   for (const PortDecl& port : decl.ports) slots.port[port.slot] = true;
   for (const OutputDecl& output : decl.outputs) {
-    if (output.role != OutputRole::Position && output.value) {
-      tiesOf(*output.value, slots, kLight | kVertex);
+    if (!output.value) continue;
+    const bool vertex = output.role == OutputRole::Position;
+    const Ties ties = tiesOf(*output.value, slots, vertex ? Ties{0} : Ties{kLight | kVertex});
+    if ((ties & kLight) != 0) {
+      reporter.error("one-light", output.span, fmt::format("'{}' is the value of one light", output.name),
+                     "write sum_over_lights(...) around what differs from light to light");
+    }
+    if ((ties & kVertex) != 0 && !vertex) {
+      reporter.error("one-vertex", output.span, fmt::format("'{}' is the value of one vertex", output.name),
+                     "write interpolate(...) around what differs from vertex to vertex");
     }
   }
   // A port's default may use the ports before it, in its place.

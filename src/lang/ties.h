@@ -20,8 +20,10 @@ constexpr Ties untiedBy(ir::Op op) {
 }
 
 struct TemplateDecl;
+class Reporter;
 
-/// Finds what the givens of a checked template are tied to, and what its ports refuse.
-void tie(TemplateDecl& decl);
+/// Finds what the givens of a checked template are tied to, and what its ports refuse. Reports outputs that
+/// are tied.
+void tie(TemplateDecl& decl, Reporter& reporter);
 
 }  // namespace lacquer::lang

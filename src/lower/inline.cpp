@@ -107,7 +107,8 @@ ValueId Inliner::value(const Expr& expr, std::span<const ValueId> slots) {
       return lang::makeValue(dag_, expr, {args.data(), expr.args.size()});
     }
     case Expr::Kind::Name:
-    case Expr::Kind::Member: break;
+    case Expr::Kind::Member:
+    case Expr::Kind::Index: break;
   }
   assert(false && "not checked");
   return kNoValue;

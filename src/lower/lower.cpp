@@ -1,5 +1,7 @@
 #include "lower/lower.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -35,6 +37,32 @@ std::string joined(std::string_view a, std::string_view b) {
   return text;
 }
 
+/// What ir::LightKind::fill is.
+ir::Module fillOf(const lang::TemplateDecl& decl, const lang::LightKindDecl& kind) {
+  ir::Module module;
+  std::vector<ir::ValueId> slots(decl.slots, ir::kNoValue);
+  for (const lang::LightProperty& property : lang::lightProperties()) {
+    ir::Parameter parameter;
+    parameter.name = property.name;
+    parameter.type = property.type;
+    const auto index = static_cast<uint32_t>(module.parameters.size());
+    module.parameters.push_back(std::move(parameter));
+    slots.push_back(module.dag.input({ir::InputKind::Parameter,
+                                      std::string(property.name),
+                                      property.type,
+                                      ir::Rate::Material,
+                                      {},
+                                      0,
+                                      index}));
+  }
+  Inliner inliner(module.dag);
+  for (const lang::LightFieldDecl& field : kind.fields) {
+    module.outputs.push_back({ir::OutputKind::Color, ir::Stage::Fragment, std::string(field.name), 0,
+                              inliner.evaluate(*field.value, slots)});
+  }
+  return module;
+}
+
 class Lowering {
 public:
   Lowering(const graph::Graph& graph, const lang::Library& library, const LowerOptions& options)
@@ -45,6 +73,8 @@ public:
     if (!found) return tl::make_unexpected(found.error());
     template_ = *found;
     module_.template_name = graph_.template_name;
+    module_.material_textures = template_->material_textures;
+    module_.sums_lights = template_->sums_lights;
     module_.spec_constants = options_.parameters == ParameterMode::Spec;
     slots_.assign(template_->slots, ir::kNoValue);
     declareInterface();
@@ -52,6 +82,7 @@ public:
     if (Diagnostics wrong = nodes(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     ports();
     outputs();
+    if (Diagnostics wrong = rates(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     assert(ir::verify(module_).empty());
     return std::move(module_);
   }
@@ -91,6 +122,7 @@ private:
       slot.name = environment.name;
       slot.type = environment.type;
       slot.environment = true;
+      slot.binding = environment.binding;
       textures_[environment.name] = slots_[environment.slot] = addTexture(slot);
     }
     for (const ir::TextureSlot& texture : graph_.textures) textures_[texture.name] = addTexture(texture);
@@ -111,18 +143,50 @@ private:
   void declareBlock(const lang::BlockDecl& decl) {
     ir::Block block{
         roleOf(decl.role), std::string(decl.type_name), std::string(decl.instance), {}, decl.array, 0};
+    block.binding = decl.binding;
     for (const lang::BlockFieldDecl& field : decl.fields) {
-      block.fields.push_back({std::string(field.name), field.type, 0, field.range, std::string(field.prose)});
+      block.fields.push_back({std::string(field.name), field.type, 0, field.range, std::string(field.prose),
+                              field.array, field.default_value.value_or(ir::Components{})});
     }
     block.size = ir::layout(block.fields);
     const auto index = static_cast<uint32_t>(module_.blocks.size());
     for (uint32_t i = 0; i < decl.fields.size(); ++i) {
       const lang::BlockFieldDecl& field = decl.fields[i];
-      slots_[field.slot] = dag().input({ir::InputKind::BlockField, joined(decl.instance, field.name),
-                                        field.type, rateOf(decl.role), field.range, index, i});
+      for (uint32_t k = 0; k < field.elements(); ++k) {
+        ir::Input input{ir::InputKind::BlockField,
+                        joined(decl.instance, block.fields[i].elementName(k)),
+                        field.type,
+                        rateOf(decl.role),
+                        field.range,
+                        index,
+                        i};
+        input.index = k;
+        slots_[field.slot + k] = dag().input(input);
+      }
     }
-    if (decl.role == lang::BlockRole::Lights) module_.light_groups.push_back({0, -1});
+    if (decl.role == lang::BlockRole::Lights) declareLights(decl);
     module_.blocks.push_back(std::move(block));
+  }
+
+  void declareLights(const lang::BlockDecl& decl) {
+    module_.light_groups.push_back({0, -1});
+    const ir::Input& count = dag().inputOf(slots_[decl.count_slot]);
+    module_.light_count = {count.block, count.field};
+    for (const lang::LightKindDecl& kind : template_->light_kinds) {
+      ir::LightKind& known = module_.light_kinds.emplace_back();
+      known.name = kind.name;
+      if (options_.evaluable) known.fill = std::make_shared<const ir::Module>(fillOf(*template_, kind));
+      for (const lang::LightFieldDecl& field : kind.fields) {
+        if (field.constant) known.fixed.emplace_back(fieldIndex(decl, field.name), *field.constant);
+      }
+    }
+  }
+
+  static uint32_t fieldIndex(const lang::BlockDecl& block, std::string_view name) {
+    const auto found = std::find_if(block.fields.begin(), block.fields.end(),
+                                    [&](const lang::BlockFieldDecl& field) { return field.name == name; });
+    assert(found != block.fields.end());
+    return static_cast<uint32_t>(found - block.fields.begin());
   }
 
   void bindGivens() {
@@ -229,6 +293,24 @@ private:
       }
       module_.outputs.push_back(output);
     }
+  }
+
+  /// What no check of the template alone can find: a position may only be made of what vertices know.
+  Diagnostics rates() const {
+    Diagnostics wrong;
+    for (const ir::Output& output : module_.outputs) {
+      const ir::Rate rate = module_.dag[output.value].rate;
+      if (output.stage != ir::Stage::Vertex || rate <= ir::Rate::Vertex) continue;
+      wrong.push_back({"wrong-rate",
+                       Severity::Error,
+                       {std::string(template_->origin.file), template_->origin.line, 0, {}},
+                       fmt::format("the output '{}' of the template '{}' is of the rate {}", output.name,
+                                   template_->name, ir::rateName(rate)),
+                       "a position is made at the vertices: without textures' derivatives, interpolate() and "
+                       "gl_FrontFacing",
+                       {}});
+    }
+    return wrong;
   }
 
   const graph::Graph& graph_;

@@ -1,27 +1,12 @@
+#include <fmt/format.h>
+
+#include <map>
+
 #include "ir/module.h"
+#include "passes/names.h"
 #include "passes/passes.h"
-#include "passes/program.h"
 
 namespace lacquer::passes {
-
-Binding blockBinding(ir::BlockRole role) {
-  switch (role) {
-    case ir::BlockRole::Frame: return {0, 0, 0};
-    case ir::BlockRole::Lights: return {0, 1, 1};
-    case ir::BlockRole::Material: return {1, 0, 2};
-    case ir::BlockRole::Object: return {2, 0, 3};
-  }
-  return {};
-}
-
-/// Environment textures keep fixed places, used or not; a material's follow its block in set 1 and the
-/// environment's units in the flat numbering.
-static constexpr uint32_t kEnvironmentUnits = 3;
-
-Binding textureBinding(const ir::Module&, const ir::TextureSlot& slot) {
-  if (slot.environment) return {0, 2 + slot.binding, slot.binding};
-  return {1, 1 + slot.binding, kEnvironmentUnits + slot.binding};
-}
 
 void bind(ir::Module& module) {
   std::vector<bool> used(module.textures.size(), false);
@@ -36,18 +21,66 @@ void bind(ir::Module& module) {
   std::vector<ir::TextureSlot> kept;
   std::vector<uint32_t> place(module.textures.size(), 0);
   uint32_t next = 0;
-  uint32_t environment = 0;
   for (size_t i = 0; i < module.textures.size(); ++i) {
     ir::TextureSlot& slot = module.textures[i];
-    if (slot.environment) slot.binding = environment++;
     if (!used[i]) continue;
-    if (!slot.environment) slot.binding = next++;
+    // A template's textures have their places, used or not; a material's follow its block in set 1.
+    if (!slot.environment) {
+      slot.binding = {ir::kMaterialBinding.set, ir::kMaterialBinding.binding + 1 + next,
+                      module.material_textures + next};
+      ++next;
+    }
     place[i] = static_cast<uint32_t>(kept.size());
     kept.push_back(slot);
   }
   module.textures = std::move(kept);
   for (const ir::ValueId id : texture_inputs)
     module.dag.setInputField(id, place[module.dag.inputOf(id).field]);
+}
+
+Diagnostics checkPlaces(const ir::Module& module) {
+  Diagnostics wrong;
+  // Blocks and textures are numbered apart where there are no sets.
+  std::map<std::pair<uint32_t, uint32_t>, std::string_view> places;
+  std::map<std::pair<bool, uint32_t>, std::string_view> flat;
+  const auto take = [&](auto& taken, const auto& place, std::string_view name, std::string_view where) {
+    const auto [it, fresh] = taken.try_emplace(place, name);
+    if (fresh) return;
+    wrong.push_back({"slot-clash",
+                     Severity::Error,
+                     {},
+                     fmt::format("'{}' and '{}' are both at {}", it->second, name, where),
+                     "no shader with them is written",
+                     {}});
+  };
+  const auto add = [&](const ir::Binding& at, std::string_view name, bool texture) {
+    take(places, std::pair(at.set, at.binding), name, fmt::format("set {}, binding {}", at.set, at.binding));
+    take(flat, std::pair(texture, at.flat), name,
+         fmt::format("{} {}", texture ? "texture unit" : "buffer binding", at.flat));
+  };
+  // A template's names are those of the contract: they cannot be changed where a target keeps them for
+  // itself.
+  const auto spell = [&](std::string_view name) {
+    if (Names().pick(name) == name) return;
+    wrong.push_back(
+        {"reserved-name",
+         Severity::Error,
+         {},
+         fmt::format("'{}' in the template '{}' is no name in every target", name, module.template_name),
+         "give it another",
+         {}});
+  };
+  for (const ir::Block& block : module.blocks) {
+    add(block.binding, block.instance, false);
+    if (block.role == ir::BlockRole::Material) continue;
+    for (const std::string& name : {block.name, block.instance}) spell(name);
+    for (const ir::BlockField& field : block.fields) spell(field.name);
+  }
+  for (const ir::TextureSlot& slot : module.textures) {
+    add(slot.binding, slot.name, true);
+    if (slot.environment) spell(slot.name);
+  }
+  return wrong;
 }
 
 }  // namespace lacquer::passes

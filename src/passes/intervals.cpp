@@ -227,6 +227,8 @@ Range Intervals::component(ValueId id, int c) const {
     case Op::Select: return select(id, c);
     case Op::Texture:
     case Op::TextureLod: return at(value.args[0], 0);
+    case Op::TextureCompare:
+    case Op::TextureCompareLod: return {0, 1, false};
     case Op::DFdx:
     case Op::DFdy: return derivative(id, c);
     case Op::Interpolate: return interpolated(at(value.args[0], c));

@@ -2,22 +2,30 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "ir/module.h"
+#include "support/diagnostic.h"
 
 namespace lacquer::passes {
 
-/// What is known of the lights. Any: a run-time count of lights of every type (the module as lowered).
-/// Otherwise fixed counts; lights lie in the array as directional, point, spot.
+/// What is known of the lights. Any: a run-time count of lights of every kind (the module as lowered).
+/// Otherwise fixed counts; lights lie in the array in the order of the template's kinds.
 struct LightFacts {
   bool any = true;
-  uint32_t directional = 0, point = 0, spot = 0;
+  std::map<std::string, uint32_t, std::less<>> counts{};  ///< by the kind's name: ir::LightKind
   bool operator==(const LightFacts&) const = default;
 };
 
-/// Splits each sum over the lights into one per type that occurs, with the fields of that type as constants.
-/// A count of one leaves no loop, a count of zero no code.
+/// What is wrong with the facts for this module's template: a kind that it does not have, more lights than
+/// its array holds. Code "unknown-light".
+Diagnostics checkLights(const ir::Module& module, const LightFacts& facts);
+
+/// Splits each sum over the lights into one per kind that occurs, with the fields that the kind fixes as
+/// constants. A count of one leaves no loop, a count of zero no code. The facts must be good.
 void specializeLights(ir::Module& module, const LightFacts& facts);
 
 /// Removes clamps, minima, maxima, absolute values, comparisons and choices that interval analysis proves
@@ -39,7 +47,11 @@ void hoistToVertex(ir::Module& module);
 /// order of their names.
 void place(ir::Module& module);
 
-/// Numbers the textures that are left, and drops the others.
+/// Gives the material's textures that are left their places, and drops the others.
 void bind(ir::Module& module);
+
+/// Two resources in one place ("slot-clash"), or a name of the template that a target keeps for itself
+/// ("reserved-name"). The first is a mistake of Lacquer's, or of whoever made the module.
+Diagnostics checkPlaces(const ir::Module& module);
 
 }  // namespace lacquer::passes

@@ -112,7 +112,7 @@ struct Placement {
 void chooseFields(ir::Module& module, Placement& placement) {
   const std::vector<ir::ValueId> values = packed(module.dag, frontier(module));
   if (values.empty()) return;
-  ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0};
+  ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0, ir::kMaterialBinding};
   Names names;
   placement.field_of.resize(module.dag.size(), 0);
   for (const ir::ValueId id : values) {

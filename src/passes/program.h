@@ -29,19 +29,6 @@ struct Statement {
   std::vector<ir::ValueId> sums;  ///< SumOverLights values of a loop
 };
 
-/// Where something is bound: descriptor set and binding for Vulkan; `flat` for the targets without sets
-/// (OpenGL's block binding or texture unit, HLSL's register number).
-struct Binding {
-  uint32_t set = 0;
-  uint32_t binding = 0;
-  uint32_t flat = 0;
-};
-
-/// The binding contract (docs/bindings.md).
-Binding blockBinding(ir::BlockRole role);
-/// Uses TextureSlot::binding, filled by the bind pass.
-Binding textureBinding(const ir::Module& module, const ir::TextureSlot& slot);
-
 /// The name of the loop's index variable; its Input is InputKind::LightIndex.
 inline constexpr const char* kLightIndexName = "i";
 

@@ -46,8 +46,8 @@ public:
 
 private:
   static bool isOpaque(Op op) {
-    return op == Op::Texture || op == Op::TextureLod || op == Op::DFdx || op == Op::DFdy ||
-           op == Op::Interpolate || op == Op::SumOverLights;
+    return ir::readsTexture(op) || ir::takesDerivatives(op) || op == Op::Interpolate ||
+           op == Op::SumOverLights;
   }
 
   void markGeometric() {

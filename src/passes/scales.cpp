@@ -118,8 +118,7 @@ class Directions {
 public:
   static bool lookup(const ir::Dag& dag, ValueId id) {
     const ir::Value& value = dag[id];
-    return (value.op == Op::Texture || value.op == Op::TextureLod) &&
-           dag[value.args[0]].type == ir::Type::TextureCube;
+    return ir::readsTexture(value.op) && dag[value.args[0]].type == ir::Type::TextureCube;
   }
 
   static ValueId stripped(ir::Dag& dag, ValueId direction) {

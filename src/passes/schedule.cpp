@@ -77,7 +77,7 @@ private:
     Indices blocks, textures, varyings, attributes, parameters;
     for (const ir::ValueId id : live_) {
       if (dag_[id].op == ir::Op::SumOverLights && module_.light_groups[dag_[id].payload].count < 0) {
-        blocks.insert(frameBlock());
+        blocks.insert(module_.light_count.block);
       }
       if (dag_[id].op != ir::Op::Input) continue;
       const ir::Input& input = dag_.inputOf(id);
@@ -106,14 +106,6 @@ private:
     });
   }
 
-  uint32_t frameBlock() const {
-    for (uint32_t i = 0; i < module_.blocks.size(); ++i) {
-      if (module_.blocks[i].role == ir::BlockRole::Frame) return i;
-    }
-    assert(false && "a run-time light count needs the frame block");
-    return 0;
-  }
-
   void countUses() {
     uses_.assign(dag_.size(), 0);
     used_in_loop_.assign(dag_.size(), false);
@@ -130,10 +122,7 @@ private:
     }
   }
 
-  bool needsDerivatives(ir::ValueId id) const {
-    const ir::Op op = dag_[id].op;
-    return op == ir::Op::Texture || op == ir::Op::DFdx || op == ir::Op::DFdy;
-  }
+  bool needsDerivatives(ir::ValueId id) const { return ir::takesDerivatives(dag_[id].op); }
 
   /// Reads as well written out every time: components of a leaf or of a variable, and negated leaves.
   bool trivial(ir::ValueId id) const {
@@ -151,12 +140,15 @@ private:
     size_.assign(dag_.size(), 0);
     for (const ir::ValueId id : live_) {
       if (leaf(id)) continue;
+      // What is compared and where are taken apart by some targets.
+      const bool compares = dag_[id].op == ir::Op::TextureCompare || dag_[id].op == ir::Op::TextureCompareLod;
+      if (compares && !leaf(dag_[id].args[1])) makeVariable(dag_[id].args[1]);
       int size = 1;
       for (const ir::ValueId operand : dag_[id].operands()) size += variable_[operand] ? 0 : size_[operand];
       size_[id] = size;
       // A component of something large is taken from a variable, so that `(a + b * c).x` is never written.
       if (dag_[id].op == ir::Op::Swizzle && !leaf(dag_[id].args[0]) && !variable_[dag_[id].args[0]] &&
-          dag_[dag_[id].args[0]].op != ir::Op::Texture && dag_[dag_[id].args[0]].op != ir::Op::TextureLod) {
+          !ir::readsTexture(dag_[dag_[id].args[0]].op)) {
         makeVariable(dag_[id].args[0]);
         size_[id] = 1;
       }

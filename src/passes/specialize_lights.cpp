@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -8,29 +10,26 @@ namespace lacquer::passes {
 
 namespace {
 
-/// The fields of the light array that a type of light fixes; see nodes/punctual_light.node.
-struct TypeFacts {
+/// The lights of one kind, and the fields of the light array that they fix.
+struct LightsOfKind {
   uint32_t count;
-  std::map<std::string, double> fixed;
+  const std::vector<std::pair<uint32_t, ir::Components>>* fixed;
 };
 
-std::vector<TypeFacts> typeFacts(const LightFacts& facts) {
-  return {
-      {facts.directional,
-       {{"light.positional", 0},
-        {"light.inverse_range_4", 0},
-        {"light.spot_scale", 0},
-        {"light.spot_offset", 1}}},
-      {facts.point, {{"light.positional", 1}, {"light.spot_scale", 0}, {"light.spot_offset", 1}}},
-      {facts.spot, {{"light.positional", 1}}},
-  };
+std::vector<LightsOfKind> lightsByKind(const ir::Module& module, const LightFacts& facts) {
+  std::vector<LightsOfKind> lights;
+  for (const ir::LightKind& kind : module.light_kinds) {
+    const auto found = facts.counts.find(kind.name);
+    lights.push_back({found == facts.counts.end() ? 0 : found->second, &kind.fixed});
+  }
+  return lights;
 }
 
 /// A light-rate value made anew for one group of lights.
 class Body {
 public:
-  Body(Rewriter& rewriter, const TypeFacts& type, int32_t group, int32_t element)
-      : rewriter_(rewriter), type_(type), group_(group), element_(element) {}
+  Body(Rewriter& rewriter, const LightsOfKind& kind, int32_t group, int32_t element)
+      : rewriter_(rewriter), kind_(kind), group_(group), element_(element) {}
 
   ir::ValueId make(ir::ValueId root) {
     ir::Dag& dag = rewriter_.dag();
@@ -53,8 +52,11 @@ public:
 private:
   ir::ValueId input(ir::ValueId id) {
     ir::Input input = rewriter_.dag().inputOf(id);
-    const auto fixed = type_.fixed.find(input.name);
-    if (fixed != type_.fixed.end()) return rewriter_.dag().constant(fixed->second);
+    if (input.kind == ir::InputKind::BlockField) {
+      for (const auto& [field, value] : *kind_.fixed) {
+        if (field == input.field) return rewriter_.dag().constant(input.type, value);
+      }
+    }
     input.group = group_;
     input.element = element_;
     if (element_ >= 0) input.rate = ir::Rate::Frame;
@@ -62,25 +64,50 @@ private:
   }
 
   Rewriter& rewriter_;
-  const TypeFacts& type_;
+  const LightsOfKind& kind_;
   int32_t group_, element_;
   std::map<ir::ValueId, ir::ValueId> made_;
 };
 
 }  // namespace
 
+Diagnostics checkLights(const ir::Module& module, const LightFacts& facts) {
+  const auto wrong = [](std::string message, std::string help) {
+    return Diagnostics{{"unknown-light", Severity::Error, {}, std::move(message), std::move(help), {}}};
+  };
+  const auto lights = std::find_if(module.blocks.begin(), module.blocks.end(), [](const ir::Block& block) {
+    return block.role == ir::BlockRole::Lights;
+  });
+  if (facts.any || lights == module.blocks.end()) return {};
+  uint64_t total = 0;
+  for (const auto& [name, count] : facts.counts) {
+    total += count;
+    const bool known =
+        std::any_of(module.light_kinds.begin(), module.light_kinds.end(),
+                    [&, wanted = name](const ir::LightKind& kind) { return kind.name == wanted; });
+    if (known || count == 0) continue;
+    std::string kinds;
+    for (const ir::LightKind& kind : module.light_kinds) kinds += (kinds.empty() ? "" : ", ") + kind.name;
+    return wrong(fmt::format("the template '{}' has no kind of light '{}'", module.template_name, name),
+                 kinds.empty() ? "it names none" : "it has " + kinds);
+  }
+  if (total <= lights->array) return {};
+  return wrong(fmt::format("there are {} lights", total),
+               fmt::format("the template '{}' has room for {}", module.template_name, lights->array));
+}
+
 void specializeLights(ir::Module& module, const LightFacts& facts) {
   if (facts.any) return;
-  const std::vector<TypeFacts> types = typeFacts(facts);
+  const std::vector<LightsOfKind> kinds = lightsByKind(module, facts);
   std::vector<ir::LightGroup> groups;
-  std::vector<int32_t> group_of(types.size(), -1);
+  std::vector<int32_t> group_of(kinds.size(), -1);
   uint32_t first = 0;
-  for (size_t t = 0; t < types.size(); ++t) {
-    if (types[t].count > 1) {
+  for (size_t t = 0; t < kinds.size(); ++t) {
+    if (kinds[t].count > 1) {
       group_of[t] = static_cast<int32_t>(groups.size());
-      groups.push_back({static_cast<int32_t>(first), static_cast<int32_t>(types[t].count)});
+      groups.push_back({static_cast<int32_t>(first), static_cast<int32_t>(kinds[t].count)});
     }
-    first += types[t].count;
+    first += kinds[t].count;
   }
   module.light_groups = groups;
   Rewriter(module).run([&](Rewriter& rewriter, ir::ValueId id, std::span<const ir::ValueId> operands) {
@@ -88,17 +115,17 @@ void specializeLights(ir::Module& module, const LightFacts& facts) {
     if (value.op != ir::Op::SumOverLights) return rewriter.copy(id, operands);
     ir::ValueId total = rewriter.dag().constant(value.type, {});
     uint32_t element = 0;
-    for (size_t t = 0; t < types.size(); ++t) {
-      if (types[t].count == 0) continue;
-      const bool single = types[t].count == 1;
-      Body body(rewriter, types[t], std::max(group_of[t], 0), single ? static_cast<int32_t>(element) : -1);
+    for (size_t t = 0; t < kinds.size(); ++t) {
+      if (kinds[t].count == 0) continue;
+      const bool single = kinds[t].count == 1;
+      Body body(rewriter, kinds[t], std::max(group_of[t], 0), single ? static_cast<int32_t>(element) : -1);
       ir::ValueId part = body.make(value.args[0]);
       rewriter.dag().setTerm(rewriter.dag().termOf(id));
       rewriter.dag().setRank(rewriter.dag().rankOf(id));
       if (!single)
         part = rewriter.dag().make(ir::Op::SumOverLights, {part}, static_cast<uint32_t>(group_of[t]));
       total = rewriter.dag().add(total, part);
-      element += types[t].count;
+      element += kinds[t].count;
     }
     return total;
   });

@@ -153,10 +153,10 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
 }
 
 void Shading::bind(std::span<const eval::Point> points, eval::Bindings& bindings) const {
-  eval::bindPoints(points, bindings);
+  eval::bindPoints(look_->module, points, bindings);
   bindings.columns["frame.light_count"] = eval::Column::constant({Studio::kLights});
   bindings.columns["frame.environment_max_lod"] = eval::Column::constant({1});  // the level is the roughness
-  bindings.lights = Studio::lights();
+  bindings.lights = Studio::lights(look_->module);
 }
 
 template <class T>

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "eval/points.h"
+
 namespace lacquer::preview {
 
 namespace {
@@ -127,18 +129,14 @@ Vec3 Studio::irradiance(const Vec3& normal) const {
   return result;
 }
 
-std::vector<eval::Columns> Studio::lights() {
-  const auto light = [](const Vec3& to, const Vec3& radiance) {
+std::vector<eval::Columns> Studio::lights(const ir::Module& module) {
+  const auto light = [&](const Vec3& to, const Vec3& radiance) {
     const Vec3 direction = unit(to);
-    eval::Columns columns;
-    columns["light.position"] = eval::Column::constant({direction.begin(), direction.end()});
-    columns["light.positional"] = eval::Column::constant({0});
-    columns["light.direction"] = eval::Column::constant({0, 0, -1});
-    columns["light.inverse_range_4"] = eval::Column::constant({0});
-    columns["light.radiance"] = eval::Column::constant({radiance.begin(), radiance.end()});
-    columns["light.spot_scale"] = eval::Column::constant({0});
-    columns["light.spot_offset"] = eval::Column::constant({1});
-    return columns;
+    eval::Columns properties;
+    properties["direction"] = eval::Column::constant({-direction[0], -direction[1], -direction[2]});
+    properties["color"] = eval::Column::constant({radiance.begin(), radiance.end()});
+    properties["intensity"] = eval::Column::constant({1});
+    return eval::lightOf(module, "directional", std::move(properties), 1);
   };
   return {light({-0.62, 0.62, 0.62}, {1.0, 0.97, 0.93}), light({0.95, 0.22, 0.30}, {0.2, 0.22, 0.25})};
 }

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "eval/bindings.h"
+#include "ir/module.h"
 
 namespace lacquer::preview {
 
@@ -21,8 +22,8 @@ public:
   /// leaves 3 % of the irradiance at most (Ramamoorthi and Hanrahan 2001).
   Vec3 irradiance(const Vec3& normal) const;
 
-  /// The light array's elements.
-  static std::vector<eval::Columns> lights();
+  /// The elements of the module's light array.
+  static std::vector<eval::Columns> lights(const ir::Module& module);
   static constexpr uint32_t kLights = 2;
 
 private:

@@ -145,7 +145,7 @@ private:
       point.front_facing = *at(samples, i, "front_facing") != 0;
     }
     eval::Bindings bindings;
-    eval::bindPoints(points, bindings);
+    eval::bindPoints(module_, points, bindings);
     const size_t width = space.width();
     for (const Variable& variable : space.variables()) {
       if (variable.nature != Nature::Number && variable.nature != Nature::Index) continue;

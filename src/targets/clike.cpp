@@ -106,6 +106,10 @@ Expression Printer::compute(ValueId id) const {
   if (value.op == Op::TextureLod) {
     return {dialect_.texture(argument(value.args[0]), argument(value.args[1]), argument(value.args[2]))};
   }
+  if (value.op == Op::TextureCompare || value.op == Op::TextureCompareLod) {
+    const bool top = value.op == Op::TextureCompareLod;
+    return {dialect_.comparison(argument(value.args[0]), use(value.args[1]), top)};
+  }
   return operation(value);
 }
 
@@ -154,7 +158,7 @@ Expression Printer::input(const ir::Input& input) const {
 
 Expression Printer::blockField(const ir::Input& input) const {
   const ir::Block& block = module_.blocks[input.block];
-  const std::string& field = block.fields[input.field].name;
+  const std::string field = block.fields[input.field].elementName(input.index);
   if (block.array == 0) return {fmt::format("{}.{}", block.instance, field)};
   if (input.element >= 0) return {fmt::format("{}s[{}].{}", block.instance, input.element, field)};
   return {fmt::format("{}s[{}].{}", block.instance, passes::kLightIndexName, field)};
@@ -225,11 +229,8 @@ void Printer::section(Text& text, ir::TermId id) const {
 }
 
 std::string Printer::lightCount() const {
-  for (const ir::Block& block : module_.blocks) {
-    if (block.role == ir::BlockRole::Frame) return block.instance + ".light_count";
-  }
-  assert(false && "a loop over a run-time number of lights needs the frame block");
-  return {};
+  const ir::Block& block = module_.blocks[module_.light_count.block];
+  return fmt::format("{}.{}", block.instance, block.fields[module_.light_count.field].name);
 }
 
 void Printer::openLoop(Text& text, const Statement& statement) const {
@@ -406,8 +407,9 @@ void printMembers(Text& text, const Dialect& dialect, const ir::Block& block) {
            hlslOffset(field.offset, field.type) == field.offset);
     while (std140Offset(cursor, field.type) != field.offset || hlslOffset(cursor, field.type) != field.offset)
       pad();
-    text.line(fmt::format("{} {};", dialect.type(field.type), field.name));
-    cursor = field.offset + byteSize(field.type);
+    const std::string elements = field.array == 0 ? "" : fmt::format("[{}]", field.array);
+    text.line(fmt::format("{} {}{};", dialect.type(field.type), field.name, elements));
+    cursor = field.offset + field.stride() * field.elements();
   }
   // The elements of an array, and blocks as a whole, end at a multiple of 16 of themselves.
   while (roundUp(cursor, 16) < block.size) pad();

@@ -83,6 +83,8 @@ public:
   virtual Expression splat(ir::Type type, const Expression& x, bool literal) const = 0;
   /// A texel; `lod` is empty for implicit derivatives.
   virtual std::string texture(std::string_view name, std::string_view at, std::string_view lod) const = 0;
+  /// What a depth map gives for the place `at`, whose third component is compared; `top`: at level 0.
+  virtual std::string comparison(std::string_view name, const Expression& at, bool top) const = 0;
   /// A call of a function of ops.def.
   virtual std::string call(ir::Op op, ir::Type result, std::string_view arguments) const;
 

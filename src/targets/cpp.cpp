@@ -89,6 +89,11 @@ public:
     return {};
   }
 
+  std::string comparison(std::string_view, const Expression&, bool) const override {
+    assert(false && "no texture has material rate");
+    return {};
+  }
+
   std::string call(Op op, Type result, std::string_view arguments) const override {
     if (!standard(op) || result != Type::Float) return Dialect::call(op, result, arguments);
     const std::string_view fold = foldOf(op);
@@ -480,7 +485,7 @@ private:
     text_.line("return block;");
   }
 
-  static std::string place(const passes::Binding& at) {
+  static std::string place(const ir::Binding& at) {
     return fmt::format("{{{}, {}, {}}}", at.set, at.binding, at.flat);
   }
 
@@ -488,7 +493,7 @@ private:
     const auto index = static_cast<uint32_t>(&block - module_.blocks.data());
     const bool counted = std::any_of(module_.light_groups.begin(), module_.light_groups.end(),
                                      [](const ir::LightGroup& group) { return group.count < 0; });
-    if (block.role == ir::BlockRole::Frame && counted) return true;
+    if (counted && index == module_.light_count.block) return true;
     std::vector<ValueId> roots;
     for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
     const std::vector<ValueId> live = ir::reachable(module_.dag, roots);
@@ -507,7 +512,7 @@ private:
     text_.line("};");
     for (const ir::Block& block : module_.blocks) {
       if (!uses(block)) continue;
-      const std::string place = Header::place(passes::blockBinding(block.role));
+      const std::string place = Header::place(block.binding);
       text_.line(fmt::format("constexpr Binding k{}Binding = {};", block.name, place));
     }
     text_.blank();
@@ -526,8 +531,8 @@ private:
       const std::string name = names.pick(slot.name);
       all += fmt::format("{}textures::{}", all.empty() ? "" : ", ", name);
       text_.line(fmt::format("constexpr Texture {} = {{\"{}\", {}, {}, {}, {}}};", name, slot.name,
-                             place(passes::textureBinding(module_, slot)), slot.type == Type::TextureCube,
-                             slot.srgb, slot.environment));
+                             place(slot.binding), slot.type == Type::TextureCube, slot.srgb,
+                             slot.environment));
     }
     text_.line("}  // namespace textures");
     text_.line(fmt::format("constexpr Texture kTextures[] = {{{}}};", all));

@@ -43,6 +43,10 @@ public:
                        : fmt::format("textureLod({}, {}, {})", name, at, lod);
   }
 
+  std::string comparison(std::string_view name, const Expression& at, bool top) const override {
+    return texture(name, at.text, top ? "0.0" : "");
+  }
+
   void open(Text& text, const ir::Module& module, const passes::Program& program,
             std::string_view head) const override {
     text.line(fmt::format("#version {}", row_.version));
@@ -64,7 +68,7 @@ private:
     text.blank();
     text.line("precision highp float;");
     text.line("precision highp int;");
-    for (Type type : {Type::Texture2D, Type::TextureCube}) {
+    for (Type type : ir::kTypes) {
       const auto& used = program.textures;
       if (std::any_of(used.begin(), used.end(),
                       [&](uint32_t t) { return module.textures[t].type == type; })) {
@@ -74,7 +78,7 @@ private:
   }
 
   /// `set = 0, binding = 1`, `binding = 1`, or nothing.
-  std::string place(const passes::Binding& binding) const {
+  std::string place(const ir::Binding& binding) const {
     if (row_.sets) return fmt::format("set = {}, binding = {}", binding.set, binding.binding);
     if (row_.bindings) return fmt::format("binding = {}", binding.flat);
     return {};
@@ -107,7 +111,7 @@ private:
   }
 
   void block(Text& text, const ir::Block& block) const {
-    const std::string place = this->place(passes::blockBinding(block.role));
+    const std::string place = this->place(block.binding);
     const std::string layout = fmt::format("layout(std140{}{}) uniform", place.empty() ? "" : ", ", place);
     text.blank();
     if (block.array == 0) {
@@ -131,7 +135,7 @@ private:
     if (!program.textures.empty()) text.blank();
     for (uint32_t index : program.textures) {
       const ir::TextureSlot& slot = module.textures[index];
-      const std::string place = this->place(passes::textureBinding(module, slot));
+      const std::string place = this->place(slot.binding);
       const std::string layout = place.empty() ? "" : fmt::format("layout({}) ", place);
       text.line(fmt::format("{}uniform {} {};", layout, ir::typeName(slot.type), slot.name));
     }

@@ -40,6 +40,9 @@ public:
       case Type::Mat4: return "column_major float4x4";  // only members of blocks have this type
       case Type::Texture2D: return "Texture2D";
       case Type::TextureCube: return "TextureCube";
+      case Type::Texture2DShadow: return "Texture2D";  // the sampler compares
+      case Type::Texture2DArray: return "Texture2DArray";
+      case Type::Texture3D: return "Texture3D";
     }
     assert(false);
     return {};
@@ -63,6 +66,12 @@ public:
                        : fmt::format("{0}.SampleLevel({0}_sampler, {1}, {2})", name, at, lod);
   }
 
+  std::string comparison(std::string_view name, const Expression& at, bool top) const override {
+    const std::string place = parenthesized(at, Precedence::Postfix);
+    return fmt::format("{0}.{1}({0}_sampler, {2}.xy, {2}.z)", name, top ? "SampleCmpLevelZero" : "SampleCmp",
+                       place);
+  }
+
   std::string call(ir::Op op, Type result, std::string_view arguments) const override {
     const std::string plain = Dialect::call(op, result, arguments);
     // HLSL's normalize takes vectors: of a number its sign is left, which is undefined at 0 alike.
@@ -84,7 +93,7 @@ public:
       block(text, module.blocks[index]);
     }
     if (!program.textures.empty()) blank();
-    for (uint32_t index : program.textures) texture(text, module, module.textures[index]);
+    for (uint32_t index : program.textures) texture(text, module.textures[index]);
     blank();
     openMain(text, parameters(module, program));
   }
@@ -98,7 +107,7 @@ private:
     printMembers(text, *this, block);
     text.line("};");
     text.blank();
-    text.line(fmt::format("cbuffer {} : register(b{}) {{", buffer, passes::blockBinding(block.role).flat));
+    text.line(fmt::format("cbuffer {} : register(b{}) {{", buffer, block.binding.flat));
     text.indent();
     text.line(array ? fmt::format("{} {}s[{}];", structure, block.instance, block.array)
                     : fmt::format("{} {};", structure, block.instance));
@@ -106,10 +115,12 @@ private:
     text.line("};");
   }
 
-  void texture(Text& text, const ir::Module& module, const ir::TextureSlot& slot) const {
-    const uint32_t number = passes::textureBinding(module, slot).flat;
+  void texture(Text& text, const ir::TextureSlot& slot) const {
+    const uint32_t number = slot.binding.flat;
+    const bool compares = slot.type == Type::Texture2DShadow;
     text.line(fmt::format("{} {} : register(t{});", type(slot.type), slot.name, number));
-    text.line(fmt::format("SamplerState {}_sampler : register(s{});", slot.name, number));
+    text.line(fmt::format("{} {}_sampler : register(s{});",
+                          compares ? "SamplerComparisonState" : "SamplerState", slot.name, number));
   }
 
   std::vector<std::string> parameters(const ir::Module& module, const passes::Program& program) const {

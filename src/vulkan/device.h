@@ -51,9 +51,14 @@ struct Buffer {
   unsigned char* bytes = nullptr;  ///< mapped, coherent
 };
 
+constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+
 struct Image {
   VkImage handle = VK_NULL_HANDLE;
   uint32_t width = 1, height = 1, layers = 1;
+  VkFormat format = kFormat;
+  VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
 };
 
 /// Objects that live as long as this one, and the first thing that went wrong. After that every call does
@@ -75,9 +80,10 @@ public:
   void atEnd(std::function<void()> undo) { undo_.push_back(std::move(undo)); }
 
   Buffer buffer(VkDeviceSize size, VkBufferUsageFlags usage);
-  /// RGBA32F, one level; six layers or more make cubes of every six.
-  Image image(uint32_t width, uint32_t height, uint32_t layers, VkImageUsageFlags usage);
-  VkImageView view(const Image& image, uint32_t first_layer, bool cube);
+  /// One level; six layers or more make cubes of every six. `volume`: of three dimensions, one deep.
+  Image image(uint32_t width, uint32_t height, uint32_t layers, VkImageUsageFlags usage,
+              VkFormat format = kFormat, bool volume = false);
+  VkImageView view(const Image& image, uint32_t first_layer, Shape shape);
   VkSampler sampler(const Texture& texture);
   VkShaderModule module(const std::vector<uint32_t>& words);
 
@@ -93,7 +99,6 @@ private:
   std::vector<std::function<void()>> undo_;
 };
 
-constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 constexpr uint16_t kSide = 64;  ///< pixels of a target's side
 
 }  // namespace lacquer::vulkan

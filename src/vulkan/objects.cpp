@@ -65,13 +65,15 @@ Buffer Objects::buffer(VkDeviceSize size, VkBufferUsageFlags usage) {
   return buffer;
 }
 
-Image Objects::image(uint32_t width, uint32_t height, uint32_t layers, VkImageUsageFlags usage) {
-  Image image{VK_NULL_HANDLE, width, height, layers};
+Image Objects::image(uint32_t width, uint32_t height, uint32_t layers, VkImageUsageFlags usage,
+                     VkFormat format, bool volume) {
+  Image image{VK_NULL_HANDLE, width, height, layers, format, VK_IMAGE_ASPECT_COLOR_BIT};
+  if (format == kDepthFormat) image.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.flags = layers >= 6 ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
-  info.imageType = VK_IMAGE_TYPE_2D;
-  info.format = kFormat;
+  info.imageType = volume ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+  info.format = format;
   info.extent = {width, height, 1};
   info.mipLevels = 1;
   info.arrayLayers = layers;
@@ -90,14 +92,24 @@ Image Objects::image(uint32_t width, uint32_t height, uint32_t layers, VkImageUs
   return image;
 }
 
-VkImageView Objects::view(const Image& image, uint32_t first_layer, bool cube) {
+static VkImageViewType viewTypeOf(Shape shape) {
+  switch (shape) {
+    case Shape::Plane: return VK_IMAGE_VIEW_TYPE_2D;
+    case Shape::Cube: return VK_IMAGE_VIEW_TYPE_CUBE;
+    case Shape::Array: return VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    case Shape::Volume: return VK_IMAGE_VIEW_TYPE_3D;
+  }
+  return VK_IMAGE_VIEW_TYPE_2D;
+}
+
+VkImageView Objects::view(const Image& image, uint32_t first_layer, Shape shape) {
   VkImageView view = VK_NULL_HANDLE;
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   info.image = image.handle;
-  info.viewType = cube ? VK_IMAGE_VIEW_TYPE_CUBE : VK_IMAGE_VIEW_TYPE_2D;
-  info.format = kFormat;
-  info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, first_layer, cube ? 6U : 1U};
+  info.viewType = viewTypeOf(shape);
+  info.format = image.format;
+  info.subresourceRange = {image.aspect, 0, 1, first_layer, shape == Shape::Cube ? 6U : 1U};
   if (good() &&
       check(device_.vk.CreateImageView(device_.handle, &info, nullptr, &view), "vkCreateImageView")) {
     atEnd([this, view] { device_.vk.DestroyImageView(device_.handle, view, nullptr); });
@@ -119,13 +131,15 @@ VkSampler Objects::sampler(const Texture& texture) {
   VkSamplerCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   // A map of one colour needs no filter.
-  info.magFilter = texture.nearest || texture.cube ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+  info.magFilter = texture.nearest || texture.shape != Shape::Plane ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
   info.minFilter = info.magFilter;
   info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
   info.addressModeU = modeOf(texture.s);
   info.addressModeV = modeOf(texture.t);
   info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
   info.maxLod = VK_LOD_CLAMP_NONE;
+  info.compareEnable = texture.compares ? VK_TRUE : VK_FALSE;
+  info.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
   if (good() &&
       check(device_.vk.CreateSampler(device_.handle, &info, nullptr, &sampler), "vkCreateSampler")) {
     atEnd([this, sampler] { device_.vk.DestroySampler(device_.handle, sampler, nullptr); });
@@ -156,7 +170,7 @@ void Objects::toLayout(VkCommandBuffer commands, const Image& image, VkImageLayo
   barrier.newLayout = to;
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image.handle;
-  barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, image.layers};
+  barrier.subresourceRange = {image.aspect, 0, 1, 0, image.layers};
   device_.vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                                 VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
 }

@@ -61,7 +61,8 @@ private:
   Chunk split(size_t first) const;
   bool together(size_t a, size_t b) const;
   std::vector<Texel> cubesAt(size_t point) const;
-  void upload(const std::vector<Texel>& texels, const Image& image, Objects& objects) const;
+  template <class T>
+  void upload(const std::vector<T>& texels, const Image& image, Objects& objects) const;
   Pixel pixelOf(size_t i) const;
   void corner(size_t point, const Pixel& pixel, const std::array<float, 2>& reach, unsigned char* to) const;
   Buffer vertices(Objects& objects, const Chunk& chunk) const;
@@ -89,16 +90,17 @@ private:
   VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
 };
 
-void Running::upload(const std::vector<Texel>& texels, const Image& image, Objects& objects) const {
+template <class T>
+void Running::upload(const std::vector<T>& texels, const Image& image, Objects& objects) const {
   if (!objects.good()) return;
   Objects mine(device_);  // the copy is not needed afterwards
-  const size_t size = texels.size() * sizeof(Texel);
+  const size_t size = texels.size() * sizeof(T);
   const Buffer staging = mine.buffer(size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   if (mine.good()) std::memcpy(staging.bytes, texels.data(), size);
   mine.submit([&](VkCommandBuffer commands) {
     mine.toLayout(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     VkBufferImageCopy copy{};
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, image.layers};
+    copy.imageSubresource = {image.aspect, 0, 0, image.layers};
     copy.imageExtent = {image.width, image.height, 1};
     vk_.CmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
                              &copy);
@@ -114,7 +116,7 @@ void Running::prepare() {
   for (uint32_t i = 0; i < pipeline_.outputs(); ++i) {
     targets_.push_back(objects_.image(kSide, kSide, 1,
                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
-    views.push_back(objects_.view(targets_.back(), 0, false));
+    views.push_back(objects_.view(targets_.back(), 0, Shape::Plane));
   }
   VkFramebufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
@@ -132,14 +134,21 @@ void Running::prepare() {
   for (const Texture& texture : work_.textures) {
     samplers_.push_back(objects_.sampler(texture));
     views_.push_back(VK_NULL_HANDLE);
-    if (texture.cube) {
+    if (texture.shape == Shape::Cube) {
       cubes_.push_back(&texture);
       continue;
     }
-    const Image image = objects_.image(texture.width, texture.height, 1,
-                                       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    upload(*texture.texels, image, objects_);
-    views_.back() = objects_.view(image, 0, false);
+    const Image image = objects_.image(
+        texture.width, texture.height, 1, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        texture.compares ? kDepthFormat : kFormat, texture.shape == Shape::Volume);
+    if (texture.compares) {
+      std::vector<float> depths;
+      for (const Texel& texel : *texture.texels) depths.push_back(texel[0]);
+      upload(depths, image, objects_);
+    } else {
+      upload(*texture.texels, image, objects_);
+    }
+    views_.back() = objects_.view(image, 0, texture.shape);
   }
 }
 
@@ -269,7 +278,7 @@ std::vector<std::vector<VkImageView>> Running::cubeViews(Objects& objects, const
                                       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     upload(texels, image, objects);
     for (size_t v = 0; v < views.size(); ++v)
-      views[v].push_back(objects.view(image, static_cast<uint32_t>(6 * v), true));
+      views[v].push_back(objects.view(image, static_cast<uint32_t>(6 * v), Shape::Cube));
   }
   return views;
 }
@@ -298,7 +307,7 @@ void Running::write(VkDescriptorSet set, uint32_t number, const Buffer& uniform,
   size_t cube = 0;
   for (size_t t = 0; t < images.size(); ++t) {
     const Texture& texture = work_.textures[t];
-    const VkImageView view = texture.cube ? cubes[cube++] : views_[t];
+    const VkImageView view = texture.shape == Shape::Cube ? cubes[cube++] : views_[t];
     images[t] = {samplers_[t], view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     if (VkWriteDescriptorSet* row = add(texture.image)) row->pImageInfo = &images[t];
     if (texture.sampler == texture.image) continue;
@@ -485,7 +494,8 @@ std::optional<Diagnostic> problemOf(const Device::State& device, const Work& wor
                                "height; one has {} by {}",
                                device.name, most, texture.width, texture.height));
     }
-    if (!texture.cube && !texture.nearest && texture.texels->size() > 1 && !device.filters_floats) {
+    if (texture.shape != Shape::Cube && !texture.nearest && texture.texels->size() > 1 &&
+        !device.filters_floats) {
       return wrong("vulkan-unsupported",
                    fmt::format("{} does not filter 32-bit float textures", device.name));
     }

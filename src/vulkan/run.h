@@ -28,11 +28,19 @@ struct UniformBlock {
 
 enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
 
+enum class Shape : uint8_t {
+  Plane,
+  Cube,    ///< one colour on all sides: `texels` holds one for all points, or one for each
+  Array,   ///< of one layer
+  Volume,  ///< of one slice
+};
+
 /// A texture of one mip level, linear RGBA in 32-bit floats.
 struct Texture {
   BindingPlace image, sampler;  ///< equal for a combined image sampler
-  /// A cube map has one colour on all sides: `texels` holds one for all points, or one for each.
-  bool cube = false;
+  Shape shape = Shape::Plane;
+  bool compares = false;  ///< a depth map: red is the depth, and a lookup says whether what it is given does
+                          ///< not exceed it
   uint32_t width = 1, height = 1;
   std::shared_ptr<const std::vector<Texel>> texels;  ///< row by row from the top
   Wrap s = Wrap::Repeat, t = Wrap::Repeat;

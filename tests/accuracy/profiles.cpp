@@ -35,7 +35,7 @@ ir::Module moduleOf(const std::string& profile, Light light, const Body& body) {
     if (one.type == body.node) one.variant = body.variant;
   }
   for (const Diagnostic& d : graph::check(graph, kLibrary)) ADD_FAILURE() << format(d);
-  Result<ir::Module> module = lower::lower(graph, kLibrary, {});
+  Result<ir::Module> module = lower::lower(graph, kLibrary, {.evaluable = true});
   EXPECT_TRUE(module);
   return module ? std::move(*module) : ir::Module{};
 }
@@ -63,7 +63,7 @@ std::vector<double> transmissions(const std::string& profile, Light light, std::
     roughness.push_back(q.coating.roughness);
   }
   eval::Bindings bindings;
-  eval::bindPoints(points, bindings);
+  eval::bindPoints(module, points, bindings);
   bindings.columns["base_color_factor"] = eval::Column::perPoint(4, albedo);
   bindings.columns["coat_color_factor"] = eval::Column::perPoint(3, tint);
   bindings.columns["coat_ior"] = eval::Column::perPoint(1, ior);

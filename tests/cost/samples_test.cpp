@@ -42,9 +42,9 @@ std::vector<Options> settings() {
   any.validate = false;
   any.permissive = true;
   Options one = any;
-  one.lights = {Lights::Mode::Fixed, 1, 0, 0};
+  one.lights = {Lights::Mode::Fixed, {{"directional", 1}}};
   Options several = any;
-  several.lights = {Lights::Mode::Fixed, 1, 2, 1};
+  several.lights = {Lights::Mode::Fixed, {{"directional", 1}, {"point", 2}, {"spot", 1}}};
   Options baked = one;
   baked.parameters = Parameters::Baked;
   Options surface = any;

@@ -22,23 +22,23 @@ const Setting kSettings[] = {
     {"sceneLights", [](Options& o) { o.lights.mode = Lights::Mode::Scene; }},
     {"noLights",
      [](Options& o) {
-       o.lights = {Lights::Mode::Fixed, 0, 0, 0};
+       o.lights = {Lights::Mode::Fixed, {}};
      }},
     {"oneDirectional",
      [](Options& o) {
-       o.lights = {Lights::Mode::Fixed, 1, 0, 0};
+       o.lights = {Lights::Mode::Fixed, {{"directional", 1}}};
      }},
     {"onePoint",
      [](Options& o) {
-       o.lights = {Lights::Mode::Fixed, 0, 1, 0};
+       o.lights = {Lights::Mode::Fixed, {{"point", 1}}};
      }},
     {"oneSpot",
      [](Options& o) {
-       o.lights = {Lights::Mode::Fixed, 0, 0, 1};
+       o.lights = {Lights::Mode::Fixed, {{"spot", 1}}};
      }},
     {"sixteenLights",
      [](Options& o) {
-       o.lights = {Lights::Mode::Fixed, 4, 8, 4};
+       o.lights = {Lights::Mode::Fixed, {{"directional", 4}, {"point", 8}, {"spot", 4}}};
      }},
     {"noIbl", [](Options& o) { o.ibl = false; }},
     {"noMultipleScattering", [](Options& o) { o.multiple_scattering = false; }},
@@ -56,14 +56,14 @@ const Setting kSettings[] = {
      [](Options& o) {
        o.parameters = Parameters::Baked;
        o.ibl = false;
-       o.lights = {Lights::Mode::Fixed, 1, 1, 1};
+       o.lights = {Lights::Mode::Fixed, {{"directional", 1}, {"point", 1}, {"spot", 1}}};
        o.decode_srgb = true;
        keepAll(o);
      }},
     {"nothingIsLit",
      [](Options& o) {
        o.ibl = false;
-       o.lights = {Lights::Mode::Fixed, 0, 0, 0};
+       o.lights = {Lights::Mode::Fixed, {}};
      }},
     {"surface", [](Options& o) { o.template_name = "surface"; }},
     {"surfaceBakedSrgb",
@@ -146,7 +146,7 @@ TEST(LightOptions, sceneLightsAreThoseOfTheFile) {
   Options scene;
   scene.lights.mode = Lights::Mode::Scene;
   Options fixed;
-  fixed.lights = {Lights::Mode::Fixed, 1, 0, 1};
+  fixed.lights = {Lights::Mode::Fixed, {{"directional", 1}, {"spot", 1}}};
   const Json one = generateWell({file}, folder.path() / "scene", scene);
   const Json other = generateWell({file}, folder.path() / "fixed", fixed);
   EXPECT_EQ(one["shaders"], other["shaders"]);

@@ -35,7 +35,9 @@ Options someOptions(uint64_t seed) {
   const char* kTemplates[] = {"forward", "forward", "surface", "bsdf"};
   options.template_name = kTemplates[random() % 4];
   if (random() % 3 == 0) options.parameters = Parameters::Baked;
-  if (random() % 3 == 0) options.lights = {Lights::Mode::Fixed, 1, static_cast<uint32_t>(random() % 3), 1};
+  if (random() % 3 == 0)
+    options.lights = {Lights::Mode::Fixed,
+                      {{"directional", 1}, {"point", static_cast<uint32_t>(random() % 3)}, {"spot", 1}}};
   options.ibl = random() % 4 != 0;
   options.multiple_scattering = random() % 4 != 0;
   options.decode_srgb = random() % 4 == 0;

@@ -55,6 +55,9 @@ std::string dumpNode(const lang::NodeDecl& node) {
 
 std::string prose(std::string_view text) { return text.empty() ? "" : fmt::format("  // {}", text); }
 
+/// Set and binding, then the number where there are no sets.
+std::string dumpPlace(const ir::Binding& at) { return fmt::format("{}.{} {}", at.set, at.binding, at.flat); }
+
 std::string dumpTemplate(const lang::TemplateDecl& decl) {
   std::string text = fmt::format("template {} ({}:{}), {} slots\n", decl.name, decl.origin.file,
                                  decl.origin.line, decl.slots);
@@ -62,18 +65,31 @@ std::string dumpTemplate(const lang::TemplateDecl& decl) {
   if (!decl.base.empty()) text += fmt::format("  extends {}\n", decl.base);
   for (const lang::BlockDecl& block : decl.blocks) {
     constexpr std::string_view kRoles[] = {"frame", "lights", "object"};
-    text += fmt::format("  block {} {} {}[{}]{}\n", kRoles[static_cast<size_t>(block.role)], block.type_name,
-                        block.instance, block.array, prose(block.prose));
-    for (const lang::BlockFieldDecl& field : block.fields)
-      text += fmt::format("    {}: {}\n", field.slot, dumpParam(field));
+    text += fmt::format("  block {} {} {}[{}] at {}{}\n", kRoles[static_cast<size_t>(block.role)],
+                        block.type_name, block.instance, block.array, dumpPlace(block.binding),
+                        prose(block.prose));
+    if (block.role == lang::BlockRole::Lights) text += fmt::format("    counted by {}\n", block.count_slot);
+    for (const lang::BlockFieldDecl& field : block.fields) {
+      const std::string elements = field.array == 0 ? "" : fmt::format("[{}]", field.array);
+      text += fmt::format("    {}{}: {}\n", field.slot, elements, dumpParam(field));
+    }
   }
   for (const lang::AttributeDecl& a : decl.attributes) {
     text += fmt::format("  attribute {}: {} {} at {}{}\n", a.slot, ir::typeName(a.type), a.name, a.location,
                         prose(a.prose));
   }
   for (const lang::EnvironmentDecl& e : decl.environments) {
-    text += fmt::format("  environment {}: {} {}{}\n", e.slot, ir::typeName(e.type), e.name, prose(e.prose));
+    text += fmt::format("  environment {}: {} {} at {}{}\n", e.slot, ir::typeName(e.type), e.name,
+                        dumpPlace(e.binding), prose(e.prose));
   }
+  text += fmt::format("  the material's textures from {} on\n", decl.material_textures);
+  for (const lang::LightKindDecl& kind : decl.light_kinds) {
+    text += fmt::format("  light kind {}\n", kind.name);
+    for (const lang::LightFieldDecl& field : kind.fields) {
+      text += fmt::format("    {}{}\n", field.name, field.constant ? " is always the same" : "");
+    }
+  }
+  if (decl.is_default) text += "  the default\n";
   for (const lang::GivenDecl& given : decl.givens) {
     text += fmt::format("  given {}: {}{}\n", given.slot, given.name, prose(given.prose));
     for (const lang::Param& result : given.results) text += fmt::format("    {}\n", dumpParam(result));

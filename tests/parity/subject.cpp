@@ -56,8 +56,8 @@ void roundAll(eval::Columns& columns) {
 void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
   std::vector<vulkan::Texel> texels;
   vulkan::Texture texture;
-  texture.cube = slot.type == ir::Type::TextureCube;
-  if (texture.cube) {
+  texture.shape = slot.type == ir::Type::TextureCube ? vulkan::Shape::Cube : vulkan::Shape::Plane;
+  if (texture.shape == vulkan::Shape::Cube) {
     std::vector<vulkan::Texel> few(8);
     for (vulkan::Texel& texel : few) {
       for (float& x : texel) x = static_cast<float>(random.between(0, 2));
@@ -83,7 +83,7 @@ void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
     subject.sizes[slot.name] = {static_cast<double>(texture.width), static_cast<double>(texture.height)};
   }
   texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(texels);
-  if (texture.cube) {
+  if (texture.shape == vulkan::Shape::Cube) {
     subject.bindings.textures[slot.name] = [texels](size_t point, const std::array<double, 3>&, double) {
       const vulkan::Texel& t = texels[point];
       return std::array<double, 4>{t[0], t[1], t[2], t[3]};
@@ -436,7 +436,7 @@ Subject materialSubject(const NamedGraph& graph, const MaterialSetting& setting,
   Subject subject;
   subject.name = graph.name;
   subject.points = points;
-  Result<ir::Module> module = lower::lower(graph.graph, library(), {setting.parameters});
+  Result<ir::Module> module = lower::lower(graph.graph, library(), {setting.parameters, true});
   EXPECT_TRUE(module) << graph.name;
   if (!module) return subject;
   subject.module = std::move(*module);
@@ -448,7 +448,7 @@ Subject materialSubject(const NamedGraph& graph, const MaterialSetting& setting,
     if (setting.quads && i % 4 == 3) spread({list.data() + i - 3, 4}, random);
   }
   eval::Bindings& bindings = subject.bindings;
-  eval::bindPoints(list, bindings);
+  eval::bindPoints(subject.module, list, bindings);
   bindings.quads = setting.quads;
   bindings.columns["frame.environment_intensity"] = eval::Column::constant({1.25});
   if (setting.lights.any) addLights(bindings, points, random);

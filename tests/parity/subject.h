@@ -42,7 +42,7 @@ std::vector<Subject> operationSubjects(size_t points);
 struct MaterialSetting {
   std::string template_name = "forward";
   lower::ParameterMode parameters = lower::ParameterMode::Uniform;
-  passes::LightFacts lights{false, 1, 0, 0};
+  passes::LightFacts lights{false, {{"directional", 1}}};
   bool decode_srgb = false;
   bool tangents = true;
   bool quads = false;  ///< points stand in fours; positions and texture coordinates are affine in each

@@ -50,7 +50,7 @@ void Subject::make(const std::string& gltf, size_t material, const Configuration
   graph_ = test::buildGraph(m, {true, setup.tangents, true, {true, true, true, true}}, options, warnings);
   const Diagnostics wrong = graph::check(graph_, library());
   ASSERT_FALSE(hasError(wrong)) << textOf(wrong);
-  Result<ir::Module> module = lower::lower(graph_, library(), {});
+  Result<ir::Module> module = lower::lower(graph_, library(), {.evaluable = true});
   ASSERT_TRUE(module) << textOf(module.error());
   module_ = std::move(*module);
   quads_ = setup.quads;
@@ -74,7 +74,7 @@ std::vector<Vec4> Subject::colors(std::span<const Sample> samples, const Vec3& e
     points.push_back(point);
   }
   eval::Bindings bindings;
-  eval::bindPoints(points, bindings);
+  eval::bindPoints(module_, points, bindings);
   bindings.quads = quads_;
   for (const ir::TextureSlot& slot : module_.textures) {
     Vec4 texel{environment[0], environment[1], environment[2], 1};

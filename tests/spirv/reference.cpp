@@ -103,7 +103,7 @@ private:
     } else {
       EXPECT_TRUE(v.op == Op::Texture || v.op == Op::TextureLod) << ir::info(v.op).name;
       const ir::TextureSlot& slot = module_.textures[dag_.inputOf(v.args[0]).field];
-      const passes::Binding at = passes::textureBinding(module_, slot);
+      const ir::Binding at = slot.binding;
       const double implicit = v.rate <= ir::Rate::Vertex && vertex ? 0 : -1;
       result = world_.texel(at.set, at.binding, x[1], v.op == Op::TextureLod ? x[2][0] : implicit);
     }
@@ -140,7 +140,7 @@ private:
 
   Cell field(uint32_t b, uint32_t f, int32_t element) const {
     const ir::Block& block = module_.blocks[b];
-    const passes::Binding at = passes::blockBinding(block.role);
+    const ir::Binding at = block.binding;
     const std::vector<uint8_t>& bytes = world_.blocks.at({at.set, at.binding});
     const uint32_t base = block.array == 0 ? 0 : static_cast<uint32_t>(element) * block.size;
     Cell read(wordsOf(block.fields[f].type));
@@ -198,7 +198,7 @@ World makeWorld(const ir::Module& module, uint32_t seed, int32_t light_count) {
   };
   World world;
   for (const ir::Block& block : module.blocks) {
-    const passes::Binding at = passes::blockBinding(block.role);
+    const ir::Binding at = block.binding;
     const uint32_t elements = std::max(block.array, 1U);
     std::vector<uint8_t>& bytes = world.blocks[{at.set, at.binding}];
     bytes.assign(size_t{elements} * block.size, 0xff);

@@ -20,8 +20,15 @@ uint32_t Builder::block(ir::BlockRole role, std::string name, std::string instan
   ir::Block block{role, std::move(name), std::move(instance), {}, array, 0};
   for (auto& [field, type] : fields) block.fields.push_back({std::move(field), type, 0, {}, {}});
   block.size = ir::layout(block.fields);
+  // The places that the library's templates come to.
+  constexpr ir::Binding kPlaces[] = {{0, 0, 0}, {0, 1, 1}, ir::kMaterialBinding, {2, 0, 3}};
+  block.binding = kPlaces[static_cast<size_t>(role)];
+  const auto index = static_cast<uint32_t>(module.blocks.size());
+  for (uint32_t f = 0; f < block.fields.size(); ++f) {
+    if (block.fields[f].name == "light_count") module.light_count = {index, f};
+  }
   module.blocks.push_back(std::move(block));
-  return static_cast<uint32_t>(module.blocks.size() - 1);
+  return index;
 }
 
 ValueId Builder::field(std::string_view path, int32_t element) {
@@ -44,8 +51,9 @@ ValueId Builder::field(std::string_view path, int32_t element) {
 }
 
 ValueId Builder::texture(std::string name, Type type, bool environment) {
-  uint32_t binding = 0;
-  for (const ir::TextureSlot& slot : module.textures) binding += slot.environment == environment ? 1 : 0;
+  uint32_t n = 0;
+  for (const ir::TextureSlot& slot : module.textures) n += slot.environment == environment ? 1 : 0;
+  const ir::Binding binding = environment ? ir::Binding{0, 2 + n, n} : ir::Binding{1, 1 + n, 3 + n};
   const auto index = static_cast<uint32_t>(module.textures.size());
   module.textures.push_back({name, type, false, environment, -1, {}, binding});
   return dag().input({ir::InputKind::Texture, std::move(name), type, Rate::Frame, {}, 0, index});

@@ -39,8 +39,6 @@ spv::Op integerComparison(Op op) {
   return spv::OpIEqual;
 }
 
-bool takesDerivatives(Op op) { return op == Op::Texture || op == Op::DFdx || op == Op::DFdy; }
-
 }  // namespace
 
 Body::Body(const ir::Module& module, const passes::Program& program, const Interface& interface,
@@ -161,7 +159,7 @@ uint32_t Body::special(ValueId id) {
   if (op == Op::Input) return input(id);
   if (op == Op::Construct) return construct(id);
   if (op == Op::Swizzle) return swizzle(id);
-  if (op == Op::Texture || op == Op::TextureLod) return texture(id);
+  if (ir::readsTexture(op)) return texture(id);
   return operation(id);
 }
 
@@ -238,7 +236,10 @@ uint32_t Body::constant(ValueId id) {
     case Type::Vec4: return globals_.vector(dag_[id].type, c.data());
     case Type::Mat4:
     case Type::Texture2D:
-    case Type::TextureCube: break;
+    case Type::TextureCube:
+    case Type::Texture2DShadow:
+    case Type::Texture2DArray:
+    case Type::Texture3D: break;
   }
   assert(false && "not a type of constants");
   return 0;
@@ -270,7 +271,7 @@ uint32_t Body::blockField(ValueId id, const ir::Input& input, int component) {
   const ir::Block& block = module_.blocks[input.block];
   const uint32_t variable = interface_.blocks[input.block];
   assert(variable != 0 && "the program lists all that it uses");
-  std::array<uint32_t, 4> indices{};
+  std::array<uint32_t, 5> indices{};
   size_t count = 0;
   if (block.array != 0) {
     assert(input.element >= 0 || in_loop_);
@@ -278,6 +279,8 @@ uint32_t Body::blockField(ValueId id, const ir::Input& input, int component) {
     indices[count++] = input.element >= 0 ? globals_.integer(input.element) : loop_.index;
   }
   indices[count++] = globals_.integer(static_cast<int32_t>(input.field));
+  const bool array = block.fields[input.field].array != 0;
+  if (array) indices[count++] = globals_.integer(static_cast<int32_t>(input.index));
   if (component >= 0) indices[count++] = globals_.integer(component);
   const uint32_t pointer = globals_.pointer(spv::StorageClassUniform, kindOf(dag_[id].type));
   const uint32_t chain = globals_.newId();
@@ -325,15 +328,28 @@ uint32_t Body::swizzle(ValueId id) {
 /// Implicit derivatives exist in fragments only; a vertex samples the first level, as GLSL's texture() does.
 uint32_t Body::texture(ValueId id) {
   const ir::Value& v = dag_[id];
-  const uint32_t sampler = value(v.args[0]);
-  const uint32_t at = value(v.args[1]);
-  if (v.op == Op::Texture && program_.stage == ir::Stage::Fragment) {
-    const std::array<uint32_t, 2> operands = {sampler, at};
-    return instruction(id, {ir::SpirvSet::Core, spv::OpImageSampleImplicitLod}, operands.data(), 2);
+  const bool compares = v.op == Op::TextureCompare || v.op == Op::TextureCompareLod;
+  const bool implicit = ir::takesDerivatives(v.op) && program_.stage == ir::Stage::Fragment;
+  std::array<uint32_t, 5> operands = {value(v.args[0]), value(v.args[1])};
+  size_t count = 2;
+  if (compares) operands[count++] = component(operands[1], 2);
+  if (!implicit) {
+    operands[count++] = spv::ImageOperandsLodMask;
+    operands[count++] = v.op == Op::TextureLod ? value(v.args[2]) : globals_.number(0);
   }
-  const uint32_t lod = v.op == Op::TextureLod ? value(v.args[2]) : globals_.number(0);
-  const std::array<uint32_t, 4> operands = {sampler, at, spv::ImageOperandsLodMask, lod};
-  return instruction(id, {ir::SpirvSet::Core, spv::OpImageSampleExplicitLod}, operands.data(), 4);
+  const spv::Op opcode =
+      compares   ? implicit ? spv::OpImageSampleDrefImplicitLod : spv::OpImageSampleDrefExplicitLod
+      : implicit ? spv::OpImageSampleImplicitLod
+                 : spv::OpImageSampleExplicitLod;
+  return instruction(id, {ir::SpirvSet::Core, static_cast<uint32_t>(opcode)}, operands.data(), count);
+}
+
+/// A component of a vector that no value of the DAG stands for.
+uint32_t Body::component(uint32_t vector, uint32_t index) {
+  const uint32_t type = globals_.type(Kind::Float);
+  const uint32_t id = globals_.newId();
+  code_.op(spv::OpCompositeExtract, type, id, vector, index);
+  return id;
 }
 
 /// Writes the instruction that computes a value. Its operands are written already, so that what stands
@@ -474,22 +490,14 @@ void Body::hoist(const std::vector<ValueId>& sums) {
 
 uint32_t Body::lightCount() {
   if (light_count_ != 0) return light_count_;
-  for (uint32_t b = 0; b < module_.blocks.size(); ++b) {
-    const ir::Block& block = module_.blocks[b];
-    if (block.role != ir::BlockRole::Frame) continue;
-    const auto field = std::find_if(block.fields.begin(), block.fields.end(),
-                                    [](const ir::BlockField& f) { return f.name == "light_count"; });
-    assert(field != block.fields.end() && field->type == Type::Int);
-    const uint32_t index = globals_.integer(static_cast<int32_t>(field - block.fields.begin()));
-    const uint32_t pointer = globals_.pointer(spv::StorageClassUniform, Kind::Int);
-    const uint32_t chain = globals_.newId();
-    light_count_ = globals_.newId();
-    code_.op(spv::OpAccessChain, pointer, chain, interface_.blocks[b], index);
-    code_.op(spv::OpLoad, globals_.type(Kind::Int), light_count_, chain);
-    return light_count_;
-  }
-  assert(false && "a loop over a run-time number of lights needs the frame block");
-  return 0;
+  const ir::LightCount& count = module_.light_count;
+  const uint32_t index = globals_.integer(static_cast<int32_t>(count.field));
+  const uint32_t pointer = globals_.pointer(spv::StorageClassUniform, Kind::Int);
+  const uint32_t chain = globals_.newId();
+  light_count_ = globals_.newId();
+  code_.op(spv::OpAccessChain, pointer, chain, interface_.blocks[count.block], index);
+  code_.op(spv::OpLoad, globals_.type(Kind::Int), light_count_, chain);
+  return light_count_;
 }
 
 void Body::accumulate(ValueId sum) {
@@ -537,7 +545,7 @@ void Body::derivativesFirst() {
     bool wait = ids_[id] == 0 && (v.op == Op::SumOverLights || v.rate == Rate::Light);
     for (const ValueId operand : v.operands()) wait = wait || (ids_[id] == 0 && waits[operand]);
     waits[id] = wait;
-    if (takesDerivatives(v.op) && !wait) value(id);
+    if (ir::takesDerivatives(v.op) && !wait) value(id);
   }
 }
 

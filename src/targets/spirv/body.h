@@ -51,6 +51,7 @@ private:
   uint32_t construct(ir::ValueId id);
   uint32_t swizzle(ir::ValueId id);
   uint32_t texture(ir::ValueId id);
+  uint32_t component(uint32_t vector, uint32_t index);
   uint32_t lightCount();
   uint32_t instruction(ir::ValueId id, const Instruction& what, const uint32_t* operands, size_t count);
   uint32_t result(ir::ValueId id);

@@ -18,6 +18,9 @@ Kind kindOf(ir::Type type) {
     case ir::Type::Mat4: return Kind::Mat4;
     case ir::Type::Texture2D: return Kind::Sampled2D;
     case ir::Type::TextureCube: return Kind::SampledCube;
+    case ir::Type::Texture2DShadow: return Kind::SampledShadow;
+    case ir::Type::Texture2DArray: return Kind::SampledArray;
+    case ir::Type::Texture3D: return Kind::Sampled3D;
   }
   assert(false && "not a type");
   return Kind::Void;
@@ -43,12 +46,12 @@ uint32_t Globals::type(Kind kind) {
     const uint32_t of = type(component);
     declarations.op(spv::OpTypeVector, known = newId(), of, width);
   };
-  const auto image = [&](spv::Dim dim) {
+  const auto image = [&](spv::Dim dim, bool depth = false, bool arrayed = false) {
     const uint32_t texel = type(Kind::Float);
     constexpr uint32_t kNo = 0;
     constexpr uint32_t kWithSampler = 1;
-    declarations.op(spv::OpTypeImage, known = newId(), texel, dim, kNo, kNo, kNo, kWithSampler,
-                    spv::ImageFormatUnknown);
+    declarations.op(spv::OpTypeImage, known = newId(), texel, dim, depth ? 1U : kNo, arrayed ? 1U : kNo, kNo,
+                    kWithSampler, spv::ImageFormatUnknown);
   };
   const auto wrap = [&](spv::Op opcode, Kind inner) {
     const uint32_t of = type(inner);
@@ -72,6 +75,12 @@ uint32_t Globals::type(Kind kind) {
     }
     case Kind::Image2D: image(spv::Dim2D); break;
     case Kind::ImageCube: image(spv::DimCube); break;
+    case Kind::ImageShadow: image(spv::Dim2D, true); break;
+    case Kind::ImageArray: image(spv::Dim2D, false, true); break;
+    case Kind::Image3D: image(spv::Dim3D); break;
+    case Kind::SampledShadow: wrap(spv::OpTypeSampledImage, Kind::ImageShadow); break;
+    case Kind::SampledArray: wrap(spv::OpTypeSampledImage, Kind::ImageArray); break;
+    case Kind::Sampled3D: wrap(spv::OpTypeSampledImage, Kind::Image3D); break;
     case Kind::Sampled2D: wrap(spv::OpTypeSampledImage, Kind::Image2D); break;
     case Kind::SampledCube: wrap(spv::OpTypeSampledImage, Kind::ImageCube); break;
     case Kind::Main: wrap(spv::OpTypeFunction, Kind::Void); break;

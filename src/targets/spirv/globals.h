@@ -24,8 +24,14 @@ enum class Kind : uint8_t {
   Mat4,
   Image2D,
   ImageCube,
+  ImageShadow,
+  ImageArray,
+  Image3D,
   Sampled2D,
   SampledCube,
+  SampledShadow,
+  SampledArray,
+  Sampled3D,
   Main,  ///< of the entry point: void()
 };
 inline constexpr size_t kKinds = static_cast<size_t>(Kind::Main) + 1;

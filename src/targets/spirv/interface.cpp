@@ -1,5 +1,7 @@
 #include "targets/spirv/interface.h"
 
+#include <map>
+
 #include "targets/clike.h"
 
 namespace lacquer::targets::spirv {
@@ -44,15 +46,27 @@ private:
     return id;
   }
 
-  void bindAt(uint32_t variable, const passes::Binding& at) {
+  void bindAt(uint32_t variable, const ir::Binding& at) {
     globals_.decorations.op(spv::OpDecorate, variable, spv::DecorationDescriptorSet, at.set);
     globals_.decorations.op(spv::OpDecorate, variable, spv::DecorationBinding, at.binding);
+  }
+
+  /// Arrays of one length and stride are one type.
+  uint32_t fieldType(const ir::BlockField& field) {
+    const uint32_t element = globals_.type(field.type);
+    if (field.array == 0) return element;
+    uint32_t& known = arrays_[{field.type, field.array}];
+    if (known != 0) return known;
+    const uint32_t length = globals_.integer(static_cast<int32_t>(field.array));
+    globals_.declarations.op(spv::OpTypeArray, known = globals_.newId(), element, length);
+    globals_.decorations.op(spv::OpDecorate, known, spv::DecorationArrayStride, field.stride());
+    return known;
   }
 
   /// The structure of the fields, at the offsets that they have in memory.
   uint32_t structure(const ir::Block& block) {
     std::vector<uint32_t> types;
-    for (const ir::BlockField& field : block.fields) types.push_back(globals_.type(field.type));
+    for (const ir::BlockField& field : block.fields) types.push_back(fieldType(field));
     Words& declarations = globals_.declarations;
     Words& decorations = globals_.decorations;
     const uint32_t id = globals_.newId();
@@ -83,7 +97,7 @@ private:
     globals_.declarations.op(spv::OpTypePointer, pointer, spv::StorageClassUniform, type);
     // Like the GLSL's: the block of an array has no instance name, its one member is found by its own.
     const uint32_t id = variable(spv::StorageClassUniform, pointer, array ? "" : block.instance);
-    bindAt(id, passes::blockBinding(block.role));
+    bindAt(id, block.binding);
     return id;
   }
 
@@ -119,7 +133,7 @@ private:
   uint32_t texture(const ir::TextureSlot& slot) {
     const auto storage = spv::StorageClassUniformConstant;
     const uint32_t id = variable(storage, globals_.pointer(storage, kindOf(slot.type)), slot.name);
-    bindAt(id, passes::textureBinding(module_, slot));
+    bindAt(id, slot.binding);
     return id;
   }
 
@@ -161,6 +175,7 @@ private:
   const ir::Module& module_;
   const passes::Program& program_;
   Globals& globals_;
+  std::map<std::pair<ir::Type, uint32_t>, uint32_t> arrays_;  ///< by element and length
   Interface made_;
 };
 
