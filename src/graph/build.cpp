@@ -33,6 +33,7 @@ public:
                              {"lobe", base.lobe}});
     if (surface_.dielectric_f0) Graph::connect(node, "dielectric_f0", *surface_.dielectric_f0);
     Source result = ref("base.direct");
+    if (options_.direct_multiple_scattering) result = withScatteringGain(result, base);
     if (coat) {
       graph_.add("coat.lobe", "coat_lobe", {{"lobe", coat->lobe}, {"NdotL", coat->NdotL}});
       if (clear) {
@@ -57,8 +58,7 @@ public:
     graph_.add("base.irradiance", "irradiance",
                {{"environment_irradiance", Source{TextureRef{"environment_irradiance"}, {}}},
                 {"N", surface_.normal}});
-    graph_.add("base.view_cosine", "view_cosine", {{"N", surface_.normal}, {"V", given("view")}});
-    environmentBrdf("base", ref("base.view_cosine"), surface_.roughness);
+    baseEnvironmentBrdf();
     const bool compensated = options_.multiple_scattering;
     Node& node =
         graph_.add("base.indirect", compensated ? "base_indirect_multiple_scattering" : "base_indirect",
@@ -168,6 +168,26 @@ private:
     if (!(coat.normal == surface_.normal)) Graph::connect(node, "coat_NdotL", lobe.NdotL);
     base.NdotL = ref(split, "transmitted");
     lobe.NdotL = ref(split, "reflected");
+  }
+
+  void baseEnvironmentBrdf() {
+    if (graph_.find("base.view_cosine") != nullptr) return;
+    graph_.add("base.view_cosine", "view_cosine", {{"N", surface_.normal}, {"V", given("view")}});
+    environmentBrdf("base", ref("base.view_cosine"), surface_.roughness);
+  }
+
+  /// The base's direct light and what it gains by bouncing more than once.
+  Source withScatteringGain(const Source& direct, const Lobe& base) {
+    baseEnvironmentBrdf();
+    Node& gain = graph_.add("base.scattering_gain", "base_scattering_gain",
+                            {{"base_color", baseColor()},
+                             {"metallic", surface_.metallic},
+                             {"scale", ref("base.environment_brdf", "scale")},
+                             {"bias", ref("base.environment_brdf", "bias")}});
+    if (surface_.dielectric_f0) Graph::connect(gain, "dielectric_f0", *surface_.dielectric_f0);
+    graph_.add("base.direct_compensated", "base_direct_multiple_scattering",
+               {{"direct", direct}, {"gain", ref("base.scattering_gain")}, {"NdotL", base.NdotL}});
+    return ref("base.direct_compensated");
   }
 
   void environmentBrdf(const std::string& layer, const Source& cosine, const Source& roughness) {

@@ -15,7 +15,9 @@ struct BuildOptions {
   bool ibl = true;                  ///< image-based lighting (forward)
   bool dfg_table = true;            ///< the split sum's factors from environment_dfg, not from a fit
   bool multiple_scattering = true;  ///< compensate the IBL for multiple scattering (Fdez-Aguera 2019)
-  bool decode_srgb = false;         ///< decode colour textures in the shader instead of by their format
+  /// Compensate direct light as well; the texts' lobes are single bounces.
+  bool direct_multiple_scattering = false;
+  bool decode_srgb = false;  ///< decode colour textures in the shader instead of by their format
   std::set<std::string>
       live;  ///< terms kept though their value would remove them: "coat", "coat.darkening", …
 };
