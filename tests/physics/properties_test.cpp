@@ -277,6 +277,24 @@ TEST(Properties, WhiteFurnace) {
   }
 }
 
+/// A rough white metal loses what bounces more than once, unless direct light is compensated as image-based
+/// light is.
+TEST(Properties, ACompensatedLobeLosesNothing) {
+  Material m;
+  Configuration setup;
+  for (const double roughness : {0.5, 1.0}) {
+    m.roughness = roughness;
+    setup.direct_multiple_scattering = false;
+    const Subject text(m, setup);
+    setup.direct_multiple_scattering = true;
+    const Subject compensated(m, setup);
+    for (const double cosine : {1.0, 0.5, 0.2}) {
+      EXPECT_NEAR(furnace(compensated, cosine), 1, 0.01) << roughness << " " << cosine;
+      EXPECT_LT(furnace(text, cosine), roughness == 1 ? 0.7 : 0.97) << roughness << " " << cosine;
+    }
+  }
+}
+
 /// How far image-based light's factors are from the same integrals of the direct light: of the albedo, and of
 /// the part that Schlick's weight brings; at N.V >= 0.1 and below.
 struct EnvironmentBrdfError {

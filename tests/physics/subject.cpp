@@ -44,6 +44,7 @@ void Subject::make(const std::string& gltf, size_t material, const Configuration
   options.profile = setup.profile;
   options.ibl = setup.ibl;
   options.multiple_scattering = setup.multiple_scattering;
+  options.direct_multiple_scattering = setup.direct_multiple_scattering;
   options.dfg_table = setup.dfg_table;
   options.live = setup.live;
   Diagnostics warnings;

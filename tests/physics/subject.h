@@ -17,6 +17,7 @@ struct Configuration {
   std::string profile = "khr";
   bool ibl = false;
   bool multiple_scattering = true;
+  bool direct_multiple_scattering = false;
   bool dfg_table = true;
   bool placed = false;  ///< after the whole pipeline, with the preshader's values as floats
   bool tangents = true;

@@ -43,8 +43,10 @@ graph::Graph buildGraph(const material::Material& material, const gltf::VertexAt
   options.template_name = setup.template_name;
   options.decode_srgb = setup.decode_srgb;
   options.live.insert(setup.live.begin(), setup.live.end());
-  options.switches = {
-      {"ibl", setup.ibl}, {"dfg_table", setup.dfg_table}, {"multiple_scattering", setup.multiple_scattering}};
+  options.switches = {{"ibl", setup.ibl},
+                      {"dfg_table", setup.dfg_table},
+                      {"multiple_scattering", setup.multiple_scattering},
+                      {"direct_multiple_scattering", setup.direct_multiple_scattering}};
   const model::Model& model = *orThrow(builtInModels().of(setup.profile));
   const lang::TemplateDecl& wanted = *orThrow(builtInLibrary().template_(setup.template_name));
   return orThrow(model::build(model, wanted, material, attributes, options, warnings));

@@ -17,7 +17,7 @@ Result<material::Document> materialsOf(const std::string& text, const std::strin
 
 struct BuildSetup {
   std::string profile = "khr", template_name = "forward";
-  bool ibl = true, dfg_table = true, multiple_scattering = true, decode_srgb = false;
+  bool ibl = true, dfg_table = true, multiple_scattering = true, direct_multiple_scattering = false, decode_srgb = false;
   std::set<std::string> live;
 };
 
