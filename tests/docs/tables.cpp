@@ -195,8 +195,8 @@ std::string layoutTable(std::string_view of) {
 std::string materialTable() {
   const Made& made = readmeExample();
   const Json block = blockOf(made.interface, "material");
-  std::vector<char> bytes(made.shader.uniformSize());
-  made.shader.pack({}, bytes.data());
+  std::vector<std::byte> bytes(made.shader.uniformSize());
+  EXPECT_TRUE(made.shader.pack({}, bytes));
   std::string out = "| offset | type | field | expression | today |\n|---|---|---|---|---|\n";
   for (const Json& field : block["fields"]) {
     const std::string type = text(field["type"]);
