@@ -142,9 +142,10 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
   model::BuildOptions build;
   build.template_name = options.template_name;
   build.decode_srgb = options.decode_srgb;
-  build.switches = {{"ibl", options.ibl},
-                    {"multiple_scattering", options.multiple_scattering},
-                    {"dfg_table", options.dfg_table}};
+  build.switches = options.switches;
+  build.switches.insert({{"ibl", options.ibl},
+                         {"multiple_scattering", options.multiple_scattering},
+                         {"dfg_table", options.dfg_table}});
   build.live = {options.live.begin(), options.live.end()};
   Result<graph::Graph> graph = model::build(**model, **wanted, material, attributes, build, warnings);
   if (graph) applyBudget(*graph, options.error_budget);

@@ -106,11 +106,10 @@ bool Graph::setParameter(const std::string& name, const std::vector<double>& val
   const std::optional<size_t> found = impl_->graph.findParameter(name);
   const auto count = found ? static_cast<size_t>(ir::componentCount(parameters[*found].type)) : value.size();
   if (value.size() != count || value.empty() || value.size() > 4) {
-    return impl_->refuse("wrong-count",
-                         fmt::format("{} is given {} numbers", quoted(name), value.size()),
-                         found ? fmt::format("it is a {}", ir::typeName(parameters[*found].type))
-                               : "a parameter has 1 to 4",
-                         messages);
+    return impl_->refuse(
+        "wrong-count", fmt::format("{} is given {} numbers", quoted(name), value.size()),
+        found ? fmt::format("it is a {}", ir::typeName(parameters[*found].type)) : "a parameter has 1 to 4",
+        messages);
   }
   if (found && parameters[*found].type == ir::Type::Bool && value[0] != 0 && value[0] != 1) {
     return impl_->refuse("wrong-type", fmt::format("{} is given {}", quoted(name), value[0]),

@@ -19,6 +19,11 @@ void add(const Lights& lights, KeyBuilder& key) {
   for (const auto& [kind, count] : counts) key.text(kind).number(count);
 }
 
+void add(const std::map<std::string, bool, std::less<>>& switches, KeyBuilder& key) {
+  key.number(switches.size());
+  for (const auto& [name, on] : switches) key.text(name).number(on);
+}
+
 template <class T>
 void add(const std::vector<T>& list, KeyBuilder& key) {
   key.number(list.size());

@@ -22,7 +22,7 @@ enum class Decides : uint8_t {
 /// the names must be all of Options.
 template <class Each>
 void eachOption(const Options& options, Each each) {
-  const auto& [profile, error_budget, template_name, targets, parameters, lights, ibl, multiple_scattering,
+  const auto& [profile, error_budget, template_name, targets, parameters, lights, switches, ibl, multiple_scattering,
                dfg_table, decode_srgb, permissive, validate, unused, spirv_route, debug, live,
                node_directories, jobs, cache, cache_size, depfile, shard] = options;
   each(Decides::Graph, profile);
@@ -31,6 +31,7 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Run, targets);
   each(Decides::Module, parameters);
   each(Decides::Graph, lights);
+  each(Decides::Graph, switches);
   each(Decides::Graph, ibl);
   each(Decides::Graph, multiple_scattering);
   each(Decides::Graph, dfg_table);

@@ -35,6 +35,11 @@ void checkNames(const Options& options, Diagnostics& wrong) {
     return add(wrong, "unknown-profile", fmt::format("there is no profile '{}'", options.profile),
                fmt::format("there are {}", fmt::join((*language)->names(lang::DeclKind::Profile), ", ")));
   }
+  for (const auto& [name, ignored] : options.switches) {
+    if ((*language)->has(lang::DeclKind::Switch, name)) continue;
+    add(wrong, "unknown-switch", fmt::format("there is no switch '{}'", name),
+        fmt::format("there are {}", fmt::join((*language)->names(lang::DeclKind::Switch), ", ")));
+  }
   // Only who asks for terms waits here for the parts to be read.
   if (options.live.empty()) return;
   const Result<const model::Model*> model = (*language)->models.of(options.profile);

@@ -95,6 +95,8 @@ struct Options {
   std::vector<Target> targets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl, Target::Spirv};
   Parameters parameters = Parameters::Uniform;
   Lights lights;
+  /// Of the library's switches, those that are to be other than it says, by name; the three below are switches, too.
+  std::map<std::string, bool, std::less<>> switches;
   bool ibl = true;                  ///< image-based light (forward)
   bool multiple_scattering = true;  ///< compensate it for multiple scattering
   bool dfg_table = true;            ///< read the texture environment_dfg (docs/bindings.md); else a fit

@@ -198,8 +198,8 @@ std::string layoutTable(std::string_view of) {
 std::string materialTable() {
   const Made& made = readmeExample();
   const Json block = blockOf(made.interface, "material");
-  std::vector<char> bytes(made.shader.uniformSize());
-  made.shader.pack({}, bytes.data());
+  std::vector<std::byte> bytes(made.shader.uniformSize());
+  EXPECT_TRUE(made.shader.pack({}, bytes));
   std::string out = "| type | value | expression |\n|---|---|---|\n";
   for (const Json& value : block["values"]) {
     out += fmt::format("| `{}` | `{}` | `{}` |\n", text(value["type"]), text(value["name"]),

@@ -49,7 +49,6 @@ protected:
 TEST_P(Graphs, jsonReadsBackAsTheSameShader) {
   forEach([&](Graph& graph) {
     const Shader before = made(graph);
-    Messages messages;
     const std::string json = graph.toJson();
     Messages messages;
     Graph again = Graph::fromJson(json, "graph.json", messages);
@@ -86,6 +85,7 @@ TEST_P(Graphs, generateGraphsWritesTheSameShaders) {
 TEST_P(Graphs, editsReachTheShader) {
   options_.validate = true;
   forEach([&](Graph& graph) {
+    Messages messages;
     const Shader before = made(graph);
     ASSERT_TRUE(graph.addNode("my.glow", "occluded", messages));
     EXPECT_FALSE(graph.addNode("my.glow", "occluded", messages));
@@ -110,6 +110,7 @@ TEST_P(Graphs, editsReachTheShader) {
     // Taken back, all is as before.
     EXPECT_TRUE(graph.removeNode("my.glow", messages));
     EXPECT_FALSE(graph.removeNode("my.glow", messages));
+    messages.clear();
     EXPECT_FALSE(graph.check(messages));
     EXPECT_NE(textOf(messages).find("my.glow"), std::string::npos) << textOf(messages);
   });
