@@ -52,9 +52,21 @@ bool findTarget(std::string_view name, Target& target) {
   return id.has_value();
 }
 
-std::vector<std::string> liveTerms() {
-  const auto language = libraryFor({});
-  const Result<const model::Model*> model = (*language)->models.of(Options{}.profile);
+Strings profiles(const Options& options) {
+  const auto language = libraryFor(options);
+  if (!language) return {};
+  const auto found = model::profiles(**language);
+  Strings names;
+  if (!found) return names;
+  for (const lang::ProfileDecl* profile : *found) names.emplace_back(profile->name);
+  return names;
+}
+
+Strings liveTerms(const Options& options) {
+  Options named = options;
+  const auto language = libraryFor(options);
+  if (!language || !resolveNames(**language, named)) return {};
+  const Result<const model::Model*> model = (*language)->models.of(named.profile);
   if (!model) return {};
   const std::vector<std::string_view> terms = (*model)->liveTerms();
   return {terms.begin(), terms.end()};
@@ -105,11 +117,17 @@ Result<material::Document> readMaterials(const std::string& path, const Language
   return material::read(path, **schema, {options.permissive});
 }
 
-Result<void> resolveTemplate(const lang::Library& library, Options& options) {
-  if (!options.template_name.empty()) return {};
-  Result<std::string> name = library.defaultTemplate();
-  if (!name) return tl::make_unexpected(std::move(name.error()));
-  options.template_name = std::move(*name);
+Result<void> resolveNames(const lang::Library& library, Options& options) {
+  if (options.template_name.empty()) {
+    Result<std::string> name = library.defaultTemplate();
+    if (!name) return tl::make_unexpected(std::move(name.error()));
+    options.template_name = std::move(*name);
+  }
+  if (options.profile.empty()) {
+    const auto profiles = model::profiles(library);
+    if (!profiles) return tl::make_unexpected(profiles.error());
+    options.profile = (*profiles)[0]->name;
+  }
   return {};
 }
 

@@ -258,7 +258,7 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
           ? colors<float>(module, bindings, count)
           : colorsOnGpu(module, bindings, gpuTextures(evaluated, points), count, routeOf(engine));
   if (!answer) return tl::make_unexpected(answer.error());
-  return answerOf(*answer, found.name, options.profile, engine);
+  return answerOf(*answer, found.name, evaluated.profile(), engine);
 }
 
 Diagnostics checkEvaluation(Engine engine, const Options& options) {

@@ -87,7 +87,8 @@ Result<void> EvalMaterial::lower(material::Material material, const Language& li
     texture.info.texture = static_cast<int>(originals_.size()) - 1;
   }
   Options options = options_;
-  if (Result<void> named = resolveTemplate(library, options); !named) return named;
+  if (Result<void> named = resolveNames(library, options); !named) return named;
+  profile_ = options.profile;
   options.ibl = options.ibl && environment;
   options.decode_srgb = false;
   Diagnostics warnings;

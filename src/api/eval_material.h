@@ -72,6 +72,8 @@ public:
   std::vector<const ir::TextureSlot*> environments() const;
 
   const ir::Module& module() const { return module_; }
+  /// Of the graph that was lowered.
+  const std::string& profile() const { return profile_; }
 
 private:
   struct Texel {
@@ -91,6 +93,7 @@ private:
   std::vector<Texel> texels_;
   std::vector<int> originals_;  ///< by the slot's texture: the file's
   ir::Module module_;
+  std::string profile_;
   std::map<std::string, BoundTexture> bound_;
 };
 

@@ -61,8 +61,8 @@ struct Shader::Impl : ShaderData {
   Preshader preshader;
 };
 
-/// Puts the library's default template in for none.
-Result<void> resolveTemplate(const lang::Library& library, Options& options);
+/// Puts the library's defaults in where no template or no profile is named.
+Result<void> resolveNames(const lang::Library& library, Options& options);
 passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& scene);
 passes::LightFacts lightsOf(const gltf::Scene& scene);
 /// The graph of a material as the options want it: the profile, then the variants that the budget allows.

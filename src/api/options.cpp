@@ -31,7 +31,7 @@ void checkNames(const Options& options, Diagnostics& wrong) {
     wrong.insert(wrong.end(), language.error().begin(), language.error().end());
     return;
   }
-  if (!(*language)->has(lang::DeclKind::Profile, options.profile)) {
+  if (!options.profile.empty() && !(*language)->has(lang::DeclKind::Profile, options.profile)) {
     return add(wrong, "unknown-profile", fmt::format("there is no profile '{}'", options.profile),
                fmt::format("there are {}", fmt::join((*language)->names(lang::DeclKind::Profile), ", ")));
   }
@@ -42,12 +42,7 @@ void checkNames(const Options& options, Diagnostics& wrong) {
   }
   // Only who asks for terms waits here for the parts to be read.
   if (options.live.empty()) return;
-  const Result<const model::Model*> model = (*language)->models.of(options.profile);
-  if (!model) {
-    wrong.insert(wrong.end(), model.error().begin(), model.error().end());
-    return;
-  }
-  const std::vector<std::string_view> known = (*model)->liveTerms();
+  const Strings known = liveTerms(options);
   for (const std::string& term : options.live) {
     if (std::find(known.begin(), known.end(), term) != known.end()) continue;
     add(wrong, "unknown-term", fmt::format("no term that can be kept live is named '{}'", term),

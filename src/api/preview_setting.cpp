@@ -14,7 +14,7 @@ struct Word {
   void (*apply)(PreviewSetting&);
 };
 
-/// Everything that can be compared: another profile or another engine is another row.
+/// What can be compared beside profiles and variants.
 constexpr Word kWords[] = {
     {"as-given", [](PreviewSetting&) {}},
     {"float", [](PreviewSetting& s) { s.in_float = true; }},
@@ -26,8 +26,6 @@ constexpr Word kWords[] = {
     {"no-multiple-scattering", [](PreviewSetting& s) { s.options.multiple_scattering = false; }},
     {"ibl", [](PreviewSetting& s) { s.options.ibl = true; }},
     {"no-ibl", [](PreviewSetting& s) { s.options.ibl = false; }},
-    {"khr", [](PreviewSetting& s) { s.options.profile = "khr"; }},
-    {"openpbr", [](PreviewSetting& s) { s.options.profile = "openpbr"; }},
 };
 constexpr std::string_view kVariant = "variant:";
 
@@ -39,7 +37,13 @@ Result<void> applyWord(const std::string& word, PreviewSetting& setting) {
   const auto* found = std::find_if(std::begin(kWords), std::end(kWords),
                                    [&](const Word& known) { return word == known.name; });
   if (found == std::end(kWords)) {
+    const Strings readings = profiles(setting.options);
+    if (std::find(readings.begin(), readings.end(), word) != readings.end()) {
+      setting.options.profile = word;
+      return {};
+    }
     std::string known;
+    for (const std::string& name : readings) known += name + ", ";
     for (const Word& w : kWords) known += fmt::format("{}, ", w.name);
     return fail("unknown-setting", {}, fmt::format("--compare: there is no setting '{}'", word),
                 fmt::format("there are {}and variant:NAME; several are joined by +", known));

@@ -70,14 +70,14 @@ bool Run::open() {
     report_.ok = false;
     return false;
   }
-  if (const auto model = (*library)->models.of(options_.profile); !model) {
-    report(model.error(), {});
+  library_ = *library;
+  if (const Result<void> named = resolveNames(*library_, options_); !named) {
+    report(named.error(), {});
     report_.ok = false;
     return false;
   }
-  library_ = *library;
-  if (const Result<void> named = resolveTemplate(*library_, options_); !named) {
-    report(named.error(), {});
+  if (const auto model = library_->models.of(options_.profile); !model) {
+    report(model.error(), {});
     report_.ok = false;
     return false;
   }

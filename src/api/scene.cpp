@@ -150,7 +150,7 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   const gltf::VertexAttributes a{attributes.normal, attributes.tangent, attributes.color0,
                                  attributes.texCoord};
   Options named = options;
-  if (const Result<void> resolved = resolveTemplate(**language, named); !resolved)
+  if (const Result<void> resolved = resolveNames(**language, named); !resolved)
     return report(resolved.error(), document.path, messages), result;
   Result<graph::Graph> graph = buildGraph(m, a, **language, named, warnings);
   report(warnings, document.path, messages);

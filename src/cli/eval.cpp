@@ -23,10 +23,8 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
       ->check(CLI::IsMember({"float", "double", "vulkan"}))
       ->capture_default_str();
   verb->add_option("--template", flags.options.template_name,
-                   "forward, or another template that puts out a colour (see --nodes)");
-  verb->add_option("--profile", flags.options.profile, "the reading of the specification")
-      ->check(CLI::IsMember({"khr", "openpbr"}))
-      ->capture_default_str();
+                   "a template that puts out a colour; without it the default");
+  verb->add_option("--profile", flags.options.profile, "the reading of the specification, one of `lacquer nodes`; without it the default");
   verb->add_option(
           "--spirv-from", flags.spirv_from,
           "what --engine vulkan runs: direct, or through glslang: its GLSL (glslang), its HLSL (hlsl)")
@@ -50,7 +48,7 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
       ->check(CLI::IsMember({"table", "fit"}))
       ->capture_default_str();
   verb->add_flag("--permissive", flags.options.permissive,
-                 "drop a coat that must not be there instead of failing");
+                 "drop an extension that must not be there instead of failing");
   verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files");
   return verb;
 }

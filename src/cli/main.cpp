@@ -37,7 +37,7 @@ const CLI::Validator kNotEmpty(
 
 struct Flags {
   Options options;
-  std::vector<std::string> files, graphs, materials, targets;
+  std::vector<std::string> files, graphs, materials, targets, switches;
   std::string output, format = "json", pass, lights = "any", params = "uniform", spirv_from = "direct",
                       dfg = "table";
   bool json = false, no_validate = false, no_ibl = false, no_multiple_scattering = false, quiet = false;
@@ -52,6 +52,18 @@ void print(const Messages& messages) {
     if (message.level == lacquer::Message::Level::Note) continue;
     fmt::print(stderr, "{}\n", lacquer::cli::printable(message.text));
   }
+}
+
+/// "NAME=on" or "NAME=off", each.
+std::string parseSwitches(const std::vector<std::string>& texts, std::map<std::string, bool, std::less<>>& switches) {
+  for (const std::string& text : texts) {
+    const size_t equals = text.find('=');
+    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
+    if (equals == 0 || (value != "on" && value != "off"))
+      return fmt::format("--switch: '{}' is neither NAME=on nor NAME=off", text);
+    switches[text.substr(0, equals)] = value == "on";
+  }
+  return {};
 }
 
 /// "any", "scene", "none" or "directional:1,point:4".
@@ -108,15 +120,14 @@ std::string finish(Flags& flags) {
       options.targets.push_back(target);
     }
   }
+  if (std::string wrong = parseSwitches(flags.switches, options.switches); !wrong.empty()) return wrong;
   return parseLights(flags.lights, options.lights);
 }
 
 void addShared(CLI::App& app, Flags& flags) {
   app.add_option("--template", flags.options.template_name,
-                 "forward, surface, bsdf, or one in --nodes; without it the library's default, forward");
-  app.add_option("--profile", flags.options.profile, "the reading of the specification")
-      ->check(CLI::IsMember({"khr", "openpbr"}))
-      ->capture_default_str();
+                 "a template of `lacquer nodes`; without it the default");
+  app.add_option("--profile", flags.options.profile, "the reading of the specification, one of `lacquer nodes`; without it the default");
   app.add_option("--error-budget", flags.options.error_budget,
                  "relative error of the colour that cheaper variants of the terms may bring, such as 1e-3")
       ->check(CLI::Range(0.0, 1.0));
@@ -130,8 +141,9 @@ void addShared(CLI::App& app, Flags& flags) {
   // Options that may be repeated take one argument each time: the next one may be a file.
   app.add_option("--live", flags.options.live, "terms to keep though today's value would remove them")
       ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember(lacquer::liveTerms()));
+      ->allow_extra_args(false);
+  app.add_option("--switch", flags.switches, "NAME=on or NAME=off: a switch of the node library (may be repeated)")
+      ->allow_extra_args(false);
   app.add_flag("--no-ibl", flags.no_ibl, "no image-based light");
   app.add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
                "do not compensate image-based light for multiple scattering");
@@ -141,7 +153,7 @@ void addShared(CLI::App& app, Flags& flags) {
       ->capture_default_str();
   app.add_flag("--decode-srgb", flags.options.decode_srgb, "decode colour textures in the shader");
   app.add_flag("--permissive", flags.options.permissive,
-               "drop a coat that must not be there instead of failing");
+               "drop an extension that must not be there instead of failing");
   app.add_option("--nodes", flags.options.node_directories, "a folder with more node files (may be repeated)")
       ->allow_extra_args(false);
 }

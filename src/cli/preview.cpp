@@ -39,7 +39,7 @@ CLI::App* addPreview(CLI::App& app, PreviewFlags& flags) {
   verb->add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
                  "do not compensate image-based light for multiple scattering");
   verb->add_flag("--permissive", flags.options.permissive,
-                 "drop a coat that must not be there instead of failing");
+                 "drop an extension that must not be there instead of failing");
   verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files")
       ->allow_extra_args(false);
   verb->add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")

@@ -84,7 +84,8 @@ struct Lights {
 /// How shaders are made. Each call reads what concerns it and leaves the rest alone. The defaults are what
 /// the command line does without flags.
 struct Options {
-  std::string profile = "khr";  ///< how a coat is read: "khr" or "openpbr" (docs/accuracy.md)
+  /// How the texts are read: a profile of the library (docs/accuracy.md); empty for the default one.
+  std::string profile;
   /// Relative error of colours, from 0 to 1, that cheaper variants of terms may bring (docs/error.md); 0 for
   /// none.
   double error_budget = 0;
@@ -116,7 +117,10 @@ struct Options {
   std::string shard;  ///< of the same: the shaders' part of the manifest alone, written here, for merge()
 };
 
-/// The terms that Options::live can keep: "coat.darkening", in alphabetical order.
-Strings liveTerms();
+/// The terms that Options::live can keep, of the options' library and profile: "coat.darkening", in alphabetical order.
+/// Empty where the library has an error.
+Strings liveTerms(const Options& options = {});
+/// The profiles of the options' library, the default one first. Empty where the library has an error.
+Strings profiles(const Options& options = {});
 
 }  // namespace lacquer
