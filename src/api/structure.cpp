@@ -159,9 +159,15 @@ void describe(const ir::Module& module, const graph::Graph& graph, Structure& st
   };
   for (const ir::Parameter& p : module.parameters)
     structure.parameters.push_back(place(graph.parameters, p.name));
-  for (const ir::TextureSlot& slot : module.textures) {
-    const uint32_t at = place(graph.textures, slot.name);
-    if (at != ~uint32_t{0}) structure.textures.emplace_back(slot.name, at);
+  // The shader may have another name for a texture; the DAG still has the graph's.
+  std::vector<uint32_t> places(module.textures.size(), ~uint32_t{0});
+  for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
+    if (module.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    if (input.kind == ir::InputKind::Texture) places[input.field] = place(graph.textures, input.name);
+  }
+  for (size_t i = 0; i < places.size(); ++i) {
+    if (places[i] != ~uint32_t{0}) structure.textures.emplace_back(module.textures[i].name, places[i]);
   }
 }
 
