@@ -73,6 +73,10 @@ struct Options {
   std::string cache;         ///< folder that keeps results between runs (docs/builds.md); empty for none
   uint64_t cache_size = uint64_t{1} << 30;  ///< bytes that the cache may take
   std::string depfile, shard;  ///< for Make and Ninja; the shaders' part of the manifest alone, for merge()
+  Strings limits;              ///< "images=1G", each: what an input may be at most (docs/security.md)
+  Strings allow;               ///< folders in which images may lie, beside the glTF file's own
+  std::string cache_key;       ///< a file: what was not written to the cache with its bytes is not there
+  bool sync = true;            ///< what is written is on the disk before it gets its name
 };
 /// The vertex attributes of a primitive beside POSITION.
 struct Attributes {
@@ -218,7 +222,8 @@ std::vector<ShaderCost> measureCost(const Strings& paths, bool disassembly, Mess
 /// Double and Float on the CPU; Vulkan: the shader of Options::spirv_route on the first Vulkan device.
 enum class Engine : uint8_t { Double, Float, Vulkan };
 /// A material's linear forward colours at points, JSON in and out (docs/eval.md); empty on an error.
-/// `texels`: "SLOT=r,g,b,a", instead of images. `points_name` stands for the points' file in messages.
+/// `texels`: "SLOT=r,g,b,a", instead of images. `points_name` stands for the points' file in messages,
+/// and is read (- for the standard input) where `points` is empty.
 std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
                      const std::string& points_name, Engine engine, const Strings& texels,
                      const Options& options, Messages& messages);

@@ -363,7 +363,7 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
   Result<std::string> bytes;
   {
     const StageTimer timer(setting.times, StageOfRun::Read);
-    bytes = gltf::readBytes(path);
+    bytes = readFile(path, setting.limits.file);
   }
   if (!bytes) return unreadable(path, bytes.error());
   const bool keep = setting.cache != nullptr && only.empty();
@@ -375,7 +375,7 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
   Result<gltf::Document> document;
   {
     const StageTimer timer(setting.times, StageOfRun::Read);
-    document = gltf::readText(*bytes, path, {setting.options.permissive});
+    document = gltf::readText(*bytes, path, {setting.options.permissive, setting.limits});
     *bytes = {};
   }
   if (!document) return unreadable(path, document.error());
@@ -388,8 +388,9 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
 }
 
 FileResult readGraph(const std::string& path, const Setting& setting, Structures& structures) {
-  const Result<std::string> text = readFile(path);
-  Result<graph::Graph> graph = text ? graph::fromJson(*text, path) : tl::make_unexpected(text.error());
+  const Result<std::string> text = readFile(path, setting.limits.file);
+  Result<graph::Graph> graph =
+      text ? graph::fromJson(*text, path, setting.limits) : tl::make_unexpected(text.error());
   if (!graph) return unreadable(path, graph.error());
   static const gltf::Material kNone;
   MaterialText material(path, setting, structures);

@@ -89,13 +89,13 @@ TEST(GltfContainer, chunksMustFit) {
 
 TEST(GltfContainer, whatIsNoFileIsAnError) {
   EXPECT_EQ(outcome(read("/nonexistent/x.gltf", {})),
-            "/nonexistent/x.gltf: error: there is no such file [cannot-read]");
-  EXPECT_EQ(outcome(read("", {})), "error: there is no such file [cannot-read]");
+            "/nonexistent/x.gltf: error: there is no such file [file-unreadable]");
+  EXPECT_EQ(outcome(read("", {})), "error: there is no such file [file-unreadable]");
   const std::string folder = sourceFolder().string();
-  EXPECT_EQ(outcome(read(folder, {})), folder + ": error: this is a folder, not a file [cannot-read]");
+  EXPECT_EQ(outcome(read(folder, {})), folder + ": error: this is a folder, not a file [file-unreadable]");
   if (fs::exists("/dev/zero")) {
     EXPECT_EQ(outcome(read("/dev/zero", {})),
-              "/dev/zero: error: this is neither a file nor a pipe [cannot-read]");
+              "/dev/zero: error: this is no regular file [file-unreadable]");
   }
 }
 
