@@ -8,6 +8,7 @@
 #include "api/internal.h"
 #include "api/points.h"
 #include "eval/evaluate.h"
+#include "support/file.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -101,7 +102,8 @@ vulkan::Texture constantOf(const std::array<double, 4>& value) {
 
 /// Decoded here, as the device's sRGB format would before it filters.
 vulkan::Texture imageOf(const eval::Image& image, const eval::Lookup& lookup) {
-  std::vector<vulkan::Texel> texels = image.texels;
+  std::vector<vulkan::Texel> texels(image.size());
+  for (size_t i = 0; i < texels.size(); ++i) texels[i] = image.at(i);
   for (size_t i = 0; lookup.srgb && i < texels.size(); ++i) {
     for (size_t c = 0; c < 3; ++c) {
       texels[i][c] = static_cast<float>(eval::decodeSrgb(static_cast<double>(texels[i][c])));
@@ -179,7 +181,7 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
                                 const EvalPoints& points, Engine engine,
                                 const std::vector<std::string>& texels, const Options& options,
                                 Messages& messages) {
-  const Result<gltf::Document> document = gltf::read(file, {options.permissive});
+  const Result<gltf::Document> document = readDocument(file, options);
   if (!document) return tl::make_unexpected(document.error());
   report(document->diagnostics, file, messages);
   const Result<const gltf::Material*> found = findMaterial(*document, material);
@@ -188,7 +190,7 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
   if (lacquer::hasError((*found)->diagnostics)) return std::string();
   const auto library = libraryFor(options);
   if (!library) return tl::make_unexpected(library.error());
-  FileImages images(file);
+  FileImages images(file, options);
   EvalMaterial evaluated(images, options);
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
@@ -223,12 +225,17 @@ std::string evaluate(const std::string& file, const std::string& material, const
     report(wrong, {}, messages);
     return {};
   }
-  const Result<EvalPoints> read = readPoints(points, points_name);
+  const Limits limits = *limitsOf(checked);
+  Result<std::string> text = points;
+  if (points.empty())
+    text = points_name == "-" ? readStandardInput(limits.file) : readFile(points_name, limits.file);
+  const Result<EvalPoints> read =
+      text ? readPoints(*text, points_name, limits) : tl::make_unexpected(text.error());
   if (!read) {
     report(read.error(), points_name, messages);
     return {};
   }
-  Result<std::string> text = evaluateOne(file, material, *read, engine, texels, options, messages);
+  text = evaluateOne(file, material, *read, engine, texels, options, messages);
   if (text) return std::move(*text);
   report(text.error(), file, messages);
   return {};

@@ -2,12 +2,21 @@
 
 #include "api/internal.h"
 #include "passes/pipeline.h"
+#include "support/file.h"
 
 namespace lacquer {
 
+Result<gltf::Document> readDocument(const std::string& path, const Options& options) {
+  const Result<Limits> limits = limitsOf(options);
+  if (!limits) return tl::make_unexpected(limits.error());
+  const Result<std::string> bytes = readFile(path, limits->file);
+  if (!bytes) return tl::make_unexpected(bytes.error());
+  return gltf::readText(*bytes, path, {options.permissive, *limits});
+}
+
 Scene Scene::load(const std::string& path, const Options& options, Messages& messages) {
   Scene scene;
-  Result<gltf::Document> document = gltf::read(path, {options.permissive});
+  Result<gltf::Document> document = readDocument(path, options);
   if (!document) {
     report(document.error(), path, messages);
     return scene;
@@ -20,7 +29,9 @@ Scene Scene::load(const std::string& path, const Options& options, Messages& mes
 Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const Options& options,
                         Messages& messages) {
   Scene scene;
-  Result<gltf::Document> document = gltf::readText(bytes, name, {options.permissive});
+  const Result<Limits> limits = limitsOf(options);
+  Result<gltf::Document> document = limits ? gltf::readText(bytes, name, {options.permissive, *limits})
+                                           : tl::make_unexpected(limits.error());
   if (!document) {
     report(document.error(), name, messages);
     return scene;

@@ -70,7 +70,7 @@ void checkRoot(const Json& root, Report& report) {
 Result<Document> readDocument(std::string_view bytes, const std::string& name, const ReadOptions& options) {
   const Result<std::string_view> text = jsonText(bytes, name);
   if (!text) return tl::make_unexpected(text.error());
-  Result<Json> root = parseJson(*text, name);
+  Result<Json> root = parseJson(*text, name, options.limits);
   if (!root) {
     if (text->data() != bytes.data()) {
       for (Diagnostic& one : root.error()) one.message += " (in the GLB's JSON chunk)";

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/diagnostic.h"
+#include "support/limits.h"
 
 namespace lacquer::gltf {
 
@@ -144,6 +145,7 @@ struct Document {
 
 struct ReadOptions {
   bool permissive = false;  ///< exclusion violations become warnings and the coat is dropped
+  Limits limits = {};
 };
 
 /// Reads a .gltf or .glb file. Buffers and images need not exist. Errors: what makes the whole file unusable
