@@ -13,6 +13,7 @@
 #include "lang/library.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
+#include "support/limits.h"
 
 namespace lacquer {
 
@@ -84,11 +85,22 @@ inline int firstStage(Target target, bool has_vertex) { return has_vertex && tar
 /// Some compiler or validator checks the target's code.
 inline bool hasValidator(Target target) { return target != Target::Cpp; }
 
+/// What inputs may be at most, with the options' changes. Errors: those of setLimit().
+Result<Limits> limitsOf(const Options& options);
+/// A glTF file as the options want it read. Errors: those of limitsOf(), readFile() and gltf::readText().
+Result<gltf::Document> readDocument(const std::string& path, const Options& options);
+
+/// An error for every output that is one of the inputs, which must not be written then, or another output.
+Diagnostics clashes(const Strings& inputs, const Strings& outputs);
+
 /// What the options ask for and cannot be had together; empty when all is well.
 Diagnostics checkOptions(const Options& options);
 
 lower::ParameterMode parameterMode(const Options& options);
 
+/// True for what shaderId() may give: an id from elsewhere is asked for this before it becomes part of a
+/// path.
+bool isShaderId(std::string_view id);
 /// The path below the output folder: "glsl/ID.frag.glsl", "cpp/ID.h".
 std::string shaderPath(Target target, const std::string& id, int stage);
 

@@ -32,8 +32,17 @@ lower::ParameterMode parameterMode(const Options& options) {
   return lower::ParameterMode::Uniform;
 }
 
+Result<Limits> limitsOf(const Options& options) {
+  Limits limits;
+  for (const std::string& text : options.limits) {
+    if (const Result<void> set = setLimit(text, limits); !set) return tl::make_unexpected(set.error());
+  }
+  return limits;
+}
+
 Diagnostics checkOptions(const Options& options) {
   Diagnostics wrong;
+  if (const Result<Limits> limits = limitsOf(options); !limits) wrong = limits.error();
   if (graph::findProfile(options.profile) == nullptr) {
     std::string known;
     for (const graph::Profile& profile : graph::profiles()) {
@@ -91,6 +100,13 @@ std::string shaderId(const ir::Module& module) {
   }
   const std::string_view kind = coat ? "coat" : lit || module.template_name != "forward" ? "base" : "unlit";
   return fmt::format("{}-{}-{}", module.template_name, kind, passes::contentAddress(module));
+}
+
+bool isShaderId(std::string_view id) {
+  constexpr size_t kLongest = 255 - std::string_view(".frag.glsl").size();
+  return !id.empty() && id.size() <= kLongest &&
+         id.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+             std::string_view::npos;
 }
 
 std::string shaderPath(Target target, const std::string& id, int stage) {

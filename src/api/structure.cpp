@@ -240,7 +240,7 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
 }
 
 Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting) {
-  Result<graph::Graph> graph = graph::fromJson(structure.graph, structure.shader);
+  Result<graph::Graph> graph = graph::fromJson(structure.graph, structure.shader, setting.limits);
   if (!graph) return tl::make_unexpected(graph.error());
   if (const Diagnostics found = graph::check(*graph, setting.library); hasError(found)) {
     return tl::make_unexpected(found);
@@ -329,7 +329,7 @@ bool fromBlob(std::string_view bytes, Structure& s) {
   s.lights.any = blob.number<bool>(), s.lights.directional = blob.number<uint32_t>();
   s.lights.point = blob.number<uint32_t>(), s.lights.spot = blob.number<uint32_t>();
   renderTerms(s);
-  return blob.complete();
+  return blob.complete() && (s.shader.empty() || isShaderId(s.shader));
 }
 
 }  // namespace lacquer
