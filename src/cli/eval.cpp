@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iostream>
-#include <iterator>
-
+#include "cli/build.h"
+#include "cli/streams.h"
 #include "cli/table.h"
 
 namespace lacquer::cli {
@@ -50,30 +48,17 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
   verb->add_flag("--permissive", flags.options.permissive,
                  "drop a coat that must not be there instead of failing");
   verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files");
+  addLimit(*verb, flags.options);
+  verb->add_option("--allow", flags.options.allow,
+                   "a folder in which images may lie, beside the file's own (may be repeated)")
+      ->allow_extra_args(false);
   return verb;
 }
 
-namespace {
-
-bool readAll(const std::string& path, std::string& text) {
-  if (path == "-") {
-    text.assign(std::istreambuf_iterator<char>(std::cin), {});
-    return true;
-  }
-  std::ifstream in(path, std::ios::binary);
-  // A folder opens, but cannot be read.
-  if (!in || in.peek() == std::ifstream::traits_type::eof()) return in.eof() && !in.bad() && in.is_open();
-  text.assign(std::istreambuf_iterator<char>(in), {});
-  return !in.bad();
-}
-
-}  // namespace
-
 int runEval(EvalFlags& flags) {
   if (flags.params == "spec" && flags.spirv_from == "hlsl") {
-    fmt::print(stderr,
-               "eval: HLSL has no specialization constants: --params spec goes with --spirv-from direct or "
-               "glslang\n");
+    say("eval: HLSL has no specialization constants: --params spec goes with --spirv-from direct or "
+        "glslang\n");
     return 2;
   }
   flags.options.spirv_route = flags.spirv_from == "hlsl"      ? SpirvRoute::Hlsl
@@ -82,22 +67,15 @@ int runEval(EvalFlags& flags) {
   flags.options.parameters = flags.params == "baked"  ? Parameters::Baked
                              : flags.params == "spec" ? Parameters::Spec
                                                       : Parameters::Uniform;
-  std::string points;
-  if (!readAll(flags.points, points)) {
-    fmt::print(stderr, "{}: error: the points cannot be read [file-unreadable]\n", flags.points);
-    return 1;
-  }
   flags.options.multiple_scattering = !flags.no_multiple_scattering;
   flags.options.dfg_table = flags.dfg == "table";
   Messages messages;
-  const std::string answer = evaluate(flags.file, flags.material, points, flags.points,
+  const std::string answer = evaluate(flags.file, flags.material, {}, flags.points,
                                       flags.engine == "vulkan"  ? Engine::Vulkan
                                       : flags.engine == "float" ? Engine::Float
                                                                 : Engine::Double,
                                       flags.texels, flags.options, messages);
-  for (const Message& message : messages) {
-    if (message.level != Message::Level::Note) fmt::print(stderr, "{}\n", printable(message.text));
-  }
+  print(messages);
   fmt::print("{}", answer);
   return answer.empty() || hasError(messages) ? 1 : 0;
 }
