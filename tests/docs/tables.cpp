@@ -14,6 +14,7 @@
 #include "docs/sample.h"
 #include "gltf/table.h"
 #include "support/cases.h"
+#include "support/limits.h"
 
 namespace lacquer::test {
 
@@ -280,6 +281,14 @@ std::string extensionsTable() {
   for (const std::string& name : order) {
     out +=
         fmt::format("| `{}` | {} | {} |\n", name, gltf::placeOf(name).where, fmt::join(objects[name], ", "));
+  }
+  return out;
+}
+
+std::string limitsTable() {
+  std::string out = "| name | of | at most | the option goes to |\n|---|---|---|---|\n";
+  for (const LimitRow& row : limitTable()) {
+    out += fmt::format("| `{}` | {} | {} {} | {} |\n", row.name, row.meaning, row.value, row.unit, row.most);
   }
   return out;
 }
