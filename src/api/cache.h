@@ -2,9 +2,12 @@
 // moved into place, and carries a checksum. Any number of threads and processes may use one folder at once; a
 // process may be killed at any moment.
 //
-// DIR/v1/ab/ab0123…: "LACQUER1", the key, the payload's length and checksum, the payload. An entry's
-// modification time is when it was last used (to the hour); the least recently used go first when the folder
-// outgrows its limit.
+// DIR/v1/ab/ab0123…: "LACQUER1", the key, the payload's length and checksum, the payload. With a secret it is
+// "LACQUERK", and in place of the checksum a keyed hash (BLAKE2b) of all the rest: then an entry is worth
+// nothing unless somebody wrote it who has the secret. Without one, whoever may write to the folder is
+// trusted with what the shaders are, though never with where files go: links are not followed, and no name
+// comes from the payload. An entry's modification time is when it was last used (to the hour); the least
+// recently used go first when the folder outgrows its limit.
 #pragma once
 
 #include <atomic>
@@ -21,8 +24,8 @@ namespace lacquer {
 
 class Cache {
 public:
-  /// `limit`: bytes that all entries may take together.
-  Cache(const std::string& folder, uint64_t limit);
+  /// `limit`: bytes that all entries may take together. `secret`: of secretOf(), or empty.
+  Cache(const std::string& folder, uint64_t limit, std::string secret);
   /// Keeps the limit.
   ~Cache();
 
@@ -34,12 +37,20 @@ public:
   /// Why an entry could not be written; empty when all went well.
   Diagnostics problems() const;
 
+  /// What stands for a file as a secret. Errors: "bad-cache-key" for a file that is too short to be one,
+  /// those of readFile().
+  static Result<std::string> secretOf(const std::string& path);
+
 private:
+  struct Header;
+  Header headerOf(const Key& key, std::string_view payload) const;
+  bool isEntry(const std::string& bytes, const Key& key) const;
   std::string pathOf(const Key& key) const;
   void trim();
 
   std::string folder_;
   uint64_t limit_;
+  std::string secret_;
   Scratch scratch_;
   std::atomic<uint64_t> written_{0};  ///< since the last trim
   std::mutex trimming_;

@@ -114,7 +114,11 @@ Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
 Result<material::Document> readMaterials(const std::string& path, const Language& language, const Options& options) {
   const Result<const material::Schema*> schema = language.models.schema();
   if (!schema) return tl::make_unexpected(schema.error());
-  return material::read(path, **schema, {options.permissive});
+  const Result<Limits> limits = limitsOf(options);
+  if (!limits) return tl::make_unexpected(limits.error());
+  const Result<std::string> bytes = readFile(path, limits->file);
+  if (!bytes) return tl::make_unexpected(bytes.error());
+  return material::readText(*bytes, path, **schema, {options.permissive, *limits});
 }
 
 Result<void> resolveNames(const lang::Library& library, Options& options) {

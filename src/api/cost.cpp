@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <future>
-#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "api/internal.h"
+#include "json/json.h"
+#include "support/contain.h"
 #include "support/file.h"
+#include "support/text.h"
 
 namespace lacquer {
 namespace {
@@ -62,11 +65,11 @@ void addFile(const std::string& path, Subjects& subjects, Messages& messages) {
 }
 
 /// The value at a path of keys when it is a text; else empty.
-std::string textAt(const nlohmann::json& json, std::initializer_list<const char*> keys) {
-  const nlohmann::json* at = &json;
+std::string textAt(const json::Json& json, std::initializer_list<const char*> keys) {
+  const json::Json* at = &json;
   for (const char* key : keys) {
-    if (!at->is_object() || !at->contains(key)) return {};
-    at = &(*at)[key];
+    at = json::member(*at, key);
+    if (at == nullptr) return {};
   }
   return at->is_string() ? at->get<std::string>() : std::string();
 }
@@ -75,9 +78,10 @@ void addManifest(const fs::path& folder, Subjects& subjects, Messages& messages)
   const std::string path = (folder / "manifest.json").string();
   const Result<std::string> text = readFile(path);
   if (!text) return report(text.error(), path, messages);
-  const nlohmann::json manifest = nlohmann::json::parse(*text, nullptr, false);
-  const bool good = manifest.is_object() && manifest.contains("shaders") && manifest["shaders"].is_object();
-  if (!good) {
+  const Result<json::Json> manifest = json::parse(*text, path);
+  if (!manifest) return report(manifest.error(), path, messages);
+  const json::Json* shaders = json::member(*manifest, "shaders");
+  if (shaders == nullptr || !shaders->is_object()) {
     const Diagnostic wrong{"manifest-unreadable",
                            Severity::Error,
                            {path, 0, 0, {}},
@@ -87,12 +91,24 @@ void addManifest(const fs::path& folder, Subjects& subjects, Messages& messages)
     return report({wrong}, path, messages);
   }
   const size_t before = subjects.size();
-  for (const auto& [id, shader] : manifest["shaders"].items()) {
+  for (const auto& [id, shader] : shaders->items()) {
     const std::string vertex = textAt(shader, {"files", "spirv", "vert"});
     const std::string fragment = textAt(shader, {"files", "spirv", "frag"});
     if (fragment.empty()) continue;
-    addPair(id, vertex.empty() ? "" : (folder / vertex).string(), (folder / fragment).string(), subjects,
-            messages);
+    // A manifest of others does not choose which files are read.
+    const std::optional<std::string> vertex_file = resolveBelow(folder.string(), vertex, {});
+    const std::optional<std::string> file = resolveBelow(folder.string(), fragment, {});
+    if (!vertex_file || !file) {
+      report({{"manifest-outside",
+               Severity::Error,
+               {path, 0, 0, {}},
+               "the files of " + quote(id) + " lie outside of the folder",
+               {},
+               {}}},
+             path, messages);
+      continue;
+    }
+    addPair(id, vertex.empty() ? "" : *vertex_file, *file, subjects, messages);
   }
   if (subjects.size() > before || hasError(messages)) return;
   const Diagnostic none{"no-spirv",

@@ -8,6 +8,7 @@
 #include "api/internal.h"
 #include "api/points.h"
 #include "eval/evaluate.h"
+#include "support/file.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -160,7 +161,8 @@ vulkan::Texture constantOf(const std::array<double, 4>& value, ir::Type type) {
 
 /// Decoded here, as the device's sRGB format would before it filters.
 vulkan::Texture imageOf(const eval::Image& image, const eval::Lookup& lookup) {
-  std::vector<vulkan::Texel> texels = image.texels;
+  std::vector<vulkan::Texel> texels(image.size());
+  for (size_t i = 0; i < texels.size(); ++i) texels[i] = image.at(i);
   for (size_t i = 0; lookup.srgb && i < texels.size(); ++i) {
     for (size_t c = 0; c < 3; ++c) {
       texels[i][c] = static_cast<float>(eval::decodeSrgb(static_cast<double>(texels[i][c])));
@@ -238,7 +240,7 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
   const material::Material& found = document->materials[*place];
   report(found.diagnostics, file, messages);
   if (lacquer::hasError(found.diagnostics)) return std::string();
-  FileImages images(file);
+  FileImages images(file, options);
   EvalMaterial evaluated(images, options);
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
@@ -291,13 +293,17 @@ std::string evaluate(const std::string& file, const std::string& material, const
     report(wrong, {}, messages);
     return {};
   }
-  const Result<EvalPoints> read = readPoints(points, points_name);
+  const Limits limits = *limitsOf(options);
+  Result<std::string> text = points;
+  if (points.empty())
+    text = points_name == "-" ? readStandardInput(limits.file) : readFile(points_name, limits.file);
+  const Result<EvalPoints> read =
+      text ? readPoints(*text, points_name, limits) : tl::make_unexpected(text.error());
   if (!read) {
     report(read.error(), points_name, messages);
     return {};
   }
-  Result<std::string> text =
-      evaluateOne(file, material, *read, points_name, engine, texels, options, messages);
+  text = evaluateOne(file, material, *read, points_name, engine, texels, options, messages);
   if (text) return std::move(*text);
   report(text.error(), file, messages);
   return {};

@@ -32,22 +32,60 @@ std::string propertyOf(const ir::TextureSlot& slot) {
   return slot.pointer.substr(slot.pointer.rfind('/') + 1);
 }
 
+FileImages::FileImages(std::string file, const Options& options)
+    : file_(std::move(file)), access_{limitsOf(options).value_or(Limits{}), options.allow} {}
+
+bool FileImages::makeRoom(uint64_t pixels) {
+  while (pixels > access_.limits.images - std::min(held_, access_.limits.images)) {
+    auto oldest = images_.end();
+    for (auto it = images_.begin(); it != images_.end(); ++it) {
+      const bool free = it->second.image.use_count() == 1;
+      if (free && (oldest == images_.end() || it->second.used < oldest->second.used)) oldest = it;
+    }
+    if (oldest == images_.end()) return false;
+    held_ -= oldest->second.pixels;
+    images_.erase(oldest);
+  }
+  return true;
+}
+
+Result<FileImages::Held> FileImages::decode(const gltf::TextureSource& source) {
+  const Result<std::string> bytes = opened_->image(source);
+  if (!bytes) return tl::make_unexpected(bytes.error());
+  const Result<eval::ImageSize> size = eval::sizeOfImage(*bytes, source.place);
+  if (!size) return tl::make_unexpected(size.error());
+  const uint64_t pixels = size->pixels() * (size->wide ? 2 : 1);
+  const bool alone = size->pixels() > access_.limits.image;  // which decoding says
+  if (!alone && !makeRoom(pixels)) {
+    return fail("image-too-large", source.place,
+                fmt::format("the material's images together have more than {} pixels (of 8 bits per channel)",
+                            access_.limits.images),
+                raising("images"));
+  }
+  Result<eval::Image> image = eval::decodeImage(*bytes, access_.limits.image, source.place);
+  if (!image) return tl::make_unexpected(std::move(image.error()));
+  return Held{std::make_shared<const eval::Image>(std::move(*image)), pixels, 0};
+}
+
 Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
   if (!opened_) {
-    Result<gltf::TextureFile> opened = gltf::TextureFile::open(file_);
+    Result<gltf::TextureFile> opened = gltf::TextureFile::open(file_, access_);
     if (!opened) return tl::make_unexpected(std::move(opened.error()));
     opened_ = std::move(*opened);
   }
   const Result<gltf::TextureSource> source = opened_->texture(texture);
   if (!source) return tl::make_unexpected(source.error());
-  std::shared_ptr<const eval::Image>& image = images_[texture];
-  if (!image) {
-    Result<eval::Image> decoded = eval::decodeImage(source->bytes, source->place);
+  auto it = images_.find(source->image);
+  if (it == images_.end()) {
+    Result<Held> decoded = decode(*source);
     if (!decoded) return tl::make_unexpected(std::move(decoded.error()));
-    image = std::make_shared<const eval::Image>(std::move(*decoded));
+    held_ += decoded->pixels;
+    it = images_.emplace(source->image, std::move(*decoded)).first;
   }
+  it->second.used = ++uses_;
   constexpr int kNearest = 9728;
-  return Loaded{image, {wrapOf(source->wrapS), wrapOf(source->wrapT), source->magFilter == kNearest, srgb}};
+  return Loaded{it->second.image,
+                {wrapOf(source->wrapS), wrapOf(source->wrapT), source->magFilter == kNearest, srgb}};
 }
 
 Result<EvalMaterial::Texel> EvalMaterial::parseTexel(const std::string& text) {
@@ -209,7 +247,7 @@ Result<BoundTexture> EvalMaterial::textureOf(const ir::TextureSlot& slot, const 
   Result<FileImages::Loaded> loaded = images_.load(originals_[static_cast<size_t>(slot.texture)], slot.srgb);
   if (loaded) return BoundTexture{{}, loaded->image, loaded->lookup};
   if (substitute) {
-    if (const std::optional<std::array<double, 4>> value = substitute(slot))
+    if (const std::optional<std::array<double, 4>> value = substitute(slot, loaded.error()))
       return BoundTexture{value, {}, {}};
   }
   for (Diagnostic& d : loaded.error()) {

@@ -14,23 +14,38 @@
 
 namespace lacquer {
 
-/// The images behind a file's textures, opened and decoded when first asked for.
+/// The images behind a file's textures, opened and decoded when first asked for. Those that nobody uses any
+/// more go, the longest unused first, when others need their room.
 class FileImages {
 public:
-  explicit FileImages(std::string file) : file_(std::move(file)) {}
+  FileImages(std::string file, const Options& options);
 
   const std::string& file() const { return file_; }
   struct Loaded {
     std::shared_ptr<const eval::Image> image;
     eval::Lookup lookup;
   };
-  /// Errors: those of gltf::TextureFile and of eval::decodeImage().
+  /// Errors: those of gltf::TextureFile and of eval::decodeImage(), and "image-too-large" where the images in
+  /// use leave no room.
   Result<Loaded> load(int texture, bool srgb);
+  /// The files that were read for images.
+  Strings read() const { return opened_ ? opened_->filesRead() : Strings(); }
 
 private:
+  struct Held {
+    std::shared_ptr<const eval::Image> image;
+    uint64_t pixels = 0;  ///< of 8 bits per channel
+    uint64_t used = 0;    ///< a later use has a larger number
+  };
+
+  Result<Held> decode(const gltf::TextureSource& source);
+  bool makeRoom(uint64_t pixels);
+
   std::string file_;
+  gltf::TextureAccess access_;
   std::optional<gltf::TextureFile> opened_;
-  std::map<int, std::shared_ptr<const eval::Image>> images_;
+  std::map<size_t, Held> images_;  ///< by the image's index
+  uint64_t held_ = 0, uses_ = 0;   ///< pixels; calls of load()
 };
 
 /// What stands behind a texture slot: an image or a constant.
@@ -43,8 +58,9 @@ struct BoundTexture {
 
 class EvalMaterial {
 public:
-  /// What stands for a texture without an image; nothing where that is an error.
-  using Substitute = std::function<std::optional<std::array<double, 4>>(const ir::TextureSlot&)>;
+  /// What stands for a texture that has no image for these reasons; nothing where that is an error.
+  using Substitute =
+      std::function<std::optional<std::array<double, 4>>(const ir::TextureSlot&, const Diagnostics& why)>;
 
   /// `images` must outlive this.
   EvalMaterial(FileImages& images, const Options& options) : images_(images), options_(options) {}

@@ -1,23 +1,44 @@
+#include <fmt/format.h>
+
 #include "api/manifest.h"
 #include "api/run.h"
+#include "support/text.h"
 
 namespace lacquer {
 
 namespace {
 
-/// `path: every input`, as Make and Ninja read it.
-std::string depfileText(const std::string& target, const std::vector<std::string>& inputs) {
-  const auto escaped = [](const std::string& path) {
-    std::string text;
+/// `path: every input`, as Make and Ninja read it. A name that could be read as something else, a recipe or
+/// an assignment say, is refused: there is no way to write it that both understand.
+Result<std::string> depfileText(const std::string& target, const std::vector<std::string>& inputs) {
+  constexpr std::string_view kRefused = ":;=|%*?[]~&\\\x7f";
+  std::string text;
+  Diagnostics wrong;
+  const auto add = [&](const std::string& path) {
     for (const char c : path) {
+      const bool control = static_cast<unsigned char>(c) < 0x20;
+      if (control || kRefused.find(c) != std::string_view::npos) {
+        wrong.push_back({"depfile-name",
+                         Severity::Error,
+                         {printable(path), 0, 0, {}},
+                         fmt::format("a depfile cannot hold this name: it has the character {}",
+                                     control ? fmt::format("0x{:02x}", c) : std::string(1, c)),
+                         "rename the file, or leave --depfile out",
+                         {}});
+        return;
+      }
       if (c == ' ' || c == '#') text += '\\';
       if (c == '$') text += '$';
       text += c;
     }
-    return text;
   };
-  std::string text = escaped(target) + ":";
-  for (const std::string& input : inputs) text += " \\\n  " + escaped(input);
+  add(target);
+  text += ":";
+  for (const std::string& input : inputs) {
+    text += " \\\n  ";
+    add(input);
+  }
+  if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
   return text + "\n";
 }
 
@@ -38,7 +59,7 @@ struct Inputs {
 /// Reads the inputs, makes what is needed and writes the manifest.
 Report generateWith(const Inputs& inputs, const std::string& folder, const Options& options,
                     Messages& messages, const Progress& progress) {
-  Run run(options, messages, progress);
+  Run run(options, inputs.files, messages, progress);
   if (const Result<void> named = hasPath("the output folder", folder); !named) {
     run.report(named.error(), {});
     run.result().ok = false;
@@ -46,6 +67,15 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   }
   if (!run.prepare()) return run.finish();
   const bool shard = !options.shard.empty();
+  const std::string path = shard ? options.shard : folder + "/manifest.json";
+  Strings outputs{path};
+  Result<std::string> depfile;
+  if (!options.depfile.empty()) {
+    outputs.push_back(options.depfile);
+    depfile = depfileText(path, run.inputs());
+    if (!depfile) run.wrote(tl::make_unexpected(depfile.error()));
+  }
+  if (!run.mayWrite(outputs) || !depfile) return run.finish();
   std::optional<Receipt> receipt =
       inputs.scenes && !shard ? run.receipt(inputs.files, inputs.materials, folder) : std::nullopt;
   if (receipt && run.find(*receipt)) {
@@ -60,16 +90,17 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     return run.finish();
   }
   const Scratch scratch(folder);
-  const std::string path = shard ? options.shard : folder + "/manifest.json";
-  ManifestFile manifest(path, shard ? nullptr : &scratch);
+  ManifestFile manifest(path, {shard ? nullptr : &scratch, options.sync});
   inputs.read(run, [&](FileResult& file) {
     if (!shard) manifest.file(file.text);
   });
-  run.make(folder, scratch, receipt ? &*receipt : nullptr,
-           [&](const MadeShader& shader) { manifest.shader(shader.id, shader.text); });
+  if (!run.make(folder, scratch, receipt ? &*receipt : nullptr,
+                [&](const MadeShader& shader) { manifest.shader(shader.id, shader.text); })) {
+    return run.finish();
+  }
   // A shard stands for its shader: without the one there is not the other.
   if (!shard || run.result().ok) run.wrote(manifest.finish());
-  if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, depfileText(path, run.inputs())));
+  if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, *depfile, {nullptr, options.sync}));
   if (receipt) run.keep(*receipt);
   return run.finish();
 }

@@ -14,6 +14,7 @@
 #include "material/material.h"
 #include "model/build.h"
 #include "passes/pipeline.h"
+#include "support/limits.h"
 
 namespace lacquer {
 
@@ -96,6 +97,12 @@ inline int firstStage(Target target, bool has_vertex) { return has_vertex && tar
 /// Some compiler or validator checks the target's code.
 inline bool hasValidator(Target target) { return target != Target::Cpp; }
 
+/// What inputs may be at most, with the options' changes. Errors: those of setLimit().
+Result<Limits> limitsOf(const Options& options);
+
+/// An error for every output that is one of the inputs, which must not be written then, or another output.
+Diagnostics clashes(const Strings& inputs, const Strings& outputs);
+
 /// What is wrong with the options that a graph and its module depend on; empty when all is well.
 Diagnostics checkReading(const Options& options);
 /// The same, and what is wrong with the targets.
@@ -116,6 +123,9 @@ Result<size_t> findMaterial(const material::Document& document, const std::optio
 
 lower::ParameterMode parameterMode(const Options& options);
 
+/// True for what shaderId() may give: an id from elsewhere is asked for this before it becomes part of a
+/// path.
+bool isShaderId(std::string_view id);
 /// The path below the output folder: "glsl/ID.frag.glsl", "cpp/ID.h".
 std::string shaderPath(Target target, const std::string& id, int stage);
 

@@ -164,7 +164,7 @@ Json diagnosticJson(const Diagnostic& d) {
   return json;
 }
 
-ManifestFile::ManifestFile(const std::string& path, const Scratch* scratch) : file_(path, scratch) {
+ManifestFile::ManifestFile(const std::string& path, const Writing& how) : file_(path, how) {
   JsonText name(1);
   file_.append("{\n  \"lacquer\": " + name.string(version()).take() + ",\n  \"files\": [");
 }

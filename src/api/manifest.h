@@ -25,7 +25,7 @@ Json componentsJson(ir::Type type, const ir::Components& components);
 /// A manifest, written entry by entry: first files, then shaders in the order of their ids.
 class ManifestFile {
 public:
-  explicit ManifestFile(const std::string& path, const Scratch* scratch = nullptr);
+  explicit ManifestFile(const std::string& path, const Writing& how);
   /// The entry's text, from a JsonText of depth 2.
   void file(std::string_view entry);
   void shader(std::string_view id, std::string_view entry);

@@ -1,6 +1,7 @@
 #include <map>
 
 #include "api/manifest.h"
+#include "json/json.h"
 
 namespace lacquer {
 
@@ -16,18 +17,21 @@ tl::unexpected<Diagnostics> noManifest(const std::string& path, std::string mess
 Result<Json> readManifest(const std::string& path) {
   const Result<std::string> text = readFile(path);
   if (!text) return tl::make_unexpected(text.error());
-  Json json = Json::parse(*text, nullptr, false);
+  Result<Json> read = json::parse(*text, path);
+  if (!read) return read;
+  Json& json = *read;
   const auto is = [&](const char* name, Json::value_t type) {
-    return json.contains(name) && json[name].type() == type;
+    const Json* found = json::member(json, name);
+    return found != nullptr && found->type() == type;
   };
-  if (!json.is_object() || !is("lacquer", Json::value_t::string) || !is("files", Json::value_t::array) ||
+  if (!is("lacquer", Json::value_t::string) || !is("files", Json::value_t::array) ||
       !is("shaders", Json::value_t::object)) {
     return noManifest(path, "this is no manifest of Lacquer's");
   }
   if (json["lacquer"] != version()) {
     return noManifest(path, "it was written by version " + json["lacquer"].get<std::string>());
   }
-  return json;
+  return read;
 }
 
 std::string entryText(const Json& json) { return JsonText(kEntryDepth).json(json).take(); }
@@ -40,12 +44,16 @@ bool merge(const std::vector<std::string>& shards, const std::string& folder, Me
     report(named.error(), {}, messages);
     return false;
   }
+  if (const Diagnostics wrong = clashes(shards, {folder + "/manifest.json"}); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return false;
+  }
   if (const Result<bool> usable = makeFolder(folder); !usable) {
     report(usable.error(), {}, messages);
     return false;
   }
   const Scratch scratch(folder);
-  ManifestFile manifest(folder + "/manifest.json", &scratch);
+  ManifestFile manifest(folder + "/manifest.json", {&scratch});
   for (const std::string& path : shards) {
     const Result<Json> json = readManifest(path);
     if (!json) {

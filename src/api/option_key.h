@@ -24,7 +24,7 @@ template <class Each>
 void eachOption(const Options& options, Each each) {
   const auto& [profile, error_budget, template_name, targets, parameters, lights, switches, ibl, multiple_scattering,
                dfg_table, decode_srgb, permissive, validate, unused, spirv_route, debug, live,
-               node_directories, jobs, cache, cache_size, depfile, shard] = options;
+               node_directories, jobs, cache, cache_size, depfile, shard, limits, allow, cache_key, sync] = options;
   each(Decides::Graph, profile);
   each(Decides::Graph, error_budget);
   each(Decides::Graph, template_name);
@@ -49,6 +49,10 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Nothing, cache_size);
   each(Decides::Run, depfile);
   each(Decides::Run, shard);
+  each(Decides::Graph, limits);
+  each(Decides::Nothing, allow);
+  each(Decides::Nothing, cache_key);
+  each(Decides::Nothing, sync);
 }
 
 /// Puts the options in that decide one of these.

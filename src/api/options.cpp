@@ -52,8 +52,17 @@ void checkNames(const Options& options, Diagnostics& wrong) {
 
 }  // namespace
 
+Result<Limits> limitsOf(const Options& options) {
+  Limits limits;
+  for (const std::string& text : options.limits) {
+    if (const Result<void> set = setLimit(text, limits); !set) return tl::make_unexpected(set.error());
+  }
+  return limits;
+}
+
 Diagnostics checkReading(const Options& options) {
   Diagnostics wrong;
+  if (const Result<Limits> limits = limitsOf(options); !limits) wrong = limits.error();
   checkNames(options, wrong);
   if (!(options.error_budget >= 0 && options.error_budget <= 1)) {
     add(wrong, "bad-error-budget", fmt::format("the error budget is {}", options.error_budget),

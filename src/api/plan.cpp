@@ -7,6 +7,7 @@
 
 #include "api/manifest.h"
 #include "api/run.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -40,6 +41,28 @@ std::string lightsFlag(const passes::LightFacts& lights) {
   for (const auto& [kind, count] : lights.counts)
     flag += fmt::format("{}{}:{}", flag.empty() ? " --lights " : ",", kind, count);
   return flag.empty() ? " --lights none" : flag;
+}
+
+/// Errors about names that Ninja's format cannot hold: it has an escape for a space, but for neither a line's
+/// end nor a bar.
+Diagnostics unfit(const Strings& paths, const Strings& words) {
+  Diagnostics wrong;
+  const auto look = [&](const std::string& text, bool path) {
+    const bool control = std::any_of(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+    const bool bar = path && text.find('|') != std::string::npos;
+    if (!control && !bar) return;
+    wrong.push_back({"ninja-name",
+                     Severity::Error,
+                     {printable(text), 0, 0, {}},
+                     control ? "a Ninja file cannot hold a name with a control character"
+                             : "a Ninja file cannot hold a path with the character |",
+                     "nothing was written: rename it",
+                     {}});
+  };
+  for (const std::string& path : paths) look(path, true);
+  for (const std::string& word : words) look(word, false);
+  return wrong;
 }
 
 class NinjaFile {
@@ -145,7 +168,7 @@ private:
 Report planWith(const Plan& plan, const std::vector<std::string>& files,
                 const std::vector<std::string>& materials, const std::string& folder, const Options& options,
                 Messages& messages) {
-  Run run(options, messages);
+  Run run(options, files, messages);
   Result<void> named = hasPath("the output folder", folder);
   if (named) named = hasPath("the Ninja file", plan.ninja);
   if (named) named = hasPath("the program", plan.program);
@@ -155,17 +178,33 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
     return run.finish();
   }
   if (!run.open()) return run.finish();
-  ManifestFile manifest(plan.ninja + ".plan/materials.json");
+  const std::string all_materials = plan.ninja + ".plan/materials.json";
+  Strings paths{plan.ninja, folder, plan.program};
+  const Strings read = run.inputs();
+  paths.insert(paths.end(), read.begin(), read.end());
+  Strings words = plan.command;
+  words.insert(words.end(), plan.replan.begin(), plan.replan.end());
+  if (const Diagnostics wrong = unfit(paths, words); !wrong.empty()) {
+    run.wrote(tl::make_unexpected(wrong));
+    return run.finish();
+  }
+  if (!run.mayWrite({plan.ninja, all_materials})) return run.finish();
+  const Writing how{nullptr, options.sync};
+  ManifestFile manifest(all_materials, how);
   run.readScenes(files, materials, [&](FileResult& file) { manifest.file(file.text); });
   NinjaFile ninja(plan, folder, options, run.inputs());
+  Strings graphs;
+  for (const auto& [id, shader] : run.structures().shaders())
+    graphs.push_back(ninja.stem(id) + ".graph.json");
+  if (!run.mayWrite(graphs)) return run.finish();
   ninja.head();
   for (const auto& [id, shader] : run.structures().shaders()) {
-    run.wrote(writeFile(ninja.stem(id) + ".graph.json", shader.structure->graph));
+    run.wrote(writeFile(ninja.stem(id) + ".graph.json", shader.structure->graph, how));
     run.result().shaders.push_back({id, {}, false});
     ninja.shader(id, *shader.structure);
   }
   run.wrote(manifest.finish());
-  run.wrote(writeFile(plan.ninja, ninja.finish()));
+  run.wrote(writeFile(plan.ninja, ninja.finish(), how));
   return run.finish();
 }
 

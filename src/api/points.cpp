@@ -189,8 +189,8 @@ void readUniforms(const Json& root, json::Report& report, EvalPoints& to) {
 
 }  // namespace
 
-Result<EvalPoints> readPoints(std::string_view text, const std::string& file) {
-  const Result<Json> root = json::parse(text, file);
+Result<EvalPoints> readPoints(std::string_view text, const std::string& file, const Limits& limits) {
+  const Result<Json> root = json::parse(text, file, limits);
   if (!root) return tl::make_unexpected(root.error());
   Diagnostics wrong;
   json::Report report(file, wrong);

@@ -10,6 +10,7 @@
 
 #include "eval/points.h"
 #include "support/diagnostic.h"
+#include "support/limits.h"
 
 namespace lacquer {
 
@@ -22,6 +23,6 @@ struct EvalPoints {
 
 /// Reads an array of points, or an object whose "points" is one (docs/eval.md). `file` stands for the text in
 /// diagnostics, which carry a JSON pointer each. Unit vectors come out normalized.
-Result<EvalPoints> readPoints(std::string_view text, const std::string& file);
+Result<EvalPoints> readPoints(std::string_view text, const std::string& file, const Limits& limits);
 
 }  // namespace lacquer

@@ -44,15 +44,25 @@ public:
       : preview_(preview), options_(options), messages_(messages), progress_(progress) {}
 
   Result<std::string> make(const std::vector<std::string>& files, const std::vector<std::string>& materials) {
+    if (const Result<Limits> limits = limitsOf(options_); !limits) return tl::make_unexpected(limits.error());
     if (Result<void> set = readSettings(); !set) return tl::make_unexpected(std::move(set.error()));
     std::vector<material::Document> documents;
     if (Result<void> read = readFiles(files, materials, documents); !read)
       return tl::make_unexpected(std::move(read.error()));
+    Strings inputs = files;
+    for (const std::string& folder : options_.node_directories) {
+      const auto nodes = nodeFiles(folder);
+      for (size_t i = 0; nodes && i < nodes->size(); ++i) inputs.push_back((*nodes)[i].name);
+    }
+    if (Diagnostics wrong = clashes(inputs, {preview_.output}); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
     std::vector<preview::Section> sections;
     for (const material::Document& document : documents) {
       preview::Section section{documents.size() > 1 ? document.path : std::string(), {}};
-      FileImages images(document.path);
+      FileImages images(document.path, options_);
       for (const material::Material& material : document.materials) draw(material, images, section);
+      const Strings of_images = images.read();
+      inputs.insert(inputs.end(), of_images.begin(), of_images.end());
       if (!section.cells.empty()) sections.push_back(std::move(section));
     }
     if (sections.empty()) return fail("nothing-to-show", {}, "there is no material to show");
@@ -61,7 +71,9 @@ public:
       title = fmt::format("{} | {} | difference", settings_[0].name, settings_[1].name);
     const Result<preview::Picture> sheet = preview::layOut(sections, title, preview_.size, preview_.columns);
     if (!sheet) return tl::make_unexpected(sheet.error());
-    if (Result<bool> written = writeFile(preview_.output, sheet->png()); !written)
+    if (Diagnostics wrong = clashes(inputs, {preview_.output}); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    if (Result<bool> written = writeFile(preview_.output, sheet->png(), {nullptr, options_.sync}); !written)
       return tl::make_unexpected(std::move(written.error()));
     return answer(title);
   }
@@ -139,8 +151,14 @@ private:
       const bool specular = slot->name.find("irradiance") == std::string::npos;
       (specular ? look.specular : look.irradiance).push_back(slot->name);
     }
-    const auto neutral = [&](const ir::TextureSlot& slot) {
+    const auto neutral = [&](const ir::TextureSlot& slot, const Diagnostics& why) {
       ++substituted;
+      for (Diagnostic one : why) {
+        // Absent images are counted; one that is there and not taken is worth a word.
+        if (one.code == "image-missing") continue;
+        one.severity = Severity::Warning;
+        report({one}, images.file(), to);
+      }
       return neutralTexel(slot);
     };
     if (Result<void> bound = evaluated.bindTextures(neutral, look.textures); !bound)

@@ -7,10 +7,10 @@
 #include <functional>
 #include <span>
 
+#include "api/internal.h"
 #include "api/option_key.h"
 #include "api/report_blob.h"
 #include "check/check.h"
-#include "gltf/container.h"
 
 namespace lacquer {
 
@@ -30,10 +30,10 @@ void forEach(size_t count, const std::function<void(size_t)>& work) {
 }
 
 /// The keys of the files' bytes; an empty key for a file that cannot be read.
-std::vector<Key> contentsOf(const Strings& files) {
+std::vector<Key> contentsOf(const Strings& files, uint64_t largest) {
   std::vector<Key> contents(files.size());
   forEach(files.size(), [&](size_t i) {
-    if (const Result<std::string> bytes = gltf::readBytes(files[i])) contents[i] = keyOf(*bytes);
+    if (const Result<std::string> bytes = readFile(files[i], largest)) contents[i] = keyOf(*bytes);
   });
   return contents;
 }
@@ -89,8 +89,10 @@ void readReport(BlobReader& blob, Report& report) {
   blob.list([&] {
     ShaderReport shader;
     shader.id = blob.text(), shader.validated = blob.number<bool>();
+    if (!isShaderId(shader.id)) blob.refuse();
     blob.list([&] {
       std::string path = blob.text();
+      if (path.find("..") != std::string::npos || path.starts_with('/')) blob.refuse();
       shader.files.emplace_back(std::move(path), blob.number<uint64_t>());
     });
     report.shaders.push_back(std::move(shader));
@@ -119,7 +121,8 @@ Receipt::Receipt(const Strings& files, const Strings& materials, const std::stri
       options_(options),
       cache_(cache),
       begin_(std::chrono::system_clock::now()),
-      contents_(contentsOf(files)) {
+      largest_(limitsOf(options).value_or(Limits{}).file),
+      contents_(contentsOf(files, largest_)) {
   if (std::find(contents_.begin(), contents_.end(), Key{}) != contents_.end()) return;
   std::error_code ignored;  // the working folder only keeps projects apart that name theirs alike
   KeyBuilder key;
@@ -200,7 +203,7 @@ void Receipt::keep(const Report& report, const Messages& said) const {
     return stamp && std::max(stamp->modified, stamp->changed) < settled;
   });
   // What the run has read must be what the receipt is for.
-  if (!all || contentsOf(files_) != contents_) return;
+  if (!all || contentsOf(files_, largest_) != contents_) return;
   BlobWriter blob;
   blob.list(contents_, [&](const Key& key) { blob.number(key.high), blob.number(key.low); });
   writeReport(report, blob);

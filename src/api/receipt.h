@@ -41,6 +41,7 @@ private:
   const Options& options_;
   Cache& cache_;
   std::chrono::system_clock::time_point begin_;
+  uint64_t largest_;           ///< bytes of an input
   std::vector<Key> contents_;  ///< of the inputs
   std::optional<Key> key_;     ///< absent when one of them cannot be read
   std::map<std::string, ShaderReport> untouched_;

@@ -30,12 +30,14 @@ void withJobs(uint32_t jobs, const std::function<void()>& work) {
   arena.execute(work);
 }
 
-Run::Run(const Options& options, Messages& messages, std::function<void(size_t, size_t)> progress)
+Run::Run(const Options& options, const Strings& inputs, Messages& messages,
+         std::function<void(size_t, size_t)> progress)
     : options_(options),
       messages_(messages),
       progress_(std::move(progress)),
       shown_(std::chrono::steady_clock::now()),
-      said_before_(messages.size()) {}
+      said_before_(messages.size()),
+      inputs_(inputs) {}
 
 bool Run::prepare() {
   prepared_ = true;
@@ -57,7 +59,15 @@ bool Run::prepare() {
     }
   }
   base_ = base.finish();
-  if (!options_.cache.empty()) cache_ = std::make_unique<Cache>(options_.cache, options_.cache_size);
+  if (options_.cache.empty()) return true;
+  Result<std::string> secret;
+  if (!options_.cache_key.empty()) secret = Cache::secretOf(options_.cache_key);
+  if (!secret) {
+    report(secret.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  cache_ = std::make_unique<Cache>(options_.cache, options_.cache_size, std::move(*secret));
   return true;
 }
 
@@ -81,7 +91,7 @@ bool Run::open() {
     report_.ok = false;
     return false;
   }
-  setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_});
+  setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_, *limitsOf(options_)});
   structures_.emplace(*setting_);
   return true;
 }
@@ -116,7 +126,6 @@ void Run::progress(size_t done, bool last) {
 void Run::readAll(const std::vector<std::string>& files,
                   const std::function<FileResult(const std::string&)>& read,
                   const std::function<void(FileResult&)>& each) {
-  inputs_.insert(inputs_.end(), files.begin(), files.end());
   for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
     std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
     tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) { results[i] = read(files[first + i]); });
@@ -167,8 +176,17 @@ void Run::checkNames(const std::vector<std::string>& only, const std::vector<std
   }
 }
 
-void Run::make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
+bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
                const std::function<void(const MadeShader&)>& each) {
+  Strings outputs;
+  for (const auto& [id, shader] : structures_->shaders()) {
+    for (const Target target : options_.targets) {
+      for (int stage = firstStage(target, shader.structure->has_vertex); stage < 2; ++stage) {
+        outputs.push_back(folder + "/" + shaderPath(target, id, stage));
+      }
+    }
+  }
+  if (!mayWrite(outputs)) return false;
   const std::vector<MadeShader> made = makeShaders(structures_->shaders(), *setting_, folder, scratch,
                                                    receipt, [&](size_t done) { progress(done, false); });
   progress(made.size(), true);
@@ -180,6 +198,15 @@ void Run::make(const std::string& folder, const Scratch& scratch, const Receipt*
     report_.written += shader.written;
     if (!shader.text.empty()) each(shader);
   }
+  return true;
+}
+
+bool Run::mayWrite(const Strings& outputs) {
+  const Diagnostics wrong = clashes(inputs(), outputs);
+  if (wrong.empty()) return true;
+  report(wrong, {});
+  report_.ok = false;
+  return false;
 }
 
 void Run::wrote(const Result<bool>& written) {

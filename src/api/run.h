@@ -11,7 +11,7 @@ namespace lacquer {
 
 class Run {
 public:
-  Run(const Options& options, Messages& messages,
+  Run(const Options& options, const Strings& inputs, Messages& messages,
       std::function<void(size_t done, size_t known)> progress = {});
 
   /// False, with a message, when the options contradict each other. Opens the cache.
@@ -30,19 +30,21 @@ public:
   void readGraphs(const std::vector<std::string>& files, const std::function<void(FileResult&)>& each);
 
   /// Makes and writes what the inputs need; `each` gets every shader in the order of the ids. `receipt` may
-  /// be null.
-  void make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
+  /// be null. False, with nothing written, when a shader's file is an input.
+  bool make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
             const std::function<void(const MadeShader&)>& each);
 
   void report(const Diagnostics& diagnostics, const std::string& file) {
     lacquer::report(diagnostics, file, messages_);
   }
+  /// False, with messages, when one of these outputs is an input of the run or another output.
+  bool mayWrite(const Strings& outputs);
   /// Reports what went wrong with a file that was to be written.
   void wrote(const Result<bool>& written);
   Structures& structures() { return *structures_; }
   Report& result() { return report_; }
   Report finish();
-  /// Every file that the run has read: the inputs, then the node files.
+  /// Every file that the run reads: the inputs, then the node files.
   std::vector<std::string> inputs() const;
 
 private:

@@ -74,7 +74,7 @@ Scene Scene::load(const std::string& path, const Options& options, Messages& mes
   Scene scene;
   const Result<SchemaOf> schema = schemaFor(options);
   if (!schema) return report(schema.error(), path, messages), scene;
-  Result<material::Document> document = material::read(path, *schema->schema, {options.permissive});
+  Result<material::Document> document = readMaterials(path, *schema->language, options);
   if (!document) {
     report(document.error(), path, messages);
     return scene;
@@ -88,8 +88,10 @@ Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const
                         Messages& messages) {
   Scene scene;
   const Result<SchemaOf> schema = schemaFor(options);
-  if (!schema) return report(schema.error(), name, messages), scene;
-  Result<material::Document> document = material::readText(bytes, name, *schema->schema, {options.permissive});
+  const Result<Limits> limits = limitsOf(options);
+  if (!schema || !limits) return report(schema ? limits.error() : schema.error(), name, messages), scene;
+  Result<material::Document> document =
+      material::readText(bytes, name, *schema->schema, {options.permissive, *limits});
   if (!document) {
     report(document.error(), name, messages);
     return scene;

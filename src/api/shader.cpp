@@ -68,6 +68,13 @@ std::string shaderId(const ir::Module& module, const lang::Library& library) {
   return fmt::format("{}-{}-{}", module.template_name, kind, passes::contentAddress(module));
 }
 
+bool isShaderId(std::string_view id) {
+  constexpr size_t kLongest = 255 - std::string_view(".frag.glsl").size();
+  return !id.empty() && id.size() <= kLongest &&
+         id.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+             std::string_view::npos;
+}
+
 std::string shaderPath(Target target, const std::string& id, int stage) {
   const targets::Target& row = targets::row(static_cast<targets::TargetId>(target));
   if (target == Target::Cpp) return fmt::format("{}/{}.{}", row.name, id, row.extension);

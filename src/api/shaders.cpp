@@ -31,7 +31,7 @@ std::string bytesOf(const std::vector<uint32_t>& words) {
 class Maker {
 public:
   Maker(const Setting& setting, const std::string& folder, const Scratch& scratch, const Receipt* receipt)
-      : setting_(setting), folder_(folder), scratch_(scratch), receipt_(receipt) {
+      : setting_(setting), folder_(folder), writing_{&scratch, setting.options.sync}, receipt_(receipt) {
     if (setting.cache != nullptr && setting.options.validate) dxc_ = check::dxcIdentity();
   }
 
@@ -50,7 +50,7 @@ private:
 
   const Setting& setting_;
   const std::string& folder_;
-  const Scratch& scratch_;
+  Writing writing_;
   const Receipt* receipt_;
   std::string dxc_;  ///< that validates the HLSL, too; empty where there is none
 };
@@ -133,7 +133,7 @@ void Maker::write(const std::string& id, const Structure& structure,
     for (int stage = firstStage(target, structure.has_vertex); stage < 2; ++stage) {
       const std::string path = shaderPath(target, id, stage);
       const std::string& bytes = codes.at(target).bytes[stage];
-      const Result<bool> written = writeFile(folder_ + "/" + path, bytes, &scratch_);
+      const Result<bool> written = writeFile(folder_ + "/" + path, bytes, writing_);
       if (!written)
         made.wrong.insert(made.wrong.end(), written.error().begin(), written.error().end());
       else

@@ -360,7 +360,7 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
   Result<std::string> bytes;
   {
     const StageTimer timer(setting.times, StageOfRun::Read);
-    bytes = gltf::readBytes(path);
+    bytes = readFile(path, setting.limits.file);
   }
   if (!bytes) return unreadable(path, bytes.error());
   const bool keep = setting.cache != nullptr && only.empty();
@@ -374,7 +374,7 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
   Result<material::Document> document;
   {
     const StageTimer timer(setting.times, StageOfRun::Read);
-    document = material::readText(*bytes, path, **schema, {setting.options.permissive});
+    document = material::readText(*bytes, path, **schema, {setting.options.permissive, setting.limits});
     *bytes = {};
   }
   if (!document) return unreadable(path, document.error());
@@ -387,8 +387,9 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
 }
 
 FileResult readGraph(const std::string& path, const Setting& setting, Structures& structures) {
-  const Result<std::string> text = readFile(path);
-  Result<graph::Graph> graph = text ? graph::fromJson(*text, path) : tl::make_unexpected(text.error());
+  const Result<std::string> text = readFile(path, setting.limits.file);
+  Result<graph::Graph> graph =
+      text ? graph::fromJson(*text, path, setting.limits) : tl::make_unexpected(text.error());
   if (!graph) return unreadable(path, graph.error());
   static const material::Material kNone;
   MaterialText material(path, setting, structures);

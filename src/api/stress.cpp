@@ -144,7 +144,7 @@ private:
   }
 
   Result<std::unique_ptr<Subject>> materialSubject(const std::string& file, const material::Material& material) {
-    FileImages images(file);
+    FileImages images(file, options_);
     EvalMaterial evaluated(images, options_);
     if (Result<void> lowered = evaluated.lower(material, *library_, true, {}, messages_); !lowered)
       return tl::make_unexpected(std::move(lowered.error()));
@@ -252,9 +252,11 @@ private:
   }
 
   Result<Json> replay(const std::string& path, size_t& faults) {
-    const Result<std::string> text = readFile(path);
+    const Result<Limits> limits = limitsOf(options_);
+    if (!limits) return tl::make_unexpected(limits.error());
+    const Result<std::string> text = readFile(path, limits->file);
     if (!text) return tl::make_unexpected(text.error());
-    const Result<Json> test = json::parse(*text, path);
+    const Result<Json> test = json::parse(*text, path, *limits);
     if (!test) return tl::make_unexpected(test.error());
     if (!test->is_object())
       return fail("bad-case", {path, 0, 0, {}}, "a case is an object", "docs/stress.md");

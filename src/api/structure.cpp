@@ -163,9 +163,15 @@ void describe(const ir::Module& module, const graph::Graph& graph, const lang::L
   };
   for (const ir::Parameter& p : module.parameters)
     structure.parameters.push_back(place(graph.parameters, p.name));
-  for (const ir::TextureSlot& slot : module.textures) {
-    const uint32_t at = place(graph.textures, slot.name);
-    if (at != ~uint32_t{0}) structure.textures.emplace_back(slot.name, at);
+  // The shader may have another name for a texture; the DAG still has the graph's.
+  std::vector<uint32_t> places(module.textures.size(), ~uint32_t{0});
+  for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
+    if (module.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    if (input.kind == ir::InputKind::Texture) places[input.field] = place(graph.textures, input.name);
+  }
+  for (size_t i = 0; i < places.size(); ++i) {
+    if (places[i] != ~uint32_t{0}) structure.textures.emplace_back(module.textures[i].name, places[i]);
   }
 }
 
@@ -239,7 +245,7 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
 }
 
 Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting) {
-  Result<graph::Graph> graph = graph::fromJson(structure.graph, structure.shader);
+  Result<graph::Graph> graph = graph::fromJson(structure.graph, structure.shader, setting.limits);
   if (!graph) return tl::make_unexpected(graph.error());
   if (const Diagnostics found = graph::check(*graph, setting.library); hasError(found)) {
     return tl::make_unexpected(found);
@@ -334,7 +340,7 @@ bool fromBlob(std::string_view bytes, Structure& s) {
     s.lights.counts[kind] = blob.number<uint32_t>();
   });
   renderTerms(s);
-  return blob.complete();
+  return blob.complete() && (s.shader.empty() || isShaderId(s.shader));
 }
 
 }  // namespace lacquer

@@ -42,6 +42,7 @@ struct Setting {
   Key base;  ///< of this build and the node library
   Cache* cache = nullptr;
   StageTimes* times = nullptr;
+  Limits limits = {};
 };
 
 /// The address of a graph without what belongs to one material: names, JSON pointers, texture indices and,

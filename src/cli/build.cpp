@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/streams.h"
+
 namespace lacquer::cli {
 
 namespace {
@@ -19,31 +21,39 @@ Strings graphCommand(const std::string& program, const std::string& folder, cons
   if (options.spirv_route == SpirvRoute::Glslang) add({"--spirv-from", "glslang"});
   if (options.debug) add({"--debug"});
   if (!options.validate) add({"--no-validate"});
+  if (!options.sync) add({"--no-sync"});
+  for (const std::string& limit : options.limits) add({"--limit", limit});
   for (const std::string& nodes : options.node_directories) add({"--nodes", nodes});
   return words;
 }
 
 }  // namespace
 
+void addLimit(CLI::App& app, Options& options) {
+  app.add_option(
+         "--limit", options.limits,
+         "NAME=NUMBER: what an input may be at most, such as images=1G (docs/security.md; may be repeated)")
+      ->allow_extra_args(false);
+}
+
 void printTimes(const Report& report, double wall) {
   double total = 0;
   for (const auto& [stage, seconds] : report.times) {
-    fmt::print(stderr, "{:<20} {:>10.3f} ms\n", stage, seconds * 1e3);
+    say("{:<20} {:>10.3f} ms\n", stage, seconds * 1e3);
     total += seconds;
   }
-  fmt::print(stderr, "{:<20} {:>10.3f} ms\n{:<20} {:>10.3f} ms\n", "all threads", total * 1e3, "wall clock",
-             wall * 1e3);
-  fmt::print(stderr, "{} shaders made, {} from the cache, {} files written\n", report.made,
-             report.shaders.size() - report.made, report.written);
+  say("{:<20} {:>10.3f} ms\n{:<20} {:>10.3f} ms\n", "all threads", total * 1e3, "wall clock", wall * 1e3);
+  say("{} shaders made, {} from the cache, {} files written\n", report.made,
+      report.shaders.size() - report.made, report.written);
 }
 
 ProgressLine::~ProgressLine() {
-  if (open_) fmt::print(stderr, "\n");
+  if (open_) say("\n");
 }
 
 void ProgressLine::operator()(size_t done, size_t known) {
   if (!shown_) return;
-  fmt::print(stderr, "\r{}/{} {}", done, known, what_);
+  say("\r{}/{} {}", done, known, what_);
   open_ = true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/streams.h"
 #include "cli/table.h"
 #include "lacquer.h"
 
@@ -21,7 +22,7 @@ CLI::App* addDfg(CLI::App& app, DfgFlags& flags) {
 int runDfg(const DfgFlags& flags) {
   Messages messages;
   const bool written = writeEnvironmentDfg(flags.output, flags.size, messages);
-  for (const Message& message : messages) fmt::print(stderr, "{}\n", printable(message.text));
+  print(messages, true);
   return written ? 0 : 1;
 }
 

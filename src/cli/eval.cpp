@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iostream>
-#include <iterator>
-
+#include "cli/build.h"
+#include "cli/streams.h"
 #include "cli/table.h"
 
 namespace lacquer::cli {
@@ -50,6 +48,10 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
   verb->add_flag("--permissive", flags.options.permissive,
                  "drop an extension that must not be there instead of failing");
   verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files");
+  addLimit(*verb, flags.options);
+  verb->add_option("--allow", flags.options.allow,
+                   "a folder in which images may lie, beside the file's own (may be repeated)")
+      ->allow_extra_args(false);
   return verb;
 }
 
@@ -62,37 +64,18 @@ Engine engineOf(const EvalFlags& flags) {
   return flags.spirv_from == "hlsl" ? Engine::VulkanHlsl : Engine::Vulkan;
 }
 
-bool readAll(const std::string& path, std::string& text) {
-  if (path == "-") {
-    text.assign(std::istreambuf_iterator<char>(std::cin), {});
-    return true;
-  }
-  std::ifstream in(path, std::ios::binary);
-  // A folder opens, but cannot be read.
-  if (!in || in.peek() == std::ifstream::traits_type::eof()) return in.eof() && !in.bad() && in.is_open();
-  text.assign(std::istreambuf_iterator<char>(in), {});
-  return !in.bad();
-}
-
 }  // namespace
 
 int runEval(EvalFlags& flags) {
   flags.options.parameters = flags.params == "baked"  ? Parameters::Baked
                              : flags.params == "spec" ? Parameters::Spec
                                                       : Parameters::Uniform;
-  std::string points;
-  if (!readAll(flags.points, points)) {
-    fmt::print(stderr, "{}: error: the points cannot be read [file-unreadable]\n", flags.points);
-    return 1;
-  }
   flags.options.multiple_scattering = !flags.no_multiple_scattering;
   flags.options.dfg_table = flags.dfg == "table";
   Messages messages;
-  const std::string answer = evaluate(flags.file, flags.material, points, flags.points, engineOf(flags),
+  const std::string answer = evaluate(flags.file, flags.material, {}, flags.points, engineOf(flags),
                                       flags.texels, flags.options, messages);
-  for (const Message& message : messages) {
-    if (message.level != Message::Level::Note) fmt::print(stderr, "{}\n", printable(message.text));
-  }
+  print(messages);
   fmt::print("{}", answer);
   return answer.empty() || hasError(messages) ? 1 : 0;
 }

@@ -1,13 +1,11 @@
 // Flags, calls of the public API, diagnostics; nothing else.
-#include <fmt/color.h>
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <iostream>
+#include <new>
 #include <optional>
 #include <sstream>
 
@@ -17,6 +15,7 @@
 #include "cli/eval.h"
 #include "cli/preview.h"
 #include "cli/prove.h"
+#include "cli/streams.h"
 #include "cli/stress.h"
 #include "cli/table.h"
 #include "lacquer.h"
@@ -25,6 +24,8 @@ namespace {
 
 using lacquer::Messages;
 using lacquer::Options;
+using lacquer::cli::print;
+using lacquer::cli::say;
 
 constexpr int kGood = 0;
 constexpr int kFailed = 1;
@@ -41,18 +42,20 @@ struct Flags {
   std::string output, format = "json", pass, lights = "any", params = "uniform", spirv_from = "direct",
                       dfg = "table";
   bool json = false, no_validate = false, no_ibl = false, no_multiple_scattering = false, quiet = false;
-  bool disassembly = false, time = false, replan = false;
+  bool disassembly = false, time = false, replan = false, no_sync = false;
   std::string ninja;
   std::optional<std::string> material;
   std::vector<std::string> arguments;  ///< the program's own, as given
 };
 
-void print(const Messages& messages) {
-  for (const lacquer::Message& message : messages) {
-    if (message.level == lacquer::Message::Level::Note) continue;
-    fmt::print(stderr, "{}\n", lacquer::cli::printable(message.text));
-  }
-}
+/// CLI11 takes a sign and more digits than there is room for.
+const CLI::Validator kPlainSize(
+    [](const std::string& text) {
+      constexpr size_t kDigits = 19;
+      const size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+      return digits == 0 || digits > kDigits ? "must be a whole number of bytes, such as 500MB" : "";
+    },
+    "");
 
 /// "NAME=on" or "NAME=off", each.
 std::string parseSwitches(const std::vector<std::string>& texts, std::map<std::string, bool, std::less<>>& switches) {
@@ -95,6 +98,7 @@ std::string parseLights(const std::string& text, lacquer::Lights& lights) {
 std::string finish(Flags& flags) {
   Options& options = flags.options;
   options.validate = !flags.no_validate;
+  options.sync = !flags.no_sync;
   options.ibl = !flags.no_ibl;
   options.multiple_scattering = !flags.no_multiple_scattering;
   options.dfg_table = flags.dfg == "table";
@@ -156,6 +160,7 @@ void addShared(CLI::App& app, Flags& flags) {
                "drop an extension that must not be there instead of failing");
   app.add_option("--nodes", flags.options.node_directories, "a folder with more node files (may be repeated)")
       ->allow_extra_args(false);
+  lacquer::cli::addLimit(app, flags.options);
 }
 
 /// What `gen` and `plan` have in common.
@@ -178,7 +183,12 @@ void addGeneration(CLI::App& verb, Flags& flags) {
       ->check(CLI::Range(0, kMostJobs));
   verb.add_option("--cache", flags.options.cache, "a folder that keeps results between runs");
   verb.add_option("--cache-size", flags.options.cache_size, "bytes that it may take, such as 500MB (1 GiB)")
-      ->transform(CLI::AsSizeValue(false));
+      ->transform(CLI::AsSizeValue(false))
+      ->transform(kPlainSize);
+  verb.add_option("--cache-key", flags.options.cache_key,
+                  "a file: entries of the cache count only when they were written with its bytes");
+  verb.add_flag("--no-sync", flags.no_sync,
+                "do not wait for the disk: after a power cut files may be broken");
   verb.add_flag("--time", flags.time, "the time of every stage, on stderr");
   verb.add_flag("-q,--quiet", flags.quiet, "no table, no progress");
   addShared(verb, flags);
@@ -234,12 +244,13 @@ int plan(const Flags& flags) {
                              flags.output, flags.options, messages);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   print(messages);
-  if (!flags.quiet) {
+  const bool good = report.ok && !hasError(messages);
+  if (!flags.quiet && good) {
     fmt::print("{} materials, {} distinct shaders: run ninja -f {}\n", report.materials.size(),
                report.shaders.size(), flags.ninja);
   }
   if (flags.time) lacquer::cli::printTimes(report, wall.count());
-  return report.ok && !hasError(messages) ? kGood : kFailed;
+  return good ? kGood : kFailed;
 }
 
 int merge(const Flags& flags) {
@@ -376,7 +387,7 @@ int run(int argc, char** argv) {
   const auto named = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '\0' && std::none_of(verbs.begin(), verbs.end(), named) &&
       app.get_option_no_throw(argv[1]) == nullptr) {
-    fmt::print(stderr, "lacquer: there is no '{}'; `lacquer --help` lists what there is\n", argv[1]);
+    say("lacquer: there is no '{}'; `lacquer --help` lists what there is\n", argv[1]);
     return kUsage;
   }
   try {
@@ -385,11 +396,11 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? kGood : kUsage;
   }
   if (const std::string wrong = finish(flags); !wrong.empty()) {
-    fmt::print(stderr, "{}\n", wrong);
+    say("{}\n", wrong);
     return kUsage;
   }
   if (*gen_verb && flags.files.empty() && flags.graphs.empty()) {
-    fmt::print(stderr, "gen: name a .gltf or .glb file, or a graph with --graph\n");
+    say("gen: name a .gltf or .glb file, or a graph with --graph\n");
     return kUsage;
   }
   if (*eval_verb) return lacquer::cli::runEval(eval_flags);
@@ -409,14 +420,16 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  lacquer::cli::prepareStreams();
   try {
     const int status = run(argc, argv);
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
-    fmt::print(stderr, "lacquer: the standard output cannot be written\n");
-    return kFailed;
+    say("lacquer: error: the standard output cannot be written [output-unwritable]\n");
+  } catch (const std::bad_alloc&) {
+    say("lacquer: error: there is not enough memory [out-of-memory]\n");
   } catch (const std::exception& error) {
-    // Out of memory, a full pipe: nothing that input alone can cause.
-    fmt::print(stderr, "lacquer: {}\n", error.what());
-    return kFailed;
+    // A full pipe: nothing that input alone can cause.
+    say("lacquer: error: {} [stopped]\n", error.what());
   }
+  return kFailed;
 }

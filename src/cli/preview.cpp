@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/build.h"
+#include "cli/streams.h"
 #include "cli/table.h"
 
 namespace lacquer::cli {
@@ -46,6 +47,10 @@ CLI::App* addPreview(CLI::App& app, PreviewFlags& flags) {
       ->check(CLI::Range(0, 1024));
   verb->add_flag("--json", flags.json, "what was measured, as JSON");
   verb->add_flag("-q,--quiet", flags.quiet, "no table, no progress");
+  addLimit(*verb, flags.options);
+  verb->add_option("--allow", flags.options.allow,
+                   "a folder in which images may lie, beside the file's own (may be repeated)")
+      ->allow_extra_args(false);
   return verb;
 }
 
@@ -85,7 +90,7 @@ int runPreview(PreviewFlags& flags) {
     const auto progress = [&](size_t done, size_t known) { line(done, known); };
     answer = drawPreview(flags.preview, flags.files, flags.materials, flags.options, messages, progress);
   }
-  for (const Message& message : messages) fmt::print(stderr, "{}\n", printable(message.text));
+  print(messages, true);
   if (flags.json) fmt::print("{}", answer);
   if (!answer.empty() && !flags.json && !flags.quiet) printMeasured(answer);
   return answer.empty() || hasError(messages) ? 1 : 0;

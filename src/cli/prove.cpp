@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cli/streams.h"
+#include "cli/table.h"
+
 namespace lacquer::cli {
 
 namespace {
@@ -110,7 +113,7 @@ bool prove(const std::vector<std::string>& files, const std::vector<std::string>
     }
   }
   if (found == 0 && good) {
-    fmt::print(stderr, "prove: no material of that name\n");
+    say("{}: error: no material of that name [no-such-material]\n", printable(files[0]));
     return false;
   }
   return good;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/build.h"
+#include "cli/streams.h"
 #include "cli/table.h"
 
 namespace lacquer::cli {
@@ -32,6 +33,7 @@ CLI::App* addStress(CLI::App& app, StressFlags& flags) {
       ->check(CLI::Range(0, 1024));
   verb->add_flag("--json", flags.json, "as JSON, with a case for each finding");
   verb->add_flag("-q,--quiet", flags.quiet, "no progress, and only what was found");
+  addLimit(*verb, flags.options);
   return verb;
 }
 
@@ -86,9 +88,7 @@ int runStress(StressFlags& flags) {
     const auto progress = [&](size_t done, size_t known) { line(done, known); };
     answer = stressNodes(flags.stress, flags.subjects, flags.options, messages, progress);
   }
-  for (const Message& message : messages) {
-    if (message.level != Message::Level::Note) fmt::print(stderr, "{}\n", printable(message.text));
-  }
+  print(messages);
   if (flags.json) fmt::print("{}", answer);
   if (!answer.empty() && !flags.json) printFound(answer, flags.quiet);
   if (answer.empty() || hasError(messages)) return 1;

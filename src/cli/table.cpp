@@ -1,4 +1,5 @@
 #include "cli/table.h"
+#include "cli/streams.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -179,7 +180,9 @@ bool printNodes(const std::string& text, const std::string& name, bool as_json) 
     if (!name.empty() && !as_json) printNode(node);
   }
   if (name.empty() && as_json) fmt::print("{}\n", all.dump(2));
-  if (!found) fmt::print(stderr, "there is no node '{}'; `lacquer nodes` lists them\n", name);
+  if (!found)
+    say("lacquer: error: there is no node '{}'; `lacquer nodes` lists them [unknown-node]\n",
+        printable(name));
   return found;
 }
 

@@ -81,7 +81,9 @@ std::shared_ptr<const Image> environmentDfgImage() {
     Image image;
     image.width = image.height = kTableSize;
     const std::vector<float> table = environmentDfgTable(kTableSize);
-    for (size_t i = 0; i < table.size(); i += 2) image.texels.push_back({table[i], table[i + 1], 0, 1});
+    Image::Texels<float> texels;
+    for (size_t i = 0; i < table.size(); i += 2) texels.push_back({table[i], table[i + 1], 0, 1});
+    image.texels = std::move(texels);
     return std::make_shared<const Image>(std::move(image));
   }();
   return kImage;

@@ -1,61 +1,147 @@
 #include "eval/image.h"
 
-#include <stb/stb_image.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+
+#include "support/limits.h"
+
+namespace {
+
+/// Bytes that the decoder may take in one piece. A stream that unpacks to more than its image holds is
+/// stopped by it.
+thread_local size_t largest_block = 0;
+
+void* takeBlock(size_t size) { return size <= largest_block ? std::malloc(size) : nullptr; }
+void* growBlock(void* block, size_t size) {
+  return size <= largest_block ? std::realloc(block, size) : nullptr;
+}
+
+}  // namespace
+
+// The two formats of glTF and no other are compiled in.
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
+#define STBI_MALLOC(size) takeBlock(size)
+#define STBI_REALLOC(block, size) growBlock(block, size)
+#define STBI_FREE(block) std::free(block)
+#ifdef __GNUC__
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#endif
+#include <stb/stb_image.h>
+#ifdef __GNUC__
+#pragma GCC diagnostic pop
+#endif
 
 namespace lacquer::eval {
 
 namespace {
 
-/// More than any GPU takes; a larger claim in a file's header must not reserve memory.
-constexpr int kLargest = 32768;
+/// Sides of more than this no GPU takes.
+constexpr int kLongest = 32768;
+/// What the decoder takes beside the pixels: tables, and the head of what it unpacks.
+constexpr size_t kBeside = size_t{1} << 20;
+
+tl::unexpected<Diagnostics> unreadable(const Place& place, std::string message) {
+  return fail("image-unreadable", place, std::move(message), "PNG and JPEG are read");
+}
+
+bool isPngOrJpeg(std::string_view bytes) {
+  return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff");
+}
+
+const stbi_uc* dataOf(std::string_view bytes) { return reinterpret_cast<const stbi_uc*>(bytes.data()); }
+
+template <class Number>
+Result<Image> imageOf(const Number* pixels, int width, int height, const ImageSize& size,
+                      const Place& place) {
+  if (pixels == nullptr)
+    return unreadable(place, fmt::format("the image is damaged: {}", stbi_failure_reason()));
+  if (width != size.width || height != size.height) return unreadable(place, "the image is damaged");
+  Image::Texels<Number> texels(size.pixels());
+  std::memcpy(texels.data(), pixels, texels.size() * sizeof texels[0]);
+  return Image{width, height, std::move(texels)};
+}
 
 struct Free {
   void operator()(void* pixels) const { stbi_image_free(pixels); }
 };
 
-template <class Texel>
-void fill(Image& image, const Texel* pixels) {
-  constexpr float kScale = 1.0F / static_cast<float>(std::numeric_limits<Texel>::max());
-  image.texels.resize(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
-  for (size_t i = 0; i < image.texels.size(); ++i) {
-    for (size_t c = 0; c < 4; ++c) image.texels[i][c] = static_cast<float>(pixels[4 * i + c]) * kScale;
-  }
-}
-
 }  // namespace
 
-Result<Image> decodeImage(std::string_view bytes, const Place& place) {
-  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-  const auto wrong = [&](std::string message) {
-    return fail("image-unreadable", place, std::move(message), "PNG and JPEG are read");
-  };
+std::array<float, 4> Image::at(size_t i) const {
+  return std::visit(
+      [i]<class Number>(const Texels<Number>& all) {
+        if constexpr (std::is_same_v<Number, float>) {
+          return all[i];
+        } else {
+          constexpr float kScale = 1.0F / static_cast<float>(std::numeric_limits<Number>::max());
+          std::array<float, 4> texel{};
+          for (size_t c = 0; c < 4; ++c) texel[c] = static_cast<float>(all[i][c]) * kScale;
+          return texel;
+        }
+      },
+      texels);
+}
+
+Result<ImageSize> sizeOfImage(std::string_view bytes, const Place& place) {
+  if (!isPngOrJpeg(bytes)) return unreadable(place, "this is neither a PNG nor a JPEG");
   if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max()))
-    return wrong("the image is too large");
-  const int size = static_cast<int>(bytes.size());
-  Image image;
+    return unreadable(place, "the image is too large");
+  const int length = static_cast<int>(bytes.size());
+  largest_block = kBeside;
+  ImageSize size;
   int channels = 0;
-  if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0) {
-    return wrong("this is no image, or of no known format");
+  if (stbi_info_from_memory(dataOf(bytes), length, &size.width, &size.height, &channels) == 0 ||
+      size.width < 1 || size.height < 1) {
+    return unreadable(place, "the image is damaged");
   }
-  if (image.width < 1 || image.height < 1 || image.width > kLargest || image.height > kLargest) {
-    return wrong("the image is too large");
+  size.wide = stbi_is_16_bit_from_memory(dataOf(bytes), length) != 0;
+  return size;
+}
+
+Result<Image> decodeImage(std::string_view bytes, uint64_t most, const Place& place) {
+  const Result<ImageSize> size = sizeOfImage(bytes, place);
+  if (!size) return tl::make_unexpected(size.error());
+  if (size->width > kLongest || size->height > kLongest) {
+    return fail("image-too-large", place,
+                fmt::format("the image has {} by {} pixels", size->width, size->height),
+                fmt::format("a side has at most {}", kLongest));
   }
-  if (stbi_is_16_bit_from_memory(data, size) != 0) {
+  if (size->pixels() > most) {
+    return fail("image-too-large", place,
+                fmt::format("the image has {} by {} pixels, more than {}", size->width, size->height, most),
+                raising("image"));
+  }
+  // Four channels, JPEG's blocks at the edges; twice that, for the decoder doubles what it unpacks to.
+  constexpr size_t kBlocks = 64;
+  const size_t numbers =
+      4 * (static_cast<size_t>(size->width) + kBlocks) * (static_cast<size_t>(size->height) + kBlocks);
+  largest_block = 2 * ((size->wide ? 2 : 1) * numbers + bytes.size()) + kBeside;
+  const int length = static_cast<int>(bytes.size());
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  if (size->wide) {
     const std::unique_ptr<stbi_us, Free> pixels(
-        stbi_load_16_from_memory(data, size, &image.width, &image.height, &channels, 4));
-    if (!pixels) return wrong("the image is damaged");
-    fill(image, pixels.get());
-  } else {
-    const std::unique_ptr<stbi_uc, Free> pixels(
-        stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4));
-    if (!pixels) return wrong("the image is damaged");
-    fill(image, pixels.get());
+        stbi_load_16_from_memory(dataOf(bytes), length, &width, &height, &channels, 4));
+    return imageOf(pixels.get(), width, height, *size, place);
   }
-  return image;
+  const std::unique_ptr<stbi_uc, Free> pixels(
+      stbi_load_from_memory(dataOf(bytes), length, &width, &height, &channels, 4));
+  return imageOf(pixels.get(), width, height, *size, place);
 }
 
 double decodeSrgb(double encoded) {
@@ -107,7 +193,7 @@ private:
   std::array<double, 4> texel(double x, double y) const {
     const size_t column = wrapped(x, image_->width, lookup_.s);
     const size_t row = wrapped(y, image_->height, lookup_.t);
-    const std::array<float, 4>& stored = image_->texels[row * static_cast<size_t>(image_->width) + column];
+    const std::array<float, 4> stored = image_->at(row * static_cast<size_t>(image_->width) + column);
     std::array<double, 4> result{};
     for (size_t i = 0; i < 4; ++i) {
       result[i] = static_cast<double>(stored[i]);

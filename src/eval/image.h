@@ -1,9 +1,11 @@
 // Images on the CPU: decoded, and looked up as a sampler does at the first mip level.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "eval/bindings.h"
@@ -11,16 +13,32 @@
 
 namespace lacquer::eval {
 
-/// RGBA as stored, in [0, 1], row by row from the top. Grey images have equal RGB, images without alpha
-/// have 1.
+/// RGBA, row by row from the top, in the numbers of the file: whole ones of 8 or 16 bits stand for [0, 1].
+/// Grey images have equal RGB, images without alpha have 1.
 struct Image {
+  template <class Number>
+  using Texels = std::vector<std::array<Number, 4>>;
+
   int width = 0, height = 0;
-  std::vector<std::array<float, 4>> texels;
+  std::variant<Texels<float>, Texels<uint8_t>, Texels<uint16_t>> texels;
+
+  size_t size() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+  /// What a texel's numbers stand for. `i` is below size().
+  std::array<float, 4> at(size_t i) const;
 };
 
-/// Decodes PNG, JPEG and what else stb_image reads, with 8 or 16 bits per channel. Errors:
-/// "image-unreadable".
-Result<Image> decodeImage(std::string_view bytes, const Place& place);
+struct ImageSize {
+  int width = 0, height = 0;
+  bool wide = false;  ///< 16 bits per channel
+  uint64_t pixels() const { return static_cast<uint64_t>(width) * static_cast<uint64_t>(height); }
+};
+
+/// What the head of a PNG or a JPEG claims; no other format is looked at. Errors: "image-unreadable".
+Result<ImageSize> sizeOfImage(std::string_view bytes, const Place& place);
+
+/// Decodes a PNG or a JPEG of at most `most` pixels. Memory is taken for the pixels that the head claims, and
+/// no more, whatever follows. Errors: "image-unreadable", "image-too-large".
+Result<Image> decodeImage(std::string_view bytes, uint64_t most, const Place& place);
 
 enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
 

@@ -149,7 +149,7 @@ private:
       case ir::InputKind::Varying: return load(input);
       case ir::InputKind::LightIndex: return {emit({Step::LightIndex}, false)};
       case ir::InputKind::Texture:
-        if (!bindings_.textures.contains(input.name)) {
+        if (!bindings_.textures.contains(module_.textures[input.field].name)) {
           fail("unbound-input", fmt::format("the texture '{}' has no texels", input.name),
                "bind a sampler of that name");
         }
@@ -191,8 +191,9 @@ private:
 
   std::vector<Register> texture(const ir::Value& value) {
     const ir::Input& slot = dag_.inputOf(value.args[0]);
-    Instruction instruction{Step::Texture, value.op, 0, -1,
-                            static_cast<uint32_t>(indexOf(program_.textures, slot.name))};
+    Instruction instruction{
+        Step::Texture, value.op, 0, -1,
+        static_cast<uint32_t>(indexOf(program_.textures, module_.textures[slot.field].name))};
     const std::vector<Register>& coordinate = of(value.args[1]);
     std::copy(coordinate.begin(), coordinate.end(), instruction.args.begin());
     if (value.op == Op::TextureLod) instruction.args[3] = of(value.args[2])[0];

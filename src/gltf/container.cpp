@@ -4,12 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <optional>
-#include <system_error>
 
 namespace lacquer::gltf {
 
@@ -44,27 +40,6 @@ std::optional<std::string> badChunk(std::string_view glb) {
 }
 
 }  // namespace
-
-Result<std::string> readBytes(const std::string& path) {
-  const Place place{path, 0, 0, {}};
-  std::error_code code;
-  const std::filesystem::file_status status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) return fail("cannot-read", place, "there is no such file");
-  if (std::filesystem::is_directory(status))
-    return fail("cannot-read", place, "this is a folder, not a file");
-  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status)) {
-    return fail("cannot-read", place, "this is neither a file nor a pipe");
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return fail("cannot-read", place, "the file cannot be opened");
-  std::string bytes;
-  std::array<char, 1 << 16> block;
-  while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
-    bytes.append(block.data(), static_cast<size_t>(stream.gcount()));
-  }
-  if (stream.bad()) return fail("cannot-read", place, "the file cannot be read");
-  return bytes;
-}
 
 Result<std::string_view> jsonText(std::string_view bytes, const std::string& file) {
   const Place place{file, 0, 0, {}};

@@ -5,11 +5,12 @@
 #include <string_view>
 
 #include "support/diagnostic.h"
+#include "support/file.h"
 
 namespace lacquer::gltf {
 
-/// The bytes of a file. Fails on what is no file, such as a folder or an endless device.
-Result<std::string> readBytes(const std::string& path);
+/// As readFile().
+inline Result<std::string> readBytes(const std::string& path) { return readFile(path); }
 
 /// The JSON in `bytes`, which are a .gltf or a .glb (told apart by the GLB's magic, not by a file name). The
 /// view is into `bytes`. Fails when a GLB is truncated or its chunks do not fit.

@@ -15,8 +15,8 @@ using json::Path;
 using json::Report;
 
 /// As json::parse().
-inline Result<Json> parseJson(std::string_view text, const std::string& file) {
-  return json::parse(text, file);
+inline Result<Json> parseJson(std::string_view text, const std::string& file, const Limits& limits = {}) {
+  return json::parse(text, file, limits);
 }
 
 }  // namespace lacquer::gltf

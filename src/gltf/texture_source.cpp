@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "gltf/container.h"
+#include "support/contain.h"
+#include "support/file.h"
 #include "support/text.h"
 
 namespace lacquer::gltf {
@@ -101,15 +103,16 @@ const Json* element(const Json& root, std::string_view array, std::optional<size
 
 }  // namespace
 
-Result<TextureFile> TextureFile::open(const std::string& path) {
-  const Result<std::string> bytes = readBytes(path);
+Result<TextureFile> TextureFile::open(const std::string& path, const TextureAccess& access) {
+  const Result<std::string> bytes = readFile(path, access.limits.file);
   if (!bytes) return tl::make_unexpected(bytes.error());
   const Result<std::string_view> text = jsonText(*bytes, path);
   if (!text) return tl::make_unexpected(text.error());
-  Result<Json> root = parseJson(*text, path);
+  Result<Json> root = parseJson(*text, path, access.limits);
   if (!root) return tl::make_unexpected(std::move(root.error()));
   TextureFile file;
   file.path_ = path;
+  file.access_ = access;
   file.binary_ = binaryChunk(*bytes);
   file.root_ = std::move(*root);
   return file;
@@ -129,14 +132,21 @@ Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& p
     if (!bytes) return missing("the data URI cannot be decoded", "it must be base64");
     return *bytes;
   }
-  const std::filesystem::path relative = percentDecoded(uri);
-  if (hasScheme(uri) || relative.is_absolute()) {
+  const std::string relative = percentDecoded(uri);
+  if (hasScheme(uri) || std::filesystem::path(relative).is_absolute() ||
+      relative.find('\0') != std::string::npos) {
     return missing(fmt::format("{} is no relative path", quote(uri)),
                    "images are looked for beside the file");
   }
-  const std::string file = (std::filesystem::path(path_).parent_path() / relative).string();
-  Result<std::string> bytes = readBytes(file);
-  if (!bytes) return missing(fmt::format("{} cannot be read: {}", quote(file), bytes.error()[0].message), {});
+  const std::string folder = std::filesystem::path(path_).parent_path().string();
+  const std::optional<std::string> file = resolveBelow(folder, relative, access_.allow);
+  if (!file) {
+    return fail("image-outside", place, fmt::format("{} leads out of the file's folder", quote(uri)),
+                "--allow DIR lets images lie in another folder, too");
+  }
+  Result<std::string> bytes = readFile(*file, access_.limits.file);
+  if (bytes) read_.push_back(*file);
+  if (!bytes) return missing(fmt::format("{} cannot be read: {}", quote(uri), bytes.error()[0].message), {});
   return bytes;
 }
 
@@ -178,7 +188,8 @@ Result<TextureSource> TextureFile::texture(int index) const {
   const std::optional<size_t> image_index = wholeMember(*texture, "source");
   const Json* image = element(root_, "images", image_index);
   if (image == nullptr) return fail("image-missing", place, "the texture has no image");
-  source.place = {path_, 0, 0, fmt::format("/images/{}", *image_index)};
+  source.image = *image_index;
+  source.place = {path_, 0, 0, fmt::format("/images/{}", source.image)};
   if (const Json* sampler = element(root_, "samplers", wholeMember(*texture, "sampler"))) {
     const auto number = [&](std::string_view key, int& to) {
       const std::optional<size_t> value = wholeMember(*sampler, key);
@@ -188,10 +199,11 @@ Result<TextureSource> TextureFile::texture(int index) const {
     number("wrapT", source.wrapT);
     number("magFilter", source.magFilter);
   }
-  Result<std::string> bytes = imageBytes(*image, source.place);
-  if (!bytes) return tl::make_unexpected(std::move(bytes.error()));
-  source.bytes = std::move(*bytes);
   return source;
+}
+
+Result<std::string> TextureFile::image(const TextureSource& source) const {
+  return imageBytes(*element(root_, "images", source.image), source.place);
 }
 
 }  // namespace lacquer::gltf

@@ -2,30 +2,44 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "gltf/json.h"
 #include "support/diagnostic.h"
+#include "support/limits.h"
 
 namespace lacquer::gltf {
 
-/// A texture's sampler as glTF has it (OpenGL's numbers), with glTF's defaults, and its encoded image.
+/// A texture's sampler as glTF has it (OpenGL's numbers), with glTF's defaults, and its image.
 struct TextureSource {
   int wrapS = 10497, wrapT = 10497;  ///< 33071 clamp, 33648 mirror, 10497 repeat
   int magFilter = 9729;              ///< 9728 nearest, 9729 linear
-  std::string bytes;                 ///< PNG or JPEG
+  size_t image = 0;                  ///< index
   Place place;                       ///< of the image
+};
+
+/// Where a file's images may come from.
+struct TextureAccess {
+  Limits limits;
+  std::vector<std::string> allow;  ///< folders beside the file's own
 };
 
 /// A file's JSON and its binary chunk, opened to look for textures.
 class TextureFile {
 public:
   /// Reads a .gltf or .glb.
-  static Result<TextureFile> open(const std::string& path);
+  static Result<TextureFile> open(const std::string& path, const TextureAccess& access);
 
-  /// The texture of that index. Images are files beside the glTF (by a relative URI), data URIs or buffer
-  /// views. Errors: "image-missing" when there is none or it cannot be read, "wrong-type" and the like for
-  /// broken JSON.
+  /// The texture of that index. Errors: "image-missing".
   Result<TextureSource> texture(int index) const;
+
+  /// Its image, encoded. Images are files in the glTF's folder or below it (by a relative URI), data
+  /// URIs or buffer views. Errors: "image-missing" when there is none or it cannot be read, "image-outside"
+  /// for a path that leads elsewhere, which nobody looks at.
+  Result<std::string> image(const TextureSource& source) const;
+
+  /// Those that image() has read, as paths.
+  const std::vector<std::string>& filesRead() const { return read_; }
 
 private:
   Result<std::string> uriBytes(const std::string& uri, const Place& place) const;
@@ -33,6 +47,8 @@ private:
   Result<std::string> viewBytes(size_t index, const Place& place) const;
 
   std::string path_, binary_;
+  TextureAccess access_;
+  mutable std::vector<std::string> read_;
   Json root_;
 };
 

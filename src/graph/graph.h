@@ -14,6 +14,7 @@
 #include "ir/module.h"
 #include "lang/library.h"
 #include "support/diagnostic.h"
+#include "support/limits.h"
 
 namespace lacquer::graph {
 
@@ -119,7 +120,7 @@ Diagnostics check(Graph& graph, const lang::Library& library);
 std::string toJson(const Graph& graph);
 
 /// Reads the JSON form; `name` stands for the file in diagnostics. Does not check() it.
-Result<Graph> fromJson(std::string_view text, const std::string& name);
+Result<Graph> fromJson(std::string_view text, const std::string& name, const Limits& limits = {});
 
 /// One source in its JSON form, as an edit of a graph is given.
 Result<Source> sourceFromJson(std::string_view text);

@@ -90,8 +90,8 @@ private:
 };
 
 /// The tree of a text without duplicate keys.
-Result<Json> parse(std::string_view text, const std::string& file) {
-  Result<Json> json = json::parse(text, file);
+Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits) {
+  Result<Json> json = json::parse(text, file, limits);
   if (!json) {
     for (Diagnostic& one : json.error()) {
       if (one.code == "json-too-deep") one.help = "a graph needs five levels";
@@ -476,9 +476,16 @@ Graph Reader::graph(const Json& json) {
 
 }  // namespace
 
-Result<Graph> fromJson(std::string_view text, const std::string& name) {
-  const Result<Json> json = parse(text, name);
+Result<Graph> fromJson(std::string_view text, const std::string& name, const Limits& limits) {
+  const Result<Json> json = parse(text, name, limits);
   if (!json) return tl::make_unexpected(json.error());
+  for (const std::string_view list : {"nodes", "parameters", "textures"}) {
+    const Json* items = json::member(*json, list);
+    if (items == nullptr || items->size() <= limits.nodes) continue;
+    return fail("graph-too-large", {name, 0, 0, fmt::format("/{}", list)},
+                fmt::format("the graph has {} {}, more than {}", items->size(), list, limits.nodes),
+                raising("nodes"));
+  }
   Diagnostics wrong;
   Graph graph = Reader(name, wrong).graph(*json);
   if (wrong.empty()) return graph;
@@ -488,7 +495,7 @@ Result<Graph> fromJson(std::string_view text, const std::string& name) {
 
 Result<Source> sourceFromJson(std::string_view text) {
   const std::string file;
-  const Result<Json> json = parse(text, file);
+  const Result<Json> json = parse(text, file, {});
   if (!json) return tl::make_unexpected(json.error());
   Diagnostics wrong;
   const std::optional<Source> source = Reader(file, wrong).source(*json, Path());

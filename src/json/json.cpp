@@ -13,11 +13,9 @@ namespace lacquer::json {
 
 namespace {
 
-// No glTF nests deeper than a dozen levels outside `extras`. The tree is copied and written recursively.
-constexpr size_t kDeepest = 512;
-
-/// Offset of the bracket that opens one level too many, npos when there is none.
-size_t tooDeep(std::string_view text) {
+/// Offset of the bracket that opens one level too many, npos when there is none. No glTF nests deeper than a
+/// dozen levels outside `extras`. The tree is copied and written recursively.
+size_t tooDeep(std::string_view text, size_t deepest) {
   size_t depth = 0;
   bool in_string = false;
   for (size_t i = 0; i < text.size(); ++i) {
@@ -28,7 +26,7 @@ size_t tooDeep(std::string_view text) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '[' || c == '{') {
-      if (++depth > kDeepest) return i;
+      if (++depth > deepest) return i;
     } else if ((c == ']' || c == '}') && depth > 0) {
       --depth;
     }
@@ -40,6 +38,8 @@ size_t tooDeep(std::string_view text) {
 /// before it, which takes quadratic time in a large object; here doubles are dropped once, at the end.
 class TreeBuilder : public nlohmann::json_sax<Json> {
 public:
+  explicit TreeBuilder(uint64_t most) : most_(most) {}
+
   bool null() override { return add(nullptr); }
   bool boolean(bool value) override { return add(value); }
   bool number_integer(number_integer_t value) override { return add(value); }
@@ -71,6 +71,8 @@ public:
     return false;
   }
 
+  bool full() const { return values_ > most_; }
+
   Json root;
   int errorId = 0;  ///< the library's number of the error
   std::string errorText;
@@ -78,13 +80,18 @@ public:
   size_t errorPosition = 0;  ///< bytes read until then
 
 private:
+  /// False when there is no room for one more value, which ends the reading.
+  bool count() { return ++values_ <= most_; }
+
   template <class T>
   bool add(T&& value) {
+    if (!count()) return false;
     place(Json(std::forward<T>(value)));
     return true;
   }
 
   bool open(Json container) {
+    if (!count()) return false;
     open_.push_back(place(std::move(container)));
     return true;
   }
@@ -130,6 +137,7 @@ private:
 
   std::vector<Json*> open_;
   std::string key_;
+  uint64_t most_, values_ = 0;
 };
 
 /// As locate(), but shows only a window of a long line (files without line breaks are common) and nothing
@@ -205,19 +213,26 @@ Diagnostic syntaxError(const TreeBuilder& builder, std::string_view text, const 
 
 }  // namespace
 
-Result<Json> parse(std::string_view text, const std::string& file) {
-  if (const size_t offset = tooDeep(text); offset != std::string_view::npos) {
-    Diagnostic diagnostic{"json-too-deep", Severity::Error, {file, 0, 0, {}}, {}, {}, {}};
-    diagnostic.message = fmt::format("nested more than {} levels deep", kDeepest);
-    diagnostic.help = "no glTF needs that: the file is damaged or made to do harm";
+Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits) {
+  const Place place{file, 0, 0, {}};
+  if (text.size() > limits.json) {
+    return fail("json-too-large", place, fmt::format("its JSON has more than {} bytes", limits.json),
+                raising("json"));
+  }
+  if (const size_t offset = tooDeep(text, limits.depth); offset != std::string_view::npos) {
+    Diagnostic diagnostic{"json-too-deep", Severity::Error, place, {}, {}, {}};
+    diagnostic.message = fmt::format("nested more than {} levels deep", limits.depth);
+    diagnostic.help = "nothing needs that: the file is damaged or made to do harm";
     locateInWindow(diagnostic, text, offset, 1);
     return tl::make_unexpected(Diagnostics{diagnostic});
   }
-  TreeBuilder builder;
-  if (!Json::sax_parse(text.begin(), text.end(), &builder)) {
-    return tl::make_unexpected(Diagnostics{syntaxError(builder, text, file)});
+  TreeBuilder builder(limits.values);
+  if (Json::sax_parse(text.begin(), text.end(), &builder)) return std::move(builder.root);
+  if (builder.full()) {
+    return fail("json-too-many", place, fmt::format("its JSON has more than {} values", limits.values),
+                raising("values"));
   }
-  return std::move(builder.root);
+  return tl::make_unexpected(Diagnostics{syntaxError(builder, text, file)});
 }
 
 const Json* member(const Json& object, std::string_view key) {

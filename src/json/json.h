@@ -1,5 +1,5 @@
-// The file's JSON as a tree that keeps the order of its members (diagnostics come in document order), and the
-// little that readers ask of it.
+// The one reader of JSON: a tree that keeps the order of its members (diagnostics come in document order),
+// with limits, and the little that readers ask of it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "support/diagnostic.h"
+#include "support/limits.h"
 
 namespace lacquer::json {
 
@@ -14,8 +15,9 @@ using Json = nlohmann::ordered_json;
 
 /// Parses strict JSON (a byte order mark is skipped; of members with the same name the last one counts).
 /// Errors carry line, column and the offending text, cut to a window where the line is long. Takes time and
-/// memory in proportion to the text, whatever it holds, and no stack.
-Result<Json> parse(std::string_view text, const std::string& file);
+/// memory in proportion to the text, whatever it holds, and no stack. Of the limits those of JSON hold:
+/// "json-too-large", "json-too-many", "json-too-deep".
+Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits = {});
 
 /// The member of an object; nullptr when there is none or when it is not an object.
 const Json* member(const Json& object, std::string_view key);

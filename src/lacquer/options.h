@@ -102,7 +102,7 @@ struct Options {
   bool multiple_scattering = true;  ///< compensate it for multiple scattering
   bool dfg_table = true;            ///< read the texture environment_dfg (docs/bindings.md); else a fit
   bool decode_srgb = false;         ///< decode colour textures in the shader, not by their format
-  bool permissive = false;          ///< exclusion violations drop the coat with a warning instead of failing
+  bool permissive = false;          ///< exclusion violations drop the extension with a warning instead of failing
   bool validate = true;             ///< compile and validate everything with glslang and SPIRV-Tools
   bool unused = false;              ///< also materials that no primitive uses, as with kUnusedAttributes
   SpirvRoute spirv_route = SpirvRoute::Direct;
@@ -115,6 +115,10 @@ struct Options {
   std::string
       depfile;  ///< of generate(), generateGraphs(): a file for Make and Ninja, what the manifest depends on
   std::string shard;  ///< of the same: the shaders' part of the manifest alone, written here, for merge()
+  Strings limits;         ///< "images=1G", each: what an input may be at most (docs/security.md)
+  Strings allow;          ///< folders in which images may lie, beside the glTF file's own
+  std::string cache_key;  ///< a file: what was not written to the cache with its bytes is not there
+  bool sync = true;       ///< what is written is on the disk before it gets its name
 };
 
 /// The terms that Options::live can keep, of the options' library and profile: "coat.darkening", in alphabetical order.

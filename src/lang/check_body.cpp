@@ -16,6 +16,7 @@ namespace {
 constexpr uint64_t kMostTrips = 1024;
 constexpr uint64_t kMostWeight = 1U << 20U;
 constexpr uint32_t kMostHeight = 4096;
+constexpr size_t kMostNames = 4096;  ///< looked through for each name
 
 }  // namespace
 
@@ -77,6 +78,11 @@ void Checker::declare(Name name) {
   if (name.name == "PI" || (found && found->kind == DeclKind::Const)) {
     reporter_.error("shadowing", name.span, fmt::format("'{}' is a constant", name.name),
                     "give this another name");
+  }
+  if (names_.size() == kMostNames) {
+    reporter_.error("node-too-large", name.span, fmt::format("more than {} names are in scope", kMostNames),
+                    "write several nodes");
+    return;
   }
   names_.push_back(std::move(name));
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "support/text.h"
+
 namespace lacquer::lang {
 
 std::string_view trim(std::string_view text) {
@@ -15,6 +17,8 @@ std::string_view trim(std::string_view text) {
 }
 
 namespace {
+
+constexpr uint32_t kLongestName = 255;
 
 /// The length of the symbol that the text begins with; 0 for none.
 uint32_t symbolLength(std::string_view text) {
@@ -109,7 +113,12 @@ private:
   void name() {
     uint32_t length = 1;
     while (isNamePart(look(length))) ++length;
+    const Span span{at_, length};
     add(Token::Kind::Name, length);
+    if (length <= kLongestName) return;
+    reporter_.error("name-too-long", span, fmt::format("this name has {} characters", length),
+                    fmt::format("a name has at most {}", kLongestName));
+    tokens_.back().text = tokens_.back().text.substr(0, kLongestName);  // for the messages to come
   }
 
   void number() {
@@ -131,9 +140,10 @@ private:
     while (isNamePart(look(tail))) ++tail;
     if (tail != length) {
       const std::string_view digits = text_.substr(at_, length);
-      reporter_.error("invalid-number", {at_, tail},
-                      fmt::format("'{}' is not a number", text_.substr(at_, tail)),
-                      fmt::format("numbers have neither suffix nor base; perhaps '{}' is meant", digits));
+      reporter_.error(
+          "invalid-number", {at_, tail},
+          fmt::format("'{}' is not a number", printable(text_.substr(at_, tail))),
+          fmt::format("numbers have neither suffix nor base; perhaps '{}' is meant", printable(digits)));
     }
     const std::string_view digits = text_.substr(at_, length);
     add(Token::Kind::Number, tail);
@@ -149,7 +159,8 @@ private:
       token.number = 0;
     } else if (parsed.ec != std::errc{} || token.number > std::numeric_limits<float>::max() ||
                static_cast<float>(token.number) == 0) {
-      reporter_.error("number-out-of-range", token.span, fmt::format("'{}' does not fit a float", digits),
+      reporter_.error("number-out-of-range", token.span,
+                      fmt::format("'{}' does not fit a float", printable(digits)),
                       "numbers lie between 1.4e-45 and 3.4e38");
       token.number = 1;
     }

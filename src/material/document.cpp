@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gltf/container.h"
+#include "support/file.h"
 #include "json/json.h"
 #include "json/path.h"
 #include "json/report.h"
@@ -106,7 +107,7 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
                               const ReadOptions& options) {
   const Result<std::string_view> text = gltf::jsonText(bytes, name);
   if (!text) return tl::make_unexpected(text.error());
-  Result<Json> root = json::parse(*text, name);
+  Result<Json> root = json::parse(*text, name, options.limits);
   if (!root) {
     if (text->data() != bytes.data()) {
       for (Diagnostic& one : root.error()) one.message += " (in the GLB's JSON chunk)";
@@ -146,7 +147,7 @@ Result<Document> guarded(const std::string& name, Read read) {
 
 Result<Document> read(const std::string& path, const Schema& schema, const ReadOptions& options) {
   return guarded(path, [&]() -> Result<Document> {
-    const Result<std::string> bytes = gltf::readBytes(path);
+    const Result<std::string> bytes = readFile(path, options.limits.file);
     if (!bytes) return tl::make_unexpected(bytes.error());
     return readDocument(*bytes, path, schema, options);
   });

@@ -8,6 +8,7 @@
 #include "gltf/facts.h"
 #include "ir/dag.h"
 #include "material/schema.h"
+#include "support/limits.h"
 
 namespace lacquer::material {
 
@@ -41,6 +42,7 @@ struct Document : gltf::Scene {
 
 struct ReadOptions {
   bool permissive = false;  ///< exclusion violations become warnings and the extension is dropped
+  Limits limits = {};
 };
 
 /// Reads a .gltf or .glb file. Buffers and images need not exist. Errors: what makes the whole file unusable

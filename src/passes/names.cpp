@@ -12,244 +12,44 @@ namespace lacquer::passes {
 
 namespace {
 
-/// Keywords, types and built-in functions of the targets that could be taken for a local's name. Sorted.
-constexpr auto kReserved = std::to_array<std::string_view>({"abs",
-                                                            "acos",
-                                                            "active",
-                                                            "alignas",
-                                                            "alignof",
-                                                            "all",
-                                                            "and",
-                                                            "and_eq",
-                                                            "any",
-                                                            "asin",
-                                                            "asm",
-                                                            "atan",
-                                                            "atan2",
-                                                            "atomic_uint",
-                                                            "attribute",
-                                                            "auto",
-                                                            "bitand",
-                                                            "bitor",
-                                                            "bool",
-                                                            "break",
-                                                            "buffer",
-                                                            "case",
-                                                            "cast",
-                                                            "catch",
-                                                            "cbuffer",
-                                                            "ceil",
-                                                            "centroid",
-                                                            "char",
-                                                            "char16_t",
-                                                            "char32_t",
-                                                            "clamp",
-                                                            "class",
-                                                            "clip",
-                                                            "coherent",
-                                                            "column_major",
-                                                            "common",
-                                                            "compile",
-                                                            "compl",
-                                                            "const",
-                                                            "const_cast",
-                                                            "constexpr",
-                                                            "continue",
-                                                            "cos",
-                                                            "cosh",
-                                                            "cross",
-                                                            "dFdx",
-                                                            "dFdy",
-                                                            "ddx",
-                                                            "ddy",
-                                                            "decltype",
-                                                            "default",
-                                                            "degrees",
-                                                            "delete",
-                                                            "determinant",
-                                                            "discard",
-                                                            "distance",
-                                                            "do",
-                                                            "dot",
-                                                            "double",
-                                                            "dst",
-                                                            "dynamic_cast",
-                                                            "else",
-                                                            "enum",
-                                                            "equal",
-                                                            "exp",
-                                                            "exp2",
-                                                            "explicit",
-                                                            "export",
-                                                            "extern",
-                                                            "external",
-                                                            "false",
-                                                            "filter",
-                                                            "fixed",
-                                                            "flat",
-                                                            "float",
-                                                            "float2",
-                                                            "float3",
-                                                            "float4",
-                                                            "floor",
-                                                            "fma",
-                                                            "fmod",
-                                                            "for",
-                                                            "frac",
-                                                            "fract",
-                                                            "friend",
-                                                            "fwidth",
-                                                            "goto",
-                                                            "groupshared",
-                                                            "half",
-                                                            "highp",
-                                                            "hvec2",
-                                                            "if",
-                                                            "image",
-                                                            "in",
-                                                            "inline",
-                                                            "inout",
-                                                            "input",
-                                                            "int",
-                                                            "interface",
-                                                            "invariant",
-                                                            "inverse",
-                                                            "inversesqrt",
-                                                            "isampler2D",
-                                                            "isinf",
-                                                            "isnan",
-                                                            "layout",
-                                                            "length",
-                                                            "lerp",
-                                                            "less",
-                                                            "line",
-                                                            "linear",
-                                                            "lit",
-                                                            "log",
-                                                            "log10",
-                                                            "log2",
-                                                            "long",
-                                                            "lowp",
-                                                            "mad",
-                                                            "main",
-                                                            "mat2",
-                                                            "mat3",
-                                                            "mat4",
-                                                            "matrix",
-                                                            "max",
-                                                            "mediump",
-                                                            "min",
-                                                            "mix",
-                                                            "mod",
-                                                            "modf",
-                                                            "mul",
-                                                            "mutable",
-                                                            "namespace",
-                                                            "new",
-                                                            "noexcept",
-                                                            "noinline",
-                                                            "noise",
-                                                            "noise1",
-                                                            "noperspective",
-                                                            "normalize",
-                                                            "not",
-                                                            "not_eq",
-                                                            "nullptr",
-                                                            "operator",
-                                                            "or",
-                                                            "or_eq",
-                                                            "out",
-                                                            "output",
-                                                            "packoffset",
-                                                            "partition",
-                                                            "pass",
-                                                            "patch",
-                                                            "pixelfragment",
-                                                            "point",
-                                                            "pow",
-                                                            "precise",
-                                                            "precision",
-                                                            "private",
-                                                            "protected",
-                                                            "public",
-                                                            "radians",
-                                                            "rcp",
-                                                            "readonly",
-                                                            "reflect",
-                                                            "refract",
-                                                            "register",
-                                                            "reinterpret_cast",
-                                                            "resource",
-                                                            "restrict",
-                                                            "return",
-                                                            "round",
-                                                            "row_major",
-                                                            "rsqrt",
-                                                            "sample",
-                                                            "sampler",
-                                                            "sampler2D",
-                                                            "samplerCube",
-                                                            "saturate",
-                                                            "shared",
-                                                            "short",
-                                                            "sign",
-                                                            "signed",
-                                                            "sin",
-                                                            "sincos",
-                                                            "sinh",
-                                                            "sizeof",
-                                                            "smooth",
-                                                            "smoothstep",
-                                                            "sqrt",
-                                                            "stateblock",
-                                                            "static",
-                                                            "static_assert",
-                                                            "static_cast",
-                                                            "step",
-                                                            "string",
-                                                            "struct",
-                                                            "subroutine",
-                                                            "superp",
-                                                            "switch",
-                                                            "tan",
-                                                            "tanh",
-                                                            "tbuffer",
-                                                            "technique",
-                                                            "template",
-                                                            "tex2D",
-                                                            "texCUBE",
-                                                            "texture",
-                                                            "textureLod",
-                                                            "this",
-                                                            "thread_local",
-                                                            "throw",
-                                                            "transpose",
-                                                            "triangle",
-                                                            "true",
-                                                            "trunc",
-                                                            "try",
-                                                            "typedef",
-                                                            "typeid",
-                                                            "typename",
-                                                            "uint",
-                                                            "uniform",
-                                                            "union",
-                                                            "unsigned",
-                                                            "using",
-                                                            "varying",
-                                                            "vec2",
-                                                            "vec3",
-                                                            "vec4",
-                                                            "vector",
-                                                            "virtual",
-                                                            "void",
-                                                            "volatile",
-                                                            "wchar_t",
-                                                            "while",
-                                                            "writeonly",
-                                                            "xor",
-                                                            "xor_eq"});
-static_assert(std::is_sorted(kReserved.begin(), kReserved.end()));
+/// Keywords, types, built-in functions and macros of the targets that could be taken for a local's name and
+/// follow no rule below.
+constexpr std::string_view kReserved =
+    "EOF FALSE HUGE_VAL INFINITY M_E M_PI NAN NULL TRUE abort abs acos acosh active alignas alignof all and "
+    "and_eq any asdouble asfloat asin asinh asint "
+    "asm assert asuint atan atan2 atanh atomic_uint attribute auto barrier bitCount bitand "
+    "bitfieldExtract bitfieldInsert bitfieldReverse bitor blendstate bool break buffer case cast catch "
+    "cbuffer ceil centroid char char16_t char32_t clamp class clip coherent column_major common compile "
+    "compileshader compl computeshader const const_cast constexpr continue cos cosh countbits cross dFdx "
+    "dFdxCoarse dFdxFine dFdy dFdyCoarse dFdyFine ddx ddx_coarse ddx_fine ddy ddy_coarse ddy_fine "
+    "decltype default degrees delete determinant devicecoherent discard distance do domainshader dot "
+    "dot2add dot4add_i8packed dot4add_u8packed double dst dword dynamic_cast else enum equal errno "
+    "errorf exp exp2 explicit export extern external f16tof32 f32tof16 faceforward false filter findLSB "
+    "findMSB firstbithigh firstbitlow fixed flat float float16_t float2 float3 float32_t float4 "
+    "float64_t floatBitsToInt floatBitsToUint floor fma fmod for frac fract frexp friend ftransform "
+    "fvec2 fvec3 fvec4 fwidth fwidthCoarse fwidthFine geometryshader globallycoherent goto greaterThan "
+    "greaterThanEqual groupMemoryBarrier groupshared half highp hullshader hvec2 hvec3 hvec4 if image "
+    "imulExtended in inline inout input int int16_t int32_t int64_t intBitsToFloat interface "
+    "interpolateAtCentroid interpolateAtOffset interpolateAtSample invariant inverse inversesqrt "
+    "isampler2D isfinite isinf isnan layout ldexp length lerp less lessThan lessThanEqual line lineadj "
+    "linear linux lit log log10 log2 long lowp mad main mat2 mat3 mat4 matrix matrixCompMult max mediump "
+    "memoryBarrier min min10float min12int min16float min16int min16uint mix mod modf msad4 mul mutable "
+    "namespace new noexcept noinline nointerpolation noise noise1 noise2 noise3 noise4 noperspective "
+    "normalize not notEqual not_eq nullptr operator or or_eq out outerProduct output packDouble2x32 "
+    "packHalf2x16 packSnorm2x16 packSnorm4x8 packUnorm2x16 packUnorm4x8 packoffset partition pass patch "
+    "pixelfragment pixelshader point pow precise precision printf private protected public radians rcp "
+    "readonly reflect refract register reinterpret_cast resource restrict return reversebits round "
+    "roundEven row_major rsqrt sample sampler sampler1D sampler2D sampler3D samplerCUBE samplerCube "
+    "sampler_state saturate shadow1D shadow2D shared short sign signed signgam sin sincos sinh size_t "
+    "sizeof smooth smoothstep snorm sqrt stateblock static static_assert static_cast stderr stdin stdout "
+    "step string struct subroutine superp switch tan tanh tbuffer technique template tex1D tex1Dbias "
+    "tex1Dgrad tex1Dlod tex1Dproj tex2D tex2Dbias tex2Dgrad tex2Dlod tex2Dproj tex3D tex3Dbias tex3Dgrad "
+    "tex3Dlod tex3Dproj texCUBE texCUBEbias texCUBEgrad texCUBElod texCUBEproj texture textureLod this "
+    "thread_local throw transpose triangle triangleadj true trunc try typedef typeid typename uaddCarry "
+    "uint uint16_t uint32_t uint64_t uintBitsToFloat umulExtended uniform union unix unorm "
+    "unpackDouble2x32 unpackHalf2x16 unpackSnorm2x16 unpackSnorm4x8 unpackUnorm2x16 unpackUnorm4x8 "
+    "unsigned usampler2D using usubBorrow varying vec2 vec3 vec4 vector vertexfragment vertexshader "
+    "virtual void volatile wchar_t while workgroupcoherent writeonly xor xor_eq ";
 
 uint64_t hashOf(std::string_view name) {
   const uint64_t hash = XXH3_64bits(name.data(), name.size());
@@ -265,10 +65,15 @@ size_t slotOf(const Table& table, uint64_t hash) {
 }
 
 bool reserved(uint64_t hash) {
+  constexpr size_t kSlots = 2048;
+  static_assert(std::count(kReserved.begin(), kReserved.end(), ' ') * 2 < static_cast<ptrdiff_t>(kSlots));
   static const auto kTable = [] {
-    std::array<uint64_t, 1024> table{};
-    static_assert(kReserved.size() * 2 < table.size());
-    for (const std::string_view word : kReserved) table[slotOf(table, hashOf(word))] = hashOf(word);
+    std::array<uint64_t, kSlots> table{};
+    for (std::string_view rest = kReserved; !rest.empty();) {
+      const uint64_t word = hashOf(rest.substr(0, rest.find(' ')));
+      table[slotOf(table, word)] = word;
+      rest.remove_prefix(rest.find(' ') + 1);
+    }
     return table;
   }();
   return kTable[slotOf(kTable, hash)] != 0;
@@ -287,9 +92,34 @@ bool plain(char c) {
 }
 
 bool digit(char c) { return c >= '0' && c <= '9'; }
+bool capital(char c) { return c >= 'A' && c <= 'Z'; }
+
+/// Types by rule: "float4x4", "uint2", "dmat3", "isampler2DArray"; functions: "textureLod", "imageStore".
+bool typed(std::string_view name) {
+  constexpr std::array kNumbered = {"bool",     "int",       "uint",       "dword",      "half",
+                                    "float",    "double",    "min16float", "min10float", "min16int",
+                                    "min12int", "min16uint", "vec",        "ivec",       "uvec",
+                                    "bvec",     "dvec",      "mat",        "dmat"};
+  constexpr std::array kFamilies = {"texture", "sampler", "isampler", "usampler", "image",
+                                    "iimage",  "uimage",  "subpass",  "atomic"};
+  const auto numbered = [&](std::string_view type) {
+    if (!name.starts_with(type)) return false;
+    const std::string_view rest = name.substr(type.size());
+    return (rest.size() == 1 && digit(rest[0])) ||
+           (rest.size() == 3 && digit(rest[0]) && rest[1] == 'x' && digit(rest[2]));
+  };
+  const auto family = [&](std::string_view head) {
+    return name.starts_with(head) && name.size() > head.size() &&
+           (capital(name[head.size()]) || digit(name[head.size()]));
+  };
+  return std::any_of(kNumbered.begin(), kNumbered.end(), numbered) ||
+         std::any_of(kFamilies.begin(), kFamilies.end(), family);
+}
 
 /// The name with only characters that every target takes, and none of the printers' prefixes.
 std::string cleaned(std::string_view wanted) {
+  constexpr size_t kLongest = 64;  // a compiler may stop at 255, with all that is put around it
+  wanted = wanted.substr(0, kLongest);
   std::string name;
   name.reserve(wanted.size());
   for (const char c : wanted) {
@@ -298,7 +128,7 @@ std::string cleaned(std::string_view wanted) {
     if (kept == '_' && !name.empty() && name.back() == '_') continue;
     name += kept;
   }
-  if (name.empty() || digit(name[0]) || prefixed(name)) name = "value_" + name;
+  if (name.empty() || digit(name[0]) || prefixed(name) || typed(name)) name = "value_" + name;
   while (name.back() == '_') name.pop_back();
   // The helper functions of the C++ header are called min_of, max_of and so on.
   if (name.ends_with("_of")) name += "_value";

@@ -141,6 +141,26 @@ ir::ValueId readField(ir::Module& module, Placement& placement, ir::ValueId id) 
   return known = truth ? module.dag.make(ir::Op::Less, {module.dag.constant(0.5), read}) : read;
 }
 
+/// A graph may call its textures what it wants, a shader may not. The environment's names are the template's.
+void nameTextures(ir::Module& module) {
+  Names names;
+  names.take(kLightIndexName);
+  names.take("material");
+  for (const ir::Block& block : module.blocks) names.take(block.instance), names.take(block.instance + "s");
+  for (const ir::TextureSlot& slot : module.textures) {
+    if (slot.environment) names.take(slot.name), names.take(slot.name + "_sampler");
+  }
+  for (ir::TextureSlot& slot : module.textures) {
+    if (slot.environment) continue;
+    // Capitals begin blocks, HLSL's types and C's macros. HLSL has a second name for each texture.
+    std::string name = slot.name;
+    if (name[0] >= 'A' && name[0] <= 'Z') name = "texture_" + name;
+    if (name.ends_with("_sampler")) name += "_map";
+    slot.name = names.pick(name);
+    names.take(slot.name + "_sampler");
+  }
+}
+
 /// Parameters that the preshader would have read become constants of the pipeline. Ids follow the names'
 /// order: they depend on nothing but what the shader needs.
 void chooseSpecConstants(ir::Module& module) {
@@ -253,6 +273,7 @@ void finish(ir::Module& module, Placement& placement) {
 
 void place(ir::Module& module) {
   Placement placement;
+  nameTextures(module);
   if (module.spec_constants)
     chooseSpecConstants(module);
   else

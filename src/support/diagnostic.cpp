@@ -68,12 +68,24 @@ void locate(Diagnostic& diagnostic, std::string_view text, size_t offset, size_t
   diagnostic.place.line =
       static_cast<uint32_t>(std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(begin), '\n') + 1);
   diagnostic.place.column = static_cast<uint32_t>(offset - begin + 1);
-  std::string caret;
-  for (size_t i = begin; i < offset; ++i) caret += i < begin + line.size() && text[i] == '\t' ? '\t' : ' ';
-  const size_t room = std::max<size_t>(1, begin + line.size() > offset ? begin + line.size() - offset : 1);
+  // Of a long line a window is shown.
+  constexpr size_t kLongest = 240;
+  constexpr size_t kBefore = 80;
+  size_t at = std::min(offset - begin, line.size());
+  const bool cut_head = line.size() > kLongest && at > kBefore;
+  if (cut_head) {
+    line.remove_prefix(at - kBefore);
+    at = kBefore;
+  }
+  const bool cut_tail = line.size() > kLongest;
+  line = line.substr(0, kLongest);
+  std::string caret(cut_head ? 3 : 0, ' ');
+  for (size_t i = 0; i < at; ++i) caret += line[i] == '\t' ? '\t' : ' ';
+  const size_t room = std::max<size_t>(1, line.size() - at);
   caret += '^';
   caret.append(std::min(std::max<size_t>(1, length), room) - 1, '~');
-  diagnostic.excerpt = fmt::format("  {}\n  {}", line, caret);
+  diagnostic.excerpt =
+      fmt::format("  {}{}{}\n  {}", cut_head ? "..." : "", line, cut_tail ? "..." : "", caret);
 }
 
 }  // namespace lacquer

@@ -13,6 +13,7 @@
 
 #if defined(__unix__) || defined(__APPLE__)
 #define LACQUER_POSIX 1
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -28,18 +29,41 @@ namespace {
 constexpr size_t kBlock = size_t{1} << 18;
 constexpr std::string_view kScratch = "/.lacquer-tmp";
 
-/// A name that no other process or thread takes at the same time.
-std::string temporaryName(const std::string& folder) {
+/// The last part of a name that no other process or thread takes at the same time.
+std::string temporaryName() {
   static const uint64_t process =
       (static_cast<uint64_t>(std::random_device{}()) << 32) | std::random_device{}();
   static std::atomic<uint64_t> counter{0};
-  return fmt::format("{}/lacquer-{:016x}-{}.tmp", folder, process, counter++);
+  return fmt::format("lacquer-{:016x}-{}.tmp", process, counter++);
 }
 
-/// Opens a new file for writing, locked as long as it is open. Null with errno when it cannot be made.
-std::FILE* createLocked(const std::string& path) {
 #ifdef LACQUER_POSIX
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+
+/// True for what temporaryName() may give, so that nobody else's files are taken for abandoned ones.
+bool isTemporaryName(std::string_view name) {
+  constexpr std::string_view kHead = "lacquer-";
+  constexpr std::string_view kTail = ".tmp";
+  constexpr size_t kProcess = 16;
+  if (!name.starts_with(kHead) || !name.ends_with(kTail)) return false;
+  name = name.substr(kHead.size(), name.size() - kHead.size() - kTail.size());
+  const auto made_of = [](std::string_view text, std::string_view of) {
+    return !text.empty() && text.find_first_not_of(of) == std::string_view::npos;
+  };
+  return name.size() > kProcess + 1 && name[kProcess] == '-' &&
+         made_of(name.substr(0, kProcess), "0123456789abcdef") &&
+         made_of(name.substr(kProcess + 1), "0123456789");
+}
+
+/// Opens a new file for writing, locked as long as it is open. Null with errno when it cannot be made. With
+/// `links` refused the folder itself may be no link.
+std::FILE* createLocked(const std::string& folder, const std::string& name, Links links) {
+  const int flags = O_RDONLY | O_DIRECTORY | O_CLOEXEC | (links == Links::Refuse ? O_NOFOLLOW : 0);
+  const int parent = ::open(folder.c_str(), flags);
+  if (parent < 0) return nullptr;
+  const int fd = ::openat(parent, name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const int why = errno;
+  ::close(parent);
+  errno = why;
   if (fd < 0) return nullptr;
   struct stat status {};
   // Somebody who clears up may have been quicker than the lock: then the file has no name any more.
@@ -49,46 +73,140 @@ std::FILE* createLocked(const std::string& path) {
     return nullptr;
   }
   return ::fdopen(fd, "wb");
-#else
-  return std::fopen(path.c_str(), "wbx");
-#endif
+}
+
+/// Opens for reading what is a regular file, and waits for nothing: -1 and the reason for all else.
+int openRegular(const std::string& path, Links links, std::string& why, struct stat& status) {
+  const int fd = ::open(
+      path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | (links == Links::Refuse ? O_NOFOLLOW : 0));
+  if (fd < 0) {
+    why = errno == ENOENT ? "there is no such file"
+                          : fmt::format("the file cannot be opened: {}", std::strerror(errno));
+    return -1;
+  }
+  if (::fstat(fd, &status) == 0 && S_ISREG(status.st_mode)) return fd;
+  why = S_ISDIR(status.st_mode) ? "this is a folder, not a file" : "this is no regular file";
+  ::close(fd);
+  return -1;
 }
 
 /// Removes a file that no living process writes.
-void removeAbandoned([[maybe_unused]] const std::string& path) {
-#ifdef LACQUER_POSIX
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+void removeAbandoned(int folder, const char* name) {
+  const int fd = ::openat(folder, name, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) return;
-  if (::flock(fd, LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());
+  struct stat status {};
+  const bool regular = ::fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+  if (regular && ::flock(fd, LOCK_EX | LOCK_NB) == 0) ::unlinkat(folder, name, 0);
   ::close(fd);
-#endif
 }
 
-}  // namespace
-
-Result<std::string> readFile(const std::string& path) {
-  const Place place{path, 0, 0, {}};
-  std::error_code error;
-  if (fs::is_directory(path, error)) return fail("file-unreadable", place, "this is a folder", "name a file");
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) {
-    return fail("file-unreadable", place, "the file cannot be opened", "check the path and its permissions");
+void removeAbandonedIn(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+  if (fd < 0) return;
+  DIR* folder = ::fdopendir(fd);
+  if (folder == nullptr) {
+    ::close(fd);
+    return;
   }
+  while (const dirent* entry = ::readdir(folder)) {
+    if (isTemporaryName(entry->d_name)) removeAbandoned(fd, entry->d_name);
+  }
+  ::closedir(folder);
+}
+
+/// Not a link in its place.
+void removeFolder(const std::string& path) { ::rmdir(path.c_str()); }
+
+std::FILE* openOld(const std::string& path) {
+  std::string why;
+  struct stat status {};
+  const int fd = openRegular(path, Links::Follow, why, status);
+  return fd < 0 ? nullptr : ::fdopen(fd, "rb");
+}
+
+bool synced(std::FILE* file) { return ::fsync(::fileno(file)) == 0; }
+
+#else
+
+std::FILE* createLocked(const std::string& folder, const std::string& name, Links) {
+  return std::fopen((folder + "/" + name).c_str(), "wbx");
+}
+
+void removeAbandonedIn(const std::string&) {}
+
+void removeFolder(const std::string& path) {
+  std::error_code error;
+  fs::remove(path, error);
+}
+
+std::FILE* openOld(const std::string& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) ? std::fopen(path.c_str(), "rb") : nullptr;
+}
+
+bool synced(std::FILE*) { return true; }
+
+#endif
+
+tl::unexpected<Diagnostics> tooLarge(const Place& place, uint64_t largest) {
+  return fail("file-too-large", place, fmt::format("it has more than {} bytes", largest), raising("file"));
+}
+
+/// What is left of an open file of about `expected` bytes. Closes it.
+Result<std::string> readRest(std::FILE* file, uint64_t expected, uint64_t largest, const Place& place) {
   std::setvbuf(file, nullptr, _IONBF, 0);
-  std::string bytes;
-  const uint64_t size = fs::file_size(path, error);
   // One byte more than expected, so that the end shows with the first read.
-  bytes.resize(error ? kBlock : static_cast<size_t>(size) + 1);
+  std::string bytes(static_cast<size_t>(std::min(expected, largest)) + 1, '\0');
   size_t used = 0;
   while (const size_t got = std::fread(bytes.data() + used, 1, bytes.size() - used, file)) {
     used += got;
-    if (used == bytes.size()) bytes.resize(2 * used);
+    if (used > largest) break;
+    if (used == bytes.size()) bytes.resize(std::max(kBlock, 2 * used));
   }
   const bool bad = std::ferror(file) != 0;
   std::fclose(file);
   if (bad) return fail("file-unreadable", place, "the file cannot be read to its end");
+  if (used > largest) return tooLarge(place, largest);
   bytes.resize(used);
   return bytes;
+}
+
+}  // namespace
+
+Result<std::string> readFile(const std::string& path, uint64_t largest, Links links) {
+  const Place place{path, 0, 0, {}};
+#ifdef LACQUER_POSIX
+  std::string why;
+  struct stat status {};
+  const int fd = openRegular(path, links, why, status);
+  if (fd < 0) return fail("file-unreadable", place, std::move(why));
+  std::FILE* file = ::fdopen(fd, "rb");
+  const uint64_t size = static_cast<uint64_t>(status.st_size);
+#else
+  std::error_code error;
+  if (fs::is_directory(path, error)) return fail("file-unreadable", place, "this is a folder, not a file");
+  if (links == Links::Refuse && fs::is_symlink(path, error)) return fail("file-unreadable", place, "a link");
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) return fail("file-unreadable", place, "there is no such file");
+  const uint64_t size = fs::file_size(path, error);
+#endif
+  if (size > largest) {
+    std::fclose(file);
+    return tooLarge(place, largest);
+  }
+  return readRest(file, size, largest, place);
+}
+
+Result<std::string> readStandardInput(uint64_t largest) {
+  const Place place{"-", 0, 0, {}};
+#ifdef LACQUER_POSIX
+  const int fd = ::dup(STDIN_FILENO);
+  std::FILE* file = fd < 0 ? nullptr : ::fdopen(fd, "rb");
+#else
+  std::FILE* file = stdin;
+#endif
+  if (file == nullptr) return fail("file-unreadable", place, "there is no standard input");
+  return readRest(file, kBlock, largest, place);
 }
 
 std::optional<FileStamp> stampOf([[maybe_unused]] const std::string& path) {
@@ -129,23 +247,19 @@ Result<bool> makeFolder(const std::string& path) {
 
 Scratch::Scratch(std::string folder) : path_(std::move(folder)) {
   path_ += kScratch;
-  std::error_code error;
-  for (fs::directory_iterator it(path_, error), end; !error && it != end; it.increment(error)) {
-    if (it->path().extension() == ".tmp") removeAbandoned(it->path().string());
-  }
-  fs::remove(path_, error);
+  removeAbandonedIn(path_);
+  removeFolder(path_);
 }
 
 Scratch::~Scratch() {
-  std::error_code error;
-  fs::remove(path_, error);  // fails while another process has a file in it, which is right
+  removeFolder(path_);  // fails while another process has a file in it, which is right
 }
 
-ReplacingFile::ReplacingFile(std::string path, const Scratch* scratch) : path_(std::move(path)) {
+ReplacingFile::ReplacingFile(std::string path, const Writing& how)
+    : path_(std::move(path)), of_scratch_(how.scratch != nullptr), sync_(how.sync) {
   const std::string parent = fs::path(path_).parent_path().string();
-  folder_ = scratch != nullptr ? scratch->path() : parent.empty() ? "." : parent;
-  std::error_code error;
-  if (fs::is_regular_file(path_, error)) old_ = std::fopen(path_.c_str(), "rb");
+  folder_ = of_scratch_ ? how.scratch->path() : parent.empty() ? "." : parent;
+  old_ = openOld(path_);
   if (old_ == nullptr)
     create();
   else
@@ -168,13 +282,19 @@ void ReplacingFile::create() {
       wrong_ = fmt::format("its folder cannot be made: {}", error.message());
       return;
     }
-    temporary_ = temporaryName(folder_);
-    fresh_ = createLocked(temporary_);
+    const std::string name = temporaryName();
+    temporary_ = folder_ + "/" + name;
+    fresh_ = createLocked(folder_, name, of_scratch_ ? Links::Refuse : Links::Follow);
     if (fresh_ != nullptr) return;
     // The scratch folder went with another process's last file, or the file was taken for an abandoned one.
+    // All else stays as it is: a link in the scratch folder's place, say.
     if (errno != ENOENT && errno != EAGAIN) break;
   }
-  wrong_ = fmt::format("the file cannot be made: {}", std::strerror(errno));
+  const char* why = std::strerror(errno);
+  std::error_code error;
+  const bool link = of_scratch_ && fs::is_symlink(fs::symlink_status(folder_, error));
+  wrong_ = link ? fmt::format("{} is a link: remove it", folder_)
+                : fmt::format("the file cannot be made: {}", why);
 }
 
 bool ReplacingFile::matches(std::string_view bytes) {
@@ -240,8 +360,9 @@ Result<bool> ReplacingFile::finish() {
     diverge();
   }
   if (!wrong_.empty() || fresh_ == nullptr) return failed(wrong_);
-  if (std::fflush(fresh_) != 0 || std::ferror(fresh_) != 0) {
-    return failed("the file cannot be written", "check space and permissions");
+  if (std::fflush(fresh_) != 0 || std::ferror(fresh_) != 0 || (sync_ && !synced(fresh_))) {
+    return failed(fmt::format("the file cannot be written: {}", std::strerror(errno)),
+                  "check space and permissions");
   }
 #ifndef LACQUER_POSIX
   std::fclose(std::exchange(fresh_, nullptr));  // an open file cannot be renamed everywhere
@@ -253,8 +374,12 @@ Result<bool> ReplacingFile::finish() {
   // The scratch folder may lie on another file system than a folder that is a link.
   if (error == std::errc::cross_device_link) {
     error.clear();
-    const std::string beside = temporaryName(parent.string());
+    const std::string beside = (parent / temporaryName()).string();
     fs::copy_file(temporary_, beside, error);
+    if (std::FILE* copy = !error && sync_ ? std::fopen(beside.c_str(), "rb+") : nullptr) {
+      if (!synced(copy)) error = std::make_error_code(std::errc::io_error);
+      std::fclose(copy);
+    }
     if (!error) fs::rename(beside, path_, error);
     fs::remove(temporary_);
   }
@@ -264,8 +389,8 @@ Result<bool> ReplacingFile::finish() {
   return true;
 }
 
-Result<bool> writeFile(const std::string& path, std::string_view bytes, const Scratch* scratch) {
-  ReplacingFile file(path, scratch);
+Result<bool> writeFile(const std::string& path, std::string_view bytes, const Writing& how) {
+  ReplacingFile file(path, how);
   file.append(bytes);
   return file.finish();
 }

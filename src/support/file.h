@@ -8,11 +8,18 @@
 #include <string_view>
 
 #include "support/diagnostic.h"
+#include "support/limits.h"
 
 namespace lacquer {
 
-/// The bytes of a file. Errors: "file-unreadable".
-Result<std::string> readFile(const std::string& path);
+enum class Links : uint8_t { Follow, Refuse };
+
+/// The bytes of a regular file: no folder, no pipe, no device. Errors: "file-unreadable", "file-too-large"
+/// for more bytes than `largest`. With Links::Refuse the last part of the path may be no symbolic link.
+Result<std::string> readFile(const std::string& path, uint64_t largest = Limits{}.file,
+                             Links links = Links::Follow);
+/// The bytes of the standard input, with the same errors.
+Result<std::string> readStandardInput(uint64_t largest = Limits{}.file);
 
 /// What the file system knows of a file, without a look at its bytes. Whoever changes them changes `changed`,
 /// which nobody can set.
@@ -30,7 +37,8 @@ Result<bool> makeFolder(const std::string& path);
 
 /// A folder for files that are being written, below `folder` and made with the first of them. What killed
 /// processes left there is removed by the next Scratch (a writer holds a lock on its file, where the system
-/// has such locks), and the folder itself goes with the last of them.
+/// has such locks), and the folder itself goes with the last of them. A link in its place is not followed,
+/// and what has no name of ours or is no regular file is left alone.
 class Scratch {
 public:
   explicit Scratch(std::string folder);
@@ -43,13 +51,18 @@ private:
   std::string path_;
 };
 
+struct Writing {
+  const Scratch* scratch = nullptr;  ///< where the file is written; without one, beside its place
+  /// The bytes are on the disk before the file gets its name: it is whole even after a power cut.
+  bool sync = true;
+};
+
 /// A file that takes the place of `path` in one step at finish(), and only when its bytes differ: as long as
 /// what is appended is what the old file holds, nothing is written. It holds a few hundred KiB, however long
 /// the file becomes.
 class ReplacingFile {
 public:
-  /// Without a scratch folder the file is written beside `path`.
-  explicit ReplacingFile(std::string path, const Scratch* scratch = nullptr);
+  explicit ReplacingFile(std::string path, const Writing& how = {});
   ~ReplacingFile();
   ReplacingFile(const ReplacingFile&) = delete;
   ReplacingFile& operator=(const ReplacingFile&) = delete;
@@ -66,6 +79,7 @@ private:
   Result<bool> failed(std::string message, std::string help = {});
 
   std::string path_, folder_, temporary_;
+  bool of_scratch_, sync_;
   std::string pending_;
   std::FILE* old_ = nullptr;  ///< while everything so far is what it holds
   std::FILE* fresh_ = nullptr;
@@ -75,6 +89,6 @@ private:
 
 /// Puts these bytes in place of what `path` holds, in one step; missing folders are made. A file that holds
 /// them already is left alone (false). Errors: "file-unwritable".
-Result<bool> writeFile(const std::string& path, std::string_view bytes, const Scratch* scratch = nullptr);
+Result<bool> writeFile(const std::string& path, std::string_view bytes, const Writing& how = {});
 
 }  // namespace lacquer

@@ -14,6 +14,7 @@
 #include "docs/sample.h"
 #include "support/materials.h"
 #include "support/cases.h"
+#include "support/limits.h"
 
 namespace lacquer::test {
 
@@ -293,6 +294,14 @@ std::string extensionsTable() {
                        fmt::join(names, ", "));
   }
   return out + "| `KHR_texture_transform` | a textureInfo's extensions | `offset`, `rotation`, `scale`, `texCoord` |\n";
+}
+
+std::string limitsTable() {
+  std::string out = "| name | of | at most | the option goes to |\n|---|---|---|---|\n";
+  for (const LimitRow& row : limitTable()) {
+    out += fmt::format("| `{}` | {} | {} {} | {} |\n", row.name, row.meaning, row.value, row.unit, row.most);
+  }
+  return out;
 }
 
 std::string templateOutputs(std::string_view of) {

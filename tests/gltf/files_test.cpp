@@ -87,13 +87,13 @@ TEST(GltfContainer, chunksMustFit) {
 
 TEST(GltfContainer, whatIsNoFileIsAnError) {
   EXPECT_EQ(outcome(readMaterials("/nonexistent/x.gltf")),
-            "/nonexistent/x.gltf: error: there is no such file [cannot-read]");
-  EXPECT_EQ(outcome(readMaterials("")), "error: there is no such file [cannot-read]");
+            "/nonexistent/x.gltf: error: there is no such file [file-unreadable]");
+  EXPECT_EQ(outcome(readMaterials("")), "error: there is no such file [file-unreadable]");
   const std::string folder = sourceFolder().string();
-  EXPECT_EQ(outcome(readMaterials(folder)), folder + ": error: this is a folder, not a file [cannot-read]");
+  EXPECT_EQ(outcome(readMaterials(folder)), folder + ": error: this is a folder, not a file [file-unreadable]");
   if (fs::exists("/dev/zero")) {
     EXPECT_EQ(outcome(readMaterials("/dev/zero")),
-              "/dev/zero: error: this is neither a file nor a pipe [cannot-read]");
+              "/dev/zero: error: this is no regular file [file-unreadable]");
   }
 }
 

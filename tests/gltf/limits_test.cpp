@@ -39,7 +39,7 @@ std::string failure(const std::string& text) {
 
 TEST(GltfLimits, deepNestingIsAnError) {
   const std::string brackets = std::string(60, '[');
-  const std::string help = "\n  help: no glTF needs that: the file is damaged or made to do harm";
+  const std::string help = "\n  help: nothing needs that: the file is damaged or made to do harm";
   const std::string excerpt = "\n  ..." + brackets + brackets + "...\n  " + std::string(63, ' ') + "^";
   const std::string message = ": error: nested more than 512 levels deep [json-too-deep]";
   EXPECT_EQ(failure(std::string(100'000, '[')), "x:1:513" + message + excerpt + help);

@@ -47,7 +47,7 @@ Made make(const std::vector<std::string>& files, Preview preview, const std::vec
   made.answer = drawPreview(preview, files, only, options, made.messages);
   if (!fs::exists(preview.output)) return made;
   made.png = readFile(preview.output);
-  if (auto image = eval::decodeImage(made.png, {})) made.image = std::move(*image);
+  if (auto image = eval::decodeImage(made.png, Limits{}.image, {})) made.image = std::move(*image);
   return made;
 }
 
@@ -55,8 +55,7 @@ Made make(const std::vector<std::string>& files, Preview preview, const std::vec
 std::array<int, 3> pixel(const eval::Image& image, int x, int y) {
   std::array<int, 3> result{};
   for (size_t c = 0; c < 3; ++c)
-    result[c] =
-        static_cast<int>(std::lround(image.texels[static_cast<size_t>(y * image.width + x)][c] * 255));
+    result[c] = static_cast<int>(std::lround(image.at(static_cast<size_t>(y * image.width + x))[c] * 255));
   return result;
 }
 
@@ -191,7 +190,7 @@ TEST(Sheet, SaysWhatIsWrong) {
   unknown.compare = {"float", ""};
   EXPECT_EQ(code(unknown, {file}), "unknown-setting");
   EXPECT_EQ(code(small(), {file}, {"Nothing"}), "no-such-material");
-  EXPECT_EQ(code(small(), {(scratch() / "nowhere.gltf").string()}), "cannot-read");
+  EXPECT_EQ(code(small(), {(scratch() / "nowhere.gltf").string()}), "file-unreadable");
   EXPECT_EQ(code(small(), {write("empty.gltf", fileOf(json::array()))}), "nothing-to-show");
   Preview tiny = small();
   tiny.size = 2;

@@ -204,7 +204,7 @@ TEST(Stress, SaysWhatIsWrong) {
     return path.string();
   };
   EXPECT_EQ(code("no_such_node"), "unknown-node");
-  EXPECT_EQ(code("nowhere.gltf"), "cannot-read");
+  EXPECT_EQ(code("nowhere.gltf"), "file-unreadable");
   EXPECT_EQ(code("nowhere.json"), "file-unreadable");
   EXPECT_EQ(code(file("[]")), "bad-case");
   EXPECT_EQ(code(file("{")), "json-syntax");
@@ -213,7 +213,7 @@ TEST(Stress, SaysWhatIsWrong) {
   EXPECT_EQ(code(file(R"({"node": "schlick", "samples": [{"F0": 1, "cosine": [1, 2]}]})")), "bad-case");
   EXPECT_EQ(code(file(R"({"node": "schlick", "samples": [3]})")), "bad-case");
   EXPECT_EQ(code(file(R"({"node": "schlick", "variant": "no", "samples": []})")), "unknown-node");
-  EXPECT_EQ(code(file(R"({"file": "nowhere.gltf", "material": 0, "samples": []})")), "cannot-read");
+  EXPECT_EQ(code(file(R"({"file": "nowhere.gltf", "material": 0, "samples": []})")), "file-unreadable");
 }
 
 const bool kRegistered =

@@ -1,0 +1,392 @@
+// Inputs of somebody who means harm: a message and a failure, and nothing read, written or run that the user
+// did not name.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "command.h"
+#include "support/cases.h"
+
+namespace lacquer::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kPoint = R"([{"uv0": [0.5, 0.99]}])";
+
+/// A material whose base colour is the image of that URI.
+std::string textured(const std::string& uri) {
+  return R"({"asset": {"version": "2.0"}, "images": [{"uri": ")" + uri + R"("}], "textures": [{"source": 0}],
+"materials": [{"name": "M", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]})";
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t three = 0;
+    for (size_t k = 0; k < 3; ++k)
+      three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[three >> (18 - 6 * k) & 63U];
+  }
+  return text;
+}
+
+std::string dataUri(const std::string& bytes) { return "data:image/png;base64," + base64(bytes); }
+
+std::string word(uint32_t x) {
+  std::string bytes;
+  for (int i = 3; i >= 0; --i) bytes += static_cast<char>(x >> (8 * i) & 0xFF);
+  return bytes;
+}
+
+/// Deflate's bits, the first of a byte being its lowest.
+class Bits {
+public:
+  void add(std::string_view bits) {
+    for (const char bit : bits) {
+      if (count_ % 8 == 0) bytes_ += '\0';
+      if (bit == '1') bytes_.back() = static_cast<char>(bytes_.back() | 1 << count_ % 8);
+      ++count_;
+    }
+  }
+  const std::string& bytes() const { return bytes_; }
+
+private:
+  std::string bytes_;
+  size_t count_ = 0;
+};
+
+/// So many zeros, rounded up, in zlib's format: a literal, then copies of 258 bytes, with the fixed codes.
+std::string zeros(size_t count) {
+  constexpr std::string_view kFixed = "110";  // the last block, its kind
+  Bits bits;
+  bits.add(kFixed);
+  bits.add("00110000");
+  for (size_t made = 1; made < count; made += 258) bits.add("1100010100000");
+  bits.add("0000000");
+  return "\x78\x01" + bits.bytes() + word(0);
+}
+
+/// A grey PNG whose data unpack to so many zeros.
+std::string png(uint32_t width, uint32_t height, size_t unpacked) {
+  const auto chunk = [](const std::string& type, const std::string& data) {
+    return word(static_cast<uint32_t>(data.size())) + type + data +
+           word(0);  // no reader here looks at the sum
+  };
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", word(width) + word(height) + std::string("\x08\0\0\0\0", 5)) +
+         chunk("IDAT", zeros(unpacked)) + chunk("IEND", "");
+}
+
+std::string grey2x2() { return png(2, 2, 6); }
+
+Outcome evaluated(const Workplace& place, const std::string& gltf, std::vector<std::string> more = {}) {
+  place.write("a/points.json", kPoint);
+  place.write("a/a.gltf", gltf);
+  std::vector<std::string> words = {"eval", "a/a.gltf", "--points", "a/points.json"};
+  words.insert(words.end(), more.begin(), more.end());
+  return place.run(words, std::chrono::seconds(60));
+}
+
+void expectRefused(const Outcome& outcome, const std::string& code) {
+  EXPECT_EQ(outcome.status, 1) << outcome.all();
+  EXPECT_NE(outcome.err.find("[" + code + "]"), std::string::npos) << outcome.err;
+}
+
+TEST(HostileImage, onlyPngAndJpegReachADecoder) {
+  const Workplace place;
+  EXPECT_EQ(evaluated(place, textured(dataUri(grey2x2()))).status, 0);
+  for (const std::string& bytes :
+       {std::string("P6 2000 2000 65535\nAB"), std::string("BM") + std::string(60, '\0'),
+        std::string("GIF89a\1\0\1\0\0\0\0,\0\0\0\0\1\0\1\0\0\2\2L\1\0;", 26), std::string("8BPS\0\1", 6),
+        std::string("#?RADIANCE\n\n-Y 1 +X 1\n")}) {
+    const Outcome outcome = evaluated(place, textured(dataUri(bytes)));
+    expectRefused(outcome, "image-unreadable");
+    EXPECT_NE(outcome.err.find("neither a PNG nor a JPEG"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(HostileImage, takesNoMoreThanItsBudget) {
+  const Workplace place;
+  expectRefused(evaluated(place, textured(dataUri(png(16000, 16000, 10)))), "image-too-large");
+  expectRefused(evaluated(place, textured(dataUri(png(70000, 1, 10)))), "image-too-large");
+  expectRefused(evaluated(place, textured(dataUri(grey2x2())), {"--limit", "image=3"}), "image-too-large");
+  expectRefused(evaluated(place, textured(dataUri(grey2x2())), {"--limit", "images=3"}), "image-too-large");
+  EXPECT_EQ(evaluated(place, textured(dataUri(grey2x2())), {"--limit", "images=4"}).status, 0);
+  // Four pixels, and a stream that unpacks to sixteen million.
+  expectRefused(evaluated(place, textured(dataUri(png(2, 2, 16'000'000)))), "image-unreadable");
+}
+
+TEST(HostileImage, liesInTheFilesFolder) {
+  const Workplace place;
+  place.write("secret.png", grey2x2());
+  place.write("a/inside.png", grey2x2());
+  place.write("a/sub/inside.png", grey2x2());
+  fs::create_symlink("../secret.png", place / "a/link.png");
+  fs::create_symlink("../absent.png", place / "a/dangling.png");
+  fs::create_symlink("..", place / "a/up");
+  fs::create_symlink("sub", place / "a/down");
+  for (const char* uri : {"inside.png", "sub/../inside.png", "down/inside.png", "./sub/%69nside.png"}) {
+    EXPECT_EQ(evaluated(place, textured(uri)).status, 0) << uri;
+  }
+  for (const char* uri :
+       {"../secret.png", "%2e%2e/secret.png", "..%2fsecret.png", "sub/../../secret.png", "link.png",
+        "up/secret.png", "../absent.png", "up/absent.png", "dangling.png", "../../../../../etc/passwd"}) {
+    const Outcome outcome = evaluated(place, textured(uri));
+    expectRefused(outcome, "image-outside");
+    EXPECT_NE(outcome.err.find("leads out of the file's folder"), std::string::npos) << uri << outcome.err;
+  }
+  EXPECT_EQ(evaluated(place, textured("../secret.png"), {"--allow", "."}).status, 0);
+  expectRefused(evaluated(place, textured("../secret.png"), {"--allow", "a/sub"}), "image-outside");
+  for (const char* uri : {"inside.png%00.jpg", "/etc/passwd", "file:///etc/passwd"})
+    expectRefused(evaluated(place, textured(uri)), "image-missing");
+  ASSERT_EQ(mkfifo((place / "a/pipe.png").c_str(), 0600), 0);
+  const Outcome pipe = evaluated(place, textured("pipe.png"));
+  expectRefused(pipe, "image-missing");
+  EXPECT_NE(pipe.err.find("no regular file"), std::string::npos) << pipe.err;
+}
+
+TEST(HostileJson, isReadByOneReaderWithLimits) {
+  const Workplace place;
+  const std::string deep(100'000, '[');
+  place.write("m.json", R"({"lacquer": "0.1.0", "shaders": {}, "files": )" + deep);
+  expectRefused(place.run({"merge", "m.json", "-o", "out"}), "json-too-deep");
+  place.write("cost/manifest.json", R"({"shaders": )" + deep);
+  expectRefused(place.run({"cost", "cost"}), "json-too-deep");
+  place.write("a.gltf", gltfOf({R"({"extras": [0, 0, 0, 0, 0, 0]})"}));
+  EXPECT_EQ(place.run({"gen", "a.gltf", "-o", "out"}).status, 0);
+  expectRefused(place.run({"gen", "a.gltf", "-o", "out", "--limit", "values=8"}), "json-too-many");
+  expectRefused(place.run({"gen", "a.gltf", "-o", "out", "--limit", "json=20"}), "json-too-large");
+  expectRefused(place.run({"gen", "a.gltf", "-o", "out", "--limit", "file=20"}), "file-too-large");
+  expectRefused(place.run({"gen", "a.gltf", "-o", "out", "--limit", "depth=2"}), "json-too-deep");
+  expectRefused(place.run({"gen", "a.gltf", "-o", "out", "--limit", "colour=2"}), "unknown-limit");
+  expectRefused(place.run({"gen", "a.gltf", "-o", "out", "--limit", "file=-1"}), "bad-limit");
+}
+
+TEST(HostileInput, isARegularFile) {
+  const Workplace place;
+  ASSERT_EQ(mkfifo((place / "pipe").c_str(), 0600), 0);
+  for (const char* input : {"pipe", "/dev/zero"}) {
+    place.write("a.gltf", gltfOf({"{}"}));
+    expectRefused(place.run({"gen", input, "-o", "out"}), "file-unreadable");
+    expectRefused(place.run({"gen", "--graph", input, "-o", "out"}), "file-unreadable");
+    expectRefused(place.run({"merge", input, "-o", "out"}), "file-unreadable");
+    expectRefused(place.run({"eval", "a.gltf", "--points", input}), "file-unreadable");
+  }
+}
+
+/// Runs the program after `words` of a shell, "exec" aside.
+Outcome shell(const Workplace& place, const std::string& script) {
+  Outcome outcome;
+  const std::string command =
+      fmt::format("cd '{}' && {{ {}; }} >sh.out 2>sh.err", place.path().string(), script);
+  const int status = std::system(command.c_str());
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  outcome.out = place.read("sh.out");
+  outcome.err = place.read("sh.err");
+  return outcome;
+}
+
+TEST(HostileStreams, endInAStatus) {
+  const Workplace place;
+  const std::string gen = fmt::format("'{}' gen '{}' --no-validate --target glsl -o out", LACQUER_PROGRAM,
+                                      example("clearcoat.gltf"));
+  EXPECT_EQ(shell(place, gen + " >&- 2>&-").status, 1);
+  EXPECT_EQ(shell(place, gen + " -q --time 2>&-").status, 0);
+  EXPECT_EQ(shell(place, fmt::format("'{}' gen nowhere.gltf -o out 2>&-", LACQUER_PROGRAM)).status, 1);
+  const Outcome small = shell(place, "ulimit -f 1; rm -rf out; " + gen + " -q");
+  EXPECT_EQ(small.status, 1) << small.all();
+  EXPECT_NE(small.err.find("[file-unwritable]"), std::string::npos) << small.all();
+}
+
+TEST(HostileFolder, onlyOurOwnTemporariesGo) {
+  const Workplace place;
+  const std::vector<std::string> gen = {
+      "gen", example("clearcoat.gltf"), "-q", "--no-validate", "--target", "glsl", "-o", "out"};
+  const std::string ours = "lacquer-0123456789abcdef-0.tmp";
+  place.write("victim/mine.tmp", "");
+  place.write("victim/" + ours, "");
+  fs::create_directories(place / "out");
+  fs::create_symlink("../victim", place / "out/.lacquer-tmp");
+  const Outcome link = place.run(gen);
+  EXPECT_TRUE(place.has("victim/mine.tmp"));
+  EXPECT_TRUE(place.has("victim/" + ours));
+  expectRefused(link, "file-unwritable");
+  fs::remove(place / "out/.lacquer-tmp");
+  place.write("out/.lacquer-tmp/mine.tmp", "");
+  place.write("out/.lacquer-tmp/" + ours, "");
+  ASSERT_EQ(mkfifo((place / "out/.lacquer-tmp/lacquer-0123456789abcdef-1.tmp").c_str(), 0600), 0);
+  fs::create_symlink(place / "victim/mine.tmp", place / "out/.lacquer-tmp/lacquer-0123456789abcdef-2.tmp");
+  const Outcome rest = place.run(gen, std::chrono::seconds(20));
+  EXPECT_EQ(rest.status, 0) << rest.all();
+  EXPECT_TRUE(place.has("out/.lacquer-tmp/mine.tmp"));
+  EXPECT_FALSE(place.has("out/.lacquer-tmp/" + ours));
+  EXPECT_TRUE(place.has("victim/mine.tmp"));
+}
+
+TEST(HostileCache, linksAreNotFollowed) {
+  const Workplace place;
+  const std::vector<std::string> gen = {"gen",          example("clearcoat.gltf"),
+                                        "-q",           "--no-validate",
+                                        "--target",     "glsl",
+                                        "-o",           "out",
+                                        "--cache",      "c",
+                                        "--cache-size", "1"};
+  place.write("victim/mine.tmp", "");
+  place.write("victim/ab0123456789abcdef0123456789abcdef", "entry");
+  fs::create_directories(place / "c/v1");
+  fs::create_symlink("../../victim", place / "c/v1/.lacquer-tmp");
+  fs::create_symlink("../../victim", place / "c/v1/ab");
+  const std::set<std::string> before = place.names("out");
+  EXPECT_EQ(place.run(gen).status, 0);
+  EXPECT_EQ(place.names("out"), before);
+}
+
+TEST(HostileCache, entriesOfOthersAreWorthNothingWithAKey) {
+  const Workplace place;
+  place.write("key", std::string(32, 'k'));
+  place.write("other", std::string(32, 'o'));
+  place.write("short", "k");
+  const auto gen = [&](const std::string& key) {
+    return place.run({"gen", example("clearcoat.gltf"), "-q", "--no-validate", "--target", "glsl", "-o",
+                      "out", "--time", "--cache", "c", "--cache-key", key});
+  };
+  expectRefused(gen("short"), "bad-cache-key");
+  expectRefused(gen("absent"), "file-unreadable");
+  EXPECT_NE(gen("other").err.find(" 0 from the cache"), std::string::npos);
+  EXPECT_NE(gen("key").err.find(" 0 from the cache"), std::string::npos);
+  const Outcome again = gen("key");
+  EXPECT_EQ(again.err.find(" 0 from the cache"), std::string::npos) << again.err;
+}
+
+TEST(Outputs, areNoInputs) {
+  const Workplace place;
+  const std::string gltf = readFile(example("clearcoat.gltf"));
+  const auto fresh = [&] {
+    place.write("a.gltf", gltf);
+    place.write("manifest.json", gltf);
+  };
+  const std::vector<std::vector<std::string>> all = {
+      {"gen", "a.gltf", "-o", "out", "--depfile", "a.gltf"},
+      {"gen", "a.gltf", "-o", "out", "--shard", "./a.gltf"},
+      {"gen", "a.gltf", "-o", "out", "--depfile", "out/manifest.json"},
+      {"gen", "manifest.json", "-o", "."},
+      {"plan", "a.gltf", "-o", "out", "--ninja", "a.gltf"},
+      {"preview", "a.gltf", "-o", "a.gltf", "--size", "16"},
+  };
+  for (const std::vector<std::string>& words : all) {
+    fresh();
+    const std::set<std::string> before = place.names();
+    expectRefused(place.run(words), "output-clash");
+    EXPECT_EQ(place.read("a.gltf"), gltf);
+    EXPECT_EQ(place.read("manifest.json"), gltf);
+    EXPECT_EQ(place.names(), before);
+  }
+  EXPECT_EQ(place.run({"gen", "a.gltf", "-q", "-o", "out", "--target", "glsl"}).status, 0);
+  const std::string manifest = place.read("out/manifest.json");
+  expectRefused(place.run({"merge", "out/manifest.json", "-o", "out"}), "output-clash");
+  EXPECT_EQ(place.read("out/manifest.json"), manifest);
+  // A hard link to what would be written.
+  const size_t begin = manifest.find("glsl/");
+  const std::string shader = manifest.substr(begin, manifest.find('"', begin) - begin);
+  fs::remove(place / ("out/" + shader));
+  fs::create_hard_link(place / "a.gltf", place / ("out/" + shader));
+  expectRefused(place.run({"gen", "a.gltf", "-q", "-o", "out", "--target", "glsl"}), "output-clash");
+  EXPECT_EQ(place.read("out/" + shader), gltf);
+}
+
+TEST(BuildFiles, holdNoNameThatTheyCannot) {
+  const Workplace place;
+  const std::string gltf = readFile(example("clearcoat.gltf"));
+  for (const char* name :
+       {"all:;touch${IFS}PWNED\nq:.gltf", "a\nb.gltf", "a;touch PWNED.gltf", "SHELL=sh.gltf", "%.gltf"}) {
+    place.write(name, gltf);
+    expectRefused(place.run({"gen", name, "-q", "--no-validate", "-o", "out", "--depfile", "a.d"}),
+                  "depfile-name");
+    EXPECT_FALSE(place.has("a.d"));
+    EXPECT_FALSE(place.has("out"));
+  }
+  for (const char* name : {"a\nb.gltf", "a|b.gltf"}) {
+    place.write(name, gltf);
+    const Outcome outcome = place.run({"plan", name, "-o", "out", "--ninja", "build.ninja"});
+    expectRefused(outcome, "ninja-name");
+    EXPECT_EQ(outcome.out.find("run ninja"), std::string::npos) << outcome.out;
+    EXPECT_FALSE(place.has("build.ninja"));
+  }
+  place.write("a b$.gltf", gltf);
+  expectRefused(place.run({"plan", "a b$.gltf", "-o", "o|ut", "--ninja", "build.ninja"}), "ninja-name");
+  EXPECT_EQ(place.run({"plan", "a b$.gltf", "-q", "-o", "out", "--ninja", "build.ninja"}).status, 0);
+}
+
+std::string graphWithTexture(const std::string& name) {
+  return R"({"lacquer_graph": 1, "name": "m", "template": "bsdf", "parameters": {},
+"textures": {")" +
+         name + R"(": {"type": "sampler2D", "srgb": false, "texture": 3}},
+"nodes": [{"id": "t", "node": "texture_sample", "inputs": {"image": {"texture": ")" +
+         name + R"("}, "uv": {"given": "uv0"}}}], "outputs": {"alpha": {"node": "t", "swizzle": "a"}}})";
+}
+
+TEST(GraphNames, ofTexturesFitEveryTarget) {
+  const Workplace place;
+  std::vector<std::string> words = {"gen", "-q", "-o", "out", "--target", "glsl,glsl-gl,essl,hlsl,spirv,cpp"};
+  size_t count = 0;
+  for (const std::string& name :
+       {std::string("half"), std::string("main"), std::string("out_bsdf"), std::string("v_TEXCOORD_0"),
+        std::string("gl_x"), std::string("float"), std::string("float4x4"), std::string("textureLod"),
+        std::string("NULL"), std::string("M_PI"), std::string("Texture2D"), std::string("Material"),
+        std::string("material"), std::string("i"), std::string("a_sampler"), std::string(1200, 'x')}) {
+    const std::string file = fmt::format("{}.json", count++);
+    place.write(file, graphWithTexture(name));
+    words.insert(words.end(), {"--graph", file});
+  }
+  const Outcome outcome = place.run(words);
+  EXPECT_EQ(outcome.status, 0) << outcome.all();
+  const nlohmann::json manifest = place.manifest("out");
+  ASSERT_EQ(manifest["files"].size(), count);
+  for (const auto& file : manifest["files"]) {
+    const auto& textures = file["materials"][0]["uses"][0]["textures"];
+    ASSERT_EQ(textures.size(), 1U) << file;
+    EXPECT_EQ(textures.begin().value()["texture"], 3);
+    EXPECT_LE(textures.begin().key().size(), 80U);
+  }
+  for (const auto& entry : fs::directory_iterator(place / "out/cpp")) {
+    EXPECT_EQ(
+        shell(place, fmt::format("c++ -std=c++11 -x c++ -fsyntax-only '{}'", entry.path().string())).status,
+        0)
+        << entry.path() << place.read("sh.err");
+  }
+}
+
+TEST(GraphSize, hasALimit) {
+  const Workplace place;
+  std::string nodes;
+  for (int i = 0; i < 10'001; ++i)
+    nodes += fmt::format(R"({}{{"id": "n{}", "node": "x", "inputs": {{}}}})", i == 0 ? "" : ",", i);
+  place.write("g.json", R"({"lacquer_graph": 1, "name": "m", "template": "bsdf", "nodes": [)" + nodes +
+                            R"(], "outputs": {}})");
+  expectRefused(place.run({"gen", "--graph", "g.json", "-o", "out"}), "graph-too-large");
+}
+
+TEST(CacheSize, isAPlainNumber) {
+  const Workplace place;
+  for (const char* size : {"-1", "18446744073709551616", "99999999999T", "", "1e3"}) {
+    const Outcome outcome =
+        place.run({"gen", example("clearcoat.gltf"), "-o", "out", "--cache", "c", "--cache-size", size});
+    EXPECT_EQ(outcome.status, 2) << size << outcome.all();
+  }
+}
+
+TEST(LongLines, areCut) {
+  const Workplace place;
+  place.write("nodes/a.node", "node a(float x) -> float { return " + std::string(1'000'000, 'y') + "; }\n");
+  const Outcome outcome = place.run({"nodes", "--nodes", "nodes"});
+  EXPECT_EQ(outcome.status, 1) << outcome.status;
+  EXPECT_LT(outcome.err.size(), 3000U);
+}
+
+}  // namespace
+}  // namespace lacquer::test
