@@ -6,74 +6,8 @@
 
 namespace lacquer {
 
-namespace {
-
 using ir::Components;
 using ir::Op;
-
-double dotOf(const Components& a, const Components& b, int n) {
-  double sum = 0;
-  for (int i = 0; i < n; ++i) sum += a[static_cast<size_t>(i)] * b[static_cast<size_t>(i)];
-  return sum;
-}
-
-/// An operand: its type and its value.
-struct Operand {
-  ir::Type type = ir::Type::Float;
-  Components value{};
-  int width() const { return ir::componentCount(type); }
-};
-
-Components construct(ir::Type type, const std::array<Operand, 4>& parts, size_t count) {
-  Components out{};
-  if (count == 1 && parts[0].width() == 1) {
-    out.fill(parts[0].value[0]);
-    for (int i = ir::componentCount(type); i < 4; ++i) out[static_cast<size_t>(i)] = 0;
-    return out;
-  }
-  size_t at = 0;
-  for (size_t k = 0; k < count; ++k) {
-    for (int i = 0; i < parts[k].width() && at < out.size(); ++i)
-      out[at++] = parts[k].value[static_cast<size_t>(i)];
-  }
-  return out;
-}
-
-/// Component by component; a scalar stands for all.
-Components mapped(Op op, ir::Type type, const std::array<Operand, 4>& in, size_t count) {
-  Components out{};
-  for (int i = 0; i < ir::componentCount(type); ++i) {
-    std::array<double, 4> x{};
-    for (size_t k = 0; k < count; ++k) x[k] = in[k].value[in[k].width() == 1 ? 0 : static_cast<size_t>(i)];
-    out[static_cast<size_t>(i)] = ir::foldComponent<double>(op, x[0], x[1], x[2]);
-  }
-  return out;
-}
-
-Components compute(Op op, ir::Type type, uint32_t payload, const std::array<Operand, 4>& in, size_t count) {
-  const Components& a = in[0].value;
-  const Components& b = in[1].value;
-  Components out{};
-  if (op == Op::Construct) return construct(type, in, count);
-  if (op == Op::Select) return a[0] != 0 ? b : in[2].value;
-  if (op == Op::Dot) return {dotOf(a, b, in[0].width())};
-  if (op == Op::Length) return {std::sqrt(dotOf(a, a, in[0].width()))};
-  if (op == Op::Cross)
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  if (op == Op::Normalize) {
-    const double length = std::sqrt(dotOf(a, a, in[0].width()));
-    return {a[0] / length, a[1] / length, a[2] / length, a[3] / length};
-  }
-  if (op == Op::Swizzle) {
-    for (int i = 0; i < ir::componentCount(type); ++i) {
-      out[static_cast<size_t>(i)] = a[static_cast<size_t>(ir::swizzleComponent(payload, i))];
-    }
-    return out;
-  }
-  return mapped(op, type, in, count);
-}
-
-}  // namespace
 
 Preshader::Preshader(const ir::Module& module) {
   std::vector<ir::ValueId> roots;
@@ -110,9 +44,9 @@ std::vector<Components> Preshader::evaluate(
     } else if (step.op == Op::Input) {
       values[s] = value(step.payload);
     } else {
-      std::array<Operand, 4> in{};
+      std::array<ir::Operand, 4> in{};
       for (size_t k = 0; k < step.count; ++k) in[k] = {steps_[step.args[k]].type, values[step.args[k]]};
-      values[s] = compute(step.op, step.type, step.payload, in, step.count);
+      values[s] = ir::foldNumbers(step.op, step.type, step.payload, {in.data(), step.count});
     }
   }
   std::vector<Components> out;

@@ -166,14 +166,6 @@ private:
     const Register out = instruction.outs[0];
     switch (instruction.step) {
       case Step::Map: return mapLanes<T, kHalf>(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_);
-      case Step::Select: {
-        const T* condition = arg(0);
-        const T* yes = arg(1);
-        const T* no = arg(2);
-        T* to = at(out);
-        for (size_t i = 0; i < lanes_; ++i) to[i] = condition[i] != 0 ? yes[i] : no[i];
-        return;
-      }
       case Step::Literal:
         return static_cast<void>(std::fill_n(
             at(out), lanes_, rounded<kHalf>(static_cast<T>(program_.literals[instruction.payload]))));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "ir/fold.h"
+
 namespace lacquer::eval {
 
 namespace {
@@ -60,11 +62,14 @@ private:
     return out;
   }
 
-  Register map(Op op, Register a, Register b = kNoRegister, Register c = kNoRegister) {
-    bool uniform = true;
-    for (const Register r : {a, b, c}) uniform &= r == kNoRegister || virtuals_[r].uniform;
-    return emit({Step::Map, op, 0, -1, 0, {}, {a, b, c, kNoRegister}}, uniform);
+  Register map(Op op, std::span<const Register> args) {
+    const bool uniform =
+        std::all_of(args.begin(), args.end(), [&](Register r) { return virtuals_[r].uniform; });
+    Instruction instruction{Step::Map, op};
+    std::copy(args.begin(), args.end(), instruction.args.begin());
+    return emit(instruction, uniform);
   }
+  Register map(Op op, Register a, Register b) { return map(op, std::array{a, b}); }
 
   Register literal(double x) {
     program_.literals.push_back(x);
@@ -162,28 +167,14 @@ private:
   /// A component of an operand; a Float stands for all of them.
   Register at(ValueId id, size_t component) const { return of(id)[of(id).size() == 1 ? 0 : component]; }
 
-  Register dot(ValueId a, ValueId b) {
-    Register sum = map(Op::Mul, of(a)[0], of(b)[0]);
-    for (size_t i = 1; i < of(a).size(); ++i) sum = map(Op::Add, sum, map(Op::Mul, of(a)[i], of(b)[i]));
-    return sum;
-  }
-
-  std::vector<Register> cross(ValueId a, ValueId b) {
-    std::vector<Register> result;
-    for (size_t i = 0; i < 3; ++i) {
-      const size_t j = (i + 1) % 3;
-      const size_t k = (i + 2) % 3;
-      const Register second = map(Op::Mul, of(a)[k], of(b)[j]);
-      result.push_back(map(Op::Sub, map(Op::Mul, of(a)[j], of(b)[k]), second));
-    }
-    return result;
-  }
-
   std::vector<Register> matrixTimesVector(ValueId m, ValueId v) {
     std::vector<Register> result;
     for (size_t row = 0; row < 4; ++row) {
       Register sum = map(Op::Mul, of(m)[row], of(v)[0]);
-      for (size_t c = 1; c < 4; ++c) sum = map(Op::Add, sum, map(Op::Mul, of(m)[c * 4 + row], of(v)[c]));
+      for (size_t c = 1; c < 4; ++c) {
+        const Register product = map(Op::Mul, of(m)[c * 4 + row], of(v)[c]);
+        sum = map(Op::Add, sum, product);
+      }
       result.push_back(sum);
     }
     return result;
@@ -245,27 +236,13 @@ private:
     return sums;
   }
 
-  std::vector<Register> componentWise(const ir::Value& value) {
-    std::vector<Register> result;
-    for (size_t i = 0; i < static_cast<size_t>(ir::componentCount(value.type)); ++i) {
-      std::array<Register, 3> args{kNoRegister, kNoRegister, kNoRegister};
-      for (size_t k = 0; k < value.count; ++k) args[k] = at(value.args[k], i);
-      result.push_back(map(value.op, args[0], args[1], args[2]));
-    }
-    return result;
-  }
-
-  std::vector<Register> select(const ir::Value& value) {
-    std::vector<Register> result;
-    const Register condition = of(value.args[0])[0];
-    for (size_t i = 0; i < static_cast<size_t>(ir::componentCount(value.type)); ++i) {
-      const Register yes = at(value.args[1], i);
-      const Register no = at(value.args[2], i);
-      const bool uniform = virtuals_[condition].uniform && virtuals_[yes].uniform && virtuals_[no].uniform;
-      result.push_back(
-          emit({Step::Select, value.op, 0, -1, 0, {}, {condition, yes, no, kNoRegister}}, uniform));
-    }
-    return result;
+  std::vector<Register> folded(const ir::Value& value) {
+    std::array<std::span<const Register>, 4> operands;
+    for (size_t k = 0; k < value.count; ++k) operands[k] = of(value.args[k]);
+    const std::array<Register, 4> result =
+        ir::fold<Register>(value.op, value.type, value.payload, {operands.data(), value.count},
+                           [this](Op op, std::span<const Register> args) { return map(op, args); });
+    return {result.begin(), result.begin() + ir::componentCount(value.type)};
   }
 
   void value(ValueId id) {
@@ -283,27 +260,7 @@ private:
         return result;
       case Op::Input: return input(dag_.inputOf(id));
       case Op::Interpolate: return of(value.args[0]);
-      case Op::Swizzle:
-        for (size_t i = 0; i < components; ++i) {
-          result.push_back(at(value.args[0],
-                              static_cast<size_t>(ir::swizzleComponent(value.payload, static_cast<int>(i)))));
-        }
-        return result;
-      case Op::Construct:
-        for (const ValueId part : value.operands())
-          result.insert(result.end(), of(part).begin(), of(part).end());
-        if (result.size() == 1) result.assign(components, result[0]);
-        return result;
-      case Op::Dot: return {dot(value.args[0], value.args[1])};
-      case Op::Length: return {map(Op::Sqrt, dot(value.args[0], value.args[0]))};
-      case Op::Normalize: {
-        const Register length = map(Op::Sqrt, dot(value.args[0], value.args[0]));
-        for (const Register r : of(value.args[0])) result.push_back(map(Op::Div, r, length));
-        return result;
-      }
-      case Op::Cross: return cross(value.args[0], value.args[1]);
       case Op::MatMul: return matrixTimesVector(value.args[0], value.args[1]);
-      case Op::Select: return select(value);
       case Op::Texture:
       case Op::TextureLod:
       case Op::TextureCompare:
@@ -311,7 +268,7 @@ private:
       case Op::DFdx: return derivative(value, Step::DerivativeX);
       case Op::DFdy: return derivative(value, Step::DerivativeY);
       case Op::SumOverLights: return sumOverLights(value);
-      default: return componentWise(value);
+      default: return folded(value);
     }
   }
 

@@ -16,7 +16,6 @@ namespace lacquer::eval {
 
 enum class Step : uint8_t {
   Map,         ///< out = fold of `op` on the arguments
-  Select,      ///< out = args[0] ? args[1] : args[2]
   Literal,     ///< out = literals[payload]
   Load,        ///< out = component `component` of columns[payload]
   Light,       ///< out = component `component` of light_fields[payload], of `element` or the loop's light

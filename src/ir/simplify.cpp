@@ -36,52 +36,23 @@ ValueId Simplifier::fold(Op op, Type type, std::span<const ValueId> operands) {
   if (!std::all_of(operands.begin(), operands.end(), [&](ValueId id) { return dag_.isConstant(id); })) {
     return kNoValue;
   }
-  const Signature signature = info(op).signature;
-  if (signature != Signature::Map && signature != Signature::Compare && signature != Signature::Logic) {
-    return foldVector(op, type, operands);
-  }
-  Components result{};
-  for (int i = 0; i < componentCount(type); ++i) {
-    std::array<double, 3> x{};
-    for (size_t k = 0; k < operands.size(); ++k) {
-      const bool scalar = componentCount(dag_[operands[k]].type) == 1;
-      x[k] = dag_.constantOf(operands[k])[scalar ? 0 : static_cast<size_t>(i)];
-    }
-    const double y = foldComponent<double>(op, x[0], x[1], x[2]);
-    // What is not a number stays an expression: a printed literal must be finite.
-    if (!std::isfinite(y)) return kNoValue;
-    result[static_cast<size_t>(i)] = y;
-  }
-  return dag_.constant(type, result);
-}
-
-ValueId Simplifier::foldVector(Op op, Type type, std::span<const ValueId> operands) {
-  const Components a = dag_.constantOf(operands[0]);
-  const int n = componentCount(dag_[operands[0]].type);
-  const auto dotOf = [n](const Components& x, const Components& y) {
-    double sum = 0;
-    for (int i = 0; i < n; ++i) sum += x[static_cast<size_t>(i)] * y[static_cast<size_t>(i)];
-    return sum;
-  };
   switch (op) {
-    case Op::Dot: return dag_.constant(dotOf(a, dag_.constantOf(operands[1])));
-    case Op::Length: return dag_.constant(std::sqrt(dotOf(a, a)));
-    case Op::Normalize: {
-      const double length = std::sqrt(dotOf(a, a));
-      if (!(length > 0)) return kNoValue;
-      return dag_.constant(type, {a[0] / length, a[1] / length, a[2] / length, a[3] / length});
-    }
-    case Op::Cross: {
-      const Components b = dag_.constantOf(operands[1]);
-      return dag_.constant(type,
-                           {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]});
-    }
-    case Op::Select: return a[0] != 0 ? operands[1] : operands[2];
     case Op::DFdx:
     case Op::DFdy: return zero(type);
     case Op::Interpolate: return operands[0];
-    default: return kNoValue;
+    case Op::Select: return operands[dag_.constantOf(operands[0])[0] != 0 ? 1 : 2];
+    case Op::Texture:
+    case Op::TextureLod:
+    case Op::MatMul:
+    case Op::SumOverLights: return kNoValue;
+    default: break;
   }
+  std::array<Operand, 4> in{};
+  for (size_t k = 0; k < operands.size(); ++k) in[k] = {dag_[operands[k]].type, dag_.constantOf(operands[k])};
+  const Components result = foldNumbers(op, type, 0, {in.data(), operands.size()});
+  // What is not a number stays an expression: a printed literal must be finite.
+  const bool finite = std::all_of(result.begin(), result.end(), [](double x) { return std::isfinite(x); });
+  return finite ? dag_.constant(type, result) : kNoValue;
 }
 
 ValueId Simplifier::unsplat(Op op, Type type, std::span<const ValueId> operands) {

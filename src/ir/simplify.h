@@ -17,7 +17,6 @@ public:
 
 private:
   ValueId fold(Op op, Type type, std::span<const ValueId> operands);
-  ValueId foldVector(Op op, Type type, std::span<const ValueId> operands);
   ValueId unsplat(Op op, Type type, std::span<const ValueId> operands);
   ValueId unary(Op op, ValueId a);
   ValueId binary(Op op, Type type, ValueId a, ValueId b);

@@ -213,14 +213,8 @@ Expression Printer::operation(const ir::Value& value) const {
             Precedence::Ternary};
   }
   if (!isOperator(spelling)) return {dialect_.call(value.op, value.type, arguments(value))};
-  if (value.count == 1) {
-    // Postfix, not Unary: `--x` would be a decrement.
-    return {std::string(spelling) + parenthesized(use(args[0]), Precedence::Postfix), Precedence::Unary};
-  }
-  const Precedence precedence = binaryPrecedence(spelling);
-  return {fmt::format("{} {} {}", parenthesized(use(args[0]), precedence), spelling,
-                      parenthesized(use(args[1]), tighter(precedence))),
-          precedence};
+  if (value.count == 1) return operatorText(spelling, std::array{use(args[0])});
+  return operatorText(spelling, std::array{use(args[0]), use(args[1])});
 }
 
 void Printer::section(Text& text, ir::TermId id) const {
@@ -326,6 +320,17 @@ std::string lower(std::string_view text) {
 
 std::string parenthesized(const Expression& expression, Precedence least) {
   return expression.precedence < least ? '(' + expression.text + ')' : expression.text;
+}
+
+Expression operatorText(std::string_view spelling, std::span<const Expression> operands) {
+  if (operands.size() == 1) {
+    // Postfix, not Unary: `--x` would be a decrement.
+    return {std::string(spelling) + parenthesized(operands[0], Precedence::Postfix), Precedence::Unary};
+  }
+  const Precedence precedence = binaryPrecedence(spelling);
+  return {fmt::format("{} {} {}", parenthesized(operands[0], precedence), spelling,
+                      parenthesized(operands[1], tighter(precedence))),
+          precedence};
 }
 
 Expression floatLiteral(double x) {

@@ -36,6 +36,9 @@ struct Expression {
 /// The expression's text for a place that takes anything which binds at least as tightly as `least`.
 std::string parenthesized(const Expression& expression, Precedence least);
 
+/// An operator before its operand or between its two.
+Expression operatorText(std::string_view spelling, std::span<const Expression> operands);
+
 /// The shortest literal that reads back as the float nearest to x: `0.04`, `1.0`, `1e-7`. Beyond the range of
 /// float it is the largest float. A negative one binds like a unary minus.
 Expression floatLiteral(double x);

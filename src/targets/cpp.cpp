@@ -11,6 +11,7 @@
 #include <set>
 #include <tuple>
 
+#include "ir/fold.h"
 #include "passes/names.h"
 #include "targets/clike.h"
 
@@ -261,45 +262,28 @@ private:
   }
 
   std::string bodyOf(const Use& use) const {
-    if (use.op == Op::Dot) return sumOfProducts(use.types[0], 'a', 'b');
-    if (use.op == Op::Length) return fmt::format("std::sqrt({})", sumOfProducts(use.types[0], 'a', 'a'));
-    if (use.op == Op::Cross)
-      return "vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)";
-    if (use.op == Op::Normalize) return normalized(use);
-    assert(ir::info(use.op).signature == Signature::Map && "nothing else has material rate");
-    std::string list;
-    for (int i = 0; i < ir::componentCount(use.result); ++i) {
-      list += fmt::format("{}{}", i == 0 ? "" : ", ", onComponent(use, static_cast<size_t>(i)));
+    std::array<std::vector<Expression>, 4> components;
+    std::array<std::span<const Expression>, 4> operands;
+    for (size_t k = 0; k < use.count; ++k) {
+      const auto width = static_cast<size_t>(ir::componentCount(use.types[k]));
+      for (size_t i = 0; i < width; ++i) components[k].push_back({component(use.types[k], "abc"[k], i)});
+      operands[k] = components[k];
     }
+    const auto result = ir::fold<Expression>(
+        use.op, use.result, 0, {operands.data(), use.count},
+        [this](Op op, std::span<const Expression> arguments) { return onNumbers(op, arguments); });
+    if (use.result == Type::Float) return result[0].text;
+    std::string list;
+    for (int i = 0; i < ir::componentCount(use.result); ++i)
+      list += (i == 0 ? "" : ", ") + result[static_cast<size_t>(i)].text;
     return fmt::format("{}({})", dialect_.type(use.result), list);
   }
 
-  std::string onComponent(const Use& use, size_t i) const {
-    std::vector<std::string> x;
-    for (size_t k = 0; k < use.count; ++k) x.push_back(component(use.types[k], "abc"[k], i));
-    if (isOperator(use.op) && use.count == 1) return std::string(dialect_.spelling(use.op)) + x[0];
-    if (isOperator(use.op)) return fmt::format("{} {} {}", x[0], dialect_.spelling(use.op), x[1]);
-    return dialect_.call(use.op, Type::Float, fmt::format("{}", fmt::join(x, ", ")));
-  }
-
-  /// The sum begins with 0, so that it is never -0.
-  static std::string sumOfProducts(Type type, char a, char b) {
-    std::string text = "0";
-    for (int i = 0; i < ir::componentCount(type); ++i) {
-      const auto at = static_cast<size_t>(i);
-      text += fmt::format(" + {} * {}", component(type, a, at), component(type, b, at));
-    }
-    return text;
-  }
-
-  std::string normalized(const Use& use) const {
-    const std::string length = fmt::format("std::sqrt({})", sumOfProducts(use.result, 'a', 'a'));
-    if (use.result == Type::Float) return "a / " + length;
+  Expression onNumbers(Op op, std::span<const Expression> arguments) const {
+    if (isOperator(op)) return operatorText(dialect_.spelling(op), arguments);
     std::string list;
-    for (int i = 0; i < ir::componentCount(use.result); ++i) {
-      list += fmt::format("{}a.{} / {}", i == 0 ? "" : ", ", kComponents[static_cast<size_t>(i)], length);
-    }
-    return fmt::format("{}({})", dialect_.type(use.result), list);
+    for (const Expression& argument : arguments) list += (list.empty() ? "" : ", ") + argument.text;
+    return {dialect_.call(op, Type::Float, list)};
   }
 
   const Dialect& dialect_;
