@@ -109,7 +109,7 @@ void checkText(const std::string& text, Target target, int stage, const std::str
   if (!words) return append(wrong, words.error());
   if (target != Target::Essl) {
     append(wrong, check::validate(*words, target == Target::GlslGl, name));
-    append(wrong, check::checkSlots(*words, name));
+    append(wrong, check::checkSlots(*words, target == Target::GlslGl, name));
   }
   if (target == Target::Hlsl && check::haveDxc())
     append(wrong, check::compileWithDxc(text, check_stage, name));
@@ -190,7 +190,7 @@ private:
       if (!options_.validate) continue;
       const StageTimer timer(times_, StageOfRun::Validate, Target::Spirv);
       append(wrongOf(Target::Spirv), check::validate(shader_.spirv[stage], false, path));
-      append(wrongOf(Target::Spirv), check::checkSlots(shader_.spirv[stage], path));
+      append(wrongOf(Target::Spirv), check::checkSlots(shader_.spirv[stage], false, path));
     }
   }
 

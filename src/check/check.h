@@ -35,9 +35,9 @@ Result<Spirv> compile(std::string_view text, Language language, Stage stage, con
 /// spirv-val for Vulkan 1.1 (or OpenGL 4.5). An empty list when valid. Code "spirv-val".
 Diagnostics validate(const Spirv& words, bool open_gl, const std::string& name);
 
-/// Two resources in one place, by the decorations in the words. Code "slot-clash"; spirv-val allows it. An
-/// empty list for words that are no module: validate() says so.
-Diagnostics checkSlots(const Spirv& words, const std::string& name);
+/// Two resources in one place, by the decorations in the words; OpenGL numbers blocks and textures apart.
+/// Code "slot-clash"; spirv-val allows it. An empty list for words that are no module: validate() says so.
+Diagnostics checkSlots(const Spirv& words, bool open_gl, const std::string& name);
 
 /// spirv-opt -O (performance passes). Used for comparisons only; nothing the product writes goes through it.
 Result<Spirv> optimize(const Spirv& words, const std::string& name);

@@ -14,7 +14,7 @@ namespace {
 
 class Slots {
 public:
-  explicit Slots(const std::string& name) : file_(name) {}
+  Slots(bool open_gl, const std::string& name) : open_gl_(open_gl), file_(name) {}
 
   void read(const spv_parsed_instruction_t& instruction) {
     const uint32_t* words = instruction.words;
@@ -35,9 +35,7 @@ private:
   void variable(uint32_t id, spv::StorageClass storage) {
     const bool block = storage == spv::StorageClassUniform;
     if ((!block && storage != spv::StorageClassUniformConstant) || !bindings_.contains(id)) return;
-    // OpenGL has no sets, and numbers blocks and textures apart.
-    const bool set = sets_.contains(id);
-    const std::tuple place(set ? 2 : block ? 1 : 0, set ? sets_[id] : 0, bindings_[id]);
+    const std::tuple place(open_gl_ && block, sets_[id], bindings_[id]);
     const auto [it, fresh] = taken_.try_emplace(place, id);
     if (fresh) return;
     wrong.push_back({"slot-clash",
@@ -49,17 +47,18 @@ private:
                      {}});
   }
 
+  bool open_gl_;
   std::string file_;
   std::map<uint32_t, std::string> names_;
   std::map<uint32_t, uint32_t> sets_, bindings_;
-  std::map<std::tuple<int, uint32_t, uint32_t>, uint32_t> taken_;  ///< variable by place
+  std::map<std::tuple<bool, uint32_t, uint32_t>, uint32_t> taken_;  ///< variable by place
 };
 
 }  // namespace
 
-Diagnostics checkSlots(const Spirv& words, const std::string& name) {
+Diagnostics checkSlots(const Spirv& words, bool open_gl, const std::string& name) {
   spvtools::Context context(SPV_ENV_UNIVERSAL_1_3);
-  Slots slots(name);
+  Slots slots(open_gl, name);
   const auto read = [](void* user, const spv_parsed_instruction_t* instruction) {
     static_cast<Slots*>(user)->read(*instruction);
     return SPV_SUCCESS;

@@ -55,7 +55,7 @@ TEST(Places, AClashIsFoundInSpirv) {
   for (const bool clash : {false, true}) {
     const ir::Module module = twoTextures(clash);
     const std::vector<uint32_t> words = writeSpirv(module, passes::schedule(module, ir::Stage::Fragment), {});
-    EXPECT_EQ(messages(check::checkSlots(words, "shader")),
+    EXPECT_EQ(messages(check::checkSlots(words, false, "shader")),
               clash ? "slot-clash: 'first' and 'second' are both at set 1, binding 1\n" : "");
   }
 }
@@ -74,7 +74,8 @@ TEST(Places, AClashIsFoundInTheTexts) {
       const Result<check::Spirv> words =
           check::compile(source, text.language, check::Stage::Fragment, "shader");
       ASSERT_TRUE(words) << source << format(words.error()[0]);
-      const std::string found = messages(check::checkSlots(*words, "shader"));
+      const std::string found =
+          messages(check::checkSlots(*words, text.target == TargetId::GlslGl, "shader"));
       EXPECT_EQ(found.find("slot-clash: 'first' and 'second' are both at ") == 0, clash) << found;
       EXPECT_EQ(found.find(text.expected) != std::string::npos, clash) << found;
     }
