@@ -94,8 +94,7 @@ TEST(GltfContainer, whatIsNoFileIsAnError) {
   const std::string folder = sourceFolder().string();
   EXPECT_EQ(outcome(read(folder, {})), folder + ": error: this is a folder, not a file [file-unreadable]");
   if (fs::exists("/dev/zero")) {
-    EXPECT_EQ(outcome(read("/dev/zero", {})),
-              "/dev/zero: error: this is no regular file [file-unreadable]");
+    EXPECT_EQ(outcome(read("/dev/zero", {})), "/dev/zero: error: this is no regular file [file-unreadable]");
   }
 }
 
