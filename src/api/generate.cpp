@@ -11,13 +11,14 @@ namespace {
 /// `path: every input`, as Make and Ninja read it. A name that could be read as something else, a recipe or
 /// an assignment say, is refused: there is no way to write it that both understand.
 Result<std::string> depfileText(const std::string& target, const std::vector<std::string>& inputs) {
-  constexpr std::string_view kRefused = ":;=|%*?[]~&\\\x7f";
+  constexpr std::string_view kRefused = ":;=|%*?[]\\\x7f";
   std::string text;
   Diagnostics wrong;
   const auto add = [&](const std::string& path) {
-    for (const char c : path) {
+    for (const char& c : path) {
       const bool control = static_cast<unsigned char>(c) < 0x20;
-      if (control || kRefused.find(c) != std::string_view::npos) {
+      const bool home = c == '~' && &c == path.data();
+      if (control || home || kRefused.find(c) != std::string_view::npos) {
         wrong.push_back({"depfile-name",
                          Severity::Error,
                          {printable(path), 0, 0, {}},

@@ -12,6 +12,7 @@
 #include "preview/canvas.h"
 #include "preview/sheet.h"
 #include "support/cases.h"
+#include "support/limits.h"
 
 namespace lacquer::test {
 namespace {
