@@ -193,8 +193,7 @@ private:
     if (value.op == Op::TextureCompare || value.op == Op::TextureCompareLod) {
       // One texel, or a constant: what passes the comparison is all or nothing.
       const Register passes = map(Op::LessEqual, coordinate[2], instruction.outs[0]);
-      return {emit({Step::Select, Op::Select, 0, -1, 0, {}, {passes, literal(1), literal(0), kNoRegister}},
-                   false)};
+      return {map(Op::Select, std::array{passes, literal(1), literal(0)})};
     }
     return {instruction.outs.begin(), instruction.outs.end()};
   }

@@ -427,9 +427,14 @@ bool Resolver::alive(uint32_t index) {
 }
 
 bool Resolver::gives(uint32_t term) {
-  return std::any_of(model_.lines.begin(), model_.lines.end(), [&](const Line& line) {
-    return line.term == term && line.kind == LineDecl::Kind::Value && id(line.id);
-  });
+  const bool whole = model_.terms[term].parent == Line::kNone;
+  bool last = false;
+  for (const Line& line : model_.lines) {
+    if (line.term != term || line.kind != LineDecl::Kind::Value) continue;
+    last = static_cast<bool>(id(line.id));
+    if (whole && last) return true;
+  }
+  return last;
 }
 
 std::string Resolver::shown(const Condition& equal) const {

@@ -65,7 +65,7 @@ public:
   std::vector<graph::Skipped> skipped();
   bool has(const Part& part) const;
   bool alive(uint32_t term);
-  /// Whether a line of the term comes to something.
+  /// Whether a line of the part, or the last line of the term, comes to something: what it is for.
   bool gives(uint32_t term);
   /// A property that stands for a role, and what it is when the file does not say.
   uint16_t provider(const Role& role) const;

@@ -123,7 +123,8 @@ TEST(GltfLimits, lastOfDoubleMembersCounts) {
   const auto document =
       materialsOf(withMaterial(R"("alphaCutoff":0.1,"name":"a","alphaCutoff":0.2,"alphaCutoff":0.3)"), "x");
   ASSERT_TRUE(document);
-  EXPECT_EQ(document->materials[0].alphaCutoff, 0.3);
+  ASSERT_EQ(document->materials[0].numbers.size(), 1U);
+  EXPECT_EQ(document->materials[0].numbers[0].value[0], 0.3);
   EXPECT_EQ(document->materials[0].name, "a");
 }
 

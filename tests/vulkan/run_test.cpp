@@ -165,7 +165,7 @@ TEST(VulkanRun, CubeMapsOfOneColorEach) {
   work.inputs = {{3, numbers(2100)}};
   std::vector<Texel> colors;
   for (size_t i = 0; i < work.points; ++i) colors.push_back({static_cast<float>(i), 1, 0.25F, 60000});
-  Texture sky{{0, 2}, {0, 2}, true, 1, 1, texels(colors), {}, {}, false};
+  Texture sky{{0, 2}, {0, 2}, Shape::Cube, false, 1, 1, texels(colors), {}, {}, false};
   work.textures = {sky};
   const Outcome outcome = ran(work);
   for (size_t i = 0; i < work.points; ++i) {
@@ -191,7 +191,7 @@ TEST(VulkanRun, WrapModesAndRows) {
   work.points = 7;
   work.inputs = {{2, uv}};
   const auto reds = [&](Wrap s, Wrap t, bool nearest) {
-    work.textures = {{{1, 1}, {1, 1}, false, 3, 2, texels(rows), s, t, nearest}};
+    work.textures = {{{1, 1}, {1, 1}, Shape::Plane, false, 3, 2, texels(rows), s, t, nearest}};
     const Outcome outcome = ran(work);
     std::vector<int> result;
     for (size_t i = 0; i < work.points; ++i) {
@@ -243,7 +243,7 @@ TEST(VulkanRun, WhatCannotRunIsSaid) {
       "layout(set = 3, binding = 1) uniform sampler2D a;\nlayout(location = 0) out vec4 c;\n"
       "void main() { c = texture(a, vec2(0)); }\n");
   EXPECT_EQ(errorOf(work), "error: nothing is given for set 3, binding 1 [vulkan-interface]");
-  work.textures = {{{3, 1}, {3, 1}, false, 1U << 20U, 1, texels({{}}), {}, {}, true}};
+  work.textures = {{{3, 1}, {3, 1}, Shape::Plane, false, 1U << 20U, 1, texels({{}}), {}, {}, true}};
   EXPECT_NE(errorOf(work).find("one has 1048576 by 1 [vulkan-unsupported]"), std::string::npos);
 }
 

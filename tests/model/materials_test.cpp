@@ -1,0 +1,96 @@
+// What the built-in parts make of materials, as properties.
+#include <gtest/gtest.h>
+
+#include "support/cases.h"
+#include "support/materials.h"
+
+namespace lacquer::test {
+namespace {
+
+graph::Graph graphOf(const std::string& extensions, const BuildSetup& setup = {}) {
+  const auto document = materialsOf(
+      R"({"asset": {"version": "2.0"}, "materials": [{"extensions": )" + extensions + "}]}", "test.gltf");
+  Diagnostics warnings;
+  return buildGraph(document->materials.at(0), {true, true, false, {}}, setup, warnings);
+}
+
+std::vector<graph::Node> nodesOf(const std::string& extensions, const BuildSetup& setup = {}) {
+  return graphOf(extensions, setup).nodes;
+}
+
+bool skips(const graph::Graph& graph, const std::string& term) {
+  for (const graph::Skipped& skipped : graph.skipped) {
+    if (skipped.term == term) return true;
+  }
+  return false;
+}
+
+TEST(Materials, NeutralIsGone) {
+  const std::vector<graph::Node> core = nodesOf("{}");
+  EXPECT_EQ(nodesOf(R"({"KHR_materials_clearcoat": {}})"), core);
+  EXPECT_EQ(nodesOf(R"({"KHR_materials_coat": {"coatRoughnessFactor": 0.5}})"), core);
+  EXPECT_EQ(nodesOf(R"({"KHR_materials_ior": {"ior": 1.5}})"), core);
+  EXPECT_NE(nodesOf(R"({"KHR_materials_coat": {"coatFactor": 0.1}})"), core);
+}
+
+TEST(Materials, BothWordsForACoatAreOneMaterial) {
+  EXPECT_EQ(nodesOf(R"({"KHR_materials_clearcoat": {"clearcoatFactor": 0.5}})"),
+            nodesOf(R"({"KHR_materials_coat": {"coatFactor": 0.5, "coatDarkeningFactor": 0}})"));
+}
+
+TEST(Materials, EveryTermStaysWhereItIsAskedTo) {
+  const model::Model& khr = **builtInModels().of("khr");
+  ASSERT_FALSE(khr.liveTerms().empty());
+  for (const std::string_view term : khr.liveTerms()) {
+    BuildSetup setup;
+    setup.live = {std::string(term), "coat"};
+    const bool textured = term.ends_with("normal_map") || term == "occlusion";
+    const bool tint = term == "coat.tint";
+    const graph::Graph graph = graphOf(tint ? R"({"KHR_materials_clearcoat": {}, "ADOBE_materials_clearcoat_tint": {}})"
+                                            : R"({"KHR_materials_coat": {"coatDarkeningFactor": 0}})",
+                                       setup);
+    // A texture that is not there cannot be kept.
+    if (!textured) {
+      EXPECT_FALSE(skips(graph, std::string(term))) << term;
+    }
+  }
+}
+
+/// A template that takes none of what a material has is told so, and gets none of it.
+TEST(Materials, WhatNoPortTakesIsSaid) {
+  BuildSetup setup;
+  setup.template_name = "bsdf";
+  const graph::Graph graph = graphOf("{}", setup);
+  EXPECT_TRUE(skips(graph, "base.indirect"));
+  EXPECT_FALSE(graph.find("base.indirect"));
+  setup.template_name = "forward";
+  EXPECT_FALSE(skips(graphOf("{}", setup), "base.indirect"));
+}
+
+/// Ports decide, not names: a copy of a template under another name is given the same.
+TEST(Materials, ACopyOfATemplateIsGivenTheSame) {
+  lang::Library library = lang::Library::embedded();
+  std::string text = readFile(sourceFolder() / "templates/forward.node");
+  const std::string name = "template forward ";
+  text.replace(text.find(name), name.size(), "template elsewhere ");
+  const std::string standing = "default;";
+  if (const size_t at = text.find(standing); at != std::string::npos) text.erase(at, standing.size());
+  ASSERT_TRUE(library.add({{"elsewhere.node", text}}));
+  const model::Models models(library);
+  const auto document = material::readText(
+      R"({"asset": {"version": "2.0"}, "materials": [{"extensions": {"KHR_materials_coat": {"coatFactor": 1}}}]})", "x",
+      **models.schema(), {});
+  std::vector<graph::Graph> graphs;
+  for (const char* of : {"forward", "elsewhere"}) {
+    Diagnostics warnings;
+    model::BuildOptions options;
+    options.template_name = of;
+    graphs.push_back(*model::build(**models.of("khr"), **library.template_(of), document->materials[0],
+                                   {true, true, false, {}}, options, warnings));
+  }
+  EXPECT_EQ(graphs[0].nodes, graphs[1].nodes);
+  EXPECT_EQ(graphs[0].outputs, graphs[1].outputs);
+}
+
+}  // namespace
+}  // namespace lacquer::test
