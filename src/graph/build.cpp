@@ -125,22 +125,18 @@ private:
     const Anisotropy& a = *coat.anisotropy;
     const Source NdotL = cosines("coat", coat.normal);
     graph_.add("coat.anisotropy_cosines", "anisotropy_cosines",
-               {{"T", a.T},
-                {"B", a.B},
-                {"V", given("view")},
-                {"L", given("light_sample.L")},
-                {"sum", ref("half", "sum")}});
+               {{"B", a.B}, {"V", given("view")}, {"L", given("light_sample.L")}});
     std::vector<std::pair<std::string, Source>> shared;
-    for (const char* name : {"TdotV", "TdotL"}) {
+    for (const char* name : {"BdotV", "BdotL"}) {
       shared.emplace_back(name, ref("coat.anisotropy_cosines", name));
     }
     shared.emplace_back("alpha_t", a.alpha_t);
     shared.emplace_back("alpha_b", a.alpha_b);
     Node& distribution = graph_.add("coat.distribution", "ggx_distribution_anisotropic", shared);
-    Graph::connect(distribution, "BdotSum", ref("coat.anisotropy_cosines", "BdotSum"));
+    Graph::connect(distribution, "N", coat.normal);
+    Graph::connect(distribution, "sum", ref("half", "sum"));
     Graph::connect(distribution, "NdotSum", ref("coat.cosines", "NdotSum"));
     Graph::connect(distribution, "length2", ref("half", "length2"));
-    Graph::connect(distribution, "directed", ref("coat.anisotropy", "directed"));
     Node& visibility = graph_.add("coat.visibility", "smith_visibility_anisotropic", shared);
     Graph::connect(visibility, "NdotL", NdotL);
     Graph::connect(visibility, "NdotV", ref("coat.cosines", "NdotV"));

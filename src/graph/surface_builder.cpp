@@ -149,9 +149,20 @@ std::optional<SurfaceBuilder::Frame> SurfaceBuilder::tangentFrame(const gltf::Te
     graph_.add(id, "tangent_frame_from_derivatives",
                {{"N", geometric_normal_}, {"position", given("position")}, {"uv", uv}});
   }
-  const Frame frame{ref(id, "T"), ref(id, "B")};
+  const Frame frame{ref(id, "T"), ref(id, "B"), geometric_normal_};
   frames_.emplace_back(key, frame);
   return frame;
+}
+
+/// The frame that a normal map's texels are decoded in. From the vertices it is as MikkTSpace encoded it:
+/// nothing is normalized before the result is.
+std::optional<SurfaceBuilder::Frame> SurfaceBuilder::mapFrame(const gltf::TextureInfo& info,
+                                                              const std::string& slot) {
+  if (!attributes_.tangent || !attributes_.normal) return tangentFrame(&info, slot);
+  const std::string id = "normal.frame";
+  if (graph_.find(id) == nullptr)
+    graph_.add(id, "tangent_frame", {{"N", given("normal")}, {"tangent", given("tangent")}});
+  return Frame{ref(id, "T"), ref(id, "B"), given("normal")};
 }
 
 Source SurfaceBuilder::facing(const Source& normal, const std::string& layer) {
@@ -173,7 +184,7 @@ Source SurfaceBuilder::mapped(const gltf::Texture& texture, const std::string& l
     skip(term, "the normal texture's scale is 0");
     return geometric_normal_;
   }
-  const std::optional<Frame> frame = tangentFrame(&*texture, slot);
+  const std::optional<Frame> frame = mapFrame(*texture, slot);
   if (!frame) {
     warn(
         "tangent-space-missing", texture->pointer,
@@ -183,9 +194,8 @@ Source SurfaceBuilder::mapped(const gltf::Texture& texture, const std::string& l
     return geometric_normal_;
   }
   const Source image = texel(*texture, slot, false);
-  Node& node =
-      graph_.add(term, "normal_map",
-                 {{"texel", pick(image, "rgb")}, {"T", frame->T}, {"B", frame->B}, {"N", geometric_normal_}});
+  Node& node = graph_.add(term, "normal_map",
+                          {{"texel", pick(image, "rgb")}, {"T", frame->T}, {"B", frame->B}, {"N", frame->N}});
   if (texture->scale != 1 || live(term)) {
     const std::string property =
         texture->pointer.substr(fmt::format("/materials/{}/", material_.index).size());
@@ -447,7 +457,7 @@ void SurfaceBuilder::coatAnisotropy(const CoatModel& model, CoatSources& coat) {
   Source strength = editable("coat_anisotropy_strength", ir::Type::Float, {model.anisotropy_strength}, {0, 1},
                              "extensions/KHR_materials_coat/coatAnisotropyStrength");
   if (options_.template_name == "surface" && !map) {
-    coat.anisotropy = Anisotropy{{}, {}, {}, {}, strength};
+    coat.anisotropy = Anisotropy{{}, {}, {}, strength};
     return;
   }
   std::optional<Source> direction;
@@ -473,15 +483,14 @@ void SurfaceBuilder::coatAnisotropy(const CoatModel& model, CoatSources& coat) {
     }
   }
   if (options_.template_name == "surface") {
-    coat.anisotropy = Anisotropy{{}, {}, {}, {}, strength};
+    coat.anisotropy = Anisotropy{{}, {}, {}, strength};
     return;
   }
-  Node& node = graph_.add("coat.anisotropy", "anisotropy_frame",
+  Node& node = graph_.add("coat.anisotropy", "anisotropy_across",
                           {{"N", coat.normal}, {"T", frame->T}, {"B", frame->B}});
   if (direction) Graph::connect(node, "direction", *direction);
   graph_.add("coat.anisotropic_alpha", "anisotropic_alpha", {{"alpha", coat.alpha}, {"strength", strength}});
-  coat.anisotropy = Anisotropy{ref("coat.anisotropy", "T"), ref("coat.anisotropy", "B"),
-                               ref("coat.anisotropic_alpha", "alpha_t"),
+  coat.anisotropy = Anisotropy{ref("coat.anisotropy"), ref("coat.anisotropic_alpha", "alpha_t"),
                                ref("coat.anisotropic_alpha", "alpha_b"), strength};
 }
 

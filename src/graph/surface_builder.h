@@ -16,7 +16,7 @@ Source parameter(std::string name);
 Source number(double x);
 
 struct Anisotropy {
-  Source T, B, alpha_t, alpha_b, strength;
+  Source B, alpha_t, alpha_b, strength;
 };
 
 /// The coat as wired; absent members are terms that are skipped.
@@ -49,7 +49,7 @@ public:
 
 private:
   struct Frame {
-    Source T, B;
+    Source T, B, N;
   };
 
   void skip(std::string term, std::string reason);
@@ -66,6 +66,7 @@ private:
   void geometry();
   Source geometricNormal();
   std::optional<Frame> tangentFrame(const gltf::TextureInfo* info, const std::string& slot);
+  std::optional<Frame> mapFrame(const gltf::TextureInfo& info, const std::string& slot);
   Source facing(const Source& normal, const std::string& layer);
   Source mapped(const gltf::Texture& texture, const std::string& layer, const std::string& scale_name);
 
