@@ -44,16 +44,6 @@ const std::map<std::string, Subject>& geometric() {
         "    given in_half = half_vector(IN_V, IN_L);\n",
         "@(IN_N, in_half.sum, in_half.length2, dot(IN_N, in_half.sum), in_alpha)",
         "@.numerator / max(@.denominator, MIN_LOBE)"}},
-      {"ggx_distribution_anisotropic",
-       {"",
-        {},
-        {{"IN_V", 3, -1, 1, true},
-         {"IN_L", 3, -1, 1, true},
-         {"alpha_t", 1, 0.001, 1},
-         {"alpha_b", 1, 0.001, 1}},
-        "    given in_sum = IN_V + IN_L;\n",
-        "@(IN_V.x, IN_V.y, IN_L.x, IN_L.y, in_sum.z, dot(in_sum, in_sum), in_alpha_t, in_alpha_b)",
-        "@.numerator / max(@.denominator, MIN_LOBE)"}},
   };
   return kGeometric;
 }

@@ -33,6 +33,9 @@ void specializeLights(ir::Module& module, const LightFacts& facts);
 /// that are always dropped, which become 0.
 void simplifyRanges(ir::Module& module);
 
+/// Divides by the preshader's values with their reciprocals, which the preshader makes.
+void takeReciprocals(ir::Module& module);
+
 /// Gathers the Floats that scale vectors, takes them out of dot products, and leaves out what only scales the
 /// direction of a cube map lookup.
 void placeScales(ir::Module& module);

@@ -22,6 +22,8 @@ constexpr std::array kPasses{
     Pass{"lights", [](ir::Module& m, const PipelineOptions& o) { specializeLights(m, o.lights); }},
     // Clamps and choices that the ranges of the inputs prove idle.
     Pass{"ranges", [](ir::Module& m, const PipelineOptions&) { simplifyRanges(m); }},
+    // The preshader divides, and once.
+    Pass{"reciprocals", [](ir::Module& m, const PipelineOptions&) { takeReciprocals(m); }},
     // One product of two Floats instead of three with a vector's components.
     Pass{"scales", [](ir::Module& m, const PipelineOptions&) { placeScales(m); }},
     // Affine functions of interpolated values may be computed at the vertices.

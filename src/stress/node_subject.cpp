@@ -69,9 +69,7 @@ struct Geometry {
     if (name == "NdotL") return {n_dot_l};
     if (name == "NdotV") return {std::abs(dot(n, v))};
     if (name == "NdotSum") return {n_dot_l + dot(n, v)};
-    if (name == "TdotV") return {dot(t, v)};
     if (name == "BdotV") return {dot(b, v)};
-    if (name == "TdotL") return {dot(t, l)};
     if (name == "BdotL") return {dot(b, l)};
     return {};
   }

@@ -116,14 +116,14 @@ TEST(Targets, thatDoNotExist) {
 
 TEST(LightCounts, moreThanTheArrayHolds) {
   Options options = quick();
-  options.lights = {Lights::Mode::Fixed, 4000000000U, 4000000000U, 17};
+  options.lights = {Lights::Mode::Fixed, {{"directional", 4000000000U}, {"point", 4000000000U}, {"spot", 17}}};
   Messages messages;
   Graph graph = paintGraph();
   EXPECT_FALSE(graph.generate(options, messages));
   EXPECT_EQ(graph.dump(options, "", messages), "");
   EXPECT_EQ(graph.prove(options, messages), "");
   EXPECT_EQ(errorsOf(messages), "too-many-lights too-many-lights too-many-lights");
-  options.lights = {Lights::Mode::Fixed, 0, 16, 0};
+  options.lights = {Lights::Mode::Fixed, {{"point", 16}}};
   EXPECT_TRUE(graph.generate(options, messages));
 }
 

@@ -140,9 +140,7 @@ bool World::geometry(std::string_view name, Floats& out) const {
   if (name == "NdotL") return scalar(n_dot_l);
   if (name == "NdotV") return scalar(std::abs(dot(n_, v_)));
   if (name == "NdotSum") return scalar(n_dot_l + dot(n_, v_));
-  if (name == "TdotV") return scalar(dot(t_, v_));
   if (name == "BdotV") return scalar(dot(b_, v_));
-  if (name == "TdotL") return scalar(dot(t_, l_));
   if (name == "BdotL") return scalar(dot(b_, l_));
   return false;
 }
