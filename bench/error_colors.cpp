@@ -12,8 +12,8 @@
 
 #include "eval/evaluate.h"
 #include "eval/points.h"
-#include "tests/support/materials.h"
 #include "lower/lower.h"
+#include "tests/support/materials.h"
 
 namespace lacquer::bench {
 
@@ -132,8 +132,8 @@ graph::Graph graphOf(const Setting& setting) {
   options.decode_srgb = setting.textured;
   options.dfg_table = false;  // the application's table is no variant
   Diagnostics warnings;
-  return test::buildGraph(document->materials.at(0), {true, true, false, {true, false, false, false}}, options,
-                      warnings);
+  return test::buildGraph(document->materials.at(0), {true, true, false, {true, false, false, false}},
+                          options, warnings);
 }
 
 std::vector<double> colors(const graph::Graph& from, const lang::Library& library,

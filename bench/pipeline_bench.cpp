@@ -14,7 +14,6 @@
 #include <sstream>
 
 #include "check/check.h"
-#include "tests/support/materials.h"
 #include "lacquer.h"
 #include "lower/lower.h"
 #include "passes/legalize.h"
@@ -22,6 +21,7 @@
 #include "passes/program.h"
 #include "targets/target.h"
 #include "tests/build/random_gltf.h"
+#include "tests/support/materials.h"
 
 namespace lacquer::bench {
 

@@ -106,12 +106,14 @@ Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
   for (const std::string& folder : options.node_directories) {
     Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
     if (!files) return tl::make_unexpected(files.error());
-    if (Result<void> added = library.add(std::move(*files)); !added) return tl::make_unexpected(added.error());
+    if (Result<void> added = library.add(std::move(*files)); !added)
+      return tl::make_unexpected(added.error());
   }
   return std::make_shared<const Language>(std::move(library));
 }
 
-Result<material::Document> readMaterials(const std::string& path, const Language& language, const Options& options) {
+Result<material::Document> readMaterials(const std::string& path, const Language& language,
+                                         const Options& options) {
   const Result<const material::Schema*> schema = language.models.schema();
   if (!schema) return tl::make_unexpected(schema.error());
   const Result<Limits> limits = limitsOf(options);

@@ -32,10 +32,9 @@ Result<void> bindUniforms(const ir::Module& module, const EvalPoints& points, co
       return fail(std::move(code), {file, 0, 0, "/uniforms/" + known}, std::move(message), std::move(help));
     };
     if (field == nullptr) {
-      return wrong(
-          "unknown-uniform",
-          fmt::format("the template '{}' has no field '{}'", module.template_name, printable(name)),
-          "write BLOCK.FIELD as the template names them, BLOCK.FIELD[0] of an array");
+      return wrong("unknown-uniform",
+                   fmt::format("the template '{}' has no field '{}'", module.template_name, printable(name)),
+                   "write BLOCK.FIELD as the template names them, BLOCK.FIELD[0] of an array");
     }
     const auto width = static_cast<size_t>(ir::componentCount(field->type));
     if (values.size() != width) {

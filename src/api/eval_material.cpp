@@ -15,9 +15,10 @@ namespace lacquer {
 namespace {
 
 bool isTextureProperty(const material::Schema& schema, const std::string& name) {
-  return std::any_of(schema.properties.begin(), schema.properties.end(), [&](const material::Property& property) {
-    return property.decl->kind == material::Kind::Texture && property.decl->name == name;
-  });
+  return std::any_of(schema.properties.begin(), schema.properties.end(),
+                     [&](const material::Property& property) {
+                       return property.decl->kind == material::Kind::Texture && property.decl->name == name;
+                     });
 }
 
 eval::Wrap wrapOf(int gl) {
@@ -130,7 +131,8 @@ Result<void> EvalMaterial::lower(material::Material material, const Language& li
   options.ibl = options.ibl && environment;
   options.decode_srgb = false;
   Diagnostics warnings;
-  Result<graph::Graph> built = buildGraph(material, {true, true, true, {true, true, true, true}}, library, options, warnings);
+  Result<graph::Graph> built =
+      buildGraph(material, {true, true, true, {true, true, true, true}}, library, options, warnings);
   report(warnings, images_.file(), messages);
   if (!built) return tl::make_unexpected(std::move(built.error()));
   graph::Graph graph = std::move(*built);

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "api/internal.h"
-#include "support/text.h"
 #include "passes/pipeline.h"
+#include "support/text.h"
 
 namespace lacquer {
 

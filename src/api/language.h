@@ -19,7 +19,8 @@ struct Language : lang::Library {
 };
 
 /// A file's materials by the library's declarations.
-Result<material::Document> readMaterials(const std::string& path, const Language& language, const Options& options);
+Result<material::Document> readMaterials(const std::string& path, const Language& language,
+                                         const Options& options);
 
 /// The built-in library with the options' folders added. The built-in one alone is made once.
 Result<std::shared_ptr<const Language>> libraryFor(const Options& options);

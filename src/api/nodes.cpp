@@ -83,7 +83,8 @@ Json extensionJson(const lang::ExtensionDecl& decl) {
   list("yields_to", decl.yields_to);
   list("loses_to", decl.loses_to);
   json["properties"] = Json::array();
-  for (const lang::PropertyDecl& property : decl.properties) json["properties"].push_back(propertyJson(property));
+  for (const lang::PropertyDecl& property : decl.properties)
+    json["properties"].push_back(propertyJson(property));
   return json;
 }
 
@@ -109,18 +110,19 @@ std::string nodesJson(const Options& options, Messages& messages) {
   }
   const lang::Library& all = **library;
   const auto documented = [](const auto& decl) { return Json{{"name", decl.name}, {"doc", decl.doc}}; };
-  Json json = {{"lacquer", version()},
-               {"extensions", listOf(all, lang::DeclKind::Extension, &lang::Library::extension, extensionJson)},
-               {"profiles", listOf(all, lang::DeclKind::Profile, &lang::Library::profile, documented)},
-               {"switches", listOf(all, lang::DeclKind::Switch, &lang::Library::switch_,
-                                   [&](const lang::SwitchDecl& decl) {
-                                     Json row = documented(decl);
-                                     row["default"] = decl.value;
-                                     return row;
-                                   })},
-               {"templates", listOf(all, lang::DeclKind::Template, &lang::Library::template_, documented)},
-               {"live", liveTerms(options)},
-               {"nodes", listOf(all, lang::DeclKind::Node, &lang::Library::node, nodeJson)}};
+  Json json = {
+      {"lacquer", version()},
+      {"extensions", listOf(all, lang::DeclKind::Extension, &lang::Library::extension, extensionJson)},
+      {"profiles", listOf(all, lang::DeclKind::Profile, &lang::Library::profile, documented)},
+      {"switches", listOf(all, lang::DeclKind::Switch, &lang::Library::switch_,
+                          [&](const lang::SwitchDecl& decl) {
+                            Json row = documented(decl);
+                            row["default"] = decl.value;
+                            return row;
+                          })},
+      {"templates", listOf(all, lang::DeclKind::Template, &lang::Library::template_, documented)},
+      {"live", liveTerms(options)},
+      {"nodes", listOf(all, lang::DeclKind::Node, &lang::Library::node, nodeJson)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace);  // a node file may hold any bytes
 }
 

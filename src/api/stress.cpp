@@ -143,13 +143,16 @@ private:
     });
   }
 
-  Result<std::unique_ptr<Subject>> materialSubject(const std::string& file, const material::Material& material) {
+  Result<std::unique_ptr<Subject>> materialSubject(const std::string& file,
+                                                   const material::Material& material) {
     FileImages images(file, options_);
     EvalMaterial evaluated(images, options_);
     if (Result<void> lowered = evaluated.lower(material, *library_, true, {}, messages_); !lowered)
       return tl::make_unexpected(std::move(lowered.error()));
     evaluated.place({false, {{"directional", 1}}});
-    return stress::materialSubject(material.name, evaluated.module());
+    const Result<const model::Model*> model = library_->models.of(evaluated.profile());
+    if (!model) return tl::make_unexpected(model.error());
+    return stress::materialSubject(material.name, evaluated.module(), (*model)->layers());
   }
 
   Result<material::Document> read(const std::string& file) {

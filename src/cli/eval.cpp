@@ -22,7 +22,8 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
       ->capture_default_str();
   verb->add_option("--template", flags.options.template_name,
                    "a template that puts out a colour; without it the default");
-  verb->add_option("--profile", flags.options.profile, "the reading of the specification, one of `lacquer nodes`; without it the default");
+  verb->add_option("--profile", flags.options.profile,
+                   "the reading of the specification, one of `lacquer nodes`; without it the default");
   verb->add_option(
           "--spirv-from", flags.spirv_from,
           "what --engine vulkan runs: direct, or through glslang: its GLSL (glslang), its HLSL (hlsl)")

@@ -58,7 +58,8 @@ const CLI::Validator kPlainSize(
     "");
 
 /// "NAME=on" or "NAME=off", each.
-std::string parseSwitches(const std::vector<std::string>& texts, std::map<std::string, bool, std::less<>>& switches) {
+std::string parseSwitches(const std::vector<std::string>& texts,
+                          std::map<std::string, bool, std::less<>>& switches) {
   for (const std::string& text : texts) {
     const size_t equals = text.find('=');
     const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
@@ -131,7 +132,8 @@ std::string finish(Flags& flags) {
 void addShared(CLI::App& app, Flags& flags) {
   app.add_option("--template", flags.options.template_name,
                  "a template of `lacquer nodes`; without it the default");
-  app.add_option("--profile", flags.options.profile, "the reading of the specification, one of `lacquer nodes`; without it the default");
+  app.add_option("--profile", flags.options.profile,
+                 "the reading of the specification, one of `lacquer nodes`; without it the default");
   app.add_option("--error-budget", flags.options.error_budget,
                  "relative error of the colour that cheaper variants of the terms may bring, such as 1e-3")
       ->check(CLI::Range(0.0, 1.0));
@@ -146,7 +148,8 @@ void addShared(CLI::App& app, Flags& flags) {
   app.add_option("--live", flags.options.live, "terms to keep though today's value would remove them")
       ->delimiter(',')
       ->allow_extra_args(false);
-  app.add_option("--switch", flags.switches, "NAME=on or NAME=off: a switch of the node library (may be repeated)")
+  app.add_option("--switch", flags.switches,
+                 "NAME=on or NAME=off: a switch of the node library (may be repeated)")
       ->allow_extra_args(false);
   app.add_flag("--no-ibl", flags.no_ibl, "no image-based light");
   app.add_flag("--no-multiple-scattering", flags.no_multiple_scattering,

@@ -23,7 +23,9 @@ CLI::App* addStress(CLI::App& app, StressFlags& flags) {
   verb->add_option("--total", flags.stress.total, "inputs for all of them together, the same number for each")
       ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
       ->excludes(samples);
-  verb->add_option("--profile", flags.options.profile, "the reading of the specification, of materials, one of `lacquer nodes`; without it the default");
+  verb->add_option(
+      "--profile", flags.options.profile,
+      "the reading of the specification, of materials, one of `lacquer nodes`; without it the default");
   verb->add_option("--seed", flags.stress.seed, "another one draws other inputs")->capture_default_str();
   verb->add_flag("--mediump", flags.stress.mediump,
                  "round every operation to half precision and only report what comes of it");

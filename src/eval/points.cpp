@@ -45,6 +45,7 @@ Columns lightOf(const ir::Module& module, std::string_view kind, Columns propert
       assert(known.fill && "lowered for evaluations");
       const bool per_point = std::any_of(properties.begin(), properties.end(),
                                          [](const auto& property) { return property.second.per_point; });
+      if (per_point && points == 0) return columns;  // nobody looks at the light
       Bindings bindings;
       bindings.columns = std::move(properties);
       std::vector<ir::ValueId> roots;

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "gltf/json.h"
 #include "gltf/facts.h"
+#include "gltf/json.h"
 
 namespace lacquer::gltf {
 

@@ -311,8 +311,7 @@ void Reader::parameterValue(const Json& json, const Path& path, std::string_view
     if (!json.is_number()) return report_.wrongType(path, name, json, "a number, for a float");
     out[0] = json.get<double>();
   } else {
-    const std::string expected =
-        fmt::format("an array of {} numbers, for a {}", count, ir::typeName(type));
+    const std::string expected = fmt::format("an array of {} numbers, for a {}", count, ir::typeName(type));
     if (!json.is_array()) return report_.wrongType(path, name, json, expected);
     if (json.size() != static_cast<size_t>(count)) {
       return report_.error("wrong-count", path,
@@ -354,7 +353,8 @@ void Reader::parameterOrZero(const Json& json, const Path& path, ir::Parameter& 
 }
 
 void Reader::parameter(std::string_view name, const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 6> kKeys = {"type", "value", "range", "or_zero", "pointer", "default"};
+  constexpr std::array<std::string_view, 6> kKeys = {"type",    "value",   "range",
+                                                     "or_zero", "pointer", "default"};
   if (!object(json, path, "a parameter", kKeys)) return;
   ir::Parameter parameter;
   parameter.name = name;
@@ -362,7 +362,7 @@ void Reader::parameter(std::string_view name, const Json& json, const Path& path
       typeOf(json, path, "parameter", valueType, "it is a float, vec2, vec3, vec4 or bool");
   parameter.type = known.value_or(ir::Type::Float);
   const Json* value = required(json, path, "the parameter", "value");
-  if (value != nullptr && known) 
+  if (value != nullptr && known)
     parameterValue(*value, Path(path, "value"), "value", parameter.type, parameter.value);
   if (const Json* range = json::member(json, "range")) parameterRange(*range, Path(path, "range"), parameter);
   if (const Json* zero = json::member(json, "or_zero"))
@@ -370,11 +370,6 @@ void Reader::parameter(std::string_view name, const Json& json, const Path& path
   parameter.pointer = optionalText(json, path, "pointer");
   if (const Json* by_default = json::member(json, "default"); by_default != nullptr && known)
     parameterValue(*by_default, Path(path, "default"), "default", parameter.type, parameter.neutral);
-  // A range of a graph by hand may be empty until it has been checked: no std::clamp.
-  for (int i = 0; i < ir::componentCount(parameter.type); ++i) {
-    double& x = parameter.neutral[static_cast<size_t>(i)];
-    x = std::min(std::max(x, parameter.range.lo), parameter.range.hi);
-  }
   graph_.parameters.push_back(std::move(parameter));
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -76,10 +77,14 @@ struct Lights {
     Fixed,  ///< the counts below; at most as many as the template's light array holds
   };
   Mode mode = Mode::Any;
-  /// By the name of the template's kind of light ("directional", "point", "spot"); they lie in the light array in
-  /// the order in which the template declares the kinds.
+  /// By the name of the template's kind of light ("directional", "point", "spot"); they lie in the light
+  /// array in the order in which the template declares the kinds.
   std::map<std::string, uint32_t, std::less<>> counts{};
 };
+
+/// Everything that is a shader: what is made where nobody says.
+inline constexpr Target kShaderTargets[] = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl,
+                                            Target::Spirv};
 
 /// How shaders are made. Each call reads what concerns it and leaves the rest alone. The defaults are what
 /// the command line does without flags.
@@ -89,22 +94,23 @@ struct Options {
   /// Relative error of colours, from 0 to 1, that cheaper variants of terms may bring (docs/error.md); 0 for
   /// none.
   double error_budget = 0;
-  /// What Scene::graph() builds for: a template of the library or of `node_directories`; empty for the one that says it
-  /// is the default.
+  /// What Scene::graph() builds for: a template of the library or of `node_directories`; empty for the one
+  /// that says it is the default.
   std::string template_name;
   /// Each at most once; none makes a manifest without code.
-  std::vector<Target> targets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl, Target::Spirv};
+  std::vector<Target> targets{std::begin(kShaderTargets), std::end(kShaderTargets)};
   Parameters parameters = Parameters::Uniform;
   Lights lights;
-  /// Of the library's switches, those that are to be other than it says, by name; the three below are switches, too.
+  /// Of the library's switches, those that are to be other than it says, by name; the three below are
+  /// switches, too.
   std::map<std::string, bool, std::less<>> switches;
   bool ibl = true;                  ///< image-based light (forward)
   bool multiple_scattering = true;  ///< compensate it for multiple scattering
   bool dfg_table = true;            ///< read the texture environment_dfg (docs/bindings.md); else a fit
   bool decode_srgb = false;         ///< decode colour textures in the shader, not by their format
-  bool permissive = false;          ///< exclusion violations drop the extension with a warning instead of failing
-  bool validate = true;             ///< compile and validate everything with glslang and SPIRV-Tools
-  bool unused = false;              ///< also materials that no primitive uses, as with kUnusedAttributes
+  bool permissive = false;  ///< exclusion violations drop the extension with a warning instead of failing
+  bool validate = true;     ///< compile and validate everything with glslang and SPIRV-Tools
+  bool unused = false;      ///< also materials that no primitive uses, as with kUnusedAttributes
   SpirvRoute spirv_route = SpirvRoute::Direct;
   bool debug = false;        ///< SPIR-V has the names of values and the lines of the nodes (Direct)
   Strings live;              ///< terms kept though today's value would remove them, of liveTerms()
@@ -114,15 +120,15 @@ struct Options {
   uint64_t cache_size = uint64_t{1} << 30;  ///< bytes that the cache may take
   std::string
       depfile;  ///< of generate(), generateGraphs(): a file for Make and Ninja, what the manifest depends on
-  std::string shard;  ///< of the same: the shaders' part of the manifest alone, written here, for merge()
+  std::string shard;      ///< of the same: the shaders' part of the manifest alone, written here, for merge()
   Strings limits;         ///< "images=1G", each: what an input may be at most (docs/security.md)
   Strings allow;          ///< folders in which images may lie, beside the glTF file's own
   std::string cache_key;  ///< a file: what was not written to the cache with its bytes is not there
   bool sync = true;       ///< what is written is on the disk before it gets its name
 };
 
-/// The terms that Options::live can keep, of the options' library and profile: "coat.darkening", in alphabetical order.
-/// Empty where the library has an error.
+/// The terms that Options::live can keep, of the options' library and profile: "coat.darkening", in
+/// alphabetical order. Empty where the library has an error.
 Strings liveTerms(const Options& options = {});
 /// The profiles of the options' library, the default one first. Empty where the library has an error.
 Strings profiles(const Options& options = {});

@@ -48,7 +48,8 @@ void Checker::property(PropertyDecl& item, bool texture_member) {
   const auto value = [&](ExprPtr& syntax, Type type, std::string_view what) {
     return syntax ? constantValue(syntax, type, what) : Constant{};
   };
-  if (const Constant tested = value(item.tested_syntax, Type::Float, "the tested bound")) item.tested = (*tested)[0];
+  if (const Constant tested = value(item.tested_syntax, Type::Float, "the tested bound"))
+    item.tested = (*tested)[0];
   if (item.neutral_syntax) {
     item.neutral = value(item.neutral_syntax, item.type, fmt::format("the neutral value of '{}'", item.name));
   }

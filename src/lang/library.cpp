@@ -210,7 +210,7 @@ tl::unexpected<Diagnostics> Library::Impl::missing(DeclKind kind, std::string_vi
   const auto& index = index_[spaceOf(kind)];
   const auto it = index.find(name);
   std::string help = it == index.end() ? didYouMean(name, names(kind))
-                                        : fmt::format("'{}' is a {}", name, kindName(it->second->kind));
+                                       : fmt::format("'{}' is a {}", name, kindName(it->second->kind));
   return fail(fmt::format("unknown-{}", what), {}, fmt::format("there is no {} '{}'", what, name),
               std::move(help));
 }

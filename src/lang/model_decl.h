@@ -1,5 +1,6 @@
-// What the node language says of materials: extensions with their properties, parts with their lines, the order of
-// the layers, profiles. A line's values and conditions stay expressions over names; model/compile.h resolves them.
+// What the node language says of materials: extensions with their properties, parts with their lines, the
+// order of the layers, profiles. A line's values and conditions stay expressions over names; model/compile.h
+// resolves them.
 #pragma once
 
 #include "lang/ast.h"
@@ -10,15 +11,15 @@ namespace lacquer::lang {
 struct PropertyDecl : Param {
   enum class Kind : uint8_t { Number, Bool, Choice, Texture, Object };
   Kind kind = Kind::Number;
-  std::string_view role;      ///< what parts call it: `name`, or another property's after `as`
-  bool folded = false;        ///< at its default it is a number in the shader, unless its term is live
+  std::string_view role;         ///< what parts call it: `name`, or another property's after `as`
+  bool folded = false;           ///< at its default it is a number in the shader, unless its term is live
   std::optional<double> tested;  ///< larger values are valid, but no contract speaks of them
   /// What it is for a material without the extension; the default where nothing is said.
   std::optional<ir::Components> neutral;
-  bool srgb = false;                       ///< Texture
-  std::string_view channels;               ///< Texture: the swizzle that its texel is read with; empty for all four
-  std::vector<std::string_view> choices;   ///< Choice: the values; `default_value` is a place in this list
-  std::vector<PropertyDecl> members;       ///< Object: its properties; Texture: those of its textureInfo
+  bool srgb = false;          ///< Texture
+  std::string_view channels;  ///< Texture: the swizzle that its texel is read with; empty for all four
+  std::vector<std::string_view> choices;  ///< Choice: the values; `default_value` is a place in this list
+  std::vector<PropertyDecl> members;      ///< Object: its properties; Texture: those of its textureInfo
   ExprPtr tested_syntax, neutral_syntax;
 };
 
@@ -32,8 +33,8 @@ struct ExtensionDecl {
   std::vector<std::string_view> excludes;   ///< must not stand beside it
   std::vector<std::string_view> yields_to;  ///< where one of them stands beside it, it has no effect: a note
   std::vector<std::string_view> loses_to;   ///< the same where that contradicts it: a warning
-  std::string_view inside;                  ///< the extension whose `extensions` it stands in; empty: the material's
-  std::string_view status;                  ///< "ratified", "draft", …; empty where nothing is said
+  std::string_view inside;  ///< the extension whose `extensions` it stands in; empty: the material's
+  std::string_view status;  ///< "ratified", "draft", …; empty where nothing is said
   std::vector<PropertyDecl> properties;
   Origin origin;
   Span span;
@@ -60,9 +61,9 @@ struct LineDecl {
   std::string_view section;
   uint32_t term = 0;  ///< in the part's list
   std::vector<Alternative> alternatives;
-  ExprPtr target;                                  ///< Replace
-  std::string_view code, message, help, reason;    ///< Require
-  ExprPtr place;                                   ///< Require: the property that the warning points at; may be null
+  ExprPtr target;                                ///< Replace
+  std::string_view code, message, help, reason;  ///< Require
+  ExprPtr place;  ///< Require: the property that the warning points at; may be null
   Span span;
 };
 

@@ -82,7 +82,8 @@ bool Parser::extensionItem(ExtensionDecl& decl) {
   }
   Span ignored;
   if (accept("inside")) {
-    return name(decl.inside, ignored, "the name of the extension that it stands in") && expect(";", "the name");
+    return name(decl.inside, ignored, "the name of the extension that it stands in") &&
+           expect(";", "the name");
   }
   if (accept("status")) return name(decl.status, ignored, "the status") && expect(";", "the status");
   return property(decl.properties);
@@ -100,9 +101,11 @@ bool Parser::property(std::vector<PropertyDecl>& out) {
   if (accept("texture")) return texture(item) && (out.push_back(std::move(item)), true);
   if (accept("choice")) return choice(item) && (out.push_back(std::move(item)), true);
   if (!isType()) {
-    return syntax("expected a property", "there are float, vec2, vec3, vec4, bool, choice, texture and object");
+    return syntax("expected a property",
+                  "there are float, vec2, vec3, vec4, bool, choice, texture and object");
   }
-  if (!type(item.type, "the property's type") || !name(item.name, item.span, "the property's name")) return false;
+  if (!type(item.type, "the property's type") || !name(item.name, item.span, "the property's name"))
+    return false;
   item.kind = item.type == ir::Type::Bool ? PropertyDecl::Kind::Bool : PropertyDecl::Kind::Number;
   if (!role(item)) return false;
   if (is("in")) {

@@ -11,15 +11,16 @@ namespace {
 
 /// What a word at the start of a declaration declares.
 std::optional<DeclKind> declaredBy(std::string_view word) {
-  constexpr std::array<std::pair<std::string_view, DeclKind>, 9> kWords = {{{"const", DeclKind::Const},
-                                                                            {"node", DeclKind::Node},
-                                                                            {"template", DeclKind::Template},
-                                                                            {"extension", DeclKind::Extension},
-                                                                            {"material", DeclKind::Extension},
-                                                                            {"part", DeclKind::Part},
-                                                                            {"profile", DeclKind::Profile},
-                                                                            {"layers", DeclKind::Layers},
-                                                                            {"switch", DeclKind::Switch}}};
+  constexpr std::array<std::pair<std::string_view, DeclKind>, 9> kWords = {
+      {{"const", DeclKind::Const},
+       {"node", DeclKind::Node},
+       {"template", DeclKind::Template},
+       {"extension", DeclKind::Extension},
+       {"material", DeclKind::Extension},
+       {"part", DeclKind::Part},
+       {"profile", DeclKind::Profile},
+       {"layers", DeclKind::Layers},
+       {"switch", DeclKind::Switch}}};
   for (const auto& [spelling, kind] : kWords) {
     if (word == spelling) return kind;
   }

@@ -15,8 +15,8 @@ struct ScannedDecl {
   uint32_t begin = 0, end = 0;  ///< from its doc lines to the next declaration's
 };
 
-/// The declarations in their order. A word that declares something at the start of a line begins a declaration
-/// even when the braces before it do not close, so that one mistake does not swallow a file.
+/// The declarations in their order. A word that declares something at the start of a line begins a
+/// declaration even when the braces before it do not close, so that one mistake does not swallow a file.
 std::vector<ScannedDecl> scan(Reporter& reporter);
 
 }  // namespace lacquer::lang

@@ -243,6 +243,10 @@ private:
     const ir::ValueId value = dag().input({ir::InputKind::Parameter, it->name, it->type, ir::Rate::Material,
                                            it->range, 0, static_cast<uint32_t>(module_.parameters.size())});
     module_.parameters.push_back(*it);
+    for (int i = 0; i < ir::componentCount(it->type); ++i) {
+      double& x = module_.parameters.back().neutral[static_cast<size_t>(i)];
+      x = std::clamp(x, it->range.lo, it->range.hi);
+    }
     parameters_[it->name] = value;
     return value;
   }

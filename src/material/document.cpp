@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "gltf/container.h"
-#include "support/file.h"
+#include "gltf/scene.h"
 #include "json/json.h"
 #include "json/path.h"
 #include "json/report.h"
-#include "gltf/scene.h"
-#include "support/text.h"
 #include "material/material.h"
 #include "material/reader.h"
+#include "support/file.h"
+#include "support/text.h"
 
 namespace lacquer::material {
 
@@ -67,12 +67,14 @@ void checkRoot(const Json& root, Report& report) {
   if (const Json* least = json::member(*asset, "minVersion")) {
     checkVersion(*least, "minVersion", 0, Path(assetPath, "minVersion"), report);
   }
-  if (const Json* materials = json::member(root, "materials"); materials != nullptr && !materials->is_array()) {
+  if (const Json* materials = json::member(root, "materials");
+      materials != nullptr && !materials->is_array()) {
     report.wrongType(Path(path, "materials"), "materials", *materials, "an array");
   }
 }
 
-/// What the file says of the material extensions as a whole: those it cannot do without, and those at its root.
+/// What the file says of the material extensions as a whole: those it cannot do without, and those at its
+/// root.
 void checkExtensions(const Json& root, const Schema& schema, Report& report) {
   const Path path;
   const Path requiredPath(path, "extensionsRequired");
@@ -80,8 +82,8 @@ void checkExtensions(const Json& root, const Schema& schema, Report& report) {
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i) {
     if (!(*required)[i].is_string()) continue;
     const auto& name = (*required)[i].get_ref<const std::string&>();
-    // Extensions of geometry, textures and so on are none of a shader generator's business; variants choose a whole
-    // material, and never reach a shader.
+    // Extensions of geometry, textures and so on are none of a shader generator's business; variants choose a
+    // whole material, and never reach a shader.
     const bool of_materials = name.find("_materials_") != std::string::npos;
     if (!of_materials || name == "KHR_materials_variants" || schema.find(name)) continue;
     report.warning("required-extension", Path(requiredPath, i),
@@ -154,7 +156,7 @@ Result<Document> read(const std::string& path, const Schema& schema, const ReadO
 }
 
 Result<Document> readText(const std::string& bytes, const std::string& name, const Schema& schema,
-                              const ReadOptions& options) {
+                          const ReadOptions& options) {
   return guarded(name, [&] { return readDocument(bytes, name, schema, options); });
 }
 
@@ -163,13 +165,14 @@ bool Material::has(uint16_t extension) const {
 }
 
 const ir::Components* Material::number(uint16_t property) const {
-  const auto it = std::find_if(numbers.begin(), numbers.end(), [&](const Number& n) { return n.property == property; });
+  const auto it =
+      std::find_if(numbers.begin(), numbers.end(), [&](const Number& n) { return n.property == property; });
   return it == numbers.end() ? nullptr : &it->value;
 }
 
 const gltf::TextureInfo* Material::texture(uint16_t property) const {
-  const auto it =
-      std::find_if(textures.begin(), textures.end(), [&](const Texture& t) { return t.property == property; });
+  const auto it = std::find_if(textures.begin(), textures.end(),
+                               [&](const Texture& t) { return t.property == property; });
   return it == textures.end() ? nullptr : &it->info;
 }
 

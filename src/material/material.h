@@ -1,5 +1,5 @@
-// A glTF material as its file gives it: values and textures by their numbers in the schema, and nothing for what the
-// file leaves out. Numbers are doubles as the JSON has them.
+// A glTF material as its file gives it: values and textures by their numbers in the schema, and nothing for
+// what the file leaves out. Numbers are doubles as the JSON has them.
 #pragma once
 
 #include <string>
@@ -31,7 +31,7 @@ struct Material {
   Diagnostics diagnostics;  ///< of this material; one of severity Error means: generate nothing for it
 
   bool has(uint16_t extension) const;
-  const ir::Components* number(uint16_t property) const;       ///< null where the file says nothing
+  const ir::Components* number(uint16_t property) const;      ///< null where the file says nothing
   const gltf::TextureInfo* texture(uint16_t property) const;  ///< null where there is none
 };
 

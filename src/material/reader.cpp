@@ -44,9 +44,10 @@ public:
   void read(const Json& json, const Path& path) {
     extensions_ = member(json, "extensions");
     const Here here{schema_.extensions[0]->name, true, true};
-    object(json, path, "the material", schema_.extensions[0]->properties, here, [&](const PropertyDecl& decl, const Json& value, const Path& at) {
-      property(decl, value, at, true);
-    });
+    object(json, path, "the material", schema_.extensions[0]->properties, here,
+           [&](const PropertyDecl& decl, const Json& value, const Path& at) {
+             property(decl, value, at, true);
+           });
     std::sort(material_.ignored.begin(), material_.ignored.end());
     std::sort(material_.extensions.begin(), material_.extensions.end());
   }
@@ -71,7 +72,8 @@ private:
 
   bool value(const PropertyDecl& decl, const Json& json, const Path& path, ir::Components& out);
   bool choice(const PropertyDecl& decl, const Json& json, const Path& path, ir::Components& out);
-  void number(const PropertyDecl& decl, std::string_view name, const Json& json, const Path& path, double& out);
+  void number(const PropertyDecl& decl, std::string_view name, const Json& json, const Path& path,
+              double& out);
   void texture(const PropertyDecl& decl, const Json& json, const Path& path, bool used);
   void texCoord(std::string_view name, const Json& json, const Path& path, int& out);
   void transform(const Json& json, const Path& path);
@@ -80,8 +82,8 @@ private:
   bool overruled(const ExtensionDecl& decl, const Path& path);
   bool there(std::string_view extension) const;
   void unknownExtension(std::string_view name, const Path& path);
-  void unknownProperty(std::string_view name, std::string_view what, const std::vector<std::string_view>& known,
-                       const Path& path);
+  void unknownProperty(std::string_view name, std::string_view what,
+                       const std::vector<std::string_view>& known, const Path& path);
 
   const Schema& schema_;
   const FileFacts& file_;
@@ -100,8 +102,8 @@ void MaterialReader::object(const Json& json, const Path& path, std::string_view
   size_t unknown = 0;
   for (const auto& [name, element] : json.get_ref<const Json::object_t&>()) {
     const Path at(path, name);
-    const auto row =
-        std::find_if(rows.begin(), rows.end(), [&, &key = name](const PropertyDecl& r) { return r.name == key; });
+    const auto row = std::find_if(rows.begin(), rows.end(),
+                                  [&, &key = name](const PropertyDecl& r) { return r.name == key; });
     if (row != rows.end()) {
       value(*row, element, at);
     } else if (!structure(name, element, at, here) && name != "extras" && unknown++ < kMostUnknown) {
@@ -133,7 +135,8 @@ bool MaterialReader::structure(std::string_view name, const Json& json, const Pa
   return true;
 }
 
-std::vector<std::string_view> MaterialReader::known(std::span<const PropertyDecl> rows, const Here& here) const {
+std::vector<std::string_view> MaterialReader::known(std::span<const PropertyDecl> rows,
+                                                    const Here& here) const {
   std::vector<std::string_view> names;
   if (here.named) names.emplace_back("name");
   if (here.texture) names.insert(names.end(), {"index", "texCoord"});
@@ -155,8 +158,8 @@ void MaterialReader::property(const PropertyDecl& decl, const Json& json, const 
 
 // -- values --
 
-void MaterialReader::number(const PropertyDecl& decl, std::string_view name, const Json& json, const Path& path,
-                            double& out) {
+void MaterialReader::number(const PropertyDecl& decl, std::string_view name, const Json& json,
+                            const Path& path, double& out) {
   if (!json.is_number()) return report_.wrongType(path, name, json, rangeWords(decl));
   out = json.get<double>();
   if (!decl.range.contains(out)) {
@@ -171,7 +174,8 @@ void MaterialReader::number(const PropertyDecl& decl, std::string_view name, con
   }
 }
 
-bool MaterialReader::choice(const PropertyDecl& decl, const Json& json, const Path& path, ir::Components& out) {
+bool MaterialReader::choice(const PropertyDecl& decl, const Json& json, const Path& path,
+                            ir::Components& out) {
   if (!json.is_string()) return report_.wrongType(path, decl.name, json, "a string"), false;
   const auto& name = json.get_ref<const std::string&>();
   const auto found = std::find(decl.choices.begin(), decl.choices.end(), name);
@@ -186,7 +190,8 @@ bool MaterialReader::choice(const PropertyDecl& decl, const Json& json, const Pa
   return false;
 }
 
-bool MaterialReader::value(const PropertyDecl& decl, const Json& json, const Path& path, ir::Components& out) {
+bool MaterialReader::value(const PropertyDecl& decl, const Json& json, const Path& path,
+                           ir::Components& out) {
   if (decl.kind == Kind::Choice) return choice(decl, json, path, out);
   if (decl.kind == Kind::Bool) {
     if (!json.is_boolean()) return report_.wrongType(path, decl.name, json, "true or false"), false;
@@ -226,7 +231,8 @@ void MaterialReader::texture(const PropertyDecl& decl, const Json& json, const P
   if (!json.is_object()) return report_.wrongType(path, decl.name, json, "an object with an index");
   gltf::TextureInfo info;
   info.pointer = path.text();
-  for (const PropertyDecl& one : decl.members) info.members.push_back(one.default_value.value_or(ir::Components{})[0]);
+  for (const PropertyDecl& one : decl.members)
+    info.members.push_back(one.default_value.value_or(ir::Components{})[0]);
   texture_ = &info;
   const auto read = [&](const PropertyDecl& one, const Json& element, const Path& at) {
     number(one, one.name, element, at, info.members[static_cast<size_t>(&one - decl.members.data())]);
@@ -258,16 +264,17 @@ void MaterialReader::transform(const Json& json, const Path& path) {
     return rows;
   }();
   gltf::TextureInfo& info = *texture_;
-  object(json, path, kTransform, kRows, {{}, false}, [&](const PropertyDecl& row, const Json& element, const Path& at) {
-    if (row.type == ir::Type::Int) return texCoord(row.name, element, at, info.texCoord);
-    const bool scale = row.name == "scale";
-    ir::Components read{scale ? 1.0 : 0.0, scale ? 1.0 : 0.0};
-    if (!value(row, element, at, read)) return;
-    if (row.type == ir::Type::Float)
-      out.rotation = read[0];
-    else
-      (scale ? out.scale : out.offset) = {read[0], read[1]};
-  });
+  object(json, path, kTransform, kRows, {{}, false},
+         [&](const PropertyDecl& row, const Json& element, const Path& at) {
+           if (row.type == ir::Type::Int) return texCoord(row.name, element, at, info.texCoord);
+           const bool scale = row.name == "scale";
+           ir::Components read{scale ? 1.0 : 0.0, scale ? 1.0 : 0.0};
+           if (!value(row, element, at, read)) return;
+           if (row.type == ir::Type::Float)
+             out.rotation = read[0];
+           else
+             (scale ? out.scale : out.offset) = {read[0], read[1]};
+         });
   info.transform = out;
 }
 
@@ -345,7 +352,8 @@ bool MaterialReader::overruled(const ExtensionDecl& decl, const Path& path) {
   }
   for (const std::string_view other : decl.loses_to) {
     if (!there(other)) continue;
-    report_.warning("overruled-extension", path, fmt::format("{} has no effect: {} wins over it", decl.name, other),
+    report_.warning("overruled-extension", path,
+                    fmt::format("{} has no effect: {} wins over it", decl.name, other),
                     "keep only one of them");
     return true;
   }

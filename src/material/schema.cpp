@@ -11,8 +11,8 @@ namespace lacquer::material {
 namespace {
 
 Diagnostic problem(const lang::Origin& origin, std::string code, std::string message, std::string help = {}) {
-  return {std::move(code), Severity::Error,  {std::string(origin.file), origin.line, 0, {}}, std::move(message),
-          std::move(help), {}};
+  return {std::move(code),    Severity::Error, {std::string(origin.file), origin.line, 0, {}},
+          std::move(message), std::move(help), {}};
 }
 
 void addProperties(Schema& schema, uint16_t extension, std::span<const lang::PropertyDecl> decls,

@@ -1,5 +1,5 @@
-// What the library's declarations say of materials, as one table: every extension, and every property under a number
-// of its own. What reads, checks or shows materials follows this table.
+// What the library's declarations say of materials, as one table: every extension, and every property under a
+// number of its own. What reads, checks or shows materials follows this table.
 #pragma once
 
 #include <map>
@@ -18,9 +18,10 @@ using Kind = lang::PropertyDecl::Kind;
 /// A property that has a value, or a texture. Objects around it are only a part of its path.
 struct Property {
   const lang::PropertyDecl* decl = nullptr;
-  uint16_t extension = 0;      ///< in Schema::extensions
-  std::string path;            ///< from the material on: "extensions/KHR_materials_ior/ior"
-  std::string parameter_name;  ///< of the editable parameter, or without "_texture" of the texture: "coat_ior"
+  uint16_t extension = 0;  ///< in Schema::extensions
+  std::string path;        ///< from the material on: "extensions/KHR_materials_ior/ior"
+  std::string
+      parameter_name;  ///< of the editable parameter, or without "_texture" of the texture: "coat_ior"
 };
 
 /// One row for whoever shows or checks the table.
@@ -47,8 +48,8 @@ struct Schema {
 /// "coat_color_factor" of "coatColorFactor".
 std::string parameterName(std::string_view property);
 
-/// Collects the library's extensions. Errors: those of the declarations; a role with two types; an extension that
-/// stands in one that is not there; more or fewer than one `material`.
+/// Collects the library's extensions. Errors: those of the declarations; a role with two types; an extension
+/// that stands in one that is not there; more or fewer than one `material`.
 Result<Schema> schemaOf(const lang::Library& library);
 
 }  // namespace lacquer::material

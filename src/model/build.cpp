@@ -21,11 +21,13 @@ std::string coordinateKey(const gltf::TextureInfo& info) {
                      t.scale[1]);
 }
 
-/// Puts out what the ports of the template reach: nodes, and before them the parameters and textures that they need.
+/// Puts out what the ports of the template reach: nodes, and before them the parameters and textures that
+/// they need.
 class Writer {
 public:
   Writer(const Model& model, Resolver& resolver, const material::Material& material,
-         const gltf::VertexAttributes& attributes, const BuildOptions& options, Graph& graph, Diagnostics& warnings)
+         const gltf::VertexAttributes& attributes, const BuildOptions& options, Graph& graph,
+         Diagnostics& warnings)
       : model_(model),
         resolver_(resolver),
         material_(material),
@@ -101,13 +103,14 @@ Source Writer::coordinate(uint16_t property) {
   }
   Source uv{graph::GivenRef{fmt::format("uv{}", info.texCoord)}, {}};
   if (!attributes_.texCoord[static_cast<size_t>(info.texCoord)]) {
-    warnings_.push_back({"texcoord-missing",
-                         Severity::Warning,
-                         {{}, 0, 0, info.pointer},
-                         fmt::format("the texture uses TEXCOORD_{}, which a primitive with this material does not have",
-                                     info.texCoord),
-                         "give the primitive that UV set, or another texCoord to the texture; (0, 0) is used",
-                         {}});
+    warnings_.push_back(
+        {"texcoord-missing",
+         Severity::Warning,
+         {{}, 0, 0, info.pointer},
+         fmt::format("the texture uses TEXCOORD_{}, which a primitive with this material does not have",
+                     info.texCoord),
+         "give the primitive that UV set, or another texCoord to the texture; (0, 0) is used",
+         {}});
     uv = {graph::Literal{ir::Type::Vec2, {0, 0}}, {}};
   }
   const gltf::TextureTransform t = info.transform.value_or(gltf::TextureTransform{});
@@ -116,9 +119,10 @@ Source Writer::coordinate(uint16_t property) {
     const std::string pointer = info.pointer + "/extensions/KHR_texture_transform";
     const auto add = [&](const char* input, ir::Type type, ir::Components value, bool wanted) {
       if (!wanted) return;
-      inputs.emplace_back(input, editable(fmt::format("{}_uv_{}", slot, input), type, value, {},
-                                          fmt::format("{}/{}", pointer, input),
-                                          std::string_view(input) == "scale" ? ir::Components{1, 1} : ir::Components{}));
+      inputs.emplace_back(
+          input, editable(fmt::format("{}_uv_{}", slot, input), type, value, {},
+                          fmt::format("{}/{}", pointer, input),
+                          std::string_view(input) == "scale" ? ir::Components{1, 1} : ir::Components{}));
     };
     add("offset", ir::Type::Vec2, {t.offset[0], t.offset[1]}, t.offset != std::array<double, 2>{0, 0});
     add("rotation", ir::Type::Float, {t.rotation}, t.rotation != 0);
@@ -194,8 +198,8 @@ void Writer::write(uint32_t id) {
     const Found& input = node.inputs[i];
     const lang::Param& param = node.decl->params[i];
     // A number that is the default is not worth a connection.
-    const bool same = input.kind == Found::Kind::Constant && param.default_value && input.type == param.type &&
-                      *param.default_value == input.constant;
+    const bool same = input.kind == Found::Kind::Constant && param.default_value &&
+                      input.type == param.type && *param.default_value == input.constant;
     if (input && !same) inputs.emplace_back(param.name, source(input));
   }
   if (node.shared) {
@@ -254,8 +258,9 @@ void Writer::run(const lang::TemplateDecl& template_decl) {
 
 }  // namespace
 
-Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl, const material::Material& material,
-                    const gltf::VertexAttributes& attributes, const BuildOptions& options, Diagnostics& warnings) {
+Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
+                    const material::Material& material, const gltf::VertexAttributes& attributes,
+                    const BuildOptions& options, Diagnostics& warnings) {
   Graph graph;
   graph.name = material.name;
   graph.template_name = options.template_name;

@@ -12,14 +12,14 @@ namespace lacquer::model {
 
 struct BuildOptions {
   std::string template_name;
-  bool decode_srgb = false;               ///< decode colour textures in the shader instead of by their format
-  std::set<std::string, std::less<>> live;  ///< terms kept though their value would remove them
+  bool decode_srgb = false;  ///< decode colour textures in the shader instead of by their format
+  std::set<std::string, std::less<>> live;            ///< terms kept though their value would remove them
   std::map<std::string, bool, std::less<>> switches;  ///< other values than the library's
 };
 
-/// Builds the graph of a material whose diagnostics hold no error, for a template of the library. `attributes` are
-/// those of the primitives that use it. `warnings` receives what the user should know of this permutation (a
-/// texture's UV set is missing, …). Errors: lines that need each other in a circle.
+/// Builds the graph of a material whose diagnostics hold no error, for a template of the library.
+/// `attributes` are those of the primitives that use it. `warnings` receives what the user should know of
+/// this permutation (a texture's UV set is missing, …). Errors: lines that need each other in a circle.
 Result<graph::Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
                            const material::Material& material, const gltf::VertexAttributes& attributes,
                            const BuildOptions& options, Diagnostics& warnings);

@@ -24,7 +24,8 @@ namespace {
 /// Turns the declarations of one library into a Model.
 class Compiler {
 public:
-  Compiler(const lang::Library& library, const material::Schema& schema) : library_(library), names_(library, schema, model_) {
+  Compiler(const lang::Library& library, const material::Schema& schema)
+      : library_(library), names_(library, schema, model_) {
     model_.schema = &schema;
   }
   Result<Model> run(std::string_view profile);
@@ -77,7 +78,8 @@ private:
   std::set<const LineDecl*> placed_;  ///< the profile's lines that stand in place of others
 };
 
-void Compiler::error(const Source& source, Span span, std::string code, std::string message, std::string help) {
+void Compiler::error(const Source& source, Span span, std::string code, std::string message,
+                     std::string help) {
   lang::Reporter reporter(source.file, source.text);
   reporter.error(code, span, std::move(message), std::move(help));
   Diagnostics one = reporter.take();
@@ -330,7 +332,8 @@ bool Compiler::constant(const Expr& expr, Value& out) {
       out.constant[filled++] = one.constant[static_cast<size_t>(i)];
   }
   for (; filled == 1 && wanted > 1;) {
-    std::fill(out.constant.begin() + 1, out.constant.begin() + static_cast<ptrdiff_t>(wanted), out.constant[0]);
+    std::fill(out.constant.begin() + 1, out.constant.begin() + static_cast<ptrdiff_t>(wanted),
+              out.constant[0]);
     filled = wanted;
   }
   return filled == wanted;
@@ -356,7 +359,8 @@ Value Compiler::reference(const Expr& expr) {
           lang::didYouMean(text, candidates));
     return {};
   }
-  if (out.kind == Value::Kind::Id && !out.path.empty()) paths_.push_back({out.index, out.path, expr.span, source_});
+  if (out.kind == Value::Kind::Id && !out.path.empty())
+    paths_.push_back({out.index, out.path, expr.span, source_});
   return out;
 }
 
@@ -385,7 +389,8 @@ Value Compiler::call(const Expr& expr) {
   for (size_t i = 0; i < out.args.size(); ++i) {
     const lang::Param& param = (*node)->params[i];
     if (!out.args[i].absent || param.default_value) continue;
-    error(expr.span, "wrong-count", fmt::format("'{}' needs '{}'", expr.name, param.name), "it has no default");
+    error(expr.span, "wrong-count", fmt::format("'{}' needs '{}'", expr.name, param.name),
+          "it has no default");
   }
   return out;
 }
@@ -410,7 +415,8 @@ void Compiler::argument(Value& call, const Expr& expr, size_t at) {
                  fmt::format("'{}' takes {} arguments, not {}", expr.name, params.size(), expr.args.size()));
   }
   if (!call.args[index].absent) {
-    return error(expr.args[at]->span, "wrong-argument", fmt::format("'{}' is given twice", params[index].name));
+    return error(expr.args[at]->span, "wrong-argument",
+                 fmt::format("'{}' is given twice", params[index].name));
   }
   if (expr.args[at]->kind == Expr::Kind::Call) {
     return error(expr.args[at]->span, "wrong-line", "a line is one node", "give this one a line of its own");
@@ -451,7 +457,9 @@ Condition Compiler::operation(const Expr& expr) {
   Condition out;
   const bool logic = expr.name == "&&" || expr.name == "||" || expr.name == "!";
   if (!logic) return comparison(expr);
-  out.kind = expr.name == "!" ? Condition::Kind::Not : expr.name == "&&" ? Condition::Kind::And : Condition::Kind::Or;
+  out.kind = expr.name == "!"    ? Condition::Kind::Not
+             : expr.name == "&&" ? Condition::Kind::And
+                                 : Condition::Kind::Or;
   for (const ExprPtr& arg : expr.args) out.conditions.push_back(condition(arg));
   return out;
 }
@@ -471,7 +479,8 @@ Condition Compiler::comparison(const Expr& expr) {
     const std::string_view wanted = expr.args[1]->name;
     const auto found = std::find(choice->choices.begin(), choice->choices.end(), wanted);
     if (found == choice->choices.end()) {
-      error(expr.args[1]->span, "unknown-value", fmt::format("'{}' is no value of '{}'", wanted, choice->name),
+      error(expr.args[1]->span, "unknown-value",
+            fmt::format("'{}' is no value of '{}'", wanted, choice->name),
             lang::didYouMean(wanted, choice->choices));
     }
     right.kind = Value::Kind::Constant;
@@ -485,7 +494,8 @@ Condition Compiler::comparison(const Expr& expr) {
     out.constant = right.constant;
     if (right.type == ir::Type::Float) out.constant.fill(right.constant[0]);
     if (left.kind != Value::Kind::Role) {
-      error(expr.args[0]->span, "wrong-condition", "only a property of the material can be compared with a number");
+      error(expr.args[0]->span, "wrong-condition",
+            "only a property of the material can be compared with a number");
     }
     out.values = {left};
   } else {
@@ -524,8 +534,7 @@ bool Compiler::fits(uint32_t id, std::string_view path, int depth) const {
 
 bool Compiler::fits(const Value& value, std::string_view path, int depth) const {
   if (path.empty() || isSwizzle(path)) return true;
-  if (value.kind == Value::Kind::Id)
-    return value.path.empty() ? fits(value.index, path, depth + 1) : false;
+  if (value.kind == Value::Kind::Id) return value.path.empty() ? fits(value.index, path, depth + 1) : false;
   if (value.kind == Value::Kind::Below) return true;
   if (value.kind != Value::Kind::Call) return false;
   const std::string_view head = path.substr(0, path.find('.'));
@@ -564,7 +573,8 @@ void Compiler::findLive() {
   std::set<std::pair<uint32_t, int>> asked;
   const auto add = [&](uint32_t role, int member, std::string_view term) {
     Role& to = model_.roles[role];
-    if (member >= static_cast<int>(to.member_live.size())) to.member_live.resize(static_cast<size_t>(member) + 1);
+    if (member >= static_cast<int>(to.member_live.size()))
+      to.member_live.resize(static_cast<size_t>(member) + 1);
     auto& list = member < 0 ? to.live : to.member_live[static_cast<size_t>(member)];
     if (std::find(list.begin(), list.end(), term) == list.end()) list.push_back(term);
   };
@@ -613,7 +623,8 @@ Result<Model> Compiler::run(std::string_view profile) {
 
 }  // namespace
 
-Result<Model> compile(const lang::Library& library, const material::Schema& schema, std::string_view profile) {
+Result<Model> compile(const lang::Library& library, const material::Schema& schema,
+                      std::string_view profile) {
   return Compiler(library, schema).run(profile);
 }
 

@@ -1,8 +1,9 @@
-// The parts of the library under one profile, with every name resolved: what build() follows for each material.
+// The parts of the library under one profile, with every name resolved: what build() follows for each
+// material.
 //
-// An id ("coat.fresnel") may be said by several lines; the first that holds counts. A reference is to an id, to a
-// property, to what a template gives, or to what lies below; each may come to nothing, and then the line that needs it
-// comes to nothing as well, unless the node's parameter has a default.
+// An id ("coat.fresnel") may be said by several lines; the first that holds counts. A reference is to an id,
+// to a property, to what a template gives, or to what lies below; each may come to nothing, and then the line
+// that needs it comes to nothing as well, unless the node's parameter has a default.
 #pragma once
 
 #include <memory>
@@ -33,7 +34,8 @@ struct Value {
   bool coordinate = false;  ///< Role: the texture's coordinate
   bool absent = false;      ///< of a Call's argument: not given
   ir::Components constant{};
-  std::string_view path;  ///< Id, Below: an output, a swizzle, or both, from a point on; Role, Given: a swizzle
+  std::string_view
+      path;  ///< Id, Below: an output, a swizzle, or both, from a point on; Role, Given: a swizzle
   const lang::NodeDecl* node = nullptr;
   std::string_view variant;
   std::vector<Value> args;
@@ -111,8 +113,8 @@ struct Part {
 /// What parts call a property.
 struct Role {
   std::string_view name;
-  std::vector<uint16_t> providers;            ///< properties
-  std::vector<std::string_view> live;         ///< terms that keep its number editable
+  std::vector<uint16_t> providers;                         ///< properties
+  std::vector<std::string_view> live;                      ///< terms that keep its number editable
   std::vector<std::vector<std::string_view>> member_live;  ///< the same for members of a textureInfo
 };
 
@@ -130,19 +132,24 @@ struct Model {
   std::vector<Id> ids;
   std::vector<Out> outs;
   std::vector<Role> roles;
-  std::vector<std::string> givens;  ///< what a template may give, or have as a texture: "view", "light_sample.L"
+  std::vector<std::string>
+      givens;  ///< what a template may give, or have as a texture: "view", "light_sample.L"
   std::vector<std::string_view> switches;
   std::vector<bool> switch_defaults;
   std::vector<uint32_t> ordered;  ///< lines of Kind::Value with an order, sorted by it
 
   /// The terms that stay though their value would remove them, when they are asked to: sorted.
   std::vector<std::string_view> liveTerms() const;
+  /// The parameters by which the extensions' parts vanish, with the numbers at which they do: "coat_factor",
+  /// {0}.
+  std::vector<std::pair<std::string, std::vector<double>>> layers() const;
 };
 
 /// Resolves the library's parts under a profile. Errors have the place in the text.
 Result<Model> compile(const lang::Library& library, const material::Schema& schema, std::string_view profile);
 
-/// The profiles' names, the default one first, then by name. Errors: a wrong profile, or not just one default.
+/// The profiles' names, the default one first, then by name. Errors: a wrong profile, or not just one
+/// default.
 Result<std::vector<const lang::ProfileDecl*>> profiles(const lang::Library& library);
 
 /// What a library makes of materials, resolved once and kept. Lookups may run on several threads at once.

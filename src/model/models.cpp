@@ -50,6 +50,33 @@ Result<std::vector<const lang::ProfileDecl*>> profiles(const lang::Library& libr
               "one profile must be the default, and only one", "say `profile NAME default { ... }` of it");
 }
 
+namespace {
+
+/// The first comparison with a number in a condition.
+const Condition* comparison(const Condition& condition) {
+  if (condition.kind == Condition::Kind::Equal && condition.name.empty()) return &condition;
+  for (const Condition& inner : condition.conditions) {
+    if (const Condition* found = comparison(inner)) return found;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::vector<double>>> Model::layers() const {
+  std::vector<std::pair<std::string, std::vector<double>>> all;
+  for (const Part& part : parts) {
+    const Condition* gone = part.of.empty() ? nullptr : comparison(terms[part.term].unless);
+    if (gone == nullptr || gone->values[0].member >= 0) continue;
+    const material::Property& property = schema->properties[roles[gone->values[0].index].providers[0]];
+    const auto count = static_cast<size_t>(ir::componentCount(property.decl->type));
+    all.emplace_back(
+        property.parameter_name,
+        std::vector<double>(gone->constant.begin(), gone->constant.begin() + static_cast<ptrdiff_t>(count)));
+  }
+  return all;
+}
+
 std::vector<std::string_view> Model::liveTerms() const {
   std::vector<std::string_view> names;
   for (const Term& term : terms) {

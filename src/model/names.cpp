@@ -157,7 +157,8 @@ bool Names::condition(std::string_view text, Condition& out) const {
   if (const auto it = ids_.find(text); it != ids_.end())
     return flags_.contains(text) && as(Condition::Kind::Flag, it->second);
   if (const auto it = terms_.find(text); it != terms_.end()) return as(Condition::Kind::Term, it->second);
-  if (const auto it = switches_.find(text); it != switches_.end()) return as(Condition::Kind::Switch, it->second);
+  if (const auto it = switches_.find(text); it != switches_.end())
+    return as(Condition::Kind::Switch, it->second);
   if (const std::optional<uint16_t> extension = schema_.find(text); extension && *extension != 0)
     return as(Condition::Kind::Extension, *extension);
   return false;

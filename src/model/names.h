@@ -36,7 +36,8 @@ public:
   /// The text of a reference, which has no spaces.
   static std::string_view textOf(std::string_view text, lang::Span span);
 
-  /// What a dotted name stands for as a value. False when nothing: `candidates` are then what it could have been.
+  /// What a dotted name stands for as a value. False when nothing: `candidates` are then what it could have
+  /// been.
   bool resolve(std::string_view text, Value& out, std::vector<std::string_view>& candidates) const;
 
   /// What a name says as a condition of its own; false when it is a value, which may be present.

@@ -13,8 +13,8 @@ using material::Kind;
 
 namespace {
 
-/// Whether a primitive has what a template's attribute of that name stands for; what glTF does not know is the
-/// application's, and there.
+/// Whether a primitive has what a template's attribute of that name stands for; what glTF does not know is
+/// the application's, and there.
 bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name) {
   if (name == "NORMAL") return attributes.normal;
   if (name == "TANGENT") return attributes.tangent;
@@ -26,7 +26,8 @@ bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view nam
 }
 
 /// Whether an expression of the template reads an attribute that the primitive lacks.
-bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr, const gltf::VertexAttributes& attributes) {
+bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr,
+                 const gltf::VertexAttributes& attributes) {
   if (expr.kind == lang::Expr::Kind::Slot) {
     for (const lang::AttributeDecl& attribute : decl.attributes) {
       if (attribute.slot == expr.slot) return !hasAttribute(attributes, attribute.name);
@@ -37,17 +38,17 @@ bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr, const g
     }
     return false;
   }
-  return std::any_of(expr.args.begin(), expr.args.end(), [&](const lang::ExprPtr& arg) {
-    return arg && readsAbsent(decl, *arg, attributes);
-  });
+  return std::any_of(expr.args.begin(), expr.args.end(),
+                     [&](const lang::ExprPtr& arg) { return arg && readsAbsent(decl, *arg, attributes); });
 }
 
 const Line kNoLine{};
 
 }  // namespace
 
-Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl, const material::Material& material,
-                   const gltf::VertexAttributes& attributes, const BuildOptions& options, Diagnostics& warnings)
+Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
+                   const material::Material& material, const gltf::VertexAttributes& attributes,
+                   const BuildOptions& options, Diagnostics& warnings)
     : model_(model),
       template_(template_decl),
       material_(material),
@@ -62,8 +63,8 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl, 
 
 // -- the material's values --
 
-/// The property that has a say: of an extension that the material has; else of one that stands inside of such, whose
-/// place is known; else the first that needs nothing which is not there.
+/// The property that has a say: of an extension that the material has; else of one that stands inside of
+/// such, whose place is known; else the first that needs nothing which is not there.
 uint16_t Resolver::provider(const Role& role) const {
   const material::Schema& schema = *model_.schema;
   const auto find = [&](const auto& good) -> std::optional<uint16_t> {
@@ -93,7 +94,8 @@ ir::Components Resolver::numberOf(uint16_t property) const {
 }
 
 bool Resolver::live(const std::vector<std::string_view>& terms) const {
-  return std::any_of(terms.begin(), terms.end(), [&](std::string_view term) { return options_.live.contains(term); });
+  return std::any_of(terms.begin(), terms.end(),
+                     [&](std::string_view term) { return options_.live.contains(term); });
 }
 
 Found Resolver::number(const Role& role, const Value& value) {
@@ -110,14 +112,14 @@ Found Resolver::number(const Role& role, const Value& value) {
     now = numberOf(out.property);
   }
   const auto member = static_cast<size_t>(value.member);
-  const bool kept = value.member < 0 ? live(role.live)
-                                     : member < role.member_live.size() && live(role.member_live[member]);
+  const bool kept =
+      value.member < 0 ? live(role.live) : member < role.member_live.size() && live(role.member_live[member]);
   const bool folded = decl->folded && now == decl->default_value.value_or(ir::Components{}) && !kept;
   const bool fixed = decl->kind == Kind::Bool || decl->kind == Kind::Choice;
   out.type = decl->type;
   out.constant = now;
   out.member = value.member;
-  out.kind = folded || fixed ? Found::Kind::Constant
+  out.kind = folded || fixed     ? Found::Kind::Constant
              : value.member >= 0 ? Found::Kind::Member
                                  : Found::Kind::Number;
   return out;
@@ -172,7 +174,8 @@ Found Resolver::behind(Found value, std::string_view path) const {
     for (const lang::Param& result : nodes_[value.index].decl->results) {
       if (result.name != head || head.empty()) continue;
       value.output = result.name;
-      return behind(std::move(value), head.size() == path.size() ? std::string_view{} : path.substr(head.size() + 1));
+      return behind(std::move(value),
+                    head.size() == path.size() ? std::string_view{} : path.substr(head.size() + 1));
     }
     if (nodes_[value.index].decl->results.size() > 1) return {};
   }
@@ -211,7 +214,8 @@ Found Resolver::found(const Value& value, const Line& line) {
   return {};
 }
 
-/// The value that parts have put in place of another. A part that replaces it sees what the parts below it see.
+/// The value that parts have put in place of another. A part that replaces it sees what the parts below it
+/// see.
 Found Resolver::replaced(const Value& value, uint32_t part, Found original) {
   const std::vector<uint32_t>& lines = model_.ids[value.index].replaced;
   const auto names = [&](const Line& line) { return line.target.path == value.path; };
@@ -350,8 +354,10 @@ bool Resolver::holds(const Condition& condition, const Line& line) {
   const auto inner = [&](const Condition& one) { return holds(one, line); };
   switch (condition.kind) {
     case Condition::Kind::Always: return true;
-    case Condition::Kind::And: return std::all_of(condition.conditions.begin(), condition.conditions.end(), inner);
-    case Condition::Kind::Or: return std::any_of(condition.conditions.begin(), condition.conditions.end(), inner);
+    case Condition::Kind::And:
+      return std::all_of(condition.conditions.begin(), condition.conditions.end(), inner);
+    case Condition::Kind::Or:
+      return std::any_of(condition.conditions.begin(), condition.conditions.end(), inner);
     case Condition::Kind::Not: return !holds(condition.conditions[0], line);
     case Condition::Kind::Present: {
       const Found value = found(condition.values[0], line);
@@ -378,8 +384,8 @@ bool Resolver::holds(const Condition& condition, const Line& line) {
 // -- terms --
 
 bool Resolver::has(const Part& part) const {
-  return part.of.empty() ||
-         std::any_of(part.of.begin(), part.of.end(), [&](uint16_t extension) { return material_.has(extension); });
+  return part.of.empty() || std::any_of(part.of.begin(), part.of.end(),
+                                        [&](uint16_t extension) { return material_.has(extension); });
 }
 
 /// False when something that the term needs is not there; that is a warning, once.
@@ -393,7 +399,8 @@ bool Resolver::required(const Term& term) {
       const gltf::TextureInfo* info = material_.texture(property);
       pointer = info != nullptr
                     ? info->pointer
-                    : fmt::format("{}/{}", pointer, model_.schema->pathOf(model_.schema->properties[property].extension));
+                    : fmt::format("{}/{}", pointer,
+                                  model_.schema->pathOf(model_.schema->properties[property].extension));
     }
     warnings_.push_back({std::string(line.code),
                          Severity::Warning,
@@ -441,7 +448,8 @@ std::string Resolver::shown(const Condition& equal) const {
   const Value& value = equal.values[0];
   const Role& role = model_.roles[value.index];
   const lang::PropertyDecl* decl = model_.schema->properties[provider(role)].decl;
-  const lang::ExtensionDecl& extension = *model_.schema->extensions[model_.schema->properties[provider(role)].extension];
+  const lang::ExtensionDecl& extension =
+      *model_.schema->extensions[model_.schema->properties[provider(role)].extension];
   if (!extension.core && !material_.has(*model_.schema->find(extension.name)))
     return fmt::format("the material has no {}", extension.name);
   std::string name(decl->name);
@@ -475,17 +483,21 @@ std::string Resolver::because(const Condition& condition, const Line& line, bool
     }
     case Condition::Kind::Equal: return shown(condition);
     case Condition::Kind::Extension:
-      return fmt::format("the material has {}{}", as ? "" : "no ", model_.schema->extensions[condition.index]->name);
+      return fmt::format("the material has {}{}", as ? "" : "no ",
+                         model_.schema->extensions[condition.index]->name);
     case Condition::Kind::Present: {
       const Value& value = condition.values[0];
       if (value.kind == Value::Kind::Role) {
-        const std::string_view name = model_.schema->properties[provider(model_.roles[value.index])].decl->name;
+        const std::string_view name =
+            model_.schema->properties[provider(model_.roles[value.index])].decl->name;
         return fmt::format("there is {} {}", as ? "a" : "no", name);
       }
       return as ? "something else is there" : "nothing gives what it needs";
     }
-    case Condition::Kind::Switch: return fmt::format("{} is {}", model_.switches[condition.index], as ? "on" : "off");
-    case Condition::Kind::Takes: return fmt::format("the template takes {} '{}'", as ? "a" : "no", condition.name);
+    case Condition::Kind::Switch:
+      return fmt::format("{} is {}", model_.switches[condition.index], as ? "on" : "off");
+    case Condition::Kind::Takes:
+      return fmt::format("the template takes {} '{}'", as ? "a" : "no", condition.name);
     case Condition::Kind::Always:
     case Condition::Kind::Same:
     case Condition::Kind::Flag:
@@ -511,7 +523,8 @@ std::vector<graph::Skipped> Resolver::skipped() {
     } else if (!unmet_[i].empty()) {
       reason = unmet_[i];
     } else {
-      reason = term.unless_reason.empty() ? because(term.unless, context, true) : std::string(term.unless_reason);
+      reason =
+          term.unless_reason.empty() ? because(term.unless, context, true) : std::string(term.unless_reason);
     }
     out.push_back({std::string(term.name), std::move(reason)});
   }

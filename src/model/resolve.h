@@ -61,7 +61,8 @@ public:
 
   /// What the material is for a port of the template.
   Found port(std::string_view name);
-  /// Looks at every term of the parts that the material has; those that it could have and has not, with the reasons.
+  /// Looks at every term of the parts that the material has; those that it could have and has not, with the
+  /// reasons.
   std::vector<graph::Skipped> skipped();
   bool has(const Part& part) const;
   bool alive(uint32_t term);
@@ -105,7 +106,7 @@ private:
   std::vector<State> states_;
   std::vector<Found> values_;
   std::vector<Node> nodes_;
-  std::vector<signed char> terms_;        ///< -1 unknown, else whether it is alive
+  std::vector<signed char> terms_;       ///< -1 unknown, else whether it is alive
   std::vector<std::string_view> unmet_;  ///< of a term: why a requirement is not met
   std::vector<uint32_t> open_;
 };

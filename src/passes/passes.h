@@ -21,7 +21,7 @@ struct LightFacts {
 };
 
 /// What is wrong with the facts for this module's template: a kind that it does not have, more lights than
-/// its array holds. Code "unknown-light".
+/// its array holds. Codes "unknown-light", "too-many-lights".
 Diagnostics checkLights(const ir::Module& module, const LightFacts& facts);
 
 /// Splits each sum over the lights into one per kind that occurs, with the fields that the kind fixes as

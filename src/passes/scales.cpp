@@ -2,6 +2,7 @@
 // asks.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "passes/passes.h"
 #include "passes/rewrite.h"
@@ -228,7 +229,12 @@ void takeMagnitudes(ir::Module& module) {
     if (product.op != Op::Mul) return r.copy(id, operands);
     for (const size_t k : {size_t{0}, size_t{1}}) {
       if (r.dag()[product.args[k]].op != Op::InverseSqrt) continue;
-      return r.dag().mul(r.dag().make(Op::Abs, {product.args[1 - k]}), product.args[k]);
+      const ValueId magnitude = r.dag().make(Op::Abs, {product.args[1 - k]});
+      const ValueId result = r.dag().mul(magnitude, product.args[k]);
+      // What is known of the product holds for its magnitude; the new operations cannot show it.
+      if (const auto known = old.assumed(old[id].args[0]))
+        r.dag().assume(result, {0, std::max(std::abs(known->lo), std::abs(known->hi))});
+      return result;
     }
     return r.copy(id, operands);
   });

@@ -72,8 +72,8 @@ private:
 }  // namespace
 
 Diagnostics checkLights(const ir::Module& module, const LightFacts& facts) {
-  const auto wrong = [](std::string message, std::string help) {
-    return Diagnostics{{"unknown-light", Severity::Error, {}, std::move(message), std::move(help), {}}};
+  const auto wrong = [](const char* code, std::string message, std::string help) {
+    return Diagnostics{{code, Severity::Error, {}, std::move(message), std::move(help), {}}};
   };
   const auto lights = std::find_if(module.blocks.begin(), module.blocks.end(), [](const ir::Block& block) {
     return block.role == ir::BlockRole::Lights;
@@ -88,11 +88,12 @@ Diagnostics checkLights(const ir::Module& module, const LightFacts& facts) {
     if (known || count == 0) continue;
     std::string kinds;
     for (const ir::LightKind& kind : module.light_kinds) kinds += (kinds.empty() ? "" : ", ") + kind.name;
-    return wrong(fmt::format("the template '{}' has no kind of light '{}'", module.template_name, name),
+    return wrong("unknown-light",
+                 fmt::format("the template '{}' has no kind of light '{}'", module.template_name, name),
                  kinds.empty() ? "it names none" : "it has " + kinds);
   }
   if (total <= lights->array) return {};
-  return wrong(fmt::format("there are {} lights", total),
+  return wrong("too-many-lights", fmt::format("there are {} lights", total),
                fmt::format("the template '{}' has room for {}", module.template_name, lights->array));
 }
 

@@ -16,7 +16,7 @@ enum class Fault : uint8_t {
   Range,        ///< outside of a declared range otherwise
   Assume,       ///< a value outside of what an `assume` says of it
   Jump,         ///< a result that jumps where a comparison turns
-  Reciprocity,  ///< a material without a coat that is not the same with light and eye exchanged
+  Reciprocity,  ///< a material without its layers that is not the same with light and eye exchanged
   Energy,       ///< more light than came, beyond what the texts' formulas do
 };
 /// "nan", "infinity", "negative", "range", "assume", "jump", "reciprocity", "energy".
@@ -35,7 +35,7 @@ struct Finding {
 struct Energy {
   double largest = 0;  ///< of a white sky's light
   double largest_base =
-      0;  ///< of the same materials without their coat: the base's own gain, as the text has it
+      0;  ///< of the same materials without their layers: the base's own gain, as the text has it
   double asymmetry = 0;  ///< the largest relative difference when light and eye are exchanged
   bool measured = false;
 };

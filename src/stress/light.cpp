@@ -27,10 +27,20 @@ public:
 
   bool has(const char* name) const { return subject_.space.find(name) != nullptr; }
 
-  void set(std::vector<double>& sample, const char* name, std::initializer_list<double> values) const {
+  bool layered() const {
+    return std::any_of(subject_.layers.begin(), subject_.layers.end(),
+                       [&](const auto& layer) { return has(layer.first.c_str()); });
+  }
+
+  void set(std::vector<double>& sample, const char* name, const std::vector<double>& values) const {
     const Variable* variable = subject_.space.find(name);
     if (variable == nullptr) return;
     std::copy(values.begin(), values.end(), sample.begin() + static_cast<ptrdiff_t>(variable->first));
+  }
+
+  /// Without any layer over the base.
+  void strip(std::vector<double>& sample) const {
+    for (const auto& [name, values] : subject_.layers) set(sample, name.c_str(), values);
   }
 
   double number(const std::vector<double>& sample, const char* name, double absent) const {
@@ -49,7 +59,7 @@ public:
       if (variable.nature == Nature::Texel) std::fill_n(begin, variable.components, 1.0);
       if (variable.nature == Nature::Texel && ends("normal_texture")) *begin = *(begin + 1) = 0.5;
       if (environment || variable.name.starts_with("emissive")) std::fill_n(begin, variable.components, 0.0);
-      // The coat's lobe is stretched along x, and the view comes from anywhere.
+      // A stretched lobe is stretched along x, and the view comes from anywhere.
       if (ends("anisotropy_texture")) *(begin + 1) = 0.5;
       if (ends("anisotropy_rotation")) *begin = 0;
       // What makes the sum too bright is found where all else is bright.
@@ -123,18 +133,18 @@ public:
   }
 
 private:
-  /// Of the base and the coat. A lobe that is not quite the material's own costs accuracy alone.
+  /// Of the base and what lies over it: every roughness has one, stretched where there is a strength of the
+  /// same name. A lobe that is not quite the material's own costs accuracy alone.
   std::vector<Lobe> lobes(const std::vector<double>& material) const {
     const auto alpha = [](double roughness) { return std::max(roughness * roughness, kLeastAlpha); };
     std::vector<Lobe> lobes;
-    if (has("roughness_factor")) {
-      const double base = alpha(number(material, "roughness_factor", 1));
-      lobes.push_back({base, base});
-    }
-    if (number(material, "coat_factor", 0) > 0) {
-      const double coat = alpha(number(material, "coat_roughness_factor", 0));
-      const double strength = number(material, "coat_anisotropy_strength", 0);
-      lobes.push_back({coat + (1 - coat) * strength * strength, coat});
+    constexpr std::string_view kRoughness = "roughness_factor";
+    for (const Variable& variable : subject_.space.variables()) {
+      if (!variable.name.ends_with(kRoughness)) continue;
+      const std::string layer = variable.name.substr(0, variable.name.size() - kRoughness.size());
+      const double across = alpha(material[variable.first]);
+      const double strength = number(material, (layer + "anisotropy_strength").c_str(), 0);
+      lobes.push_back({across + (1 - across) * strength * strength, across});
     }
     return lobes;
   }
@@ -154,12 +164,12 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report) {
     }
     report.findings.push_back({fault, what, 1, value, input, {}});
   };
-  const bool coat = light.has("coat_factor");
+  const bool layered = light.layered();
   for (size_t k = 0; k < kMaterials; ++k) {
     const uint64_t seed = mixed(mixed(plan.seed, subject.name), ~k);
     const std::vector<double> whole = light.material(seed);
     std::vector<double> base = whole;
-    light.set(base, "coat_factor", {0});
+    light.strip(base);
     const double azimuth = 2 * kPi * Random(seed).unit();
     const auto view = [&](double cosine) {
       const double sine = std::sqrt(1 - cosine * cosine);
@@ -168,14 +178,14 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report) {
     for (const double cosine : kCosines) {
       const Vec3 v = view(cosine);
       const double of_base = light.furnace(base, v);
-      const double all = coat ? light.furnace(whole, v) : of_base;
+      const double all = layered ? light.furnace(whole, v) : of_base;
       report.energy.largest = std::max(report.energy.largest, all);
       report.energy.largest_base = std::max(report.energy.largest_base, of_base);
-      // A coat takes from the base what it reflects, so that it can only come nearer to 1. The base gains
+      // A layer takes from the base what it reflects, so that it can only come nearer to 1. The base gains
       // where the text's Lambert under 1 - F(V.H) does.
       std::vector<double> at = whole;
       light.set(at, "v", {v[0], v[1], v[2]});
-      if (!(all <= std::max(1.0, of_base) + kTolerance)) tell(Fault::Energy, "coat", all, at);
+      if (!(all <= std::max(1.0, of_base) + kTolerance)) tell(Fault::Energy, "layers", all, at);
     }
     if (light.has("metallic_factor")) {
       // Metal alone has nothing to gain from: one bounce of a perfect mirror at most.
@@ -191,7 +201,7 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report) {
     const double of_base = light.asymmetry(base, random);
     if (!(of_base <= kReciprocal)) tell(Fault::Reciprocity, "base", of_base, base);
     report.energy.asymmetry =
-        std::max(report.energy.asymmetry, coat ? light.asymmetry(whole, random) : of_base);
+        std::max(report.energy.asymmetry, layered ? light.asymmetry(whole, random) : of_base);
   }
 }
 

@@ -32,11 +32,12 @@ Vec3 unit(const double* a) {
 
 class Material final : public Subject {
 public:
-  static Result<std::unique_ptr<Subject>> make(std::string name, ir::Module module) {
+  static Result<std::unique_ptr<Subject>> make(std::string name, ir::Module module, Layers layers) {
     auto material = std::make_unique<Material>();
     material->name = std::move(name);
     material->is_node = false;
     material->module_ = std::move(module);
+    material->layers = std::move(layers);
     material->makeSpace();
     material->makeRoots();
     std::vector<double> sample(material->space.width());
@@ -233,8 +234,8 @@ private:
 
 }  // namespace
 
-Result<std::unique_ptr<Subject>> materialSubject(std::string name, ir::Module module) {
-  return Material::make(std::move(name), std::move(module));
+Result<std::unique_ptr<Subject>> materialSubject(std::string name, ir::Module module, Layers layers) {
+  return Material::make(std::move(name), std::move(module), std::move(layers));
 }
 
 }  // namespace lacquer::stress

@@ -28,6 +28,9 @@ struct Root {
   passes::Range allowed;  ///< Result, Fact: with the slack of float32
 };
 
+/// By parameter: the value of each component.
+using Layers = std::vector<std::pair<std::string, std::vector<double>>>;
+
 /// By root: the components of each sample side by side.
 using Values = std::vector<std::vector<double>>;
 
@@ -41,6 +44,8 @@ public:
   std::vector<Root> roots;
   /// Samples stand in groups of so many: 4 where derivatives are taken between neighbours, else 1.
   size_t group = 1;
+  /// Of a material: the parameters by which its layers vanish, and at which numbers they do.
+  Layers layers;
 
   /// `samples` are those of `count` points, side by side. Thread-safe.
   virtual Values evaluate(Arithmetic arithmetic, std::span<const double> samples, size_t count) const = 0;
@@ -58,7 +63,8 @@ Result<std::unique_ptr<Subject>> nodeSubject(NodeSource source);
 
 /// A forward module after all passes, with one directional light: a sample is a point, its view and its
 /// light, every texel and every parameter of the material.
-Result<std::unique_ptr<Subject>> materialSubject(std::string name, ir::Module module);
+/// `layers` are those that may lie over the base; names that the module does not have count for nothing.
+Result<std::unique_ptr<Subject>> materialSubject(std::string name, ir::Module module, Layers layers);
 
 /// A comparison as a person writes it, of two names or constants where they have such.
 std::string conditionName(const ir::Module& module, ir::ValueId id);

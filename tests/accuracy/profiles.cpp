@@ -6,8 +6,8 @@
 
 #include "eval/evaluate.h"
 #include "eval/points.h"
-#include "support/materials.h"
 #include "lower/lower.h"
+#include "support/materials.h"
 
 namespace lacquer::accuracy {
 
@@ -27,7 +27,8 @@ ir::Module moduleOf(const std::string& profile, Light light, const Body& body) {
   test::BuildSetup options;
   options.profile = profile;
   Diagnostics warnings;
-  graph::Graph graph = test::buildGraph(document->materials.at(0), {true, true, false, {}}, options, warnings);
+  graph::Graph graph =
+      test::buildGraph(document->materials.at(0), {true, true, false, {}}, options, warnings);
   const bool direct = light == Light::Direct;
   const std::string node = direct ? "coat.transmission_direct" : "coat.transmission_ibl";
   graph.outputs = {{direct ? "direct" : "emission", {graph::NodeRef{node, {}}, {}}}};

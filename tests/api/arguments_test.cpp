@@ -116,7 +116,8 @@ TEST(Targets, thatDoNotExist) {
 
 TEST(LightCounts, moreThanTheArrayHolds) {
   Options options = quick();
-  options.lights = {Lights::Mode::Fixed, {{"directional", 4000000000U}, {"point", 4000000000U}, {"spot", 17}}};
+  options.lights = {Lights::Mode::Fixed,
+                    {{"directional", 4000000000U}, {"point", 4000000000U}, {"spot", 17}}};
   Messages messages;
   Graph graph = paintGraph();
   EXPECT_FALSE(graph.generate(options, messages));

@@ -9,7 +9,7 @@ namespace {
 TEST(Edits, thatFailSayWhyAndChangeNothing) {
   Graph graph = paintGraph();
   const std::string before = graph.toJson();
-  const std::string taken = "base.reflectance";
+  const std::string taken = "base.direct";
   struct Edit {
     const char* code;
     std::function<bool(Messages&)> make;

@@ -39,6 +39,11 @@ const std::vector<Row>& rows() {
       {"cache_size", Decides::Nothing, [](Options& o) { o.cache_size = 1; }},
       {"depfile", Decides::Run, [](Options& o) { o.depfile = "a.d"; }},
       {"shard", Decides::Run, [](Options& o) { o.shard = "a.json"; }},
+      {"switches", Decides::Graph, [](Options& o) { o.switches["direct_multiple_scattering"] = true; }},
+      {"limits", Decides::Graph, [](Options& o) { o.limits = {"file=1M"}; }},
+      {"allow", Decides::Nothing, [](Options& o) { o.allow = {"images"}; }},
+      {"cache_key", Decides::Nothing, [](Options& o) { o.cache_key = "key"; }},
+      {"sync", Decides::Nothing, [](Options& o) { o.sync = false; }},
   };
   return kRows;
 }
@@ -59,10 +64,11 @@ constexpr Decides kAll[] = {Decides::Graph,     Decides::Module, Decides::Code,
                             Decides::SpirvCode, Decides::Run,    Decides::Nothing};
 
 TEST(OptionKeys, HoldWhatTheOptionDecides) {
+  const Options none;
   for (const Row& row : rows()) {
     const Options options = changed(row);
     for (const Decides what : kAll) {
-      EXPECT_EQ(keyOf(options, what) != keyOf({}, what), what == row.decides)
+      EXPECT_EQ(keyOf(options, what) != keyOf(none, what), what == row.decides)
           << row.option << " " << static_cast<int>(what);
     }
   }
@@ -70,15 +76,17 @@ TEST(OptionKeys, HoldWhatTheOptionDecides) {
 
 TEST(OptionKeys, EveryOptionIsTried) {
   size_t count = 0;
-  eachOption(Options{}, [&](Decides, const auto&) { ++count; });
+  const Options none;
+  eachOption(none, [&](Decides, const auto&) { ++count; });
   EXPECT_EQ(rows().size(), count);
 }
 
 TEST(OptionKeys, EachPartOfTheLightsCounts) {
   const std::function<void(Lights&)> changes[] = {
-      [](Lights& l) { l.mode = Lights::Mode::Fixed; }, [](Lights& l) { l.directional = 1; },
-      [](Lights& l) { l.point = 1; }, [](Lights& l) { l.spot = 1; }};
-  std::vector<Key> keys{keyOf({}, Decides::Graph)};
+      [](Lights& l) { l.mode = Lights::Mode::Fixed; }, [](Lights& l) { l.counts["directional"] = 1; },
+      [](Lights& l) { l.counts["directional"] = 2; }, [](Lights& l) { l.counts["spot"] = 1; }};
+  const Options none;
+  std::vector<Key> keys{keyOf(none, Decides::Graph)};
   for (const auto& change : changes) {
     Options options;
     change(options.lights);
@@ -88,7 +96,8 @@ TEST(OptionKeys, EachPartOfTheLightsCounts) {
 }
 
 TEST(OptionKeys, ListsDoNotRunIntoOneAnother) {
-  Options one, other;
+  Options one;
+  Options other = one;
   one.live = {"coat", "emission"};
   other.live = {"coat"};
   other.profile = "emission";

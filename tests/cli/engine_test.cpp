@@ -194,7 +194,7 @@ TEST(Templates, LightsAreThoseThatTheTemplateNames) {
       {"moon",
        "the template 'forward' has no kind of light 'moon' [unknown-light]\n  help: it has directional, "
        "point, spot"},
-      {"point:17", "there are 17 lights [unknown-light]\n  help: the template 'forward' has room for 16"},
+      {"point:17", "there are 17 lights [too-many-lights]\n  help: the template 'forward' has room for 16"},
       {"point:9,spot:9", "there are 18 lights"},
   };
   for (const auto& [lights, said] : kWrong) {

@@ -101,8 +101,7 @@ TEST(EvalVulkan, wrongUsageIsTwo) {
   const Workplace place;
   place.write("points.json", "[]");
   for (const Words& way :
-       {Words{"--engine", "metal"}, Words{"--spirv-from", "dxc"}, Words{"--params", "none"},
-        Words{"--engine", "vulkan", "--params", "spec", "--spirv-from", "hlsl"}}) {
+       {Words{"--engine", "metal"}, Words{"--spirv-from", "dxc"}, Words{"--params", "none"}}) {
     const Outcome outcome = place.run(evalWords("coat.gltf", "Absorption", way));
     EXPECT_EQ(outcome.status, 2) << outcome.all();
     EXPECT_EQ(outcome.out, "");

@@ -132,7 +132,7 @@ TEST(Usage, materialThatIsNotThere) {
   }
   const Outcome without = place.run({"graph", coat});
   EXPECT_EQ(without.status, 1);
-  EXPECT_NE(without.err.find("--material"), std::string::npos) << without.err;
+  EXPECT_NE(without.err.find("several materials, and none is named"), std::string::npos) << without.err;
 }
 
 TEST(Usage, graphOfOneMaterialNeedsNoName) {

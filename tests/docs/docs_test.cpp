@@ -102,21 +102,6 @@ TEST(Docs, GltfExamplesAreAccepted) {
   EXPECT_GE(examples, 1U);
 }
 
-TEST(Docs, NodesOfTheTutorialsCheck) {
-  lang::Library library = lang::Library::embedded();
-  std::vector<lang::SourceFile> files;
-  for (const char* name : {"adding-a-node.md"}) {
-    for (const Fence& fence : fences(readFile(sourceFolder() / "docs" / name))) {
-      if (fence.language != "node") continue;
-      files.push_back({fmt::format("docs/{}:{}", name, fence.line), fence.text});
-    }
-  }
-  ASSERT_GE(files.size(), 1U);
-  const auto added = library.add(std::move(files));
-  ASSERT_TRUE(added) << format(added.error()[0]);
-  for (const Diagnostic& diagnostic : library.checkAll()) ADD_FAILURE() << format(diagnostic);
-}
-
 /// The first backticked words of a table's cell.
 std::vector<std::string> words(const std::string& cell) {
   std::vector<std::string> found;

@@ -26,12 +26,14 @@ Json valueOf(const PropertyDecl& decl, int& textures) {
     case Kind::Choice: return decl.choices.at(1);
     case Kind::Texture: {
       Json info = {{"index", textures}, {"texCoord", textures++ % 4}};
-      for (const PropertyDecl& member : decl.members) info[std::string(member.name)] = valueOf(member, textures);
+      for (const PropertyDecl& member : decl.members)
+        info[std::string(member.name)] = valueOf(member, textures);
       return info;
     }
     case Kind::Object: {
       Json object = Json::object();
-      for (const PropertyDecl& member : decl.members) object[std::string(member.name)] = valueOf(member, textures);
+      for (const PropertyDecl& member : decl.members)
+        object[std::string(member.name)] = valueOf(member, textures);
       return object;
     }
     case Kind::Number: break;

@@ -12,9 +12,9 @@
 
 #include "docs/page.h"
 #include "docs/sample.h"
-#include "support/materials.h"
 #include "support/cases.h"
 #include "support/limits.h"
+#include "support/materials.h"
 
 namespace lacquer::test {
 
@@ -151,7 +151,8 @@ std::string propertyRow(const Row& row, const FullMaterial& full) {
       use.name.empty() ? structural(decl.name) : fmt::format("{}", fmt::join(use.inputs, ", "));
   const bool member = row.object.ends_with("Texture");
   const std::string property = member ? fmt::format("{}.{}", row.object, decl.name) : std::string(decl.name);
-  return fmt::format("| `{}` | {} | {} | {} | {} |\n", property, defaultText(decl), rangeText(decl), name, to);
+  return fmt::format("| `{}` | {} | {} | {} | {} |\n", property, defaultText(decl), rangeText(decl), name,
+                     to);
 }
 
 }  // namespace
@@ -289,11 +290,14 @@ std::string extensionsTable() {
     if (decl->core) continue;
     std::vector<std::string> names;
     for (const PropertyDecl& property : decl->properties) names.push_back(fmt::format("`{}`", property.name));
-    out += fmt::format("| `{}` | {} | {} |\n", decl->name,
-                       decl->inside.empty() ? "the material's extensions" : fmt::format("{}.extensions", decl->inside),
-                       fmt::join(names, ", "));
+    out += fmt::format(
+        "| `{}` | {} | {} |\n", decl->name,
+        decl->inside.empty() ? "the material's extensions" : fmt::format("{}.extensions", decl->inside),
+        fmt::join(names, ", "));
   }
-  return out + "| `KHR_texture_transform` | a textureInfo's extensions | `offset`, `rotation`, `scale`, `texCoord` |\n";
+  return out +
+         "| `KHR_texture_transform` | a textureInfo's extensions | `offset`, `rotation`, `scale`, `texCoord` "
+         "|\n";
 }
 
 std::string limitsTable() {

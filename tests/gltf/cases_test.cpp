@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "gltf/dump.h"
-#include "support/materials.h"
 #include "support/cases.h"
+#include "support/materials.h"
 
 namespace lacquer::test {
 namespace {

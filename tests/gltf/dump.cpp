@@ -50,7 +50,8 @@ void dumpTexture(const lang::PropertyDecl& decl, const TextureInfo& info, Fields
                           transform.rotation, fmt::join(transform.scale, " ")));
 }
 
-/// What the material says of one extension, by its properties' own names; defaults that are spelt out are left out.
+/// What the material says of one extension, by its properties' own names; defaults that are spelt out are
+/// left out.
 void dumpExtension(const Material& material, uint16_t extension, Fields& fields) {
   const material::Schema& schema = test::builtInSchema();
   for (uint16_t i = 0; i < schema.properties.size(); ++i) {
@@ -58,7 +59,8 @@ void dumpExtension(const Material& material, uint16_t extension, Fields& fields)
     const lang::PropertyDecl& decl = *schema.properties[i].decl;
     if (const TextureInfo* info = material.texture(i)) dumpTexture(decl, *info, fields);
     const ir::Components* value = material.number(i);
-    if (value != nullptr && *value != decl.default_value) fields.line(fmt::format("{} {}", decl.name, valueText(decl, *value)));
+    if (value != nullptr && *value != decl.default_value)
+      fields.line(fmt::format("{} {}", decl.name, valueText(decl, *value)));
   }
 }
 

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "gltf/dump.h"
-#include "support/materials.h"
 #include "support/cases.h"
+#include "support/materials.h"
 
 namespace lacquer::test {
 namespace {
@@ -90,7 +90,8 @@ TEST(GltfContainer, whatIsNoFileIsAnError) {
             "/nonexistent/x.gltf: error: there is no such file [file-unreadable]");
   EXPECT_EQ(outcome(readMaterials("")), "error: there is no such file [file-unreadable]");
   const std::string folder = sourceFolder().string();
-  EXPECT_EQ(outcome(readMaterials(folder)), folder + ": error: this is a folder, not a file [file-unreadable]");
+  EXPECT_EQ(outcome(readMaterials(folder)),
+            folder + ": error: this is a folder, not a file [file-unreadable]");
   if (fs::exists("/dev/zero")) {
     EXPECT_EQ(outcome(readMaterials("/dev/zero")),
               "/dev/zero: error: this is no regular file [file-unreadable]");

@@ -2,9 +2,9 @@
 // reads back.
 #include <gtest/gtest.h>
 
-#include "support/materials.h"
 #include "graph/sample.h"
 #include "support/cases.h"
+#include "support/materials.h"
 
 namespace lacquer::test {
 namespace {

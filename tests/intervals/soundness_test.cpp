@@ -7,11 +7,11 @@
 #include <random>
 
 #include "api/node_proofs.h"
-#include "support/materials.h"
 #include "intervals/evaluator.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
 #include "support/cases.h"
+#include "support/materials.h"
 
 namespace lacquer::test {
 namespace {

@@ -1,5 +1,5 @@
-// Parts, beside the built-in library. errors/: whole diagnostics. good/: what the materials of the section `gltf` come to:
-// nodes with their inputs, ports, what was skipped.
+// Parts, beside the built-in library. errors/: whole diagnostics. good/: what the materials of the section
+// `gltf` come to: nodes with their inputs, ports, what was skipped.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -79,17 +79,18 @@ std::string build(const Case& c, const model::Models& models, const lang::Librar
   return text;
 }
 
-const bool kErrors = registerCases("ModelErrors", sourceFolder() / "tests/model/errors", ".case", [](Case& c) {
-  Diagnostics found;
-  const lang::Library library = libraryOf(c, found);
-  if (found.empty()) {
-    const model::Models models(library);
-    const auto model = models.of("khr");
-    if (!model) found = model.error();
-  }
-  EXPECT_TRUE(hasError(found));
-  c.expect("errors", formatAll(found));
-});
+const bool kErrors =
+    registerCases("ModelErrors", sourceFolder() / "tests/model/errors", ".case", [](Case& c) {
+      Diagnostics found;
+      const lang::Library library = libraryOf(c, found);
+      if (found.empty()) {
+        const model::Models models(library);
+        const auto model = models.of("khr");
+        if (!model) found = model.error();
+      }
+      EXPECT_TRUE(hasError(found));
+      c.expect("errors", formatAll(found));
+    });
 
 const bool kGood = registerCases("ModelGood", sourceFolder() / "tests/model/good", ".case", [](Case& c) {
   Diagnostics wrong;

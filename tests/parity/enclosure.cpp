@@ -161,7 +161,7 @@ void Enclosure::sumOverLights(ValueId id) {
 
 void Enclosure::texture(ValueId id) {
   const ir::Value& v = dag_[id];
-  const std::string& name = dag_.inputOf(v.args[0]).name;
+  const std::string& name = module_.textures[dag_.inputOf(v.args[0]).field].name;
   const eval::Sampler& sampler = bindings_.textures.find(name)->second;
   const auto size = sizes_.find(name);
   std::array<std::array<double, 3>, 2> tries{};

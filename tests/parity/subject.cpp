@@ -13,12 +13,12 @@
 #include "eval/evaluate.h"
 #include "eval/image.h"
 #include "eval/points.h"
-#include "support/materials.h"
 #include "lower/lower.h"
 #include "passes/intervals.h"
 #include "passes/pipeline.h"
 #include "passes/rewrite.h"
 #include "support/cases.h"
+#include "support/materials.h"
 
 namespace lacquer::parity {
 
@@ -68,7 +68,7 @@ void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
     texture.width = static_cast<uint32_t>(table.width);
     texture.height = static_cast<uint32_t>(table.height);
     texture.s = texture.t = vulkan::Wrap::Clamp;
-    texels = table.texels;
+    texels = std::get<std::vector<vulkan::Texel>>(table.texels);
     subject.sizes[slot.name] = {static_cast<double>(table.width), static_cast<double>(table.height)};
   } else {
     texture.width = static_cast<uint32_t>(2 + random.below(6));
@@ -311,9 +311,9 @@ void addGraphs(const material::Document& document, const std::string& name, cons
     options.template_name = setting.template_name;
     options.decode_srgb = setting.decode_srgb;
     Diagnostics warnings;
-    NamedGraph made{
-        fmt::format("{}, {}, {}", name, material.name, setting.template_name),
-        test::buildGraph(material, {true, setting.tangents, true, {true, true, true, true}}, options, warnings)};
+    NamedGraph made{fmt::format("{}, {}, {}", name, material.name, setting.template_name),
+                    test::buildGraph(material, {true, setting.tangents, true, {true, true, true, true}},
+                                     options, warnings)};
     EXPECT_FALSE(hasError(material.diagnostics)) << made.name;
     EXPECT_FALSE(hasError(graph::check(made.graph, library()))) << made.name;
     graphs.push_back(std::move(made));

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "support/materials.h"
 #include "physics/subject.h"
 #include "support/cases.h"
+#include "support/materials.h"
 
 namespace lacquer::physics {
 namespace {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "eval/dfg.h"
-#include "support/materials.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
+#include "support/materials.h"
 
 namespace lacquer::physics {
 
@@ -55,7 +55,7 @@ void Subject::make(const std::string& gltf, size_t material, const Configuration
   ASSERT_TRUE(module) << textOf(module.error());
   module_ = std::move(*module);
   quads_ = setup.quads;
-  if (setup.placed) passes::runPipeline(module_, {{false, 1, 0, 0}, {}});
+  if (setup.placed) passes::runPipeline(module_, {{false, {{"directional", 1}}}, {}});
 }
 
 template <class T>

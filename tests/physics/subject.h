@@ -7,8 +7,8 @@
 
 #include "eval/evaluate.h"
 #include "eval/points.h"
-#include "support/materials.h"
 #include "physics/model.h"
+#include "support/materials.h"
 
 namespace lacquer::physics {
 

@@ -13,11 +13,13 @@ const model::Models& builtInModels();
 const material::Schema& builtInSchema();
 
 Result<material::Document> readMaterials(const std::string& path, bool permissive = false);
-Result<material::Document> materialsOf(const std::string& text, const std::string& name, bool permissive = false);
+Result<material::Document> materialsOf(const std::string& text, const std::string& name,
+                                       bool permissive = false);
 
 struct BuildSetup {
   std::string profile = "khr", template_name = "forward";
-  bool ibl = true, dfg_table = true, multiple_scattering = true, direct_multiple_scattering = false, decode_srgb = false;
+  bool ibl = true, dfg_table = true, multiple_scattering = true, direct_multiple_scattering = false,
+       decode_srgb = false;
   std::set<std::string> live;
 };
 
