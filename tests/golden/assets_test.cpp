@@ -79,7 +79,8 @@ void everyMaterialGivesEveryTarget(const fs::path& file) {
       ++uses;
     }
   }
-  EXPECT_GT(uses, 0u);
+  // A file may have nothing but primitives without a material.
+  EXPECT_TRUE(uses > 0 || (entry["materials"].empty() && entry.contains("default_material")));
   for (const auto& [id, shader] : manifest["shaders"].items()) expectCompleteShader(first.path(), id, shader);
   // Again with one thread: the same bytes.
   const Folder second;

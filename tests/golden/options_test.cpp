@@ -100,10 +100,11 @@ TEST_P(EveryOption, validatesInAllExamples) {
   GetParam().set(options);
   const Json manifest = generateWell(exampleFiles(), folder.path(), options);
   EXPECT_FALSE(manifest["shaders"].empty());
-  const bool mesh = options.template_name != "bsdf";
+  const std::string template_name = options.template_name.empty() ? "forward" : options.template_name;
+  const bool mesh = template_name != "bsdf";
   for (const auto& [id, shader] : manifest["shaders"].items()) {
-    EXPECT_TRUE(id.starts_with(options.template_name + "-")) << id;
-    EXPECT_EQ(shader["template"], options.template_name);
+    EXPECT_TRUE(id.starts_with(template_name + "-")) << id;
+    EXPECT_EQ(shader["template"], template_name);
     EXPECT_EQ(shader["files"].size(), options.targets.size()) << id;
     for (const auto& [target, files] : shader["files"].items()) {
       EXPECT_EQ(shader["validated"][target], true) << id << " " << target;

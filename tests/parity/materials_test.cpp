@@ -36,14 +36,15 @@ TEST(ParityMaterials, Forward) { expectAgreement(exampleGraphs({}), {}, 1024); }
 TEST(ParityMaterials, ForwardWithAnyLights) {
   MaterialSetting setting;
   setting.lights = {};
-  expectAgreement(exampleGraphs(setting), setting, 256, kSome);
+  // Most of the vague numbers are of the three materials with normal maps.
+  expectAgreement(exampleGraphs(setting), setting, 256, kSome, 0.35);
 }
 
 TEST(ParityMaterials, ForwardThatDecodesSrgb) {
   MaterialSetting setting;
   setting.decode_srgb = true;
   // The curve is steep where texels are dark.
-  expectAgreement(exampleGraphs(setting), setting, 256, kSome, 0.4);
+  expectAgreement(exampleGraphs(setting), setting, 256, kSome, 0.45);
 }
 
 TEST(ParityMaterials, Surface) {
@@ -79,7 +80,7 @@ TEST(ParityMaterials, QuadsWithoutTangents) {
   }
   EXPECT_GT(graphs.size(), 4U);
   // Differences of interpolated numbers have few digits.
-  expectAgreement(graphs, setting, 256, 1, 0.6);
+  expectAgreement(graphs, setting, 256, 1, 0.65);
 }
 
 TEST(ParityMaterials, VertexStages) {

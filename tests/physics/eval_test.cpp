@@ -134,8 +134,13 @@ TEST_F(Eval, ErrorsOfPointsNameThePlace) {
   EXPECT_NE(errorOf(file, "{}").find("wrong-type"), std::string::npos);
 }
 
-/// A picture of 2 by 1 pixels, (255, 0, 128) and (0, 255, 0), as a binary PPM, which stb_image reads.
-const std::string kPicture("P6 2 1 255\n\xff\x00\x80\x00\xff\x00", 17);
+/// A picture of 2 by 1 pixels, (255, 0, 128) and (0, 255, 0), as a PNG.
+const std::string kPicture(
+    "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x02"
+    "\x00\x00\x00\x01\x08\x02\x00\x00\x00\x7b\x40\xe8\xdd\x00\x00\x00\x0f\x49\x44\x41"
+    "\x54\x78\xda\x63\xf8\xcf\xd0\xc0\xf0\x9f\x01\x00\x09\xff\x02\x7f\xb9\xe0\x13\xd8"
+    "\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82",
+    72);
 
 std::string unlitWith(const std::string& image, const std::string& sampler) {
   return R"({"asset":{"version":"2.0"},"materials":[{"name":"M","pbrMetallicRoughness":{"baseColorTexture":{"index":0}},
@@ -149,8 +154,8 @@ Vec3 colorAt(const std::string& answer, size_t point) {
 }
 
 TEST_F(Eval, TexturesAreDecodedWrappedAndFiltered) {
-  write("a picture.ppm", kPicture);
-  const std::string image = R"({"uri": "a%20picture.ppm"})";
+  write("a picture.png", kPicture);
+  const std::string image = R"({"uri": "a%20picture.png"})";
   std::string text;
   const std::string points =
       R"([{"uv0": [0.25, 0.5]}, {"uv0": [0.5, 0.5]}, {"uv0": [1.25, 9]}, {"uv0": [-0.25, 0]}])";
@@ -174,7 +179,8 @@ TEST_F(Eval, TexturesAreDecodedWrappedAndFiltered) {
   EXPECT_NEAR(colorAt(answer, 3)[0], 1, 1e-7);
 
   // P6 2 1 255\n and the six bytes in base64.
-  const std::string data = R"({"uri": "data:image/x-portable-pixmap;base64,UDYgMiAxIDI1NQr/AIAA/wA="})";
+  const std::string data =
+      R"({"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR42mP4z9DA8J8BAAn/An+54BPYAAAAAElFTkSuQmCC"})";
   answer = run(write("d.gltf", unlitWith(data, "{}")), points, text);
   ASSERT_NE(answer, "") << text;
   EXPECT_NEAR(colorAt(answer, 0)[2], half, 1e-7);

@@ -21,6 +21,7 @@ public:
     for (const char* direction : {"n", "v", "l", "t"}) space.add(direction, 3, {}, Nature::Direction, 1);
     space.add("light", 3, {0, 10}, Nature::Number, 10);
     space.add("coat_factor", 1, {0, 1}, Nature::Number, 1);
+    layers = {{"coat_factor", {0}}};
     roots.push_back({Root::Kind::Result, "color", 4, false, {0, 1e9, false}});
   }
 
@@ -110,6 +111,7 @@ public:
     for (const char* direction : {"n", "v", "l", "t"}) space.add(direction, 3, {}, Nature::Direction, 1);
     space.add("light", 3, {0, 10}, Nature::Number, 10);
     space.add("coat_factor", 1, {0, 1}, Nature::Number, 1);
+    layers = {{"coat_factor", {0}}};
     space.add("coat_roughness_factor", 1, {0, 0.1}, Nature::Number, 1);
     roots.push_back({Root::Kind::Result, "color", 4, false, {0, 1e9, false}});
   }
