@@ -48,4 +48,10 @@ bool Graph::remove(std::string_view id) {
   return true;
 }
 
+void Graph::skip(std::string_view term, std::string reason) {
+  const auto named = [&](const Skipped& other) { return other.term == term; };
+  if (std::any_of(skipped.begin(), skipped.end(), named)) return;
+  skipped.push_back({std::string(term), std::move(reason)});
+}
+
 }  // namespace lacquer::graph

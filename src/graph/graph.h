@@ -107,6 +107,8 @@ struct Graph {
   std::optional<size_t> findParameter(std::string_view name) const;
   /// Removes a node; its users keep dangling edges, which check() reports.
   bool remove(std::string_view id);
+  /// Says why a term is not there. A term that several parts have is named once, with the first reason.
+  void skip(std::string_view term, std::string reason);
 };
 
 /// Everything lowering relies on: node types and variants exist, ids are unique, inputs exist, are connected

@@ -237,7 +237,7 @@ void Writer::notTaken() {
     if (!made[i] || used[i] || !resolver_.alive(i)) continue;
     const uint32_t parent = model_.terms[i].parent;
     if ((parent != Line::kNone && !used[parent]) || !resolver_.gives(i)) continue;
-    graph_.skipped.push_back({std::string(model_.terms[i].name), "nothing that the template takes needs it"});
+    graph_.skip(model_.terms[i].name, "nothing that the template takes needs it");
   }
 }
 
@@ -249,7 +249,7 @@ void Writer::run(const lang::TemplateDecl& template_decl) {
     mark(value);
     ports.emplace_back(port.param.name, value);
   }
-  graph_.skipped = resolver_.skipped();
+  for (graph::Skipped& skipped : resolver_.skipped()) graph_.skip(skipped.term, std::move(skipped.reason));
   if (!resolver_.wrong().empty()) return;
   writeOrdered();
   for (const auto& [name, value] : ports) graph_.outputs.emplace_back(name, source(value));

@@ -83,6 +83,15 @@ TEST_F(RandomMaterials, KilledProcessesThatShareACache) {
   EXPECT_EQ(differences(folder_ / "plain", folder_ / "c"), "");
 }
 
+TEST_F(RandomMaterials, WhatTheCacheHoldsIsRead) {
+  ASSERT_EQ(runProgram(command("gen", "plain", {"--jobs", "1"}), folder_), 0);
+  for (const std::string out : {"first", "second"}) {
+    std::string printed;
+    EXPECT_EQ(runProgram(command("gen", out, {"--cache", "cache"}), folder_, &printed), 0) << printed;
+    EXPECT_EQ(differences(folder_ / "plain", folder_ / out), "");
+  }
+}
+
 TEST_F(RandomMaterials, PlannedAndMerged) {
   std::string version;
   if (runProgram({"ninja", "--version"}, "/", &version) != 0) GTEST_SKIP() << "ninja is not installed";

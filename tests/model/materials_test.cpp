@@ -1,6 +1,8 @@
 // What the built-in parts make of materials, as properties.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "support/cases.h"
 #include "support/materials.h"
 
@@ -55,6 +57,21 @@ TEST(Materials, EveryTermStaysWhereItIsAskedTo) {
       EXPECT_FALSE(skips(graph, std::string(term))) << term;
     }
   }
+}
+
+/// Two parts have a term `occlusion`; an unlit material takes neither.
+TEST(Materials, ATermIsSkippedOnce) {
+  const auto document = materialsOf(
+      R"({"asset": {"version": "2.0"}, "textures": [{}], "materials": [
+          {"occlusionTexture": {"index": 0}, "extensions": {"KHR_materials_unlit": {}}}]})",
+      "test.gltf");
+  Diagnostics warnings;
+  const graph::Graph graph = buildGraph(document->materials.at(0), {true, true, false, {}}, {}, warnings);
+  ASSERT_TRUE(skips(graph, "occlusion"));
+  std::set<std::string> names;
+  for (const graph::Skipped& skipped : graph.skipped)
+    EXPECT_TRUE(names.insert(skipped.term).second) << skipped.term;
+  EXPECT_TRUE(graph::fromJson(toJson(graph), "again.json"));
 }
 
 /// A template that takes none of what a material has is told so, and gets none of it.
