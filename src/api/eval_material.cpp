@@ -235,6 +235,7 @@ Result<BoundTexture> EvalMaterial::environmentOf(const ir::TextureSlot& slot) co
     return BoundTexture{
         {}, eval::environmentDfgImage(), {eval::Wrap::Clamp, eval::Wrap::Clamp, false, false}};
   }
+  if (slot.texel) return BoundTexture{*slot.texel, {}, {}};
   if (slot.type == ir::Type::Texture2DShadow) return BoundTexture{std::array<double, 4>{1, 0, 0, 0}, {}, {}};
   return fail("image-missing", {},
               fmt::format("the template '{}' is given a texture '{}' that has no texels here",

@@ -240,6 +240,8 @@ struct EnvironmentDecl {
   std::string_view prose;
   Span span;
   ir::Binding binding;
+  ExprPtr texel_syntax;
+  std::optional<ir::Components> texel;  ///< what evaluations on the CPU take where nothing else is said
 };
 
 /// What a graph may refer to.

@@ -215,6 +215,9 @@ void Checker::environment(EnvironmentDecl& decl, uint32_t& slots) {
     reporter_.error("wrong-type", decl.span, fmt::format("an environment cannot be {}", aType(decl.type)),
                     "it is a sampler2D, a samplerCube or another sampler");
   }
+  if (decl.texel_syntax) {
+    if (const Constant texel = constantValue(decl.texel_syntax, Type::Vec4, "the texel")) decl.texel = *texel;
+  }
   decl.slot = slots++;
   declare({decl.name, Name::Kind::Environment, decl.type, decl.slot, decl.span, true, false, {}});
 }

@@ -359,9 +359,13 @@ bool Parser::templateItem(TemplateDecl& decl) {
     EnvironmentDecl item;
     if (!type(item.type, "the texture's type") || !name(item.name, item.span, "the texture's name"))
       return false;
+    if (accept("=")) {
+      item.texel_syntax = expression();
+      if (!item.texel_syntax) return false;
+    }
     if (!expect(";", "the texture's name")) return false;
     item.prose = proseBehind();
-    decl.environments.push_back(item);
+    decl.environments.push_back(std::move(item));
     return true;
   }
   return syntax(

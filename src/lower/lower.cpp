@@ -123,6 +123,7 @@ private:
       slot.type = environment.type;
       slot.environment = true;
       slot.optional = environment.optional;
+      slot.texel = environment.texel;
       slot.binding = environment.binding;
       textures_[environment.name] = slots_[environment.slot] = addTexture(slot);
     }

@@ -69,7 +69,7 @@ private:
 
   /// The environment's factors are what they are.
   static bool isTable(const ir::TextureSlot& slot) {
-    return slot.environment && slot.type == ir::Type::Texture2D;
+    return slot.environment && slot.type == ir::Type::Texture2D && !slot.texel;
   }
 
   void makeSpace() {

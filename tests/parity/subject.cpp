@@ -63,7 +63,7 @@ void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
       for (float& x : texel) x = static_cast<float>(random.between(0, 2));
     }
     for (size_t i = 0; i < subject.points; ++i) texels.push_back(few[i / 16 % few.size()]);
-  } else if (slot.environment) {
+  } else if (slot.environment && !slot.texel) {
     const eval::Image& table = *eval::environmentDfgImage();
     texture.width = static_cast<uint32_t>(table.width);
     texture.height = static_cast<uint32_t>(table.height);
