@@ -169,7 +169,8 @@ TEST_F(Budget, OutOfRangeIsAnError) {
   }
 }
 
-/// The rows of src/shader/variants.def say what bench/error.json says, and each names a variant that is there.
+/// The rows of src/shader/variants.def say what bench/error.json says, and each names a variant that is
+/// there.
 TEST_F(Budget, TableIsTheMeasuredOne) {
   const json measured = json::parse(readFile(sourceFolder() / "bench/error.json"));
   std::vector<std::string> rows;
