@@ -89,7 +89,7 @@ using Wrong = std::array<Diagnostics, kTargetCount>;
 void print(ShaderData& shader, const Options& options, Wrong& wrong, StageTimes* times = nullptr);
 
 /// The shader's entry in the manifest, without "files" and "validated".
-std::string interfaceJson(const ir::Module& module, bool has_vertex);
+std::string interfaceJson(const ir::Module& module, bool has_vertex, const material::Schema* schema);
 
 /// The first of the stages, 0 or 1, that have a file; the last is 1. Target::Cpp has one file.
 inline int firstStage(Target target, bool has_vertex) { return has_vertex && target != Target::Cpp ? 0 : 1; }

@@ -10,8 +10,9 @@
 
 namespace lacquer {
 
-/// The interface of a placed module: "template", "terms", "uniforms", "textures", "inputs", "outputs".
-Json interfaceOf(const ir::Module& module, bool has_vertex);
+/// The interface of a placed module: "template", "uniforms", "parameters", "textures", "inputs", "outputs".
+/// `schema`: whose prose says what the parameters are; may be null.
+Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Schema* schema);
 
 /// {"safe": n, "unproved": [...]}: the operations that have a domain.
 Json proofsJson(const ir::Module& module);
@@ -23,6 +24,9 @@ Json diagnosticJson(const Diagnostic& diagnostic);
 Json componentsJson(ir::Type type, const ir::Components& components);
 
 /// A manifest, written entry by entry: first files, then shaders in the order of their ids.
+/// What its form is: the `schema` that a manifest names. Another number is another form.
+inline constexpr int kManifestSchema = 1;
+
 class ManifestFile {
 public:
   explicit ManifestFile(const std::string& path, const Writing& how);
