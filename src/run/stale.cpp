@@ -3,9 +3,12 @@
 #include <filesystem>
 #include <set>
 
-#include "api/internal.h"
 #include "json/json.h"
+#include "shader/module.h"
+#include "shader/options.h"
+#include "shader/print.h"
 #include "support/file.h"
+#include "support/outputs.h"
 
 namespace lacquer {
 

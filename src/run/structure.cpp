@@ -294,7 +294,7 @@ void writeBindings(const Structure& structure, const graph::Graph& graph, const 
   json.key("parameters").beginObject();
   for (const uint32_t i : structure.parameters) {
     const ir::Parameter& p = graph.parameters[i];
-    json.key(p.name).beginObject().key("value").components(p.type, p.value);
+    json.key(p.name).beginObject().key("value").numbers({p.value.data(), static_cast<size_t>(ir::componentCount(p.type))});
     json.key("pointer").string(p.pointer);
     if (p.animated) json.key("animated").boolean(true);
     json.endObject();

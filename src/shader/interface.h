@@ -5,6 +5,7 @@
 
 #include "ir/module.h"
 #include "json/json.h"
+#include "material/schema.h"
 
 namespace lacquer {
 
