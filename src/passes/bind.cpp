@@ -33,6 +33,9 @@ void bind(ir::Module& module) {
     place[i] = static_cast<uint32_t>(kept.size());
     kept.push_back(slot);
   }
+  for (ir::TextureSlot& slot : kept) {
+    if (slot.optional) slot.binding.flat = module.material_textures + next++;
+  }
   module.textures = std::move(kept);
   for (const ir::ValueId id : texture_inputs)
     module.dag.setInputField(id, place[module.dag.inputOf(id).field]);

@@ -63,8 +63,8 @@ void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
       for (float& x : texel) x = static_cast<float>(random.between(0, 2));
     }
     for (size_t i = 0; i < subject.points; ++i) texels.push_back(few[i / 16 % few.size()]);
-  } else if (slot.environment) {
-    const eval::Image& table = *eval::environmentDfgImage();
+  } else if (slot.environment && !slot.texel) {
+    const eval::Image& table = *eval::environmentTable(slot.name);
     texture.width = static_cast<uint32_t>(table.width);
     texture.height = static_cast<uint32_t>(table.height);
     texture.s = texture.t = vulkan::Wrap::Clamp;
