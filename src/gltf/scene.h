@@ -13,14 +13,14 @@ namespace lacquer::gltf {
 /// out.
 std::vector<int> readScene(const Json& root, Scene& scene);
 
-/// What SceneChecker leaves of a file's JSON: only what Lacquer asks tinygltf about, with every index in
-/// range.
+/// What SceneChecker leaves of a file's JSON: only what shaders depend on, of the right types, with every
+/// index in range.
 struct CheckedScene {
   Json json;
   std::vector<Image> images;
 };
 
-/// Checks the scene's JSON. tinygltf takes wrong types for absent values and does not check indices.
+/// Checks the scene's JSON.
 CheckedScene checkScene(const Json& root, const std::string& file, Diagnostics& diagnostics);
 
 }  // namespace lacquer::gltf

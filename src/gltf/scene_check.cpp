@@ -213,7 +213,7 @@ Json SceneChecker::mesh(const Json& mesh, const Path& path) {
     }
     Json checked = elements(*primitives, here, "primitive",
                             [&](const Json& p, const Path& q) { return primitive(p, q); });
-    // A primitive that cannot be used is null; tinygltf has no way to say that.
+    // A primitive that cannot be used is null.
     for (Json& one : checked) {
       if (!one.is_null()) out["primitives"].push_back(std::move(one));
     }
