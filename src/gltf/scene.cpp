@@ -1,48 +1,32 @@
 #include "gltf/scene.h"
 
-#include <tiny_gltf.h>
-
 #include <algorithm>
-#include <limits>
+#include <string_view>
 #include <utility>
-
-#include "json/path.h"
-#include "json/report.h"
-#include "support/text.h"
 
 namespace lacquer::gltf {
 
 namespace {
 
-/// Images are not decoded: a shader does not depend on what is in them.
-bool decodeNothing(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
-                   void*) {
-  return true;
+/// The elements of an array that may be absent.
+const Json& elements(const Json& owner, std::string_view name) {
+  static const Json kNone = Json::array();
+  const Json* found = member(owner, name);
+  return found == nullptr ? kNone : *found;
 }
 
-/// Hands the checked JSON to tinygltf. False when it does not accept it, which is then in `diagnostics`.
-bool loadModel(const Json& json, tinygltf::Model& model, const std::string& file, Diagnostics& diagnostics) {
-  std::string error;
-  try {
-    const std::string text = json.dump();
-    if (text.size() <= std::numeric_limits<unsigned int>::max()) {
-      tinygltf::TinyGLTF loader;
-      loader.SetImageLoader(decodeNothing, nullptr);
-      std::string warning;
-      const auto size = static_cast<unsigned int>(text.size());
-      if (loader.LoadASCIIFromString(&model, &error, &warning, text.data(), size, "", tinygltf::NO_REQUIRE)) {
-        return true;
-      }
-    } else {
-      error = "the scene is larger than 4 GiB";
-    }
-  } catch (const std::exception& exception) {
-    error = exception.what();
-  }
-  Report(file, diagnostics)
-      .error("tinygltf", Path(), "the scene cannot be read: " + printable(error, 400),
-             "materials are read all the same, but not the lights");
-  return false;
+/// The object of an extension; an empty one where there is none.
+const Json& extensionOf(const Json& owner, std::string_view name) {
+  static const Json kNone = Json::object();
+  const Json* all = member(owner, "extensions");
+  const Json* found = all == nullptr ? nullptr : member(*all, name);
+  return found == nullptr ? kNone : *found;
+}
+
+/// -1 where there is none.
+int indexOf(const Json& owner, std::string_view name) {
+  const Json* found = member(owner, name);
+  return found == nullptr ? -1 : found->get<int>();
 }
 
 void sortDistinct(std::vector<VertexAttributes>& sets) {
@@ -63,12 +47,12 @@ void collectUses(Scene& scene) {
   sortDistinct(scene.defaultUses);
 }
 
-void collectLights(const tinygltf::Model& model, Scene& scene) {
-  for (const tinygltf::Node& node : model.nodes) {
-    const auto found = node.extensions.find("KHR_lights_punctual");
-    if (found == node.extensions.end() || !found->second.Has("light")) continue;
-    const std::string& type =
-        model.lights.at(static_cast<size_t>(found->second.Get("light").GetNumberAsInt())).type;
+void collectLights(const Json& checked, Scene& scene) {
+  const Json& lights = elements(extensionOf(checked, "KHR_lights_punctual"), "lights");
+  for (const Json& node : elements(checked, "nodes")) {
+    const int light = indexOf(extensionOf(node, "KHR_lights_punctual"), "light");
+    if (light < 0) continue;
+    const std::string_view type = lights.at(static_cast<size_t>(light))["type"].get_ref<const std::string&>();
     if (type == "directional") ++scene.lights[LightType::Directional];
     if (type == "point") ++scene.lights[LightType::Point];
     if (type == "spot") ++scene.lights[LightType::Spot];
@@ -81,8 +65,7 @@ void readScene(const Json& root, Scene& scene) {
   const Json checked = checkScene(root, scene);
   scene.uses.resize(arraySize(root, "materials"));
   collectUses(scene);
-  tinygltf::Model model;
-  if (loadModel(checked, model, scene.path, scene.diagnostics)) collectLights(model, scene);
+  collectLights(checked, scene);
 }
 
 }  // namespace lacquer::gltf

@@ -9,9 +9,8 @@ namespace lacquer::gltf {
 /// Fills all but `path` of a scene from the root of its JSON. What is wrong is left out.
 void readScene(const Json& root, Scene& scene);
 
-/// Checks the scene's JSON, fills what of a scene needs no more than that, and returns what is left for
-/// tinygltf, with every index in range: tinygltf takes wrong types for absent values and does not check
-/// indices.
+/// Checks the scene's JSON, fills what of a scene needs no more than that, and returns the rest: only
+/// what shaders depend on, of the right types, with every index in range.
 Json checkScene(const Json& root, Scene& scene);
 
 }  // namespace lacquer::gltf

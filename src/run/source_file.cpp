@@ -373,23 +373,16 @@ Key fileKey(const std::string& path, const std::string& bytes, const Setting& se
 
 std::string toBlob(const FileResult& result) {
   BlobWriter blob;
-  blob.text(result.text);
-  blob.diagnostics(result.diagnostics);
+  blob(result.text, result.diagnostics, result.structures);
   writeMaterials(result.materials, blob);
-  blob.list(result.structures, [&](const Key& key) { blob.number(key.high), blob.number(key.low); });
   return blob.take();
 }
 
 std::optional<FileResult> fromBlob(const std::string& path, std::string_view bytes) {
   BlobReader blob(bytes);
   FileResult result;
-  result.text = blob.text();
-  result.diagnostics = blob.diagnostics();
+  blob(result.text, result.diagnostics, result.structures);
   readMaterials(path, blob, result.materials);
-  blob.list([&] {
-    const auto high = blob.number<uint64_t>();
-    result.structures.push_back({high, blob.number<uint64_t>()});
-  });
   if (!blob.complete()) return std::nullopt;
   return result;
 }

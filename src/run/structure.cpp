@@ -294,7 +294,8 @@ void writeBindings(const Structure& structure, const graph::Graph& graph, const 
   json.key("parameters").beginObject();
   for (const uint32_t i : structure.parameters) {
     const ir::Parameter& p = graph.parameters[i];
-    json.key(p.name).beginObject().key("value").numbers({p.value.data(), static_cast<size_t>(ir::componentCount(p.type))});
+    json.key(p.name).beginObject().key("value").numbers(
+        {p.value.data(), static_cast<size_t>(ir::componentCount(p.type))});
     json.key("pointer").string(p.pointer);
     if (p.animated) json.key("animated").boolean(true);
     json.endObject();
@@ -316,59 +317,35 @@ void writeBindings(const Structure& structure, const graph::Graph& graph, const 
   json.endObject();
 }
 
-std::string toBlob(const Structure& s) {
+namespace ir {
+template <class Archive>
+static void fields(Archive& archive, Range& range) {
+  archive(range.lo, range.hi, range.gap);
+}
+}  // namespace ir
+
+namespace passes {
+template <class Archive>
+static void fields(Archive& archive, LightFacts& lights) {
+  archive(lights.any, lights.counts);
+}
+}  // namespace passes
+
+template <class Archive>
+static void fields(Archive& archive, Structure& s) {
+  archive(s.diagnostics, s.shader, s.has_vertex, s.absent, s.interface, s.terms, s.preshader, s.parameters,
+          s.textures, s.limits, s.graph, s.lights);
+}
+
+std::string toBlob(const Structure& structure) {
   BlobWriter blob;
-  blob.diagnostics(s.diagnostics);
-  blob.text(s.shader), blob.number(s.has_vertex), blob.text(s.absent);
-  const auto pair = [&](const auto& p) { blob.text(p.first), blob.text(p.second); };
-  blob.list(s.interface, pair);
-  blob.list(s.terms->terms, [&](const std::string& term) { blob.text(term); });
-  blob.list(s.terms->skipped, pair);
-  writeVariants(s.terms->variants, blob);
-  s.preshader.write(blob);
-  blob.list(s.parameters, [&](uint32_t i) { blob.number(i); });
-  blob.list(s.textures, [&](const auto& t) { blob.text(t.first), blob.number(t.second); });
-  blob.list(s.limits, [&](const ir::Range& range) {
-    blob.number(range.lo), blob.number(range.hi), blob.number(range.gap);
-  });
-  blob.text(s.graph);
-  blob.number(s.lights.any);
-  blob.list(s.lights.counts, [&](const auto& c) { blob.text(c.first), blob.number(c.second); });
+  blob(structure);
   return blob.take();
 }
 
 bool fromBlob(std::string_view bytes, Structure& s) {
   BlobReader blob(bytes);
-  s.diagnostics = blob.diagnostics();
-  s.shader = blob.text(), s.has_vertex = blob.number<bool>(), s.absent = blob.text();
-  const auto pair = [&] {
-    std::string first = blob.text();
-    return std::pair(std::move(first), blob.text());
-  };
-  blob.list([&] { s.interface.push_back(pair()); });
-  auto terms = std::make_shared<MaterialTerms>();
-  blob.list([&] { terms->terms.push_back(blob.text()); });
-  blob.list([&] { terms->skipped.push_back(pair()); });
-  terms->variants = readVariants(blob);
-  terms->expected_error = expectedError(terms->variants);
-  s.terms = terms;
-  s.preshader = Preshader::read(blob);
-  blob.list([&] { s.parameters.push_back(blob.number<uint32_t>()); });
-  blob.list([&] {
-    std::string name = blob.text();
-    s.textures.emplace_back(std::move(name), blob.number<uint32_t>());
-  });
-  blob.list([&] {
-    const auto lo = blob.number<double>();
-    const auto hi = blob.number<double>();
-    s.limits.push_back({{lo, hi}, blob.number<double>()});
-  });
-  s.graph = blob.text();
-  s.lights.any = blob.number<bool>();
-  blob.list([&] {
-    std::string kind = blob.text();
-    s.lights.counts[kind] = blob.number<uint32_t>();
-  });
+  blob(s);
   renderTerms(s);
   return blob.complete() && (s.shader.empty() || isShaderId(s.shader));
 }

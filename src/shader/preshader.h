@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "cache/blob.h"
 #include "ir/module.h"
 
 namespace lacquer {
@@ -32,9 +31,6 @@ public:
   std::vector<ir::Components> evaluate(
       const std::function<const ir::Components&(uint32_t parameter)>& value) const;
 
-  void write(BlobWriter& blob) const;
-  static Preshader read(BlobReader& blob);
-
 private:
   struct Step {
     ir::Op op;
@@ -43,6 +39,21 @@ private:
     uint32_t payload;  ///< Constant: into constants_; Input: the parameter; Swizzle: as in the DAG
     std::array<uint32_t, 4> args;
   };
+
+  template <class Archive>
+  friend void fields(Archive& archive, Step& s) {
+    archive(s.op, s.type, s.count, s.payload, s.args);
+  }
+  template <class Archive>
+  friend void fields(Archive& archive, Field& f) {
+    archive(f.name, f.type, f.offset, f.value);
+  }
+  /// For the cache.
+  template <class Archive>
+  friend void fields(Archive& archive, Preshader& p) {
+    archive(p.steps_, p.constants_, p.fields_);
+  }
+
   std::vector<Step> steps_;
   std::vector<ir::Components> constants_;
   std::vector<Field> fields_;
