@@ -1,5 +1,6 @@
 // Values as bytes, for the cache: little more than lengths and memory. The cache's checksum stands before a
-// reader, so what is read is what was written by this version; a reader still never leaves its bytes.
+// reader, but whoever may write to an unkeyed cache makes checksums, too: a reader never leaves its bytes,
+// and what it gives are values of their types.
 #pragma once
 
 #include <cstdint>
@@ -50,11 +51,22 @@ public:
 
   template <class T>
   T number() {
-    T value{};
-    if (bytes_.size() < sizeof value) return good_ = false, value;
-    std::memcpy(&value, bytes_.data(), sizeof value);
-    bytes_.remove_prefix(sizeof value);
-    return value;
+    static_assert(!std::is_enum_v<T>, "choice() sees that there is such an enumerator");
+    if constexpr (std::is_same_v<T, bool>) {
+      const auto byte = number<uint8_t>();
+      if (byte > 1) refuse();
+      return byte == 1;
+    } else {
+      return raw<T>();
+    }
+  }
+  /// An enumerator up to `last`.
+  template <class T>
+  T choice(T last) {
+    const auto value = raw<std::underlying_type_t<T>>();
+    if (value <= static_cast<std::underlying_type_t<T>>(last)) return static_cast<T>(value);
+    refuse();
+    return {};
   }
   std::string_view view() {
     const auto size = number<uint64_t>();
@@ -73,7 +85,7 @@ public:
     Diagnostics all;
     list([&] {
       Diagnostic d;
-      d.code = text(), d.severity = number<Severity>(), d.place.file = text(),
+      d.code = text(), d.severity = choice(Severity::Error), d.place.file = text(),
       d.place.line = number<uint32_t>();
       d.place.column = number<uint32_t>(), d.place.pointer = text(), d.message = text(), d.help = text();
       d.excerpt = text();
@@ -87,6 +99,15 @@ public:
   bool complete() const { return good_ && bytes_.empty(); }
 
 private:
+  template <class T>
+  T raw() {
+    T value{};
+    if (bytes_.size() < sizeof value) return good_ = false, value;
+    std::memcpy(&value, bytes_.data(), sizeof value);
+    bytes_.remove_prefix(sizeof value);
+    return value;
+  }
+
   std::string_view bytes_;
   bool good_ = true;
 };

@@ -33,7 +33,10 @@ public:
       const std::function<const ir::Components&(uint32_t parameter)>& value) const;
 
   void write(BlobWriter& blob) const;
+  /// Refuses what evaluate() could not take.
   static Preshader read(BlobReader& blob);
+  /// True when it asks for no parameter but the first so many.
+  bool uses(size_t parameters) const;
 
 private:
   struct Step {
@@ -43,6 +46,9 @@ private:
     uint32_t payload;  ///< Constant: into constants_; Input: the parameter; Swizzle: as in the DAG
     std::array<uint32_t, 4> args;
   };
+  bool sound() const;
+  bool sound(const Step& step, size_t number) const;
+
   std::vector<Step> steps_;
   std::vector<ir::Components> constants_;
   std::vector<Field> fields_;

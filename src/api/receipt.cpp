@@ -56,7 +56,7 @@ void writeMessages(const Messages& messages, BlobWriter& blob) {
 void readMessages(BlobReader& blob, Messages& messages) {
   blob.list([&] {
     Message m;
-    m.level = blob.number<Message::Level>(), m.code = blob.text(), m.file = blob.text(),
+    m.level = blob.choice(Message::Level::Error), m.code = blob.text(), m.file = blob.text(),
     m.pointer = blob.text();
     m.line = blob.number<uint32_t>(), m.column = blob.number<uint32_t>();
     m.message = blob.text(), m.help = blob.text(), m.text = blob.text();
