@@ -1,5 +1,6 @@
 // Values as bytes, for the cache: little more than lengths and memory. The cache's checksum stands before a
-// reader, so what is read is what was written by this version; a reader still never leaves its bytes.
+// reader, but whoever may write to an unkeyed cache makes checksums, too: a reader never leaves its bytes,
+// and what it gives are values of their types.
 //
 // What a struct keeps is said once, for both directions: `fields(archive, value)` beside it calls the archive
 // with the members in their order.
@@ -47,6 +48,15 @@ struct Element<T> {
 };
 
 }  // namespace detail
+
+/// The last of an enum's enumerators, which begin at 0: no reader gives one behind it. Said for each enum
+/// that a struct keeps.
+template <class Enum>
+struct LastEnumerator;
+template <>
+struct LastEnumerator<Severity> {
+  static constexpr Severity value = Severity::Error;
+};
 
 class BlobWriter {
 public:
@@ -99,7 +109,18 @@ public:
 private:
   template <class T>
   void read(T& value) {
-    if constexpr (detail::Plain<T>) {
+    if constexpr (std::is_same_v<T, bool>) {
+      uint8_t byte = 0;
+      read(byte);
+      if (byte > 1) refuse();
+      value = byte == 1;
+    } else if constexpr (std::is_enum_v<T>) {
+      std::underlying_type_t<T> number = 0;
+      read(number);
+      const bool known = number <= static_cast<std::underlying_type_t<T>>(LastEnumerator<T>::value);
+      if (!known) refuse();
+      value = known ? static_cast<T>(number) : T{};
+    } else if constexpr (detail::Plain<T>) {
       value = {};
       const std::string_view bytes = take(sizeof value);
       if (bytes.size() == sizeof value) std::memcpy(&value, bytes.data(), sizeof value);

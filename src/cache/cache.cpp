@@ -85,7 +85,11 @@ Cache::Cache(const std::string& folder, uint64_t limit, std::string secret)
     : folder_(folder + "/v1"), limit_(limit), secret_(std::move(secret)), scratch_(folder_) {}
 
 Cache::~Cache() {
-  if (written_ > 0) trim();
+  try {
+    if (written_ > 0) trim();
+  } catch (const std::exception&) {
+    // No memory to list the folder: the next run keeps the limit.
+  }
 }
 
 std::string Cache::pathOf(const Key& key) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 
 namespace lacquer::json {
@@ -37,21 +38,41 @@ JsonText& JsonText::end(char bracket) {
   const Open done = open_.back();
   open_.pop_back();
   if (!done.empty) {
-    const std::string content = out_.substr(done.start);
-    out_.resize(done.start);
+    const std::string_view content = std::string_view(out_).substr(done.start);
     const bool line = content.size() <= kLongestLine && content.find('\n') == std::string::npos;
-    const std::string margin = "\n" + std::string(2 * (depth() + 1), ' ');
-    if (!line) out_ += margin;
-    for (size_t from = 0; from <= content.size();) {
-      const size_t to = std::min(content.find(kMarker, from), content.size());
-      out_.append(content, from, to - from);
-      if (to < content.size()) out_ += line ? ", " : "," + margin;
-      from = to + 1;
-    }
+    const std::string margin = line ? "" : "\n" + std::string(2 * (depth() + 1), ' ');
+    separate(done.start, margin, line ? ", " : "," + margin);
     if (!line) out_.append(margin, 0, margin.size() - 2);
   }
   out_ += bracket;
   return *this;
+}
+
+/// Puts `first` before what stands from `start` on, and `between` in place of each marker there. In place,
+/// from the back: what is printed may be hundreds of megabytes.
+void JsonText::separate(size_t start, std::string_view first, std::string_view between) {
+  size_t from = out_.size();
+  const auto begin = out_.begin() + static_cast<ptrdiff_t>(start);
+  const auto markers = static_cast<size_t>(std::count(begin, out_.end(), kMarker));
+  out_.resize(from + markers * (between.size() - 1) + first.size());
+  char* const text = out_.data();
+  size_t to = out_.size();
+  while (from > start) {
+    const size_t found = std::string_view(text + start, from - start).rfind(kMarker);
+    const size_t run = found == std::string_view::npos ? start : start + found + 1;
+    to -= from - run;
+    std::memmove(text + to, text + run, from - run);
+    from = run;
+    if (run == start) break;
+    to -= between.size();
+    between.copy(text + to, between.size());
+    --from;
+  }
+  first.copy(text + start, first.size());
+}
+
+void JsonText::reserve(size_t items, size_t written) {
+  if (items > written) out_.reserve(out_.size() / written * items / 16 * 17);
 }
 
 void JsonText::quoted(std::string_view text) {

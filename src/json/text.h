@@ -35,6 +35,8 @@ public:
   JsonText& json(const Json& value);
   /// An item that has been written by a JsonText of this depth already.
   JsonText& raw(std::string_view text);
+  /// Room for `items` items in all, of which `written` have been and the rest are about as long.
+  void reserve(size_t items, size_t written);
   size_t depth() const { return depth_ + open_.size(); }
 
   std::string take() { return std::move(out_); }
@@ -43,6 +45,7 @@ private:
   JsonText& begin(char bracket);
   JsonText& end(char bracket);
   void item();
+  void separate(size_t start, std::string_view first, std::string_view between);
   void quoted(std::string_view text);
 
   struct Open {

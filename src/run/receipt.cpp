@@ -16,6 +16,11 @@
 
 namespace lacquer {
 
+template <>
+struct LastEnumerator<Message::Level> {
+  static constexpr Message::Level value = Message::Level::Error;
+};
+
 template <class Archive>
 static void fields(Archive& archive, Message& m) {
   archive(m.level, m.code, m.file, m.pointer, m.line, m.column, m.message, m.help, m.text);

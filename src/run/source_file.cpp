@@ -26,6 +26,11 @@ namespace {
 constexpr size_t kFileDepth = 2;      ///< manifest, "files"
 constexpr size_t kMaterialDepth = 4;  ///< the file, "materials"
 
+/// So many materials' texts are held beside the file's: enough for every core.
+constexpr size_t kMaterialsAtOnce = 4096;
+/// A file's result that takes a larger part of the cache is not kept there: it would push out all the rest.
+constexpr uint64_t kCachePart = 8;
+
 gltf::VertexAttributes everything() {
   gltf::VertexAttributes a;
   a.normal = true;
@@ -311,13 +316,6 @@ FileResult SceneFile::run(const material::Document& document) {
   FileResult result;
   lights_ = lightFacts(setting_.options, lightsOf(document));
   const std::vector<Wanted> all = wanted(document, result);
-  std::vector<Done> done(all.size());
-  // Each thread takes some at a time: a material is a few microseconds when its structure is known.
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, all.size(), 16),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t i = range.begin(); i < range.end(); ++i) done[i] = make(all[i]);
-                    });
-  const StageTimer timer(setting_.times, StageOfRun::Manifest);
   result.diagnostics = document.diagnostics;
   result.ok = !hasError(result.diagnostics);
   JsonText json(kFileDepth);
@@ -325,21 +323,32 @@ FileResult SceneFile::run(const material::Document& document) {
   std::set<Key> seen;
   UsesOf uses;
   std::string default_text;
-  for (size_t i = 0; i < all.size(); ++i) {
-    if (all[i].index < 0)
-      default_text = std::move(done[i].text);
-    else
-      json.raw(done[i].text);
-    done[i].text = {};
-    uses.emplace(all[i].index, std::move(done[i].uses));
-    result.diagnostics.insert(result.diagnostics.end(), done[i].diagnostics.begin(),
-                              done[i].diagnostics.end());
-    result.ok &= done[i].report.ok;
-    result.materials.push_back(std::move(done[i].report));
-    for (const Key& key : done[i].structures) {
-      if (seen.insert(key).second) result.structures.push_back(key);
+  std::vector<Done> done;
+  for (size_t first = 0; first < all.size(); first += done.size()) {
+    done.assign(std::min(kMaterialsAtOnce, all.size() - first), {});
+    // Each thread takes some at a time: a material is a few microseconds when its structure is known.
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, done.size(), 16),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                        for (size_t i = range.begin(); i < range.end(); ++i) done[i] = make(all[first + i]);
+                      });
+    const StageTimer timer(setting_.times, StageOfRun::Manifest);
+    for (size_t i = 0; i < done.size(); ++i) {
+      if (all[first + i].index < 0)
+        default_text = std::move(done[i].text);
+      else
+        json.raw(done[i].text);
+      uses.emplace(all[first + i].index, std::move(done[i].uses));
+      result.diagnostics.insert(result.diagnostics.end(), done[i].diagnostics.begin(),
+                                done[i].diagnostics.end());
+      result.ok &= done[i].report.ok;
+      result.materials.push_back(std::move(done[i].report));
+      for (const Key& key : done[i].structures) {
+        if (seen.insert(key).second) result.structures.push_back(key);
+      }
     }
+    if (first == 0) json.reserve(all.size(), done.size());
   }
+  const StageTimer timer(setting_.times, StageOfRun::Manifest);
   json.endArray();
   // It lies one level higher than those in the list.
   if (!default_text.empty()) json.key("default_material").json(Json::parse(default_text));
@@ -427,7 +436,7 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
   }
   if (!document) return unreadable(path, document.error());
   FileResult result = SceneFile(path, only, setting, structures).run(*document);
-  if (keep && result.ok) {
+  if (keep && result.ok && result.text.size() <= setting.options.cache_size / kCachePart) {
     const StageTimer timer(setting.times, StageOfRun::Cache);
     setting.cache->put(key, toBlob(result));
   }

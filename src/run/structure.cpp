@@ -347,7 +347,16 @@ bool fromBlob(std::string_view bytes, Structure& s) {
   BlobReader blob(bytes);
   blob(s);
   renderTerms(s);
-  return blob.complete() && (s.shader.empty() || isShaderId(s.shader));
+  return blob.complete() && (s.shader.empty() || isShaderId(s.shader)) &&
+         s.preshader.uses(s.parameters.size());
+}
+
+bool fits(const Structure& s, const graph::Graph& graph) {
+  const auto below = [](size_t n) { return [n](uint32_t i) { return i < n; }; };
+  return s.limits.size() == graph.parameters.size() &&
+         std::all_of(s.parameters.begin(), s.parameters.end(), below(graph.parameters.size())) &&
+         std::all_of(s.textures.begin(), s.textures.end(),
+                     [&](const auto& texture) { return texture.second < graph.textures.size(); });
 }
 
 }  // namespace lacquer

@@ -65,6 +65,9 @@ Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting);
 std::string toBlob(const Structure& structure);
 /// False when the bytes are no structure.
 bool fromBlob(std::string_view bytes, Structure& structure);
+/// False when it speaks of parameters or textures that the graph does not have: then it is not the graph's,
+/// whatever the cache says.
+bool fits(const Structure& structure, const graph::Graph& graph);
 
 /// The members "parameters", "uniforms" and "textures" of a use of a material, whose textureInfos are looked
 /// up by the graph's pointers.

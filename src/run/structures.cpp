@@ -35,7 +35,8 @@ const Structure& Structures::of(const graph::Graph& graph, const passes::LightFa
   const Key key = structureKey(graph, lights, setting_);
   Entry& entry = entryOf(key);
   const std::lock_guard lock(entry.mutex);
-  if (entry.ready || load(key, entry)) return entry.structure;
+  if ((entry.ready || load(key, entry)) && fits(entry.structure, graph)) return entry.structure;
+  entry.structure = {};
   entry.structure.key = key;
   std::optional<ir::Module> module = makeStructure(graph, lights, setting_, entry.structure);
   entry.ready = true;

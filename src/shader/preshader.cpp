@@ -1,5 +1,6 @@
 #include "shader/preshader.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ir/fold.h"
@@ -8,6 +9,16 @@ namespace lacquer {
 
 using ir::Components;
 using ir::Op;
+
+namespace {
+
+constexpr Op kLastOp = static_cast<Op>(0
+#define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) +1
+#include "ir/ops.def"
+#undef OP
+                                       - 1);
+
+}  // namespace
 
 Preshader::Preshader(const ir::Module& module) {
   std::vector<ir::ValueId> roots;
@@ -55,6 +66,47 @@ std::vector<Components> Preshader::evaluate(
     for (double& x : out.back()) x = std::isfinite(x) && x != 0 ? x : 0;
   }
   return out;
+}
+
+bool Preshader::sound() const {
+  for (size_t s = 0; s < steps_.size(); ++s) {
+    if (!sound(steps_[s], s)) return false;
+  }
+  return std::all_of(fields_.begin(), fields_.end(), [&](const Field& f) { return f.value < steps_.size(); });
+}
+
+/// True when evaluate() can take a step, the one of that number, whatever it comes to.
+bool Preshader::sound(const Step& step, size_t number) const {
+  if (step.op == Op::Constant) return step.payload < constants_.size();
+  if (step.op == Op::Input) return true;  // a parameter: uses() tells which
+  if (step.count == 0 || step.count > step.args.size()) return false;
+  const auto known = [&](uint32_t arg) { return arg < number; };
+  if (!std::all_of(step.args.begin(), step.args.begin() + step.count, known)) return false;
+  const int width = ir::componentCount(step.type);
+  const auto widthOf = [&](size_t k) { return ir::componentCount(steps_[step.args[k]].type); };
+  switch (step.op) {
+    case Op::Construct:
+    case Op::Length: return true;
+    case Op::Dot: return step.count == 2 && widthOf(0) == widthOf(1);
+    case Op::Cross: return step.count == 2 && width == 3 && widthOf(0) == 3 && widthOf(1) == 3;
+    case Op::Normalize: return widthOf(0) == width;
+    case Op::Swizzle:
+      for (int i = 0; i < width; ++i) {
+        if (widthOf(0) > 1 && ir::swizzleComponent(step.payload, i) >= widthOf(0)) return false;
+      }
+      return true;
+    default: break;
+  }
+  // Component by component.
+  for (size_t k = 0; k < step.count; ++k) {
+    if (widthOf(k) != 1 && widthOf(k) != width) return false;
+  }
+  return true;
+}
+
+bool Preshader::uses(size_t parameters) const {
+  return std::all_of(steps_.begin(), steps_.end(),
+                     [&](const Step& step) { return step.op != Op::Input || step.payload < parameters; });
 }
 
 }  // namespace lacquer

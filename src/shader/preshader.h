@@ -6,9 +6,23 @@
 #include <string>
 #include <vector>
 
+#include "cache/blob.h"
 #include "ir/module.h"
 
 namespace lacquer {
+
+template <>
+struct LastEnumerator<ir::Op> {
+  static constexpr ir::Op value = static_cast<ir::Op>(0
+#define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) +1
+#include "ir/ops.def"
+#undef OP
+                                                      - 1);
+};
+template <>
+struct LastEnumerator<ir::Type> {
+  static constexpr ir::Type value = ir::Type::Vec4;
+};
 
 class Preshader {
 public:
@@ -31,6 +45,9 @@ public:
   std::vector<ir::Components> evaluate(
       const std::function<const ir::Components&(uint32_t parameter)>& value) const;
 
+  /// True when it asks for no parameter but the first so many.
+  bool uses(size_t parameters) const;
+
 private:
   struct Step {
     ir::Op op;
@@ -52,7 +69,13 @@ private:
   template <class Archive>
   friend void fields(Archive& archive, Preshader& p) {
     archive(p.steps_, p.constants_, p.fields_);
+    // A reader refuses what evaluate() could not take.
+    if constexpr (requires { archive.refuse(); }) {
+      if (!p.sound()) archive.refuse();
+    }
   }
+  bool sound() const;
+  bool sound(const Step& step, size_t number) const;
 
   std::vector<Step> steps_;
   std::vector<ir::Components> constants_;

@@ -54,6 +54,14 @@ bool isTemporaryName(std::string_view name) {
          made_of(name.substr(kProcess + 1), "0123456789");
 }
 
+/// A stream on an open file, which is closed with it. Null when there is no memory for one: then it is
+/// closed.
+std::FILE* streamOf(int fd, const char* mode) {
+  std::FILE* file = ::fdopen(fd, mode);
+  if (file == nullptr) ::close(fd);
+  return file;
+}
+
 /// Opens a new file for writing, locked as long as it is open. Null with errno when it cannot be made. With
 /// `links` refused the folder itself may be no link.
 std::FILE* createLocked(const std::string& folder, const std::string& name, Links links) {
@@ -72,7 +80,9 @@ std::FILE* createLocked(const std::string& folder, const std::string& name, Link
     errno = EAGAIN;
     return nullptr;
   }
-  return ::fdopen(fd, "wb");
+  std::FILE* file = streamOf(fd, "wb");
+  if (file == nullptr) std::remove((folder + "/" + name).c_str());
+  return file;
 }
 
 /// Opens for reading what is a regular file, and waits for nothing: -1 and the reason for all else.
@@ -121,7 +131,7 @@ std::FILE* openOld(const std::string& path) {
   std::string why;
   struct stat status {};
   const int fd = openRegular(path, Links::Follow, why, status);
-  return fd < 0 ? nullptr : ::fdopen(fd, "rb");
+  return fd < 0 ? nullptr : streamOf(fd, "rb");
 }
 
 bool synced(std::FILE* file) { return ::fsync(::fileno(file)) == 0; }
@@ -180,7 +190,8 @@ Result<std::string> readFile(const std::string& path, uint64_t largest, Links li
   struct stat status {};
   const int fd = openRegular(path, links, why, status);
   if (fd < 0) return fail("file-unreadable", place, std::move(why));
-  std::FILE* file = ::fdopen(fd, "rb");
+  std::FILE* file = streamOf(fd, "rb");
+  if (file == nullptr) return fail("file-unreadable", place, "the file cannot be opened");
   const uint64_t size = static_cast<uint64_t>(status.st_size);
 #else
   std::error_code error;
@@ -201,7 +212,7 @@ Result<std::string> readStandardInput(uint64_t largest) {
   const Place place{"-", 0, 0, {}};
 #ifdef LACQUER_POSIX
   const int fd = ::dup(STDIN_FILENO);
-  std::FILE* file = fd < 0 ? nullptr : ::fdopen(fd, "rb");
+  std::FILE* file = fd < 0 ? nullptr : streamOf(fd, "rb");
 #else
   std::FILE* file = stdin;
 #endif
@@ -270,8 +281,7 @@ ReplacingFile::~ReplacingFile() {
   if (old_ != nullptr) std::fclose(old_);
   if (fresh_ == nullptr) return;
   std::fclose(fresh_);
-  std::error_code error;
-  fs::remove(temporary_, error);
+  std::remove(temporary_.c_str());  // not by a path: this may be where memory has run out
 }
 
 void ReplacingFile::create() {

@@ -1,0 +1,281 @@
+// Every allocation, every call for a file and every start of a thread fails once, in turn, over a run that
+// renews an output folder; and the program is killed at each of these places. Afterwards every output is the
+// old file or the new one, whole, and the next run delivers what a run without a fault does.
+//
+// A step of the suite tries some of the places, evenly spread. LACQUER_FAULTS_ALL=1 tries all of them; =K
+// every Kth.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "build/processes.h"
+
+namespace lacquer::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/// Two materials whose shaders differ, and that differ from the file before.
+std::string materials(const char* before_or_after) {
+  return fmt::format(R"({{"asset": {{"version": "2.0"}}, "materials": [
+    {{"name": "{0}", "emissiveFactor": [0.5, 0, 0]}},
+    {{"name": "two", "alphaMode": "MASK"{1}}}]}})",
+                     before_or_after,
+                     std::string_view(before_or_after) == "after" ? R"(, "doubleSided": true)" : "");
+}
+
+/// A run with or without a cache and with one thread or several, and what it starts from.
+struct Variety {
+  bool cache = false;
+  int jobs = 1;
+};
+
+class Faults : public testing::Test {
+protected:
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  void SetUp() override { GTEST_SKIP() << "a sanitizer's allocator cannot be stood before"; }
+#else
+  void SetUp() override {
+    root_ = freshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directory(root_ / "start");
+    writeText(root_ / "start/a.gltf", materials("before"));
+  }
+  void TearDown() override { fs::remove_all(root_.parent_path()); }
+#endif
+
+  /// `start` and `wanted` for a variety: what a run begins with, and what it is to end with.
+  void prepare(const Variety& variety) {
+    variety_ = variety;
+    ASSERT_EQ(runProgram(command(), root_ / "start"), 0);
+    writeText(root_ / "start/a.gltf", materials("after"));
+    copy("wanted");
+    ASSERT_EQ(runProgram(command(), root_ / "wanted"), 0);
+    old_ = filesBelow(root_ / "start/out");
+    new_ = filesBelow(root_ / "wanted/out");
+    ASSERT_GT(new_.size(), old_.size());
+  }
+
+  Words command() const {
+    Words words{LACQUER_PROGRAM,
+                "gen",
+                "a.gltf",
+                "-o",
+                "out",
+                "-q",
+                "--no-validate",
+                "--target",
+                "glsl",
+                "--target",
+                "spirv",
+                "--template",
+                "bsdf",
+                "--depfile",
+                "out/deps",
+                "--jobs",
+                std::to_string(variety_.jobs)};
+    if (variety_.cache) words.insert(words.end(), {"--cache", "cache"});
+    return words;
+  }
+
+  void copy(const std::string& name) const {
+    fs::remove_all(root_ / name);
+    fs::copy(root_ / "start", root_ / name, fs::copy_options::recursive);
+  }
+
+  /// The run in the folder `work` with these settings of the library before it; its exit status.
+  int faulty(const Words& settings, std::string* said = nullptr) const {
+    Words words{"env", std::string("LD_PRELOAD=") + LACQUER_FAULTS};
+    words.insert(words.end(), settings.begin(), settings.end());
+    const Words own = command();
+    words.insert(words.end(), own.begin(), own.end());
+    std::string text;
+    return runProgram(words, root_ / "work", said == nullptr ? &text : said);
+  }
+
+  /// How many calls of a kind the run makes.
+  long countOf(const std::string& kind) const {
+    copy("work");
+    EXPECT_EQ(faulty({"LACQUER_FAULT_COUNTS=counts"}), 0);
+    std::ifstream counts(root_ / "work/counts");
+    std::string name;
+    for (long n = 0; counts >> name >> n;) {
+      if (name == kind) return n;
+    }
+    return 0;
+  }
+
+  /// What is wrong with what a run has left; empty when each output is old or new.
+  std::string torn() const {
+    std::string wrong;
+    for (const auto& [name, state] : filesBelow(root_ / "work/out")) {
+      if (name.starts_with(".lacquer-tmp/")) continue;
+      const auto was = old_.find(name);
+      const auto is = new_.find(name);
+      // A manifest may say that the input could not be read. It is whole when its last bracket is there.
+      const bool whole = (was != old_.end() && was->second.bytes == state.bytes) ||
+                         (is != new_.end() && is->second.bytes == state.bytes) ||
+                         (name == "manifest.json" && nlohmann::json::accept(state.bytes));
+      if (!whole) wrong += name + " is neither the old file nor the new one\n";
+    }
+    return wrong;
+  }
+
+  /// One place: the fault, what it left, the next run. `exits`: statuses that the faulty run may have.
+  void at(const std::string& kind, long n, const std::string& action, const std::vector<int>& exits) {
+    const std::string where =
+        fmt::format("{}:{}:{}{}", kind, n, action, variety_.cache ? " with a cache" : "");
+    copy("work");
+    std::string said;
+    const int status = faulty({fmt::format("LACQUER_FAULT={}:{}:{}", kind, n, action),
+                               "LACQUER_FAULT_FOLDER=" + (root_ / "work/out").string()},
+                              &said);
+    EXPECT_TRUE(std::find(exits.begin(), exits.end(), status) != exits.end())
+        << where << ": " << status << "\n"
+        << said;
+    EXPECT_EQ(torn(), "") << where;
+    if (status == 0) {
+      EXPECT_EQ(differences(root_ / "wanted/out", root_ / "work/out"), "") << where;
+    }
+    // Of what failed somebody is told, on the one channel that -q leaves.
+    if (status == 1) {
+      EXPECT_NE(said.find("error"), std::string::npos) << where << ": " << said;
+    }
+    EXPECT_EQ(runProgram(command(), root_ / "work", &said), 0) << where << "\n" << said;
+    EXPECT_EQ(differences(root_ / "wanted/out", root_ / "work/out"), "") << where;
+  }
+
+  /// Some places of a kind, from the first to the last.
+  void sweep(const std::string& kind, const std::string& action, const std::vector<int>& exits, long most) {
+    const long count = countOf(kind);
+    ASSERT_GT(count, 0) << kind;
+    const char* all = std::getenv("LACQUER_FAULTS_ALL");
+    const double step = all != nullptr
+                            ? std::max(1.0, std::atof(all))
+                            : std::max(1.0, static_cast<double>(count) / static_cast<double>(most));
+    size_t tried = 0;
+    for (double n = 1; n <= static_cast<double>(count) && !HasFailure(); n += step, ++tried)
+      at(kind, static_cast<long>(n), action, exits);
+    std::cout << fmt::format("{} {}s, {} of {} places\n", kind, action, tried, count);
+  }
+
+  fs::path root_;
+  Variety variety_;
+  std::map<std::string, FileState> old_, new_;
+};
+
+const std::vector<int> kGoodOrFailed{0, 1};
+const std::vector<int> kKilled{128 + 9};
+
+TEST_F(Faults, allocationsFail) {
+  prepare({});
+  sweep("alloc", "fail", kGoodOrFailed, 80);
+}
+
+TEST_F(Faults, allocationsFailWithACache) {
+  prepare({true});
+  sweep("alloc", "fail", kGoodOrFailed, 80);
+}
+
+TEST_F(Faults, fileCallsFail) {
+  prepare({});
+  sweep("file", "fail", kGoodOrFailed, 100);
+}
+
+TEST_F(Faults, fileCallsFailWithACache) {
+  prepare({true});
+  sweep("file", "fail", kGoodOrFailed, 100);
+}
+
+TEST_F(Faults, threadsDoNotStart) {
+  prepare({false, 3});
+  sweep("thread", "fail", kGoodOrFailed, 10);
+}
+
+TEST_F(Faults, threadsDoNotStartWithACache) {
+  prepare({true, 3});
+  sweep("thread", "fail", kGoodOrFailed, 10);
+}
+
+TEST_F(Faults, killedAtFileCalls) {
+  prepare({});
+  sweep("file", "kill", kKilled, 100);
+}
+
+TEST_F(Faults, killedAtFileCallsWithACache) {
+  prepare({true});
+  sweep("file", "kill", kKilled, 100);
+}
+
+TEST_F(Faults, theDiskIsFull) {
+  prepare({});
+  sweep("space", "fail", kGoodOrFailed, 40);
+}
+
+TEST_F(Faults, theDiskIsFullWithACache) {
+  prepare({true});
+  sweep("space", "fail", kGoodOrFailed, 40);
+}
+
+/// The whole output folder is moved away by somebody else, at some moment: it is made again, or the run
+/// fails.
+TEST_F(Faults, theFolderVanishes) {
+  prepare({});
+  const long count = countOf("file");
+  for (long n = 1; n <= count; n += std::max(1L, count / 40)) {
+    copy("work");
+    std::string said;
+    const int status = faulty({fmt::format("LACQUER_FAULT=file:{}:vanish", n),
+                               "LACQUER_FAULT_FOLDER=" + (root_ / "work/out").string()},
+                              &said);
+    EXPECT_TRUE(status == 0 || status == 1) << n << ": " << status << "\n" << said;
+    EXPECT_EQ(torn(), "") << n;
+    EXPECT_EQ(runProgram(command(), root_ / "work", &said), 0) << n << "\n" << said;
+    for (const auto& [name, state] : new_) {
+      const auto made = filesBelow(root_ / "work/out");
+      // Shaders of the run before that this one does not need went with the folder.
+      if (old_.contains(name) && old_[name].bytes == state.bytes && !made.contains(name)) continue;
+      ASSERT_TRUE(made.contains(name)) << n << ": " << name;
+      EXPECT_EQ(made.at(name).bytes, state.bytes) << n << ": " << name;
+    }
+  }
+}
+
+/// A folder that nobody may write to: one message, exit 1, nothing changed.
+TEST_F(Faults, theDiskIsReadOnly) {
+  prepare({true});
+  copy("work");
+  std::string said;
+  EXPECT_EQ(faulty({"LACQUER_FAULT=space:1:fail"}, &said), 1);
+  EXPECT_NE(said.find("file-unwritable"), std::string::npos) << said;
+  EXPECT_EQ(differences(root_ / "start/out", root_ / "work/out"), "");
+}
+
+/// What gets its name is on the disk before: each rename follows an fsync of what it moves.
+TEST_F(Faults, namesComeAfterTheBytes) {
+  prepare({});
+  copy("work");
+  ASSERT_EQ(faulty({"LACQUER_FAULT_TRACE=" + (root_ / "trace").string()}), 0);
+  std::ifstream trace(root_ / "trace");
+  std::vector<fs::path> synced;
+  size_t renames = 0;
+  for (std::string line; std::getline(trace, line);) {
+    std::istringstream words(line);
+    std::string what, from, to;
+    words >> what >> from >> to;
+    const fs::path path = fs::path(from).is_absolute() ? fs::path(from) : root_ / "work" / from;
+    if (what == "fsync") synced.push_back(path.lexically_normal());
+    if (what != "rename") continue;
+    ++renames;
+    EXPECT_EQ(std::count(synced.begin(), synced.end(), path.lexically_normal()), 1) << line;
+  }
+  EXPECT_GE(renames, 3U);
+}
+
+}  // namespace
+}  // namespace lacquer::test

@@ -1,0 +1,71 @@
+// Inputs that no file need stand behind: images, points, SPIR-V.
+#include <cmath>
+#include <cstring>
+
+#include "api/points.h"
+#include "check/check.h"
+#include "cost/cost.h"
+#include "eval/image.h"
+#include "feeds.h"
+#include "vulkan/passthrough.h"
+#include "vulkan/reflect.h"
+
+namespace lacquer::fuzz {
+
+namespace {
+
+constexpr uint64_t kMostPixels = uint64_t{1} << 20;
+
+bool isUnit(const std::array<double, 3>& a) {
+  return std::abs(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) - 1) < 1e-9;
+}
+
+}  // namespace
+
+std::string feedImage(std::string_view bytes) {
+  Result<eval::Image> image = eval::decodeImage(bytes, kMostPixels, {"fuzz.png", 0, 0, {}});
+  if (!image) return image.error().empty() ? "an image is refused without an error" : "";
+  if (image->size() > kMostPixels) return "an image is larger than it may be";
+  const auto shared = std::make_shared<const eval::Image>(std::move(*image));
+  for (const eval::Wrap wrap : {eval::Wrap::Repeat, eval::Wrap::Clamp, eval::Wrap::Mirror}) {
+    const eval::Sampler sampler = eval::makeSampler(shared, {wrap, wrap, false, true});
+    for (const double at : {0.0, 0.999999, -1e9, 1e300}) {
+      for (const double x : sampler(0, {at, -at, 0}, 0)) {
+        if (!(x >= 0 && x <= 1)) return "a texel is not in [0, 1]";
+      }
+    }
+  }
+  return {};
+}
+
+std::string feedPoints(std::string_view bytes) {
+  const Result<EvalPoints> points = readPoints(bytes, "fuzz.json", {});
+  if (!points) return points.error().empty() ? "points are refused without an error" : "";
+  for (const eval::Point& p : points->points) {
+    if (!isUnit(p.n) || !isUnit(p.v) || !isUnit(p.l)) return "a direction of a point is no unit vector";
+    for (const double x : p.light) {
+      if (!(std::isfinite(x) && x >= 0)) return "a point's light is not finite, or negative";
+    }
+  }
+  return {};
+}
+
+/// What `cost` does with a module before a driver, in a process of its own, is given it.
+std::string feedSpirv(std::string_view bytes) {
+  std::vector<uint32_t> words(bytes.size() / 4);
+  if (!words.empty()) std::memcpy(words.data(), bytes.data(), 4 * words.size());
+  const size_t counted = cost::spirvInstructions(words);
+  if (counted > words.size()) return "more instructions than words";
+  (void)check::checkSlots(words, words.size() % 2 == 0, "fuzz.spv");
+  (void)check::reflectBlocks(words);
+  const Result<vulkan::Interface> vertex = vulkan::reflect(words, vulkan::Stage::Vertex);
+  if (!vertex && vertex.error().empty()) return "a module is refused without an error";
+  const Result<vulkan::Interface> fragment = vulkan::reflect(words, vulkan::Stage::Fragment);
+  if (fragment) (void)vulkan::passthroughVertex(*fragment);
+  // The validator is another's, and takes ten times as long.
+  const bool sound = counted % 8 == 0 && check::validate(words, false, "fuzz.spv").empty();
+  if (sound && !vertex && !fragment) return "a valid module has no stage that is read";
+  return {};
+}
+
+}  // namespace lacquer::fuzz

@@ -1,0 +1,82 @@
+// glTF files and graphs, all the way to SPIR-V, through the public library.
+#include <algorithm>
+
+#include "api/key.h"
+#include "feeds.h"
+
+namespace lacquer::fuzz {
+
+namespace {
+
+/// Materials of a file that are followed: more of them are the same again.
+constexpr size_t kMostMaterials = 3;
+
+}  // namespace
+
+Options optionsOf(std::string_view bytes) {
+  uint64_t random = keyOf(bytes).low;
+  const auto below = [&random](uint64_t n) {
+    const uint64_t rest = random % n;
+    random /= n;
+    return rest;
+  };
+  Options options;
+  options.targets = {Target::Spirv};
+  options.validate = false;
+  options.jobs = 1;
+  static constexpr const char* kTemplates[] = {"forward", "forward", "surface", "bsdf"};
+  options.template_name = kTemplates[below(4)];
+  options.parameters = static_cast<Parameters>(below(3));
+  options.permissive = below(4) == 0;
+  options.decode_srgb = below(4) == 0;
+  options.ibl = below(4) != 0;
+  options.error_budget = below(4) == 0 ? 0.05 : 0;
+  if (below(4) == 0) options.profile = "openpbr";
+  return options;
+}
+
+std::string errorsOf(const Messages& messages) {
+  std::string text;
+  for (const Message& message : messages) {
+    if (message.level == Message::Level::Error) text += message.text + "\n";
+  }
+  return text;
+}
+
+std::string feedGltf(std::string_view bytes) {
+  const Options options = optionsOf(bytes);
+  Messages said;
+  const Scene scene = Scene::fromMemory(std::string(bytes), "fuzz.gltf", options, said);
+  if (!scene && !hasError(said)) return "a file is refused without an error";
+  for (size_t i = 0; i < std::min(scene.materialCount(), kMostMaterials); ++i) {
+    const std::vector<Attributes> uses = scene.uses(i);
+    Messages messages;
+    Graph graph = scene.graph(i, uses.empty() ? kUnusedAttributes : uses[0], options, messages);
+    if (!graph && !hasError(messages)) return "a material is refused without an error";
+    if (!graph) continue;
+    messages.clear();
+    const Shader shader = graph.generate(options, messages);
+    if (!shader) return "a material that is accepted makes no shader:\n" + errorsOf(messages);
+    if (shader.fragmentSpirv().empty()) return "a shader has no code";
+  }
+  return {};
+}
+
+std::string feedGraph(std::string_view bytes) {
+  const Options options = optionsOf(bytes);
+  Messages messages;
+  Graph graph = Graph::fromJson(bytes, "fuzz.json", messages);
+  if (!graph) return hasError(messages) ? "" : "a graph is refused without an error";
+  const std::string json = graph.toJson();
+  messages.clear();
+  const Graph again = Graph::fromJson(json, "again.json", messages);
+  if (!again || again.toJson() != json) return "a graph does not read back:\n" + errorsOf(messages) + json;
+  messages.clear();
+  if (!graph.check(messages, options)) return hasError(messages) ? "" : "a graph fails without an error";
+  messages.clear();
+  const Shader shader = graph.generate(options, messages);
+  if (!shader && !hasError(messages)) return "a graph makes no shader, and no error";
+  return {};
+}
+
+}  // namespace lacquer::fuzz

@@ -1,0 +1,38 @@
+#include "targets.h"
+
+#include <algorithm>
+
+#include "feeds.h"
+
+namespace lacquer::fuzz {
+
+namespace {
+
+constexpr Target kTargets[] = {
+    {"gltf", "gltf", Form::Gltf, feedGltf},
+    {"gltf-oracle", "gltf", Form::Gltf, judgeGltf},
+    {"glb", "glb", Form::Glb, feedGltf},
+    {"graph", "graph", Form::Graph, feedGraph},
+    {"graph-oracle", "graph", Form::Graph, judgeGraph},
+    {"node", "node", Form::Bytes, feedNode},
+    {"declaration", "declaration", Form::Bytes, feedDeclaration},
+    {"image", "image", Form::Bytes, feedImage},
+    {"texture", "texture", Form::Json, feedTexture},
+    {"points", "points", Form::Json, feedPoints},
+    {"case", "case", Form::Json, feedCase},
+    {"manifest", "manifest", Form::Json, feedManifest},
+    {"cache", "cache", Form::Bytes, feedEntry},
+    {"spirv", "spirv", Form::Bytes, feedSpirv},
+};
+
+}  // namespace
+
+std::span<const Target> targets() { return kTargets; }
+
+const Target* findTarget(std::string_view name) {
+  const auto* const found =
+      std::find_if(std::begin(kTargets), std::end(kTargets), [&](const Target& t) { return t.name == name; });
+  return found == std::end(kTargets) ? nullptr : found;
+}
+
+}  // namespace lacquer::fuzz
