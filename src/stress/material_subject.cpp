@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/intervals.h"
 #include "eval/dfg.h"
 #include "eval/points.h"
-#include "passes/intervals.h"
 #include "stress/subject.h"
 
 namespace lacquer::stress {
@@ -69,7 +69,7 @@ private:
 
   /// The environment's factors are what they are.
   static bool isTable(const ir::TextureSlot& slot) {
-    return slot.environment && slot.type == ir::Type::Texture2D;
+    return slot.environment && slot.type == ir::Type::Texture2D && !slot.texel;
   }
 
   void makeSpace() {

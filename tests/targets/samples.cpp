@@ -5,7 +5,7 @@
 
 #include <cassert>
 
-#include "passes/legalize.h"
+#include "targets/legalize.h"
 
 namespace lacquer::targets {
 
@@ -224,11 +224,8 @@ ir::Module everyOpSample() {
 }
 
 std::string print(ir::Module module, Stage stage, TargetId target, std::string_view head) {
-  if (target == TargetId::Hlsl)
-    passes::legalizeHlsl(module);
-  else
-    passes::legalizeGlsl(module);
-  return printText(module, passes::schedule(module, stage), target, head);
+  targets::legalize(module);
+  return printText(module, schedule::schedule(module, stage), target, head);
 }
 
 namespace {
