@@ -57,7 +57,8 @@ struct Alphas {
 Alphas alphasOf(double roughness, const StackAnisotropy& a) {
   const double alpha = std::max(square(roughness), kLeastAlpha);
   if (!a.openpbr) return {alpha * (1 - square(a.strength)) + square(a.strength), alpha};
-  const double along = alpha * std::sqrt(2 / (1 + square(1 - a.strength)));
+  // A rough surface's would pass 1, where the lobe is flat already.
+  const double along = std::min(alpha * std::sqrt(2 / (1 + square(1 - a.strength))), 1.0);
   return {along, std::max(along * (1 - a.strength), kLeastAlpha)};
 }
 
@@ -277,28 +278,74 @@ Vec3 stackDirect(const Stack& stack, const Sample& sample, const StackReadings& 
   return color * sample.light;
 }
 
-Vec3 stackWhiteRoom(const Stack& stack, double cosine, const SplitSums& sums, const StackReadings& readings) {
-  const SplitSum split = sums(cosine, stack.roughness);
-  const double lobe = split.scale + split.bias;
-  const double lost = 1 - lobe;
-  // One bounce, and all of them: Fdez-Agüera's series.
-  const auto bounces = [&](const Vec3& f0, double f90, const Vec3& film) {
+namespace {
+
+/// What the interface reflects of light from all around, and the part that the dielectric's body gets. Beside
+/// the split sum's one bounce these are all of them, Fdez-Aguera's series.
+class Surroundings {
+public:
+  Surroundings(const Stack& m, double cosine, const SplitSum& split, const StackReadings& readings)
+      : m_(m), cosine_(cosine), split_(split), readings_(readings), lost_(1 - split.scale - split.bias) {}
+
+  Interface run() const {
+    Interface i;
+    if (m_.edge_color) {
+      const Interface at_view = edgeColored(m_, cosine_, cosine_);
+      const double brighter = std::max(most(m_.specular_color), 1.0);
+      const Vec3 uncolored = schlickBounces(grey(f0Of(m_.ior)), 1) * (m_.specular * brighter);
+      i.dielectric = atMost(uncolored * m_.specular_color * (1 / brighter), 1);
+      i.body = grey(std::max(1 - uncolored[0], 0.0));
+      i.metal = bounces(at_view.metal);
+    } else {
+      i.dielectric = schlickBounces(filmBase(m_), m_.specular);
+      i.body = grey(1 - most(i.dielectric));
+      i.metal = schlickBounces(m_.base_color, 1);
+    }
+    if (m_.film > 0) lay(i);
+    if (readings_.body_by_channel) i.body = grey(1) - i.dielectric;
+    return i;
+  }
+
+private:
+  /// F0 and F90 by the split sum; their mean over the hemisphere for what bounces on.
+  Vec3 schlickBounces(const Vec3& f0, double f90) const {
     Vec3 all{};
     for (size_t c = 0; c < 3; ++c) {
-      const double one =
-          (f0[c] * split.scale + f90 * split.bias) * (1 - stack.film) + film[c] * lobe * stack.film;
-      const double mean = f0[c] + (f90 - f0[c]) / 21;
-      all[c] = one / (1 - mean * lost);
+      const double once = f0[c] * split_.scale + f90 * split_.bias;
+      all[c] = once / (1 - (f0[c] + (f90 - f0[c]) / 21) * lost_);
     }
     return all;
-  };
-  const Vec3 f0 = filmBase(stack);
-  const auto film_on = [&](const Vec3& base) {
-    return stack.film == 0 ? Vec3{}
-                           : filmFresnel(cosine, base, stack.film_ior, stack.film_thickness, readings.film);
-  };
-  const Vec3 dielectric = bounces(f0, stack.specular, film_on(f0));
-  const Vec3 metal = bounces(stack.base_color, 1, film_on(stack.base_color));
+  }
+
+  /// A reflectance that is that of the view's angle for all of the lobe.
+  Vec3 bounces(const Vec3& reflectance) const {
+    Vec3 all{};
+    for (size_t c = 0; c < 3; ++c) all[c] = reflectance[c] * (1 - lost_) / (1 - reflectance[c] * lost_);
+    return all;
+  }
+
+  void lay(Interface& i) const {
+    const auto film = [&](const Vec3& base) {
+      return bounces(filmFresnel(cosine_, base, m_.film_ior, m_.film_thickness, readings_.film));
+    };
+    const Vec3 on_dielectric = film(filmBase(m_));
+    i.dielectric = mix(i.dielectric, on_dielectric, m_.film);
+    i.metal = mix(i.metal, film(m_.base_color), m_.film);
+    i.body =
+        m_.edge_color ? mix(i.body, grey(1 - most(on_dielectric)), m_.film) : grey(1 - most(i.dielectric));
+  }
+
+  const Stack& m_;
+  double cosine_;
+  SplitSum split_;
+  const StackReadings& readings_;
+  double lost_;
+};
+
+}  // namespace
+
+Vec3 stackWhiteRoom(const Stack& stack, double cosine, const SplitSums& sums, const StackReadings& readings) {
+  const Interface i = Surroundings(stack, cosine, sums(cosine, stack.roughness), readings).run();
   const auto albedo = [&](const Vec3& color) {
     if (stack.diffuse_roughness == 0 || readings.lambert) return color;
     Vec3 result{};
@@ -307,15 +354,15 @@ Vec3 stackWhiteRoom(const Stack& stack, double cosine, const SplitSums& sums, co
   };
   const Body b = bodyOf(stack, readings);
   const double t = b.transmitted;
-  const Vec3 through = albedo(stack.diffuse_transmission_color) * ((1 - t) * b.through_diffuse) +
-                       stack.base_color * (t * (1 - b.scattered)) +
-                       stack.multiscatter_color * (t * b.scattered * (1 + stack.scatter_anisotropy) / 2);
+  const Vec3 scattered = stack.multiscatter_color * (t * b.scattered / 2);
+  const Vec3 leaf = albedo(stack.diffuse_transmission_color) * ((1 - t) * b.through_diffuse);
+  const Vec3 frame = stack.base_color * (t * (1 - b.scattered));
+  const Vec3 through = leaf + frame + scattered * (1 + stack.scatter_anisotropy);
   const Vec3 back = albedo(stack.base_color) * ((1 - t) * (1 - b.through_diffuse)) +
-                    stack.multiscatter_color * (t * b.scattered * (1 - stack.scatter_anisotropy) / 2);
-  const Vec3 left = readings.body_by_channel ? grey(1) - dielectric : grey(1 - most(dielectric));
-  const Vec3 twice = readings.fresnel_of_frame_twice ? left : grey(1);
-  Vec3 color =
-      mix(dielectric + left * (back + through * twice * attenuationOf(stack)), metal, stack.metallic);
+                    scattered * (1 - stack.scatter_anisotropy);
+  const Vec3 twice = readings.fresnel_of_frame_twice ? i.body : grey(1);
+  const Vec3 body = i.body * (back + through * twice * attenuationOf(stack));
+  const Vec3 color = mix(i.dielectric + body, i.metal, stack.metallic);
   const double reflected_by_coat = coatFresnel(stack.coat, cosine);
   const SplitSum coat = sums(cosine, stack.coat.roughness);
   return color * (1 - reflected_by_coat) + grey(reflected_by_coat * (coat.scale + coat.bias));
