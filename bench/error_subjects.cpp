@@ -233,7 +233,7 @@ template std::vector<double> valuesOf<double>(const ir::Module&, const eval::Col
 namespace {
 
 Body written(const ir::Module& module) {
-  const passes::Program program = passes::schedule(module, ir::Stage::Fragment);
+  const schedule::Program program = schedule::schedule(module, ir::Stage::Fragment);
   Body body{targets::writeSpirv(module, program, {}), {}};
   for (const uint32_t index : program.varyings) body.inputs.push_back(module.varyings[index].name);
   return body;

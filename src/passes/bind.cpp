@@ -3,7 +3,7 @@
 #include <map>
 
 #include "ir/module.h"
-#include "passes/names.h"
+#include "ir/names.h"
 #include "passes/passes.h"
 
 namespace lacquer::passes {
@@ -64,7 +64,7 @@ Diagnostics checkPlaces(const ir::Module& module) {
   // A template's names are those of the contract: they cannot be changed where a target keeps them for
   // itself.
   const auto spell = [&](std::string_view name) {
-    if (Names().pick(name) == name) return;
+    if (ir::Names().pick(name) == name) return;
     wrong.push_back(
         {"reserved-name",
          Severity::Error,

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/intervals.h"
 #include "eval/dfg.h"
 #include "eval/points.h"
-#include "passes/intervals.h"
 #include "stress/subject.h"
 
 namespace lacquer::stress {

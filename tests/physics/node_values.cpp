@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "api/node_proofs.h"
+#include "tools/node_proofs.h"
 #include "eval/evaluate.h"
 #include "support/materials.h"
 
