@@ -18,6 +18,17 @@ constexpr Known kKnown[] = {
      "a texel of no length has no direction; the tangent stands for it"},
     {"flat_normal", "dot < 0", "a triangle seen from its edge turns its other side"},
     {"tangent_frame_from_derivatives", "mul < mul", "texture coordinates without an area have no tangent"},
+    {"boundary", "around <= body", "a boundary of equal indices bends nothing, which no lobe can say"},
+    {"total_reflection", "cosine <= 0",
+     "total reflection is whole, however weak the material says that it reflects"},
+    {"refracting_facets", "0 < NdotHalf", "a facet that is seen from behind bends nothing"},
+    {"refracting_facets", "0 < dot", "a surface that is seen from behind bends nothing"},
+    {"facets_pdf", "0 < dot", "no mirror of the facets sends light from below the horizon"},
+    {"_by_facet", "0 < dot", "a direction on the wrong side of the surface is lost"},
+    {"_by_facet", "dot < 0", "a direction on the wrong side of the surface is lost"},
+    {"_by_facet", "0 < cosine", "a direction on the wrong side of the facet is lost"},
+    {"_by_facet", "0 < bent2", "nothing leaves beyond the critical angle"},
+    {"layer_choice", "choice < share", "a choice"},
     {"film", " < 0", "a film's wave turns over where the base becomes the thinner medium"},
 };
 
