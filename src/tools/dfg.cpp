@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "eval/sheen.h"
 #include "shader/messages.h"
 #include "shader/options.h"
 #include "support/file.h"
@@ -40,30 +41,43 @@ std::string ddsHeader(uint32_t size) {
   return bytes;
 }
 
-}  // namespace
-
-std::vector<float> environmentDfg(uint32_t size, Messages& messages) {
+bool hasSize(uint32_t size, Messages& messages) {
   constexpr uint32_t kLeastSize = 2;
   constexpr uint32_t kMostSize = 1024;
-  if (const Result<void> good = inRange("the table's size", size, kLeastSize, kMostSize, "texels"); !good) {
-    report(good.error(), {}, messages);
-    return {};
-  }
-  return eval::environmentDfgTable(size);
+  const Result<void> good = inRange("the table's size", size, kLeastSize, kMostSize, "texels");
+  if (!good) report(good.error(), {}, messages);
+  return good.has_value();
 }
 
-bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messages) {
+bool write(const std::string& path, uint32_t size, std::vector<float> (*make)(uint32_t), Messages& messages) {
   if (const Result<void> named = hasPath("the table's file", path); !named) {
     report(named.error(), {}, messages);
     return false;
   }
-  const std::vector<float> table = environmentDfg(size, messages);
-  if (table.empty()) return false;
+  if (!hasSize(size, messages)) return false;
   std::string bytes = ddsHeader(size);
-  for (const float x : table) append(bytes, static_cast<uint32_t>(std::lround(x * 65535.0F)), 2);
+  for (const float x : make(size)) append(bytes, static_cast<uint32_t>(std::lround(x * 65535.0F)), 2);
   const Result<bool> written = writeFile(path, bytes);
   if (!written) report(written.error(), {}, messages);
   return written.has_value();
+}
+
+}  // namespace
+
+std::vector<float> environmentDfg(uint32_t size, Messages& messages) {
+  return hasSize(size, messages) ? eval::environmentDfgTable(size) : std::vector<float>();
+}
+
+bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messages) {
+  return write(path, size, eval::environmentDfgTable, messages);
+}
+
+std::vector<float> environmentSheen(uint32_t size, Messages& messages) {
+  return hasSize(size, messages) ? eval::environmentSheenTable(size) : std::vector<float>();
+}
+
+bool writeEnvironmentSheen(const std::string& path, uint32_t size, Messages& messages) {
+  return write(path, size, eval::environmentSheenTable, messages);
 }
 
 }  // namespace lacquer

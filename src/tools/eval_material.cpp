@@ -229,16 +229,14 @@ Result<void> EvalMaterial::checkTexels(const material::Schema& schema) const {
   return {};
 }
 
-/// A texture of the template's: a constant that is given, the table of factors, or a depth map in which
+/// A texture of the template's: a constant that is given, a table of factors, or a depth map in which
 /// nothing stands.
 Result<BoundTexture> EvalMaterial::environmentOf(const ir::TextureSlot& slot) const {
   for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
     if (names(it->slot, slot)) return BoundTexture{it->value, {}, {}};
   }
-  if (slot.name == "environment_dfg" && slot.type == ir::Type::Texture2D) {
-    return BoundTexture{
-        {}, eval::environmentDfgImage(), {eval::Wrap::Clamp, eval::Wrap::Clamp, false, false}};
-  }
+  if (const auto table = eval::environmentTable(slot.name); table && slot.type == ir::Type::Texture2D)
+    return BoundTexture{{}, table, {eval::Wrap::Clamp, eval::Wrap::Clamp, false, false}};
   if (slot.texel) return BoundTexture{*slot.texel, {}, {}};
   if (slot.type == ir::Type::Texture2DShadow) return BoundTexture{std::array<double, 4>{1, 0, 0, 0}, {}, {}};
   return fail("image-missing", {},

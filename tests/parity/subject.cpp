@@ -64,7 +64,7 @@ void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
     }
     for (size_t i = 0; i < subject.points; ++i) texels.push_back(few[i / 16 % few.size()]);
   } else if (slot.environment && !slot.texel) {
-    const eval::Image& table = *eval::environmentDfgImage();
+    const eval::Image& table = *eval::environmentTable(slot.name);
     texture.width = static_cast<uint32_t>(table.width);
     texture.height = static_cast<uint32_t>(table.height);
     texture.s = texture.t = vulkan::Wrap::Clamp;
