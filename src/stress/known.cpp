@@ -19,6 +19,8 @@ constexpr Known kKnown[] = {
     {"flat_normal", "dot < 0", "a triangle seen from its edge turns its other side"},
     {"tangent_frame_from_derivatives", "mul < mul", "texture coordinates without an area have no tangent"},
     {"boundary", "around <= body", "a boundary of equal indices bends nothing, which no lobe can say"},
+    {"total_reflection", "ratio < 1", "a boundary of equal indices bends nothing, which no lobe can say"},
+    {"refracting_facets", "1 < ratio", "a boundary of equal indices bends nothing, which no lobe can say"},
     {"total_reflection", "cosine <= 0",
      "total reflection is whole, however weak the material says that it reflects"},
     {"refracting_facets", "0 < NdotHalf", "a facet that is seen from behind bends nothing"},
