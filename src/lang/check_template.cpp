@@ -56,10 +56,7 @@ class Places {
 public:
   void take(TemplateDecl& decl) {
     for (BlockDecl& block : decl.blocks) {
-      if (block.extension) continue;
-      const bool object = block.role == BlockRole::Object;
-      block.binding = {object ? 2U : 0U, object ? object_++ : frame_++, buffer_++};
-      if (buffer_ == ir::kMaterialBinding.flat) ++buffer_;
+      if (!block.extension && !block.optional) number(block);
     }
     for (EnvironmentDecl& environment : decl.environments) {
       if (!environment.optional) environment.binding = {0, frame_++, unit_++};
@@ -68,6 +65,9 @@ public:
   /// What is optional lies behind all else in set 0, so that no number depends on it; its unit is bind's to
   /// give.
   void takeOptional(TemplateDecl& decl) {
+    for (BlockDecl& block : decl.blocks) {
+      if (block.optional) number(block);
+    }
     for (EnvironmentDecl& environment : decl.environments) {
       if (environment.optional) environment.binding = {0, frame_++, 0};
     }
@@ -76,6 +76,12 @@ public:
   uint32_t materialTextures() const { return std::max(unit_, ir::kLeastMaterialTexture); }
 
 private:
+  void number(BlockDecl& block) {
+    const bool object = block.role == BlockRole::Object;
+    block.binding = {object ? 2U : 0U, object ? object_++ : frame_++, buffer_++};
+    if (buffer_ == ir::kMaterialBinding.flat) ++buffer_;
+  }
+
   uint32_t frame_ = 0, object_ = 0, buffer_ = 0, unit_ = 0;
 };
 

@@ -345,14 +345,14 @@ bool Parser::templateItem(TemplateDecl& decl) {
     decl.attributes.push_back(item);
     return true;
   }
-  if (is("optional") && (token(1).is("environment") || token(1).is("output"))) {
+  if (is("optional") && (token(1).is("block") || token(1).is("environment") || token(1).is("output"))) {
+    const std::string_view what = token(1).text;
     ++at_;
-    const bool environment = is("environment");
     if (!templateItem(decl)) return false;
-    if (environment)
-      decl.environments.back().optional = true;
-    else
-      decl.outputs.back().optional = true;
+    bool& optional = what == "block"         ? decl.blocks.back().optional
+                     : what == "environment" ? decl.environments.back().optional
+                                             : decl.outputs.back().optional;
+    optional = true;
     return true;
   }
   if (accept("environment")) {
@@ -371,7 +371,7 @@ bool Parser::templateItem(TemplateDecl& decl) {
   return syntax(
       "expected a part of a template",
       "its parts are default, block, extend block, light kind, attribute, environment, given, port, "
-      "output, optional environment, optional output and replace output");
+      "output, optional block, optional environment, optional output and replace output");
 }
 
 bool Parser::block(TemplateDecl& decl) {
