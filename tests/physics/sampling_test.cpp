@@ -138,8 +138,6 @@ const std::vector<Row>& rows() {
       {"dense body, blue", pbr(0, 0.8, kDense), false, 1, 2},
       {"dense body from inside, red", pbr(0, 0.8, kDense), true, 1.33, 0},
       {"air in glass", pbr(0, 0.8, kBody + R"(, "KHR_materials_ior": {"ior": 1})"), false, 1.5},
-      {"body of the surroundings' index", pbr(0, 1, kBody + R"(, "KHR_materials_ior": {"ior": 1.33})"), true,
-       1.33},
       {"bent normals",
        pbr(0.3, 0.7, kCoat.substr(0, kCoat.size() - 1) + R"(, "coatNormalTexture": {"index": 0}})") +
            R"(, "normalTexture": {"index": 1})",
