@@ -41,34 +41,8 @@ bool loadModel(const Json& json, tinygltf::Model& model, const std::string& file
   }
   Report(file, diagnostics)
       .error("tinygltf", Path(), "the scene cannot be read: " + printable(error, 400),
-             "materials are read all the same, but not what uses them");
+             "materials are read all the same, but not the lights");
   return false;
-}
-
-VertexAttributes attributesOf(const tinygltf::Primitive& primitive) {
-  const auto has = [&](const char* name) {
-    return primitive.attributes.find(name) != primitive.attributes.end();
-  };
-  VertexAttributes attributes;
-  attributes.normal = has("NORMAL");
-  // Tangents of a primitive without normals must be ignored (glTF 2.0, section 3.7.2.1).
-  attributes.tangent = attributes.normal && has("TANGENT");
-  attributes.color0 = has("COLOR_0");
-  constexpr const char* kTexCoords[] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
-  for (size_t i = 0; i < attributes.texCoord.size(); ++i) attributes.texCoord[i] = has(kTexCoords[i]);
-  return attributes;
-}
-
-/// The materials of a primitive's KHR_materials_variants mappings.
-std::vector<int> variantsOf(const tinygltf::Primitive& primitive) {
-  std::vector<int> materials;
-  const auto found = primitive.extensions.find("KHR_materials_variants");
-  if (found == primitive.extensions.end() || !found->second.Has("mappings")) return materials;
-  const tinygltf::Value& mappings = found->second.Get("mappings");
-  for (size_t i = 0; i < mappings.ArrayLen(); ++i) {
-    materials.push_back(mappings.Get(i).Get("material").GetNumberAsInt());
-  }
-  return materials;
 }
 
 void sortDistinct(std::vector<VertexAttributes>& sets) {
@@ -76,20 +50,14 @@ void sortDistinct(std::vector<VertexAttributes>& sets) {
   sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
 }
 
-void collectUses(const tinygltf::Model& model, Scene& scene) {
-  for (const tinygltf::Mesh& mesh : model.meshes) {
-    for (const tinygltf::Primitive& primitive : mesh.primitives) {
-      const VertexAttributes attributes = attributesOf(primitive);
-      const auto use = [&](int material) {
-        if (material < 0) {
-          scene.defaultUses.push_back(attributes);
-        } else {
-          scene.uses.at(static_cast<size_t>(material)).push_back(attributes);
-        }
-      };
-      use(primitive.material);
-      for (const int material : variantsOf(primitive)) use(material);
-    }
+void collectUses(Scene& scene) {
+  for (const Primitive& primitive : scene.primitives) {
+    const auto use = [&](int material) {
+      auto& uses = material < 0 ? scene.defaultUses : scene.uses.at(static_cast<size_t>(material));
+      uses.push_back(primitive.attributes);
+    };
+    use(primitive.material);
+    for (const VariantMapping& mapping : primitive.mappings) use(mapping.material);
   }
   for (std::vector<VertexAttributes>& sets : scene.uses) sortDistinct(sets);
   sortDistinct(scene.defaultUses);
@@ -109,19 +77,12 @@ void collectLights(const tinygltf::Model& model, Scene& scene) {
 
 }  // namespace
 
-std::vector<int> readScene(const Json& root, Scene& scene) {
-  CheckedScene checked = checkScene(root, scene.path, scene.diagnostics);
-  scene.images = std::move(checked.images);
+void readScene(const Json& root, Scene& scene) {
+  const Json checked = checkScene(root, scene);
   scene.uses.resize(arraySize(root, "materials"));
-  std::vector<int> texture_images(arraySize(root, "textures"), -1);
+  collectUses(scene);
   tinygltf::Model model;
-  if (!loadModel(checked.json, model, scene.path, scene.diagnostics)) return texture_images;
-  collectUses(model, scene);
-  collectLights(model, scene);
-  for (size_t i = 0; i < texture_images.size() && i < model.textures.size(); ++i) {
-    texture_images[i] = model.textures[i].source;
-  }
-  return texture_images;
+  if (loadModel(checked, model, scene.path, scene.diagnostics)) collectLights(model, scene);
 }
 
 }  // namespace lacquer::gltf

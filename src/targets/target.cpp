@@ -55,6 +55,10 @@ std::string headerText(const ir::Module& module, std::string_view name, std::str
   return printHeader(module, name, head);
 }
 
+std::string blockName(const ir::Block& block) { return block.array == 0 ? block.name : block.name + "s"; }
+
+std::string samplerName(const ir::TextureSlot& slot) { return slot.name + "_sampler"; }
+
 PreshaderText preshaderText(const ir::Module& module) {
   std::vector<std::string> taken;
   for (const uint32_t index : ir::usedParameters(module)) taken.push_back(module.parameters[index].name);

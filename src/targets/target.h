@@ -37,6 +37,11 @@ std::string printText(const ir::Module& module, const schedule::Program& program
 /// shader's id. `head` as above.
 std::string headerText(const ir::Module& module, std::string_view name, std::string_view head);
 
+/// What every text calls a block: an array of `Light` lies in `Lights`.
+std::string blockName(const ir::Block& block);
+/// What HLSL calls a texture's sampler; in the other texts it has none of its own.
+std::string samplerName(const ir::TextureSlot& slot);
+
 /// The preshader in GLSL, for people and for other tools. Its length is linear in the number of operations.
 struct PreshaderText {
   struct Value {

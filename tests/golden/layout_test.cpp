@@ -209,10 +209,8 @@ void expectOneLayout(const Shader& shader, Stage stage, std::set<std::string>& s
     const std::map<std::string, check::Block> blocks = blocksOf(one.words);
     EXPECT_EQ(blocks.size(), count);
     for (const auto& [name, block] : blocks) {
-      const auto described = std::find_if(uniforms.begin(), uniforms.end(), [&, &n = name](const Json& u) {
-        return u["block"] == n ||
-               u["block"].get<std::string>() + "s" == n;  // an array of `Light` lies in `Lights`
-      });
+      const auto described = std::find_if(uniforms.begin(), uniforms.end(),
+                                          [&, &n = name](const Json& u) { return u["block"] == n; });
       ASSERT_NE(described, uniforms.end()) << name << " is not in the manifest";
       EXPECT_EQ(written(layout.leaves(name)), written(manifestLeaves(*described))) << name;
       EXPECT_EQ(block.binding, (*described)[one.flat ? "flat" : "binding"]) << name;
