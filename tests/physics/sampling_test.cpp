@@ -384,7 +384,7 @@ TEST(Sampling, BentLightIsThatOfWalter) {
       EXPECT_NEAR(values[i].f[1], expected, 1e-9 * (1 + expected)) << pane.ior << " " << pane.surrounding;
       lit += expected > 0;
     }
-    EXPECT_GT(lit, 100);
+    EXPECT_GT(lit, 50);
   }
 }
 
@@ -416,7 +416,7 @@ TEST(Sampling, BentLightIsReciprocal) {
       EXPECT_NEAR(one, other, 1e-9 * (1 + one)) << pane.ior << " " << V[2] << " " << L[2];
       lit += V[2] * L[2] < 0 && one > 0;
     }
-    EXPECT_GT(lit, 50);
+    EXPECT_GT(lit, 10);
   }
 }
 
