@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "check/check.h"
+#include "check/reflect.h"
 #include "check/shaders.h"
 
 namespace lacquer::check {

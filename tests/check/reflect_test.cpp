@@ -67,7 +67,7 @@ TEST(Reflect, ResourcesInputsAndOutputs) {
 TEST(Reflect, TheVertexStageOfAFragmentShaderAlone) {
   const Result<Interface> fragment = reflect(compile(kFragment, check::Stage::Fragment), Stage::Fragment);
   ASSERT_TRUE(fragment);
-  const Result<check::Spirv> words = passthroughVertex(*fragment);
+  const Result<check::Spirv> words = vulkan::passthroughVertex(*fragment);
   ASSERT_TRUE(words) << format(words.error()[0]);
   const Result<Interface> vertex = reflect(*words, Stage::Vertex);
   ASSERT_TRUE(vertex);

@@ -7,6 +7,7 @@
 #include <spirv-tools/libspirv.hpp>
 
 #include "check/check.h"
+#include "check/reflect.h"
 #include "output.h"
 #include "support/cases.h"
 

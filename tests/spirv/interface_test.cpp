@@ -7,6 +7,7 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include "check/check.h"
+#include "check/reflect.h"
 #include "targets/legalize.h"
 #include "targets/samples.h"
 
