@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "api/points.h"
+#include "tools/points.h"
 #include "check/check.h"
 #include "cost/cost.h"
 #include "eval/image.h"

@@ -2,8 +2,8 @@
 #include <array>
 
 #include "api/internal.h"
-#include "api/key.h"
-#include "api/node_proofs.h"
+#include "cache/key.h"
+#include "tools/node_proofs.h"
 #include "feeds.h"
 #include "graph/graph.h"
 #include "lower/lower.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "api/internal.h"
-#include "api/key.h"
+#include "cache/key.h"
 #include "feeds.h"
 #include "graph/graph.h"
 #include "lower/lower.h"

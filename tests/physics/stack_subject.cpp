@@ -69,7 +69,7 @@ Vec3 lacquerWhiteRoom(const StackMaterial& material, double cosine, bool multipl
 }
 
 SplitSum splitSum(double cosine, double roughness) {
-  const auto texel = eval::environmentDfgSampler()(0, {cosine, roughness, 0}, 0);
+  const auto texel = eval::environmentSampler("environment_dfg")(0, {cosine, roughness, 0}, 0);
   return {texel[0], texel[1]};
 }
 
