@@ -3,10 +3,10 @@
 
 #include "api/internal.h"
 #include "cache/key.h"
-#include "tools/node_proofs.h"
 #include "feeds.h"
 #include "graph/graph.h"
 #include "lower/lower.h"
+#include "tools/node_proofs.h"
 
 namespace lacquer::fuzz {
 
