@@ -279,7 +279,7 @@ std::string svg(const std::vector<Measured>& measured) {
   return plot(panels, "cycles of inverse throughput", "RMS error");
 }
 
-/// The rows of src/api/variants.def: those that a budget may pick.
+/// The rows of src/shader/variants.def: those that a budget may pick.
 std::string table(const std::vector<Measured>& measured) {
   std::string text =
       "// Made by `./dev bench error` from its measurements (bench/error.json): node, variant, the largest\n"
@@ -332,7 +332,7 @@ int runError() {
   const bool written =
       writeFile(kRoot + "/bench/error.json", toJson(measured, driver, device).dump(2) + "\n") &&
       writeFile(kRoot + "/docs/images/error.svg", svg(measured)) &&
-      writeFile(kRoot + "/src/api/variants.def", table(measured)) &&
+      writeFile(kRoot + "/src/shader/variants.def", table(measured)) &&
       renewPage(kRoot + "/docs/error.md", page);
   if (written) return 0;
   fmt::print(stderr, "bench error: the files could not be renewed\n");

@@ -52,6 +52,8 @@ const std::map<std::string, Subject>& geometric() {
 std::string resultOf(const lang::NodeDecl& node) {
   if (node.name == "environment_brdf_fit") return "0.5 * @.scale + @.bias";  // what an F0 of 0.5 reflects
   if (node.name == "smith_visibility_split") return "@.sum / @.weight";
+  if (node.name == "film_interference") return "@.first + @.second";
+  if (node.name.starts_with("film_fresnel_pair")) return "0.5 * (@.dielectric + @.metal)";
   return node.results[0].type == ir::Type::Vec4 ? "@.rgb" : "@";
 }
 
@@ -231,7 +233,7 @@ template std::vector<double> valuesOf<double>(const ir::Module&, const eval::Col
 namespace {
 
 Body written(const ir::Module& module) {
-  const passes::Program program = passes::schedule(module, ir::Stage::Fragment);
+  const schedule::Program program = schedule::schedule(module, ir::Stage::Fragment);
   Body body{targets::writeSpirv(module, program, {}), {}};
   for (const uint32_t index : program.varyings) body.inputs.push_back(module.varyings[index].name);
   return body;

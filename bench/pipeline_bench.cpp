@@ -16,9 +16,9 @@
 #include "check/check.h"
 #include "lacquer.h"
 #include "lower/lower.h"
-#include "passes/legalize.h"
 #include "passes/pipeline.h"
-#include "passes/program.h"
+#include "schedule/schedule.h"
+#include "targets/legalize.h"
 #include "targets/target.h"
 #include "tests/build/random_gltf.h"
 #include "tests/support/materials.h"
@@ -59,19 +59,16 @@ constexpr ir::Stage kStages[] = {ir::Stage::Vertex, ir::Stage::Fragment};
 size_t toSpirv(const ir::Module& module) {
   size_t words = 0;
   for (const ir::Stage stage : kStages) {
-    words += targets::writeSpirv(module, passes::schedule(module, stage), {}).size();
+    words += targets::writeSpirv(module, schedule::schedule(module, stage), {}).size();
   }
   return words;
 }
 
 std::vector<std::string> toText(ir::Module module, targets::TargetId target) {
-  if (target == targets::TargetId::Hlsl)
-    passes::legalizeHlsl(module);
-  else
-    passes::legalizeGlsl(module);
+  targets::legalize(module);
   std::vector<std::string> texts;
   for (const ir::Stage stage : kStages) {
-    texts.push_back(targets::printText(module, passes::schedule(module, stage), target, "bench"));
+    texts.push_back(targets::printText(module, schedule::schedule(module, stage), target, "bench"));
   }
   return texts;
 }
@@ -113,7 +110,7 @@ void addMaterial(const Subject& s) {
   const std::vector<check::Spirv> compiled = throughGlslang(texts);
   std::vector<check::Spirv> direct;
   for (const ir::Stage stage : kStages)
-    direct.push_back(targets::writeSpirv(placed, passes::schedule(placed, stage), {}));
+    direct.push_back(targets::writeSpirv(placed, schedule::schedule(placed, stage), {}));
   add(s.name + "/graph", [s] { return toGraph(s); });
   add(s.name + "/graph+lower", [s] { return lower::lower(toGraph(s), library(), {}); });
   add(s.name + "/graph+lower+passes", [s] { return toPlaced(s); });

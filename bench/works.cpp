@@ -13,6 +13,12 @@ const std::vector<Work> kWorks = {
     {"W2", "w2.gltf", true, "clearcoat, six textures", {534, 870}, {320, 522}},
     {"W3L", "w3.gltf", false, "all of coat, no IBL", {521, 915}, {312, 549}},
     {"W3", "w3.gltf", true, "all of coat", {870, 1682}, {522, 1009}},
+    {"AL", "a.gltf", false, "specular, IOR, sheen, no IBL", {287, 489}, {178, 262}},
+    {"A", "a.gltf", true, "specular, IOR, sheen", {471, 810}, {290, 440}},
+    {"BL", "b.gltf", false, "transmission, volume, clearcoat, no IBL", {471, 828}, {230, 390}},
+    {"B", "b.gltf", true, "transmission, volume, clearcoat", {616, 1078}, {325, 540}},
+    {"CL", "c.gltf", false, "anisotropy, iridescence, specular, no IBL", {631, 893}, {370, 680}},
+    {"C", "c.gltf", true, "anisotropy, iridescence, specular", {797, 1243}, {520, 940}},
 };
 
 namespace {

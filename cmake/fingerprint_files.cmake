@@ -9,7 +9,7 @@ foreach(file IN LISTS files)
 endforeach()
 string(SHA256 hash "${all}")
 file(WRITE "${OUTPUT}" "// Made by cmake/fingerprint_files.cmake.
-#include \"api/fingerprint.h\"
+#include \"cache/fingerprint.h\"
 
 namespace lacquer {
 

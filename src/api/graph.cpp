@@ -3,16 +3,28 @@
 #include <algorithm>
 
 #include "api/internal.h"
-#include "passes/pipeline.h"
+#include "shader/interface.h"
+#include "shader/language.h"
+#include "shader/messages.h"
+#include "shader/module.h"
+#include "shader/options.h"
+#include "shader/print.h"
 #include "support/text.h"
+#include "tools/prove.h"
 
 namespace lacquer {
 
 namespace {
 
-std::string quoted(std::string_view name) { return "'" + printable(name) + "'"; }
+std::string inQuotes(std::string_view name) { return "'" + printable(name) + "'"; }
 
 }  // namespace
+
+Strings passNames() {
+  std::vector<std::string> names = {"lower"};
+  for (const std::string_view pass : passes::passNames()) names.emplace_back(pass);
+  return names;
+}
 
 /// Reports what an edit was told wrongly; always false.
 bool Graph::Impl::refuse(std::string code, std::string message, std::string help, Messages& messages) const {
@@ -60,7 +72,7 @@ std::vector<Parameter> Graph::parameters() const {
 bool Graph::addNode(const std::string& id, const std::string& type, Messages& messages) {
   if (!filled(impl_.get(), "graph", messages)) return false;
   if (impl_->graph.find(id)) {
-    return impl_->refuse("duplicate-name", fmt::format("there is a node {} already", quoted(id)),
+    return impl_->refuse("duplicate-name", fmt::format("there is a node {} already", inQuotes(id)),
                          "give the new one another id", messages);
   }
   impl_->graph.add(id, type);
@@ -70,7 +82,7 @@ bool Graph::addNode(const std::string& id, const std::string& type, Messages& me
 bool Graph::removeNode(const std::string& id, Messages& messages) {
   if (!filled(impl_.get(), "graph", messages)) return false;
   return impl_->graph.remove(id) ||
-         impl_->refuse("no-such-node", fmt::format("there is no node {}", quoted(id)), {}, messages);
+         impl_->refuse("no-such-node", fmt::format("there is no node {}", inQuotes(id)), {}, messages);
 }
 
 bool Graph::connect(const std::string& node, const std::string& input, std::string_view source,
@@ -78,7 +90,7 @@ bool Graph::connect(const std::string& node, const std::string& input, std::stri
   if (!filled(impl_.get(), "graph", messages)) return false;
   const std::optional<size_t> found = impl_->graph.find(node);
   if (!found)
-    return impl_->refuse("no-such-node", fmt::format("there is no node {}", quoted(node)), {}, messages);
+    return impl_->refuse("no-such-node", fmt::format("there is no node {}", inQuotes(node)), {}, messages);
   std::optional<graph::Source> from = impl_->source(source, messages);
   if (!from) return false;
   impl_->graph.connect(*found, input, std::move(*from));
@@ -107,12 +119,12 @@ bool Graph::setParameter(const std::string& name, const std::vector<double>& val
   const auto count = found ? static_cast<size_t>(ir::componentCount(parameters[*found].type)) : value.size();
   if (value.size() != count || value.empty() || value.size() > 4) {
     return impl_->refuse(
-        "wrong-count", fmt::format("{} is given {} numbers", quoted(name), value.size()),
+        "wrong-count", fmt::format("{} is given {} numbers", inQuotes(name), value.size()),
         found ? fmt::format("it is a {}", ir::typeName(parameters[*found].type)) : "a parameter has 1 to 4",
         messages);
   }
   if (found && parameters[*found].type == ir::Type::Bool && value[0] != 0 && value[0] != 1) {
-    return impl_->refuse("wrong-type", fmt::format("{} is given {}", quoted(name), value[0]),
+    return impl_->refuse("wrong-type", fmt::format("{} is given {}", inQuotes(name), value[0]),
                          "it is a bool, 0 or 1", messages);
   }
   if (!found) parameters.push_back({name, ir::floatType(static_cast<int>(count)), {}, {}, {}});
@@ -124,13 +136,13 @@ bool Graph::setRange(const std::string& parameter, const Range& range, Messages&
   if (!filled(impl_.get(), "graph", messages)) return false;
   const std::optional<size_t> found = impl_->graph.findParameter(parameter);
   if (!found) {
-    return impl_->refuse("no-such-parameter", fmt::format("there is no parameter {}", quoted(parameter)), {},
-                         messages);
+    return impl_->refuse("no-such-parameter", fmt::format("there is no parameter {}", inQuotes(parameter)),
+                         {}, messages);
   }
   if (!(range.low <= range.high) || (range.or_zero && !(range.low > 0))) {
     return impl_->refuse("wrong-range",
                          fmt::format("[{}, {}]{} is no range of {}", range.low, range.high,
-                                     range.or_zero ? " or 0" : "", quoted(parameter)),
+                                     range.or_zero ? " or 0" : "", inQuotes(parameter)),
                          "the lowest number comes first; 0 stands beside a range that begins above it",
                          messages);
   }
@@ -191,7 +203,7 @@ std::string Graph::dump(const Options& options, std::string_view pass, Messages&
   if (!pass.empty() && std::find(known.begin(), known.end(), pass) == known.end()) {
     std::string help = "there are";
     for (const std::string& name : known) help += (&name == known.data() ? " " : ", ") + name;
-    impl_->refuse("unknown-pass", fmt::format("there is no pass {}", quoted(pass)), help, messages);
+    impl_->refuse("unknown-pass", fmt::format("there is no pass {}", inQuotes(pass)), help, messages);
     return {};
   }
   std::string text;
@@ -201,6 +213,19 @@ std::string Graph::dump(const Options& options, std::string_view pass, Messages&
   const Result<ir::Module> module = impl_->module(options, checkReading, keep);
   if (module) return text;
   report(module.error(), impl_->file, messages);
+  return {};
+}
+
+std::string Graph::prove(const Options& options, Messages& messages) {
+  if (!filled(impl_.get(), "graph", messages)) return {};
+  const Result<ir::Module> module = impl_->module(options, checkReading);
+  if (!module) {
+    report(module.error(), impl_->file, messages);
+    return {};
+  }
+  const Result<std::string> proofs = proveGraph(impl_->graph, *module, **libraryFor(options), options);
+  if (proofs) return *proofs;
+  report(proofs.error(), impl_->file, messages);
   return {};
 }
 

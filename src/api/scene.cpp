@@ -1,8 +1,10 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "api/internal.h"
-#include "support/text.h"
+#include "shader/language.h"
+#include "shader/messages.h"
+#include "shader/module.h"
+#include "shader/options.h"
 
 namespace lacquer {
 
@@ -22,48 +24,7 @@ Result<SchemaOf> schemaFor(const Options& options) {
   return SchemaOf{*language, *schema};
 }
 
-constexpr size_t kMostNames = 20;  ///< so many materials are named when the one asked for is not there
-
-/// "'Paint', 'Trim', …"
-std::string listed(const std::vector<material::Material>& materials) {
-  std::vector<std::string> names;
-  for (size_t i = 0; i < materials.size() && i < kMostNames; ++i)
-    names.push_back("'" + printable(materials[i].name) + "'");
-  std::string text = fmt::format("there are {}", fmt::join(names, ", "));
-  if (materials.size() > kMostNames) text += fmt::format(", … ({} in all)", materials.size());
-  return text;
-}
-
 }  // namespace
-
-Result<size_t> findMaterial(const material::Document& document, const std::optional<std::string>& name,
-                            Diagnostics& warnings) {
-  const std::vector<material::Material>& materials = document.materials;
-  const Place place{document.path, 0, 0, {}};
-  std::vector<size_t> found;
-  for (size_t i = 0; i < materials.size(); ++i) {
-    if (!name || materials[i].name == *name) found.push_back(i);
-  }
-  if (materials.empty()) return fail("no-such-material", place, "the file has no materials");
-  if (found.empty()) {
-    return fail("no-such-material", place, fmt::format("no material is named '{}'", printable(*name)),
-                listed(materials));
-  }
-  if (found.size() > 1 && !name) {
-    return fail("no-such-material", place, "the file has several materials, and none is named",
-                listed(materials));
-  }
-  if (found.size() > 1) {
-    warnings.push_back({"duplicate-name",
-                        Severity::Warning,
-                        place,
-                        fmt::format("{} materials are named '{}': this is /materials/{}", found.size(),
-                                    printable(*name), found[0]),
-                        {},
-                        {}});
-  }
-  return found[0];
-}
 
 const Scene::Impl& Scene::impl() const {
   static const Impl kNone;
@@ -111,7 +72,7 @@ const std::string& Scene::materialName(size_t material) const {
 std::optional<size_t> Scene::findMaterial(const std::optional<std::string>& name, Messages& messages) const {
   if (!filled(impl_.get(), "scene", messages)) return std::nullopt;
   Diagnostics warnings;
-  const Result<size_t> found = lacquer::findMaterial(impl().document, name, warnings);
+  const Result<size_t> found = material::findMaterial(impl().document, name, warnings);
   report(warnings, {}, messages);
   if (found) return *found;
   report(found.error(), {}, messages);

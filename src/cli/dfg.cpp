@@ -9,10 +9,11 @@
 namespace lacquer::cli {
 
 CLI::App* addDfg(CLI::App& app, DfgFlags& flags) {
-  CLI::App* verb =
-      app.add_subcommand("dfg", "the texture environment_dfg, for engines that have no such table");
-  verb->add_option("-o,--output", flags.output, "the DDS file to write: 16-bit UNORM, two channels")
-      ->required();
+  CLI::App* verb = app.add_subcommand(
+      "dfg", "the textures environment_dfg and environment_sheen, for engines that have none");
+  verb->add_option("-o,--output", flags.output,
+                   "the DDS file to write environment_dfg to: 16-bit UNORM, two channels");
+  verb->add_option("--sheen", flags.sheen, "the same for environment_sheen, beside the other or alone");
   verb->add_option("--size", flags.size, "texels in a row and in a column")
       ->check(CLI::Range(2, 1024))
       ->capture_default_str();
@@ -21,7 +22,9 @@ CLI::App* addDfg(CLI::App& app, DfgFlags& flags) {
 
 int runDfg(const DfgFlags& flags) {
   Messages messages;
-  const bool written = writeEnvironmentDfg(flags.output, flags.size, messages);
+  const bool split_sum = !flags.output.empty() || flags.sheen.empty();
+  bool written = !split_sum || writeEnvironmentDfg(flags.output, flags.size, messages);
+  if (!flags.sheen.empty()) written = writeEnvironmentSheen(flags.sheen, flags.size, messages) && written;
   print(messages, true);
   return written ? 0 : 1;
 }

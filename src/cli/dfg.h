@@ -7,7 +7,7 @@
 namespace lacquer::cli {
 
 struct DfgFlags {
-  std::string output;
+  std::string output, sheen;
   uint32_t size = 128;
 };
 

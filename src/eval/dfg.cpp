@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "eval/sheen.h"
+
 namespace lacquer::eval {
 
 namespace {
@@ -28,6 +30,15 @@ const std::array<double, kTurns>& turns() {
     return cosines;
   }();
   return kCosines;
+}
+
+std::shared_ptr<const Image> imageOf(const std::vector<float>& table) {
+  Image image;
+  image.width = image.height = kTableSize;
+  Image::Texels<float> texels;
+  for (size_t i = 0; i < table.size(); i += 2) texels.push_back({table[i], table[i + 1], 0, 1});
+  image.texels = std::move(texels);
+  return std::make_shared<const Image>(std::move(image));
 }
 
 }  // namespace
@@ -76,21 +87,20 @@ std::vector<float> environmentDfgTable(uint32_t size) {
   return texels;
 }
 
-std::shared_ptr<const Image> environmentDfgImage() {
-  static const std::shared_ptr<const Image> kImage = [] {
-    Image image;
-    image.width = image.height = kTableSize;
-    const std::vector<float> table = environmentDfgTable(kTableSize);
-    Image::Texels<float> texels;
-    for (size_t i = 0; i < table.size(); i += 2) texels.push_back({table[i], table[i + 1], 0, 1});
-    image.texels = std::move(texels);
-    return std::make_shared<const Image>(std::move(image));
-  }();
-  return kImage;
+std::shared_ptr<const Image> environmentTable(std::string_view name) {
+  if (name == "environment_dfg") {
+    static const std::shared_ptr<const Image> kSplitSum = imageOf(environmentDfgTable(kTableSize));
+    return kSplitSum;
+  }
+  if (name == "environment_sheen") {
+    static const std::shared_ptr<const Image> kSheen = imageOf(environmentSheenTable(kTableSize));
+    return kSheen;
+  }
+  return nullptr;
 }
 
-Sampler environmentDfgSampler() {
-  return makeSampler(environmentDfgImage(), {Wrap::Clamp, Wrap::Clamp, false, false});
+Sampler environmentSampler(std::string_view name) {
+  return makeSampler(environmentTable(name), {Wrap::Clamp, Wrap::Clamp, false, false});
 }
 
 }  // namespace lacquer::eval

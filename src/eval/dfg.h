@@ -1,9 +1,11 @@
-// The split sum's factors, which shaders read from the texture environment_dfg.
+// The split sum's factors, which shaders read from the texture environment_dfg, and the tables that
+// evaluation reads.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "eval/image.h"
@@ -19,9 +21,10 @@ std::array<double, 2> environmentDfg(double NdotV, double roughness);
 /// each.
 std::vector<float> environmentDfgTable(uint32_t size);
 
-/// The table that evaluation reads, as an image; to be looked up bilinearly and clamped to its edge.
-std::shared_ptr<const Image> environmentDfgImage();
-/// Such a lookup.
-Sampler environmentDfgSampler();
+/// The table behind a template's texture, "environment_dfg" or "environment_sheen" (eval/sheen.h): its first
+/// two channels, to be looked up bilinearly and clamped to its edge. Null for every other name.
+std::shared_ptr<const Image> environmentTable(std::string_view name);
+/// Such a lookup, for one of the two names.
+Sampler environmentSampler(std::string_view name);
 
 }  // namespace lacquer::eval

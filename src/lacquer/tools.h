@@ -72,6 +72,12 @@ std::vector<ShaderCost> measureCost(const Strings& paths, bool disassembly, Mess
 std::vector<float> environmentDfg(uint32_t size, Messages& messages);
 /// The same as a DDS file, R16G16_UNORM. False on an error.
 bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messages);
+/// The table behind environment_sheen (docs/bindings.md): `size` rows of the sheen's roughness with `size`
+/// columns of a cosine at texel centres, what the sheen reflects and what its lobe is multiplied by in each.
+/// Otherwise as environmentDfg().
+std::vector<float> environmentSheen(uint32_t size, Messages& messages);
+/// The same as a DDS file, R16G16_UNORM. False on an error.
+bool writeEnvironmentSheen(const std::string& path, uint32_t size, Messages& messages);
 
 /// The node library as JSON: contracts, ranges, sources, variants. Of the options, `node_directories`. Empty
 /// on an error.

@@ -185,6 +185,7 @@ struct BlockFieldDecl : Param {
 struct BlockDecl {
   BlockRole role = BlockRole::Frame;
   bool extension = false;      ///< `extend block`: fields of a block of the base; gone after checking
+  bool optional = false;       ///< its place lies behind all others'
   std::string_view type_name;  ///< "Light"
   std::string_view instance;   ///< "light"
   uint32_t array = 0;          ///< 0: not an array
@@ -234,11 +235,14 @@ std::span<const LightProperty> lightProperties();
 /// A texture that the application gives once per frame.
 struct EnvironmentDecl {
   ir::Type type = ir::Type::TextureCube;
+  bool optional = false;  ///< it takes a unit only where it is used, behind the material's
   std::string_view name;
   uint32_t slot = 0;
   std::string_view prose;
   Span span;
   ir::Binding binding;
+  ExprPtr texel_syntax;
+  std::optional<ir::Components> texel;  ///< what evaluations on the CPU take where nothing else is said
 };
 
 /// What a graph may refer to.
@@ -273,6 +277,7 @@ enum class OutputRole : uint8_t { Position, Color, Discard };
 struct OutputDecl {
   OutputRole role = OutputRole::Color;
   bool replaces = false;  ///< `replace output`: it takes the place of the base's of that name
+  bool optional = false;  ///< it is not there where the graph delivers none of the ports that it reads
   ir::Type type = ir::Type::Vec4;
   std::string_view name;
   std::string_view prose;

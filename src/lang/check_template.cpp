@@ -56,17 +56,32 @@ class Places {
 public:
   void take(TemplateDecl& decl) {
     for (BlockDecl& block : decl.blocks) {
-      if (block.extension) continue;
-      const bool object = block.role == BlockRole::Object;
-      block.binding = {object ? 2U : 0U, object ? object_++ : frame_++, buffer_++};
-      if (buffer_ == ir::kMaterialBinding.flat) ++buffer_;
+      if (!block.extension && !block.optional) number(block);
     }
-    for (EnvironmentDecl& environment : decl.environments) environment.binding = {0, frame_++, unit_++};
+    for (EnvironmentDecl& environment : decl.environments) {
+      if (!environment.optional) environment.binding = {0, frame_++, unit_++};
+    }
+  }
+  /// What is optional lies behind all else in set 0, so that no number depends on it; its unit is bind's to
+  /// give.
+  void takeOptional(TemplateDecl& decl) {
+    for (BlockDecl& block : decl.blocks) {
+      if (block.optional) number(block);
+    }
+    for (EnvironmentDecl& environment : decl.environments) {
+      if (environment.optional) environment.binding = {0, frame_++, 0};
+    }
   }
   /// Behind the environment's units, of which there are never fewer than the first contract had.
   uint32_t materialTextures() const { return std::max(unit_, ir::kLeastMaterialTexture); }
 
 private:
+  void number(BlockDecl& block) {
+    const bool object = block.role == BlockRole::Object;
+    block.binding = {object ? 2U : 0U, object ? object_++ : frame_++, buffer_++};
+    if (buffer_ == ir::kMaterialBinding.flat) ++buffer_;
+  }
+
   uint32_t frame_ = 0, object_ = 0, buffer_ = 0, unit_ = 0;
 };
 
@@ -111,6 +126,8 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
   for (Name& name : names_) name.inherited = true;
   parts(decl, slots);
   places.take(decl);
+  for (TemplateDecl& base : bases) places.takeOptional(base);
+  places.takeOptional(decl);
   decl.material_textures = places.materialTextures();
   for (AttributeDecl& attribute : decl.attributes) attribute.location = locations++;
   // Where the properties of a light stand in every template: behind its own slots.
@@ -203,6 +220,9 @@ void Checker::environment(EnvironmentDecl& decl, uint32_t& slots) {
   if (!ir::isTexture(decl.type)) {
     reporter_.error("wrong-type", decl.span, fmt::format("an environment cannot be {}", aType(decl.type)),
                     "it is a sampler2D, a samplerCube or another sampler");
+  }
+  if (decl.texel_syntax) {
+    if (const Constant texel = constantValue(decl.texel_syntax, Type::Vec4, "the texel")) decl.texel = *texel;
   }
   decl.slot = slots++;
   declare({decl.name, Name::Kind::Environment, decl.type, decl.slot, decl.span, true, false, {}});

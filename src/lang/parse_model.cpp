@@ -117,6 +117,13 @@ bool Parser::property(std::vector<PropertyDecl>& out) {
     item.tested_syntax = expression();
     if (!item.tested_syntax) return false;
   }
+  // A number without a default may be absent, which is no number.
+  if (is(";") && item.kind == PropertyDecl::Kind::Number) {
+    ++at_;
+    item.prose = proseBehind();
+    out.push_back(std::move(item));
+    return true;
+  }
   if (!expect("=", "the property")) return false;
   item.default_syntax = expression();
   if (!item.default_syntax) return false;

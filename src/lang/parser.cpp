@@ -345,19 +345,33 @@ bool Parser::templateItem(TemplateDecl& decl) {
     decl.attributes.push_back(item);
     return true;
   }
+  if (is("optional") && (token(1).is("block") || token(1).is("environment") || token(1).is("output"))) {
+    const std::string_view what = token(1).text;
+    ++at_;
+    if (!templateItem(decl)) return false;
+    bool& optional = what == "block"         ? decl.blocks.back().optional
+                     : what == "environment" ? decl.environments.back().optional
+                                             : decl.outputs.back().optional;
+    optional = true;
+    return true;
+  }
   if (accept("environment")) {
     EnvironmentDecl item;
     if (!type(item.type, "the texture's type") || !name(item.name, item.span, "the texture's name"))
       return false;
+    if (accept("=")) {
+      item.texel_syntax = expression();
+      if (!item.texel_syntax) return false;
+    }
     if (!expect(";", "the texture's name")) return false;
     item.prose = proseBehind();
-    decl.environments.push_back(item);
+    decl.environments.push_back(std::move(item));
     return true;
   }
   return syntax(
       "expected a part of a template",
       "its parts are default, block, extend block, light kind, attribute, environment, given, port, "
-      "output and replace output");
+      "output, optional block, optional environment, optional output and replace output");
 }
 
 bool Parser::block(TemplateDecl& decl) {

@@ -122,6 +122,8 @@ private:
       slot.name = environment.name;
       slot.type = environment.type;
       slot.environment = true;
+      slot.optional = environment.optional;
+      slot.texel = environment.texel;
       slot.binding = environment.binding;
       textures_[environment.name] = slots_[environment.slot] = addTexture(slot);
     }
@@ -278,10 +280,27 @@ private:
     }
   }
 
+  /// Whether the graph delivers a port that an expression of the template reads.
+  bool delivers(const lang::Expr& expr) const {
+    if (expr.kind == lang::Expr::Kind::Slot) {
+      for (const lang::PortDecl& port : template_->ports) {
+        if (port.slot != expr.slot) continue;
+        return std::any_of(graph_.outputs.begin(), graph_.outputs.end(),
+                           [&](const auto& output) { return output.first == port.param.name; });
+      }
+    }
+    return std::any_of(expr.args.begin(), expr.args.end(),
+                       [&](const lang::ExprPtr& arg) { return arg && delivers(*arg); });
+  }
+
   void outputs() {
     uint32_t color = 0;
     dag().setTerm(dag().addTerm({"output", "", std::string(template_->origin.file), template_->origin.line}));
     for (const lang::OutputDecl& decl : template_->outputs) {
+      if (decl.optional && !delivers(*decl.value)) {
+        color += decl.role == lang::OutputRole::Color ? 1 : 0;
+        continue;
+      }
       ir::Output output{ir::OutputKind::Color, ir::Stage::Fragment, std::string(decl.name), 0, ir::kNoValue};
       output.value = inliner_.evaluate(*decl.value, slots_);
       switch (decl.role) {

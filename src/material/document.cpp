@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <exception>
@@ -145,6 +146,18 @@ Result<Document> guarded(const std::string& name, Read read) {
   }
 }
 
+constexpr size_t kMostNames = 20;  ///< so many materials are named when the one asked for is not there
+
+/// "'Paint', 'Trim', …"
+std::string listed(const std::vector<Material>& materials) {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < materials.size() && i < kMostNames; ++i)
+    names.push_back("'" + printable(materials[i].name) + "'");
+  std::string text = fmt::format("there are {}", fmt::join(names, ", "));
+  if (materials.size() > kMostNames) text += fmt::format(", … ({} in all)", materials.size());
+  return text;
+}
+
 }  // namespace
 
 Result<Document> read(const std::string& path, const Schema& schema, const ReadOptions& options) {
@@ -158,6 +171,35 @@ Result<Document> read(const std::string& path, const Schema& schema, const ReadO
 Result<Document> readText(const std::string& bytes, const std::string& name, const Schema& schema,
                           const ReadOptions& options) {
   return guarded(name, [&] { return readDocument(bytes, name, schema, options); });
+}
+
+Result<size_t> findMaterial(const Document& document, const std::optional<std::string>& name,
+                            Diagnostics& warnings) {
+  const std::vector<Material>& materials = document.materials;
+  const Place place{document.path, 0, 0, {}};
+  std::vector<size_t> found;
+  for (size_t i = 0; i < materials.size(); ++i) {
+    if (!name || materials[i].name == *name) found.push_back(i);
+  }
+  if (materials.empty()) return fail("no-such-material", place, "the file has no materials");
+  if (found.empty()) {
+    return fail("no-such-material", place, fmt::format("no material is named '{}'", printable(*name)),
+                listed(materials));
+  }
+  if (found.size() > 1 && !name) {
+    return fail("no-such-material", place, "the file has several materials, and none is named",
+                listed(materials));
+  }
+  if (found.size() > 1) {
+    warnings.push_back({"duplicate-name",
+                        Severity::Warning,
+                        place,
+                        fmt::format("{} materials are named '{}': this is /materials/{}", found.size(),
+                                    printable(*name), found[0]),
+                        {},
+                        {}});
+  }
+  return found[0];
 }
 
 bool Material::has(uint16_t extension) const {

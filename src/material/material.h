@@ -2,6 +2,7 @@
 // what the file leaves out. Numbers are doubles as the JSON has them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,5 +53,10 @@ Result<Document> read(const std::string& path, const Schema& schema, const ReadO
 /// As read(), from memory; `name` stands for the path in diagnostics.
 Result<Document> readText(const std::string& bytes, const std::string& name, const Schema& schema,
                           const ReadOptions& options);
+
+/// The index of the first material of that name or, without a name, of the only one. Errors:
+/// "no-such-material"; the warning "duplicate-name" where several have the name.
+Result<size_t> findMaterial(const Document& document, const std::optional<std::string>& name,
+                            Diagnostics& warnings);
 
 }  // namespace lacquer::material

@@ -45,7 +45,9 @@ void checkRoles(const Schema& schema, Diagnostics& wrong) {
       const Property& other = schema.properties[providers[i]];
       const bool alike = other.decl->type == first.type && other.decl->kind == first.kind &&
                          other.decl->members.size() == first.members.size();
-      const bool meant = other.decl->role != other.decl->name || first.role != first.name;
+      // Without `as` the role is the name itself, in the same place of the text.
+      const auto said = [](const lang::PropertyDecl& decl) { return decl.role.data() != decl.name.data(); };
+      const bool meant = said(*other.decl) || said(first);
       if (alike && meant) continue;
       wrong.push_back(problem(
           schema.extensions[other.extension]->origin, "duplicate-name",

@@ -186,7 +186,8 @@ void Compiler::declare(const std::vector<LineDecl>& lines) {
 
 const LineDecl* Compiler::overriding(std::string_view id) const {
   for (const LineDecl& line : model_.profile->lines) {
-    if (line.kind == LineDecl::Kind::Value && line.id == id) return &line;
+    const bool value = line.kind == LineDecl::Kind::Value || line.kind == LineDecl::Kind::Flag;
+    if (value && line.id == id) return &line;
   }
   return nullptr;
 }
@@ -266,7 +267,8 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
   }
   for (size_t i = 0; i < decl.lines.size(); ++i) {
     const LineDecl& own = decl.lines[i];
-    const LineDecl* other = own.kind == LineDecl::Kind::Value ? overriding(own.id) : nullptr;
+    const bool value = own.kind == LineDecl::Kind::Value || own.kind == LineDecl::Kind::Flag;
+    const LineDecl* other = value ? overriding(own.id) : nullptr;
     if (other != nullptr && !placed_.insert(other).second) continue;
     const std::optional<uint32_t> section = names_.section(own.section);
     if (!section) {
@@ -441,6 +443,13 @@ Condition Compiler::condition(const ExprPtr& expr) {
       out.values.push_back(value(expr->args[0]));
       return out;
     }
+    if (expr->name == "replaced") {
+      out.kind = Condition::Kind::Replaced;
+      out.values.push_back(value(expr->args[0]));
+      if (out.values[0].kind != Value::Kind::Id)
+        error(expr->args[0]->span, "wrong-condition", "only a line's value can be replaced");
+      return out;
+    }
     if (expr->name == "takes") {
       out.kind = Condition::Kind::Takes;
       out.name = names_.textOf(source_.text, expr->args[0]->span);
@@ -449,7 +458,8 @@ Condition Compiler::condition(const ExprPtr& expr) {
   }
   if (expr->kind == Expr::Kind::Name || expr->kind == Expr::Kind::Member) return named(*expr);
   error(expr->span, "wrong-condition", "this is no condition",
-        "conditions are names, comparisons, uniform(x), takes(port), and '!', '&&', '||' of them");
+        "conditions are names, comparisons, uniform(x), takes(port), replaced(line), and '!', '&&', '||' of "
+        "them");
   return out;
 }
 

@@ -56,6 +56,7 @@ struct Condition {
     Term,       ///< `index` in Model::terms
     Uniform,    ///< values[0] does not change from pixel to pixel
     Takes,      ///< the template has a port `name`
+    Replaced,   ///< another part has put something in place of values[0], a line's value
   };
   Kind kind = Kind::Always;
   uint32_t index = 0;

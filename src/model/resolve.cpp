@@ -63,16 +63,27 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
 
 // -- the material's values --
 
-/// The property that has a say: of an extension that the material has; else of one that stands inside of
+/// The property that has a say: of an extension that the material has, one that the file names before one
+/// that it leaves out, and of those one that stands inside of another; else of one that stands inside of
 /// such, whose place is known; else the first that needs nothing which is not there.
 uint16_t Resolver::provider(const Role& role) const {
   const material::Schema& schema = *model_.schema;
+  if (role.providers.size() == 1) return role.providers[0];
   const auto find = [&](const auto& good) -> std::optional<uint16_t> {
     for (const uint16_t property : role.providers) {
       if (good(schema.properties[property].extension)) return property;
     }
     return std::nullopt;
   };
+  const auto given = [&](uint16_t property, bool inside) {
+    return schema.extensions[schema.properties[property].extension]->inside.empty() != inside &&
+           (material_.number(property) != nullptr || material_.texture(property) != nullptr);
+  };
+  for (const bool inside : {true, false}) {
+    for (const uint16_t property : role.providers) {
+      if (given(property, inside)) return property;
+    }
+  }
   if (const auto there = find([&](uint16_t extension) { return material_.has(extension); })) return *there;
   const auto within = find([&](uint16_t extension) {
     const std::string_view around = schema.extensions[extension]->inside;
@@ -109,6 +120,8 @@ Found Resolver::number(const Role& role, const Value& value) {
     decl = &decl->members[static_cast<size_t>(value.member)];
     now[0] = info->members[static_cast<size_t>(value.member)];
   } else {
+    const bool optional = decl->kind == Kind::Number && !decl->default_value;
+    if (optional && material_.number(out.property) == nullptr) return {};
     now = numberOf(out.property);
   }
   const auto member = static_cast<size_t>(value.member);
@@ -216,7 +229,7 @@ Found Resolver::found(const Value& value, const Line& line) {
 
 /// The value that parts have put in place of another. A part that replaces it sees what the parts below it
 /// see.
-Found Resolver::replaced(const Value& value, uint32_t part, Found original) {
+Found Resolver::replacement(const Value& value, uint32_t part) {
   const std::vector<uint32_t>& lines = model_.ids[value.index].replaced;
   const auto names = [&](const Line& line) { return line.target.path == value.path; };
   const bool own = std::any_of(lines.begin(), lines.end(), [&](uint32_t i) {
@@ -228,7 +241,12 @@ Found Resolver::replaced(const Value& value, uint32_t part, Found original) {
     if (line.term != Line::kNone && !alive(line.term)) continue;
     if (Found instead = fromLine(line)) return instead;
   }
-  return original;
+  return {};
+}
+
+Found Resolver::replaced(const Value& value, uint32_t part, Found original) {
+  Found instead = replacement(value, part);
+  return instead ? instead : original;
 }
 
 /// The first of a line's values whose condition holds and which is there.
@@ -374,6 +392,7 @@ bool Resolver::holds(const Condition& condition, const Line& line) {
     case Condition::Kind::Extension: return material_.has(static_cast<uint16_t>(condition.index));
     case Condition::Kind::Term: return alive(condition.index);
     case Condition::Kind::Uniform: return uniform(found(condition.values[0], line));
+    case Condition::Kind::Replaced: return static_cast<bool>(replacement(condition.values[0], line.part));
     case Condition::Kind::Takes:
       return std::any_of(template_.ports.begin(), template_.ports.end(),
                          [&](const lang::PortDecl& port) { return port.param.name == condition.name; });
@@ -502,7 +521,8 @@ std::string Resolver::because(const Condition& condition, const Line& line, bool
     case Condition::Kind::Same:
     case Condition::Kind::Flag:
     case Condition::Kind::Term:
-    case Condition::Kind::Uniform: break;
+    case Condition::Kind::Uniform:
+    case Condition::Kind::Replaced: break;
   }
   return "the material does not ask for it";
 }

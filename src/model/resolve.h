@@ -85,6 +85,7 @@ private:
   Found below(const Value& value, uint32_t part);
   Found call(const Value& value, const Line& line);
   Found behind(Found value, std::string_view path) const;
+  Found replacement(const Value& value, uint32_t part);
   Found replaced(const Value& value, uint32_t part, Found original);
   bool holds(const Condition& condition, const Line& line);
   bool equal(const Condition& condition, const Line& line);

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "ir/module.h"
-#include "passes/names.h"
+#include "ir/names.h"
 #include "passes/passes.h"
 
 namespace lacquer::passes {
@@ -33,6 +33,9 @@ void bind(ir::Module& module) {
     place[i] = static_cast<uint32_t>(kept.size());
     kept.push_back(slot);
   }
+  for (ir::TextureSlot& slot : kept) {
+    if (slot.optional) slot.binding.flat = module.material_textures + next++;
+  }
   module.textures = std::move(kept);
   for (const ir::ValueId id : texture_inputs)
     module.dag.setInputField(id, place[module.dag.inputOf(id).field]);
@@ -61,7 +64,7 @@ Diagnostics checkPlaces(const ir::Module& module) {
   // A template's names are those of the contract: they cannot be changed where a target keeps them for
   // itself.
   const auto spell = [&](std::string_view name) {
-    if (Names().pick(name) == name) return;
+    if (ir::Names().pick(name) == name) return;
     wrong.push_back(
         {"reserved-name",
          Severity::Error,

@@ -55,8 +55,9 @@ void runPipeline(ir::Module& module, const PipelineOptions& options) {
 std::string contentAddress(const ir::Module& module) {
   std::string key = module.template_name + "\n" + ir::dump(module);
   for (const ir::TextureSlot& slot : module.textures) {
-    const uint32_t place =
-        slot.environment ? slot.binding.flat : slot.binding.flat - module.material_textures;
+    const uint32_t place = slot.optional      ? slot.binding.binding
+                           : slot.environment ? slot.binding.flat
+                                              : slot.binding.flat - module.material_textures;
     key += fmt::format("texture {} {} {} {}\n", slot.name, ir::typeName(slot.type), slot.srgb, place);
   }
   for (const uint32_t index : ir::usedParameters(module)) {

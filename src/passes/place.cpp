@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "passes/names.h"
+#include "ir/names.h"
 #include "passes/passes.h"
-#include "passes/program.h"
 
 namespace lacquer::passes {
 
@@ -63,7 +62,7 @@ std::string nameFor(const ir::Dag& dag, ir::ValueId id) {
 
 /// The layer of the term that a value belongs to.
 std::string_view layerFor(const ir::Dag& dag, ir::ValueId id) {
-  return layerOf(dag.terms()[dag.termOf(id)].name);
+  return ir::layerOf(dag.terms()[dag.termOf(id)].name);
 }
 
 /// The values of material rate that a faster value or an output reads.
@@ -113,7 +112,7 @@ void chooseFields(ir::Module& module, Placement& placement) {
   const std::vector<ir::ValueId> values = packed(module.dag, frontier(module));
   if (values.empty()) return;
   ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0, ir::kMaterialBinding};
-  Names names;
+  ir::Names names;
   placement.field_of.resize(module.dag.size(), 0);
   for (const ir::ValueId id : values) {
     const auto field = static_cast<uint32_t>(block.fields.size());
@@ -143,8 +142,8 @@ ir::ValueId readField(ir::Module& module, Placement& placement, ir::ValueId id) 
 
 /// A graph may call its textures what it wants, a shader may not. The environment's names are the template's.
 void nameTextures(ir::Module& module) {
-  Names names;
-  names.take(kLightIndexName);
+  ir::Names names;
+  names.take(ir::kLightIndexName);
   names.take("material");
   for (const ir::Block& block : module.blocks) names.take(block.instance), names.take(block.instance + "s");
   for (const ir::TextureSlot& slot : module.textures) {
@@ -164,12 +163,12 @@ void nameTextures(ir::Module& module) {
 /// Parameters that the preshader would have read become constants of the pipeline. Ids follow the names'
 /// order: they depend on nothing but what the shader needs.
 void chooseSpecConstants(ir::Module& module) {
-  Names names;
+  ir::Names names;
   for (const ir::Block& block : module.blocks) {
     for (const std::string& name : {block.name, block.instance}) names.take(name), names.take(name + "s");
   }
   for (const ir::TextureSlot& slot : module.textures) names.take(slot.name);
-  names.take(kLightIndexName);
+  names.take(ir::kLightIndexName);
   int32_t next = 0;
   for (const uint32_t index : ir::usedParameters(module)) {
     ir::Parameter& parameter = module.parameters[index];
@@ -182,7 +181,7 @@ void chooseSpecConstants(ir::Module& module) {
 void chooseVaryings(ir::Module& module, Placement& placement) {
   // Varyings that are there already come from outside: the template has no vertex stage and no Interpolate.
   if (!module.varyings.empty()) return;
-  Names names;
+  ir::Names names;
   std::vector<ir::ValueId> live = ir::reachable(module, ir::Stage::Fragment);
   std::erase_if(live, [&](ir::ValueId id) { return module.dag[id].op != ir::Op::Interpolate; });
   placement.varying_of.resize(module.dag.size(), 0);

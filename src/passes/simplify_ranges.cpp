@@ -1,7 +1,7 @@
 // Operations that do nothing for any input in its range, by interval analysis.
 #include <algorithm>
 
-#include "passes/intervals.h"
+#include "analysis/intervals.h"
 #include "passes/passes.h"
 #include "passes/rewrite.h"
 
@@ -45,13 +45,13 @@ public:
       case Op::Clamp: return operand(inside(value, width) ? 0 : -1);
       case Op::Abs: return sign(value.args[0], width);
       case Op::Select: {
-        const Range& condition = intervals_.at(value.args[0], 0);
+        const analysis::Range& condition = intervals_.at(value.args[0], 0);
         return operand(condition.lo == 1 ? 1 : condition.hi == 0 ? 2 : -1);
       }
       case Op::Less:
       case Op::LessEqual:
       case Op::Equal: {
-        const Range& truth = intervals_.at(id, 0);
+        const analysis::Range& truth = intervals_.at(id, 0);
         if (truth.lo != truth.hi) return {};
         return {truth.lo == 1 ? Decision::Kind::True : Decision::Kind::False};
       }
@@ -75,8 +75,8 @@ private:
     bool first = true;
     bool second = true;
     for (int c = 0; c < width; ++c) {
-      const Range& x = intervals_.at(value.args[0], c);
-      const Range& y = intervals_.at(value.args[1], c);
+      const analysis::Range& x = intervals_.at(value.args[0], c);
+      const analysis::Range& y = intervals_.at(value.args[1], c);
       if (x.nan || y.nan) return -1;
       first &= x.lo >= y.hi;
       second &= y.lo >= x.hi;
@@ -86,9 +86,9 @@ private:
 
   bool inside(const ir::Value& clamp, int width) const {
     for (int c = 0; c < width; ++c) {
-      const Range& x = intervals_.at(clamp.args[0], c);
-      const Range& lo = intervals_.at(clamp.args[1], c);
-      const Range& hi = intervals_.at(clamp.args[2], c);
+      const analysis::Range& x = intervals_.at(clamp.args[0], c);
+      const analysis::Range& lo = intervals_.at(clamp.args[1], c);
+      const analysis::Range& hi = intervals_.at(clamp.args[2], c);
       if (x.nan || lo.nan || hi.nan || x.lo < lo.hi || x.hi > hi.lo) return false;
     }
     return true;
@@ -98,7 +98,7 @@ private:
     bool up = true;
     bool down = true;
     for (int c = 0; c < width; ++c) {
-      const Range& x = intervals_.at(a, c);
+      const analysis::Range& x = intervals_.at(a, c);
       if (x.nan) return {};
       up &= x.lo >= 0;
       down &= x.hi <= 0;
@@ -108,7 +108,7 @@ private:
   }
 
   const ir::Dag& dag_;
-  Intervals intervals_;
+  analysis::Intervals intervals_;
 };
 
 /// A discard that never happens goes. Where one always does, no colour is seen, so that none is computed.

@@ -18,6 +18,7 @@ constexpr Known kKnown[] = {
      "a texel of no length has no direction; the tangent stands for it"},
     {"flat_normal", "dot < 0", "a triangle seen from its edge turns its other side"},
     {"tangent_frame_from_derivatives", "mul < mul", "texture coordinates without an area have no tangent"},
+    {"film", " < 0", "a film's wave turns over where the base becomes the thinner medium"},
 };
 
 }  // namespace

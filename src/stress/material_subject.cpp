@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/intervals.h"
 #include "eval/dfg.h"
 #include "eval/points.h"
-#include "passes/intervals.h"
 #include "stress/subject.h"
 
 namespace lacquer::stress {
@@ -69,7 +69,8 @@ private:
 
   /// The environment's factors are what they are.
   static bool isTable(const ir::TextureSlot& slot) {
-    return slot.environment && slot.type == ir::Type::Texture2D;
+    return slot.environment && slot.type == ir::Type::Texture2D &&
+           eval::environmentTable(slot.name) != nullptr;
   }
 
   void makeSpace() {
@@ -160,7 +161,7 @@ private:
     }
     for (const ir::TextureSlot& slot : module_.textures) {
       if (isTable(slot)) {
-        bindings.textures[slot.name] = eval::environmentDfgSampler();
+        bindings.textures[slot.name] = eval::environmentSampler(slot.name);
         continue;
       }
       const Variable& texel = *space.find(slot.name);

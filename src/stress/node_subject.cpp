@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "passes/intervals.h"
+#include "analysis/intervals.h"
 #include "stress/subject.h"
 
 namespace lacquer::stress {
@@ -137,18 +137,18 @@ private:
                                 ? Nature::Direction
                                 : natureOf(parameter.name, parameter.range);
       space.add(parameter.name, ir::componentCount(parameter.type), parameter.range, nature,
-                passes::kSceneLimit);
+                analysis::kSceneLimit);
     }
     for (const ir::TextureSlot& slot : module_.textures) {
       if (slot.type == ir::Type::TextureCube)
-        space.add(slot.name, 4, {0, 65504}, Nature::Number, passes::kSceneLimit);
+        space.add(slot.name, 4, {0, 65504}, Nature::Number, analysis::kSceneLimit);
       else
         space.add(slot.name, 4, {0, 1}, Nature::Texel, 1);
     }
   }
 
   void makeRoots(const std::vector<std::pair<std::string, ir::Interval>>& results) {
-    const passes::RangeMath math(passes::Arithmetic::Float32);
+    const analysis::RangeMath math(analysis::Arithmetic::Float32);
     const ir::Dag& dag = module_.dag;
     std::vector<ir::ValueId> outputs;
     for (size_t i = 0; i < module_.outputs.size(); ++i) {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/interval_math.h"
 #include "eval/evaluate.h"
 #include "ir/module.h"
-#include "passes/interval_math.h"
 #include "stress/space.h"
 
 namespace lacquer::stress {
@@ -24,8 +24,8 @@ struct Root {
   Kind kind = Kind::Result;
   std::string name;  ///< "the result", "planar2", "NdotSum > 0"
   int components = 1;
-  bool flag = false;      ///< a Bool: 0 or 1, and no jump when it turns
-  passes::Range allowed;  ///< Result, Fact: with the slack of float32
+  bool flag = false;        ///< a Bool: 0 or 1, and no jump when it turns
+  analysis::Range allowed;  ///< Result, Fact: with the slack of float32
 };
 
 /// By parameter: the value of each component.

@@ -16,8 +16,8 @@ using ir::Op;
 using ir::OutputKind;
 using ir::Type;
 using ir::ValueId;
-using passes::Statement;
-using passes::StatementKind;
+using schedule::Statement;
+using schedule::StatementKind;
 
 namespace {
 
@@ -51,7 +51,7 @@ std::string beginning(std::string text, size_t longest) {
 class Printer {
 public:
   /// `written`: by value id, what stands for a value in place of its variable or its computation.
-  Printer(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+  Printer(const Dialect& dialect, const ir::Module& module, const schedule::Program& program,
           const std::vector<Expression>* written = nullptr)
       : dialect_(dialect), module_(module), dag_(module.dag), program_(program), written_(written) {}
 
@@ -83,7 +83,7 @@ private:
   const Dialect& dialect_;
   const ir::Module& module_;
   const ir::Dag& dag_;
-  const passes::Program& program_;
+  const schedule::Program& program_;
   const std::vector<Expression>* written_;
 };
 
@@ -149,7 +149,7 @@ Expression Printer::input(const ir::Input& input) const {
     }
     case InputKind::Texture: return {module_.textures[input.field].name};
     case InputKind::FrontFacing: return {std::string(dialect_.frontFacing())};
-    case InputKind::LightIndex: return {passes::kLightIndexName};
+    case InputKind::LightIndex: return {ir::kLightIndexName};
     case InputKind::Varying: return {varyingName(module_.varyings[input.field])};
   }
   assert(false && "not a kind of input");
@@ -161,7 +161,7 @@ Expression Printer::blockField(const ir::Input& input) const {
   const std::string field = block.fields[input.field].elementName(input.index);
   if (block.array == 0) return {fmt::format("{}.{}", block.instance, field)};
   if (input.element >= 0) return {fmt::format("{}s[{}].{}", block.instance, input.element, field)};
-  return {fmt::format("{}s[{}].{}", block.instance, passes::kLightIndexName, field)};
+  return {fmt::format("{}s[{}].{}", block.instance, ir::kLightIndexName, field)};
 }
 
 Expression Printer::construct(const ir::Value& value) const {
@@ -236,8 +236,7 @@ void Printer::openLoop(Text& text, const Statement& statement) const {
   }
   const ir::LightGroup& group = module_.light_groups[statement.group];
   const std::string end = group.count < 0 ? lightCount() : fmt::format("{}", group.first + group.count);
-  text.line(
-      fmt::format("for (int {0} = {1}; {0} < {2}; ++{0}) {{", passes::kLightIndexName, group.first, end));
+  text.line(fmt::format("for (int {0} = {1}; {0} < {2}; ++{0}) {{", ir::kLightIndexName, group.first, end));
   text.indent();
 }
 
@@ -421,7 +420,7 @@ void printMembers(Text& text, const Dialect& dialect, const ir::Block& block) {
   text.outdent();
 }
 
-std::string printProgram(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+std::string printProgram(const Dialect& dialect, const ir::Module& module, const schedule::Program& program,
                          std::string_view head) {
   Text text;
   dialect.open(text, module, program, head);
@@ -433,24 +432,24 @@ std::string printProgram(const Dialect& dialect, const ir::Module& module, const
 }
 
 void printStatements(Text& text, const Dialect& dialect, const ir::Module& module,
-                     const passes::Program& program) {
+                     const schedule::Program& program) {
   Printer(dialect, module, program).statements(text);
 }
 
-std::string printValue(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+std::string printValue(const Dialect& dialect, const ir::Module& module, const schedule::Program& program,
                        ValueId value) {
   return Printer(dialect, module, program).root(value);
 }
 
-std::string printDefinition(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
-                            ValueId value) {
+std::string printDefinition(const Dialect& dialect, const ir::Module& module,
+                            const schedule::Program& program, ValueId value) {
   return Printer(dialect, module, program).compute(value).text;
 }
 
 std::vector<std::string> printExpressions(const Dialect& dialect, const ir::Module& module,
                                           std::span<const ValueId> values, size_t longest) {
   constexpr size_t kCharacter = 4;  // bytes, at most: enough is left to see that something is missing
-  const passes::Program nameless{};
+  const schedule::Program nameless{};
   std::vector<Expression> written(module.dag.size());
   const Printer printer(dialect, module, nameless, &written);
   for (const ValueId id : ir::reachable(module.dag, values)) {

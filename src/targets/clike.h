@@ -1,5 +1,5 @@
-// The one printer of GLSL and HLSL. It walks a passes::Program from front to back and asks a Dialect, the few
-// hooks in which the languages differ, for every spelling. It decides nothing, never looks back and never
+// The one printer of GLSL and HLSL. It walks a schedule::Program from front to back and asks a Dialect, the
+// few hooks in which the languages differ, for every spelling. It decides nothing, never looks back and never
 // edits what it wrote.
 #pragma once
 
@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "ir/module.h"
-#include "passes/program.h"
+#include "ir/names.h"
+#include "schedule/schedule.h"
 
 namespace lacquer::targets {
 
@@ -93,7 +94,7 @@ public:
 
   /// All that stands before the statements of main: the head as comments, the interface, and main's opening
   /// line.
-  virtual void open(Text& text, const ir::Module& module, const passes::Program& program,
+  virtual void open(Text& text, const ir::Module& module, const schedule::Program& program,
                     std::string_view head) const = 0;
 };
 
@@ -108,20 +109,20 @@ std::string outputName(const ir::Output& output);           ///< out_…
 void printMembers(Text& text, const Dialect& dialect, const ir::Block& block);
 
 /// The whole text of a stage.
-std::string printProgram(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+std::string printProgram(const Dialect& dialect, const ir::Module& module, const schedule::Program& program,
                          std::string_view head);
 
 /// The Section, Let and Output statements, and what is between them.
 void printStatements(Text& text, const Dialect& dialect, const ir::Module& module,
-                     const passes::Program& program);
+                     const schedule::Program& program);
 
 /// A value where it is used: its variable if it has one.
-std::string printValue(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
+std::string printValue(const Dialect& dialect, const ir::Module& module, const schedule::Program& program,
                        ir::ValueId value);
 
 /// What a Let computes into the value's variable.
-std::string printDefinition(const Dialect& dialect, const ir::Module& module, const passes::Program& program,
-                            ir::ValueId value);
+std::string printDefinition(const Dialect& dialect, const ir::Module& module,
+                            const schedule::Program& program, ir::ValueId value);
 
 /// Each value as one expression, everything written where it is used; parameters of the material by their
 /// names. Of each, at most `longest` bytes and '…' for what is left: written out, what is used twice doubles.

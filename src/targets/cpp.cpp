@@ -12,7 +12,7 @@
 #include <tuple>
 
 #include "ir/fold.h"
-#include "passes/names.h"
+#include "ir/names.h"
 #include "targets/clike.h"
 
 namespace lacquer::targets {
@@ -101,7 +101,7 @@ public:
     return fmt::format("{}({})", fold.substr(0, fold.find('(')), arguments);
   }
 
-  void open(Text&, const ir::Module&, const passes::Program&, std::string_view) const override {
+  void open(Text&, const ir::Module&, const schedule::Program&, std::string_view) const override {
     assert(false && "a header has no stage");
   }
 
@@ -432,7 +432,7 @@ private:
     std::vector<std::string> taken = needed.names();
     for (const char* word : {"p", "block", "store", "to_float", "pack"}) taken.emplace_back(word);
     for (const uint32_t index : parameters_) taken.push_back(memberOf(module_.parameters[index]));
-    const passes::Program program = passes::schedulePreshader(module_, taken);
+    const schedule::Program program = schedule::schedulePreshader(module_, taken);
     text_.blank();
     doc("The block for these parameters.");
     text_.line("inline Block pack(const Parameters& p) {");
@@ -457,7 +457,7 @@ private:
     text_.line("}");
   }
 
-  void assignments(const passes::Program& program) {
+  void assignments(const schedule::Program& program) {
     if (!program.statements.empty()) text_.blank();
     text_.line("Block block = {};");
     for (const ir::PreshaderField& p : module_.preshader) {
@@ -508,7 +508,7 @@ private:
     text_.line("};");
     text_.line(fmt::format("constexpr std::size_t kTextureCount = {};", module_.textures.size()));
     if (module_.textures.empty()) return;
-    passes::Names names;
+    ir::Names names;
     std::string all;
     text_.line("namespace textures {");
     for (const ir::TextureSlot& slot : module_.textures) {
@@ -527,7 +527,7 @@ private:
   const ir::Block* block_ = nullptr;
   std::vector<ValueId> roots_;
   std::vector<uint32_t> parameters_;  ///< by name
-  passes::Names names_;
+  ir::Names names_;
   Cpp dialect_;
   Text text_;
 };

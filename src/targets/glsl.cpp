@@ -47,7 +47,7 @@ public:
     return texture(name, at.text, top ? "0.0" : "");
   }
 
-  void open(Text& text, const ir::Module& module, const passes::Program& program,
+  void open(Text& text, const ir::Module& module, const schedule::Program& program,
             std::string_view head) const override {
     text.line(fmt::format("#version {}", row_.version));
     text.comments(head);
@@ -64,7 +64,7 @@ public:
 
 private:
   /// Fragment shaders have no default for floats, and the samplers' default is low.
-  void precisions(Text& text, const ir::Module& module, const passes::Program& program) const {
+  void precisions(Text& text, const ir::Module& module, const schedule::Program& program) const {
     text.blank();
     text.line("precision highp float;");
     text.line("precision highp int;");
@@ -85,7 +85,7 @@ private:
   }
 
   /// A SpecId has one number: vectors are composed.
-  void constants(Text& text, const ir::Module& module, const passes::Program& program) const {
+  void constants(Text& text, const ir::Module& module, const schedule::Program& program) const {
     assert(program.parameters.empty() || row_.sets);
     if (!program.parameters.empty()) text.blank();
     for (uint32_t index : program.parameters) {
@@ -131,7 +131,7 @@ private:
     text.line("};");
   }
 
-  void textures(Text& text, const ir::Module& module, const passes::Program& program) const {
+  void textures(Text& text, const ir::Module& module, const schedule::Program& program) const {
     if (!program.textures.empty()) text.blank();
     for (uint32_t index : program.textures) {
       const ir::TextureSlot& slot = module.textures[index];
@@ -141,7 +141,7 @@ private:
     }
   }
 
-  void attributes(Text& text, const ir::Module& module, const passes::Program& program) const {
+  void attributes(Text& text, const ir::Module& module, const schedule::Program& program) const {
     if (!program.attributes.empty()) text.blank();
     for (uint32_t index : program.attributes) {
       const ir::Attribute& a = module.attributes[index];
@@ -150,7 +150,7 @@ private:
     }
   }
 
-  void varyings(Text& text, const ir::Module& module, const passes::Program& program) const {
+  void varyings(Text& text, const ir::Module& module, const schedule::Program& program) const {
     if (!program.varyings.empty()) text.blank();
     const std::string_view way = program.stage == ir::Stage::Vertex ? "out" : "in";
     for (uint32_t index : program.varyings) {
@@ -162,7 +162,7 @@ private:
     }
   }
 
-  void outputs(Text& text, const ir::Module& module, const passes::Program& program) const {
+  void outputs(Text& text, const ir::Module& module, const schedule::Program& program) const {
     if (!program.outputs.empty()) text.blank();
     for (uint32_t index : program.outputs) {
       const ir::Output& o = module.outputs[index];

@@ -80,7 +80,7 @@ public:
     return op == ir::Op::Sign ? fmt::format("{}({})", type(result), plain) : plain;
   }
 
-  void open(Text& text, const ir::Module& module, const passes::Program& program,
+  void open(Text& text, const ir::Module& module, const schedule::Program& program,
             std::string_view head) const override {
     text.comments(head);
     bool first = head.empty();
@@ -123,7 +123,7 @@ private:
                           compares ? "SamplerComparisonState" : "SamplerState", slot.name, number));
   }
 
-  std::vector<std::string> parameters(const ir::Module& module, const passes::Program& program) const {
+  std::vector<std::string> parameters(const ir::Module& module, const schedule::Program& program) const {
     std::vector<std::string> list;
     const bool vertex = program.stage == ir::Stage::Vertex;
     for (uint32_t index : program.attributes) {

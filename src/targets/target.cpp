@@ -35,7 +35,7 @@ const Target& row(TargetId id) {
   return target;
 }
 
-std::string printText(const ir::Module& module, const passes::Program& program, TargetId target,
+std::string printText(const ir::Module& module, const schedule::Program& program, TargetId target,
                       std::string_view head) {
   assert(ir::verify(module).empty());
   switch (target) {
@@ -58,10 +58,10 @@ std::string headerText(const ir::Module& module, std::string_view name, std::str
 PreshaderText preshaderText(const ir::Module& module) {
   std::vector<std::string> taken;
   for (const uint32_t index : ir::usedParameters(module)) taken.push_back(module.parameters[index].name);
-  const passes::Program program = passes::schedulePreshader(module, taken);
+  const schedule::Program program = schedule::schedulePreshader(module, taken);
   PreshaderText text;
-  for (const passes::Statement& s : program.statements) {
-    if (s.kind != passes::StatementKind::Let) continue;
+  for (const schedule::Statement& s : program.statements) {
+    if (s.kind != schedule::StatementKind::Let) continue;
     text.values.push_back({program.names[s.value], module.dag[s.value].type,
                            printDefinition(glslVulkan(), module, program, s.value)});
   }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ir/module.h"
-#include "passes/program.h"
+#include "schedule/schedule.h"
 
 namespace lacquer::targets {
 
@@ -29,7 +29,7 @@ const Target& row(TargetId id);
 
 /// The text of one stage. The module must be placed, bound and legalized for the target. `head` is printed as
 /// comment lines at the top (one per line).
-std::string printText(const ir::Module& module, const passes::Program& program, TargetId target,
+std::string printText(const ir::Module& module, const schedule::Program& program, TargetId target,
                       std::string_view head);
 
 /// TargetId::Cpp: a C++11 header in the namespace lacquer_shaders::NAME with the parameters, the material's
@@ -56,7 +56,7 @@ std::vector<std::string> expressionTexts(const ir::Module& module, std::span<con
 struct SpirvOptions {
   bool debug = false;  ///< OpLine toward the node source where known
 };
-std::vector<uint32_t> writeSpirv(const ir::Module& module, const passes::Program& program,
+std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Program& program,
                                  const SpirvOptions& options);
 
 }  // namespace lacquer::targets

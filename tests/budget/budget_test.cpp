@@ -169,7 +169,8 @@ TEST_F(Budget, OutOfRangeIsAnError) {
   }
 }
 
-/// The rows of src/api/variants.def say what bench/error.json says, and each names a variant that is there.
+/// The rows of src/shader/variants.def say what bench/error.json says, and each names a variant that is
+/// there.
 TEST_F(Budget, TableIsTheMeasuredOne) {
   const json measured = json::parse(readFile(sourceFolder() / "bench/error.json"));
   std::vector<std::string> rows;
@@ -184,7 +185,7 @@ TEST_F(Budget, TableIsTheMeasuredOne) {
     }
   }
   EXPECT_FALSE(rows.empty());
-  std::ifstream file(sourceFolder() / "src/api/variants.def");
+  std::ifstream file(sourceFolder() / "src/shader/variants.def");
   std::vector<std::string> lines;
   for (std::string line; std::getline(file, line);) {
     if (!line.starts_with("//")) lines.push_back(line);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "api/option_key.h"
+#include "cache/option_key.h"
 
 namespace lacquer::test {
 namespace {

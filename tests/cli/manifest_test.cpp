@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 
 const char* const kFile = R"({"asset": {"version": "2.0"},
-"extensionsUsed": ["KHR_materials_coat", "KHR_materials_sheen", "KHR_materials_ior"],
+"extensionsUsed": ["KHR_materials_coat", "EXAMPLE_materials_moss", "KHR_materials_ior"],
 "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
   {"componentType": 5126, "count": 3, "type": "VEC4"}, {"componentType": 5126, "count": 3, "type": "VEC2"}],
 "images": [{"uri": "a.png"}], "textures": [{"source": 0}],
@@ -22,7 +22,7 @@ const char* const kFile = R"({"asset": {"version": "2.0"},
   {"attributes": {"POSITION": 0, "NORMAL": 0}, "material": 2}]}],
 "materials": [
   {"name": "Paint", "normalTexture": {"index": 0},
-   "extensions": {"KHR_materials_sheen": {}, "KHR_materials_coat": {"coatFactor": 0.9, "coatDarkeningFactor": 0,
+   "extensions": {"EXAMPLE_materials_moss": {}, "KHR_materials_coat": {"coatFactor": 0.9, "coatDarkeningFactor": 0,
      "coatColorFactor": [1, 0.5, 0.25], "coatColorTexture": {"index": 0}}}},
   {"name": "Warned", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
   {"name": "Wrong", "pbrMetallicRoughness": {"metallicFactor": 2}},
@@ -51,7 +51,7 @@ TEST_F(Manifest, namesTheProfile) {
   EXPECT_NE(coated["uses"][0]["shader"], material(0)["uses"][0]["shader"]);
   const Outcome wrong = place_.run({"gen", "car.gltf", "-o", "wrong", "--profile", "pbr"});
   EXPECT_EQ(wrong.status, 1) << wrong.all();
-  EXPECT_NE(wrong.err.find("there are khr, openpbr"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find("there are khr, khr_2025_10_13, openpbr"), std::string::npos) << wrong.err;
   EXPECT_FALSE(place_.has("wrong"));
 }
 
@@ -94,7 +94,7 @@ TEST_F(Manifest, materialWithTwoKindsOfPrimitives) {
     EXPECT_NE(std::find(paint["terms"].begin(), paint["terms"].end(), term), paint["terms"].end()) << term;
   }
   EXPECT_EQ(paint["skipped"]["coat.darkening"], "coatDarkeningFactor is 0");
-  EXPECT_EQ(paint["ignored"], json::array({"/materials/0/extensions/KHR_materials_sheen"}));
+  EXPECT_EQ(paint["ignored"], json::array({"/materials/0/extensions/EXAMPLE_materials_moss"}));
   EXPECT_TRUE(paint["diagnostics"].empty()) << paint["diagnostics"];
 }
 

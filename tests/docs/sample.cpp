@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 
 #include "docs/page.h"
 #include "support/cases.h"
@@ -46,7 +48,12 @@ Json valueOf(const PropertyDecl& decl, int& textures) {
 
 Json objectOf(const lang::ExtensionDecl& decl, int& textures) {
   Json object = Json::object();
-  for (const PropertyDecl& one : decl.properties) object[std::string(one.name)] = valueOf(one, textures);
+  std::set<std::string_view> roles;
+  for (const PropertyDecl& one : decl.properties) {
+    // Of two spellings the first has a say.
+    if (one.kind == Kind::Object || roles.insert(one.role).second)
+      object[std::string(one.name)] = valueOf(one, textures);
+  }
   return object;
 }
 
@@ -68,15 +75,32 @@ std::string place(Json& material, const std::string& name, int& textures) {
   return pointer;
 }
 
+/// What must stand beside an extension for all of its properties to be seen, and a template that takes them.
+struct Stage {
+  std::vector<std::string> beside;
+  std::string template_name;
+};
+const std::map<std::string, Stage> kStages = {
+    {"KHR_materials_volume", {{"KHR_materials_transmission"}, {}}},
+    {"KHR_materials_dispersion", {{"KHR_materials_transmission", "KHR_materials_volume"}, {}}},
+    {"KHR_materials_volume_scatter", {{"KHR_materials_transmission"}, "bsdf"}},
+};
+
 FullMaterial fullMaterial(const std::string& extension) {
+  const auto stage = kStages.find(extension);
   int textures = 0;
   Json material = objectOf(extensionOf({}), textures);
   material["name"] = "everything";
   FullMaterial full{extension, {}, {}};
   if (!extension.empty()) full.place = place(material, extension, textures);
+  Options options;
+  if (stage != kStages.end()) {
+    for (const std::string& other : stage->second.beside) place(material, other, textures);
+    options.template_name = stage->second.template_name;
+  }
   Json root = {{"asset", {{"version", "2.0"}}}, {"materials", Json::array({material})}};
   root["textures"] = std::vector<Json>(static_cast<size_t>(textures), Json::object());
-  full.made = make(root.dump(), {});
+  full.made = make(root.dump(), options);
   return full;
 }
 

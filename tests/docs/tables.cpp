@@ -102,6 +102,8 @@ std::string structural(std::string_view name) {
       {"texCoord", "which of `uv0` to `uv3` the texel is taken at"},
       {"scale", "`normal_map` scale"},
       {"strength", "`occlusion` strength"},
+      {"openPbrAnisotropyEnabled", "whether it is `anisotropic_alpha_openpbr`"},
+      {"specularEdgeColorEnabled", "whether there is the part `edge_color`"},
   };
   const auto it = kWhat.find(name);
   if (it == kWhat.end()) ADD_FAILURE() << "nothing in the graph comes from the property " << name;
@@ -109,7 +111,7 @@ std::string structural(std::string_view name) {
 }
 
 std::string defaultText(const PropertyDecl& decl) {
-  if (decl.kind == Kind::Texture) return "";
+  if (decl.kind == Kind::Texture || !decl.default_value) return "";
   const ir::Components value = decl.default_value.value_or(ir::Components{});
   if (decl.kind == Kind::Choice) return fmt::format("`{}`", decl.choices.at(static_cast<size_t>(value[0])));
   if (decl.kind == Kind::Bool) return value[0] != 0 ? "`true`" : "`false`";
@@ -143,12 +145,27 @@ std::string pointerOf(const FullMaterial& full, const Row& row) {
   return fmt::format("/materials/0{}/{}", full.place, row.property->name);
 }
 
+/// The property that this one is another spelling of, in the same extension.
+std::string_view firstSpelling(const PropertyDecl& decl) {
+  for (const lang::ExtensionDecl* extension : builtInSchema().extensions) {
+    for (const PropertyDecl& one : extension->properties) {
+      for (const PropertyDecl& other : extension->properties) {
+        if (&other == &decl) break;
+        if (&one == &decl && other.role == decl.role) return other.name;
+      }
+    }
+  }
+  return {};
+}
+
 std::string propertyRow(const Row& row, const FullMaterial& full) {
   const PropertyDecl& decl = *row.property;
   const Use use = useOf(full.made.graph_json, pointerOf(full, row));
   const std::string name = use.name.empty() ? "" : "`" + use.name + "`";
-  const std::string to =
-      use.name.empty() ? structural(decl.name) : fmt::format("{}", fmt::join(use.inputs, ", "));
+  const std::string_view first = firstSpelling(decl);
+  const std::string to = !first.empty()     ? fmt::format("as `{}`", first)
+                         : use.name.empty() ? structural(decl.name)
+                                            : fmt::format("{}", fmt::join(use.inputs, ", "));
   const bool member = row.object.ends_with("Texture");
   const std::string property = member ? fmt::format("{}.{}", row.object, decl.name) : std::string(decl.name);
   return fmt::format("| `{}` | {} | {} | {} | {} |\n", property, defaultText(decl), rangeText(decl), name,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "gltf/dump.h"
 #include "support/cases.h"
@@ -107,27 +108,65 @@ void checkProperty(const PropertyDecl& decl, const json& schema) {
   checkRange(decl, schema);
 }
 
+/// Where a text and its schema disagree, or the schema is silent, and which of them is declared
+/// (docs/specification.md).
+const std::map<std::string, std::string> kReadings = {
+    {"ADOBE_materials_clearcoat_specular/clearcoatIor",
+     "the schema's maximum of 1 excludes its own default of 1.5"},
+    {"ADOBE_materials_thin_transparency/ior", "for a material without the extension it is that of glTF"},
+    {"EXT_materials_specular_edge_color/specularEdgeColorEnabled", "the schema has no properties"},
+    {"KHR_materials_diffuse_roughness/diffuseRoughnessFactor", "the text's default is 0, the schema's 1"},
+    {"KHR_materials_fuzz/fuzzRoughnessFactor", "the text's default is 0.5, the schema's 0"},
+    {"KHR_materials_scatter/scatterStrengthFactor", "the text's name, which the schema lacks"},
+    {"KHR_materials_scatter/scatterStrengthTexture", "the text's name, which the schema lacks"},
+    {"KHR_materials_volume/attenuationDistance", "above 0, and without a default: what float32 divides by"},
+    {"KHR_materials_volume_scatter/multiscatterColorFactor", "the text's name, which the schema lacks"},
+};
+
+std::map<std::string, std::filesystem::path> schemas() {
+  std::map<std::string, std::filesystem::path> found;
+  const std::filesystem::path folder = sourceFolder() / "../shared/specs";
+  if (!std::filesystem::exists(folder)) return found;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    std::string name = entry.path().filename().string();
+    constexpr std::string_view kEnd = ".schema.json";
+    if (!name.ends_with(kEnd)) continue;
+    name.resize(name.size() - kEnd.size());
+    // What lies in `schemas` are the texts that the coat was written from; a later draft does not replace
+    // them.
+    const std::string extension = name.substr(name.find('.') + 1);
+    if (entry.path().parent_path().filename() == "schemas" || !found.contains(extension))
+      found[extension] = entry.path();
+  }
+  return found;
+}
+
 TEST(GltfTable, matchesTheSchemas) {
-  const std::filesystem::path folder = sourceFolder() / "../shared/specs/schemas";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no schemas in " << folder;
-  size_t compared = 0;
+  const auto files = schemas();
+  if (files.empty()) GTEST_SKIP() << "skipped: there are no schemas in ../shared/specs";
+  std::set<std::string> compared, read;
   for (const lang::ExtensionDecl* decl : builtInSchema().extensions) {
-    const std::filesystem::path file = folder / ("material." + std::string(decl->name) + ".schema.json");
-    if (!std::filesystem::exists(file)) continue;
+    const auto file = files.find(std::string(decl->name));
+    if (file == files.end()) continue;
     SCOPED_TRACE(std::string(decl->name));
-    ++compared;
-    json properties = json::parse(readFile(file))["properties"];
+    compared.insert(std::string(decl->name));
+    json properties = json::parse(readFile(file->second)).value("properties", json::object());
     properties.erase("extensions");
     properties.erase("extras");
     for (const PropertyDecl& property : decl->properties) {
       const std::string name(property.name);
-      ASSERT_TRUE(properties.contains(name)) << name;
-      checkProperty(property, properties[name]);
+      if (kReadings.contains(file->first + "/" + name)) {
+        read.insert(file->first + "/" + name);
+      } else {
+        ASSERT_TRUE(properties.contains(name)) << name;
+        checkProperty(property, properties[name]);
+      }
       properties.erase(name);
     }
     EXPECT_TRUE(properties.empty()) << "not declared: " << properties.dump();
   }
-  EXPECT_EQ(compared, 8u);
+  EXPECT_EQ(read.size(), kReadings.size());
+  EXPECT_GE(compared.size(), 25U);
 }
 
 }  // namespace

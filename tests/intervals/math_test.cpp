@@ -1,6 +1,6 @@
 // The arithmetic of intervals: every op against float32 on random operands, and the exactness that proofs
 // rest on.
-#include "passes/interval_math.h"
+#include "analysis/interval_math.h"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +13,10 @@
 namespace lacquer::test {
 namespace {
 
+using analysis::Arithmetic;
+using analysis::Range;
+using analysis::RangeMath;
 using ir::Op;
-using passes::Arithmetic;
-using passes::Range;
-using passes::RangeMath;
 
 const RangeMath kFloat(Arithmetic::Float32);
 const RangeMath kReal(Arithmetic::Real);

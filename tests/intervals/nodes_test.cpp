@@ -2,8 +2,8 @@
 // not proved. (tests/stress attacks the facts that nodes assume.)
 #include <gtest/gtest.h>
 
-#include "api/node_proofs.h"
 #include "lang/library.h"
+#include "tools/node_proofs.h"
 
 namespace lacquer::test {
 namespace {

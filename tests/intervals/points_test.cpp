@@ -6,17 +6,17 @@
 #include <cmath>
 #include <sstream>
 
-#include "api/node_proofs.h"
 #include "eval/evaluate.h"
 #include "intervals/evaluator.h"
 #include "lang/library.h"
+#include "tools/node_proofs.h"
 
 namespace lacquer::test {
 namespace {
 
+using analysis::Intervals;
+using analysis::Ranges;
 using ir::ValueId;
-using passes::Intervals;
-using passes::Ranges;
 
 constexpr size_t kPoints = 2048;
 
@@ -32,7 +32,7 @@ public:
       ids_.push_back(id);
       if (module_.dag[id].op == ir::Op::Input) inputs_.push_back(id);
     }
-    for (size_t i = 0; i < kPoints; ++i) worlds_.emplace_back(i, passes::kSceneLimit);
+    for (size_t i = 0; i < kPoints; ++i) worlds_.emplace_back(i, analysis::kSceneLimit);
     bind();
     const auto floats = eval::evaluate<float>(module_, ids_, bindings_, kPoints);
     const auto doubles = eval::evaluate<double>(module_, ids_, bindings_, kPoints);
@@ -48,7 +48,7 @@ public:
   size_t outside(size_t together, std::string& what) const {
     size_t count = 0;
     for (size_t first = 0; first < kPoints && !doubles_.empty(); first += together) {
-      Intervals intervals(module_, {passes::Arithmetic::Float32, passes::kSceneLimit});
+      Intervals intervals(module_, {analysis::Arithmetic::Float32, analysis::kSceneLimit});
       for (const ValueId id : inputs_) intervals.fix(id, box(id, first, together));
       intervals.run();
       for (size_t i = first; i < first + together; ++i) {
@@ -91,7 +91,7 @@ private:
     for (size_t c = 0; c < width(id); ++c) {
       for (size_t i = first; i < first + together; ++i) {
         const double x = values[i * width(id) + c];
-        ranges[c] = i == first ? passes::Range{x, x, false} : passes::hull(ranges[c], {x, x, false});
+        ranges[c] = i == first ? analysis::Range{x, x, false} : analysis::hull(ranges[c], {x, x, false});
       }
     }
     return ranges;
@@ -104,7 +104,7 @@ private:
     size_t count = 0;
     for (size_t c = 0; c < width(id); ++c) {
       const double x = values[point * width(id) + c];
-      const passes::Range& r = intervals.at(id, static_cast<int>(c));
+      const analysis::Range& r = intervals.at(id, static_cast<int>(c));
       if (std::isnan(x) ? r.nan : r.contains(x)) continue;
       if (++count > 1 || what == nullptr) continue;
       std::ostringstream text;

@@ -1,5 +1,5 @@
 // The list of proofs for a module.
-#include "passes/prove.h"
+#include "analysis/prove.h"
 
 #include <gtest/gtest.h>
 
@@ -16,12 +16,12 @@ protected:
     return dag().input({ir::InputKind::Parameter, name, type, ir::Rate::Material, range, 0, next_++});
   }
   ir::Dag& dag() { return module_.dag; }
-  passes::Proofs of(ValueId id) {
+  analysis::Proofs of(ValueId id) {
     module_.outputs = {{ir::OutputKind::Color, ir::Stage::Fragment, "o", 0, id}};
-    return passes::prove(module_);
+    return analysis::prove(module_);
   }
   bool safe(ValueId id) {
-    const passes::Proofs proofs = of(id);
+    const analysis::Proofs proofs = of(id);
     return proofs.operations.size() == 1 && proofs.operations[0].safe;
   }
 
@@ -38,12 +38,12 @@ TEST_F(Prove, SafeWhereTheOperandCannotLeaveTheDomain) {
 
 TEST_F(Prove, TheOperandAndWhatItReachesAreNamed) {
   const ValueId x = input("x", {-1, 1});
-  const passes::Proofs proofs = of(dag().make(Op::Sqrt, {x}));
+  const analysis::Proofs proofs = of(dag().make(Op::Sqrt, {x}));
   ASSERT_EQ(proofs.operations.size(), 1U);
   EXPECT_FALSE(proofs.operations[0].safe);
   EXPECT_EQ(proofs.operations[0].operand, x);
   EXPECT_EQ(proofs.operations[0].need, ">= 0");
-  EXPECT_EQ(proofs.operations[0].reached, (passes::Range{-1, 1, false}));
+  EXPECT_EQ(proofs.operations[0].reached, (analysis::Range{-1, 1, false}));
 }
 
 TEST_F(Prove, OneComponentOfAVectorIsEnoughToFail) {
@@ -67,9 +67,9 @@ TEST_F(Prove, AnEnvironmentMapMayHoldAnything) {
 }
 
 TEST_F(Prove, OutputsAreReported) {
-  const passes::Proofs proofs = of(dag().mul(input("x", {0, 1}), input("y", {0, 2})));
+  const analysis::Proofs proofs = of(dag().mul(input("x", {0, 1}), input("y", {0, 2})));
   ASSERT_EQ(proofs.outputs.size(), 1U);
-  EXPECT_EQ(proofs.outputs[0].reached, (passes::Range{0, 2, false}));
+  EXPECT_EQ(proofs.outputs[0].reached, (analysis::Range{0, 2, false}));
 }
 
 }  // namespace

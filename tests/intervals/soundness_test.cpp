@@ -6,20 +6,20 @@
 #include <filesystem>
 #include <random>
 
-#include "api/node_proofs.h"
 #include "intervals/evaluator.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
 #include "support/cases.h"
 #include "support/materials.h"
+#include "tools/node_proofs.h"
 
 namespace lacquer::test {
 namespace {
 
+using analysis::Intervals;
 using ir::Op;
 using ir::Type;
 using ir::ValueId;
-using passes::Intervals;
 
 /// Values outside of their intervals; the first is described.
 size_t violations(const ir::Module& module, const Intervals& intervals, int samples, double limit,
@@ -33,7 +33,7 @@ size_t violations(const ir::Module& module, const Intervals& intervals, int samp
       if (ir::isTexture(module.dag[id].type)) continue;
       for (int c = 0; c < std::min(ir::componentCount(module.dag[id].type), 4); ++c) {
         const float x = values[id][static_cast<size_t>(c)];
-        const passes::Range& r = intervals.at(id, c);
+        const analysis::Range& r = intervals.at(id, c);
         if (std::isnan(x) ? r.nan : r.contains(x)) continue;
         if (++count > 1) continue;
         std::ostringstream text;
@@ -48,7 +48,7 @@ size_t violations(const ir::Module& module, const Intervals& intervals, int samp
   return count;
 }
 
-void expectSound(const ir::Module& module, const passes::IntervalOptions& options, int samples,
+void expectSound(const ir::Module& module, const analysis::IntervalOptions& options, int samples,
                  const std::string& name) {
   Intervals intervals(module, options);
   intervals.run();
@@ -135,7 +135,7 @@ TEST(IntervalSoundness, RandomDags) {
   for (uint32_t seed = 0; seed < 400; ++seed) {
     const RandomDag random(seed);
     expectSound(random.module(), {}, 100, "seed " + std::to_string(seed));
-    expectSound(random.module(), {passes::Arithmetic::Float32, 1e4}, 100, "seed " + std::to_string(seed));
+    expectSound(random.module(), {analysis::Arithmetic::Float32, 1e4}, 100, "seed " + std::to_string(seed));
   }
 }
 
@@ -146,7 +146,7 @@ TEST(IntervalSoundness, AWrongIntervalIsFound) {
   const ValueId y = dag.sub(dag.constant(1), x);
   module.outputs.push_back({ir::OutputKind::Color, ir::Stage::Fragment, "o", 0, y});
   Intervals intervals(module);
-  passes::Ranges wrong;
+  analysis::Ranges wrong;
   wrong.fill({0, 0.999, false});
   intervals.fix(y, wrong);
   intervals.run();
@@ -159,7 +159,7 @@ TEST(IntervalSoundness, Nodes) {
   for (const std::string_view name : library.names(lang::DeclKind::Node)) {
     const NodeModule made = nodeModule(**library.node(name), {});
     // The geometry's cosines are rounded: inputs that were computed.
-    expectSound(made.module, {passes::Arithmetic::Float32, passes::kSceneLimit, true}, 5000,
+    expectSound(made.module, {analysis::Arithmetic::Float32, analysis::kSceneLimit, true}, 5000,
                 std::string(name));
   }
 }
@@ -195,7 +195,7 @@ void eachExample(F f) {
 
 TEST(IntervalSoundness, Examples) {
   eachExample([](const ir::Module& module, const std::string& name) {
-    expectSound(module, {passes::Arithmetic::Float32, passes::kSceneLimit}, 1000, name);
+    expectSound(module, {analysis::Arithmetic::Float32, analysis::kSceneLimit}, 1000, name);
   });
 }
 
@@ -206,7 +206,7 @@ TEST(IntervalSoundness, PlacedModules) {
     // looked at.
     module.outputs.clear();
     module.varyings.clear();
-    expectSound(module, {passes::Arithmetic::Float32, passes::kSceneLimit}, 1000, name);
+    expectSound(module, {analysis::Arithmetic::Float32, analysis::kSceneLimit}, 1000, name);
   });
 }
 
@@ -217,7 +217,7 @@ TEST(IntervalSoundness, SimplifiedModulesGiveTheSame) {
     passes::simplifyRanges(simpler);
     std::vector<Floats> before, after;
     for (int i = 0; i < 300; ++i) {
-      const World world(static_cast<uint64_t>(i), passes::kSceneLimit);
+      const World world(static_cast<uint64_t>(i), analysis::kSceneLimit);
       evaluate(module, everything(module), world, before);
       evaluate(simpler, everything(simpler), world, after);
       for (size_t o = 0; o < module.outputs.size(); ++o) {

@@ -1,6 +1,7 @@
 // What the built-in parts make of materials, as properties.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "support/cases.h"
@@ -33,6 +34,38 @@ TEST(Materials, NeutralIsGone) {
   EXPECT_EQ(nodesOf(R"({"KHR_materials_coat": {"coatRoughnessFactor": 0.5}})"), core);
   EXPECT_EQ(nodesOf(R"({"KHR_materials_ior": {"ior": 1.5}})"), core);
   EXPECT_NE(nodesOf(R"({"KHR_materials_coat": {"coatFactor": 0.1}})"), core);
+}
+
+/// An extension's object without properties, with what it stands in and needs.
+nlohmann::json emptyExtension(const lang::ExtensionDecl& decl) {
+  nlohmann::json extensions = nlohmann::json::object();
+  const std::string name(decl.name);
+  if (decl.inside.empty())
+    extensions[name] = nlohmann::json::object();
+  else
+    extensions[std::string(decl.inside)]["extensions"][name] = nlohmann::json::object();
+  for (const std::string_view other : decl.needs) extensions[std::string(other)] = nlohmann::json::object();
+  return extensions;
+}
+
+TEST(Materials, EveryExtensionAtItsDefaultsIsGone) {
+  // These two say at their defaults already that the material is another, and one what share goes through.
+  const std::set<std::string_view> say = {"KHR_materials_pbrSpecularGlossiness", "KHR_materials_unlit",
+                                          "ADOBE_materials_thin_transparency"};
+  const graph::Graph core = graphOf("{}");
+  size_t tried = 0;
+  for (const lang::ExtensionDecl* decl : builtInSchema().extensions) {
+    if (decl->core || say.contains(decl->name)) continue;
+    SCOPED_TRACE(std::string(decl->name));
+    const graph::Graph graph = graphOf(emptyExtension(*decl).dump());
+    EXPECT_EQ(graph.nodes, core.nodes);
+    EXPECT_EQ(graph.outputs, core.outputs);
+    EXPECT_EQ(graph.textures.size(), core.textures.size());
+    EXPECT_EQ(graph.parameters.size(), core.parameters.size());
+    ++tried;
+  }
+  EXPECT_GE(tried, 25U);
+  EXPECT_NE(graphOf(R"({"KHR_materials_unlit": {}})").nodes, core.nodes);
 }
 
 TEST(Materials, BothWordsForACoatAreOneMaterial) {

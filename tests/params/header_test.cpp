@@ -1,5 +1,5 @@
 // The cpp target: what a compiler makes of its headers must be what the library packs, to the bit.
-#include "api/preshader.h"
+#include "shader/preshader.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 #include <random>
 
 #include "header_cases.h"
+#include "ir/names.h"
 #include "lacquer.h"
-#include "passes/names.h"
 #include "targets/target.h"
 
 namespace lacquer::test {
@@ -181,7 +181,7 @@ public:
     }
     module_.template_name = "random";
     ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0};
-    passes::Names names;
+    ir::Names names;
     for (const ir::ValueId id : all_) {
       const bool boolean = dag()[id].type == ir::Type::Bool;
       const ir::ValueId value =

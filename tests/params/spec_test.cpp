@@ -18,8 +18,8 @@
 #include "graph/graph.h"
 #include "lacquer.h"
 #include "lower/lower.h"
-#include "passes/legalize.h"
 #include "passes/pipeline.h"
+#include "targets/legalize.h"
 #include "targets/target.h"
 
 namespace lacquer::test {
@@ -44,14 +44,14 @@ ir::Module moduleOf(const graph::Graph& graph, lower::ParameterMode mode) {
 }
 
 Words wordsOf(const ir::Module& module, ir::Stage stage) {
-  return targets::writeSpirv(module, passes::schedule(module, stage), {});
+  return targets::writeSpirv(module, schedule::schedule(module, stage), {});
 }
 
 /// The same by way of the GLSL.
 Words wordsOfGlsl(ir::Module module, ir::Stage stage) {
-  passes::legalizeGlsl(module);
+  targets::legalize(module);
   const std::string text =
-      targets::printText(module, passes::schedule(module, stage), targets::TargetId::Glsl, "spec");
+      targets::printText(module, schedule::schedule(module, stage), targets::TargetId::Glsl, "spec");
   const auto of = stage == ir::Stage::Vertex ? check::Stage::Vertex : check::Stage::Fragment;
   const Result<check::Spirv> words = check::compile(text, check::Language::GlslVulkan, of, "spec");
   EXPECT_TRUE(words) << format(words.error().front()) << text;

@@ -7,9 +7,9 @@
 
 namespace lacquer::parity {
 
+using analysis::Range;
 using ir::Op;
 using ir::ValueId;
-using passes::Range;
 
 namespace {
 
@@ -34,7 +34,7 @@ Enclosure::Enclosure(const ir::Module& module, const eval::Bindings& bindings,
       bindings_(bindings),
       sizes_(sizes),
       options_(options),
-      math_(passes::Arithmetic::Float32),
+      math_(analysis::Arithmetic::Float32),
       values_(module.dag.size()) {
   for (ValueId id = 0; id < dag_.size(); ++id) {
     if (dag_[id].op == Op::SumOverLights) bodies_[id] = ir::reachable(dag_, {{dag_[id].args[0]}});

@@ -30,9 +30,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/interval_math.h"
 #include "eval/bindings.h"
 #include "ir/module.h"
-#include "passes/interval_math.h"
 
 namespace lacquer::parity {
 
@@ -56,10 +56,10 @@ public:
             const std::map<std::string, TextureSize>& sizes, const EnclosureOptions& options);
 
   /// The components of the values at a point, one after the other.
-  std::vector<passes::Range> at(size_t point, const std::vector<ir::ValueId>& roots);
+  std::vector<analysis::Range> at(size_t point, const std::vector<ir::ValueId>& roots);
 
 private:
-  using Ranges = std::array<passes::Range, 4>;
+  using Ranges = std::array<analysis::Range, 4>;
   void value(ir::ValueId id);
   void input(ir::ValueId id);
   void sumOverLights(ir::ValueId id);
@@ -68,12 +68,13 @@ private:
   void derivative(ir::ValueId id, size_t step);
   void matrixTimesVector(ir::ValueId id);
   void componentWise(ir::ValueId id);
-  passes::Range arithmetic(ir::Op op, const passes::Range& a, const passes::Range& b,
-                           const passes::Range& c) const;
-  passes::Range regrouped(const passes::Range& sum, const passes::Range& a, const passes::Range& b) const;
-  passes::Range wave(const passes::Range& a, double (*f)(double)) const;
-  passes::Range dot(ir::ValueId a, ir::ValueId b) const;
-  const passes::Range& get(ir::ValueId id, size_t component) const;
+  analysis::Range arithmetic(ir::Op op, const analysis::Range& a, const analysis::Range& b,
+                             const analysis::Range& c) const;
+  analysis::Range regrouped(const analysis::Range& sum, const analysis::Range& a,
+                            const analysis::Range& b) const;
+  analysis::Range wave(const analysis::Range& a, double (*f)(double)) const;
+  analysis::Range dot(ir::ValueId a, ir::ValueId b) const;
+  const analysis::Range& get(ir::ValueId id, size_t component) const;
   int width(ir::ValueId id) const;
   bool varies(ir::ValueId id) const;
 
@@ -82,7 +83,7 @@ private:
   const eval::Bindings& bindings_;
   const std::map<std::string, TextureSize>& sizes_;
   EnclosureOptions options_;
-  passes::RangeMath math_;
+  analysis::RangeMath math_;
   std::vector<Ranges> values_;
   std::map<ir::ValueId, std::vector<ir::ValueId>> bodies_;  ///< of the sums over lights
   size_t point_ = 0;

@@ -56,7 +56,7 @@ TEST(ParityNodes, CpuAndAllRoutesAgree) {
 /// Whether a number of the mutant is off by twice what a bound that is not vague() may be wide (in double, so
 /// that rounding has no part in it), somewhere where the bound is not.
 bool matters(const std::vector<std::vector<double>>& right, const std::vector<std::vector<double>>& wrong,
-             const std::vector<std::vector<passes::Range>>& bounds) {
+             const std::vector<std::vector<analysis::Range>>& bounds) {
   for (size_t o = 0; o < right.size(); ++o) {
     for (size_t i = 0; i < right[o].size(); ++i) {
       if (vague(bounds[i / 4][4 * o + i % 4])) continue;

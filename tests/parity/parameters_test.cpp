@@ -8,7 +8,7 @@
 namespace lacquer::parity {
 namespace {
 
-using Bounds = std::vector<std::vector<passes::Range>>;
+using Bounds = std::vector<std::vector<analysis::Range>>;
 
 /// Numbers of two modules that cannot be one: their bounds have nothing in common.
 size_t apart(const Bounds& a, const Bounds& b) {

@@ -9,12 +9,12 @@
 
 #include "../golden/random_material.h"
 #include "../intervals/sampling.h"
+#include "analysis/intervals.h"
 #include "eval/dfg.h"
 #include "eval/evaluate.h"
 #include "eval/image.h"
 #include "eval/points.h"
 #include "lower/lower.h"
-#include "passes/intervals.h"
 #include "passes/pipeline.h"
 #include "passes/rewrite.h"
 #include "support/cases.h"
@@ -63,8 +63,8 @@ void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
       for (float& x : texel) x = static_cast<float>(random.between(0, 2));
     }
     for (size_t i = 0; i < subject.points; ++i) texels.push_back(few[i / 16 % few.size()]);
-  } else if (slot.environment) {
-    const eval::Image& table = *eval::environmentDfgImage();
+  } else if (slot.environment && !slot.texel) {
+    const eval::Image& table = *eval::environmentTable(slot.name);
     texture.width = static_cast<uint32_t>(table.width);
     texture.height = static_cast<uint32_t>(table.height);
     texture.s = texture.t = vulkan::Wrap::Clamp;
@@ -173,7 +173,7 @@ Subject nodeSubject(const lang::NodeDecl& node, std::string_view variant, size_t
   for (const lang::Param& param : node.params) arguments.push_back(argument(module, param, inputs));
   setColors(module, lower::Inliner(module.dag).call(node, variant, arguments));
   for (size_t i = 0; i < points; ++i) {
-    const test::World world(i, passes::kSceneLimit);
+    const test::World world(i, analysis::kSceneLimit);
     for (const ir::Input& input : inputs) {
       eval::Column& column = subject.bindings.columns[input.name];
       column.components = ir::componentCount(input.type);
@@ -526,18 +526,18 @@ std::vector<std::vector<float>> onDevice(const Subject& subject, FragmentRoute r
   return std::move(outcome->outputs);
 }
 
-bool vague(const passes::Range& bound) {
+bool vague(const analysis::Range& bound) {
   const double scale = std::max(std::abs(bound.lo), std::abs(bound.hi));
   return !(bound.hi - bound.lo <= std::max(1e-3 * scale, 1e-6));
 }
 
-void compare(const Subject& subject, const std::vector<std::vector<passes::Range>>& bounds,
+void compare(const Subject& subject, const std::vector<std::vector<analysis::Range>>& bounds,
              const std::vector<std::vector<float>>& outputs, std::string_view engine,
              Comparison& comparison) {
   if (outputs.empty()) return;  // it did not run, and has failed for that
   for (size_t i = 0; i < bounds.size(); ++i) {
     for (size_t k = 0; k < bounds[i].size(); ++k) {
-      const passes::Range& bound = bounds[i][k];
+      const analysis::Range& bound = bounds[i][k];
       const auto x = static_cast<double>(outputs[k / 4][4 * i + k % 4]);
       ++comparison.numbers;
       if (vague(bound)) ++comparison.vague;
@@ -550,14 +550,14 @@ void compare(const Subject& subject, const std::vector<std::vector<passes::Range
   }
 }
 
-std::vector<std::vector<passes::Range>> boundsOf(const Subject& subject, bool rounded_parameters) {
+std::vector<std::vector<analysis::Range>> boundsOf(const Subject& subject, bool rounded_parameters) {
   EnclosureOptions options;
   if (device() != nullptr) options.sub_texel_bits = device()->subTexelBits();
   options.rounded_parameters = rounded_parameters;
   options.regrouped = !subject.single;
   Enclosure enclosure(subject.module, subject.bindings, subject.sizes, options);
   const std::vector<ValueId> roots = subject.roots();
-  std::vector<std::vector<passes::Range>> bounds;
+  std::vector<std::vector<analysis::Range>> bounds;
   for (size_t i = 0; i < subject.points; ++i) bounds.push_back(enclosure.at(i, roots));
   return bounds;
 }

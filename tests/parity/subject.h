@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "api/gpu.h"
 #include "graph/graph.h"
 #include "lang/library.h"
 #include "lower/lower.h"
 #include "parity/enclosure.h"
 #include "passes/passes.h"
+#include "tools/gpu.h"
 
 namespace lacquer::parity {
 
@@ -84,14 +84,14 @@ struct Comparison {
 };
 
 /// Whether a bound is wider than a thousandth of its numbers, and than 1e-6.
-bool vague(const passes::Range& bound);
+bool vague(const analysis::Range& bound);
 
 /// Adds a run's outputs to a comparison with the bounds.
-void compare(const Subject& subject, const std::vector<std::vector<passes::Range>>& bounds,
+void compare(const Subject& subject, const std::vector<std::vector<analysis::Range>>& bounds,
              const std::vector<std::vector<float>>& outputs, std::string_view engine, Comparison& comparison);
 
 /// By point, the numbers of all outputs.
-std::vector<std::vector<passes::Range>> boundsOf(const Subject& subject, bool rounded_parameters = false);
+std::vector<std::vector<analysis::Range>> boundsOf(const Subject& subject, bool rounded_parameters = false);
 
 /// The CPU and the three routes against the bounds.
 Comparison compareEngines(const Subject& subject);

@@ -47,7 +47,7 @@ struct Furnace {
 /// and, where it is wanted, Fdez-Aguera's geometric series of further ones; Lambert under all that the
 /// dielectric's lobe leaves.
 double mixOfTheText(double color, double metallic, double roughness, const Furnace& furnace) {
-  const auto split = eval::environmentDfgSampler()(0, {Furnace::kCosine, roughness, 0}, 0);
+  const auto split = eval::environmentSampler("environment_dfg")(0, {Furnace::kCosine, roughness, 0}, 0);
   const auto lobe = [&](double f0) {
     const double single = f0 * split[0] + split[1];
     const double mean = f0 + (1 - f0) / 21;

@@ -358,7 +358,7 @@ TEST(Properties, EnvironmentBrdfTableIsTheQuadrature) {
 
 /// Between texels, down to the smoothest lobes, which furnace() does not resolve.
 TEST(Properties, EnvironmentBrdfTableInterpolates) {
-  const eval::Sampler sampler = eval::environmentDfgSampler();
+  const eval::Sampler sampler = eval::environmentSampler("environment_dfg");
   double worst = 0;
   for (double NdotV = 0.02; NdotV <= 1; NdotV += 0.0074) {
     for (double roughness = 0; roughness <= 1; roughness += 0.0058) {

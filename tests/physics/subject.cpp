@@ -86,8 +86,8 @@ std::vector<Vec4> Subject::colors(std::span<const Sample> samples, const Vec3& e
       if (it != texels_.end()) texel = it->second;
     }
     bindings.textures[slot.name] = [texel](size_t, const Vec3&, double) { return texel; };
-    if (slot.name != "environment_dfg") continue;
-    bindings.textures[slot.name] = eval::environmentDfgSampler();
+    if (eval::environmentTable(slot.name) == nullptr) continue;
+    bindings.textures[slot.name] = eval::environmentSampler(slot.name);
   }
   EXPECT_TRUE(eval::bindMaterialBlock(module_, bindings));
   EXPECT_TRUE(eval::bindVaryings<T>(module_, points.size(), bindings));

@@ -7,7 +7,7 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include "check/check.h"
-#include "passes/legalize.h"
+#include "targets/legalize.h"
 #include "targets/samples.h"
 
 namespace lacquer::spirv_test {
@@ -73,7 +73,7 @@ void expectEqualInterfaces(const ir::Module& module, Stage stage) {
   const check::Spirv by_glslang = targets::expectCompiles(
       targets::print(module, stage, targets::TargetId::Glsl), stage, targets::TargetId::Glsl);
   ir::Module legal = module;
-  const check::Spirv direct = targets::writeSpirv(legal, passes::schedule(legal, stage), {});
+  const check::Spirv direct = targets::writeSpirv(legal, schedule::schedule(legal, stage), {});
   EXPECT_EQ(blocks(by_glslang), blocks(direct));
   std::map<std::string, std::string> mine = variables(direct);
   // glslang declares all of gl_PerVertex, as a block without a name.

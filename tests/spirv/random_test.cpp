@@ -7,8 +7,8 @@
 #include <random>
 
 #include "check/check.h"
-#include "passes/legalize.h"
 #include "spirv/reference.h"
+#include "targets/legalize.h"
 #include "targets/samples.h"
 
 namespace lacquer::spirv_test {
@@ -278,7 +278,7 @@ std::string text(const Diagnostics& diagnostics) {
   return all;
 }
 
-void expectRight(const ir::Module& module, const passes::Program& program, uint32_t seed) {
+void expectRight(const ir::Module& module, const schedule::Program& program, uint32_t seed) {
   for (const bool debug : {false, true}) {
     const std::vector<uint32_t> words = targets::writeSpirv(module, program, {debug});
     const Diagnostics wrong = check::validate(words, false, "random");
@@ -296,9 +296,9 @@ void expectRight(const ir::Module& module, const passes::Program& program, uint3
 }
 
 /// The same program with none of its variables: every value is placed by the writer alone.
-passes::Program withoutVariables(passes::Program program) {
+schedule::Program withoutVariables(schedule::Program program) {
   std::erase_if(program.statements,
-                [](const passes::Statement& s) { return s.kind == passes::StatementKind::Let; });
+                [](const schedule::Statement& s) { return s.kind == schedule::StatementKind::Let; });
   for (std::string& name : program.names) name.clear();
   return program;
 }
@@ -308,7 +308,7 @@ void run(uint32_t seed, Stage stage, int operations) {
   ir::Module module = Generator(seed, stage).make(operations);
   const std::vector<std::string> wrong = ir::verify(module);
   ASSERT_TRUE(wrong.empty()) << wrong[0];
-  const passes::Program program = passes::schedule(module, stage);
+  const schedule::Program program = schedule::schedule(module, stage);
   expectRight(module, program, seed);
   expectRight(module, withoutVariables(program), seed);
 }

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "ir/fold.h"
-#include "passes/program.h"
+#include "schedule/schedule.h"
 #include "targets/clike.h"
 
 namespace lacquer::spirv_test {

@@ -8,8 +8,8 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include "check/check.h"
-#include "passes/legalize.h"
 #include "support/cases.h"
+#include "targets/legalize.h"
 #include "targets/samples.h"
 
 namespace lacquer::spirv_test {
@@ -36,7 +36,7 @@ std::string disassembly(const check::Spirv& words) {
 check::Spirv write(ir::Module module, Stage stage, bool debug = false) {
   const std::vector<std::string> broken = ir::verify(module);
   EXPECT_TRUE(broken.empty()) << broken.front();
-  const check::Spirv words = targets::writeSpirv(module, passes::schedule(module, stage), {debug});
+  const check::Spirv words = targets::writeSpirv(module, schedule::schedule(module, stage), {debug});
   const Diagnostics wrong = check::validate(words, false, "shader");
   EXPECT_TRUE(wrong.empty()) << format(wrong.front()) << "\n" << disassembly(words);
   return words;

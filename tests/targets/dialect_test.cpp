@@ -44,8 +44,8 @@ TEST(Dialect, ALightGroupRunsFromItsFirstLight) {
 TEST(Dialect, FloatsBesideVectorsNeedNoPass) {
   for (const TargetId target : kTextTargets) {
     const ir::Module module = everyOpSample();
-    expectCompiles(printText(module, passes::schedule(module, Stage::Fragment), target, {}), Stage::Fragment,
-                   target);
+    expectCompiles(printText(module, schedule::schedule(module, Stage::Fragment), target, {}),
+                   Stage::Fragment, target);
   }
 }
 

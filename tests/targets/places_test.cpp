@@ -31,7 +31,7 @@ std::string messages(const Diagnostics& diagnostics) {
 }
 
 std::string printed(const ir::Module& module, TargetId target) {
-  return printText(module, passes::schedule(module, ir::Stage::Fragment), target, {});
+  return printText(module, schedule::schedule(module, ir::Stage::Fragment), target, {});
 }
 
 }  // namespace
@@ -54,7 +54,8 @@ TEST(Places, BlocksAndTexturesShareSetsButNotNumbers) {
 TEST(Places, AClashIsFoundInSpirv) {
   for (const bool clash : {false, true}) {
     const ir::Module module = twoTextures(clash);
-    const std::vector<uint32_t> words = writeSpirv(module, passes::schedule(module, ir::Stage::Fragment), {});
+    const std::vector<uint32_t> words =
+        writeSpirv(module, schedule::schedule(module, ir::Stage::Fragment), {});
     EXPECT_EQ(messages(check::checkSlots(words, false, "shader")),
               clash ? "slot-clash: 'first' and 'second' are both at set 1, binding 1\n" : "");
   }

@@ -5,7 +5,7 @@
 
 #include <cassert>
 
-#include "passes/legalize.h"
+#include "targets/legalize.h"
 
 namespace lacquer::targets {
 
@@ -55,7 +55,12 @@ ValueId Builder::texture(std::string name, Type type, bool environment) {
   for (const ir::TextureSlot& slot : module.textures) n += slot.environment == environment ? 1 : 0;
   const ir::Binding binding = environment ? ir::Binding{0, 2 + n, n} : ir::Binding{1, 1 + n, 3 + n};
   const auto index = static_cast<uint32_t>(module.textures.size());
-  module.textures.push_back({name, type, false, environment, -1, {}, binding});
+  ir::TextureSlot slot;
+  slot.name = name;
+  slot.type = type;
+  slot.environment = environment;
+  slot.binding = binding;
+  module.textures.push_back(std::move(slot));
   return dag().input({ir::InputKind::Texture, std::move(name), type, Rate::Frame, {}, 0, index});
 }
 
@@ -224,11 +229,8 @@ ir::Module everyOpSample() {
 }
 
 std::string print(ir::Module module, Stage stage, TargetId target, std::string_view head) {
-  if (target == TargetId::Hlsl)
-    passes::legalizeHlsl(module);
-  else
-    passes::legalizeGlsl(module);
-  return printText(module, passes::schedule(module, stage), target, head);
+  targets::legalize(module);
+  return printText(module, schedule::schedule(module, stage), target, head);
 }
 
 namespace {

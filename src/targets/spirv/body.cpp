@@ -41,7 +41,7 @@ spv::Op integerComparison(Op op) {
 
 }  // namespace
 
-Body::Body(const ir::Module& module, const passes::Program& program, const Interface& interface,
+Body::Body(const ir::Module& module, const schedule::Program& program, const Interface& interface,
            Globals& globals, bool debug)
     : module_(module),
       dag_(module.dag),
@@ -115,8 +115,8 @@ uint32_t Body::write() {
   code_.op(spv::OpFunction, none, function, spv::FunctionControlMaskNone, type);
   label(globals_.newId());
   bool dropped = false;
-  for (const passes::Statement& s : program_.statements) {
-    dropped = s.kind == passes::StatementKind::Discard && dag_.isConstant(s.value, 1);
+  for (const schedule::Statement& s : program_.statements) {
+    dropped = s.kind == schedule::StatementKind::Discard && dag_.isConstant(s.value, 1);
     if (dropped) break;  // nothing comes after it
     statement(s);
   }
@@ -394,17 +394,17 @@ uint32_t Body::result(ValueId id) {
 
 // -- statements --
 
-void Body::statement(const passes::Statement& s) {
+void Body::statement(const schedule::Statement& s) {
   switch (s.kind) {
-    case passes::StatementKind::Section: return;
-    case passes::StatementKind::Let:
+    case schedule::StatementKind::Section: return;
+    case schedule::StatementKind::Let:
       if (fused_[s.value] == 0) value(s.value);
       return;
-    case passes::StatementKind::LoopBegin: openLoop(s); return;
-    case passes::StatementKind::Accumulate: accumulate(s.value); return;
-    case passes::StatementKind::LoopEnd: closeLoop(); return;
-    case passes::StatementKind::Discard: discard(s.value); return;
-    case passes::StatementKind::Output: {
+    case schedule::StatementKind::LoopBegin: openLoop(s); return;
+    case schedule::StatementKind::Accumulate: accumulate(s.value); return;
+    case schedule::StatementKind::LoopEnd: closeLoop(); return;
+    case schedule::StatementKind::Discard: discard(s.value); return;
+    case schedule::StatementKind::Output: {
       const ir::Output& output = module_.outputs[s.output];
       const bool varying = output.kind == ir::OutputKind::Varying;
       const uint32_t variable = varying ? interface_.varyings[output.location] : interface_.outputs[s.output];
@@ -422,7 +422,7 @@ void Body::label(uint32_t id) {
 }
 
 /// The head of the loop holds the counter and the sums as phis, so that nothing lives in memory.
-void Body::openLoop(const passes::Statement& s) {
+void Body::openLoop(const schedule::Statement& s) {
   assert(!in_loop_);
   hoist(s.sums);
   const ir::LightGroup& group = module_.light_groups[s.group];
@@ -455,7 +455,7 @@ void Body::openLoop(const passes::Statement& s) {
   code_.op(spv::OpLoopMerge, loop_.merge, loop_.next_step, spv::LoopControlMaskNone);
   code_.op(spv::OpBranchConditional, goes_on, inside, loop_.merge);
   label(inside);
-  if (debug_) globals_.name(loop_.index, passes::kLightIndexName);
+  if (debug_) globals_.name(loop_.index, ir::kLightIndexName);
   in_loop_ = true;
 }
 

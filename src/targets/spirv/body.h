@@ -6,15 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "passes/program.h"
+#include "ir/names.h"
+#include "schedule/schedule.h"
 #include "targets/spirv/interface.h"
 
 namespace lacquer::targets::spirv {
 
 class Body {
 public:
-  Body(const ir::Module& module, const passes::Program& program, const Interface& interface, Globals& globals,
-       bool debug);
+  Body(const ir::Module& module, const schedule::Program& program, const Interface& interface,
+       Globals& globals, bool debug);
 
   /// Writes the function; returns its id.
   uint32_t write();
@@ -57,8 +58,8 @@ private:
   uint32_t result(ir::ValueId id);
 
   // statements
-  void statement(const passes::Statement& statement);
-  void openLoop(const passes::Statement& statement);
+  void statement(const schedule::Statement& statement);
+  void openLoop(const schedule::Statement& statement);
   void hoist(const std::vector<ir::ValueId>& sums);
   void accumulate(ir::ValueId sum);
   void closeLoop();
@@ -72,7 +73,7 @@ private:
 
   const ir::Module& module_;
   const ir::Dag& dag_;
-  const passes::Program& program_;
+  const schedule::Program& program_;
   const Interface& interface_;
   Globals& globals_;
   const bool debug_;

@@ -10,7 +10,7 @@ namespace {
 
 class Declarer {
 public:
-  Declarer(const ir::Module& module, const passes::Program& program, Globals& globals)
+  Declarer(const ir::Module& module, const schedule::Program& program, Globals& globals)
       : module_(module), program_(program), globals_(globals) {}
 
   Interface run() {
@@ -173,7 +173,7 @@ private:
   }
 
   const ir::Module& module_;
-  const passes::Program& program_;
+  const schedule::Program& program_;
   Globals& globals_;
   std::map<std::pair<ir::Type, uint32_t>, uint32_t> arrays_;  ///< by element and length
   Interface made_;
@@ -181,7 +181,7 @@ private:
 
 }  // namespace
 
-Interface declareInterface(const ir::Module& module, const passes::Program& program, Globals& globals) {
+Interface declareInterface(const ir::Module& module, const schedule::Program& program, Globals& globals) {
   return Declarer(module, program, globals).run();
 }
 

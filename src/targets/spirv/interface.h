@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "passes/program.h"
+#include "schedule/schedule.h"
 #include "targets/spirv/globals.h"
 
 namespace lacquer::targets::spirv {
@@ -24,6 +24,6 @@ struct Interface {
   std::vector<uint32_t> entry_point;  ///< all inputs and outputs
 };
 
-Interface declareInterface(const ir::Module& module, const passes::Program& program, Globals& globals);
+Interface declareInterface(const ir::Module& module, const schedule::Program& program, Globals& globals);
 
 }  // namespace lacquer::targets::spirv

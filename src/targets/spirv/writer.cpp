@@ -8,7 +8,7 @@ namespace lacquer::targets {
 
 using spirv::Words;
 
-std::vector<uint32_t> writeSpirv(const ir::Module& module, const passes::Program& program,
+std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Program& program,
                                  const SpirvOptions& options) {
   spirv::Globals globals;
   const spirv::Interface interface = declareInterface(module, program, globals);

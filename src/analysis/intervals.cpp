@@ -1,0 +1,392 @@
+#include "analysis/intervals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace lacquer::analysis {
+
+using ir::Op;
+using ir::ValueId;
+
+Intervals::Intervals(const ir::Module& module, const IntervalOptions& options)
+    : module_(module),
+      dag_(module.dag),
+      options_(options),
+      math_(options.arithmetic),
+      values_(1),
+      facets_(module.dag.size()) {}
+
+void Intervals::run() {
+  std::vector<ValueId> preshader, varyings, roots;
+  for (const ir::PreshaderField& field : module_.preshader) preshader.push_back(field.value);
+  // The fields of the material block are what the preshader gives, varyings what the vertex stage gives: they
+  // come first.
+  run(ir::reachable(dag_, preshader));
+  for (const ir::Varying& varying : module_.varyings) {
+    if (varying.source != ir::kNoValue) varyings.push_back(varying.source);
+  }
+  run(ir::reachable(dag_, varyings));
+  for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
+  run(ir::reachable(dag_, roots));
+}
+
+void Intervals::run(std::span<const ValueId> ids) {
+  values_.reserve(values_.size() + ids.size());
+  for (const ValueId id : ids) {
+    if (facets_[id].done) continue;
+    facets_[id].place = static_cast<uint32_t>(values_.size());
+    values_.emplace_back();
+    const auto fixed = fixed_.find(id);
+    look(id);
+    if (fixed != fixed_.end()) {
+      rangesOf(id) = fixed->second;
+      facets_[id].alike = false;
+    } else {
+      evaluate(id);
+    }
+    facets_[id].done = true;
+    const auto fact = dag_.assumed(id);
+    if (!fact) continue;
+    for (Range& range : rangesOf(id)) range = meet(range, math_.fact(*fact));
+  }
+}
+
+Range Intervals::all(ValueId id) const {
+  Range range = at(id, 0);
+  for (int c = 1; c < ir::componentCount(dag_[id].type) && c < 4; ++c) range = hull(range, at(id, c));
+  return range;
+}
+
+/// What a value is made of, from its operands.
+void Intervals::look(ValueId id) {
+  const ir::Value& value = dag_[id];
+  Facet& facet = facets_[id];
+  const bool product = value.op == Op::Mul;
+  const bool quotient = value.op == Op::Div && dag_.isConstant(value.args[1]);
+  const auto of = [&](size_t k) -> const Facet& { return facets_[value.args[k]]; };
+  facet.root =
+      value.op == Op::InverseSqrt || (product && (of(0).root || of(1).root)) || (quotient && of(0).root);
+  facet.difference = value.op == Op::Sub || (product && (of(0).difference || of(1).difference)) ||
+                     (quotient && of(0).difference);
+  // Patterns of a root look for the component's own square.
+  facet.alike =
+      !ir::isFloatVector(value.type) || ((value.op != Op::Construct || value.count == 1) &&
+                                         value.op != Op::Constant && value.op != Op::Cross && !facet.root);
+  for (size_t k = 0; k < value.count; ++k) facet.alike &= of(k).alike;
+}
+
+void Intervals::evaluate(ValueId id) {
+  const ir::Value& value = dag_[id];
+  if (value.op == Op::Input) {
+    const ir::Input& in = dag_.inputOf(id);
+    rangesOf(id).fill(input(in));
+    materialField(id, in);
+    varying(id, in);
+    return;
+  }
+  if (value.op == Op::MatMul) return matMul(id);
+  if (value.op == Op::Cross || value.op == Op::Construct || value.op == Op::Swizzle ||
+      value.op == Op::Normalize) {
+    return vectorOp(id);
+  }
+  for (int c = 0; c < std::min(ir::componentCount(value.type), 4); ++c) {
+    Range range = component(id, c);
+    pattern(id, c, range);
+    rangesOf(id)[static_cast<size_t>(c)] = range;
+    if (facets_[id].alike) return rangesOf(id).fill(range);
+  }
+}
+
+Range Intervals::open(ir::Interval range) const {
+  if (options_.arithmetic == Arithmetic::Real) return math_.fact(range);
+  const double limit = options_.unbounded;
+  if (options_.computed_inputs) {
+    const Range wide = math_.fact(range);
+    range = {wide.lo, wide.hi};
+  }
+  return {math_.constant(std::max(range.lo, -limit)).lo, math_.constant(std::min(range.hi, limit)).hi, false};
+}
+
+namespace {
+
+/// What glTF asks of vertex data ("Meshes"): normals and tangents are unit vectors, a tangent's sign is 1 or
+/// -1, colours are clamped. A BSDF's own directions are unit vectors too (templates/bsdf.node).
+ir::Interval vertexRange(const ir::Input& input) {
+  for (const std::string_view name : {"NORMAL", "TANGENT", "VIEW", "LIGHT"}) {
+    if (input.name == name) return {-1, 1};
+  }
+  if (input.name.starts_with("COLOR_")) return {0, 1};
+  return input.range;
+}
+
+}  // namespace
+
+Range Intervals::input(const ir::Input& input) const {
+  switch (input.kind) {
+    case ir::InputKind::FrontFacing: return {0, 1, false};
+    case ir::InputKind::LightIndex: return {0, 65535, false};
+    case ir::InputKind::Texture: {
+      // An environment map's format is the application's: nothing is known, not even that it holds numbers.
+      const bool environment =
+          input.field < module_.textures.size() && module_.textures[input.field].environment;
+      return environment ? math_.whole(true) : Range{0, 1, false};
+    }
+    case ir::InputKind::Attribute:
+    case ir::InputKind::Varying: return open(vertexRange(input));
+    case ir::InputKind::Parameter:
+    case ir::InputKind::SpecConstant:
+    case ir::InputKind::BlockField: return open(input.range);
+  }
+  return math_.whole(true);
+}
+
+void Intervals::materialField(ValueId id, const ir::Input& input) {
+  if (input.kind != ir::InputKind::BlockField || input.block >= module_.blocks.size()) return;
+  if (module_.blocks[input.block].role != ir::BlockRole::Material) return;
+  for (const ir::PreshaderField& field : module_.preshader) {
+    if (field.field != input.field || !known(field.value)) continue;
+    rangesOf(id) = rangesOf(field.value);
+    facets_[id].alike = facets_[field.value].alike;
+  }
+}
+
+void Intervals::varying(ValueId id, const ir::Input& input) {
+  if (input.kind != ir::InputKind::Varying || input.field >= module_.varyings.size()) return;
+  const ValueId source = module_.varyings[input.field].source;
+  if (source == ir::kNoValue || !known(source)) return;
+  facets_[id].alike = facets_[source].alike;
+  for (int c = 0; c < ir::componentCount(dag_[id].type); ++c) {
+    rangesOf(id)[static_cast<size_t>(c)] = interpolated(at(source, c));
+  }
+}
+
+void Intervals::matMul(ValueId id) {
+  const Range element = at(dag_[id].args[0], 0);
+  std::array<Range, 4> terms;
+  for (int c = 0; c < 4; ++c) terms[static_cast<size_t>(c)] = math_.mul(element, at(dag_[id].args[1], c));
+  rangesOf(id).fill(math_.sum(terms));
+}
+
+void Intervals::vectorOp(ValueId id) {
+  const ir::Value& value = dag_[id];
+  Ranges& out = rangesOf(id);
+  const ValueId a = value.args[0];
+  if (value.op == Op::Swizzle) {
+    for (int c = 0; c < ir::componentCount(value.type); ++c) {
+      out[static_cast<size_t>(c)] = at(a, ir::swizzleComponent(value.payload, c));
+    }
+  } else if (value.op == Op::Construct) {
+    size_t next = 0;
+    for (const ValueId part : value.operands()) {
+      for (int c = 0; c < ir::componentCount(dag_[part].type); ++c) out[next++] = at(part, c);
+    }
+    if (value.count == 1) out.fill(at(a, 0));
+  } else if (value.op == Op::Cross) {
+    const ValueId b = value.args[1];
+    for (int c = 0; c < 3; ++c) {
+      const int i = (c + 1) % 3;
+      const int j = (c + 2) % 3;
+      out[static_cast<size_t>(c)] = math_.sub(math_.mul(at(a, i), at(b, j)), math_.mul(at(a, j), at(b, i)));
+    }
+  } else {
+    const Range squared = dot(a, a);
+    const double end = 1 + kFactSlack;
+    const bool nan =
+        squared.nan || squared.contains(0) || squared.hi == std::numeric_limits<double>::infinity();
+    for (int c = 0; c < ir::componentCount(value.type); ++c) {
+      const Range& x = at(a, c);
+      out[static_cast<size_t>(c)] =
+          nan ? math_.whole(true) : Range{x.lo >= 0 ? 0 : -end, x.hi <= 0 ? 0 : end, false};
+    }
+  }
+}
+
+Range Intervals::dot(ValueId a, ValueId b) const {
+  std::array<Range, 4> terms;
+  const int n = ir::componentCount(dag_[a].type);
+  for (int c = 0; c < n; ++c) {
+    terms[static_cast<size_t>(c)] = a == b ? math_.square(at(a, c)) : math_.mul(at(a, c), at(b, c));
+  }
+  return math_.sum({terms.data(), static_cast<size_t>(n)});
+}
+
+Range Intervals::component(ValueId id, int c) const {
+  const ir::Value& value = dag_[id];
+  switch (value.op) {
+    case Op::Constant: return math_.constant(dag_.constantOf(id)[static_cast<size_t>(c)]);
+    case Op::Dot: return dot(value.args[0], value.args[1]);
+    case Op::Length: return math_.sqrt(dot(value.args[0], value.args[0]));
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::Equal:
+    case Op::And:
+    case Op::Or:
+    case Op::Not: return comparison(id);
+    case Op::Select: return select(id, c);
+    case Op::Texture:
+    case Op::TextureLod: return at(value.args[0], 0);
+    case Op::TextureCompare:
+    case Op::TextureCompareLod: return {0, 1, false};
+    case Op::DFdx:
+    case Op::DFdy: return derivative(id, c);
+    case Op::Interpolate: return interpolated(at(value.args[0], c));
+    case Op::SumOverLights: return lights(id, c);
+    case Op::Input:
+    case Op::MatMul:
+    case Op::Cross:
+    case Op::Normalize:
+    case Op::Construct:
+    case Op::Swizzle: return values_[facets_[id].place][static_cast<size_t>(c)];
+    case Op::Neg:
+    case Op::Abs:
+    case Op::Sign:
+    case Op::Floor:
+    case Op::Fract:
+    case Op::Sqrt:
+    case Op::InverseSqrt:
+    case Op::Exp2:
+    case Op::Log2:
+    case Op::Exp:
+    case Op::Log:
+    case Op::Sin:
+    case Op::Cos:
+    case Op::Acos:
+    case Op::Add:
+    case Op::Sub:
+    case Op::Mul:
+    case Op::Div:
+    case Op::Min:
+    case Op::Max:
+    case Op::Pow:
+    case Op::Atan2:
+    case Op::Mix:
+    case Op::Clamp: break;
+  }
+  return arithmetic(id, c);
+}
+
+Range Intervals::arithmetic(ValueId id, int c) const {
+  const ir::Value& value = dag_[id];
+  const RangeMath& m = math_;
+  const Range& a = at(value.args[0], c);
+  const Range& b = value.count > 1 ? at(value.args[1], c) : a;
+  const Range& t = value.count > 2 ? at(value.args[2], c) : a;
+  switch (value.op) {
+    case Op::Neg: return m.neg(a);
+    case Op::Abs: return m.abs(a);
+    case Op::Sign: return m.sign(a);
+    case Op::Floor: return m.floor(a);
+    case Op::Fract: return m.fract(a);
+    case Op::Sqrt: return m.sqrt(a);
+    case Op::InverseSqrt: return m.inverseSqrt(a);
+    case Op::Exp2: return m.exp2(a);
+    case Op::Log2: return m.log2(a);
+    case Op::Exp: return m.exp(a);
+    case Op::Log: return m.log(a);
+    case Op::Sin:
+    case Op::Cos: return m.wave(a);
+    case Op::Acos: return m.acos(a);
+    case Op::Add: return m.add(a, b);
+    case Op::Sub: return m.sub(a, b);
+    case Op::Mul: return product(id, c);
+    case Op::Div: return m.div(a, b);
+    case Op::Min: return m.min(a, b);
+    case Op::Max: return m.max(a, b);
+    case Op::Pow: return m.pow(a, b);
+    case Op::Atan2: return m.atan2(a, b);
+    case Op::Clamp: return m.clamp(a, b, t);
+    case Op::Mix: return m.mix(a, b, t);
+    default: return m.whole(true);
+  }
+}
+
+Range Intervals::product(ValueId id, int c) const {
+  const ValueId a = dag_[id].args[0];
+  const ValueId b = dag_[id].args[1];
+  if (a == b) return math_.square(at(a, c));
+  const Range plain = math_.mul(at(a, c), at(b, c));
+  // (k * x) * x has the sign of k.
+  for (const auto& [one, other] : {std::pair{a, b}, std::pair{b, a}}) {
+    const ir::Value& inner = dag_[one];
+    if (inner.op != Op::Mul) continue;
+    for (const size_t k : {size_t{0}, size_t{1}}) {
+      if (inner.args[k] != other) continue;
+      const Range& factor = at(inner.args[1 - k], c);
+      const double inf = std::numeric_limits<double>::infinity();
+      return meet(plain, {factor.lo >= 0 ? 0 : -inf, factor.hi <= 0 ? 0 : inf, true});
+    }
+  }
+  return plain;
+}
+
+Range Intervals::comparison(ValueId id) const {
+  const ir::Value& value = dag_[id];
+  const Range& a = at(value.args[0], 0);
+  const Range& b = value.count > 1 ? at(value.args[1], 0) : a;
+  const bool nan = a.nan || b.nan;
+  const auto known = [&](bool yes, bool no) {
+    return Range{yes && !nan ? 1.0 : 0.0, no && !nan ? 0.0 : 1.0, false};
+  };
+  switch (value.op) {
+    case Op::Less: return known(a.hi < b.lo, a.lo >= b.hi);
+    case Op::LessEqual: return known(a.hi <= b.lo, a.lo > b.hi);
+    case Op::Equal: return known(a.lo == a.hi && b.lo == b.hi && a.lo == b.lo, a.hi < b.lo || b.hi < a.lo);
+    case Op::And: return {std::min(a.lo, b.lo), std::min(a.hi, b.hi), false};
+    case Op::Or: return {std::max(a.lo, b.lo), std::max(a.hi, b.hi), false};
+    case Op::Not: return {1 - a.hi, 1 - a.lo, false};
+    default: return {0, 1, false};
+  }
+}
+
+Range Intervals::select(ValueId id, int c) const {
+  const ir::Value& value = dag_[id];
+  const Range& condition = at(value.args[0], 0);
+  const Range& yes = at(value.args[1], c);
+  const Range& no = at(value.args[2], c);
+  if (condition.lo == 1) return yes;
+  if (condition.hi == 0) return no;
+  return hull(yes, no);
+}
+
+Range Intervals::derivative(ValueId id, int c) const {
+  // The difference of two neighbours.
+  const Range& a = at(dag_[id].args[0], c);
+  return math_.sub(a, a);
+}
+
+/// Under multisampling a value may be taken outside of its triangle: by no more than the values in it differ.
+/// The exact function is that of points of the triangle.
+Range Intervals::interpolated(const Range& a) const {
+  if (options_.arithmetic == Arithmetic::Real) return a;
+  const Range beyond = math_.sub(a, a);
+  return math_.widened(math_.add(a, beyond), kFactSlack, 0);
+}
+
+Range Intervals::lights(ValueId id, int c) const {
+  const ir::Value& value = dag_[id];
+  const Range& a = at(value.args[0], c);
+  double most = 0;
+  for (const ir::Block& block : module_.blocks) {
+    if (block.role == ir::BlockRole::Lights) most = block.array;
+  }
+  double least = 0;
+  if (value.payload < module_.light_groups.size() && module_.light_groups[value.payload].count >= 0) {
+    least = most = module_.light_groups[value.payload].count;
+  }
+  const Range count{least, most, false};
+  Range total = math_.mul(a, count);
+  // `most` additions, each rounded; they keep the sign of terms of one sign.
+  const Range wide = math_.widened(total, most * 0x1p-23, 0);
+  const double magnitude = std::max(std::abs(wide.lo), std::abs(wide.hi)) * most * 0x1p-23;
+  const Range wider = math_.widened(wide, 0, std::isfinite(magnitude) ? magnitude : 0);
+  total.lo = a.lo >= 0 ? std::max(wider.lo, 0.0) : wider.lo;
+  total.hi = a.hi <= 0 ? std::min(wider.hi, 0.0) : wider.hi;
+  // An infinite term beside one of the other sign.
+  const double inf = std::numeric_limits<double>::infinity();
+  total.nan = a.nan || (total.lo == -inf && total.hi == inf && options_.arithmetic == Arithmetic::Float32);
+  return total;
+}
+
+}  // namespace lacquer::analysis

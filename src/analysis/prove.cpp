@@ -1,0 +1,125 @@
+#include "analysis/prove.h"
+
+#include <algorithm>
+
+namespace lacquer::analysis {
+
+namespace {
+
+using ir::Op;
+using ir::ValueId;
+
+/// How an operation may fail.
+enum class Domain : uint8_t { None, NonNegative, Positive, NonZero, Unit, Power, Direction, Angle };
+
+Domain domainOf(Op op) {
+  switch (op) {
+    case Op::Sqrt: return Domain::NonNegative;
+    case Op::InverseSqrt:
+    case Op::Log:
+    case Op::Log2: return Domain::Positive;
+    case Op::Div: return Domain::NonZero;
+    case Op::Acos: return Domain::Unit;
+    case Op::Pow: return Domain::Power;
+    case Op::Normalize: return Domain::Direction;
+    case Op::Atan2: return Domain::Angle;
+    default: return Domain::None;
+  }
+}
+
+class Prover {
+public:
+  Prover(const ir::Module& module, const Intervals& intervals) : dag_(module.dag), intervals_(intervals) {}
+
+  bool proof(ValueId id, Proof& out) const {
+    const ir::Value& value = dag_[id];
+    const ValueId a = value.args[0];
+    switch (domainOf(value.op)) {
+      case Domain::None: return false;
+      case Domain::NonNegative:
+        out = each(id, a, ">= 0", [](const Range& x) { return x.lo >= 0; });
+        return true;
+      case Domain::Positive: out = each(id, a, "> 0", [](const Range& x) { return x.lo > 0; }); return true;
+      case Domain::NonZero:
+        out = each(id, value.args[1], "!= 0", [](const Range& x) { return !x.contains(0); });
+        return true;
+      case Domain::Unit:
+        out = each(id, a, "in [-1, 1]", [](const Range& x) { return x.lo >= -1 && x.hi <= 1; });
+        return true;
+      case Domain::Power: out = power(id); return true;
+      case Domain::Direction:
+        out = each(id, a, "not the zero vector", [](const Range&) { return true; });
+        out.safe &= someComponent(a);
+        return true;
+      case Domain::Angle:
+        out = each(id, a, "not both 0", [](const Range&) { return true; });
+        out.safe &= someComponent(a) || someComponent(value.args[1]);
+        return true;
+    }
+    return false;
+  }
+
+private:
+  template <class F>
+  Proof each(ValueId id, ValueId operand, std::string_view need, F good) const {
+    Proof proof{id, true, operand, intervals_.all(operand), need};
+    for (int c = 0; c < ir::componentCount(dag_[operand].type); ++c) {
+      const Range& x = intervals_.at(operand, c);
+      proof.safe &= !x.nan && good(x);
+    }
+    return proof;
+  }
+
+  Proof power(ValueId id) const {
+    const ir::Value& value = dag_[id];
+    Proof proof = each(id, value.args[0], ">= 0", [](const Range& x) { return x.lo >= 0; });
+    for (int c = 0; c < ir::componentCount(value.type); ++c) {
+      const Range& exponent = intervals_.at(value.args[1], c);
+      const bool defined = intervals_.at(value.args[0], c).lo > 0 || exponent.lo > 0;
+      if (!proof.safe || (defined && !exponent.nan)) continue;
+      return {id, false, value.args[1], intervals_.all(value.args[1]), "> 0 where the base can be 0"};
+    }
+    return proof;
+  }
+
+  /// True when one component is never 0, so that the vector is never the zero vector.
+  bool someComponent(ValueId id) const {
+    for (int c = 0; c < ir::componentCount(dag_[id].type); ++c) {
+      if (!intervals_.at(id, c).contains(0)) return true;
+    }
+    return false;
+  }
+
+  const ir::Dag& dag_;
+  const Intervals& intervals_;
+};
+
+}  // namespace
+
+std::vector<Proof> prove(const ir::Module& module, const Intervals& intervals,
+                         std::span<const ir::ValueId> ids) {
+  const Prover prover(module, intervals);
+  std::vector<Proof> proofs;
+  for (const ValueId id : ids) {
+    Proof proof{};
+    if (prover.proof(id, proof)) proofs.push_back(proof);
+  }
+  return proofs;
+}
+
+Proofs prove(const ir::Module& module, const IntervalOptions& options) {
+  Intervals intervals(module, options);
+  intervals.run();
+  std::vector<ValueId> ids;
+  for (ValueId id = 0; id < module.dag.size(); ++id) {
+    if (intervals.known(id)) ids.push_back(id);
+  }
+  Proofs proofs{prove(module, intervals, ids), {}};
+  for (uint32_t i = 0; i < module.outputs.size(); ++i) {
+    if (module.outputs[i].kind != ir::OutputKind::Color) continue;
+    proofs.outputs.push_back({i, intervals.all(module.outputs[i].value)});
+  }
+  return proofs;
+}
+
+}  // namespace lacquer::analysis

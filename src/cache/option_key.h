@@ -1,0 +1,62 @@
+// What each option decides: the one place that knows, for everything that is kept between runs.
+#pragma once
+
+#include <initializer_list>
+
+#include "cache/key.h"
+#include "lacquer/options.h"
+
+namespace lacquer {
+
+/// The first thing on the way from a file to its outputs that depends on an option.
+enum class Decides : uint8_t {
+  Graph,      ///< a material's graph, and what is said of the material
+  Module,     ///< what becomes of a graph
+  Code,       ///< what is printed of a module, or known of it
+  SpirvCode,  ///< the same, of SPIR-V alone
+  Run,        ///< which outputs a run has
+  Nothing,    ///< neither outputs nor what is reported
+};
+
+/// Calls `each(Decides, value)` for every option. An option that is added stops here until it has its place:
+/// the names must be all of Options.
+template <class Each>
+void eachOption(const Options& options, Each each) {
+  const auto& [profile, error_budget, template_name, targets, parameters, lights, switches, ibl,
+               multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, spirv_route, debug,
+               live, node_directories, jobs, cache, cache_size, depfile, shard, limits, allow, cache_key,
+               sync] = options;
+  each(Decides::Graph, profile);
+  each(Decides::Graph, error_budget);
+  each(Decides::Graph, template_name);
+  each(Decides::Run, targets);
+  each(Decides::Module, parameters);
+  each(Decides::Graph, lights);
+  each(Decides::Graph, switches);
+  each(Decides::Graph, ibl);
+  each(Decides::Graph, multiple_scattering);
+  each(Decides::Graph, dfg_table);
+  each(Decides::Graph, decode_srgb);
+  each(Decides::Graph, permissive);
+  each(Decides::Code, validate);
+  each(Decides::Graph, unused);
+  each(Decides::SpirvCode, spirv_route);
+  each(Decides::SpirvCode, debug);
+  each(Decides::Graph, live);
+  // What is in them goes into every key; the depfile has their names.
+  each(Decides::Run, node_directories);
+  each(Decides::Nothing, jobs);
+  each(Decides::Nothing, cache);
+  each(Decides::Nothing, cache_size);
+  each(Decides::Run, depfile);
+  each(Decides::Run, shard);
+  each(Decides::Graph, limits);
+  each(Decides::Nothing, allow);
+  each(Decides::Nothing, cache_key);
+  each(Decides::Nothing, sync);
+}
+
+/// Puts the options in that decide one of these.
+void addOptions(const Options& options, std::initializer_list<Decides> what, KeyBuilder& key);
+
+}  // namespace lacquer

@@ -1,0 +1,180 @@
+#include "ir/names.h"
+
+#include <fmt/format.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+
+namespace lacquer::ir {
+
+namespace {
+
+/// Keywords, types, built-in functions and macros of the targets that could be taken for a local's name and
+/// follow no rule below.
+constexpr std::string_view kReserved =
+    "EOF FALSE HUGE_VAL INFINITY M_E M_PI NAN NULL TRUE abort abs acos acosh active alignas alignof all and "
+    "and_eq any asdouble asfloat asin asinh asint "
+    "asm assert asuint atan atan2 atanh atomic_uint attribute auto barrier bitCount bitand "
+    "bitfieldExtract bitfieldInsert bitfieldReverse bitor blendstate bool break buffer case cast catch "
+    "cbuffer ceil centroid char char16_t char32_t clamp class clip coherent column_major common compile "
+    "compileshader compl computeshader const const_cast constexpr continue cos cosh countbits cross dFdx "
+    "dFdxCoarse dFdxFine dFdy dFdyCoarse dFdyFine ddx ddx_coarse ddx_fine ddy ddy_coarse ddy_fine "
+    "decltype default degrees delete determinant devicecoherent discard distance do domainshader dot "
+    "dot2add dot4add_i8packed dot4add_u8packed double dst dword dynamic_cast else enum equal errno "
+    "errorf exp exp2 explicit export extern external f16tof32 f32tof16 faceforward false filter findLSB "
+    "findMSB firstbithigh firstbitlow fixed flat float float16_t float2 float3 float32_t float4 "
+    "float64_t floatBitsToInt floatBitsToUint floor fma fmod for frac fract frexp friend ftransform "
+    "fvec2 fvec3 fvec4 fwidth fwidthCoarse fwidthFine geometryshader globallycoherent goto greaterThan "
+    "greaterThanEqual groupMemoryBarrier groupshared half highp hullshader hvec2 hvec3 hvec4 if image "
+    "imulExtended in inline inout input int int16_t int32_t int64_t intBitsToFloat interface "
+    "interpolateAtCentroid interpolateAtOffset interpolateAtSample invariant inverse inversesqrt "
+    "isampler2D isfinite isinf isnan layout ldexp length lerp less lessThan lessThanEqual line lineadj "
+    "linear linux lit log log10 log2 long lowp mad main mat2 mat3 mat4 matrix matrixCompMult max mediump "
+    "memoryBarrier min min10float min12int min16float min16int min16uint mix mod modf msad4 mul mutable "
+    "namespace new noexcept noinline nointerpolation noise noise1 noise2 noise3 noise4 noperspective "
+    "normalize not notEqual not_eq nullptr operator or or_eq out outerProduct output packDouble2x32 "
+    "packHalf2x16 packSnorm2x16 packSnorm4x8 packUnorm2x16 packUnorm4x8 packoffset partition pass patch "
+    "pixelfragment pixelshader point pow precise precision printf private protected public radians rcp "
+    "readonly reflect refract register reinterpret_cast resource restrict return reversebits round "
+    "roundEven row_major rsqrt sample sampler sampler1D sampler2D sampler3D samplerCUBE samplerCube "
+    "sampler_state saturate shadow1D shadow2D shared short sign signed signgam sin sincos sinh size_t "
+    "sizeof smooth smoothstep snorm sqrt stateblock static static_assert static_cast stderr stdin stdout "
+    "step string struct subroutine superp switch tan tanh tbuffer technique template tex1D tex1Dbias "
+    "tex1Dgrad tex1Dlod tex1Dproj tex2D tex2Dbias tex2Dgrad tex2Dlod tex2Dproj tex3D tex3Dbias tex3Dgrad "
+    "tex3Dlod tex3Dproj texCUBE texCUBEbias texCUBEgrad texCUBElod texCUBEproj texture textureLod this "
+    "thread_local throw transpose triangle triangleadj true trunc try typedef typeid typename uaddCarry "
+    "uint uint16_t uint32_t uint64_t uintBitsToFloat umulExtended uniform union unix unorm "
+    "unpackDouble2x32 unpackHalf2x16 unpackSnorm2x16 unpackSnorm4x8 unpackUnorm2x16 unpackUnorm4x8 "
+    "unsigned usampler2D using usubBorrow varying vec2 vec3 vec4 vector vertexfragment vertexshader "
+    "virtual void volatile wchar_t while workgroupcoherent writeonly xor xor_eq ";
+
+uint64_t hashOf(std::string_view name) {
+  const uint64_t hash = XXH3_64bits(name.data(), name.size());
+  return hash == 0 ? 1 : hash;
+}
+
+/// The place of a hash in a table, or the empty one where it belongs.
+template <class Table>
+size_t slotOf(const Table& table, uint64_t hash) {
+  size_t slot = hash & (table.size() - 1);
+  while (table[slot] != 0 && table[slot] != hash) slot = (slot + 1) & (table.size() - 1);
+  return slot;
+}
+
+bool reserved(uint64_t hash) {
+  constexpr size_t kSlots = 2048;
+  static_assert(std::count(kReserved.begin(), kReserved.end(), ' ') * 2 < static_cast<ptrdiff_t>(kSlots));
+  static const auto kTable = [] {
+    std::array<uint64_t, kSlots> table{};
+    for (std::string_view rest = kReserved; !rest.empty();) {
+      const uint64_t word = hashOf(rest.substr(0, rest.find(' ')));
+      table[slotOf(table, word)] = word;
+      rest.remove_prefix(rest.find(' ') + 1);
+    }
+    return table;
+  }();
+  return kTable[slotOf(kTable, hash)] != 0;
+}
+
+/// The printers' own prefixes: attributes, varyings, outputs and what languages keep for themselves.
+bool prefixed(std::string_view name) {
+  constexpr std::array kPrefixes = {"in_", "v_", "out_", "gl_", "lacquer_", "_"};
+  return std::any_of(kPrefixes.begin(), kPrefixes.end(),
+                     [&](std::string_view p) { return name.starts_with(p); });
+}
+
+/// Letters, digits and underscores, in every locale the same.
+bool plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+bool digit(char c) { return c >= '0' && c <= '9'; }
+bool capital(char c) { return c >= 'A' && c <= 'Z'; }
+
+/// Types by rule: "float4x4", "uint2", "dmat3", "isampler2DArray"; functions: "textureLod", "imageStore".
+bool typed(std::string_view name) {
+  constexpr std::array kNumbered = {"bool",     "int",       "uint",       "dword",      "half",
+                                    "float",    "double",    "min16float", "min10float", "min16int",
+                                    "min12int", "min16uint", "vec",        "ivec",       "uvec",
+                                    "bvec",     "dvec",      "mat",        "dmat"};
+  constexpr std::array kFamilies = {"texture", "sampler", "isampler", "usampler", "image",
+                                    "iimage",  "uimage",  "subpass",  "atomic"};
+  const auto numbered = [&](std::string_view type) {
+    if (!name.starts_with(type)) return false;
+    const std::string_view rest = name.substr(type.size());
+    return (rest.size() == 1 && digit(rest[0])) ||
+           (rest.size() == 3 && digit(rest[0]) && rest[1] == 'x' && digit(rest[2]));
+  };
+  const auto family = [&](std::string_view head) {
+    return name.starts_with(head) && name.size() > head.size() &&
+           (capital(name[head.size()]) || digit(name[head.size()]));
+  };
+  return std::any_of(kNumbered.begin(), kNumbered.end(), numbered) ||
+         std::any_of(kFamilies.begin(), kFamilies.end(), family);
+}
+
+/// The name with only characters that every target takes, and none of the printers' prefixes.
+std::string cleaned(std::string_view wanted) {
+  constexpr size_t kLongest = 64;  // a compiler may stop at 255, with all that is put around it
+  wanted = wanted.substr(0, kLongest);
+  std::string name;
+  name.reserve(wanted.size());
+  for (const char c : wanted) {
+    const char kept = plain(c) ? c : '_';
+    // Two underscores in a row are reserved in GLSL.
+    if (kept == '_' && !name.empty() && name.back() == '_') continue;
+    name += kept;
+  }
+  if (name.empty() || digit(name[0]) || prefixed(name) || typed(name)) name = "value_" + name;
+  while (name.back() == '_') name.pop_back();
+  // The helper functions of the C++ header are called min_of, max_of and so on.
+  if (name.ends_with("_of")) name += "_value";
+  return name;
+}
+
+}  // namespace
+
+bool Names::grab(std::string_view name) {
+  const uint64_t hash = hashOf(name);
+  if (reserved(hash)) return false;
+  const size_t slot = slotOf(taken_, hash);
+  if (taken_[slot] != 0) return false;
+  take(name);
+  return true;
+}
+
+void Names::take(std::string_view name) {
+  const uint64_t hash = hashOf(name);
+  uint64_t& entry = taken_[slotOf(taken_, hash)];
+  if (entry != 0) return;
+  entry = hash;
+  if (++count_ * 2 < taken_.size()) return;
+  std::vector<uint64_t> wider(taken_.size() * 2, 0);
+  for (const uint64_t old : taken_) {
+    if (old != 0) wider[slotOf(wider, old)] = old;
+  }
+  taken_ = std::move(wider);
+}
+
+std::string Names::pick(std::string_view wanted, std::string_view layer) {
+  std::string base = cleaned(wanted);
+  if (grab(base)) return base;
+  // "coat_alpha", but not "coat_coat_alpha": a second one of a layer's own is numbered.
+  const bool of_layer =
+      base.starts_with(layer) && base.substr(std::min(layer.size(), base.size())).starts_with('_');
+  if (!layer.empty() && !of_layer) {
+    base = cleaned(fmt::format("{}_{}", layer, base));
+    if (grab(base)) return base;
+  }
+  for (int k = 2;; ++k) {
+    std::string name = fmt::format("{}_{}", base, k);
+    if (grab(name)) return name;
+  }
+}
+
+std::string_view layerOf(std::string_view term) { return term.substr(0, term.find('.')); }
+
+}  // namespace lacquer::ir

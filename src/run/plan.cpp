@@ -1,0 +1,225 @@
+// Plans: a Ninja file with one command for each distinct shader. What a command reads is beside the plan (the
+// shader's graph, without anything that belongs to one material), so that it runs wherever the plan and the
+// program are.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "run/manifest.h"
+#include "run/run.h"
+#include "shader/messages.h"
+#include "shader/options.h"
+#include "shader/print.h"
+#include "support/jobs.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+namespace {
+
+/// A path in a build statement.
+std::string escaped(const std::string& path) {
+  std::string text;
+  for (const char c : path) {
+    if (c == '$' || c == ' ' || c == ':') text += '$';
+    text += c;
+  }
+  return text;
+}
+
+/// One word for a POSIX shell.
+std::string shellWord(const std::string& text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./,:=+@%").find(static_cast<char>(c)) != std::string::npos;
+  });
+  if (plain) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+std::string lightsFlag(const passes::LightFacts& lights) {
+  if (lights.any) return {};
+  std::string flag;
+  for (const auto& [kind, count] : lights.counts)
+    flag += fmt::format("{}{}:{}", flag.empty() ? " --lights " : ",", kind, count);
+  return flag.empty() ? " --lights none" : flag;
+}
+
+/// Errors about names that Ninja's format cannot hold: it has an escape for a space, but for neither a line's
+/// end nor a bar.
+Diagnostics unfit(const Strings& paths, const Strings& words) {
+  Diagnostics wrong;
+  const auto look = [&](const std::string& text, bool path) {
+    const bool control = std::any_of(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+    const bool bar = path && text.find('|') != std::string::npos;
+    if (!control && !bar) return;
+    wrong.push_back({"ninja-name",
+                     Severity::Error,
+                     {printable(text), 0, 0, {}},
+                     control ? "a Ninja file cannot hold a name with a control character"
+                             : "a Ninja file cannot hold a path with the character |",
+                     "nothing was written: rename it",
+                     {}});
+  };
+  for (const std::string& path : paths) look(path, true);
+  for (const std::string& word : words) look(word, false);
+  return wrong;
+}
+
+class NinjaFile {
+public:
+  NinjaFile(const Plan& plan, const std::string& folder, const Options& options,
+            std::vector<std::string> inputs)
+      : plan_(plan), folder_(folder), options_(options), inputs_(std::move(inputs)) {}
+
+  std::string stem(const std::string& id) const { return plan_.ninja + ".plan/" + id; }
+  std::string materials() const { return plan_.ninja + ".plan/materials.json"; }
+
+  void head() {
+    text_ +=
+        "# Made by `lacquer plan`: one command for each distinct shader, then one that merges what they say "
+        "of it.\n"
+        "# A command reads what is named here and nothing else, and writes what is named here.\n"
+        "ninja_required_version = 1.7\n\n";
+    text_ += fmt::format("rule shader\n  command = {} --graph $graph --shard $shard$lights\n",
+                         shellText(plan_.command));
+    text_ += "  description = shader $id\n  restat = 1\n\n";
+    text_ += fmt::format("rule merge\n  command = {} merge -o {} $in\n", shellText({plan_.program}),
+                         shellText({folder_}));
+    text_ += "  description = merge $out\n  restat = 1\n\n";
+    if (plan_.replan.empty()) return;
+    text_ +=
+        fmt::format("rule plan\n  command = {}\n  description = plan $out\n  generator = 1\n  restat = 1\n\n",
+                    shellText(plan_.replan));
+  }
+
+  void shader(const std::string& id, const Structure& structure) {
+    text_ += "build " + escaped(stem(id) + ".shard.json") + " |";
+    for (const Target target : options_.targets) {
+      for (int stage = firstStage(target, structure.has_vertex); stage < 2; ++stage) {
+        text_ += " " + escaped(folder_ + "/" + shaderPath(target, id, stage));
+      }
+    }
+    text_ += ": shader " + escaped(stem(id) + ".graph.json");
+    tools(text_);
+    text_ += fmt::format("\n  id = {}\n  graph = {}\n  shard = {}\n", id,
+                         shellText({stem(id) + ".graph.json"}), shellText({stem(id) + ".shard.json"}));
+    if (!structure.lights.any)
+      text_ += "  lights =" + std::string("$ ") + lightsFlag(structure.lights).substr(1) + "\n";
+    shards_.push_back(stem(id) + ".shard.json");
+  }
+
+  std::string finish() {
+    text_ += fmt::format("\nbuild {}: merge {}", escaped(folder_ + "/manifest.json"), escaped(materials()));
+    for (const std::string& shard : shards_) text_ += " " + escaped(shard);
+    if (!program().empty()) text_ += " | " + escaped(program());
+    if (!plan_.replan.empty()) again();
+    text_ += "\n\ndefault " + escaped(folder_ + "/manifest.json") + "\n";
+    return std::move(text_);
+  }
+
+  /// The plan itself, as Ninja makes it anew when an input has changed.
+  void again() {
+    text_ += "\n\nbuild " + escaped(plan_.ninja) + " | " + escaped(materials());
+    for (const std::string& shard : shards_) {
+      text_ +=
+          " " + escaped(shard.substr(0, shard.size() - std::string_view("shard.json").size()) + "graph.json");
+    }
+    text_ += ": plan |";
+    for (const std::string& input : inputs_) text_ += " " + escaped(input);
+    if (!program().empty()) text_ += " " + escaped(program());
+  }
+
+private:
+  /// Words of a command, or of a variable that is part of one.
+  static std::string shellText(const Strings& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + shellWord(word);
+    std::string out;
+    for (const char c : text) out += c == '$' ? std::string("$$") : std::string(1, c);
+    return out;
+  }
+
+  /// The program, when it is a file and not found by the PATH.
+  std::string program() const { return plan_.program.find('/') == std::string::npos ? "" : plan_.program; }
+
+  /// What every command reads beside its graph.
+  void tools(std::string& text) const {
+    std::vector<std::string> all = nodeInputs();
+    if (!program().empty()) all.insert(all.begin(), program());
+    if (!all.empty()) text += " |";
+    for (const std::string& one : all) text += " " + escaped(one);
+  }
+
+  std::vector<std::string> nodeInputs() const {
+    std::vector<std::string> all;
+    std::copy_if(inputs_.begin(), inputs_.end(), std::back_inserter(all),
+                 [](const std::string& path) { return path.ends_with(".node"); });
+    return all;
+  }
+
+  const Plan& plan_;
+  const std::string& folder_;
+  const Options& options_;
+  std::vector<std::string> inputs_;
+  std::vector<std::string> shards_;
+  std::string text_;
+};
+
+Report planWith(const Plan& plan, const std::vector<std::string>& files,
+                const std::vector<std::string>& materials, const std::string& folder, const Options& options,
+                Messages& messages) {
+  Run run(options, files, messages);
+  Result<void> named = hasPath("the output folder", folder);
+  if (named) named = hasPath("the Ninja file", plan.ninja);
+  if (named) named = hasPath("the program", plan.program);
+  if (!named) {
+    run.report(named.error(), {});
+    run.result().ok = false;
+    return run.finish();
+  }
+  if (!run.open()) return run.finish();
+  const std::string all_materials = plan.ninja + ".plan/materials.json";
+  Strings paths{plan.ninja, folder, plan.program};
+  const Strings read = run.inputs();
+  paths.insert(paths.end(), read.begin(), read.end());
+  Strings words = plan.command;
+  words.insert(words.end(), plan.replan.begin(), plan.replan.end());
+  if (const Diagnostics wrong = unfit(paths, words); !wrong.empty()) {
+    run.wrote(tl::make_unexpected(wrong));
+    return run.finish();
+  }
+  if (!run.mayWrite({plan.ninja, all_materials})) return run.finish();
+  const Writing how{nullptr, options.sync};
+  ManifestFile manifest(all_materials, how);
+  run.readScenes(files, materials, [&](FileResult& file) { manifest.file(file.text); });
+  NinjaFile ninja(plan, folder, options, run.inputs());
+  Strings graphs;
+  for (const auto& [id, shader] : run.structures().shaders())
+    graphs.push_back(ninja.stem(id) + ".graph.json");
+  if (!run.mayWrite(graphs)) return run.finish();
+  ninja.head();
+  for (const auto& [id, shader] : run.structures().shaders()) {
+    run.wrote(writeFile(ninja.stem(id) + ".graph.json", shader.structure->graph, how));
+    run.result().shaders.push_back({id, {}, false});
+    ninja.shader(id, *shader.structure);
+  }
+  run.wrote(manifest.finish());
+  run.wrote(writeFile(plan.ninja, ninja.finish(), how));
+  return run.finish();
+}
+
+}  // namespace
+
+Report plan(const Plan& plan, const std::vector<std::string>& files,
+            const std::vector<std::string>& materials, const std::string& folder, const Options& options,
+            Messages& messages) {
+  Report report;
+  withJobs(options.jobs, [&] { report = planWith(plan, files, materials, folder, options, messages); });
+  return report;
+}
+
+}  // namespace lacquer

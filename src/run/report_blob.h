@@ -1,0 +1,21 @@
+// What a run reports of its materials, as bytes for the cache.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cache/blob.h"
+#include "lacquer.h"
+
+namespace lacquer {
+
+void writeVariants(const std::vector<MaterialTerms::Variant>& variants, BlobWriter& blob);
+std::vector<MaterialTerms::Variant> readVariants(BlobReader& blob);
+
+/// The materials of one file, without its name. Terms that they share are written once.
+void writeMaterials(std::span<const MaterialReport> materials, BlobWriter& blob);
+/// Appends them, as those of `file`. What is damaged leaves the reader incomplete.
+void readMaterials(const std::string& file, BlobReader& blob, std::vector<MaterialReport>& materials);
+
+}  // namespace lacquer

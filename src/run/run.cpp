@@ -1,0 +1,225 @@
+#include "run/run.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "cache/fingerprint.h"
+#include "check/check.h"
+#include "shader/options.h"
+#include "shader/print.h"
+#include "support/outputs.h"
+
+namespace lacquer {
+
+namespace {
+
+/// So many files are held in memory at once. Enough for every core, few enough that a run over thousands of
+/// files does not grow with their number.
+constexpr size_t kFilesAtOnce = 16;
+constexpr auto kProgressGrain = std::chrono::milliseconds(50);
+
+}  // namespace
+
+Run::Run(const Options& options, const Strings& inputs, Messages& messages,
+         std::function<void(size_t, size_t)> progress)
+    : options_(options),
+      messages_(messages),
+      progress_(std::move(progress)),
+      shown_(std::chrono::steady_clock::now()),
+      said_before_(messages.size()),
+      inputs_(inputs) {}
+
+bool Run::prepare() {
+  prepared_ = true;
+  if (const Diagnostics wrong = checkOptions(options_); !wrong.empty()) {
+    report(wrong, {});
+    report_.ok = false;
+    return false;
+  }
+  KeyBuilder base;
+  base.text(fingerprint()).text(check::toolVersions());
+  for (const std::string& folder : options_.node_directories) {
+    const Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
+    nodes_known_ &= files.has_value();
+    if (!files)
+      continue;  // open() says why, or can read them again: they were as the base has them a moment ago
+    for (const lang::SourceFile& file : *files) {
+      base.text(file.name).text(file.text);
+      node_files_.push_back(file.name);
+    }
+  }
+  base_ = base.finish();
+  if (options_.cache.empty()) return true;
+  Result<std::string> secret;
+  if (!options_.cache_key.empty()) secret = Cache::secretOf(options_.cache_key);
+  if (!secret) {
+    report(secret.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  cache_ = std::make_unique<Cache>(options_.cache, options_.cache_size, std::move(*secret));
+  return true;
+}
+
+bool Run::open() {
+  if (!prepared_ && !prepare()) return false;
+  const StageTimer timer(&times_, StageOfRun::Library);
+  const auto library = libraryFor(options_);
+  if (!library) {
+    report(library.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  library_ = *library;
+  if (const Result<void> named = resolveNames(*library_, options_); !named) {
+    report(named.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  if (const auto model = library_->models.of(options_.profile); !model) {
+    report(model.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_, *limitsOf(options_)});
+  structures_.emplace(*setting_);
+  return true;
+}
+
+std::optional<Receipt> Run::receipt(const Strings& files, const Strings& materials,
+                                    const std::string& folder) {
+  if (cache_ == nullptr || !nodes_known_) return std::nullopt;
+  const StageTimer timer(&times_, StageOfRun::Read);
+  return Receipt(files, materials, folder, options_, base_, *cache_);
+}
+
+bool Run::find(Receipt& receipt) {
+  const StageTimer timer(&times_, StageOfRun::Cache);
+  if (!receipt.find(report_, messages_)) return false;
+  if (progress_) progress_(report_.shaders.size(), report_.shaders.size());
+  return true;
+}
+
+void Run::keep(const Receipt& receipt) {
+  const StageTimer timer(&times_, StageOfRun::Cache);
+  receipt.keep(report_, Messages(messages_.begin() + static_cast<ptrdiff_t>(said_before_), messages_.end()));
+}
+
+void Run::progress(size_t done, bool last) {
+  if (!progress_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (!last && now - shown_ < kProgressGrain) return;
+  shown_ = now;
+  progress_(done, structures_->shaderCount());
+}
+
+void Run::readAll(const std::vector<std::string>& files,
+                  const std::function<FileResult(const std::string&)>& read,
+                  const std::function<void(FileResult&)>& each) {
+  for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
+    std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
+    tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) { results[i] = read(files[first + i]); });
+    for (size_t i = 0; i < results.size(); ++i) {
+      FileResult& result = results[i];
+      report(result.diagnostics, files[first + i]);
+      report_.ok &= result.ok;
+      each(result);
+      report_.materials.insert(report_.materials.end(), std::make_move_iterator(result.materials.begin()),
+                               std::make_move_iterator(result.materials.end()));
+    }
+    progress(0, false);
+  }
+}
+
+void Run::readScenes(const std::vector<std::string>& files, const std::vector<std::string>& only,
+                     const std::function<void(FileResult&)>& each) {
+  std::vector<std::string> seen;
+  readAll(
+      files, [&](const std::string& path) { return readScene(path, only, *setting_, *structures_); },
+      [&](FileResult& result) {
+        seen.insert(seen.end(), result.names.begin(), result.names.end());
+        each(result);
+      });
+  checkNames(only, seen);
+}
+
+void Run::readGraphs(const std::vector<std::string>& files, const std::function<void(FileResult&)>& each) {
+  readAll(
+      files, [&](const std::string& path) { return readGraph(path, *setting_, *structures_); }, each);
+}
+
+void Run::checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen) {
+  for (const std::string& name : only) {
+    if (std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
+    std::string known;
+    for (size_t i = 0; i < seen.size() && i < 8; ++i)
+      known += fmt::format("{}'{}'", i == 0 ? "" : ", ", seen[i]);
+    if (seen.size() > 8) known += ", …";
+    report({{"no-such-material",
+             Severity::Error,
+             {},
+             fmt::format("no file has a material named '{}'", name),
+             known.empty() ? "the files have no materials" : "there are " + known,
+             {}}},
+           {});
+    report_.ok = false;
+  }
+}
+
+bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
+               const std::function<void(const MadeShader&)>& each) {
+  Strings outputs;
+  for (const auto& [id, shader] : structures_->shaders()) {
+    for (const Target target : options_.targets) {
+      for (int stage = firstStage(target, shader.structure->has_vertex); stage < 2; ++stage) {
+        outputs.push_back(folder + "/" + shaderPath(target, id, stage));
+      }
+    }
+  }
+  if (!mayWrite(outputs)) return false;
+  const std::vector<MadeShader> made = makeShaders(structures_->shaders(), *setting_, folder, scratch,
+                                                   receipt, [&](size_t done) { progress(done, false); });
+  progress(made.size(), true);
+  for (const MadeShader& shader : made) {
+    report(shader.wrong, {});
+    report_.ok &= shader.wrong.empty();
+    report_.shaders.push_back({shader.id, shader.files, shader.validated});
+    report_.made += shader.cached ? 0 : 1;
+    report_.written += shader.written;
+    if (!shader.text.empty()) each(shader);
+  }
+  return true;
+}
+
+bool Run::mayWrite(const Strings& outputs) {
+  const Diagnostics wrong = clashes(inputs(), outputs);
+  if (wrong.empty()) return true;
+  report(wrong, {});
+  report_.ok = false;
+  return false;
+}
+
+void Run::wrote(const Result<bool>& written) {
+  if (written) {
+    report_.written += *written ? 1 : 0;
+    return;
+  }
+  report(written.error(), {});
+  report_.ok = false;
+}
+
+std::vector<std::string> Run::inputs() const {
+  std::vector<std::string> all = inputs_;
+  all.insert(all.end(), node_files_.begin(), node_files_.end());
+  return all;
+}
+
+Report Run::finish() {
+  if (cache_) report(cache_->problems(), {});
+  report_.times = times_.list();
+  return std::move(report_);
+}
+
+}  // namespace lacquer

@@ -1,0 +1,62 @@
+#include "run/structures.h"
+
+namespace lacquer {
+
+Structures::Entry& Structures::entryOf(const Key& key) {
+  const std::lock_guard lock(mutex_);
+  std::unique_ptr<Entry>& entry = entries_[key];
+  if (!entry) entry = std::make_unique<Entry>();
+  return *entry;
+}
+
+bool Structures::load(const Key& key, Entry& entry) {
+  if (setting_.cache == nullptr) return false;
+  const StageTimer timer(setting_.times, StageOfRun::Cache);
+  const std::optional<std::string> bytes = setting_.cache->get(key);
+  if (!bytes) return false;
+  Structure structure;
+  if (!fromBlob(*bytes, structure)) return false;
+  structure.key = key;
+  entry.structure = std::move(structure);
+  entry.ready = true;
+  need(entry.structure, std::nullopt);
+  return true;
+}
+
+void Structures::need(const Structure& structure, std::optional<ir::Module> module) {
+  if (structure.shader.empty()) return;
+  const std::lock_guard lock(mutex_);
+  Distinct& shader = shaders_[structure.shader];
+  if (shader.structure == nullptr || structure.key < shader.structure->key) shader.structure = &structure;
+  if (module && !shader.module) shader.module = std::move(module);
+}
+
+const Structure& Structures::of(const graph::Graph& graph, const passes::LightFacts& lights) {
+  const Key key = structureKey(graph, lights, setting_);
+  Entry& entry = entryOf(key);
+  const std::lock_guard lock(entry.mutex);
+  if ((entry.ready || load(key, entry)) && fits(entry.structure, graph)) return entry.structure;
+  entry.structure = {};
+  entry.structure.key = key;
+  std::optional<ir::Module> module = makeStructure(graph, lights, setting_, entry.structure);
+  entry.ready = true;
+  if (module && setting_.cache != nullptr) {
+    const StageTimer timer(setting_.times, StageOfRun::Cache);
+    setting_.cache->put(key, toBlob(entry.structure));
+  }
+  need(entry.structure, std::move(module));
+  return entry.structure;
+}
+
+const Structure* Structures::known(const Key& key) {
+  Entry& entry = entryOf(key);
+  const std::lock_guard lock(entry.mutex);
+  return entry.ready || load(key, entry) ? &entry.structure : nullptr;
+}
+
+size_t Structures::shaderCount() const {
+  const std::lock_guard lock(mutex_);
+  return shaders_.size();
+}
+
+}  // namespace lacquer

@@ -1,0 +1,51 @@
+// The structures of a run, each made once, and the distinct shaders they need.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "run/structure.h"
+
+namespace lacquer {
+
+/// A shader that the run must deliver.
+struct Distinct {
+  const Structure* structure = nullptr;  ///< of those that need it the one with the smallest key
+  std::optional<ir::Module> module;      ///< absent when the structure came from the cache
+};
+
+/// May be used from several threads at once.
+class Structures {
+public:
+  explicit Structures(const Setting& setting) : setting_(setting) {}
+
+  /// The structure of a graph, found or made. It lives as long as this object.
+  const Structure& of(const graph::Graph& graph, const passes::LightFacts& lights);
+  /// A structure that this run has met or that the cache holds; null when there is none.
+  const Structure* known(const Key& key);
+
+  /// By id. Not beside of() and known().
+  std::map<std::string, Distinct>& shaders() { return shaders_; }
+  size_t shaderCount() const;
+
+private:
+  struct Entry {
+    std::mutex mutex;
+    bool ready = false;
+    Structure structure;
+  };
+  Entry& entryOf(const Key& key);
+  bool load(const Key& key, Entry& entry);
+  void need(const Structure& structure, std::optional<ir::Module> module);
+
+  const Setting& setting_;
+  mutable std::mutex mutex_;
+  std::unordered_map<Key, std::unique_ptr<Entry>, KeyHash> entries_;
+  std::map<std::string, Distinct> shaders_;
+};
+
+}  // namespace lacquer

@@ -1,0 +1,161 @@
+#include "shader/interface.h"
+
+#include <algorithm>
+
+#include "json/text.h"
+#include "shader/proofs.h"
+#include "targets/target.h"
+
+namespace lacquer {
+
+namespace {
+
+std::string_view roleName(ir::BlockRole role) {
+  switch (role) {
+    case ir::BlockRole::Frame: return "frame";
+    case ir::BlockRole::Lights: return "lights";
+    case ir::BlockRole::Material: return "material";
+    case ir::BlockRole::Object: return "object";
+  }
+  return "";
+}
+
+Json bindingJson(const ir::Binding& binding) {
+  return {{"set", binding.set}, {"binding", binding.binding}, {"flat", binding.flat}};
+}
+
+Json blockJson(const ir::Module& module, const ir::Block& block) {
+  Json json = {{"block", block.name}, {"role", roleName(block.role)}};
+  json.update(bindingJson(block.binding));
+  if (block.array != 0) {
+    json["array"] = block.array;
+    json["stride"] = block.size;
+  }
+  json["size"] = block.array == 0 ? block.size : block.array * block.size;
+  const bool computed = block.role == ir::BlockRole::Material;
+  const targets::PreshaderText preshader =
+      computed ? targets::preshaderText(module) : targets::PreshaderText{};
+  if (!preshader.values.empty()) {
+    Json& values = json["values"] = Json::array();
+    for (const auto& [name, type, expression] : preshader.values) {
+      values.push_back({{"name", name}, {"type", ir::typeName(type)}, {"expression", expression}});
+    }
+  }
+  Json fields = Json::array();
+  for (uint32_t i = 0; i < block.fields.size(); ++i) {
+    const ir::BlockField& field = block.fields[i];
+    Json row = {{"name", field.name}, {"type", ir::typeName(field.type)}, {"offset", field.offset}};
+    if (field.array != 0) {
+      row["array"] = field.array;
+      row["stride"] = field.stride();
+    }
+    if (computed) {
+      for (size_t p = 0; p < module.preshader.size(); ++p) {
+        if (module.preshader[p].field == i) row["expression"] = preshader.fields[p];
+      }
+    } else if (!field.prose.empty()) {
+      row["meaning"] = field.prose;
+    }
+    fields.push_back(std::move(row));
+  }
+  json["fields"] = std::move(fields);
+  return json;
+}
+
+/// One row for each component: a SpecId has one number.
+Json specConstantsJson(const ir::Module& module) {
+  Json rows = Json::array();
+  for (const uint32_t index : ir::usedParameters(module)) {
+    const ir::Parameter& p = module.parameters[index];
+    for (int c = 0; c < ir::componentCount(p.type); ++c) {
+      const double x = p.neutral[static_cast<size_t>(c)];
+      Json row = {{"id", p.constant_id + c}, {"name", p.name}, {"component", c}};
+      row["type"] = p.type == ir::Type::Bool ? "bool" : "float";
+      row["default"] = p.type == ir::Type::Bool ? Json(x != 0) : Json(x);
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+/// The inputs, of any kind, that the outputs of both stages reach.
+std::vector<ir::Input> usedInputs(const ir::Module& module) {
+  std::vector<ir::ValueId> roots;
+  for (const ir::Output& output : module.outputs) roots.push_back(output.value);
+  std::vector<ir::Input> inputs;
+  for (const ir::ValueId id : ir::reachable(module.dag, roots)) {
+    if (module.dag[id].op == ir::Op::Input) inputs.push_back(module.dag.inputOf(id));
+  }
+  return inputs;
+}
+
+}  // namespace
+
+Json componentsJson(ir::Type type, const ir::Components& components) {
+  const int n = ir::componentCount(type);
+  if (n == 1) return components[0];
+  Json array = Json::array();
+  for (int i = 0; i < n; ++i) array.push_back(components[static_cast<size_t>(i)]);
+  return array;
+}
+
+Json interfaceOf(const ir::Module& module, bool has_vertex) {
+  const std::vector<ir::Input> inputs = usedInputs(module);
+  const auto uses = [&](ir::InputKind kind, uint32_t index, bool block) {
+    return std::any_of(inputs.begin(), inputs.end(), [&](const ir::Input& input) {
+      return input.kind == kind && (block ? input.block : input.field) == index;
+    });
+  };
+  const bool counted = std::any_of(module.light_groups.begin(), module.light_groups.end(),
+                                   [](const ir::LightGroup& group) { return group.count < 0; });
+  Json json;
+  json["template"] = module.template_name;
+  Json uniforms = Json::array();
+  for (uint32_t i = 0; i < module.blocks.size(); ++i) {
+    const ir::Block& block = module.blocks[i];
+    const bool count_needed = counted && i == module.light_count.block;
+    if (uses(ir::InputKind::BlockField, i, true) || count_needed)
+      uniforms.push_back(blockJson(module, block));
+  }
+  json["uniforms"] = std::move(uniforms);
+  if (module.spec_constants) json["spec_constants"] = specConstantsJson(module);
+  Json textures = Json::array();
+  for (const ir::TextureSlot& slot : module.textures) {
+    Json row = {{"name", slot.name}, {"type", ir::typeName(slot.type)}};
+    row.update(bindingJson(slot.binding));
+    row["role"] = slot.environment ? "environment" : "material";
+    if (!slot.environment) row["color_space"] = slot.srgb ? "srgb" : "linear";
+    textures.push_back(std::move(row));
+  }
+  json["textures"] = std::move(textures);
+  Json attributes = Json::array();
+  for (uint32_t i = 0; i < module.attributes.size(); ++i) {
+    const ir::Attribute& a = module.attributes[i];
+    if (!uses(ir::InputKind::Attribute, i, false)) continue;
+    attributes.push_back({{"name", a.name}, {"type", ir::typeName(a.type)}, {"location", a.location}});
+  }
+  if (!has_vertex) {
+    for (uint32_t i = 0; i < module.varyings.size(); ++i) {
+      const ir::Varying& v = module.varyings[i];
+      if (!uses(ir::InputKind::Varying, i, false)) continue;
+      attributes.push_back({{"name", v.name}, {"type", ir::typeName(v.type)}, {"location", v.location}});
+    }
+  }
+  json["inputs"] = std::move(attributes);
+  Json outputs = Json::array();
+  for (const ir::Output& output : module.outputs) {
+    if (output.kind == ir::OutputKind::Color) {
+      outputs.push_back({{"name", output.name}, {"type", "vec4"}, {"location", output.location}});
+    }
+  }
+  json["outputs"] = std::move(outputs);
+  json["proofs"] = proofsJson(module);
+  return json;
+}
+
+std::string interfaceJson(const ir::Module& module, bool has_vertex) {
+  json::JsonText json;
+  return json.json(interfaceOf(module, has_vertex)).take();
+}
+
+}  // namespace lacquer

@@ -1,0 +1,36 @@
+// The node library with what it makes of materials.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lacquer/options.h"
+#include "lang/library.h"
+#include "material/material.h"
+#include "model/model.h"
+
+namespace lacquer {
+
+struct Language : lang::Library {
+  explicit Language(lang::Library&& library) : lang::Library(std::move(library)), models(*this) {}
+  Language(const Language&) = delete;
+  Language& operator=(const Language&) = delete;
+
+  model::Models models;
+};
+
+/// The node files of a folder, sorted by name.
+Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder);
+
+/// A file's materials by the library's declarations.
+Result<material::Document> readMaterials(const std::string& path, const Language& language,
+                                         const Options& options);
+
+/// The built-in library with the options' folders added. The built-in one alone is made once.
+Result<std::shared_ptr<const Language>> libraryFor(const Options& options);
+
+/// Puts the library's defaults in where no template or no profile is named.
+Result<void> resolveNames(const lang::Library& library, Options& options);
+
+}  // namespace lacquer

@@ -1,0 +1,151 @@
+#include "shader/preshader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ir/fold.h"
+
+namespace lacquer {
+
+using ir::Components;
+using ir::Op;
+
+namespace {
+
+constexpr Op kLastOp = static_cast<Op>(0
+#define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) +1
+#include "ir/ops.def"
+#undef OP
+                                       - 1);
+
+}  // namespace
+
+Preshader::Preshader(const ir::Module& module) {
+  std::vector<ir::ValueId> roots;
+  for (const ir::PreshaderField& field : module.preshader) roots.push_back(field.value);
+  std::vector<uint32_t> step_of(module.dag.size(), 0);
+  for (const ir::ValueId id : ir::reachable(module.dag, roots)) {
+    const ir::Value& value = module.dag[id];
+    Step step{value.op, value.type, value.count, value.payload, {}};
+    for (size_t k = 0; k < value.count; ++k) step.args[k] = step_of[value.args[k]];
+    if (value.op == Op::Input) step.payload = module.dag.inputOf(id).field;
+    if (value.op == Op::Constant) {
+      step.payload = static_cast<uint32_t>(constants_.size());
+      constants_.push_back(module.dag.constantOf(id));
+    }
+    step_of[id] = static_cast<uint32_t>(steps_.size());
+    steps_.push_back(step);
+  }
+  for (const ir::Block& block : module.blocks) {
+    if (block.role != ir::BlockRole::Material) continue;
+    for (const ir::PreshaderField& p : module.preshader) {
+      const ir::BlockField& field = block.fields[p.field];
+      fields_.push_back({field.name, field.type, field.offset, step_of[p.value]});
+    }
+  }
+}
+
+std::vector<Components> Preshader::evaluate(
+    const std::function<const Components&(uint32_t parameter)>& value) const {
+  std::vector<Components> values(steps_.size());
+  for (size_t s = 0; s < steps_.size(); ++s) {
+    const Step& step = steps_[s];
+    if (step.op == Op::Constant) {
+      values[s] = constants_[step.payload];
+    } else if (step.op == Op::Input) {
+      values[s] = value(step.payload);
+    } else {
+      std::array<ir::Operand, 4> in{};
+      for (size_t k = 0; k < step.count; ++k) in[k] = {steps_[step.args[k]].type, values[step.args[k]]};
+      values[s] = ir::foldNumbers(step.op, step.type, step.payload, {in.data(), step.count});
+    }
+  }
+  std::vector<Components> out;
+  for (const Field& field : fields_) {
+    out.push_back(values[field.value]);
+    for (double& x : out.back()) x = std::isfinite(x) && x != 0 ? x : 0;
+  }
+  return out;
+}
+
+void Preshader::write(BlobWriter& blob) const {
+  blob.list(steps_, [&](const Step& step) {
+    blob.number(step.op), blob.number(step.type), blob.number(step.count), blob.number(step.payload);
+    for (const uint32_t arg : step.args) blob.number(arg);
+  });
+  blob.list(constants_, [&](const Components& c) {
+    for (const double x : c) blob.number(x);
+  });
+  blob.list(fields_, [&](const Field& f) {
+    blob.text(f.name), blob.number(f.type), blob.number(f.offset), blob.number(f.value);
+  });
+}
+
+Preshader Preshader::read(BlobReader& blob) {
+  Preshader made;
+  blob.list([&] {
+    Step step{};
+    step.op = blob.choice(kLastOp), step.type = blob.choice(ir::Type::Vec4),
+    step.count = blob.number<uint8_t>();
+    step.payload = blob.number<uint32_t>();
+    for (uint32_t& arg : step.args) arg = blob.number<uint32_t>();
+    made.steps_.push_back(step);
+  });
+  blob.list([&] {
+    Components c{};
+    for (double& x : c) x = blob.number<double>();
+    made.constants_.push_back(c);
+  });
+  blob.list([&] {
+    Field field;
+    field.name = blob.text(), field.type = blob.choice(ir::Type::Vec4),
+    field.offset = blob.number<uint32_t>();
+    field.value = blob.number<uint32_t>();
+    made.fields_.push_back(std::move(field));
+  });
+  if (!made.sound()) blob.refuse();
+  return made;
+}
+
+bool Preshader::sound() const {
+  for (size_t s = 0; s < steps_.size(); ++s) {
+    if (!sound(steps_[s], s)) return false;
+  }
+  return std::all_of(fields_.begin(), fields_.end(), [&](const Field& f) { return f.value < steps_.size(); });
+}
+
+/// True when evaluate() can take a step, the one of that number, whatever it comes to.
+bool Preshader::sound(const Step& step, size_t number) const {
+  if (step.op == Op::Constant) return step.payload < constants_.size();
+  if (step.op == Op::Input) return true;  // a parameter: uses() tells which
+  if (step.count == 0 || step.count > step.args.size()) return false;
+  const auto known = [&](uint32_t arg) { return arg < number; };
+  if (!std::all_of(step.args.begin(), step.args.begin() + step.count, known)) return false;
+  const int width = ir::componentCount(step.type);
+  const auto widthOf = [&](size_t k) { return ir::componentCount(steps_[step.args[k]].type); };
+  switch (step.op) {
+    case Op::Construct:
+    case Op::Length: return true;
+    case Op::Dot: return step.count == 2 && widthOf(0) == widthOf(1);
+    case Op::Cross: return step.count == 2 && width == 3 && widthOf(0) == 3 && widthOf(1) == 3;
+    case Op::Normalize: return widthOf(0) == width;
+    case Op::Swizzle:
+      for (int i = 0; i < width; ++i) {
+        if (widthOf(0) > 1 && ir::swizzleComponent(step.payload, i) >= widthOf(0)) return false;
+      }
+      return true;
+    default: break;
+  }
+  // Component by component.
+  for (size_t k = 0; k < step.count; ++k) {
+    if (widthOf(k) != 1 && widthOf(k) != width) return false;
+  }
+  return true;
+}
+
+bool Preshader::uses(size_t parameters) const {
+  return std::all_of(steps_.begin(), steps_.end(),
+                     [&](const Step& step) { return step.op != Op::Input || step.payload < parameters; });
+}
+
+}  // namespace lacquer

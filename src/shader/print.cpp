@@ -1,0 +1,154 @@
+#include "shader/print.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <optional>
+
+#include "check/check.h"
+#include "schedule/schedule.h"
+#include "shader/language.h"
+#include "targets/legalize.h"
+#include "targets/target.h"
+
+namespace lacquer {
+
+std::string shaderPath(Target target, const std::string& id, int stage) {
+  const targets::Target& row = targets::row(static_cast<targets::TargetId>(target));
+  if (target == Target::Cpp) return fmt::format("{}/{}.{}", row.name, id, row.extension);
+  return fmt::format("{}/{}.{}.{}", row.name, id, stage == 0 ? "vert" : "frag", row.extension);
+}
+
+namespace {
+
+constexpr ir::Stage kStages[] = {ir::Stage::Vertex, ir::Stage::Fragment};
+
+check::Language languageOf(Target target) {
+  switch (target) {
+    case Target::Glsl: return check::Language::GlslVulkan;
+    case Target::GlslGl: return check::Language::GlslOpenGl;
+    case Target::Essl: return check::Language::Essl300;
+    case Target::Hlsl: return check::Language::Hlsl;
+    case Target::Spirv:
+    case Target::Cpp: break;
+  }
+  assert(false && "no text of a stage");
+  return check::Language::GlslVulkan;
+}
+
+void append(Diagnostics& to, const Diagnostics& from) { to.insert(to.end(), from.begin(), from.end()); }
+
+/// Compiles one text; whatever a compiler says is a bug of ours.
+void checkText(const std::string& text, Target target, int stage, const std::string& name,
+               Diagnostics& wrong) {
+  const auto check_stage = stage == 0 ? check::Stage::Vertex : check::Stage::Fragment;
+  const check::Language language = languageOf(target);
+  const Result<check::Spirv> words = check::compile(text, language, check_stage, name);
+  if (!words) return append(wrong, words.error());
+  if (target != Target::Essl) {
+    append(wrong, check::validate(*words, target == Target::GlslGl, name));
+    append(wrong, check::checkSlots(*words, target == Target::GlslGl, name));
+  }
+  if (target == Target::Hlsl && check::haveDxc())
+    append(wrong, check::compileWithDxc(text, check_stage, name));
+}
+
+class Printing {
+public:
+  Printing(ShaderData& shader, const Options& options, Wrong& wrong, StageTimes* times)
+      : shader_(shader), options_(options), wrong_(wrong), times_(times) {}
+
+  void run() {
+    for (const Target target : options_.targets) {
+      switch (target) {
+        case Target::Glsl:
+        case Target::GlslGl:
+        case Target::Essl:
+        case Target::Hlsl: text(legalized(), target); break;
+        case Target::Spirv: spirv(); break;
+        case Target::Cpp: header(); break;
+      }
+    }
+  }
+
+private:
+  int firstStage() const { return shader_.has_vertex ? 0 : 1; }
+
+  std::string print(const ir::Module& module, Target target, int stage) const {
+    const schedule::Program program = schedule::schedule(module, kStages[stage]);
+    return targets::printText(module, program, static_cast<targets::TargetId>(target), head());
+  }
+
+  std::string head() const {
+    return fmt::format("{}\nLacquer {}, template {}", shader_.id, version(), shader_.module.template_name);
+  }
+
+  /// Nothing checks it here: the tests compile it.
+  void header() {
+    const StageTimer timer(times_, StageOfRun::Print, Target::Cpp);
+    shader_.text[static_cast<int>(Target::Cpp)][1] = targets::headerText(shader_.module, shader_.id, head());
+  }
+
+  void text(const ir::Module& module, Target target) {
+    for (int stage = firstStage(); stage < 2; ++stage) {
+      std::string& text = shader_.text[static_cast<int>(target)][stage];
+      {
+        const StageTimer timer(times_, StageOfRun::Print, target);
+        text = print(module, target, stage);
+      }
+      if (!options_.validate) continue;
+      const StageTimer timer(times_, StageOfRun::Validate, target);
+      checkText(text, target, stage, shaderPath(target, shader_.id, stage), wrongOf(target));
+    }
+  }
+
+  std::vector<uint32_t> words(int stage, const std::string& path) {
+    const StageTimer timer(times_, StageOfRun::Print, Target::Spirv);
+    if (options_.spirv_route == SpirvRoute::Direct) {
+      return targets::writeSpirv(shader_.module, schedule::schedule(shader_.module, kStages[stage]),
+                                 {options_.debug});
+    }
+    const auto check_stage = stage == 0 ? check::Stage::Vertex : check::Stage::Fragment;
+    Result<check::Spirv> made = check::compile(print(legalized(), Target::Glsl, stage),
+                                               check::Language::GlslVulkan, check_stage, path);
+    if (made) return std::move(*made);
+    append(wrongOf(Target::Spirv), made.error());
+    return {};
+  }
+
+  void spirv() {
+    for (int stage = firstStage(); stage < 2; ++stage) {
+      const std::string path = shaderPath(Target::Spirv, shader_.id, stage);
+      shader_.spirv[stage] = words(stage, path);
+      if (!options_.validate) continue;
+      const StageTimer timer(times_, StageOfRun::Validate, Target::Spirv);
+      append(wrongOf(Target::Spirv), check::validate(shader_.spirv[stage], false, path));
+      append(wrongOf(Target::Spirv), check::checkSlots(shader_.spirv[stage], false, path));
+    }
+  }
+
+  /// Legalized once for all texts.
+  const ir::Module& legalized() {
+    if (!legalized_) {
+      legalized_ = shader_.module;
+      targets::legalize(*legalized_);
+    }
+    return *legalized_;
+  }
+
+  Diagnostics& wrongOf(Target target) { return wrong_[static_cast<size_t>(target)]; }
+
+  ShaderData& shader_;
+  const Options& options_;
+  Wrong& wrong_;
+  StageTimes* times_;
+  std::optional<ir::Module> legalized_;
+};
+
+}  // namespace
+
+void print(ShaderData& shader, const Options& options, Wrong& wrong, StageTimes* times) {
+  Printing(shader, options, wrong, times).run();
+}
+
+}  // namespace lacquer

@@ -1,0 +1,41 @@
+// A module's code for every target, and where that lies.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "ir/module.h"
+#include "shader/options.h"
+#include "shader/times.h"
+
+namespace lacquer {
+
+/// One distinct shader.
+struct ShaderData {
+  ir::Module module;  ///< placed and bound
+  std::string id;
+  bool has_vertex = false;
+  std::string text[kTargetCount]
+                  [2];  ///< by target, by stage; Target::Cpp's one file stands with the fragments
+  std::vector<uint32_t> spirv[2];
+  std::string interface;
+};
+
+/// What is wrong with the code of each target.
+using Wrong = std::array<Diagnostics, kTargetCount>;
+
+/// Prints every target that the options name, and compiles and validates them when asked. Validation failures
+/// go to `wrong`; the code is there all the same.
+void print(ShaderData& shader, const Options& options, Wrong& wrong, StageTimes* times = nullptr);
+
+/// The path below the output folder: "glsl/ID.frag.glsl", "cpp/ID.h".
+std::string shaderPath(Target target, const std::string& id, int stage);
+
+/// The first of the stages, 0 or 1, that have a file; the last is 1. Target::Cpp has one file.
+inline int firstStage(Target target, bool has_vertex) { return has_vertex && target != Target::Cpp ? 0 : 1; }
+
+/// Some compiler or validator checks the target's code.
+inline bool hasValidator(Target target) { return target != Target::Cpp; }
+
+}  // namespace lacquer

@@ -1,0 +1,120 @@
+// A material of a file made ready for the CPU evaluator: its module, and its textures as samplers.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/image.h"
+#include "gltf/texture_source.h"
+#include "lacquer.h"
+#include "shader/module.h"
+
+namespace lacquer {
+
+/// The images behind a file's textures, opened and decoded when first asked for. Those that nobody uses any
+/// more go, the longest unused first, when others need their room.
+class FileImages {
+public:
+  FileImages(std::string file, const Options& options);
+
+  const std::string& file() const { return file_; }
+  struct Loaded {
+    std::shared_ptr<const eval::Image> image;
+    eval::Lookup lookup;
+  };
+  /// Errors: those of gltf::TextureFile and of eval::decodeImage(), and "image-too-large" where the images in
+  /// use leave no room.
+  Result<Loaded> load(int texture, bool srgb);
+  /// The files that were read for images.
+  Strings read() const { return opened_ ? opened_->filesRead() : Strings(); }
+
+private:
+  struct Held {
+    std::shared_ptr<const eval::Image> image;
+    uint64_t pixels = 0;  ///< of 8 bits per channel
+    uint64_t used = 0;    ///< a later use has a larger number
+  };
+
+  Result<Held> decode(const gltf::TextureSource& source);
+  bool makeRoom(uint64_t pixels);
+
+  std::string file_;
+  gltf::TextureAccess access_;
+  std::optional<gltf::TextureFile> opened_;
+  std::map<size_t, Held> images_;  ///< by the image's index
+  uint64_t held_ = 0, uses_ = 0;   ///< pixels; calls of load()
+};
+
+/// What stands behind a texture slot: an image or a constant.
+struct BoundTexture {
+  std::optional<std::array<double, 4>> constant;
+  std::shared_ptr<const eval::Image> image;
+  eval::Lookup lookup;
+  ir::Type type = ir::Type::Texture2D;
+};
+
+class EvalMaterial {
+public:
+  /// What stands for a texture that has no image for these reasons; nothing where that is an error.
+  using Substitute =
+      std::function<std::optional<std::array<double, 4>>(const ir::TextureSlot&, const Diagnostics& why)>;
+
+  /// `images` must outlive this.
+  EvalMaterial(FileImages& images, const Options& options) : images_(images), options_(options) {}
+
+  /// "baseColorTexture=0.5,0.5,0.5,1", each. Errors: "bad-texel".
+  Result<void> setTexels(const std::vector<std::string>& texts);
+
+  /// The module of the options' template as lowered, for a primitive with every attribute: points are given
+  /// all of them. Nodes that have the variant of that name use it. Errors: "unknown-texture", those of a
+  /// graph.
+  Result<void> lower(material::Material material, const Language& library, bool environment,
+                     const std::string& variant, Messages& messages);
+
+  /// The float engine computes what the shader does: values of the material's rate in the preshader, then
+  /// floats.
+  void place(const passes::LightFacts& lights);
+
+  /// Samplers of the textures that the outputs reach, but for the environment's maps; its table of factors is
+  /// one of them. Errors: "image-missing" and the like, one for each texture, where there is no substitute.
+  Result<void> bindTextures(const Substitute& substitute, eval::Bindings& bindings);
+  /// What bindTextures() bound, by slot.
+  const std::map<std::string, BoundTexture>& textures() const { return bound_; }
+
+  /// The environment maps, cubes, that the outputs reach.
+  std::vector<const ir::TextureSlot*> environments() const;
+
+  const ir::Module& module() const { return module_; }
+  /// Of the graph that was lowered.
+  const std::string& profile() const { return profile_; }
+
+private:
+  struct Texel {
+    std::string slot;
+    std::array<double, 4> value{};
+  };
+
+  static Result<Texel> parseTexel(const std::string& text);
+  static bool names(const std::string& name, const ir::TextureSlot& slot);
+  Result<void> checkTexels(const material::Schema& schema) const;
+  Result<BoundTexture> environmentOf(const ir::TextureSlot& slot) const;
+  Result<BoundTexture> textureOf(const ir::TextureSlot& slot, const Substitute& substitute);
+  std::vector<const ir::TextureSlot*> usedTextures() const;
+
+  FileImages& images_;
+  Options options_;
+  std::vector<Texel> texels_;
+  std::vector<int> originals_;  ///< by the slot's texture: the file's
+  ir::Module module_;
+  std::string profile_;
+  std::map<std::string, BoundTexture> bound_;
+};
+
+/// The last part of the slot's pointer: "coatNormalTexture".
+std::string propertyOf(const ir::TextureSlot& slot);
+
+}  // namespace lacquer

@@ -1,0 +1,52 @@
+// Proofs about the node library: that a node keeps its contract for everything its contract lets in.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/prove.h"
+#include "lang/library.h"
+#include "lower/inline.h"
+
+namespace lacquer {
+
+/// One thing to prove.
+struct Claim {
+  std::string what;  ///< "inversesqrt of `max(length2, 1e-30)`", "result", "schlick.F0"
+  std::string need;  ///< "> 0", "in [0, 1]"
+  analysis::Range reached;
+  bool proved = false;
+};
+
+struct NodeProof {
+  std::string node, variant;      ///< variant: empty for the reference
+  std::vector<Claim> operations;  ///< in float32, on arguments that may pass their ranges by rounding
+  std::vector<Claim> results;     ///< of the exact function
+  std::vector<Claim> calls;       ///< arguments of the nodes that it calls, of the exact function
+};
+
+/// A node by itself: its parameters are inputs in their declared ranges, its results are outputs, in order.
+struct NodeModule {
+  ir::Module module;
+  struct Call {
+    const lang::NodeDecl* node;
+    std::vector<ir::ValueId> arguments;
+  };
+  std::vector<Call> calls;
+};
+NodeModule nodeModule(const lang::NodeDecl& node, std::string_view variant);
+
+/// The ranges of the arguments of a call against the callee's contract. Appends a claim for each bounded
+/// parameter.
+void proveCall(const ir::Module& module, const NodeModule::Call& call, int budget,
+               std::vector<Claim>& claims);
+
+NodeProof proveNode(const lang::NodeDecl& node, std::string_view variant);
+
+/// Every variant of every node, by name. The library must check.
+std::vector<NodeProof> proveNodes(const lang::Library& library);
+
+/// "in [0, 1]"
+std::string rangeText(const ir::Interval& range);
+
+}  // namespace lacquer

@@ -1,0 +1,32 @@
+#include "physics/node_values.h"
+
+#include <gtest/gtest.h>
+
+#include "tools/node_proofs.h"
+#include "eval/evaluate.h"
+#include "support/materials.h"
+
+namespace lacquer::physics {
+
+template <class T>
+std::vector<std::vector<T>> nodeValues(std::string_view node, std::string_view variant,
+                                       const eval::Columns& columns, size_t points) {
+  const Result<const lang::NodeDecl*> declared = test::builtInLibrary().node(node);
+  EXPECT_TRUE(declared) << node;
+  if (!declared) return {};
+  const NodeModule made = nodeModule(**declared, variant);
+  std::vector<ir::ValueId> roots;
+  for (const ir::Output& output : made.module.outputs) roots.push_back(output.value);
+  eval::Bindings bindings;
+  bindings.columns = columns;
+  auto values = eval::evaluate<T>(made.module, roots, bindings, points);
+  EXPECT_TRUE(values) << format(values.error()[0]);
+  return values ? std::move(*values) : std::vector<std::vector<T>>();
+}
+
+template std::vector<std::vector<float>> nodeValues<float>(std::string_view, std::string_view,
+                                                           const eval::Columns&, size_t);
+template std::vector<std::vector<double>> nodeValues<double>(std::string_view, std::string_view,
+                                                             const eval::Columns&, size_t);
+
+}  // namespace lacquer::physics
