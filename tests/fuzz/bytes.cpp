@@ -2,11 +2,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "api/points.h"
 #include "check/check.h"
 #include "cost/cost.h"
 #include "eval/image.h"
 #include "feeds.h"
+#include "tools/points.h"
 #include "vulkan/passthrough.h"
 #include "vulkan/reflect.h"
 

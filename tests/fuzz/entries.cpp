@@ -7,7 +7,7 @@
 #include <set>
 #include <thread>
 
-#include "api/cache.h"
+#include "cache/cache.h"
 #include "feeds.h"
 #include "support/file.h"
 

@@ -1,7 +1,7 @@
 // glTF files and graphs, all the way to SPIR-V, through the public library.
 #include <algorithm>
 
-#include "api/key.h"
+#include "cache/key.h"
 #include "feeds.h"
 
 namespace lacquer::fuzz {

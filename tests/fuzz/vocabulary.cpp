@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/language.h"
+#include "shader/language.h"
 
 namespace lacquer::fuzz {
 
