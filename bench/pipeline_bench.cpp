@@ -64,7 +64,7 @@ size_t toSpirv(const ir::Module& module) {
   return words;
 }
 
-std::vector<std::string> toText(ir::Module module, targets::TargetId target) {
+std::vector<std::string> toText(ir::Module module, Target target) {
   targets::legalize(module);
   std::vector<std::string> texts;
   for (const ir::Stage stage : kStages) {
@@ -74,8 +74,8 @@ std::vector<std::string> toText(ir::Module module, targets::TargetId target) {
 }
 
 std::vector<check::Spirv> throughGlslang(const std::vector<std::string>& texts) {
-  return {*check::compile(texts[0], check::Language::GlslVulkan, check::Stage::Vertex, "bench.vert"),
-          *check::compile(texts[1], check::Language::GlslVulkan, check::Stage::Fragment, "bench.frag")};
+  return {*check::compile(texts[0], Target::Glsl, check::Stage::Vertex, "bench.vert"),
+          *check::compile(texts[1], Target::Glsl, check::Stage::Fragment, "bench.frag")};
 }
 
 std::vector<Subject> subjects() {
@@ -104,9 +104,9 @@ void add(const std::string& name, Work work) {
 }
 
 void addMaterial(const Subject& s) {
-  using targets::TargetId;
+  using Target;
   const ir::Module placed = toPlaced(s);
-  const std::vector<std::string> texts = toText(placed, TargetId::Glsl);
+  const std::vector<std::string> texts = toText(placed, Target::Glsl);
   const std::vector<check::Spirv> compiled = throughGlslang(texts);
   std::vector<check::Spirv> direct;
   for (const ir::Stage stage : kStages)
@@ -115,8 +115,8 @@ void addMaterial(const Subject& s) {
   add(s.name + "/graph+lower", [s] { return lower::lower(toGraph(s), library(), {}); });
   add(s.name + "/graph+lower+passes", [s] { return toPlaced(s); });
   add(s.name + "/to spirv", [s] { return toSpirv(toPlaced(s)); });
-  add(s.name + "/to glsl", [s] { return toText(toPlaced(s), TargetId::Glsl); });
-  add(s.name + "/to hlsl", [s] { return toText(toPlaced(s), TargetId::Hlsl); });
+  add(s.name + "/to glsl", [s] { return toText(toPlaced(s), Target::Glsl); });
+  add(s.name + "/to hlsl", [s] { return toText(toPlaced(s), Target::Hlsl); });
   add(s.name + "/glslang", [texts] { return throughGlslang(texts); });
   add(s.name + "/spirv-opt -O", [compiled] {
     return check::optimize(compiled[0], "bench.vert")->size() +

@@ -2,7 +2,6 @@
 find_package(fmt REQUIRED)
 find_package(tl-expected REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(TinyGLTF REQUIRED)
 find_package(Threads REQUIRED)
 find_package(glslang REQUIRED)
 find_package(SPIRV-Headers REQUIRED)

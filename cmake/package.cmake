@@ -13,7 +13,7 @@ endforeach()
 target_include_directories(lacquer_library PUBLIC "$<BUILD_INTERFACE:${public_view}>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
 target_compile_features(lacquer_library PUBLIC cxx_std_20)
 # What its objects need at link time; lacquer-config.cmake finds the same. Header-only libraries are in the objects.
-target_link_libraries(lacquer_library PRIVATE fmt::fmt TinyGLTF::TinyGLTF glslang::glslang glslang::SPIRV
+target_link_libraries(lacquer_library PRIVATE fmt::fmt glslang::glslang glslang::SPIRV
                       glslang::glslang-default-resource-limits SPIRV-Tools-opt SPIRV-Tools-static TBB::tbb
                       PkgConfig::sodium_pc Threads::Threads ${CMAKE_DL_LIBS})
 add_library(lacquer::lacquer ALIAS lacquer_library)

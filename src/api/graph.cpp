@@ -185,9 +185,11 @@ Shader Graph::generate(const Options& options, Messages& messages) {
     return shader;
   }
   auto impl = std::make_shared<Shader::Impl>();
-  impl->id = shaderId(*module, **libraryFor(options));
+  const std::shared_ptr<const Language> language = *libraryFor(options);
+  const Result<const material::Schema*> schema = language->models.schema();
+  impl->id = shaderId(*module, *language);
   impl->has_vertex = lacquer::hasVertexStage(*module);
-  impl->interface = interfaceJson(*module, impl->has_vertex);
+  impl->interface = interfaceJson(*module, impl->has_vertex, schema ? *schema : nullptr);
   impl->preshader = Preshader(*module);
   impl->module = std::move(*module);
   Wrong wrong;

@@ -1,47 +1,94 @@
 // Values as bytes, for the cache: little more than lengths and memory. The cache's checksum stands before a
 // reader, but whoever may write to an unkeyed cache makes checksums, too: a reader never leaves its bytes,
 // and what it gives are values of their types.
+//
+// What a struct keeps is said once, for both directions: `fields(archive, value)` beside it calls the archive
+// with the members in their order.
 #pragma once
 
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
-#include <vector>
+#include <utility>
 
 #include "support/diagnostic.h"
 
 namespace lacquer {
 
+namespace detail {
+
+template <class T>
+concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+template <class T>
+concept Tuple = requires {
+  std::tuple_size<T>::value;
+};
+template <class T>
+concept Container = requires(T& value) {
+  value.begin();
+};
+template <class T>
+concept Pointer = requires {
+  typename T::element_type;
+}
+&&!Container<T>;
+
+template <class T>
+struct Element {
+  using Type = typename T::value_type;
+};
+template <class T>
+requires requires { typename T::mapped_type; }
+struct Element<T> {
+  using Type = std::pair<typename T::key_type, typename T::mapped_type>;
+};
+
+}  // namespace detail
+
+/// The last of an enum's enumerators, which begin at 0: no reader gives one behind it. Said for each enum
+/// that a struct keeps.
+template <class Enum>
+struct LastEnumerator;
+template <>
+struct LastEnumerator<Severity> {
+  static constexpr Severity value = Severity::Error;
+};
+
 class BlobWriter {
 public:
-  template <class T>
-  void number(T value) {
-    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
-    char bytes[sizeof value];
-    std::memcpy(bytes, &value, sizeof value);
-    bytes_.append(bytes, sizeof value);
-  }
-  void text(std::string_view text) {
-    number<uint64_t>(text.size());
-    bytes_ += text;
-  }
-  /// Any container: its size, then `each` for every element.
-  template <class Container, class Each>
-  void list(const Container& items, Each each) {
-    number<uint64_t>(items.size());
-    for (const auto& item : items) each(item);
-  }
-  void diagnostics(const Diagnostics& list_of) {
-    list(list_of, [this](const Diagnostic& d) {
-      text(d.code), number(d.severity), text(d.place.file), number(d.place.line), number(d.place.column);
-      text(d.place.pointer), text(d.message), text(d.help), text(d.excerpt);
-    });
+  template <class... T>
+  void operator()(const T&... values) {
+    (add(values), ...);
   }
   std::string take() { return std::move(bytes_); }
 
 private:
+  template <class T>
+  void add(const T& value) {
+    if constexpr (detail::Plain<T>) {
+      char bytes[sizeof value];
+      std::memcpy(bytes, &value, sizeof value);
+      bytes_.append(bytes, sizeof value);
+    } else if constexpr (std::is_convertible_v<const T&, std::string_view>) {
+      const std::string_view text = value;
+      add<uint64_t>(text.size());
+      bytes_ += text;
+    } else if constexpr (detail::Tuple<T>) {
+      std::apply(*this, value);
+    } else if constexpr (detail::Container<const T>) {
+      add<uint64_t>(value.size());
+      for (const auto& item : value) add(item);
+    } else if constexpr (detail::Pointer<T>) {
+      add(*value);
+    } else {
+      fields(*this, const_cast<T&>(value));  // which hands its members to this writer, and that only reads
+    }
+  }
+
   std::string bytes_;
 };
 
@@ -49,67 +96,72 @@ class BlobReader {
 public:
   explicit BlobReader(std::string_view bytes) : bytes_(bytes) {}
 
-  template <class T>
-  T number() {
-    static_assert(!std::is_enum_v<T>, "choice() sees that there is such an enumerator");
-    if constexpr (std::is_same_v<T, bool>) {
-      const auto byte = number<uint8_t>();
-      if (byte > 1) refuse();
-      return byte == 1;
-    } else {
-      return raw<T>();
-    }
-  }
-  /// An enumerator up to `last`.
-  template <class T>
-  T choice(T last) {
-    const auto value = raw<std::underlying_type_t<T>>();
-    if (value <= static_cast<std::underlying_type_t<T>>(last)) return static_cast<T>(value);
-    refuse();
-    return {};
-  }
-  std::string_view view() {
-    const auto size = number<uint64_t>();
-    if (size > bytes_.size()) return good_ = false, std::string_view{};
-    const std::string_view text = bytes_.substr(0, size);
-    bytes_.remove_prefix(size);
-    return text;
-  }
-  std::string text() { return std::string(view()); }
-  template <class Each>
-  void list(Each each) {
-    const auto size = number<uint64_t>();
-    for (uint64_t i = 0; i < size && good_; ++i) each();
-  }
-  Diagnostics diagnostics() {
-    Diagnostics all;
-    list([&] {
-      Diagnostic d;
-      d.code = text(), d.severity = choice(Severity::Error), d.place.file = text(),
-      d.place.line = number<uint32_t>();
-      d.place.column = number<uint32_t>(), d.place.pointer = text(), d.message = text(), d.help = text();
-      d.excerpt = text();
-      all.push_back(std::move(d));
-    });
-    return all;
+  template <class... T>
+  void operator()(T&... values) {
+    (read(values), ...);
   }
   /// What was read is wrong: it is not complete.
   void refuse() { good_ = false; }
+  bool good() const { return good_; }
   /// True when nothing was missing and nothing is left.
   bool complete() const { return good_ && bytes_.empty(); }
 
 private:
   template <class T>
-  T raw() {
-    T value{};
-    if (bytes_.size() < sizeof value) return good_ = false, value;
-    std::memcpy(&value, bytes_.data(), sizeof value);
-    bytes_.remove_prefix(sizeof value);
-    return value;
+  void read(T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      uint8_t byte = 0;
+      read(byte);
+      if (byte > 1) refuse();
+      value = byte == 1;
+    } else if constexpr (std::is_enum_v<T>) {
+      std::underlying_type_t<T> number = 0;
+      read(number);
+      const bool known = number <= static_cast<std::underlying_type_t<T>>(LastEnumerator<T>::value);
+      if (!known) refuse();
+      value = known ? static_cast<T>(number) : T{};
+    } else if constexpr (detail::Plain<T>) {
+      value = {};
+      const std::string_view bytes = take(sizeof value);
+      if (bytes.size() == sizeof value) std::memcpy(&value, bytes.data(), sizeof value);
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      uint64_t size = 0;
+      read(size);
+      value = take(size);
+    } else if constexpr (detail::Tuple<T>) {
+      std::apply(*this, value);
+    } else if constexpr (detail::Container<T>) {
+      uint64_t size = 0;
+      read(size);
+      value.clear();
+      for (uint64_t i = 0; i < size && good_; ++i) {
+        typename detail::Element<T>::Type item{};
+        read(item);
+        value.insert(value.end(), std::move(item));
+      }
+    } else if constexpr (detail::Pointer<T>) {
+      auto made = std::make_shared<std::remove_const_t<typename T::element_type>>();
+      read(*made);
+      value = std::move(made);
+    } else {
+      fields(*this, value);
+    }
+  }
+  std::string_view take(uint64_t size) {
+    if (size > bytes_.size()) return good_ = false, std::string_view{};
+    const std::string_view bytes = bytes_.substr(0, size);
+    bytes_.remove_prefix(size);
+    return bytes;
   }
 
   std::string_view bytes_;
   bool good_ = true;
 };
+
+template <class Archive>
+void fields(Archive& archive, Diagnostic& d) {
+  archive(d.code, d.severity, d.place.file, d.place.line, d.place.column, d.place.pointer, d.message, d.help,
+          d.excerpt);
+}
 
 }  // namespace lacquer

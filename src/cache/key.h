@@ -17,6 +17,11 @@ struct Key {
   std::string text() const;
 };
 
+template <class Archive>
+void fields(Archive& archive, Key& key) {
+  archive(key.high, key.low);
+}
+
 struct KeyHash {
   size_t operator()(const Key& key) const { return key.low; }
 };

@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "lacquer/options.h"
 #include "support/diagnostic.h"
 
 namespace lacquer::check {
 
-enum class Language : uint8_t { GlslVulkan, GlslOpenGl, Essl300, Hlsl };
 enum class Stage : uint8_t { Vertex, Fragment };
 
 using Spirv = std::vector<uint32_t>;
@@ -23,14 +23,15 @@ inline constexpr uint32_t kHlslBufferShift = 0;
 inline constexpr uint32_t kHlslTextureShift = 16;
 inline constexpr uint32_t kHlslSamplerShift = 48;
 
-/// Compiles `text` with glslang. `name` is the file name in diagnostics. For GlslVulkan and Hlsl the result
-/// is SPIR-V 1.3 for Vulkan 1.1; GlslOpenGl gives OpenGL SPIR-V, after the text has passed as a driver's
-/// input, too; Essl300 is only checked (the result is empty). The text must say `#version 450` (GlslVulkan,
-/// GlslOpenGl) or `#version 300 es` (Essl300). HLSL's entry point is `main`; its cbuffers keep the offsets of
-/// HLSL's packing rules, except behind an array: Direct3D goes on in the last element's register, glslang in
-/// the next one. The errors are glslang's messages, one diagnostic each, code "glslang". Safe to call from
-/// several threads.
-Result<Spirv> compile(std::string_view text, Language language, Stage stage, const std::string& name);
+/// Compiles the text of one of the four targets that have one with glslang. `name` is the file name in
+/// diagnostics. For Glsl and Hlsl the result is SPIR-V 1.3 for Vulkan 1.1; GlslGl gives OpenGL SPIR-V, after
+/// the text has passed as a driver's input, too; Essl is only checked (the result is empty). The text must
+/// say
+/// `#version 450` (Glsl, GlslGl) or `#version 300 es` (Essl). HLSL's entry point is `main`; its cbuffers keep
+/// the offsets of HLSL's packing rules, except behind an array: Direct3D goes on in the last element's
+/// register, glslang in the next one. The errors are glslang's messages, one diagnostic each, code "glslang".
+/// Safe to call from several threads.
+Result<Spirv> compile(std::string_view text, Target target, Stage stage, const std::string& name);
 
 /// spirv-val for Vulkan 1.1 (or OpenGL 4.5). An empty list when valid. Code "spirv-val".
 Diagnostics validate(const Spirv& words, bool open_gl, const std::string& name);
@@ -55,22 +56,5 @@ std::string dxcIdentity();
 /// Compiles HLSL with dxc (profile vs_6_0 / ps_6_0). An empty list when it compiles; without dxc one error,
 /// "dxc-missing". Code "dxc". Safe to call from several threads, as long as none changes the environment.
 Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::string& name);
-
-struct BlockMember {
-  std::string name;  ///< empty when the module carries no names
-  uint32_t offset = 0;
-  uint32_t size = 0;  ///< a matrix or an array counts whole strides: 48 for a mat3 whose stride is 16
-};
-
-struct Block {
-  std::string name;  ///< the block's type name
-  uint32_t set = 0, binding = 0;
-  uint32_t size = 0;  ///< the end of the last member, not rounded up
-  std::vector<BlockMember> members;
-};
-
-/// The uniform blocks of a SPIR-V module with their members' offsets, by the decorations in the words
-/// (not by layout rules), sorted by set and binding.
-Result<std::vector<Block>> reflectBlocks(const Spirv& words);
 
 }  // namespace lacquer::check

@@ -145,14 +145,17 @@ Diagnostics errorsOf(std::string_view log, std::string_view text, const std::str
   return list;
 }
 
-/// The shader must be of the language it is checked as: glslang takes whatever dialect the text announces.
-std::optional<Diagnostic> wrongVersion(std::string_view text, Language language, const std::string& name) {
+/// The shader must be of the target it is checked as: glslang takes whatever dialect the text announces.
+std::optional<Diagnostic> wrongVersion(std::string_view text, Target target, const std::string& name) {
   std::string_view wanted;
-  switch (language) {
-    case Language::GlslVulkan:
-    case Language::GlslOpenGl: wanted = "#version 450"; break;
-    case Language::Essl300: wanted = "#version 300 es"; break;
-    case Language::Hlsl: return std::nullopt;
+  switch (target) {
+    case Target::Glsl:
+    case Target::GlslGl: wanted = "#version 450"; break;
+    case Target::Essl: wanted = "#version 300 es"; break;
+    case Target::Hlsl: return std::nullopt;
+    case Target::Spirv:
+    case Target::Cpp:
+      return fail(std::string(kCode), {name, 0, 0, {}}, "the target has no text of a stage").value()[0];
   }
   size_t at = text.starts_with("#version") ? 0 : text.find("\n#version");
   if (at != std::string_view::npos && text[at] == '\n') ++at;
@@ -162,7 +165,7 @@ std::optional<Diagnostic> wrongVersion(std::string_view text, Language language,
   diagnostic.message = fmt::format("the shader does not start with `{}`", wanted);
   if (at == std::string_view::npos) return diagnostic;
   const std::string_view line = trim(text.substr(at, text.find('\n', at) - at));
-  if (line == wanted || (language != Language::Essl300 && line == fmt::format("{} core", wanted))) {
+  if (line == wanted || (target != Target::Essl && line == fmt::format("{} core", wanted))) {
     return std::nullopt;
   }
   locate(diagnostic, text, at, line.size());
@@ -184,22 +187,24 @@ EShMessages setUpHlsl(glslang::TShader& shader, EShLanguage stage) {
   return static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgReadHlsl | EShMsgHlslOffsets);
 }
 
-/// Not for Essl300, which never becomes SPIR-V.
-EShMessages setUp(glslang::TShader& shader, Language language, EShLanguage stage) {
+/// Not for Essl, which never becomes SPIR-V.
+EShMessages setUp(glslang::TShader& shader, Target target, EShLanguage stage) {
   shader.setEntryPoint("main");
-  switch (language) {
-    case Language::GlslVulkan:
+  switch (target) {
+    case Target::Glsl:
       shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
       shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
       shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
       return static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-    case Language::GlslOpenGl:
+    case Target::GlslGl:
       shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientOpenGL, 100);
       shader.setEnvClient(glslang::EShClientOpenGL, glslang::EShTargetOpenGL_450);
       shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
       return EShMsgSpvRules;
-    case Language::Essl300: return EShMsgDefault;
-    case Language::Hlsl: return setUpHlsl(shader, stage);
+    case Target::Essl: return EShMsgDefault;
+    case Target::Hlsl: return setUpHlsl(shader, stage);
+    case Target::Spirv:
+    case Target::Cpp: break;  // wrongVersion() has refused them
   }
   return EShMsgDefault;
 }
@@ -220,13 +225,13 @@ Diagnostics checkAsText(std::string_view text, EShLanguage stage, const std::str
   return {};
 }
 
-Result<Spirv> compileToSpirv(std::string_view text, Language language, EShLanguage stage,
+Result<Spirv> compileToSpirv(std::string_view text, Target target, EShLanguage stage,
                              const std::string& name) {
   glslang::TShader shader(stage);
   const char* strings[] = {text.data()};
   const int lengths[] = {static_cast<int>(text.size())};
   shader.setStringsWithLengths(strings, lengths, 1);
-  const EShMessages messages = setUp(shader, language, stage);
+  const EShMessages messages = setUp(shader, target, stage);
   if (!shader.parse(GetDefaultResources(), 100, false, messages)) {
     return tl::make_unexpected(errorsOf(shader.getInfoLog(), text, name));
   }
@@ -249,21 +254,21 @@ Result<Spirv> compileToSpirv(std::string_view text, Language language, EShLangua
 
 }  // namespace
 
-Result<Spirv> compile(std::string_view text, Language language, Stage stage, const std::string& name) {
+Result<Spirv> compile(std::string_view text, Target target, Stage stage, const std::string& name) {
   // Once per process, by the first caller; the tables live as long as the process.
   static const bool kReady = glslang::InitializeProcess();
   if (!kReady) return fail(std::string(kCode), {name, 0, 0, {}}, "glslang could not be initialized");
-  if (auto wrong = wrongVersion(text, language, name))
+  if (auto wrong = wrongVersion(text, target, name))
     return tl::make_unexpected(Diagnostics{std::move(*wrong)});
 
   const EShLanguage shader_stage = stage == Stage::Vertex ? EShLangVertex : EShLangFragment;
-  if (language == Language::Essl300 || language == Language::GlslOpenGl) {
+  if (target == Target::Essl || target == Target::GlslGl) {
     if (Diagnostics errors = checkAsText(text, shader_stage, name); !errors.empty()) {
       return tl::make_unexpected(std::move(errors));
     }
   }
-  if (language == Language::Essl300) return Spirv{};
-  return compileToSpirv(text, language, shader_stage, name);
+  if (target == Target::Essl) return Spirv{};
+  return compileToSpirv(text, target, shader_stage, name);
 }
 
 }  // namespace lacquer::check

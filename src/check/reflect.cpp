@@ -1,57 +1,101 @@
-// The uniform blocks of a SPIR-V module, by the decorations in its words (SPIR-V specification, 2.16
-// and 3.20).
+// Reads a module in one walk over its words (SPIR-V specification, 2.3 and 2.4): decorations stand before
+// types, types before variables. Operands that are not there read as 0, so that no module makes the walk
+// leave its words.
+#include "check/reflect.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <spirv-tools/libspirv.hpp>
+#include <optional>
+#include <set>
 #include <spirv/unified1/spirv.hpp>
 #include <tuple>
-
-#include "check/check.h"
 
 namespace lacquer::check {
 namespace {
 
+constexpr uint32_t kHeaderWords = 5;
+constexpr uint32_t kMaxSlots = 64;   ///< more locations than any device has
+constexpr uint32_t kMaxNesting = 8;  ///< of arrays
+
+struct Instruction {
+  spv::Op op = spv::OpNop;
+  const uint32_t* words = nullptr;
+  uint32_t length = 0;
+
+  uint32_t at(uint32_t index) const { return index < length ? words[index] : 0; }
+  /// The literal string from a word on.
+  std::string text(uint32_t first) const {
+    std::string text;
+    for (uint32_t i = first; i < length; ++i) {
+      for (uint32_t shift = 0; shift < 32; shift += 8) {
+        const char c = static_cast<char>(words[i] >> shift & 0xff);
+        if (c == '\0') return text;
+        text += c;
+      }
+    }
+    return text;
+  }
+};
+
+/// Calls `visit` for each instruction until it returns false. False when the words are no module.
+template <class Visit>
+bool walk(const Spirv& words, const Visit& visit) {
+  if (words.size() < kHeaderWords || words[0] != spv::MagicNumber) return false;
+  for (size_t i = kHeaderWords; i < words.size();) {
+    const uint32_t length = words[i] >> spv::WordCountShift;
+    if (length == 0 || length > words.size() - i) return false;
+    if (!visit(Instruction{static_cast<spv::Op>(words[i] & spv::OpCodeMask), &words[i], length})) break;
+    i += length;
+  }
+  return true;
+}
+
 struct Type {
   spv::Op op = spv::OpNop;
-  uint32_t size = 0;     ///< in bytes; of a matrix, the size of one column
+  uint32_t width = 0;
+  bool is_signed = false;
   uint32_t element = 0;  ///< id of a vector's, matrix's or array's element, or what a pointer points to
-  uint32_t count = 0;    ///< of elements; of a matrix, its columns
-  std::vector<uint32_t> members;         ///< ids of a struct's member types
-  spv::StorageClass storage_class = {};  ///< of a pointer
+  uint32_t count = 0;    ///< of elements; 0 for a run-time array
+  uint32_t dim = 0, sampled = 0;  ///< of an image
+  uint32_t bytes = 0;             ///< 0 for a matrix: its stride is the member's that holds it
+  std::vector<uint32_t> members;  ///< ids of a struct's member types
 };
 
-/// What the decorations of one id, or of one member of it, say.
-struct Decorations {
-  std::map<spv::Decoration, uint32_t> values;  ///< 0 for a decoration without an operand
+using Decorations = std::map<uint32_t, uint32_t>;  ///< decoration → its operand, or 0
 
-  bool has(spv::Decoration decoration) const { return values.contains(decoration); }
-  uint32_t get(spv::Decoration decoration) const {
-    const auto found = values.find(decoration);
-    return found == values.end() ? 0 : found->second;
-  }
-};
-
-/// Reads the module in order. Decorations stand before types and types before their users, so that one pass
-/// does.
 class Reader {
 public:
-  void read(const spv_parsed_instruction_t& instruction);
+  /// Without a stage the module is read for its blocks and places alone.
+  explicit Reader(Stage stage = Stage::Fragment)
+      : model_(stage == Stage::Vertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment) {}
 
-  std::vector<Block> blocks;
-  std::string error;  ///< the first reason why there is no answer
+  bool read(const Instruction& instruction);
+  Result<Interface> finish();
+  Result<std::vector<Block>> finishBlocks();
+
+  std::vector<Taken> places;
 
 private:
+  void readEntryPoint(const Instruction& instruction);
+  void readType(const Instruction& instruction);
+  void readVariable(const Instruction& instruction);
+  void readPlace(const Instruction& instruction, spv::StorageClass storage, const Decorations& decorations);
+  void readBlock(uint32_t type_id, const Decorations& variable);
+  void readResource(uint32_t type_id, spv::StorageClass storage, const Decorations& decorations);
+  void readSlots(uint32_t type_id, const Decorations& decorations, std::vector<Slot>& slots);
+  bool addSlots(uint32_t type_id, Slot& next, std::vector<Slot>& slots, uint32_t nesting) const;
+  std::optional<Resource> resourceOf(uint32_t type_id, spv::StorageClass storage) const;
+  uint32_t memberBytes(uint32_t type_id, const Decorations& member) const;
   const Type& typeOf(uint32_t id) const;
-  uint32_t memberSize(uint32_t type_id, const Decorations& decorations) const;
-  void readType(spv::Op op, const spv_parsed_instruction_t& instruction);
-  void readStruct(const spv_parsed_instruction_t& instruction);
-  void readVariable(const spv_parsed_instruction_t& instruction);
-  void complain(std::string message) {
-    if (error.empty()) error = std::move(message);
-  }
+  const Decorations& decorationsOf(uint32_t id, std::optional<uint32_t> member = {}) const;
 
+  spv::ExecutionModel model_;
+  bool found_ = false;
+  Interface interface_;
+  std::string error_;
+  std::vector<Block> blocks_;
+  std::string block_error_;
   std::map<uint32_t, std::string> names_;
   std::map<std::pair<uint32_t, uint32_t>, std::string> member_names_;
   std::map<uint32_t, Decorations> decorations_;
@@ -60,148 +104,293 @@ private:
   std::map<uint32_t, uint32_t> constants_;
 };
 
-/// The literal string from word `first` to the instruction's end, which the parser has checked to be
-/// terminated.
-std::string textFrom(const spv_parsed_instruction_t& instruction, uint32_t first) {
-  std::string text;
-  for (uint32_t i = first; i < instruction.num_words; ++i) {
-    for (uint32_t shift = 0; shift < 32; shift += 8) {
-      const char c = static_cast<char>(instruction.words[i] >> shift & 0xff);
-      if (c == '\0') return text;
-      text += c;
-    }
-  }
-  return text;
-}
-
 const Type& Reader::typeOf(uint32_t id) const {
   static const Type kNone;
   const auto found = types_.find(id);
   return found == types_.end() ? kNone : found->second;
 }
 
-uint32_t Reader::memberSize(uint32_t type_id, const Decorations& decorations) const {
-  const Type& type = typeOf(type_id);
-  if (type.op != spv::OpTypeMatrix) return type.size;
-  const uint32_t rows = typeOf(type.element).count;
-  return decorations.get(spv::DecorationMatrixStride) *
-         (decorations.has(spv::DecorationRowMajor) ? rows : type.count);
-}
-
-void Reader::readStruct(const spv_parsed_instruction_t& instruction) {
-  const uint32_t id = instruction.result_id;
-  Type type;
-  type.op = spv::OpTypeStruct;
-  for (uint32_t i = 2; i < instruction.num_words; ++i) {
-    const Decorations& decorations = member_decorations_[{id, i - 2}];
-    type.members.push_back(instruction.words[i]);
-    const uint32_t end =
-        decorations.get(spv::DecorationOffset) + memberSize(instruction.words[i], decorations);
-    type.size = std::max(type.size, end);
+const Decorations& Reader::decorationsOf(uint32_t id, std::optional<uint32_t> member) const {
+  static const Decorations kNone;
+  if (member) {
+    const auto found = member_decorations_.find({id, *member});
+    return found == member_decorations_.end() ? kNone : found->second;
   }
-  types_[id] = std::move(type);
+  const auto found = decorations_.find(id);
+  return found == decorations_.end() ? kNone : found->second;
 }
 
-void Reader::readType(spv::Op op, const spv_parsed_instruction_t& instruction) {
-  const uint32_t* words = instruction.words;
+uint32_t get(const Decorations& decorations, spv::Decoration decoration) {
+  const auto found = decorations.find(decoration);
+  return found == decorations.end() ? 0 : found->second;
+}
+
+void Reader::readEntryPoint(const Instruction& instruction) {
+  if (found_ || static_cast<spv::ExecutionModel>(instruction.at(1)) != model_) return;
+  found_ = true;
+  interface_.entry = instruction.text(3);
+}
+
+void Reader::readType(const Instruction& instruction) {
   Type type;
-  type.op = op;
-  if (op == spv::OpTypeInt || op == spv::OpTypeFloat) {
-    type.size = words[2] / 8;
-    type.count = 1;
-  } else if (op == spv::OpTypeVector || op == spv::OpTypeMatrix) {
-    type.element = words[2];
-    type.count = words[3];
-    // A matrix is as large as its member's stride says; see memberSize.
-    type.size = typeOf(type.element).size * (op == spv::OpTypeVector ? type.count : 1);
-  } else if (op == spv::OpTypeArray) {
-    type.element = words[2];
-    type.count = constants_[words[3]];
-    type.size = decorations_[instruction.result_id].get(spv::DecorationArrayStride) * type.count;
-  } else if (op == spv::OpTypePointer) {
-    type.storage_class = static_cast<spv::StorageClass>(words[2]);
-    type.element = words[3];
-  }
-  types_[instruction.result_id] = std::move(type);
-}
-
-void Reader::readVariable(const spv_parsed_instruction_t& instruction) {
-  const Type& pointer = typeOf(instruction.type_id);
-  if (pointer.storage_class != spv::StorageClassUniform || pointer.op != spv::OpTypePointer) return;
-  uint32_t id = pointer.element;
-  while (typeOf(id).op == spv::OpTypeArray) id = typeOf(id).element;  // an array of blocks
-  if (typeOf(id).op != spv::OpTypeStruct || !decorations_[id].has(spv::DecorationBlock)) return;
-
-  const Decorations& variable = decorations_[instruction.result_id];
-  Block block;
-  block.name = names_[id];
-  block.set = variable.get(spv::DecorationDescriptorSet);
-  block.binding = variable.get(spv::DecorationBinding);
-  block.size = typeOf(id).size;
-  if (!variable.has(spv::DecorationBinding)) complain(fmt::format("block '{}' has no binding", block.name));
-  uint32_t index = 0;
-  for (const uint32_t member_type : typeOf(id).members) {
-    const std::pair key(id, index++);
-    const Decorations& decorations = member_decorations_[key];
-    BlockMember member;
-    member.name = member_names_[key];
-    member.offset = decorations.get(spv::DecorationOffset);
-    member.size = memberSize(member_type, decorations);
-    if (!decorations.has(spv::DecorationOffset)) {
-      complain(
-          fmt::format("member {} ('{}') of block '{}' has no offset", key.second, member.name, block.name));
+  type.op = instruction.op;
+  if (instruction.op == spv::OpTypeInt || instruction.op == spv::OpTypeFloat) {
+    type.width = instruction.at(2);
+    type.bytes = type.width / 8;
+    type.is_signed = instruction.op == spv::OpTypeInt && instruction.at(3) != 0;
+  } else if (instruction.op == spv::OpTypeVector || instruction.op == spv::OpTypeMatrix) {
+    type.element = instruction.at(2);
+    type.count = instruction.at(3);
+    if (instruction.op == spv::OpTypeVector) type.bytes = type.count * typeOf(type.element).bytes;
+  } else if (instruction.op == spv::OpTypeArray) {
+    type.element = instruction.at(2);
+    const auto length = constants_.find(instruction.at(3));
+    type.count = length == constants_.end() ? 1 : length->second;
+    type.bytes = get(decorationsOf(instruction.at(1)), spv::DecorationArrayStride) * type.count;
+  } else if (instruction.op == spv::OpTypeRuntimeArray || instruction.op == spv::OpTypeSampledImage) {
+    type.element = instruction.at(2);
+  } else if (instruction.op == spv::OpTypePointer) {
+    type.element = instruction.at(3);
+  } else if (instruction.op == spv::OpTypeImage) {
+    type.dim = instruction.at(3);
+    type.sampled = instruction.at(7);
+  } else if (instruction.op == spv::OpTypeStruct) {
+    for (uint32_t i = 2; i < instruction.length; ++i) {
+      const Decorations& member = decorationsOf(instruction.at(1), i - 2);
+      type.members.push_back(instruction.words[i]);
+      type.bytes = std::max(type.bytes,
+                            get(member, spv::DecorationOffset) + memberBytes(instruction.words[i], member));
     }
-    block.members.push_back(std::move(member));
   }
-  blocks.push_back(std::move(block));
+  types_[instruction.at(1)] = std::move(type);
 }
 
-void Reader::read(const spv_parsed_instruction_t& instruction) {
-  const uint32_t* words = instruction.words;
-  const auto op = static_cast<spv::Op>(instruction.opcode);
-  if (op == spv::OpName) {
-    names_[words[1]] = textFrom(instruction, 2);
+std::optional<Resource> Reader::resourceOf(uint32_t type_id, spv::StorageClass storage) const {
+  const Type& type = typeOf(type_id);
+  if (storage == spv::StorageClassStorageBuffer) return Resource::StorageBuffer;
+  if (storage == spv::StorageClassUniform) {
+    const bool stored = decorationsOf(type_id).contains(spv::DecorationBufferBlock);
+    return stored ? Resource::StorageBuffer : Resource::UniformBuffer;
+  }
+  if (type.op == spv::OpTypeSampler) return Resource::Sampler;
+  const bool buffer = type.dim == spv::DimBuffer;
+  if (type.op == spv::OpTypeSampledImage) {
+    return typeOf(type.element).dim == spv::DimBuffer ? Resource::UniformTexelBuffer
+                                                      : Resource::CombinedImageSampler;
+  }
+  if (type.op != spv::OpTypeImage || type.dim == spv::DimSubpassData) return {};
+  if (type.sampled == 2) return buffer ? Resource::StorageTexelBuffer : Resource::StorageImage;
+  return buffer ? Resource::UniformTexelBuffer : Resource::SampledImage;
+}
+
+void Reader::readResource(uint32_t type_id, spv::StorageClass storage, const Decorations& decorations) {
+  Binding binding;
+  for (uint32_t i = 0; i < kMaxNesting; ++i) {
+    const Type& type = typeOf(type_id);
+    if (type.op != spv::OpTypeArray && type.op != spv::OpTypeRuntimeArray) break;
+    binding.count *= std::clamp(type.count, 1U, 1024U);
+    type_id = type.element;
+  }
+  const std::optional<Resource> resource = resourceOf(type_id, storage);
+  const std::pair key(get(decorations, spv::DecorationDescriptorSet),
+                      get(decorations, spv::DecorationBinding));
+  if (!resource || key.first >= 32 || binding.count > 65536) {
+    error_ = fmt::format("the resource at set {}, binding {} is of a kind that is not measured", key.first,
+                         key.second);
+    return;
+  }
+  binding.resource = *resource;
+  Binding& known = interface_.bindings.try_emplace(key, binding).first->second;
+  // Two variables may share a binding: an image and its sampler out of one combined descriptor.
+  if (known.resource != binding.resource) known.resource = Resource::CombinedImageSampler;
+  known.count = std::max(known.count, binding.count);
+}
+
+void Reader::readPlace(const Instruction& instruction, spv::StorageClass storage,
+                       const Decorations& decorations) {
+  if (storage == spv::StorageClassStorageBuffer) return;
+  const bool uniform = storage == spv::StorageClassUniform;
+  if (decorations.contains(spv::DecorationBinding)) {
+    places.push_back({names_[instruction.at(2)], get(decorations, spv::DecorationDescriptorSet),
+                      get(decorations, spv::DecorationBinding), uniform});
+  }
+  if (!uniform) return;
+  uint32_t id = typeOf(instruction.at(1)).element;
+  // An array of blocks.
+  for (uint32_t i = 0; i < kMaxNesting && typeOf(id).op == spv::OpTypeArray; ++i) id = typeOf(id).element;
+  if (typeOf(id).op == spv::OpTypeStruct && decorationsOf(id).contains(spv::DecorationBlock))
+    readBlock(id, decorations);
+}
+
+void Reader::readBlock(uint32_t type_id, const Decorations& variable) {
+  const auto complain = [this](std::string message) {
+    if (block_error_.empty()) block_error_ = std::move(message);
+  };
+  Block block{names_[type_id],
+              get(variable, spv::DecorationDescriptorSet),
+              get(variable, spv::DecorationBinding),
+              typeOf(type_id).bytes,
+              {}};
+  if (!variable.contains(spv::DecorationBinding))
+    complain(fmt::format("block '{}' has no binding", block.name));
+  uint32_t index = 0;
+  for (const uint32_t member_type : typeOf(type_id).members) {
+    const Decorations& decorations = decorationsOf(type_id, index);
+    BlockMember member{member_names_[{type_id, index}], get(decorations, spv::DecorationOffset),
+                       memberBytes(member_type, decorations)};
+    if (!decorations.contains(spv::DecorationOffset))
+      complain(fmt::format("member {} ('{}') of block '{}' has no offset", index, member.name, block.name));
+    block.members.push_back(std::move(member));
+    ++index;
+  }
+  blocks_.push_back(std::move(block));
+}
+
+/// Appends the locations of a type from `next` on. False for structs, booleans and numbers that are not 32
+/// bits wide.
+bool Reader::addSlots(uint32_t type_id, Slot& next, std::vector<Slot>& slots, uint32_t nesting) const {
+  const Type& type = typeOf(type_id);
+  if (type.op == spv::OpTypeArray || type.op == spv::OpTypeMatrix) {
+    if (nesting == 0 || type.count == 0) return false;
+    for (uint32_t i = 0; i < type.count; ++i) {
+      if (slots.size() >= kMaxSlots || !addSlots(type.element, next, slots, nesting - 1)) return false;
+    }
+    return true;
+  }
+  const Type& scalar = type.op == spv::OpTypeVector ? typeOf(type.element) : type;
+  if ((scalar.op != spv::OpTypeFloat && scalar.op != spv::OpTypeInt) || scalar.width != 32) return false;
+  next.count = type.op == spv::OpTypeVector ? type.count : 1;
+  next.scalar = scalar.op == spv::OpTypeFloat ? Scalar::Float : scalar.is_signed ? Scalar::Int : Scalar::Uint;
+  if (next.count > 4 || next.location >= kMaxSlots) return false;
+  slots.push_back(next);
+  ++next.location;
+  return true;
+}
+
+void Reader::readSlots(uint32_t type_id, const Decorations& decorations, std::vector<Slot>& slots) {
+  if (decorations.contains(spv::DecorationBuiltIn)) return;
+  const Type& type = typeOf(type_id);
+  // gl_PerVertex is a block of built-ins.
+  if (type.op == spv::OpTypeStruct && decorationsOf(type_id, 0).contains(spv::DecorationBuiltIn)) return;
+  Slot next;
+  next.location = get(decorations, spv::DecorationLocation);
+  next.component = get(decorations, spv::DecorationComponent);
+  const size_t before = slots.size();
+  if (addSlots(type_id, next, slots, kMaxNesting)) return;
+  slots.resize(before);
+  if (&slots == &interface_.inputs) {
+    interface_.odd_input = fmt::format("the input at location {}", get(decorations, spv::DecorationLocation));
+  }
+}
+
+/// Bytes of a struct's member; its decorations hold the stride of a matrix.
+uint32_t Reader::memberBytes(uint32_t type_id, const Decorations& member) const {
+  const Type& type = typeOf(type_id);
+  if (type.op != spv::OpTypeMatrix) return type.bytes;
+  const bool rows = member.contains(spv::DecorationRowMajor);
+  return get(member, spv::DecorationMatrixStride) * (rows ? typeOf(type.element).count : type.count);
+}
+
+void Reader::readVariable(const Instruction& instruction) {
+  const uint32_t type_id = typeOf(instruction.at(1)).element;
+  const Decorations& decorations = decorationsOf(instruction.at(2));
+  const auto storage = static_cast<spv::StorageClass>(instruction.at(3));
+  if (storage == spv::StorageClassInput) {
+    readSlots(type_id, decorations, interface_.inputs);
+  } else if (storage == spv::StorageClassOutput) {
+    readSlots(type_id, decorations, interface_.outputs);
+  } else if (storage == spv::StorageClassPushConstant) {
+    interface_.push_constant_bytes = std::max(interface_.push_constant_bytes, typeOf(type_id).bytes);
+  } else if (storage == spv::StorageClassUniform || storage == spv::StorageClassUniformConstant ||
+             storage == spv::StorageClassStorageBuffer) {
+    readPlace(instruction, storage, decorations);
+    readResource(type_id, storage, decorations);
+  }
+}
+
+bool Reader::read(const Instruction& instruction) {
+  const spv::Op op = instruction.op;
+  if (op == spv::OpFunction) return false;  // all declarations stand before it
+  if (op == spv::OpEntryPoint) {
+    readEntryPoint(instruction);
+  } else if (op == spv::OpName) {
+    names_[instruction.at(1)] = instruction.text(2);
   } else if (op == spv::OpMemberName) {
-    member_names_[{words[1], words[2]}] = textFrom(instruction, 3);
+    member_names_[{instruction.at(1), instruction.at(2)}] = instruction.text(3);
   } else if (op == spv::OpDecorate) {
-    const auto decoration = static_cast<spv::Decoration>(words[2]);
-    decorations_[words[1]].values[decoration] = instruction.num_words > 3 ? words[3] : 0;
+    decorations_[instruction.at(1)][instruction.at(2)] = instruction.at(3);
   } else if (op == spv::OpMemberDecorate) {
-    const auto decoration = static_cast<spv::Decoration>(words[3]);
-    member_decorations_[{words[1], words[2]}].values[decoration] = instruction.num_words > 4 ? words[4] : 0;
+    member_decorations_[{instruction.at(1), instruction.at(2)}][instruction.at(3)] = instruction.at(4);
   } else if (op == spv::OpConstant || op == spv::OpSpecConstant) {
-    constants_[instruction.result_id] = words[3];
-  } else if (op == spv::OpTypeStruct) {
-    readStruct(instruction);
+    constants_[instruction.at(2)] = instruction.at(3);
   } else if (op == spv::OpVariable) {
     readVariable(instruction);
   } else if (op >= spv::OpTypeVoid && op <= spv::OpTypePointer) {
-    readType(op, instruction);
+    readType(instruction);
   }
+  return true;
+}
+
+Result<Interface> Reader::finish() {
+  if (!found_) {
+    const char* name = model_ == spv::ExecutionModelVertex ? "vertex" : "fragment";
+    return fail("spirv-reflection", {}, fmt::format("the module has no entry point of a {} shader", name));
+  }
+  if (!error_.empty()) return fail("spirv-reflection", {}, error_);
+  for (std::vector<Slot>* slots : {&interface_.inputs, &interface_.outputs}) {
+    std::sort(slots->begin(), slots->end(), [](const Slot& a, const Slot& b) {
+      return std::tie(a.location, a.component) < std::tie(b.location, b.component);
+    });
+  }
+  return std::move(interface_);
+}
+
+Result<std::vector<Block>> Reader::finishBlocks() {
+  if (!block_error_.empty()) return fail("spirv-reflection", {}, block_error_);
+  std::sort(blocks_.begin(), blocks_.end(), [](const Block& a, const Block& b) {
+    return std::tie(a.set, a.binding, a.name) < std::tie(b.set, b.binding, b.name);
+  });
+  return std::move(blocks_);
+}
+
+/// False when the words are no module.
+bool readAll(const Spirv& words, Reader& reader) {
+  return walk(words, [&](const Instruction& instruction) { return reader.read(instruction); });
 }
 
 }  // namespace
 
+Result<Interface> reflect(const Spirv& words, Stage stage) {
+  Reader reader(stage);
+  if (!readAll(words, reader)) return fail("spirv-reflection", {}, "not a SPIR-V module");
+  return reader.finish();
+}
+
 Result<std::vector<Block>> reflectBlocks(const Spirv& words) {
-  spvtools::Context context(SPV_ENV_UNIVERSAL_1_3);
-  std::string parse_error;
-  context.SetMessageConsumer([&parse_error](spv_message_level_t, const char*, const spv_position_t&,
-                                            const char* message) { parse_error = message; });
   Reader reader;
-  const auto read = [](void* user, const spv_parsed_instruction_t* instruction) {
-    static_cast<Reader*>(user)->read(*instruction);
-    return SPV_SUCCESS;
-  };
-  const spv_result_t status =
-      spvBinaryParse(context.CContext(), &reader, words.data(), words.size(), nullptr, read, nullptr);
-  if (status != SPV_SUCCESS) {
-    return fail("spirv-reflection", {}, fmt::format("not a SPIR-V module: {}", parse_error));
-  }
-  if (!reader.error.empty()) return fail("spirv-reflection", {}, reader.error);
-  std::sort(reader.blocks.begin(), reader.blocks.end(), [](const Block& a, const Block& b) {
-    return std::tie(a.set, a.binding, a.name) < std::tie(b.set, b.binding, b.name);
+  if (!readAll(words, reader)) return fail("spirv-reflection", {}, "not a SPIR-V module");
+  return reader.finishBlocks();
+}
+
+std::vector<Taken> reflectPlaces(const Spirv& words) {
+  Reader reader;
+  return readAll(words, reader) ? std::move(reader.places) : std::vector<Taken>{};
+}
+
+size_t instructionCount(const Spirv& words) {
+  size_t count = 0;
+  bool inside = false;
+  const bool good = walk(words, [&](const Instruction& instruction) {
+    const spv::Op op = instruction.op;
+    if (op == spv::OpFunction) inside = true;
+    const bool declares = op == spv::OpFunction || op == spv::OpFunctionParameter || op == spv::OpLabel ||
+                          op == spv::OpVariable || op == spv::OpLine || op == spv::OpNoLine ||
+                          op == spv::OpFunctionEnd;
+    if (inside && !declares) ++count;
+    if (op == spv::OpFunctionEnd) inside = false;
+    return true;
   });
-  return std::move(reader.blocks);
+  return good ? count : 0;
 }
 
 }  // namespace lacquer::check

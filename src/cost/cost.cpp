@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "check/check.h"
+#include "check/reflect.h"
 #include "vulkan/passthrough.h"
-#include "vulkan/reflect.h"
 #ifdef LACQUER_VULKAN
 #include "cost/loader.h"
 #include "cost/worker.h"
@@ -14,7 +14,7 @@ namespace lacquer::cost {
 
 const std::vector<std::string> kFamilies = {"navi21", "gfx1100"};
 
-size_t spirvInstructions(const Spirv& words) { return vulkan::instructionCount(words); }
+size_t spirvInstructions(const Spirv& words) { return check::instructionCount(words); }
 
 #ifdef LACQUER_VULKAN
 
@@ -41,7 +41,7 @@ std::vector<Subject> complete(const std::vector<Subject>& subjects, std::vector<
   std::vector<Subject> whole = subjects;
   for (size_t i = 0; i < whole.size(); ++i) {
     if (!whole[i].vertex.empty()) continue;
-    const Result<vulkan::Interface> fragment = vulkan::reflect(whole[i].fragment, vulkan::Stage::Fragment);
+    const Result<check::Interface> fragment = check::reflect(whole[i].fragment, check::Stage::Fragment);
     Result<Spirv> vertex = fragment ? vulkan::passthroughVertex(*fragment) : tl::unexpected(fragment.error());
     if (vertex) {
       whole[i].vertex = std::move(*vertex);

@@ -8,16 +8,16 @@
 #include <cctype>
 #include <map>
 
-#include "vulkan/reflect.h"
+#include "check/reflect.h"
 #include "vulkan/state.h"
 
 namespace lacquer::cost {
 namespace {
 
-using vulkan::Binding;
-using vulkan::Interface;
-using vulkan::Scalar;
-using vulkan::Slot;
+using check::Binding;
+using check::Interface;
+using check::Scalar;
+using check::Slot;
 
 VkFormat attributeFormat(const Slot& slot) {
   static constexpr VkFormat kFormats[3][4] = {
@@ -291,9 +291,9 @@ std::string textOf(const Diagnostics& diagnostics) {
 
 Outcome compilePipeline(const Device& device, const Subject& subject, bool disassembly) {
   Outcome outcome;
-  const Result<Interface> fragment = vulkan::reflect(subject.fragment, vulkan::Stage::Fragment);
+  const Result<Interface> fragment = check::reflect(subject.fragment, check::Stage::Fragment);
   if (!fragment) return {{}, {}, textOf(fragment.error())};
-  const Result<Interface> vertex = vulkan::reflect(subject.vertex, vulkan::Stage::Vertex);
+  const Result<Interface> vertex = check::reflect(subject.vertex, check::Stage::Vertex);
   if (!vertex) return {{}, {}, textOf(vertex.error())};
 
   Pipeline pipeline(device, *vertex, *fragment);

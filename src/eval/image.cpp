@@ -58,6 +58,13 @@ tl::unexpected<Diagnostics> unreadable(const Place& place, std::string message) 
   return fail("image-unreadable", place, std::move(message), "PNG and JPEG are read");
 }
 
+/// "a KTX2 file": what the bytes are that are not read.
+std::string_view formatOf(std::string_view bytes) {
+  if (bytes.starts_with("\xABKTX 20\xBB\r\n\x1A\n")) return "a KTX2 file";
+  if (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP")) return "a WebP file";
+  return "neither a PNG nor a JPEG";
+}
+
 bool isPngOrJpeg(std::string_view bytes) {
   return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff");
 }
@@ -138,7 +145,7 @@ std::array<float, 4> Image::at(size_t i) const {
 }
 
 Result<ImageSize> sizeOfImage(std::string_view bytes, const Place& place) {
-  if (!isPngOrJpeg(bytes)) return unreadable(place, "this is neither a PNG nor a JPEG");
+  if (!isPngOrJpeg(bytes)) return unreadable(place, fmt::format("this is {}", formatOf(bytes)));
   if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max()))
     return unreadable(place, "the image is too large");
   if (!jpegTablesFit(bytes)) return unreadable(place, "the image is damaged: it has a bad Huffman table");

@@ -22,6 +22,12 @@ Column column(std::span<const Point> points, int components, Get get) {
 
 using Vec3 = std::array<double, 3>;
 
+/// A column of one number for each point.
+template <class Get>
+Column numbers(std::span<const Point> points, Get get) {
+  return column(points, 1, [&](const Point& p) { return std::array<double, 1>{get(p)}; });
+}
+
 /// Each field's own value; of a matrix the identity.
 void bindDefaults(const ir::Block& block, Columns& to) {
   for (const ir::BlockField& field : block.fields) {
@@ -88,8 +94,11 @@ void bindPoints(const ir::Module& module, std::span<const Point> points, Binding
   to["COLOR_0"] = column(points, 4, [](const Point& p) { return p.color0; });
   to["VIEW"] = column(points, 3, [](const Point& p) { return p.v; });
   to["LIGHT"] = column(points, 3, [](const Point& p) { return p.l; });
-  to["gl_FrontFacing"] =
-      column(points, 1, [](const Point& p) { return std::array<double, 1>{p.front_facing ? 1.0 : 0.0}; });
+  to["INSIDE"] = numbers(points, [](const Point& p) { return p.inside ? 1.0 : 0.0; });
+  to["SURROUNDING_IOR"] = numbers(points, [](const Point& p) { return p.surrounding_ior; });
+  to["CHANNEL"] = numbers(points, [](const Point& p) { return p.channel; });
+  to["RANDOM"] = column(points, 3, [](const Point& p) { return p.random; });
+  to["gl_FrontFacing"] = numbers(points, [](const Point& p) { return p.front_facing ? 1.0 : 0.0; });
   Columns light;
   light["direction"] = column(points, 3, [](const Point& p) { return Vec3{-p.l[0], -p.l[1], -p.l[2]}; });
   light["color"] = column(points, 3, [](const Point& p) { return p.light; });

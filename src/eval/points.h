@@ -21,12 +21,16 @@ struct Point {
   std::array<double, 3> light{1, 1, 1};  ///< radiance
   std::array<double, 3> position{};
   bool front_facing = true;
+  bool inside = false;         ///< the eye is in the body that the surface bounds
+  double surrounding_ior = 1;  ///< around the body
+  double channel = -1;         ///< whose index the body has; -1: the material's own
+  std::array<double, 3> random{0.5, 0.5, 0.5};
 };
 
-/// Binds what the module's template is given: the glTF attributes, VIEW and LIGHT; every field of its blocks,
-/// with the value that the template's text says, but for a `camera_position`, which is at position + v; and
-/// one light of the kind `directional`, towards l. The module must have been lowered for evaluations.
-/// Textures stay unbound.
+/// Binds what the module's template is given: the glTF attributes, those of the template `bsdf`; every field
+/// of its blocks, with the value that the template's text says, but for a `camera_position`, which is at
+/// position + v; and one light of the kind `directional`, towards l. The module must have been lowered for
+/// evaluations. Textures stay unbound.
 void bindPoints(const ir::Module& module, std::span<const Point> points, Bindings& bindings);
 
 /// An element of the light array for a light of that kind, by its properties of KHR_lights_punctual ("color",

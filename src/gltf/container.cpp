@@ -1,5 +1,4 @@
-// The GLB container (glTF 2.0, section 4). tinygltf would read it too, but only together with all of its
-// contents: it decodes the buffers and the images, which Lacquer neither needs nor requires to exist.
+// The GLB container (glTF 2.0, section 4).
 #include "gltf/container.h"
 
 #include <fmt/format.h>

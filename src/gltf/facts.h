@@ -29,6 +29,13 @@ struct TextureInfo {
   std::optional<TextureTransform> transform;  ///< present when the file has the extension, even if identity
   std::string pointer;                        ///< JSON pointer of this textureInfo
   std::vector<double> members;                ///< what the declaration of the texture adds, in its order
+  /// What animations change (KHR_animation_pointer): of the transform, and of the members, by their places.
+  struct Animated {
+    bool offset = false, rotation = false, scale = false;
+    std::vector<size_t> members;
+    bool transform() const { return offset || rotation || scale; }
+    bool operator==(const Animated&) const = default;
+  } animated{};
 };
 
 /// The vertex attributes of a primitive, as the shader sees them. POSITION is always there.
@@ -42,12 +49,58 @@ struct VertexAttributes {
   std::vector<std::string> names() const;
 };
 
+/// How an accessor stores a vertex attribute. Shaders read floats whatever it is (KHR_mesh_quantization).
+struct AttributeFormat {
+  std::string semantic;       ///< "POSITION", "JOINTS_0", "_WIND"
+  std::string type;           ///< "VEC3"; empty where the file does not say
+  std::string componentType;  ///< "FLOAT", "UNSIGNED_SHORT"; empty where the file does not say
+  bool normalized = false;    ///< integers stand for [0, 1] or [-1, 1]
+  bool operator==(const AttributeFormat&) const = default;
+};
+
+/// A material that a primitive has while one of these variants is chosen (KHR_materials_variants).
+struct VariantMapping {
+  int material = -1;
+  std::vector<int> variants;  ///< indices into Scene::variants
+};
+
+struct Primitive {
+  size_t mesh = 0, index = 0;  ///< meshes[mesh].primitives[index]
+  int material = -1;           ///< without a variant; -1 is the default material
+  VertexAttributes attributes;
+  std::vector<AttributeFormat> formats;  ///< of all its attributes, in the file's order
+  std::vector<VariantMapping> mappings;
+};
+
+/// A texture's images and its sampler, in OpenGL's numbers as glTF has them.
+struct Texture {
+  /// An image that an extension gives in place of `source`.
+  struct Source {
+    std::string_view extension;  ///< "KHR_texture_basisu"
+    int image = -1;
+  };
+  int source = -1;                   ///< index into the images; -1 when there is none
+  std::vector<Source> sources;       ///< by extensions, in the order of imageExtensions()
+  int wrapS = 10497, wrapT = 10497;  ///< 33071 clamp, 33648 mirror, 10497 repeat
+  int magFilter = 0,
+      minFilter = 0;  ///< 9728 nearest, 9729 linear, and minFilter's mipmaps; 0: the file leaves it open
+  /// What an engine shows that knows the extensions: their image first; -1 when there is none.
+  int image() const { return sources.empty() ? source : sources[0].image; }
+};
+
+/// A property that an animation changes (KHR_animation_pointer).
+struct AnimatedPointer {
+  std::string target;  ///< "/materials/0/alphaCutoff"
+  std::string place;   ///< JSON pointer of the `pointer` that says so
+};
+
 enum class LightType : uint8_t { Directional, Point, Spot };
 
 struct Image {
   std::string uri;  ///< relative to the file; empty when it is in a buffer view or a data URI
   int bufferView = -1;
-  std::string pointer;  ///< "/images/3"
+  std::string mimeType;  ///< as the file or its data URI says; may be empty
+  std::string pointer;   ///< "/images/3"
 };
 
 /// What of a file's scene shaders depend on.
@@ -61,7 +114,11 @@ struct Scene {
   /// Punctual lights that nodes refer to (KHR_lights_punctual), by type: how many instances.
   std::map<LightType, int> lights;
   std::vector<Image> images;
-  Diagnostics diagnostics;  ///< of the file as a whole (not of one material)
+  std::vector<Texture> textures;
+  std::vector<Primitive> primitives;      ///< those that can be used, in the file's order
+  std::vector<std::string> variants;      ///< names of KHR_materials_variants
+  std::vector<AnimatedPointer> animated;  ///< each target once, in the file's order
+  Diagnostics diagnostics;                ///< of the file as a whole (not of one material)
 };
 
 }  // namespace lacquer::gltf

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "gltf/container.h"
+#include "gltf/reading.h"
 #include "support/contain.h"
 #include "support/file.h"
 #include "support/text.h"
@@ -185,20 +186,14 @@ Result<TextureSource> TextureFile::texture(int index) const {
   const Json* texture = index < 0 ? nullptr : element(root_, "textures", static_cast<size_t>(index));
   if (texture == nullptr) return fail("image-missing", place, "there is no such texture");
   TextureSource source;
-  const std::optional<size_t> image_index = wholeMember(*texture, "source");
-  const Json* image = element(root_, "images", image_index);
-  if (image == nullptr) return fail("image-missing", place, "the texture has no image");
-  source.image = *image_index;
-  source.place = {path_, 0, 0, fmt::format("/images/{}", source.image)};
-  if (const Json* sampler = element(root_, "samplers", wholeMember(*texture, "sampler"))) {
-    const auto number = [&](std::string_view key, int& to) {
-      const std::optional<size_t> value = wholeMember(*sampler, key);
-      if (value && *value < 65536) to = static_cast<int>(*value);
-    };
-    number("wrapS", source.wrapS);
-    number("wrapT", source.wrapT);
-    number("magFilter", source.magFilter);
-  }
+  Diagnostics ignored;  // whoever reads the scene says them
+  Report report(path_, ignored);
+  source.texture = readTexture(root_, *texture, Path(), report);
+  const int image = source.texture.source >= 0 ? source.texture.source : source.texture.image();
+  if (image < 0 || element(root_, "images", static_cast<size_t>(image)) == nullptr)
+    return fail("image-missing", place, "the texture has no image");
+  source.image = static_cast<size_t>(image);
+  source.place = {path_, 0, 0, fmt::format("/images/{}", image)};
   return source;
 }
 

@@ -4,18 +4,19 @@
 #include <string>
 #include <vector>
 
+#include "gltf/facts.h"
 #include "gltf/json.h"
 #include "support/diagnostic.h"
 #include "support/limits.h"
 
 namespace lacquer::gltf {
 
-/// A texture's sampler as glTF has it (OpenGL's numbers), with glTF's defaults, and its image.
+/// A texture with the image that is looked into. That is its own, a PNG or a JPEG, even where an extension
+/// gives another: those formats are not decoded here.
 struct TextureSource {
-  int wrapS = 10497, wrapT = 10497;  ///< 33071 clamp, 33648 mirror, 10497 repeat
-  int magFilter = 9729;              ///< 9728 nearest, 9729 linear
-  size_t image = 0;                  ///< index
-  Place place;                       ///< of the image
+  Texture texture;
+  size_t image = 0;  ///< index
+  Place place;       ///< of the image
 };
 
 /// Where a file's images may come from.

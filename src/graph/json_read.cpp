@@ -353,8 +353,8 @@ void Reader::parameterOrZero(const Json& json, const Path& path, ir::Parameter& 
 }
 
 void Reader::parameter(std::string_view name, const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 6> kKeys = {"type",    "value",   "range",
-                                                     "or_zero", "pointer", "default"};
+  constexpr std::array<std::string_view, 7> kKeys = {"type",    "value",   "range",   "or_zero",
+                                                     "pointer", "default", "animated"};
   if (!object(json, path, "a parameter", kKeys)) return;
   ir::Parameter parameter;
   parameter.name = name;
@@ -370,6 +370,11 @@ void Reader::parameter(std::string_view name, const Json& json, const Path& path
   parameter.pointer = optionalText(json, path, "pointer");
   if (const Json* by_default = json::member(json, "default"); by_default != nullptr && known)
     parameterValue(*by_default, Path(path, "default"), "default", parameter.type, parameter.neutral);
+  if (const Json* animated = json::member(json, "animated")) {
+    parameter.animated = *animated == true;
+    if (!animated->is_boolean())
+      report_.wrongType(Path(path, "animated"), "animated", *animated, "true or false");
+  }
   graph_.parameters.push_back(std::move(parameter));
 }
 

@@ -88,6 +88,7 @@ std::string parameter(const ir::Parameter& parameter) {
   if (!parameter.pointer.empty()) text += ", " + member("pointer", jsonText(parameter.pointer));
   if (parameter.neutral != ir::Components{})
     text += fmt::format(", \"default\": {}", value(parameter.type, parameter.neutral));
+  if (parameter.animated) text += ", \"animated\": true";
   return text + "}";
 }
 

@@ -76,6 +76,8 @@ struct Parameter {
   Range range;           ///< of each component
   std::string pointer;   ///< JSON pointer of the glTF property
   Components neutral{};  ///< what stands for no material in particular: defaults in code that materials share
+  /// It changes at run time: it reaches the shader through the material's block, whatever becomes of others.
+  bool animated = false;
   int32_t constant_id =
       -1;  ///< with Module::spec_constants: SpecId of the first component, the others follow
   std::string constant_name{};  ///< what the code calls it then
@@ -150,7 +152,7 @@ struct Module {
   uint32_t material_textures = 0;      ///< the flat number of the material's first texture
   bool sums_lights = false;            ///< an output of the template is a sum over the lights
   bool spec_constants =
-      false;  ///< parameters are specialization constants: there is no material block and no preshader
+      false;  ///< parameters are specialization constants: only the animated ones are in a material block
 };
 
 /// Gives the fields offsets that std140 and HLSL's constant buffer packing agree on, in the order given: a

@@ -122,6 +122,14 @@ ValueId makeSmoothstep(const Builtin&, Dag& dag, Values args) {
   return dag.mul(dag.mul(t, t), slope);
 }
 
+/// Known at generation time, so that of `?:` and `if` one arm alone is left.
+std::optional<Type> typeOfUniform(const Builtin&, Types types) {
+  return ir::isFloating(types[0]) || types[0] == Type::Bool ? std::optional(Type::Bool) : std::nullopt;
+}
+ValueId makeUniform(const Builtin&, Dag& dag, Values args) {
+  return dag.boolean(dag[args[0]].rate <= ir::Rate::Frame);
+}
+
 std::optional<Type> typeOfReflect(const Builtin&, Types types) {
   if (!ir::isFloatVector(types[0]) || types[0] != types[1]) return std::nullopt;
   return types[0];
@@ -244,6 +252,8 @@ std::vector<Builtin> makeTable() {
   derived("radians", 1, kNumbers, typeOfMap, makeRadians, "of degrees");
   derived("degrees", 1, kNumbers, typeOfMap, makeDegrees, "of radians");
   derived("tan", 1, kNumbers, typeOfMap, makeTan, "tangent of radians");
+  derived("uniform", 1, "a bool, a float or a vector", typeOfUniform, makeUniform,
+          "whether x is the same all over the picture: no texture, no vertex and no light goes into it");
   return table;
 }
 

@@ -15,6 +15,7 @@
 #include "lang/parser.h"
 #include "lang/scan.h"
 #include "lang/suggest.h"
+#include "lang/words.h"
 
 namespace lacquer::lang {
 namespace {
@@ -24,17 +25,9 @@ constexpr size_t kLongestChain = 256;
 constexpr size_t kLargestFile = size_t{64} << 20U;
 
 std::string_view kindName(DeclKind kind) {
-  switch (kind) {
-    case DeclKind::Const: return "constant";
-    case DeclKind::Node: return "node";
-    case DeclKind::Template: return "template";
-    case DeclKind::Extension: return "extension";
-    case DeclKind::Part: return "part";
-    case DeclKind::Profile: return "profile";
-    case DeclKind::Layers: return "order of layers";
-    case DeclKind::Switch: return "switch";
-  }
-  return "";
+  return std::find_if(std::begin(kDeclWords), std::end(kDeclWords),
+                      [&](const DeclWord& row) { return row.kind == kind; })
+      ->name;
 }
 
 /// Constants, nodes and templates share one namespace; each other kind has its own.

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "lang/words.h"
+
 namespace lacquer::lang {
 
 std::optional<ir::Type> findType(std::string_view name) {
@@ -19,10 +21,10 @@ std::optional<ir::Type> findType(std::string_view name) {
 }
 
 bool isReserved(std::string_view name) {
-  constexpr std::array<std::string_view, 14> kWords = {"const", "node", "template", "variant", "let",
-                                                       "if",    "else", "for",      "return",  "assume",
-                                                       "in",    "true", "false",    "inf"};
-  return std::find(kWords.begin(), kWords.end(), name) != kWords.end() || findType(name).has_value();
+  return std::find(std::begin(kBodyWords), std::end(kBodyWords), name) != std::end(kBodyWords) ||
+         findType(name).has_value() ||
+         std::any_of(std::begin(kDeclWords), std::end(kDeclWords),
+                     [&](const DeclWord& row) { return row.reserved && row.word == name; });
 }
 
 Parser::Parser(Reporter& reporter, uint32_t begin, uint32_t end)

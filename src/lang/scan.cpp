@@ -1,28 +1,17 @@
 #include "lang/scan.h"
 
-#include <array>
 #include <optional>
-#include <utility>
 
 #include "lang/lexer.h"
+#include "lang/words.h"
 
 namespace lacquer::lang {
 namespace {
 
 /// What a word at the start of a declaration declares.
 std::optional<DeclKind> declaredBy(std::string_view word) {
-  constexpr std::array<std::pair<std::string_view, DeclKind>, 9> kWords = {
-      {{"const", DeclKind::Const},
-       {"node", DeclKind::Node},
-       {"template", DeclKind::Template},
-       {"extension", DeclKind::Extension},
-       {"material", DeclKind::Extension},
-       {"part", DeclKind::Part},
-       {"profile", DeclKind::Profile},
-       {"layers", DeclKind::Layers},
-       {"switch", DeclKind::Switch}}};
-  for (const auto& [spelling, kind] : kWords) {
-    if (word == spelling) return kind;
+  for (const DeclWord& row : kDeclWords) {
+    if (word == row.word) return row.kind;
   }
   return std::nullopt;
 }

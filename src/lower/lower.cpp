@@ -241,7 +241,8 @@ private:
     const auto it = std::find_if(graph_.parameters.begin(), graph_.parameters.end(),
                                  [&](const ir::Parameter& p) { return p.name == reference.name; });
     assert(it != graph_.parameters.end());
-    if (options_.parameters == ParameterMode::Baked) return dag().constant(it->type, it->value);
+    if (options_.parameters == ParameterMode::Baked && !it->animated)
+      return dag().constant(it->type, it->value);
     const ir::ValueId value = dag().input({ir::InputKind::Parameter, it->name, it->type, ir::Rate::Material,
                                            it->range, 0, static_cast<uint32_t>(module_.parameters.size())});
     module_.parameters.push_back(*it);

@@ -10,7 +10,7 @@ namespace lacquer::lower {
 
 enum class ParameterMode : uint8_t {
   Uniform,  ///< parameters stay editable: values of material rate
-  Baked,    ///< parameters are constants
+  Baked,    ///< parameters are constants, but for the animated ones
   Spec,     ///< parameters become specialization constants (Module::spec_constants)
 };
 

@@ -124,13 +124,19 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
 
   Document document;
   document.path = name;
-  const FileFacts facts{name, gltf::readScene(*root, document), options.permissive};
+  gltf::readScene(*root, document);
+  const FileFacts facts{name, document, options.permissive};
   Report of_scene(name, document.diagnostics);
   checkExtensions(*root, schema, of_scene);
   if (const Json* materials = json::member(*root, "materials")) {
+    const std::map<size_t, AnimatedOf> animated =
+        animatedMaterials(document, materials->size(), document.diagnostics);
     document.materials.reserve(materials->size());
-    for (size_t i = 0; i < materials->size(); ++i)
+    for (size_t i = 0; i < materials->size(); ++i) {
       document.materials.push_back(readMaterial((*materials)[i], i, schema, facts));
+      if (const auto it = animated.find(i); it != animated.end())
+        readAnimated(it->second, schema, name, document.materials.back());
+    }
   }
   return document;
 }
@@ -210,6 +216,10 @@ const ir::Components* Material::number(uint16_t property) const {
   const auto it =
       std::find_if(numbers.begin(), numbers.end(), [&](const Number& n) { return n.property == property; });
   return it == numbers.end() ? nullptr : &it->value;
+}
+
+bool Material::isAnimated(uint16_t property) const {
+  return std::binary_search(animated.begin(), animated.end(), property);
 }
 
 const gltf::TextureInfo* Material::texture(uint16_t property) const {

@@ -27,6 +27,7 @@ struct Material {
   std::string name;  ///< as in the file; may be empty or not unique
   std::vector<Number> numbers;
   std::vector<Texture> textures;     ///< in the order of the JSON
+  std::vector<uint16_t> animated;    ///< numbers that animations change, sorted
   std::vector<uint16_t> extensions;  ///< those that have an effect; glTF's own (0) is not listed
   std::vector<std::string> ignored;  ///< JSON pointers of extensions that are not implemented, sorted
   Diagnostics diagnostics;  ///< of this material; one of severity Error means: generate nothing for it
@@ -34,6 +35,7 @@ struct Material {
   bool has(uint16_t extension) const;
   const ir::Components* number(uint16_t property) const;      ///< null where the file says nothing
   const gltf::TextureInfo* texture(uint16_t property) const;  ///< null where there is none
+  bool isAnimated(uint16_t property) const;                   ///< of a number
 };
 
 /// A file's materials and the facts of its scene.

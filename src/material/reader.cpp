@@ -126,7 +126,7 @@ bool MaterialReader::structure(std::string_view name, const Json& json, const Pa
     else
       report_.wrongType(path, name, json, "a string");
   } else if (here.texture && name == "index") {
-    report_.index(path, name, json, file_.textureImages.size(), "texture", texture_->texture);
+    report_.index(path, name, json, file_.scene.textures.size(), "texture", texture_->texture);
   } else if (here.texture && name == "texCoord") {
     texCoord(name, json, path, texture_->texCoord);
   } else {
@@ -243,7 +243,7 @@ void MaterialReader::texture(const PropertyDecl& decl, const Json& json, const P
     report_.error("missing-property", path, fmt::format("{} has no \"index\"", decl.name),
                   "\"index\" is required");
   }
-  if (info.texture >= 0) info.image = file_.textureImages[static_cast<size_t>(info.texture)];
+  if (info.texture >= 0) info.image = file_.scene.textures[static_cast<size_t>(info.texture)].image();
   if (used) material_.textures.push_back({schema_.indexOf(decl), std::move(info)});
 }
 

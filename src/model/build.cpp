@@ -14,11 +14,12 @@ using graph::Source;
 
 namespace {
 
-/// Texture transforms and UV sets are equal when the coordinates are.
+/// Texture transforms and UV sets are equal when the coordinates are, and stay so: an animated one is like no
+/// other.
 std::string coordinateKey(const gltf::TextureInfo& info) {
   const gltf::TextureTransform t = info.transform.value_or(gltf::TextureTransform{});
-  return fmt::format("{} {} {} {} {} {}", info.texCoord, t.offset[0], t.offset[1], t.rotation, t.scale[0],
-                     t.scale[1]);
+  return fmt::format("{} {} {} {} {} {} {}", info.texCoord, t.offset[0], t.offset[1], t.rotation, t.scale[0],
+                     t.scale[1], info.animated.transform() ? info.pointer : "");
 }
 
 /// Puts out what the ports of the template reach: nodes, and before them the parameters and textures that
@@ -51,7 +52,7 @@ private:
   Source texel(uint16_t property);
   Source coordinate(uint16_t property);
   Source editable(std::string name, ir::Type type, ir::Components value, const ir::Range& range,
-                  const std::string& pointer, const ir::Components& neutral);
+                  const std::string& pointer, const ir::Components& neutral, bool animated);
 
   const Model& model_;
   Resolver& resolver_;
@@ -75,8 +76,11 @@ void Writer::mark(const Found& value) {
 // -- sources --
 
 Source Writer::editable(std::string name, ir::Type type, ir::Components value, const ir::Range& range,
-                        const std::string& pointer, const ir::Components& neutral) {
-  if (!graph_.findParameter(name)) graph_.parameters.push_back({name, type, value, range, pointer, neutral});
+                        const std::string& pointer, const ir::Components& neutral, bool animated) {
+  if (!graph_.findParameter(name)) {
+    graph_.parameters.push_back({name, type, value, range, pointer, neutral});
+    graph_.parameters.back().animated = animated;
+  }
   return {graph::ParameterRef{std::move(name)}, {}};
 }
 
@@ -91,7 +95,7 @@ Source Writer::number(const Found& value) {
     pointer = fmt::format("{}/{}", material_.texture(value.property)->pointer, decl->name);
   }
   return editable(std::move(name), decl->type, value.constant, decl->range, pointer,
-                  decl->default_value.value_or(ir::Components{}));
+                  decl->default_value.value_or(ir::Components{}), value.animated);
 }
 
 Source Writer::coordinate(uint16_t property) {
@@ -114,19 +118,22 @@ Source Writer::coordinate(uint16_t property) {
     uv = {graph::Literal{ir::Type::Vec2, {0, 0}}, {}};
   }
   const gltf::TextureTransform t = info.transform.value_or(gltf::TextureTransform{});
-  if (!t.identity()) {
+  if (!t.identity() || info.animated.transform()) {
     graph::Inputs inputs{{"uv", uv}};
     const std::string pointer = info.pointer + "/extensions/KHR_texture_transform";
-    const auto add = [&](const char* input, ir::Type type, ir::Components value, bool wanted) {
-      if (!wanted) return;
+    const auto add = [&](const char* input, ir::Type type, ir::Components value, bool animated, bool given) {
+      if (!animated && !given) return;
       inputs.emplace_back(
-          input, editable(fmt::format("{}_uv_{}", slot, input), type, value, {},
-                          fmt::format("{}/{}", pointer, input),
-                          std::string_view(input) == "scale" ? ir::Components{1, 1} : ir::Components{}));
+          input,
+          editable(fmt::format("{}_uv_{}", slot, input), type, value, {},
+                   fmt::format("{}/{}", pointer, input),
+                   std::string_view(input) == "scale" ? ir::Components{1, 1} : ir::Components{}, animated));
     };
-    add("offset", ir::Type::Vec2, {t.offset[0], t.offset[1]}, t.offset != std::array<double, 2>{0, 0});
-    add("rotation", ir::Type::Float, {t.rotation}, t.rotation != 0);
-    add("scale", ir::Type::Vec2, {t.scale[0], t.scale[1]}, t.scale != std::array<double, 2>{1, 1});
+    add("offset", ir::Type::Vec2, {t.offset[0], t.offset[1]}, info.animated.offset,
+        t.offset != std::array<double, 2>{0, 0});
+    add("rotation", ir::Type::Float, {t.rotation}, info.animated.rotation, t.rotation != 0);
+    add("scale", ir::Type::Vec2, {t.scale[0], t.scale[1]}, info.animated.scale,
+        t.scale != std::array<double, 2>{1, 1});
     graph_.add(slot + ".uv", "uv_transform", std::move(inputs));
     uv = {graph::NodeRef{slot + ".uv", {}}, {}};
   }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -141,6 +142,10 @@ struct Model {
 
   /// The terms that stay though their value would remove them, when they are asked to: sorted.
   std::vector<std::string_view> liveTerms() const;
+  /// The parameters that are not there because of terms that are not, by name, each with the terms that bring
+  /// it back when all of them are kept. `skipped`: the terms that a material could have and has not.
+  std::vector<std::pair<std::string, std::vector<std::string>>> absent(
+      const std::set<std::string, std::less<>>& skipped) const;
   /// The parameters by which the extensions' parts vanish, with the numbers at which they do: "coat_factor",
   /// {0}.
   std::vector<std::pair<std::string, std::vector<double>>> layers() const;

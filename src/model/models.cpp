@@ -77,6 +77,34 @@ std::vector<std::pair<std::string, std::vector<double>>> Model::layers() const {
   return all;
 }
 
+std::vector<std::pair<std::string, std::vector<std::string>>> Model::absent(
+    const std::set<std::string, std::less<>>& skipped) const {
+  // For each term that can be kept and is not there: itself, and those around it.
+  std::map<std::string_view, std::vector<std::string>> kept_by;
+  for (const Term& term : terms) {
+    bool off = skipped.contains(term.name);
+    std::vector<std::string> chain{std::string(term.name)};
+    bool possible = term.has_unless;
+    for (uint32_t outer = term.parent; outer != Line::kNone; outer = terms[outer].parent) {
+      if (!skipped.contains(terms[outer].name)) continue;
+      off = true;
+      possible = possible && terms[outer].has_unless;
+      chain.emplace(chain.begin(), terms[outer].name);
+    }
+    if (off && possible) kept_by.emplace(term.name, std::move(chain));
+  }
+  std::map<std::string, std::vector<std::string>> all;
+  for (const Role& role : roles) {
+    const material::Property& property = schema->properties[role.providers[0]];
+    if (property.decl->kind != material::Kind::Number) continue;
+    for (const std::string_view term : role.live) {
+      if (const auto it = kept_by.find(term); it != kept_by.end())
+        all.emplace(property.parameter_name, it->second);
+    }
+  }
+  return {all.begin(), all.end()};
+}
+
 std::vector<std::string_view> Model::liveTerms() const {
   std::vector<std::string_view> names;
   for (const Term& term : terms) {

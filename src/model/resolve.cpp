@@ -63,7 +63,8 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
 
 // -- the material's values --
 
-/// The property that has a say: of an extension that the material has, one that the file names before one
+/// The property that has a say: of an extension that the material has, one that the file names (an animation
+/// names it, too) before one
 /// that it leaves out, and of those one that stands inside of another; else of one that stands inside of
 /// such, whose place is known; else the first that needs nothing which is not there.
 uint16_t Resolver::provider(const Role& role) const {
@@ -77,7 +78,8 @@ uint16_t Resolver::provider(const Role& role) const {
   };
   const auto given = [&](uint16_t property, bool inside) {
     return schema.extensions[schema.properties[property].extension]->inside.empty() != inside &&
-           (material_.number(property) != nullptr || material_.texture(property) != nullptr);
+           (material_.number(property) != nullptr || material_.texture(property) != nullptr ||
+            material_.isAnimated(property));
   };
   for (const bool inside : {true, false}) {
     for (const uint16_t property : role.providers) {
@@ -119,15 +121,19 @@ Found Resolver::number(const Role& role, const Value& value) {
     if (info == nullptr) return {};
     decl = &decl->members[static_cast<size_t>(value.member)];
     now[0] = info->members[static_cast<size_t>(value.member)];
+    const std::vector<size_t>& animated = info->animated.members;
+    out.animated = std::find(animated.begin(), animated.end(), value.member) != animated.end();
   } else {
     const bool optional = decl->kind == Kind::Number && !decl->default_value;
     if (optional && material_.number(out.property) == nullptr) return {};
     now = numberOf(out.property);
+    out.animated = material_.isAnimated(out.property);
   }
   const auto member = static_cast<size_t>(value.member);
   const bool kept =
       value.member < 0 ? live(role.live) : member < role.member_live.size() && live(role.member_live[member]);
-  const bool folded = decl->folded && now == decl->default_value.value_or(ir::Components{}) && !kept;
+  const bool folded =
+      decl->folded && now == decl->default_value.value_or(ir::Components{}) && !kept && !out.animated;
   const bool fixed = decl->kind == Kind::Bool || decl->kind == Kind::Choice;
   out.type = decl->type;
   out.constant = now;
@@ -341,7 +347,8 @@ bool Resolver::uniform(const Found& value) const {
 
 bool Resolver::equal(const Condition& condition, const Line&) {
   const Found value = number(model_.roles[condition.values[0].index], condition.values[0]);
-  if (!value) return false;
+  // What an animation changes may be anything: no term goes, and no other comes, because of its value today.
+  if (!value || value.animated) return false;
   const auto count = static_cast<size_t>(std::max(1, ir::componentCount(value.type)));
   return std::equal(value.constant.begin(), value.constant.begin() + static_cast<ptrdiff_t>(count),
                     condition.constant.begin());

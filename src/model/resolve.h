@@ -28,6 +28,7 @@ struct Found {
   uint32_t index = 0;
   uint16_t property = 0;
   int member = -1;
+  bool animated = false;  ///< a number whose value today says nothing of its value tomorrow
   ir::Components constant{};
   std::string_view output;
   std::string swizzle;

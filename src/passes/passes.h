@@ -47,7 +47,7 @@ void hoistToVertex(ir::Module& module);
 /// Splits the DAG at its rates: each value of material rate that something faster uses becomes a field of the
 /// material block (its expression goes to Module::preshader), each Interpolate a varying. With
 /// Module::spec_constants nothing is hoisted: parameters become specialization constants with ids in the
-/// order of their names.
+/// order of their names, and those that are animated fields of the block as they are.
 void place(ir::Module& module);
 
 /// Gives the material's textures that are left their places, and drops the others.

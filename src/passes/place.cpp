@@ -85,6 +85,19 @@ std::vector<ir::ValueId> frontier(const ir::Module& module) {
   return dag.byRank(values);
 }
 
+/// The animated parameters that the outputs read.
+std::vector<ir::ValueId> animatedParameters(const ir::Module& module) {
+  std::vector<ir::ValueId> outputs, values;
+  for (const ir::Output& output : module.outputs) outputs.push_back(output.value);
+  for (const ir::ValueId id : ir::reachable(module.dag, outputs)) {
+    if (module.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    if (input.kind == ir::InputKind::Parameter && module.parameters[input.field].animated)
+      values.push_back(id);
+  }
+  return module.dag.byRank(values);
+}
+
 /// An order without holes: the wide ones first, each vec3 followed by a float while there are any.
 std::vector<ir::ValueId> packed(const ir::Dag& dag, const std::vector<ir::ValueId>& values) {
   std::vector<ir::ValueId> by_width[5];
@@ -109,7 +122,8 @@ struct Placement {
 
 /// The material block and its preshader.
 void chooseFields(ir::Module& module, Placement& placement) {
-  const std::vector<ir::ValueId> values = packed(module.dag, frontier(module));
+  const std::vector<ir::ValueId> values =
+      packed(module.dag, module.spec_constants ? animatedParameters(module) : frontier(module));
   if (values.empty()) return;
   ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0, ir::kMaterialBinding};
   ir::Names names;
@@ -160,8 +174,8 @@ void nameTextures(ir::Module& module) {
   }
 }
 
-/// Parameters that the preshader would have read become constants of the pipeline. Ids follow the names'
-/// order: they depend on nothing but what the shader needs.
+/// Parameters that the preshader would have read become constants of the pipeline, but for those that change
+/// while it runs. Ids follow the names' order: they depend on nothing but what the shader needs.
 void chooseSpecConstants(ir::Module& module) {
   ir::Names names;
   for (const ir::Block& block : module.blocks) {
@@ -172,6 +186,7 @@ void chooseSpecConstants(ir::Module& module) {
   int32_t next = 0;
   for (const uint32_t index : ir::usedParameters(module)) {
     ir::Parameter& parameter = module.parameters[index];
+    if (parameter.animated) continue;
     parameter.constant_id = next;
     parameter.constant_name = names.pick(parameter.name);
     next += ir::componentCount(parameter.type);
@@ -223,8 +238,9 @@ private:
     if (value.op == ir::Op::Interpolate) return replace(id, varying(placement_.varying_of[id]));
     if (value.op == ir::Op::Input) {
       const ir::Input input = dag.inputOf(id);
-      if (module_.spec_constants && input.kind == ir::InputKind::Parameter) replace(id, constantOf(input));
-      return;
+      if (!module_.spec_constants || input.kind != ir::InputKind::Parameter) return;
+      return replace(id, module_.parameters[input.field].animated ? readField(module_, placement_, id)
+                                                                  : constantOf(input));
     }
     const bool reads = !module_.spec_constants && value.rate > ir::Rate::Material;
     std::array<ir::ValueId, 4> operands = value.args;
@@ -259,7 +275,7 @@ private:
 void finish(ir::Module& module, Placement& placement) {
   ir::Dag& dag = module.dag;
   for (ir::Output& output : module.outputs) {
-    if (dag[output.value].rate == ir::Rate::Material)
+    if (!module.spec_constants && dag[output.value].rate == ir::Rate::Material)
       output.value = readField(module, placement, output.value);
   }
   for (ir::PreshaderField& p : module.preshader) {
@@ -273,14 +289,12 @@ void finish(ir::Module& module, Placement& placement) {
 void place(ir::Module& module) {
   Placement placement;
   nameTextures(module);
-  if (module.spec_constants)
-    chooseSpecConstants(module);
-  else
-    chooseFields(module, placement);
+  chooseFields(module, placement);
+  if (module.spec_constants) chooseSpecConstants(module);
   const bool own_varyings = module.varyings.empty();
   chooseVaryings(module, placement);
   Replacement(module, placement).run();
-  if (!module.spec_constants) finish(module, placement);
+  finish(module, placement);
   for (uint32_t i = 0; own_varyings && i < module.varyings.size(); ++i) {
     const ir::Varying& varying = module.varyings[i];
     module.outputs.push_back({ir::OutputKind::Varying, ir::Stage::Vertex, varying.name, i, varying.source});

@@ -2,6 +2,7 @@
 
 #include "run/manifest.h"
 #include "run/run.h"
+#include "run/stale.h"
 #include "shader/messages.h"
 #include "shader/options.h"
 #include "support/jobs.h"
@@ -60,6 +61,15 @@ struct Inputs {
   }
 };
 
+/// Below the output folder.
+Strings shaderFiles(const Report& report) {
+  Strings paths;
+  for (const ShaderReport& shader : report.shaders) {
+    for (const auto& [path, bytes] : shader.files) paths.push_back(path);
+  }
+  return paths;
+}
+
 /// Reads the inputs, makes what is needed and writes the manifest.
 Report generateWith(const Inputs& inputs, const std::string& folder, const Options& options,
                     Messages& messages, const Progress& progress) {
@@ -94,6 +104,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     return run.finish();
   }
   const Scratch scratch(folder);
+  const Strings earlier = shard ? Strings() : listedShaders(path);
   ManifestFile manifest(path, {shard ? nullptr : &scratch, options.sync});
   inputs.read(run, [&](FileResult& file) {
     if (!shard) manifest.file(file.text);
@@ -103,7 +114,11 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     return run.finish();
   }
   // A shard stands for its shader: without the one there is not the other.
-  if (!shard || run.result().ok) run.wrote(manifest.finish());
+  if (!shard || run.result().ok) {
+    const Result<bool> written = manifest.finish();
+    run.wrote(written);
+    if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.inputs());
+  }
   if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, *depfile, {nullptr, options.sync}));
   if (receipt) run.keep(*receipt);
   return run.finish();

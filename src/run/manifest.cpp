@@ -14,7 +14,8 @@ Json diagnosticJson(const Diagnostic& d) {
 
 ManifestFile::ManifestFile(const std::string& path, const Writing& how) : file_(path, how) {
   JsonText name(1);
-  file_.append("{\n  \"lacquer\": " + name.string(version()).take() + ",\n  \"files\": [");
+  file_.append("{\n  \"lacquer\": " + name.string(version()).take() +
+               ",\n  \"schema\": " + std::to_string(kManifestSchema) + ",\n  \"files\": [");
 }
 
 void ManifestFile::file(std::string_view entry) {

@@ -15,7 +15,11 @@ using json::JsonText;
 /// A diagnostic's entry.
 Json diagnosticJson(const Diagnostic& diagnostic);
 
+/// The form of a manifest: the `schema` that it names. Another number is another form.
+inline constexpr int kManifestSchema = 1;
+
 /// A manifest, written entry by entry: first files, then shaders in the order of their ids.
+
 class ManifestFile {
 public:
   explicit ManifestFile(const std::string& path, const Writing& how);

@@ -16,6 +16,26 @@
 
 namespace lacquer {
 
+template <>
+struct LastEnumerator<Message::Level> {
+  static constexpr Message::Level value = Message::Level::Error;
+};
+
+template <class Archive>
+static void fields(Archive& archive, Message& m) {
+  archive(m.level, m.code, m.file, m.pointer, m.line, m.column, m.message, m.help, m.text);
+}
+
+template <class Archive>
+static void fields(Archive& archive, ShaderReport& shader) {
+  archive(shader.id, shader.validated, shader.files);
+}
+
+template <class Archive>
+static void fields(Archive& archive, FileStamp& stamp) {
+  archive(stamp.device, stamp.inode, stamp.size, stamp.modified, stamp.changed);
+}
+
 namespace {
 
 /// A file that is changed twice within one tick of its file system's clock looks unchanged the second time.
@@ -47,25 +67,6 @@ std::string dxcOf(const Options& options) {
   return hlsl && options.validate ? check::dxcIdentity() : "";
 }
 
-void writeMessages(const Messages& messages, BlobWriter& blob) {
-  blob.list(messages, [&](const Message& m) {
-    blob.number(m.level), blob.text(m.code), blob.text(m.file), blob.text(m.pointer);
-    blob.number(m.line), blob.number(m.column);
-    blob.text(m.message), blob.text(m.help), blob.text(m.text);
-  });
-}
-
-void readMessages(BlobReader& blob, Messages& messages) {
-  blob.list([&] {
-    Message m;
-    m.level = blob.choice(Message::Level::Error), m.code = blob.text(), m.file = blob.text(),
-    m.pointer = blob.text();
-    m.line = blob.number<uint32_t>(), m.column = blob.number<uint32_t>();
-    m.message = blob.text(), m.help = blob.text(), m.text = blob.text();
-    messages.push_back(std::move(m));
-  });
-}
-
 void writeReport(const Report& report, BlobWriter& blob) {
   const std::span all(report.materials);
   std::vector<std::span<const MaterialReport>> files;
@@ -73,45 +74,29 @@ void writeReport(const Report& report, BlobWriter& blob) {
     while (end < all.size() && all[end].file == all[first].file) ++end;
     files.push_back(all.subspan(first, end - first));
   }
-  blob.list(files, [&](std::span<const MaterialReport> materials) {
-    blob.text(materials[0].file);
+  blob(static_cast<uint64_t>(files.size()));
+  for (const std::span<const MaterialReport> materials : files) {
+    blob(materials[0].file);
     writeMaterials(materials, blob);
-  });
-  blob.list(report.shaders, [&](const ShaderReport& shader) {
-    blob.text(shader.id), blob.number(shader.validated);
-    blob.list(shader.files, [&](const auto& f) { blob.text(f.first), blob.number<uint64_t>(f.second); });
-  });
+  }
+  blob(report.shaders);
 }
 
 void readReport(BlobReader& blob, Report& report) {
-  blob.list([&] {
-    const std::string file = blob.text();
+  uint64_t files = 0;
+  blob(files);
+  for (uint64_t i = 0; i < files && blob.good(); ++i) {
+    std::string file;
+    blob(file);
     readMaterials(file, blob, report.materials);
-  });
-  blob.list([&] {
-    ShaderReport shader;
-    shader.id = blob.text(), shader.validated = blob.number<bool>();
+  }
+  blob(report.shaders);
+  for (const ShaderReport& shader : report.shaders) {
     if (!isShaderId(shader.id)) blob.refuse();
-    blob.list([&] {
-      std::string path = blob.text();
+    for (const auto& [path, bytes] : shader.files) {
       if (path.find("..") != std::string::npos || path.starts_with('/')) blob.refuse();
-      shader.files.emplace_back(std::move(path), blob.number<uint64_t>());
-    });
-    report.shaders.push_back(std::move(shader));
-  });
-}
-
-void writeStamp(const FileStamp& stamp, BlobWriter& blob) {
-  blob.number(stamp.device), blob.number(stamp.inode), blob.number(stamp.size);
-  blob.number(stamp.modified), blob.number(stamp.changed);
-}
-
-FileStamp readStamp(BlobReader& blob) {
-  FileStamp stamp;
-  stamp.device = blob.number<uint64_t>(), stamp.inode = blob.number<uint64_t>();
-  stamp.size = blob.number<uint64_t>();
-  stamp.modified = blob.number<int64_t>(), stamp.changed = blob.number<int64_t>();
-  return stamp;
+    }
+  }
 }
 
 }  // namespace
@@ -169,13 +154,9 @@ bool Receipt::find(Report& report, Messages& messages) {
   Messages said;
   std::vector<Key> contents;
   std::vector<FileStamp> stamps;
-  blob.list([&] {
-    const auto high = blob.number<uint64_t>();
-    contents.push_back({high, blob.number<uint64_t>()});
-  });
+  blob(contents);
   readReport(blob, earlier);
-  readMessages(blob, said);
-  blob.list([&] { stamps.push_back(readStamp(blob)); });
+  blob(said, stamps);
   const std::vector<std::string> paths = outputs(earlier);
   if (!blob.complete() || stamps.size() != paths.size()) return false;
   std::vector<uint8_t> same(paths.size());
@@ -197,20 +178,25 @@ const ShaderReport* Receipt::untouched(const std::string& id) const {
 void Receipt::keep(const Report& report, const Messages& said) const {
   if (!key_ || !report.ok || hasError(said)) return;
   const std::vector<std::string> paths = outputs(report);
-  std::vector<std::optional<FileStamp>> stamps(paths.size());
-  forEach(paths.size(), [&](size_t i) { stamps[i] = stampOf(paths[i]); });
+  std::vector<FileStamp> stamps(paths.size());
+  std::vector<uint8_t> there(paths.size());
+  forEach(paths.size(), [&](size_t i) {
+    const std::optional<FileStamp> stamp = stampOf(paths[i]);
+    there[i] = stamp ? 1 : 0;
+    stamps[i] = stamp.value_or(FileStamp{});
+  });
   const int64_t settled =
       std::chrono::duration_cast<std::chrono::nanoseconds>((begin_ - kTick).time_since_epoch()).count();
-  const bool all = std::all_of(stamps.begin(), stamps.end(), [&](const std::optional<FileStamp>& stamp) {
-    return stamp && std::max(stamp->modified, stamp->changed) < settled;
+  const bool old = std::all_of(stamps.begin(), stamps.end(), [&](const FileStamp& stamp) {
+    return std::max(stamp.modified, stamp.changed) < settled;
   });
+  const bool all = old && std::find(there.begin(), there.end(), 0) == there.end();
   // What the run has read must be what the receipt is for.
   if (!all || contentsOf(files_, largest_) != contents_) return;
   BlobWriter blob;
-  blob.list(contents_, [&](const Key& key) { blob.number(key.high), blob.number(key.low); });
+  blob(contents_);
   writeReport(report, blob);
-  writeMessages(said, blob);
-  blob.list(stamps, [&](const std::optional<FileStamp>& stamp) { writeStamp(*stamp, blob); });
+  blob(said, stamps);
   cache_.put(*key_, blob.take(), true);
 }
 

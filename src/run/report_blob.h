@@ -10,8 +10,15 @@
 
 namespace lacquer {
 
-void writeVariants(const std::vector<MaterialTerms::Variant>& variants, BlobWriter& blob);
-std::vector<MaterialTerms::Variant> readVariants(BlobReader& blob);
+template <class Archive>
+void fields(Archive& archive, MaterialTerms::Variant& v) {
+  archive(v.node, v.variant, v.terms, v.error, v.saved);
+}
+
+template <class Archive>
+void fields(Archive& archive, MaterialTerms& t) {
+  archive(t.terms, t.skipped, t.variants, t.expected_error);
+}
 
 /// The materials of one file, without its name. Terms that they share are written once.
 void writeMaterials(std::span<const MaterialReport> materials, BlobWriter& blob);

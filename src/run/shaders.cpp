@@ -76,8 +76,7 @@ TargetCode Maker::load(const Key& key) const {
   if (!bytes) return {};
   BlobReader blob(*bytes);
   TargetCode code;
-  code.validated = blob.number<bool>();
-  for (std::string& stage : code.bytes) stage = blob.text();
+  blob(code.validated, code.bytes);
   code.made = blob.complete();
   return code;
 }
@@ -86,8 +85,7 @@ void Maker::save(const Key& key, const TargetCode& code) const {
   if (setting_.cache == nullptr) return;
   const StageTimer timer(setting_.times, StageOfRun::Cache);
   BlobWriter blob;
-  blob.number(code.validated);
-  for (const std::string& stage : code.bytes) blob.text(stage);
+  blob(code.validated, code.bytes);
   setting_.cache->put(key, blob.take());
 }
 

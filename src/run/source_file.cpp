@@ -12,6 +12,7 @@
 #include "gltf/container.h"
 #include "json/text.h"
 #include "run/manifest.h"
+#include "run/manifest_scene.h"
 #include "run/report_blob.h"
 #include "shader/budget.h"
 #include "shader/language.h"
@@ -53,13 +54,19 @@ struct Done {
   Diagnostics diagnostics;
   MaterialReport report;
   std::vector<Key> structures;
+  std::vector<gltf::VertexAttributes> uses;  ///< those in the manifest
 };
 
 /// The entries of one material: use() for each use, then finish().
 class MaterialText {
 public:
-  MaterialText(const std::string& file, const Setting& setting, Structures& structures)
-      : file_(file), setting_(setting), structures_(structures), uses_(kMaterialDepth + 1) {
+  MaterialText(const std::string& file, const material::Material& material, const Setting& setting,
+               Structures& structures)
+      : file_(file),
+        material_(material),
+        setting_(setting),
+        structures_(structures),
+        uses_(kMaterialDepth + 1) {
     uses_.beginArray();
   }
 
@@ -79,15 +86,47 @@ private:
     }
   }
   std::shared_ptr<const MaterialTerms> terms() const;
+  void writeUnfilled(const graph::Graph& graph);
 
   const std::string& file_;
+  const material::Material& material_;
   const Setting& setting_;
   Structures& structures_;
   JsonText uses_;
   Diagnostics diagnostics_;
   std::vector<const Structure*> met_;
   std::vector<std::string> shaders_;
+  std::vector<gltf::VertexAttributes> written_;
 };
+
+/// What is no constant though constants are asked for.
+Diagnostics animated(const Structure& structure, const graph::Graph& graph) {
+  Diagnostics notes;
+  for (const uint32_t i : structure.parameters) {
+    const ir::Parameter& p = graph.parameters[i];
+    if (!p.animated) continue;
+    notes.push_back({"animated-parameter",
+                     Severity::Note,
+                     {{}, 0, 0, p.pointer},
+                     fmt::format("{} is animated: it stays in the Material block", p.name),
+                     "what changes at run time is no constant",
+                     {}});
+  }
+  return notes;
+}
+
+/// The template's ports that have their defaults.
+void MaterialText::writeUnfilled(const graph::Graph& graph) {
+  const Result<const lang::TemplateDecl*> decl = setting_.library.template_(graph.template_name);
+  uses_.key("unfilled_ports").beginArray();
+  for (size_t i = 0; decl && i < (*decl)->ports.size(); ++i) {
+    const std::string_view name = (*decl)->ports[i].param.name;
+    const bool filled = std::any_of(graph.outputs.begin(), graph.outputs.end(),
+                                    [&](const auto& output) { return output.first == name; });
+    if (!filled) uses_.string(name);
+  }
+  uses_.endArray();
+}
 
 void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
                        const gltf::VertexAttributes& attributes, const Diagnostics& said) {
@@ -101,12 +140,16 @@ void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
   }
   add(structure.diagnostics);
   if (structure.shader.empty()) return;
+  if (setting_.options.parameters != Parameters::Uniform) add(animated(structure, graph));
   shaders_.push_back(structure.shader);
   uses_.beginObject().key("attributes");
   writeList(attributes.names(), uses_);
   uses_.key("shader").string(structure.shader);
-  writeBindings(structure, graph, uses_);
+  writeBindings(structure, graph, material_, uses_);
+  uses_.key("absent_parameters").raw(structure.absent);
+  writeUnfilled(graph);
   uses_.endObject();
+  written_.push_back(attributes);
 }
 
 /// Those that are not there yet.
@@ -158,7 +201,7 @@ std::shared_ptr<const MaterialTerms> MaterialText::terms() const {
 
 Done MaterialText::finish(const Wanted& wanted) {
   Done done;
-  const Diagnostics of_uses = std::exchange(diagnostics_, wanted.material->diagnostics);
+  const Diagnostics of_uses = std::exchange(diagnostics_, material_.diagnostics);
   if (!wanted.note.empty()) {
     diagnostics_.push_back({"unused-material",
                             Severity::Note,
@@ -169,6 +212,7 @@ Done MaterialText::finish(const Wanted& wanted) {
   }
   add(of_uses);
   done.diagnostics = std::move(diagnostics_);
+  done.uses = std::move(written_);
   done.report = {file_,   wanted.name,         static_cast<size_t>(std::max(wanted.index, 0)),
                  terms(), std::move(shaders_), !hasError(done.diagnostics)};
   for (const Structure* structure : met_) {
@@ -178,7 +222,11 @@ Done MaterialText::finish(const Wanted& wanted) {
   }
   JsonText json(kMaterialDepth);
   json.beginObject().key("index").integer(wanted.index).key("name").string(wanted.name);
-  if (!wanted.from_graph) json.key("profile").string(setting_.options.profile);
+  if (!wanted.from_graph) {
+    json.key("profile").string(setting_.options.profile);
+    if (const Result<const material::Schema*> schema = setting_.library.models.schema())
+      writeSurface(material_, **schema, json);
+  }
   json.key("uses").raw(uses_.endArray().take());
   const bool shared = !met_.empty() && done.report.terms == met_[0]->terms;
   json.key("terms");
@@ -193,7 +241,7 @@ Done MaterialText::finish(const Wanted& wanted) {
     writeSkipped(done.report.terms->skipped, json);
   if (setting_.options.error_budget > 0 && !wanted.from_graph) writeBudget(*done.report.terms, json);
   json.key("ignored");
-  writeList(wanted.material->ignored, json);
+  writeList(material_.ignored, json);
   json.key("diagnostics").beginArray();
   for (const Diagnostic& d : done.diagnostics) json.json(diagnosticJson(d));
   done.text = json.endArray().endObject().take();
@@ -246,7 +294,7 @@ std::vector<Wanted> SceneFile::wanted(const material::Document& document, FileRe
 }
 
 Done SceneFile::make(const Wanted& wanted) const {
-  MaterialText text(path_, setting_, structures_);
+  MaterialText text(path_, *wanted.material, setting_, structures_);
   if (!hasError(wanted.material->diagnostics)) {
     for (const gltf::VertexAttributes& attributes : wanted.uses) {
       Diagnostics said;
@@ -273,6 +321,7 @@ FileResult SceneFile::run(const material::Document& document) {
   JsonText json(kFileDepth);
   json.beginObject().key("source").string(path_).key("materials").beginArray();
   std::set<Key> seen;
+  UsesOf uses;
   std::string default_text;
   std::vector<Done> done;
   for (size_t first = 0; first < all.size(); first += done.size()) {
@@ -288,6 +337,7 @@ FileResult SceneFile::run(const material::Document& document) {
         default_text = std::move(done[i].text);
       else
         json.raw(done[i].text);
+      uses.emplace(all[first + i].index, std::move(done[i].uses));
       result.diagnostics.insert(result.diagnostics.end(), done[i].diagnostics.begin(),
                                 done[i].diagnostics.end());
       result.ok &= done[i].report.ok;
@@ -302,6 +352,7 @@ FileResult SceneFile::run(const material::Document& document) {
   json.endArray();
   // It lies one level higher than those in the list.
   if (!default_text.empty()) json.key("default_material").json(Json::parse(default_text));
+  lacquer::writeScene(document, uses, json);
   json.key("diagnostics").beginArray();
   for (const Diagnostic& d : document.diagnostics) json.json(diagnosticJson(d));
   result.text = json.endArray().endObject().take();
@@ -331,23 +382,16 @@ Key fileKey(const std::string& path, const std::string& bytes, const Setting& se
 
 std::string toBlob(const FileResult& result) {
   BlobWriter blob;
-  blob.text(result.text);
-  blob.diagnostics(result.diagnostics);
+  blob(result.text, result.diagnostics, result.structures);
   writeMaterials(result.materials, blob);
-  blob.list(result.structures, [&](const Key& key) { blob.number(key.high), blob.number(key.low); });
   return blob.take();
 }
 
 std::optional<FileResult> fromBlob(const std::string& path, std::string_view bytes) {
   BlobReader blob(bytes);
   FileResult result;
-  result.text = blob.text();
-  result.diagnostics = blob.diagnostics();
+  blob(result.text, result.diagnostics, result.structures);
   readMaterials(path, blob, result.materials);
-  blob.list([&] {
-    const auto high = blob.number<uint64_t>();
-    result.structures.push_back({high, blob.number<uint64_t>()});
-  });
   if (!blob.complete()) return std::nullopt;
   return result;
 }
@@ -405,7 +449,7 @@ FileResult readGraph(const std::string& path, const Setting& setting, Structures
       text ? graph::fromJson(*text, path, setting.limits) : tl::make_unexpected(text.error());
   if (!graph) return unreadable(path, graph.error());
   static const material::Material kNone;
-  MaterialText material(path, setting, structures);
+  MaterialText material(path, kNone, setting, structures);
   const std::string name = graph->name;
   material.use(*graph, lightFacts(setting.options, {}), everything(), {});
   Done done = material.finish({&kNone, name, 0, {}, {}, true});

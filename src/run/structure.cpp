@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <set>
 
 #include "cache/option_key.h"
 #include "lower/lower.h"
 #include "run/manifest.h"
+#include "run/manifest_scene.h"
 #include "run/report_blob.h"
 #include "shader/budget.h"
 #include "shader/interface.h"
@@ -18,6 +20,7 @@ namespace lacquer {
 namespace {
 
 constexpr size_t kInterfaceDepth = 3;  ///< manifest, "shaders", the shader's entry
+constexpr size_t kUseDepth = 7;        ///< the material, "uses", the use
 constexpr size_t kTermsDepth = 5;      ///< manifest, "files", the file, "materials", the material
 
 class StructureKey {
@@ -50,7 +53,8 @@ public:
     key_.text(graph.template_name).number(graph.parameters.size());
     for (const ir::Parameter& p : graph.parameters) {
       key_.text(p.name).number(p.type).number(p.range.lo).number(p.range.hi).number(p.range.gap);
-      for (size_t i = 0; values_ && i < p.value.size(); ++i) key_.number(p.value[i]);
+      key_.number(p.animated);
+      for (size_t i = 0; values_ && !p.animated && i < p.value.size(); ++i) key_.number(p.value[i]);
     }
     key_.number(graph.textures.size());
     for (const ir::TextureSlot& t : graph.textures) {
@@ -114,7 +118,7 @@ graph::Graph withoutMaterial(graph::Graph graph, const std::vector<ir::Range>& l
   for (size_t i = 0; i < graph.parameters.size(); ++i) {
     ir::Parameter& p = graph.parameters[i];
     p.pointer.clear();
-    if (values) continue;
+    if (values && !p.animated) continue;
     const double x = std::min(std::max(0.0, limits[i].lo), limits[i].hi);
     p.value.fill(0);
     std::fill_n(p.value.begin(), ir::componentCount(p.type), std::isfinite(x) ? x : 0);
@@ -142,6 +146,22 @@ void describe(const graph::Graph& graph, Structure& structure) {
   structure.terms = terms;
 }
 
+/// Parameters that are not there because their terms are not.
+std::string absentText(const graph::Graph& graph, const Setting& setting) {
+  std::set<std::string, std::less<>> skipped;
+  for (const graph::Skipped& s : graph.skipped) skipped.insert(s.term);
+  JsonText json(kUseDepth);
+  json.beginObject();
+  if (const Result<const model::Model*> model = setting.library.models.of(setting.options.profile)) {
+    for (const auto& [name, terms] : (*model)->absent(skipped)) {
+      if (graph.findParameter(name)) continue;
+      json.key(name);
+      writeList(terms, json);
+    }
+  }
+  return json.endObject().take();
+}
+
 void renderTerms(Structure& structure) {
   structure.terms_text =
       textAt(kTermsDepth, [&](JsonText& json) { writeList(structure.terms->terms, json); });
@@ -149,11 +169,12 @@ void renderTerms(Structure& structure) {
       textAt(kTermsDepth, [&](JsonText& json) { writeSkipped(structure.terms->skipped, json); });
 }
 
-void describe(const ir::Module& module, const graph::Graph& graph, const lang::Library& library,
+void describe(const ir::Module& module, const graph::Graph& graph, const Language& library,
               Structure& structure) {
   structure.shader = shaderId(module, library);
   structure.has_vertex = hasVertexStage(module);
-  const Json interface = interfaceOf(module, structure.has_vertex);
+  const Result<const material::Schema*> schema = library.models.schema();
+  const Json interface = interfaceOf(module, structure.has_vertex, schema ? *schema : nullptr);
   for (const auto& [name, value] : interface.items()) {
     structure.interface.emplace_back(
         name, textAt(kInterfaceDepth, [&, &v = value](JsonText& json) { json.json(v); }));
@@ -233,6 +254,7 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
     structure.diagnostics = graph::check(plain, setting.library);
   }
   describe(plain, structure);
+  structure.absent = absentText(plain, setting);
   renderTerms(structure);
   if (hasError(structure.diagnostics)) return std::nullopt;
   Result<ir::Module> module = modulate(plain, lights, setting);
@@ -267,13 +289,16 @@ bool withinLimits(const Structure& structure, const graph::Graph& graph) {
   return true;
 }
 
-void writeBindings(const Structure& structure, const graph::Graph& graph, JsonText& json) {
+void writeBindings(const Structure& structure, const graph::Graph& graph, const material::Material& material,
+                   JsonText& json) {
   json.key("parameters").beginObject();
   for (const uint32_t i : structure.parameters) {
     const ir::Parameter& p = graph.parameters[i];
     json.key(p.name).beginObject().key("value").numbers(
         {p.value.data(), static_cast<size_t>(ir::componentCount(p.type))});
-    json.key("pointer").string(p.pointer).endObject();
+    json.key("pointer").string(p.pointer);
+    if (p.animated) json.key("animated").boolean(true);
+    json.endObject();
   }
   json.endObject().key("uniforms").beginObject();
   const std::vector<ir::Components> packed = structure.preshader.evaluate(
@@ -285,64 +310,42 @@ void writeBindings(const Structure& structure, const graph::Graph& graph, JsonTe
   json.endObject().key("textures").beginObject();
   for (const auto& [name, i] : structure.textures) {
     json.key(name).beginObject().key("texture").integer(graph.textures[i].texture);
-    json.key("pointer").string(graph.textures[i].pointer).endObject();
+    json.key("pointer").string(graph.textures[i].pointer);
+    writeTextureInfo(material, graph.textures[i].pointer, json);
+    json.endObject();
   }
   json.endObject();
 }
 
-std::string toBlob(const Structure& s) {
+namespace ir {
+template <class Archive>
+static void fields(Archive& archive, Range& range) {
+  archive(range.lo, range.hi, range.gap);
+}
+}  // namespace ir
+
+namespace passes {
+template <class Archive>
+static void fields(Archive& archive, LightFacts& lights) {
+  archive(lights.any, lights.counts);
+}
+}  // namespace passes
+
+template <class Archive>
+static void fields(Archive& archive, Structure& s) {
+  archive(s.diagnostics, s.shader, s.has_vertex, s.absent, s.interface, s.terms, s.preshader, s.parameters,
+          s.textures, s.limits, s.graph, s.lights);
+}
+
+std::string toBlob(const Structure& structure) {
   BlobWriter blob;
-  blob.diagnostics(s.diagnostics);
-  blob.text(s.shader), blob.number(s.has_vertex);
-  const auto pair = [&](const auto& p) { blob.text(p.first), blob.text(p.second); };
-  blob.list(s.interface, pair);
-  blob.list(s.terms->terms, [&](const std::string& term) { blob.text(term); });
-  blob.list(s.terms->skipped, pair);
-  writeVariants(s.terms->variants, blob);
-  s.preshader.write(blob);
-  blob.list(s.parameters, [&](uint32_t i) { blob.number(i); });
-  blob.list(s.textures, [&](const auto& t) { blob.text(t.first), blob.number(t.second); });
-  blob.list(s.limits, [&](const ir::Range& range) {
-    blob.number(range.lo), blob.number(range.hi), blob.number(range.gap);
-  });
-  blob.text(s.graph);
-  blob.number(s.lights.any);
-  blob.list(s.lights.counts, [&](const auto& c) { blob.text(c.first), blob.number(c.second); });
+  blob(structure);
   return blob.take();
 }
 
 bool fromBlob(std::string_view bytes, Structure& s) {
   BlobReader blob(bytes);
-  s.diagnostics = blob.diagnostics();
-  s.shader = blob.text(), s.has_vertex = blob.number<bool>();
-  const auto pair = [&] {
-    std::string first = blob.text();
-    return std::pair(std::move(first), blob.text());
-  };
-  blob.list([&] { s.interface.push_back(pair()); });
-  auto terms = std::make_shared<MaterialTerms>();
-  blob.list([&] { terms->terms.push_back(blob.text()); });
-  blob.list([&] { terms->skipped.push_back(pair()); });
-  terms->variants = readVariants(blob);
-  terms->expected_error = expectedError(terms->variants);
-  s.terms = terms;
-  s.preshader = Preshader::read(blob);
-  blob.list([&] { s.parameters.push_back(blob.number<uint32_t>()); });
-  blob.list([&] {
-    std::string name = blob.text();
-    s.textures.emplace_back(std::move(name), blob.number<uint32_t>());
-  });
-  blob.list([&] {
-    const auto lo = blob.number<double>();
-    const auto hi = blob.number<double>();
-    s.limits.push_back({{lo, hi}, blob.number<double>()});
-  });
-  s.graph = blob.text();
-  s.lights.any = blob.number<bool>();
-  blob.list([&] {
-    std::string kind = blob.text();
-    s.lights.counts[kind] = blob.number<uint32_t>();
-  });
+  blob(s);
   renderTerms(s);
   return blob.complete() && (s.shader.empty() || isShaderId(s.shader)) &&
          s.preshader.uses(s.parameters.size());

@@ -30,6 +30,7 @@ struct Structure {
       interface;  ///< members of the shader's entry in the manifest
   std::shared_ptr<const MaterialTerms> terms;
   std::string terms_text, skipped_text;  ///< as in a material's entry in the manifest
+  std::string absent;  ///< as in a use's: parameters that are not there, and what would bring them back
   Preshader preshader;
   std::vector<uint32_t> parameters;                        ///< of the module, as places in the graph's list
   std::vector<std::pair<std::string, uint32_t>> textures;  ///< the module's material textures, the same way
@@ -68,8 +69,10 @@ bool fromBlob(std::string_view bytes, Structure& structure);
 /// whatever the cache says.
 bool fits(const Structure& structure, const graph::Graph& graph);
 
-/// The members "parameters", "uniforms" and "textures" of a use of a material.
-void writeBindings(const Structure& structure, const graph::Graph& graph, JsonText& json);
+/// The members "parameters", "uniforms" and "textures" of a use of a material, whose textureInfos are looked
+/// up by the graph's pointers.
+void writeBindings(const Structure& structure, const graph::Graph& graph, const material::Material& material,
+                   JsonText& json);
 
 /// True when the values of the graph's parameters are such that the structure's check holds for it.
 bool withinLimits(const Structure& structure, const graph::Graph& graph);

@@ -25,7 +25,8 @@ Json bindingJson(const ir::Binding& binding) {
 }
 
 Json blockJson(const ir::Module& module, const ir::Block& block) {
-  Json json = {{"block", block.name}, {"role", roleName(block.role)}};
+  Json json = {{"block", targets::blockName(block)}, {"role", roleName(block.role)}};
+  if (block.array != 0) json["struct"] = block.name;
   json.update(bindingJson(block.binding));
   if (block.array != 0) {
     json["array"] = block.array;
@@ -67,6 +68,7 @@ Json specConstantsJson(const ir::Module& module) {
   Json rows = Json::array();
   for (const uint32_t index : ir::usedParameters(module)) {
     const ir::Parameter& p = module.parameters[index];
+    if (p.constant_id < 0) continue;
     for (int c = 0; c < ir::componentCount(p.type); ++c) {
       const double x = p.neutral[static_cast<size_t>(c)];
       Json row = {{"id", p.constant_id + c}, {"name", p.name}, {"component", c}};
@@ -74,6 +76,59 @@ Json specConstantsJson(const ir::Module& module) {
       row["default"] = p.type == ir::Type::Bool ? Json(x != 0) : Json(x);
       rows.push_back(std::move(row));
     }
+  }
+  return rows;
+}
+
+/// What a parameter is, by the declaration of the property that it is named after; empty where there is none.
+std::string proseOf(const material::Schema& schema, std::string_view name) {
+  for (const material::Property& property : schema.properties) {
+    if (name == property.parameter_name && !property.decl->prose.empty())
+      return std::string(property.decl->prose);
+    for (const lang::PropertyDecl& member : property.decl->members) {
+      if (name == property.parameter_name + "_" + material::parameterName(member.name))
+        return std::string(member.prose);
+    }
+  }
+  return {};
+}
+
+/// The names of the material block's fields that a parameter has a say in, by the parameter's index. None
+/// where there are so many that the lists would grow with the square of the graph.
+std::vector<Json> fieldsOf(const ir::Module& module) {
+  constexpr size_t kMostFields = 256;
+  std::vector<Json> fields(module.parameters.size(), Json::array());
+  if (module.preshader.size() > kMostFields) return fields;
+  for (const ir::Block& block : module.blocks) {
+    if (block.role != ir::BlockRole::Material) continue;
+    for (const ir::PreshaderField& field : module.preshader) {
+      const ir::ValueId root[] = {field.value};
+      for (const ir::ValueId id : ir::reachable(module.dag, root)) {
+        if (module.dag[id].op != ir::Op::Input) continue;
+        const ir::Input& input = module.dag.inputOf(id);
+        if (input.kind == ir::InputKind::Parameter)
+          fields[input.field].push_back(block.fields[field.field].name);
+      }
+    }
+  }
+  return fields;
+}
+
+/// What a material's numbers may be, by name.
+Json parametersJson(const ir::Module& module, const material::Schema* schema) {
+  const std::vector<Json> fields = fieldsOf(module);
+  Json rows = Json::array();
+  for (const uint32_t index : ir::usedParameters(module)) {
+    const ir::Parameter& p = module.parameters[index];
+    Json row = {{"name", p.name}, {"type", ir::typeName(p.type)}};
+    const double lo = p.range.gap > 0 ? p.range.gap : p.range.lo;
+    if (!(p.range == ir::Range{})) row["range"] = {lo, p.range.hi};
+    if (p.range.gap > 0) row["or_zero"] = true;
+    row["default"] = componentsJson(p.type, p.neutral);
+    const std::string prose = schema == nullptr ? std::string() : proseOf(*schema, p.name);
+    if (!prose.empty()) row["meaning"] = prose;
+    if (!fields[index].empty()) row["fields"] = fields[index];
+    rows.push_back(std::move(row));
   }
   return rows;
 }
@@ -99,7 +154,7 @@ Json componentsJson(ir::Type type, const ir::Components& components) {
   return array;
 }
 
-Json interfaceOf(const ir::Module& module, bool has_vertex) {
+Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
   const std::vector<ir::Input> inputs = usedInputs(module);
   const auto uses = [&](ir::InputKind kind, uint32_t index, bool block) {
     return std::any_of(inputs.begin(), inputs.end(), [&](const ir::Input& input) {
@@ -118,10 +173,12 @@ Json interfaceOf(const ir::Module& module, bool has_vertex) {
       uniforms.push_back(blockJson(module, block));
   }
   json["uniforms"] = std::move(uniforms);
+  json["parameters"] = parametersJson(module, schema);
   if (module.spec_constants) json["spec_constants"] = specConstantsJson(module);
   Json textures = Json::array();
   for (const ir::TextureSlot& slot : module.textures) {
     Json row = {{"name", slot.name}, {"type", ir::typeName(slot.type)}};
+    row["sampler"] = targets::samplerName(slot);
     row.update(bindingJson(slot.binding));
     row["role"] = slot.environment ? "environment" : "material";
     if (!slot.environment) row["color_space"] = slot.srgb ? "srgb" : "linear";
@@ -153,9 +210,9 @@ Json interfaceOf(const ir::Module& module, bool has_vertex) {
   return json;
 }
 
-std::string interfaceJson(const ir::Module& module, bool has_vertex) {
+std::string interfaceJson(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
   json::JsonText json;
-  return json.json(interfaceOf(module, has_vertex)).take();
+  return json.json(interfaceOf(module, has_vertex, schema)).take();
 }
 
 }  // namespace lacquer

@@ -56,17 +56,16 @@ void checkNames(const Options& options, Diagnostics& wrong) {
 
 std::string_view version() { return LACQUER_VERSION; }
 
-static_assert(static_cast<int>(Target::Cpp) == static_cast<int>(targets::TargetId::Cpp));
-
 std::string_view targetName(Target target) {
-  if (static_cast<size_t>(target) >= kTargetCount) return {};
-  return targets::row(static_cast<targets::TargetId>(target)).name;
+  return static_cast<size_t>(target) < kTargetCount ? targets::row(target).name : std::string_view{};
 }
 
 bool findTarget(std::string_view name, Target& target) {
-  const std::optional<targets::TargetId> id = targets::find(name);
-  if (id) target = static_cast<Target>(*id);
-  return id.has_value();
+  const auto rows = targets::rows();
+  const auto it =
+      std::find_if(rows.begin(), rows.end(), [&](const targets::Row& row) { return row.name == name; });
+  if (it != rows.end()) target = it->id;
+  return it != rows.end();
 }
 
 Result<Limits> limitsOf(const Options& options) {

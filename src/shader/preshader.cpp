@@ -68,45 +68,6 @@ std::vector<Components> Preshader::evaluate(
   return out;
 }
 
-void Preshader::write(BlobWriter& blob) const {
-  blob.list(steps_, [&](const Step& step) {
-    blob.number(step.op), blob.number(step.type), blob.number(step.count), blob.number(step.payload);
-    for (const uint32_t arg : step.args) blob.number(arg);
-  });
-  blob.list(constants_, [&](const Components& c) {
-    for (const double x : c) blob.number(x);
-  });
-  blob.list(fields_, [&](const Field& f) {
-    blob.text(f.name), blob.number(f.type), blob.number(f.offset), blob.number(f.value);
-  });
-}
-
-Preshader Preshader::read(BlobReader& blob) {
-  Preshader made;
-  blob.list([&] {
-    Step step{};
-    step.op = blob.choice(kLastOp), step.type = blob.choice(ir::Type::Vec4),
-    step.count = blob.number<uint8_t>();
-    step.payload = blob.number<uint32_t>();
-    for (uint32_t& arg : step.args) arg = blob.number<uint32_t>();
-    made.steps_.push_back(step);
-  });
-  blob.list([&] {
-    Components c{};
-    for (double& x : c) x = blob.number<double>();
-    made.constants_.push_back(c);
-  });
-  blob.list([&] {
-    Field field;
-    field.name = blob.text(), field.type = blob.choice(ir::Type::Vec4),
-    field.offset = blob.number<uint32_t>();
-    field.value = blob.number<uint32_t>();
-    made.fields_.push_back(std::move(field));
-  });
-  if (!made.sound()) blob.refuse();
-  return made;
-}
-
 bool Preshader::sound() const {
   for (size_t s = 0; s < steps_.size(); ++s) {
     if (!sound(steps_[s], s)) return false;

@@ -11,6 +11,19 @@
 
 namespace lacquer {
 
+template <>
+struct LastEnumerator<ir::Op> {
+  static constexpr ir::Op value = static_cast<ir::Op>(0
+#define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) +1
+#include "ir/ops.def"
+#undef OP
+                                                      - 1);
+};
+template <>
+struct LastEnumerator<ir::Type> {
+  static constexpr ir::Type value = ir::Type::Vec4;
+};
+
 class Preshader {
 public:
   struct Field {
@@ -32,9 +45,6 @@ public:
   std::vector<ir::Components> evaluate(
       const std::function<const ir::Components&(uint32_t parameter)>& value) const;
 
-  void write(BlobWriter& blob) const;
-  /// Refuses what evaluate() could not take.
-  static Preshader read(BlobReader& blob);
   /// True when it asks for no parameter but the first so many.
   bool uses(size_t parameters) const;
 
@@ -46,6 +56,24 @@ private:
     uint32_t payload;  ///< Constant: into constants_; Input: the parameter; Swizzle: as in the DAG
     std::array<uint32_t, 4> args;
   };
+
+  template <class Archive>
+  friend void fields(Archive& archive, Step& s) {
+    archive(s.op, s.type, s.count, s.payload, s.args);
+  }
+  template <class Archive>
+  friend void fields(Archive& archive, Field& f) {
+    archive(f.name, f.type, f.offset, f.value);
+  }
+  /// For the cache.
+  template <class Archive>
+  friend void fields(Archive& archive, Preshader& p) {
+    archive(p.steps_, p.constants_, p.fields_);
+    // A reader refuses what evaluate() could not take.
+    if constexpr (requires { archive.refuse(); }) {
+      if (!p.sound()) archive.refuse();
+    }
+  }
   bool sound() const;
   bool sound(const Step& step, size_t number) const;
 

@@ -14,7 +14,7 @@
 namespace lacquer {
 
 std::string shaderPath(Target target, const std::string& id, int stage) {
-  const targets::Target& row = targets::row(static_cast<targets::TargetId>(target));
+  const targets::Row& row = targets::row(target);
   if (target == Target::Cpp) return fmt::format("{}/{}.{}", row.name, id, row.extension);
   return fmt::format("{}/{}.{}.{}", row.name, id, stage == 0 ? "vert" : "frag", row.extension);
 }
@@ -23,27 +23,13 @@ namespace {
 
 constexpr ir::Stage kStages[] = {ir::Stage::Vertex, ir::Stage::Fragment};
 
-check::Language languageOf(Target target) {
-  switch (target) {
-    case Target::Glsl: return check::Language::GlslVulkan;
-    case Target::GlslGl: return check::Language::GlslOpenGl;
-    case Target::Essl: return check::Language::Essl300;
-    case Target::Hlsl: return check::Language::Hlsl;
-    case Target::Spirv:
-    case Target::Cpp: break;
-  }
-  assert(false && "no text of a stage");
-  return check::Language::GlslVulkan;
-}
-
 void append(Diagnostics& to, const Diagnostics& from) { to.insert(to.end(), from.begin(), from.end()); }
 
 /// Compiles one text; whatever a compiler says is a bug of ours.
 void checkText(const std::string& text, Target target, int stage, const std::string& name,
                Diagnostics& wrong) {
   const auto check_stage = stage == 0 ? check::Stage::Vertex : check::Stage::Fragment;
-  const check::Language language = languageOf(target);
-  const Result<check::Spirv> words = check::compile(text, language, check_stage, name);
+  const Result<check::Spirv> words = check::compile(text, target, check_stage, name);
   if (!words) return append(wrong, words.error());
   if (target != Target::Essl) {
     append(wrong, check::validate(*words, target == Target::GlslGl, name));
@@ -76,7 +62,7 @@ private:
 
   std::string print(const ir::Module& module, Target target, int stage) const {
     const schedule::Program program = schedule::schedule(module, kStages[stage]);
-    return targets::printText(module, program, static_cast<targets::TargetId>(target), head());
+    return targets::printText(module, program, target, head());
   }
 
   std::string head() const {
@@ -109,8 +95,8 @@ private:
                                  {options_.debug});
     }
     const auto check_stage = stage == 0 ? check::Stage::Vertex : check::Stage::Fragment;
-    Result<check::Spirv> made = check::compile(print(legalized(), Target::Glsl, stage),
-                                               check::Language::GlslVulkan, check_stage, path);
+    Result<check::Spirv> made =
+        check::compile(print(legalized(), Target::Glsl, stage), Target::Glsl, check_stage, path);
     if (made) return std::move(*made);
     append(wrongOf(Target::Spirv), made.error());
     return {};

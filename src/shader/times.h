@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lacquer.h"
+#include "shader/options.h"
 
 namespace lacquer {
 
@@ -35,11 +35,10 @@ public:
   std::vector<std::pair<std::string, double>> list() const;
 
 private:
-  static constexpr size_t kTargets = 6;
   std::atomic<int64_t>& slot(StageOfRun stage, Target target) {
-    return spent_[static_cast<size_t>(stage) * kTargets + static_cast<size_t>(target)];
+    return spent_[static_cast<size_t>(stage) * kTargetCount + static_cast<size_t>(target)];
   }
-  std::array<std::atomic<int64_t>, 10 * kTargets> spent_{};
+  std::array<std::atomic<int64_t>, 10 * kTargetCount> spent_{};
 };
 
 /// Counts its own life.

@@ -29,20 +29,24 @@ size_t sequenceLength(std::string_view text) {
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-/// Levenshtein's distance, letter case aside.
+/// Insertions, deletions, replacements and swaps of neighbours that make one text the other, letter case
+/// aside.
 size_t editDistance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
+  std::vector<size_t> before(b.size() + 1), previous(b.size() + 1), row(b.size() + 1);
+  std::iota(previous.begin(), previous.end(), size_t{0});
   for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
     row[0] = i;
     for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t changed = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+      const bool same = lower(a[i - 1]) == lower(b[j - 1]);
+      row[j] = std::min({previous[j] + 1, row[j - 1] + 1, previous[j - 1] + (same ? 0 : 1)});
+      const bool swapped =
+          i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
+      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
     }
+    std::swap(before, previous);
+    std::swap(previous, row);
   }
-  return row[b.size()];
+  return previous[b.size()];
 }
 
 }  // namespace
@@ -67,17 +71,19 @@ std::string printable(std::string_view text, size_t longest) {
 std::string quote(std::string_view text) { return '"' + printable(text) + '"'; }
 
 std::string_view closest(std::string_view name, std::span<const std::string_view> candidates) {
-  constexpr size_t kLongest = 64;  // longer names are no misspellings, and the distance costs their square
+  constexpr size_t kLongest =
+      64;  // nobody misspells longer ones by a letter, and the distance costs their square
   constexpr size_t kShortestStem = 3;
   if (name.empty() || name.size() > kLongest) return {};
   std::string_view best;
   size_t best_distance = std::max<size_t>(1, std::min<size_t>(4, name.size() / 3)) + 1;
   for (const std::string_view candidate : candidates) {
+    if (candidate.size() > kLongest || candidate == name) continue;
     const size_t distance = editDistance(name, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
+    // A name of one or two letters is near to everything.
+    if (distance >= best_distance || distance >= std::max(name.size(), candidate.size())) continue;
+    best_distance = distance;
+    best = candidate;
   }
   if (!best.empty() || name.size() < kShortestStem) return best;
   const auto extended = std::find_if(candidates.begin(), candidates.end(), [&](std::string_view candidate) {

@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "targets/clike.h"
+#include "targets/target.h"
 
 namespace lacquer::targets {
 
@@ -115,7 +116,7 @@ private:
     const std::string layout = fmt::format("layout(std140{}{}) uniform", place.empty() ? "" : ", ", place);
     text.blank();
     if (block.array == 0) {
-      text.line(fmt::format("{} {} {{", layout, block.name));
+      text.line(fmt::format("{} {} {{", layout, blockName(block)));
       printMembers(text, *this, block);
       text.line(fmt::format("}} {};", block.instance));
       return;
@@ -124,7 +125,7 @@ private:
     printMembers(text, *this, block);
     text.line("};");
     text.blank();
-    text.line(fmt::format("{} {}s {{", layout, block.name));
+    text.line(fmt::format("{} {} {{", layout, blockName(block)));
     text.indent();
     text.line(fmt::format("{} {}s[{}];", block.name, block.instance, block.array));
     text.outdent();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "targets/clike.h"
+#include "targets/target.h"
 
 namespace lacquer::targets {
 
@@ -102,12 +103,11 @@ private:
   void block(Text& text, const ir::Block& block) const {
     const bool array = block.array != 0;
     const std::string structure = array ? block.name : block.name + "Block";
-    const std::string buffer = array ? block.name + "s" : block.name;
     text.line(fmt::format("struct {} {{", structure));
     printMembers(text, *this, block);
     text.line("};");
     text.blank();
-    text.line(fmt::format("cbuffer {} : register(b{}) {{", buffer, block.binding.flat));
+    text.line(fmt::format("cbuffer {} : register(b{}) {{", blockName(block), block.binding.flat));
     text.indent();
     text.line(array ? fmt::format("{} {}s[{}];", structure, block.instance, block.array)
                     : fmt::format("{} {};", structure, block.instance));
@@ -119,8 +119,8 @@ private:
     const uint32_t number = slot.binding.flat;
     const bool compares = slot.type == Type::Texture2DShadow;
     text.line(fmt::format("{} {} : register(t{});", type(slot.type), slot.name, number));
-    text.line(fmt::format("{} {}_sampler : register(s{});",
-                          compares ? "SamplerComparisonState" : "SamplerState", slot.name, number));
+    text.line(fmt::format("{} {} : register(s{});", compares ? "SamplerComparisonState" : "SamplerState",
+                          samplerName(slot), number));
   }
 
   std::vector<std::string> parameters(const ir::Module& module, const schedule::Program& program) const {

@@ -9,42 +9,29 @@ namespace lacquer::targets {
 
 namespace {
 
-constexpr std::array<Target, 6> kTargets = {{
-    {TargetId::Glsl, "glsl", "glsl", "GLSL 4.50 for Vulkan"},
-    {TargetId::GlslGl, "glsl-gl", "glsl", "GLSL 4.50 for OpenGL 4.5"},
-    {TargetId::Essl, "essl", "glsl", "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
-    {TargetId::Hlsl, "hlsl", "hlsl", "HLSL for Shader Model 5 and 6"},
-    {TargetId::Spirv, "spirv", "spv", "SPIR-V 1.3 for Vulkan 1.1"},
-    {TargetId::Cpp, "cpp", "h", "a C++11 header that packs the material's uniform block"},
+constexpr std::array<Row, 6> kRows = {{
+    {Target::Glsl, "glsl", "glsl", "GLSL 4.50 for Vulkan"},
+    {Target::GlslGl, "glsl-gl", "glsl", "GLSL 4.50 for OpenGL 4.5"},
+    {Target::Essl, "essl", "glsl", "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
+    {Target::Hlsl, "hlsl", "hlsl", "HLSL for Shader Model 5 and 6"},
+    {Target::Spirv, "spirv", "spv", "SPIR-V 1.3 for Vulkan 1.1"},
+    {Target::Cpp, "cpp", "h", "a C++11 header that packs the material's uniform block"},
 }};
 
 }  // namespace
 
-std::span<const Target> all() { return kTargets; }
+std::span<const Row> rows() { return kRows; }
 
-std::optional<TargetId> find(std::string_view name) {
-  for (const Target& target : kTargets) {
-    if (target.name == name) return target.id;
-  }
-  return std::nullopt;
-}
-
-const Target& row(TargetId id) {
-  const Target& target = kTargets[static_cast<size_t>(id)];
-  assert(target.id == id);
-  return target;
-}
-
-std::string printText(const ir::Module& module, const schedule::Program& program, TargetId target,
+std::string printText(const ir::Module& module, const schedule::Program& program, Target target,
                       std::string_view head) {
   assert(ir::verify(module).empty());
   switch (target) {
-    case TargetId::Glsl: return printProgram(glslVulkan(), module, program, head);
-    case TargetId::GlslGl: return printProgram(glslOpenGl(), module, program, head);
-    case TargetId::Essl: return printProgram(essl300(), module, program, head);
-    case TargetId::Hlsl: return printProgram(hlsl(), module, program, head);
-    case TargetId::Spirv: break;  // words, not text: writeSpirv
-    case TargetId::Cpp: break;    // no stage: headerText
+    case Target::Glsl: return printProgram(glslVulkan(), module, program, head);
+    case Target::GlslGl: return printProgram(glslOpenGl(), module, program, head);
+    case Target::Essl: return printProgram(essl300(), module, program, head);
+    case Target::Hlsl: return printProgram(hlsl(), module, program, head);
+    case Target::Spirv: break;  // words, not text: writeSpirv
+    case Target::Cpp: break;    // no stage: headerText
   }
   assert(false && "not a target with a text");
   return {};
@@ -54,6 +41,10 @@ std::string headerText(const ir::Module& module, std::string_view name, std::str
   assert(ir::verify(module).empty());
   return printHeader(module, name, head);
 }
+
+std::string blockName(const ir::Block& block) { return block.array == 0 ? block.name : block.name + "s"; }
+
+std::string samplerName(const ir::TextureSlot& slot) { return slot.name + "_sampler"; }
 
 PreshaderText preshaderText(const ir::Module& module) {
   std::vector<std::string> taken;

@@ -1,41 +1,43 @@
 // The back-ends: a row per target.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "ir/module.h"
+#include "lacquer/options.h"
 #include "schedule/schedule.h"
 
 namespace lacquer::targets {
 
-enum class TargetId : uint8_t { Glsl, GlslGl, Essl, Hlsl, Spirv, Cpp };
-
-struct Target {
-  TargetId id;
+struct Row {
+  Target id;
   std::string_view
       name;  ///< on the command line and in DIR/<target>/: "glsl", "glsl-gl", "essl", "hlsl", "spirv", "cpp"
   std::string_view extension;  ///< "glsl", "hlsl", "spv", "h"
   std::string_view prose;
 };
 
-/// All targets, in the order of TargetId.
-std::span<const Target> all();
-std::optional<TargetId> find(std::string_view name);
-const Target& row(TargetId id);
+/// All targets, in the order of the enumeration.
+std::span<const Row> rows();
+inline const Row& row(Target id) { return rows()[static_cast<size_t>(id)]; }
 
 /// The text of one stage. The module must be placed, bound and legalized for the target. `head` is printed as
 /// comment lines at the top (one per line).
-std::string printText(const ir::Module& module, const schedule::Program& program, TargetId target,
+std::string printText(const ir::Module& module, const schedule::Program& program, Target target,
                       std::string_view head);
 
-/// TargetId::Cpp: a C++11 header in the namespace lacquer_shaders::NAME with the parameters, the material's
+/// Target::Cpp: a C++11 header in the namespace lacquer_shaders::NAME with the parameters, the material's
 /// block, the preshader as a function, and the bindings. The module must be placed and bound. `name`: the
 /// shader's id. `head` as above.
 std::string headerText(const ir::Module& module, std::string_view name, std::string_view head);
+
+/// What every text calls a block: an array of `Light` lies in `Lights`.
+std::string blockName(const ir::Block& block);
+/// What HLSL calls a texture's sampler; in the other texts it has none of its own.
+std::string samplerName(const ir::TextureSlot& slot);
 
 /// The preshader in GLSL, for people and for other tools. Its length is linear in the number of operations.
 struct PreshaderText {

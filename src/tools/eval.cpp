@@ -251,8 +251,9 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
   }
   if (engine != Engine::Double) evaluated.place({false, {{"directional", 1}}});
   eval::Bindings bindings;
-  if (Result<void> bound = bind(evaluated, points, points_file, bindings); !bound)
-    return tl::make_unexpected(std::move(bound.error()));
+  const Result<void> bound = bind(evaluated, points, points_file, bindings);
+  report(images.takeNotes(), file, messages);
+  if (!bound) return tl::make_unexpected(bound.error());
   const size_t count = points.points.size();
   const ir::Module& module = evaluated.module();
   const Result<Colors> answer =

@@ -72,6 +72,19 @@ Result<FileImages::Held> FileImages::decode(const gltf::TextureSource& source) {
   return Held{std::make_shared<const eval::Image>(std::move(*image)), pixels, 0};
 }
 
+/// An image of an extension's that there is another one for.
+void FileImages::passedOver(int texture, const gltf::TextureSource& source) {
+  const std::vector<gltf::Texture::Source>& others = source.texture.sources;
+  if (source.texture.source < 0 || others.empty() || !noted_.insert(texture).second) return;
+  notes_.push_back({"image-fallback",
+                    Severity::Note,
+                    {file_, 0, 0, fmt::format("/textures/{}/extensions/{}", texture, others[0].extension)},
+                    fmt::format("image {} of {} is not decoded here: image {} is looked into",
+                                others[0].image, others[0].extension, source.texture.source),
+                    "an engine may show the other",
+                    {}});
+}
+
 Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
   if (!opened_) {
     Result<gltf::TextureFile> opened = gltf::TextureFile::open(file_, access_);
@@ -80,6 +93,7 @@ Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
   }
   const Result<gltf::TextureSource> source = opened_->texture(texture);
   if (!source) return tl::make_unexpected(source.error());
+  passedOver(texture, *source);
   auto it = images_.find(source->image);
   if (it == images_.end()) {
     Result<Held> decoded = decode(*source);
@@ -89,8 +103,8 @@ Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
   }
   it->second.used = ++uses_;
   constexpr int kNearest = 9728;
-  return Loaded{it->second.image,
-                {wrapOf(source->wrapS), wrapOf(source->wrapT), source->magFilter == kNearest, srgb}};
+  const gltf::Texture& of = source->texture;
+  return Loaded{it->second.image, {wrapOf(of.wrapS), wrapOf(of.wrapT), of.magFilter == kNearest, srgb}};
 }
 
 Result<EvalMaterial::Texel> EvalMaterial::parseTexel(const std::string& text) {

@@ -5,7 +5,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "eval/image.h"
@@ -29,6 +31,8 @@ public:
   /// Errors: those of gltf::TextureFile and of eval::decodeImage(), and "image-too-large" where the images in
   /// use leave no room.
   Result<Loaded> load(int texture, bool srgb);
+  /// What load() has to say beside its errors, once: images that were passed over for another one.
+  Diagnostics takeNotes() { return std::exchange(notes_, {}); }
   /// The files that were read for images.
   Strings read() const { return opened_ ? opened_->filesRead() : Strings(); }
 
@@ -40,6 +44,7 @@ private:
   };
 
   Result<Held> decode(const gltf::TextureSource& source);
+  void passedOver(int texture, const gltf::TextureSource& source);
   bool makeRoom(uint64_t pixels);
 
   std::string file_;
@@ -47,6 +52,8 @@ private:
   std::optional<gltf::TextureFile> opened_;
   std::map<size_t, Held> images_;  ///< by the image's index
   uint64_t held_ = 0, uses_ = 0;   ///< pixels; calls of load()
+  std::set<int> noted_;            ///< textures
+  Diagnostics notes_;
 };
 
 /// What stands behind a texture slot: an image or a constant.

@@ -19,10 +19,9 @@ namespace {
 Result<std::vector<uint32_t>> compiledText(ir::Module module, bool hlsl) {
   targets::legalize(module);
   const schedule::Program program = schedule::schedule(module, ir::Stage::Fragment);
-  const targets::TargetId target = hlsl ? targets::TargetId::Hlsl : targets::TargetId::Glsl;
+  const Target target = hlsl ? Target::Hlsl : Target::Glsl;
   const std::string text = targets::printText(module, program, target, {});
-  return check::compile(text, hlsl ? check::Language::Hlsl : check::Language::GlslVulkan,
-                        check::Stage::Fragment, hlsl ? "eval.hlsl" : "eval.glsl");
+  return check::compile(text, target, check::Stage::Fragment, hlsl ? "eval.hlsl" : "eval.glsl");
 }
 
 class WorkBuilder {

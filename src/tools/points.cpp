@@ -18,8 +18,23 @@ using json::Json;
 using json::Path;
 using Vec3 = std::array<double, 3>;
 
-constexpr std::string_view kKeys[] = {"n",   "t",      "v",     "l",   "uv0",      "uv1",         "uv2",
-                                      "uv3", "color0", "light", "env", "position", "front_facing"};
+constexpr std::string_view kKeys[] = {"n",
+                                      "t",
+                                      "v",
+                                      "l",
+                                      "uv0",
+                                      "uv1",
+                                      "uv2",
+                                      "uv3",
+                                      "color0",
+                                      "light",
+                                      "env",
+                                      "position",
+                                      "front_facing",
+                                      "inside",
+                                      "surrounding_ior",
+                                      "channel",
+                                      "random"};
 
 /// A direction may be off by the rounding of printed digits, not by more.
 constexpr double kUnitTolerance = 1e-3;
@@ -71,12 +86,11 @@ public:
       to.has_environment = true;
     }
     vector(json, path, "position", point.position);
-    if (const Json* facing = json::member(json, "front_facing")) {
-      if (!facing->is_boolean())
-        report_.wrongType(Path(path, "front_facing"), "front_facing", *facing, "true or false");
-      else
-        point.front_facing = facing->get<bool>();
-    }
+    flag(json, path, "front_facing", point.front_facing);
+    flag(json, path, "inside", point.inside);
+    number(json, path, "surrounding_ior", point.surrounding_ior);
+    number(json, path, "channel", point.channel);
+    vector(json, path, "random", point.random);
     to.points.push_back(point);
     to.environment.push_back(environment);
   }
@@ -107,6 +121,23 @@ private:
     if (json == nullptr || !numbers(*json, Path(path, name), name, value)) return false;
     to = value;
     return true;
+  }
+
+  void flag(const Json& point, const Path& path, std::string_view name, bool& to) {
+    const Json* json = json::member(point, name);
+    if (json == nullptr) return;
+    if (json->is_boolean())
+      to = json->get<bool>();
+    else
+      report_.wrongType(Path(path, name), name, *json, "true or false");
+  }
+
+  void number(const Json& point, const Path& path, std::string_view name, double& to) {
+    const Json* json = json::member(point, name);
+    if (json == nullptr) return;
+    if (!json->is_number()) return report_.wrongType(Path(path, name), name, *json, "a number");
+    if (const double value = json->get<double>(); std::isfinite(value)) return void(to = value);
+    report_.error("not-finite", Path(path, name), fmt::format("{} is not finite", name));
   }
 
   void direction(const Json& point, const Path& path, std::string_view name, const Vec3& missing, Vec3& to) {

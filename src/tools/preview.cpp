@@ -164,8 +164,9 @@ private:
       }
       return neutralTexel(slot);
     };
-    if (Result<void> bound = evaluated.bindTextures(neutral, look.textures); !bound)
-      return tl::make_unexpected(std::move(bound.error()));
+    const Result<void> bound = evaluated.bindTextures(neutral, look.textures);
+    report(images.takeNotes(), images.file(), messages_);
+    if (!bound) return tl::make_unexpected(bound.error());
     look.module = evaluated.module();
     return preview::Shading::make(std::move(look), studio_);
   }

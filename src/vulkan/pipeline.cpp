@@ -11,7 +11,7 @@ namespace lacquer::vulkan {
 
 uint32_t Pipeline::vertexStride() const {
   uint32_t floats = 4;
-  for (const Slot& slot : fragment_.inputs) floats += slot.count;
+  for (const check::Slot& slot : fragment_.inputs) floats += slot.count;
   return floats * static_cast<uint32_t>(sizeof(float));
 }
 
@@ -102,11 +102,11 @@ VkFormat floatFormat(uint32_t components) {
 }
 
 /// The inputs by location, then the position.
-std::vector<VkVertexInputAttributeDescription> attributesOf(const Interface& fragment) {
+std::vector<VkVertexInputAttributeDescription> attributesOf(const check::Interface& fragment) {
   std::vector<VkVertexInputAttributeDescription> attributes;
   uint32_t offset = 0;
   uint32_t location = 0;
-  for (const Slot& slot : fragment.inputs) {
+  for (const check::Slot& slot : fragment.inputs) {
     attributes.push_back({slot.location, 0, floatFormat(slot.count), offset});
     offset += slot.count * static_cast<uint32_t>(sizeof(float));
     location = slot.location + 1;

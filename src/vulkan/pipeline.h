@@ -4,21 +4,22 @@
 #include <map>
 #include <vector>
 
+#include "check/reflect.h"
 #include "vulkan/device.h"
-#include "vulkan/reflect.h"
 
 namespace lacquer::vulkan {
 
 class Pipeline {
 public:
   /// `objects` keeps what is made; the target has `side` pixels each way.
-  Pipeline(const Device::State& device, const Interface& fragment, Objects& objects, uint16_t side = kSide)
+  Pipeline(const Device::State& device, const check::Interface& fragment, Objects& objects,
+           uint16_t side = kSide)
       : device_(device), fragment_(fragment), objects_(objects), side_(side) {}
 
   void make(const std::vector<uint32_t>& vertex, const std::vector<uint32_t>& fragment,
             const std::map<uint32_t, uint32_t>& constants);
 
-  const Interface& interface() const { return fragment_; }
+  const check::Interface& interface() const { return fragment_; }
   VkPipeline handle() const { return pipeline_; }
   VkPipelineLayout layout() const { return layout_; }
   VkRenderPass renderPass() const { return render_pass_; }
@@ -34,7 +35,7 @@ private:
   void makeRenderPass();
 
   const Device::State& device_;
-  const Interface& fragment_;
+  const check::Interface& fragment_;
   Objects& objects_;
   uint16_t side_;
   std::vector<VkDescriptorSetLayout> sets_;

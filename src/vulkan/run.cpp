@@ -8,10 +8,10 @@
 #include <cstring>
 #include <optional>
 
+#include "check/reflect.h"
 #include "vulkan/device.h"
 #include "vulkan/passthrough.h"
 #include "vulkan/pipeline.h"
-#include "vulkan/reflect.h"
 #include "vulkan/state.h"
 
 namespace lacquer::vulkan {
@@ -459,7 +459,7 @@ void Running::chunk(size_t first, Outcome& outcome) {
 
 /// What would make the device's calls undefined; empty when all is well.
 std::optional<Diagnostic> problemOf(const Device::State& device, const Work& work,
-                                    const Interface& interface) {
+                                    const check::Interface& interface) {
   const auto wrong = [](std::string code, std::string message) {
     return Diagnostic{std::move(code), Severity::Error, {}, std::move(message), {}, {}};
   };
@@ -471,8 +471,8 @@ std::optional<Diagnostic> problemOf(const Device::State& device, const Work& wor
     return wrong("vulkan-interface", fmt::format("{} points are not in fours", work.points));
   }
   for (size_t i = 0; i < work.inputs.size(); ++i) {
-    const Slot& slot = interface.inputs[i];
-    if (slot.scalar == Scalar::Float && slot.component == 0 && slot.count == work.inputs[i].components)
+    const check::Slot& slot = interface.inputs[i];
+    if (slot.scalar == check::Scalar::Float && slot.component == 0 && slot.count == work.inputs[i].components)
       continue;
     return wrong("vulkan-interface", fmt::format("the input at location {} has another type", slot.location));
   }
@@ -506,7 +506,7 @@ std::optional<Diagnostic> problemOf(const Device::State& device, const Work& wor
 }  // namespace
 
 Result<Outcome> Device::run(const Work& work) const {
-  const Result<Interface> interface = reflect(work.fragment, Stage::Fragment);
+  const Result<check::Interface> interface = check::reflect(work.fragment, check::Stage::Fragment);
   if (!interface) return tl::make_unexpected(interface.error());
   if (const auto problem = problemOf(*state_, work, *interface)) {
     return tl::make_unexpected(Diagnostics{*problem});

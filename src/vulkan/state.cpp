@@ -3,18 +3,18 @@
 
 namespace lacquer::vulkan {
 
-VkDescriptorType descriptorType(Resource resource, bool dynamic) {
+VkDescriptorType descriptorType(check::Resource resource, bool dynamic) {
   switch (resource) {
-    case Resource::UniformBuffer:
+    case check::Resource::UniformBuffer:
       return dynamic ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    case Resource::StorageBuffer:
+    case check::Resource::StorageBuffer:
       return dynamic ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    case Resource::Sampler: return VK_DESCRIPTOR_TYPE_SAMPLER;
-    case Resource::SampledImage: return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    case Resource::CombinedImageSampler: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    case Resource::StorageImage: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    case Resource::UniformTexelBuffer: return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    case Resource::StorageTexelBuffer: return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+    case check::Resource::Sampler: return VK_DESCRIPTOR_TYPE_SAMPLER;
+    case check::Resource::SampledImage: return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    case check::Resource::CombinedImageSampler: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case check::Resource::StorageImage: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    case check::Resource::UniformTexelBuffer: return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    case check::Resource::StorageTexelBuffer: return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
   }
   return VK_DESCRIPTOR_TYPE_MAX_ENUM;
 }

@@ -6,12 +6,12 @@
 
 #include <vector>
 
-#include "vulkan/reflect.h"
+#include "check/reflect.h"
 
 namespace lacquer::vulkan {
 
 /// `dynamic`: buffers have dynamic offsets.
-VkDescriptorType descriptorType(Resource resource, bool dynamic);
+VkDescriptorType descriptorType(check::Resource resource, bool dynamic);
 
 /// The fixed functions: triangles of both sides, one sample, no depth, no blending, all colour channels
 /// written.

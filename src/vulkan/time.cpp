@@ -8,10 +8,10 @@
 #include <limits>
 #include <memory>
 
+#include "check/reflect.h"
 #include "vulkan/device.h"
 #include "vulkan/passthrough.h"
 #include "vulkan/pipeline.h"
-#include "vulkan/reflect.h"
 
 namespace lacquer::vulkan {
 namespace {
@@ -49,7 +49,7 @@ Buffer triangle(const Sweep& sweep, uint32_t stride, Objects& objects) {
 /// A sweep that can be taken again and again.
 class Timed {
 public:
-  Timed(const Device::State& device, const Interface& fragment, Objects& objects)
+  Timed(const Device::State& device, const check::Interface& fragment, Objects& objects)
       : device_(device),
         fragment_(fragment),
         objects_(objects),
@@ -93,9 +93,9 @@ private:
     bool fits = pipeline_.outputs() == 1 && fragment_.bindings.empty() &&
                 fragment_.inputs.size() == sweep.inputs.size();
     for (size_t i = 0; fits && i < sweep.inputs.size(); ++i) {
-      const Slot& slot = fragment_.inputs[i];
+      const check::Slot& slot = fragment_.inputs[i];
       const Varying& input = sweep.inputs[i];
-      fits = slot.scalar == Scalar::Float && slot.component == 0 && slot.count == input.components &&
+      fits = slot.scalar == check::Scalar::Float && slot.component == 0 && slot.count == input.components &&
              input.values.size() == size_t{3} * input.components;
     }
     if (!fits) {
@@ -126,7 +126,7 @@ private:
   }
 
   const Device::State& device_;
-  Interface fragment_;
+  check::Interface fragment_;
   Objects& objects_;
   Pipeline pipeline_;
   Buffer triangle_;
@@ -146,7 +146,7 @@ Result<std::vector<double>> Device::time(const std::vector<Sweep>& sweeps, int r
   const VkImageView view = objects.view(target, 0, Shape::Plane);
   std::vector<std::unique_ptr<Timed>> timed;
   for (const Sweep& sweep : sweeps) {
-    const Result<Interface> interface = reflect(sweep.fragment, Stage::Fragment);
+    const Result<check::Interface> interface = check::reflect(sweep.fragment, check::Stage::Fragment);
     if (!interface) return tl::make_unexpected(interface.error());
     timed.push_back(std::make_unique<Timed>(*state_, *interface, objects));
     if (objects.good()) timed.back()->make(sweep, view);

@@ -18,7 +18,7 @@ std::string allOf(const Diagnostics& list) {
 struct Good {
   const char* name;
   const std::string& text;
-  Language language;
+  Target target;
   Stage stage;
 };
 
@@ -26,13 +26,13 @@ class GoodShader : public testing::TestWithParam<Good> {};
 
 TEST_P(GoodShader, compilesAndIsValid) {
   const Good& good = GetParam();
-  const auto words = compile(good.text, good.language, good.stage, "good");
+  const auto words = compile(good.text, good.target, good.stage, "good");
   ASSERT_TRUE(words) << allOf(words.error());
-  if (good.language == Language::Essl300) {
+  if (good.target == Target::Essl) {
     EXPECT_TRUE(words->empty());
     return;
   }
-  const bool open_gl = good.language == Language::GlslOpenGl;
+  const bool open_gl = good.target == Target::GlslGl;
   const Diagnostics found = validate(*words, open_gl, "good");
   EXPECT_TRUE(found.empty()) << allOf(found);
   ASSERT_GT(words->size(), 5u);
@@ -41,17 +41,17 @@ TEST_P(GoodShader, compilesAndIsValid) {
 
 INSTANTIATE_TEST_SUITE_P(
     Compile, GoodShader,
-    testing::Values(Good{"VulkanFragment", kVulkanFragment, Language::GlslVulkan, Stage::Fragment},
-                    Good{"VulkanVertex", kVulkanVertex, Language::GlslVulkan, Stage::Vertex},
-                    Good{"OpenGlFragment", kOpenGlFragment, Language::GlslOpenGl, Stage::Fragment},
-                    Good{"EsslFragment", kEsslFragment, Language::Essl300, Stage::Fragment},
-                    Good{"EsslVertex", kEsslVertex, Language::Essl300, Stage::Vertex},
-                    Good{"HlslFragment", kHlslFragment, Language::Hlsl, Stage::Fragment},
-                    Good{"HlslVertex", kHlslVertex, Language::Hlsl, Stage::Vertex}),
+    testing::Values(Good{"VulkanFragment", kVulkanFragment, Target::Glsl, Stage::Fragment},
+                    Good{"VulkanVertex", kVulkanVertex, Target::Glsl, Stage::Vertex},
+                    Good{"OpenGlFragment", kOpenGlFragment, Target::GlslGl, Stage::Fragment},
+                    Good{"EsslFragment", kEsslFragment, Target::Essl, Stage::Fragment},
+                    Good{"EsslVertex", kEsslVertex, Target::Essl, Stage::Vertex},
+                    Good{"HlslFragment", kHlslFragment, Target::Hlsl, Stage::Fragment},
+                    Good{"HlslVertex", kHlslVertex, Target::Hlsl, Stage::Vertex}),
     [](const auto& info) { return std::string(info.param.name); });
 
-std::string errorsOf(std::string_view text, Language language, Stage stage = Stage::Fragment) {
-  const auto words = compile(text, language, stage, "bad");
+std::string errorsOf(std::string_view text, Target target, Stage stage = Stage::Fragment) {
+  const auto words = compile(text, target, stage, "bad");
   return words ? "compiled" : allOf(words.error());
 }
 
@@ -62,7 +62,7 @@ TEST(Compile, vulkanErrorsPointAtTheToken) {
                      "\tfloat food = 1.0;\n"
                      "\tresult = vec4(food + foo);\n"
                      "}\n",
-                     Language::GlslVulkan),
+                     Target::Glsl),
             "bad:5:23: error: 'foo' : undeclared identifier [glslang]\n"
             "  \tresult = vec4(food + foo);\n"
             "  \t                     ^~~\n");
@@ -73,7 +73,7 @@ TEST(Compile, vulkanWantsBindings) {
                      "layout(location = 0) out vec4 result;\n"
                      "uniform vec4 color;\n"
                      "void main() { result = color; }\n",
-                     Language::GlslVulkan),
+                     Target::Glsl),
             "bad:3:1: error: 'non-opaque uniforms outside a block' : not allowed when using GLSL for Vulkan "
             "[glslang]\n"
             "  uniform vec4 color;\n"
@@ -85,7 +85,7 @@ TEST(Compile, openGlHasNoDescriptorSets) {
                      "layout(location = 0) out vec4 result;\n"
                      "layout(set = 1, binding = 0) uniform Material { vec4 color; };\n"
                      "void main() { result = color; }\n",
-                     Language::GlslOpenGl),
+                     Target::GlslGl),
             "bad:3:1: error: 'descriptor set' : only allowed when using GLSL for Vulkan [glslang]\n"
             "  layout(set = 1, binding = 0) uniform Material { vec4 color; };\n"
             "  ^~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~\n");
@@ -96,7 +96,7 @@ TEST(Compile, openGlTextHasNoSpecializationConstants) {
                      "layout(constant_id = 0) const float scale = 1.0;\n"
                      "layout(location = 0) out vec4 result;\n"
                      "void main() { result = vec4(scale); }\n",
-                     Language::GlslOpenGl),
+                     Target::GlslGl),
             "bad:2:8: error: 'constant_id' : only allowed when generating SPIR-V [glslang]\n"
             "  layout(constant_id = 0) const float scale = 1.0;\n"
             "         ^~~~~~~~~~~\n");
@@ -106,7 +106,7 @@ TEST(Compile, esslWantsPrecision) {
   EXPECT_EQ(errorsOf("#version 300 es\n"
                      "out vec4 result;\n"
                      "void main() { result = vec4(1.0); }\n",
-                     Language::Essl300),
+                     Target::Essl),
             "bad:2:1: error: 'float' : type requires declaration of default precision qualifier [glslang]\n"
             "  out vec4 result;\n"
             "  ^~~~~~~~~~~~~~~~\n");
@@ -118,7 +118,7 @@ TEST(Compile, esslHasNoBindings) {
                      "layout(binding = 1) uniform sampler2D map;\n"
                      "out vec4 result;\n"
                      "void main() { result = texture(map, vec2(0.0)); }\n",
-                     Language::Essl300)
+                     Target::Essl)
                 .find("bad:3:8: error: 'binding' : not supported"),
             std::string::npos);
 }
@@ -128,7 +128,7 @@ TEST(Compile, hlslErrorsHaveALine) {
                      "  float3 z = float3(1, 1, 1) * bar(2);\n"
                      "  return float4(z, 1);\n"
                      "}\n",
-                     Language::Hlsl),
+                     Target::Hlsl),
             "bad:2:32: error: 'bar' : no matching overloaded function found [glslang]\n"
             "    float3 z = float3(1, 1, 1) * bar(2);\n"
             "                                 ^~~\n"
@@ -146,41 +146,40 @@ TEST(Compile, linkErrorsHaveNoLine) {
                "float half_of(float x);\n"
                "layout(location = 0) out float y;\n"
                "void main() { y = half_of(1.0); }\n",
-               Language::GlslVulkan),
+               Target::Glsl),
       "bad: error: Linking fragment stage: No function definition (body) found: half_of(f1; [glslang]\n");
 }
 
 TEST(Compile, dialectsAreNotMixed) {
-  EXPECT_EQ(errorsOf(kEsslFragment, Language::GlslOpenGl),
+  EXPECT_EQ(errorsOf(kEsslFragment, Target::GlslGl),
             "bad:1:1: error: the shader does not start with `#version 450` [glslang]\n"
             "  #version 300 es\n"
             "  ^~~~~~~~~~~~~~~\n");
-  EXPECT_EQ(errorsOf("// head\n" + kVulkanFragment, Language::Essl300),
+  EXPECT_EQ(errorsOf("// head\n" + kVulkanFragment, Target::Essl),
             "bad:2:1: error: the shader does not start with `#version 300 es` [glslang]\n"
             "  #version 450\n"
             "  ^~~~~~~~~~~~\n");
-  EXPECT_EQ(errorsOf("void main() {}\n", Language::GlslVulkan),
+  EXPECT_EQ(errorsOf("void main() {}\n", Target::Glsl),
             "bad: error: the shader does not start with `#version 450` [glslang]\n");
-  EXPECT_EQ(errorsOf("// head\n" + kVulkanFragment, Language::GlslVulkan), "compiled");
+  EXPECT_EQ(errorsOf("// head\n" + kVulkanFragment, Target::Glsl), "compiled");
 }
 
 TEST(Compile, emptyTextFails) {
-  for (const Language language :
-       {Language::GlslVulkan, Language::GlslOpenGl, Language::Essl300, Language::Hlsl}) {
-    EXPECT_NE(errorsOf("", language), "compiled");
+  for (const Target target : {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl}) {
+    EXPECT_NE(errorsOf("", target), "compiled");
   }
 }
 
 TEST(Compile, theTextNeedsNoTerminator) {
   const std::string more = kVulkanFragment + "this is not part of the shader";
-  const auto words = compile(std::string_view(more).substr(0, kVulkanFragment.size()), Language::GlslVulkan,
+  const auto words = compile(std::string_view(more).substr(0, kVulkanFragment.size()), Target::Glsl,
                              Stage::Fragment, "good");
   ASSERT_TRUE(words) << allOf(words.error());
 }
 
 TEST(Compile, threadsDoNotDisturbEachOther) {
-  const auto fragment = compile(kVulkanFragment, Language::GlslVulkan, Stage::Fragment, "good");
-  const auto hlsl = compile(kHlslVertex, Language::Hlsl, Stage::Vertex, "good");
+  const auto fragment = compile(kVulkanFragment, Target::Glsl, Stage::Fragment, "good");
+  const auto hlsl = compile(kHlslVertex, Target::Hlsl, Stage::Vertex, "good");
   ASSERT_TRUE(fragment && hlsl);
   constexpr int kThreads = 6;
   std::vector<int> wrong(kThreads, 0);
@@ -189,11 +188,11 @@ TEST(Compile, threadsDoNotDisturbEachOther) {
   for (int& count : wrong) {
     threads.emplace_back([&count, &fragment, &hlsl] {
       for (int i = 0; i < 8; ++i) {
-        count += compile(kVulkanFragment, Language::GlslVulkan, Stage::Fragment, "good") != fragment;
-        count += compile(kHlslVertex, Language::Hlsl, Stage::Vertex, "good") != hlsl;
-        count += !compile(kEsslFragment, Language::Essl300, Stage::Fragment, "good").has_value();
-        count += compile("#version 450\nvoid main() { x; }\n", Language::GlslVulkan, Stage::Vertex, "bad")
-                     .has_value();
+        count += compile(kVulkanFragment, Target::Glsl, Stage::Fragment, "good") != fragment;
+        count += compile(kHlslVertex, Target::Hlsl, Stage::Vertex, "good") != hlsl;
+        count += !compile(kEsslFragment, Target::Essl, Stage::Fragment, "good").has_value();
+        count +=
+            compile("#version 450\nvoid main() { x; }\n", Target::Glsl, Stage::Vertex, "bad").has_value();
         count += !validate(*fragment, false, "good").empty();
         count += !reflectBlocks(*hlsl).has_value();
       }

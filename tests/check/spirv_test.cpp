@@ -5,13 +5,14 @@
 #include <cstdio>
 
 #include "check/check.h"
+#include "check/reflect.h"
 #include "check/shaders.h"
 
 namespace lacquer::check {
 namespace {
 
-Spirv wordsOf(const std::string& text, Language language, Stage stage) {
-  const auto words = compile(text, language, stage, "good");
+Spirv wordsOf(const std::string& text, Target target, Stage stage) {
+  const auto words = compile(text, target, stage, "good");
   EXPECT_TRUE(words) << (words ? "" : format(words.error().front()));
   return words.value_or(Spirv());
 }
@@ -43,7 +44,7 @@ std::string blockText(const std::vector<Block>& blocks) {
 }
 
 TEST(Validate, wrongTypesAreCaught) {
-  Spirv words = wordsOf(kVulkanFragment, Language::GlslVulkan, Stage::Fragment);
+  Spirv words = wordsOf(kVulkanFragment, Target::Glsl, Stage::Fragment);
   ASSERT_TRUE(validate(words, false, "m.spv").empty());
   const size_t at = findOp(words, kOpMatrixTimesVector);
   words[at] = (words[at] & 0xffff0000u) | kOpFMul;
@@ -58,18 +59,18 @@ TEST(Validate, wrongTypesAreCaught) {
 TEST(Validate, brokenModulesAreCaught) {
   EXPECT_EQ(validate({}, false, "m.spv").size(), 1u);
   EXPECT_EQ(validate({1, 2, 3}, false, "m.spv").size(), 1u);
-  Spirv words = wordsOf(kVulkanFragment, Language::GlslVulkan, Stage::Fragment);
+  Spirv words = wordsOf(kVulkanFragment, Target::Glsl, Stage::Fragment);
   words.pop_back();
   EXPECT_TRUE(hasError(validate(words, false, "m.spv")));
 }
 
 TEST(Validate, theEnvironmentMatters) {
-  const Spirv vulkan = wordsOf(kVulkanFragment, Language::GlslVulkan, Stage::Fragment);
+  const Spirv vulkan = wordsOf(kVulkanFragment, Target::Glsl, Stage::Fragment);
   EXPECT_TRUE(hasError(validate(vulkan, true, "m.spv")));  // SPIR-V 1.3 is too new for OpenGL 4.5
 }
 
 TEST(Optimize, keepsTheModuleValidAndMakesItSmaller) {
-  const Spirv words = wordsOf(kVulkanFragment, Language::GlslVulkan, Stage::Fragment);
+  const Spirv words = wordsOf(kVulkanFragment, Target::Glsl, Stage::Fragment);
   const auto smaller = optimize(words, "m.spv");
   ASSERT_TRUE(smaller);
   EXPECT_LT(smaller->size(), words.size());
@@ -77,7 +78,7 @@ TEST(Optimize, keepsTheModuleValidAndMakesItSmaller) {
 }
 
 TEST(Optimize, brokenModulesFail) {
-  Spirv words = wordsOf(kVulkanFragment, Language::GlslVulkan, Stage::Fragment);
+  Spirv words = wordsOf(kVulkanFragment, Target::Glsl, Stage::Fragment);
   words[findOp(words, kOpLoad) + 1] = 0xffff;
   const auto result = optimize(words, "m.spv");
   ASSERT_FALSE(result);
@@ -86,7 +87,7 @@ TEST(Optimize, brokenModulesFail) {
 }
 
 TEST(ReflectBlocks, vulkanGlsl) {
-  const auto blocks = reflectBlocks(wordsOf(kVulkanFragment, Language::GlslVulkan, Stage::Fragment));
+  const auto blocks = reflectBlocks(wordsOf(kVulkanFragment, Target::Glsl, Stage::Fragment));
   ASSERT_TRUE(blocks);
   EXPECT_EQ(blockText(*blocks),
             "Material set 0 binding 0 size 224\n"
@@ -100,13 +101,13 @@ TEST(ReflectBlocks, vulkanGlsl) {
 }
 
 TEST(ReflectBlocks, setsAndBindings) {
-  const auto blocks = reflectBlocks(wordsOf(kVulkanVertex, Language::GlslVulkan, Stage::Vertex));
+  const auto blocks = reflectBlocks(wordsOf(kVulkanVertex, Target::Glsl, Stage::Vertex));
   ASSERT_TRUE(blocks);
   EXPECT_EQ(blockText(*blocks), "Frame set 1 binding 2 size 64\n  view 0+64\n");
 }
 
 TEST(ReflectBlocks, hlsl) {
-  const auto blocks = reflectBlocks(wordsOf(kHlslFragment, Language::Hlsl, Stage::Fragment));
+  const auto blocks = reflectBlocks(wordsOf(kHlslFragment, Target::Hlsl, Stage::Fragment));
   ASSERT_TRUE(blocks);
   EXPECT_EQ(blockText(*blocks),
             "Material set 0 binding 0 size 80\n"
@@ -122,14 +123,14 @@ TEST(ReflectBlocks, hlslPacksOtherwiseThanStd140) {
   const Spirv words = wordsOf(
       "cbuffer M : register(b2) { float ior; float3 tint; };\n"
       "float4 main() : SV_Target { return float4(tint, ior); }\n",
-      Language::Hlsl, Stage::Fragment);
+      Target::Hlsl, Stage::Fragment);
   const auto blocks = reflectBlocks(words);
   ASSERT_TRUE(blocks);
   EXPECT_EQ(blockText(*blocks), "M set 0 binding 2 size 16\n  ior 0+4\n  tint 4+12\n");
 }
 
 TEST(HlslBindings, doNotCollide) {
-  const Spirv words = wordsOf(kHlslFragment, Language::Hlsl, Stage::Fragment);
+  const Spirv words = wordsOf(kHlslFragment, Target::Hlsl, Stage::Fragment);
   std::vector<uint32_t> bindings;
   for (size_t at = 5; at < words.size(); at += words[at] >> 16) {
     if ((words[at] & 0xffff) == 71 && words[at + 2] == 33)
@@ -156,14 +157,14 @@ void main() {
   result = storage.ignored + push.ignored + vec4(all[1].lights[1].color * all[0].world[3], float(all[0].count));
 }
 )";
-  const auto blocks = reflectBlocks(wordsOf(text, Language::GlslVulkan, Stage::Fragment));
+  const auto blocks = reflectBlocks(wordsOf(text, Target::Glsl, Stage::Fragment));
   ASSERT_TRUE(blocks);
   EXPECT_EQ(blockText(*blocks),
             "Lights set 0 binding 4 size 148\n  lights 0+96\n  world 96+48\n  count 144+4\n");
 }
 
 TEST(ReflectBlocks, namesMayBeMissing) {
-  Spirv words = wordsOf(kVulkanVertex, Language::GlslVulkan, Stage::Vertex);
+  Spirv words = wordsOf(kVulkanVertex, Target::Glsl, Stage::Vertex);
   for (size_t at = 5; at < words.size();) {
     const uint32_t length = words[at] >> 16;
     const uint32_t opcode = words[at] & 0xffff;
@@ -190,7 +191,7 @@ TEST(ToolVersions, nameBothWithNumbers) {
 TEST(ReflectBlocks, brokenModulesFail) {
   EXPECT_FALSE(reflectBlocks({}));
   EXPECT_FALSE(reflectBlocks({1, 2, 3}));
-  Spirv words = wordsOf(kVulkanVertex, Language::GlslVulkan, Stage::Vertex);
+  Spirv words = wordsOf(kVulkanVertex, Target::Glsl, Stage::Vertex);
   // Without its offset a member has no place: nothing must be made up.
   for (size_t at = 5; at < words.size(); at += words[at] >> 16) {
     if ((words[at] & 0xffff) != 72 || words[at + 3] != 35) continue;  // OpMemberDecorate ... Offset

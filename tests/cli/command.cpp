@@ -99,7 +99,28 @@ std::set<std::string> Workplace::names(const std::string& except) const {
 nlohmann::json Workplace::manifest(const std::string& folder) const {
   nlohmann::json json = nlohmann::json::parse(read(folder + "/manifest.json"), nullptr, false);
   if (json.is_discarded()) ADD_FAILURE() << folder << "/manifest.json is no JSON";
+  EXPECT_EQ(schemaErrors({path_ / folder / "manifest.json"}).value_or(""), "");
   return json;
+}
+
+std::optional<std::string> schemaErrors(const std::vector<std::filesystem::path>& manifests) {
+  constexpr int kNoLibrary = 77;
+  constexpr int kNoProgram = 127;
+  static bool absent = false;
+  if (absent) return std::nullopt;
+  const auto quoted = [](const std::filesystem::path& path) { return "'" + path.string() + "' "; };
+  std::string command = "python3 " + quoted(sourceFolder() / "tests/cli/validate_manifest.py") +
+                        quoted(sourceFolder() / "docs/manifest.schema.json");
+  for (const std::filesystem::path& manifest : manifests) command += quoted(manifest);
+  FILE* pipe = popen((command + "2>&1").c_str(), "r");
+  if (pipe == nullptr) return std::nullopt;
+  std::string said;
+  for (int c = fgetc(pipe); c != EOF; c = fgetc(pipe)) said += static_cast<char>(c);
+  const int status = pclose(pipe);
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  absent = code == kNoLibrary || code == kNoProgram;
+  if (absent) return std::nullopt;
+  return code != 0 && said.empty() ? "the validator failed" : said;
 }
 
 std::string example(const std::string& name) { return (sourceFolder() / "examples" / name).string(); }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -39,12 +40,16 @@ public:
   bool has(const std::string& name) const { return std::filesystem::exists(path_ / name); }
   /// Everything below the folder, without `except` and what is in it.
   std::set<std::string> names(const std::string& except = {}) const;
-  /// The parsed manifest of an output folder.
+  /// The parsed manifest of an output folder, which must be as its schema says.
   nlohmann::json manifest(const std::string& folder) const;
 
 private:
   std::filesystem::path path_;
 };
+
+/// What is wrong with manifests by docs/manifest.schema.json, a line each; nothing where there is no library
+/// of schemas to ask (Debian: python3-jsonschema).
+std::optional<std::string> schemaErrors(const std::vector<std::filesystem::path>& manifests);
 
 /// A file of examples/, absolute.
 std::string example(const std::string& name);

@@ -75,7 +75,7 @@ TEST(Engine, EveryTargetIsValidAndNothingSharesAPlace) {
                                      example("engine"), "--template", "engine", "-o", "out"});
   ASSERT_EQ(outcome.status, 0) << outcome.all();
   const std::set<std::string> found = resources(Json::parse(place.read("out/manifest.json")));
-  for (const char* wanted : {"Frame 0.0 0", "Light 0.1 1", "Atmosphere 0.5 4", "Shadow 0.6 5",
+  for (const char* wanted : {"Frame 0.0 0", "Lights 0.1 1", "Atmosphere 0.5 4", "Shadow 0.6 5",
                              "shadow_near 0.7 3", "shadow_far 0.8 4", "fog_shape 0.9 5", "grain 0.10 6",
                              "Material 1.0 2", "Object 2.0 3", "base_color_texture 1.1 7"}) {
     EXPECT_TRUE(found.contains(wanted)) << wanted << " is not among\n" << joined(found);

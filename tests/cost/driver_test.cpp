@@ -31,7 +31,7 @@ void main() { color = texture(image, v_normal.xy) * pow(length(v_normal), v_norm
 )";
 
 Spirv compile(const char* text, check::Stage stage) {
-  Result<Spirv> words = check::compile(text, check::Language::GlslVulkan, stage, "test");
+  Result<Spirv> words = check::compile(text, Target::Glsl, stage, "test");
   if (!words) throw std::runtime_error(format(words.error()[0]));
   return *words;
 }

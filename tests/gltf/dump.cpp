@@ -44,6 +44,11 @@ void dumpTexture(const lang::PropertyDecl& decl, const TextureInfo& info, Fields
       text += fmt::format(", {} {}", decl.members[i].name, info.members[i]);
   }
   fields.line(text + ", at " + info.pointer);
+  for (const size_t i : info.animated.members)
+    fields.line(fmt::format("  animated {}", decl.members[i].name));
+  if (info.animated.offset) fields.line("  animated offset");
+  if (info.animated.rotation) fields.line("  animated rotation");
+  if (info.animated.scale) fields.line("  animated scale");
   if (!info.transform) return;
   const TextureTransform& transform = *info.transform;
   fields.line(fmt::format("  transform offset {}, rotation {}, scale {}", fmt::join(transform.offset, " "),
@@ -61,7 +66,36 @@ void dumpExtension(const Material& material, uint16_t extension, Fields& fields)
     const ir::Components* value = material.number(i);
     if (value != nullptr && *value != decl.default_value)
       fields.line(fmt::format("{} {}", decl.name, valueText(decl, *value)));
+    if (material.isAnimated(i)) fields.line(fmt::format("animated {}", decl.name));
   }
+}
+
+std::string variantText(const VariantMapping& mapping) {
+  return fmt::format(", material {} in variants {}", mapping.material, fmt::join(mapping.variants, " "));
+}
+
+/// Attributes as they are stored, where the file says how; and the variants' materials.
+void dumpPrimitive(const Primitive& primitive, Fields& fields) {
+  std::string text;
+  for (const AttributeFormat& format : primitive.formats) {
+    if (format.componentType.empty()) continue;
+    text += fmt::format(", {} {}{} {}", format.semantic, format.normalized ? "normalized " : "", format.type,
+                        format.componentType);
+  }
+  for (const VariantMapping& mapping : primitive.mappings) text += variantText(mapping);
+  if (!text.empty()) fields.line(fmt::format("primitive {}.{}{}", primitive.mesh, primitive.index, text));
+}
+
+/// What is not glTF's default of a texture.
+void dumpTexture(size_t index, const Texture& texture, Fields& fields) {
+  std::string text;
+  for (const Texture::Source& source : texture.sources)
+    text += fmt::format(", image {} by {}", source.image, source.extension);
+  if (texture.wrapS != 10497 || texture.wrapT != 10497)
+    text += fmt::format(", wrap {} {}", texture.wrapS, texture.wrapT);
+  if (texture.magFilter != 0 || texture.minFilter != 0)
+    text += fmt::format(", filter {} {}", texture.magFilter, texture.minFilter);
+  if (!text.empty()) fields.line(fmt::format("texture {} image {}{}", index, texture.source, text));
 }
 
 std::string usesText(const std::vector<VertexAttributes>& uses) {
@@ -103,9 +137,12 @@ std::string dump(const Document& document) {
   for (const auto& [type, count] : document.lights) {
     fields.line(fmt::format("{} lights {}", kTypes[static_cast<size_t>(type)], count));
   }
+  for (const std::string& name : document.variants) fields.line(fmt::format("variant \"{}\"", name));
+  for (const Primitive& primitive : document.primitives) dumpPrimitive(primitive, fields);
+  for (size_t i = 0; i < document.textures.size(); ++i) dumpTexture(i, document.textures[i], fields);
   for (const Image& image : document.images) {
-    fields.line(
-        fmt::format("image {} uri \"{}\", bufferView {}", image.pointer, image.uri, image.bufferView));
+    fields.line(fmt::format("image {} uri \"{}\", bufferView {}{}", image.pointer, image.uri,
+                            image.bufferView, image.mimeType.empty() ? "" : ", " + image.mimeType));
   }
   return out;
 }

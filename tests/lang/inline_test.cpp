@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "lang/dump.h"
 #include "lang/library.h"
 
@@ -106,6 +108,37 @@ template small {
   EXPECT_EQ(dumpValue(dag, slots[decl.givens[1].slot + 1]), "scaled:mul(UV, gain).y");
   const std::string shown = dumpValue(dag, inliner.evaluate(*decl.outputs[0].value, slots));
   EXPECT_EQ(shown, "select(facing, construct(eye, mul(scaled:mul(UV, gain).y, 2)), vec4(0, 0, 0, 0))");
+}
+
+TEST(LowerInline, UniformIsKnownByTheRate) {
+  const lang::Library library = libraryOf(R"(
+/// D.
+/// source: S
+node choice(vec3 x) -> vec3 { return uniform(x) ? x + 1 : x * 2; }
+/// D.
+/// source: S
+node arms(vec3 x, float y) -> float {
+    if (!uniform(x) && uniform(y)) { return y; }
+    return uniform(x * y) ? 1.0 : 2.0;
+}
+)");
+  using ir::Rate;
+  for (const auto& [rate, choice, arms] : {std::tuple{Rate::Material, "add(x, 1)", "1"},
+                                           {Rate::Frame, "add(x, 1)", "1"},
+                                           {Rate::Vertex, "mul(x, 2)", "y"},
+                                           {Rate::Fragment, "mul(x, 2)", "y"},
+                                           {Rate::Light, "mul(x, 2)", "y"}}) {
+    Dag dag;
+    lower::Inliner inliner(dag);
+    const ValueId x = dag.input({ir::InputKind::Parameter, "x", Type::Vec3, rate, {}});
+    const ValueId y = dag.input({ir::InputKind::Parameter, "y", Type::Float, Rate::Material, {}});
+    EXPECT_EQ(dumpValue(dag, inliner.call(**library.node("choice"), {}, {{x}})[0]), choice);
+    EXPECT_EQ(dumpValue(dag, inliner.call(**library.node("arms"), {}, {{x, y}})[0]), arms);
+  }
+  Dag dag;
+  const ValueId known =
+      lower::Inliner(dag).call(**library.node("choice"), {}, {{dag.constant(Type::Vec3, {1, 2, 3})}})[0];
+  EXPECT_EQ(dumpValue(dag, known), "vec3(2, 3, 4)");
 }
 
 TEST(LowerInline, MissingArgumentsAreDefaults) {

@@ -112,8 +112,7 @@ TEST(Expressions, OfTheExamplesAreGlsl) {
           if (block["role"] != "material") continue;
           values += block.contains("values") ? block["values"].size() : 0;
           const std::string text = shaderOf(use["parameters"], block);
-          const auto made =
-              check::compile(text, check::Language::GlslVulkan, check::Stage::Fragment, "expressions");
+          const auto made = check::compile(text, Target::Glsl, check::Stage::Fragment, "expressions");
           EXPECT_TRUE(made) << format(made.error().front()) << text;
         }
       }

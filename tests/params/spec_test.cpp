@@ -51,9 +51,9 @@ Words wordsOf(const ir::Module& module, ir::Stage stage) {
 Words wordsOfGlsl(ir::Module module, ir::Stage stage) {
   targets::legalize(module);
   const std::string text =
-      targets::printText(module, schedule::schedule(module, stage), targets::TargetId::Glsl, "spec");
+      targets::printText(module, schedule::schedule(module, stage), Target::Glsl, "spec");
   const auto of = stage == ir::Stage::Vertex ? check::Stage::Vertex : check::Stage::Fragment;
-  const Result<check::Spirv> words = check::compile(text, check::Language::GlslVulkan, of, "spec");
+  const Result<check::Spirv> words = check::compile(text, Target::Glsl, of, "spec");
   EXPECT_TRUE(words) << format(words.error().front()) << text;
   return words.value_or(check::Spirv{});
 }

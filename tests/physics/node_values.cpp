@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/node_proofs.h"
 #include "eval/evaluate.h"
 #include "support/materials.h"
+#include "tools/node_proofs.h"
 
 namespace lacquer::physics {
 

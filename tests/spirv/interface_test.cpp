@@ -70,8 +70,8 @@ std::string blocks(const check::Spirv& words) {
 }
 
 void expectEqualInterfaces(const ir::Module& module, Stage stage) {
-  const check::Spirv by_glslang = targets::expectCompiles(
-      targets::print(module, stage, targets::TargetId::Glsl), stage, targets::TargetId::Glsl);
+  const check::Spirv by_glslang =
+      targets::expectCompiles(targets::print(module, stage, Target::Glsl), stage, Target::Glsl);
   ir::Module legal = module;
   const check::Spirv direct = targets::writeSpirv(legal, schedule::schedule(legal, stage), {});
   EXPECT_EQ(blocks(by_glslang), blocks(direct));

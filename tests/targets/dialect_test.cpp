@@ -13,7 +13,7 @@ namespace {
 
 /// Prints a stage for every target, compares with expected/<name>.<stage>.<target> and compiles.
 void expectTexts(const std::string& name, const ir::Module& module, Stage stage) {
-  for (const TargetId target : kTextTargets) {
+  for (const Target target : kTextTargets) {
     SCOPED_TRACE(row(target).name);
     const std::string text = print(module, stage, target, "Printed by the tests.");
     const std::string file = fmt::format("tests/targets/expected/{}.{}.{}", name,
@@ -32,7 +32,7 @@ TEST(Dialect, FixedFragment) { expectTexts("fixed", fixedSample(), Stage::Fragme
 TEST(Dialect, EveryOp) { expectTexts("every_op", everyOpSample(), Stage::Fragment); }
 
 TEST(Dialect, ALightGroupRunsFromItsFirstLight) {
-  for (const TargetId target : kTextTargets) {
+  for (const Target target : kTextTargets) {
     const std::string text = print(litSample({3, 2}), Stage::Fragment, target);
     EXPECT_NE(text.find("for (int i = 3; i < 5; ++i) {"), std::string::npos) << text;
     EXPECT_EQ(text.find("frame.light_count"), std::string::npos) << text;
@@ -42,7 +42,7 @@ TEST(Dialect, ALightGroupRunsFromItsFirstLight) {
 
 /// Prints one fragment output of a module that is not legalized: a text must be right all the same.
 TEST(Dialect, FloatsBesideVectorsNeedNoPass) {
-  for (const TargetId target : kTextTargets) {
+  for (const Target target : kTextTargets) {
     const ir::Module module = everyOpSample();
     expectCompiles(printText(module, schedule::schedule(module, Stage::Fragment), target, {}),
                    Stage::Fragment, target);
@@ -51,18 +51,18 @@ TEST(Dialect, FloatsBesideVectorsNeedNoPass) {
 
 TEST(Dialect, TheVersionIsTheFirstLine) {
   // WebGL 2 allows nothing before it, comments included.
-  const std::string text = print(fixedSample(), Stage::Fragment, TargetId::Essl, "one\ntwo");
+  const std::string text = print(fixedSample(), Stage::Fragment, Target::Essl, "one\ntwo");
   EXPECT_TRUE(text.starts_with("#version 300 es\n// one\n// two\n\nprecision highp float;\n")) << text;
 }
 
 TEST(Dialect, CommentsStayComments) {
-  const std::string text = print(fixedSample(), Stage::Fragment, TargetId::Glsl, "a\\\nb\rc\tvoid");
+  const std::string text = print(fixedSample(), Stage::Fragment, Target::Glsl, "a\\\nb\rc\tvoid");
   EXPECT_TRUE(text.starts_with("#version 450\n// a/\n// b c void\n")) << text;
   EXPECT_NE(text.find("// odd name/: a line that must not continue /\n"), std::string::npos) << text;
 }
 
 TEST(Dialect, NothingUnusedIsDeclared) {
-  for (const TargetId target : kTextTargets) {
+  for (const Target target : kTextTargets) {
     const std::string text = print(fixedSample(), Stage::Fragment, target);
     for (const char* word :
          {"frame", "Frame", "sampler", "Sampler", "facing", "gl_FrontFacing", "SV_Position"}) {

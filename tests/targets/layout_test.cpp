@@ -64,13 +64,13 @@ ir::Module reader(Builder& b) {
 }
 
 void expectOffsets(const ir::Module& module) {
-  for (const TargetId target : {TargetId::Glsl, TargetId::GlslGl, TargetId::Hlsl}) {
+  for (const Target target : {Target::Glsl, Target::GlslGl, Target::Hlsl}) {
     const std::string text = print(module, Stage::Fragment, target);
     SCOPED_TRACE(text);
     const Layouts layouts = reflect(expectCompiles(text, Stage::Fragment, target));
     for (const ir::Block& block : module.blocks) {
       const std::string structure =
-          target == TargetId::Hlsl && block.array == 0 ? block.name + "Block" : block.name;
+          target == Target::Hlsl && block.array == 0 ? block.name + "Block" : block.name;
       ASSERT_TRUE(layouts.offsets.contains(structure)) << structure;
       const auto& members = layouts.offsets.at(structure);
       for (const ir::BlockField& field : block.fields) {
@@ -83,7 +83,7 @@ void expectOffsets(const ir::Module& module) {
     }
   }
   // ESSL has no reflection here; its text declares the members in the same words.
-  expectCompiles(print(module, Stage::Fragment, TargetId::Essl), Stage::Fragment, TargetId::Essl);
+  expectCompiles(print(module, Stage::Fragment, Target::Essl), Stage::Fragment, Target::Essl);
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ TEST(Layout, AnElementMayBeLargerThanItsFields) {
   b.module.blocks[0].size = 64;
   const ir::Module module = reader(b);
   expectOffsets(module);
-  EXPECT_NE(print(module, Stage::Fragment, TargetId::Glsl).find("lacquer_padding_"), std::string::npos);
+  EXPECT_NE(print(module, Stage::Fragment, Target::Glsl).find("lacquer_padding_"), std::string::npos);
 }
 
 TEST(Layout, NoPaddingWithoutNeed) {
@@ -147,7 +147,7 @@ TEST(Layout, NoPaddingWithoutNeed) {
            {"c", Type::Vec2},
            {"d", Type::Vec3},
            {"e", Type::Vec4}});
-  EXPECT_EQ(print(reader(b), Stage::Fragment, TargetId::Hlsl).find("lacquer_padding_"), std::string::npos);
+  EXPECT_EQ(print(reader(b), Stage::Fragment, Target::Hlsl).find("lacquer_padding_"), std::string::npos);
 }
 
 }  // namespace lacquer::targets

@@ -30,7 +30,7 @@ std::string messages(const Diagnostics& diagnostics) {
   return text;
 }
 
-std::string printed(const ir::Module& module, TargetId target) {
+std::string printed(const ir::Module& module, Target target) {
   return printText(module, schedule::schedule(module, ir::Stage::Fragment), target, {});
 }
 
@@ -63,20 +63,17 @@ TEST(Places, AClashIsFoundInSpirv) {
 
 TEST(Places, AClashIsFoundInTheTexts) {
   struct Text {
-    TargetId target;
-    check::Language language;
+    Target target;
     std::string_view expected;
   };
-  for (const Text& text : {Text{TargetId::Glsl, check::Language::GlslVulkan, "set 1, binding 1"},
-                           Text{TargetId::GlslGl, check::Language::GlslOpenGl, "binding 3"},
-                           Text{TargetId::Hlsl, check::Language::Hlsl, "set 0, binding 19"}}) {
+  for (const Text& text : {Text{Target::Glsl, "set 1, binding 1"}, Text{Target::GlslGl, "binding 3"},
+                           Text{Target::Hlsl, "set 0, binding 19"}}) {
     for (const bool clash : {false, true}) {
       const std::string source = printed(twoTextures(clash), text.target);
       const Result<check::Spirv> words =
-          check::compile(source, text.language, check::Stage::Fragment, "shader");
+          check::compile(source, text.target, check::Stage::Fragment, "shader");
       ASSERT_TRUE(words) << source << format(words.error()[0]);
-      const std::string found =
-          messages(check::checkSlots(*words, text.target == TargetId::GlslGl, "shader"));
+      const std::string found = messages(check::checkSlots(*words, text.target == Target::GlslGl, "shader"));
       EXPECT_EQ(found.find("slot-clash: 'first' and 'second' are both at ") == 0, clash) << found;
       EXPECT_EQ(found.find(text.expected) != std::string::npos, clash) << found;
     }

@@ -271,7 +271,7 @@ TEST(Precedence, CompilersAcceptTheTrees) {
     ValueId total = trees.b.field("frame.u");
     for (int k = 0; k < 20; ++k) total = trees.b.dag().add(total, trees.vector(4));
     trees.b.color("color", trees.b.dag().construct(Type::Vec4, {total, trees.number(4)}));
-    for (const TargetId target : kTextTargets) {
+    for (const Target target : kTextTargets) {
       expectCompiles(print(trees.b.module, Stage::Fragment, target), Stage::Fragment, target);
     }
   }

@@ -228,25 +228,12 @@ ir::Module everyOpSample() {
   return b.module;
 }
 
-std::string print(ir::Module module, Stage stage, TargetId target, std::string_view head) {
+std::string print(ir::Module module, Stage stage, Target target, std::string_view head) {
   targets::legalize(module);
   return printText(module, schedule::schedule(module, stage), target, head);
 }
 
 namespace {
-
-check::Language languageOf(TargetId target) {
-  switch (target) {
-    case TargetId::Glsl: return check::Language::GlslVulkan;
-    case TargetId::GlslGl: return check::Language::GlslOpenGl;
-    case TargetId::Essl: return check::Language::Essl300;
-    case TargetId::Hlsl: return check::Language::Hlsl;
-    case TargetId::Spirv:
-    case TargetId::Cpp: break;
-  }
-  assert(false && "not a text");
-  return {};
-}
 
 std::string joined(const Diagnostics& diagnostics) {
   std::string text;
@@ -256,19 +243,19 @@ std::string joined(const Diagnostics& diagnostics) {
 
 }  // namespace
 
-check::Spirv expectCompiles(const std::string& text, Stage stage, TargetId target) {
+check::Spirv expectCompiles(const std::string& text, Stage stage, Target target) {
   const check::Stage check_stage = stage == Stage::Vertex ? check::Stage::Vertex : check::Stage::Fragment;
   const std::string name = fmt::format("shader.{}", row(target).name);
-  const Result<check::Spirv> words = check::compile(text, languageOf(target), check_stage, name);
+  const Result<check::Spirv> words = check::compile(text, target, check_stage, name);
   if (!words) {
     ADD_FAILURE() << joined(words.error()) << text;
     return {};
   }
   if (!words->empty()) {
-    const Diagnostics wrong = check::validate(*words, target == TargetId::GlslGl, name);
+    const Diagnostics wrong = check::validate(*words, target == Target::GlslGl, name);
     EXPECT_TRUE(wrong.empty()) << joined(wrong) << text;
   }
-  if (target == TargetId::Hlsl && check::haveDxc()) {
+  if (target == Target::Hlsl && check::haveDxc()) {
     const Diagnostics wrong = check::compileWithDxc(text, check_stage, name);
     EXPECT_TRUE(wrong.empty()) << joined(wrong) << text;
   }

@@ -14,7 +14,7 @@
 
 namespace lacquer::targets {
 
-inline constexpr std::array kTextTargets = {TargetId::Glsl, TargetId::GlslGl, TargetId::Essl, TargetId::Hlsl};
+inline constexpr std::array kTextTargets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl};
 
 /// Makes modules by name instead of by index.
 class Builder {
@@ -52,9 +52,9 @@ ir::Module fixedSample();
 ir::Module everyOpSample();
 
 /// The text of a stage, legalized for the target.
-std::string print(ir::Module module, ir::Stage stage, TargetId target, std::string_view head = {});
+std::string print(ir::Module module, ir::Stage stage, Target target, std::string_view head = {});
 
 /// Compiles and validates; fails the test, showing the text, if anything is wrong.
-check::Spirv expectCompiles(const std::string& text, ir::Stage stage, TargetId target);
+check::Spirv expectCompiles(const std::string& text, ir::Stage stage, Target target);
 
 }  // namespace lacquer::targets

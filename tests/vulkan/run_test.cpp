@@ -22,8 +22,7 @@ const Device* device() {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine"
 
 std::vector<uint32_t> compiled(const std::string& body) {
-  const auto words =
-      check::compile("#version 450\n" + body, check::Language::GlslVulkan, check::Stage::Fragment, "test");
+  const auto words = check::compile("#version 450\n" + body, Target::Glsl, check::Stage::Fragment, "test");
   EXPECT_TRUE(words) << body << (words ? "" : format(words.error()[0]));
   return words.value_or(check::Spirv{});
 }

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "targets/clike.h"
+#include "targets/target.h"
 
 namespace lacquer::targets::spirv {
 
@@ -109,7 +110,7 @@ private:
     globals_.decorations.op(spv::OpDecorate, elements, spv::DecorationArrayStride, block.size);
     const uint32_t id = globals_.newId();
     globals_.declarations.op(spv::OpTypeStruct, id, elements);
-    globals_.name(id, block.name + "s");
+    globals_.name(id, blockName(block));
     globals_.memberName(id, 0, block.instance + "s");
     globals_.decorations.op(spv::OpMemberDecorate, id, 0, spv::DecorationOffset, 0);
     return id;

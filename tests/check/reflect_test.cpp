@@ -1,5 +1,5 @@
 // What the pipelines are told about a module, and that no words can lead the reader astray.
-#include "vulkan/reflect.h"
+#include "check/reflect.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "check/check.h"
 #include "vulkan/passthrough.h"
 
-namespace lacquer::vulkan {
+namespace lacquer::check {
 namespace {
 
 constexpr const char* kFragment = R"(#version 450
@@ -35,7 +35,7 @@ void main() {
 )";
 
 check::Spirv compile(const char* text, check::Stage stage) {
-  Result<check::Spirv> words = check::compile(text, check::Language::GlslVulkan, stage, "test");
+  Result<check::Spirv> words = check::compile(text, Target::Glsl, stage, "test");
   if (!words) throw std::runtime_error(format(words.error()[0]));
   return *words;
 }
@@ -114,4 +114,4 @@ TEST(Reflect, DamagedModulesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace lacquer::vulkan
+}  // namespace lacquer::check

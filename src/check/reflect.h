@@ -1,4 +1,5 @@
-// What a pipeline must be told about a SPIR-V module: descriptors, push constants, inputs and outputs.
+// The interface of a SPIR-V module, by the decorations in its words: descriptors, blocks, push constants,
+// inputs and outputs.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "check/check.h"
 #include "support/diagnostic.h"
 
-namespace lacquer::vulkan {
-
-enum class Stage : uint8_t { Vertex, Fragment };
+namespace lacquer::check {
 
 enum class Resource : uint8_t {
   UniformBuffer,
@@ -39,6 +39,19 @@ struct Slot {
   uint32_t count = 1;  ///< components
 };
 
+struct BlockMember {
+  std::string name;  ///< empty when the module carries no names
+  uint32_t offset = 0;
+  uint32_t size = 0;  ///< a matrix or an array counts whole strides: 48 for a mat3 whose stride is 16
+};
+
+struct Block {
+  std::string name;  ///< the block's type name
+  uint32_t set = 0, binding = 0;
+  uint32_t size = 0;  ///< the end of the last member, not rounded up
+  std::vector<BlockMember> members;
+};
+
 struct Interface {
   std::string entry;                                          ///< the entry point's name
   std::map<std::pair<uint32_t, uint32_t>, Binding> bindings;  ///< by set and binding
@@ -49,10 +62,24 @@ struct Interface {
 };
 
 /// Reads the first entry point of a stage. Any words are safe to give. Errors: "spirv-reflection".
-Result<Interface> reflect(const std::vector<uint32_t>& words, Stage stage);
+Result<Interface> reflect(const Spirv& words, Stage stage);
+
+/// The uniform blocks of a SPIR-V module with their members' offsets, by the decorations in the words
+/// (not by layout rules), sorted by set and binding.
+Result<std::vector<Block>> reflectBlocks(const Spirv& words);
+
+/// What takes a place among the descriptors: a uniform block, a texture, a sampler.
+struct Taken {
+  std::string name;  ///< of the variable; empty when the module carries no names
+  uint32_t set = 0, binding = 0;
+  bool block = false;
+};
+
+/// In the order of the declarations, those with a binding. None for words that are no module.
+std::vector<Taken> reflectPlaces(const Spirv& words);
 
 /// Instructions inside functions, labels, line marks and the declarations of local variables not counted.
 /// 0 for words that are no module.
-size_t instructionCount(const std::vector<uint32_t>& words);
+size_t instructionCount(const Spirv& words);
 
-}  // namespace lacquer::vulkan
+}  // namespace lacquer::check

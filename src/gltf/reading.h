@@ -1,0 +1,80 @@
+// The parts of a scene's JSON, each read and checked by a function of its own.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "gltf/facts.h"
+#include "gltf/json.h"
+
+namespace lacquer::gltf {
+
+/// What the readers share: the whole file, where its facts go, and where what is wrong with it goes.
+struct Reading {
+  const Json& root;
+  Scene& scene;
+  Report& report;
+  size_t variants = 0;              ///< of KHR_materials_variants
+  bool quantized = false;           ///< the file uses KHR_mesh_quantization
+  std::set<std::string> said = {};  ///< what is worth one warning in a file
+};
+
+/// Takes the place of an array's element that is no object.
+inline const Json& standIn() {
+  static const Json kEmpty = Json::object();
+  return kEmpty;
+}
+
+/// True for the stand-in: that something is missing from it says nothing about the file.
+inline bool isStandIn(const Json& json) { return &json == &standIn(); }
+
+/// Calls `check` with each object of an array, and its path. An element of another type is reported and
+/// checked as if it were empty, so that indices stay what they are.
+template <class Check>
+void eachElement(Report& report, const Json& array, const Path& path, std::string_view name, Check check) {
+  if (!array.is_array()) {
+    report.wrongType(path, fmt::format("\"{}\"", path.text().substr(path.text().rfind('/') + 1)), array,
+                     "an array");
+    return;
+  }
+  for (size_t i = 0; i < array.size(); ++i) {
+    const Path here(path, i);
+    if (!array[i].is_object()) report.wrongType(here, fmt::format("the {}", name), array[i], "an object");
+    check(array[i].is_object() ? array[i] : standIn(), here, i);
+  }
+}
+
+/// Calls `check` for each member of an object in document order, or reports that it is no object.
+template <class Check>
+void eachMember(Report& report, const Json& object, const Path& path, std::string_view name, Check check) {
+  if (!object.is_object()) return report.wrongType(path, name, object, "an object");
+  for (const auto& [key, value] : object.get_ref<const Json::object_t&>()) check(key, value, Path(path, key));
+}
+
+/// The object of an extension, nullptr when the owner has none.
+inline const Json* extensionOf(const Json& owner, std::string_view name) {
+  const Json* all = member(owner, "extensions");
+  return all == nullptr ? nullptr : member(*all, name);
+}
+
+inline constexpr std::string_view kVariants = "KHR_materials_variants";
+
+/// The names of the variants, from the extension's object at the file's root.
+void readVariants(Reading& reading, const Json& extension, const Path& path);
+
+/// One of a file's meshes: its primitives.
+void readMesh(Reading& reading, size_t index, const Json& mesh, const Path& path);
+
+/// One of a file's textures. What is wrong is reported and left out.
+Texture readTexture(const Json& root, const Json& texture, const Path& path, Report& report);
+
+/// Says what is wrong with a sampler, once for all textures that have it.
+void checkSampler(const Json& sampler, const Path& path, Report& report);
+
+/// What the animations change by pointers.
+void readAnimations(Reading& reading, const Json& animations, const Path& path);
+
+}  // namespace lacquer::gltf

@@ -1,0 +1,18 @@
+// Shaders that an earlier run has left and a later one does not need.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace lacquer {
+
+/// The shaders' files, as paths below the folder, that the manifest at `path` lists; of these only what a
+/// manifest of Lacquer's may list: `TARGET/ID.frag.EXTENSION` and the like. Nothing where there is no
+/// manifest or it is none of Lacquer's.
+std::vector<std::string> listedShaders(const std::string& path);
+
+/// Removes those of `earlier` that are regular files below the folder, not among `kept` and none of `inputs`.
+void removeStale(const std::string& folder, const std::vector<std::string>& earlier,
+                 const std::vector<std::string>& kept, const std::vector<std::string>& inputs);
+
+}  // namespace lacquer

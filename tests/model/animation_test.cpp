@@ -1,0 +1,111 @@
+// What an animation can change stays, whatever it is today (KHR_animation_pointer).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/materials.h"
+
+namespace lacquer::test {
+namespace {
+
+/// The graph of one material, `pointers` of which animations change.
+graph::Graph animated(const std::string& material, const std::vector<std::string>& pointers) {
+  std::string channels;
+  for (const std::string& pointer : pointers) {
+    channels += fmt::format(R"({}{{"target": {{"path": "pointer", "extensions": {{"KHR_animation_pointer":
+                              {{"pointer": "/materials/0/{}"}}}}}}}})",
+                            channels.empty() ? "" : ", ", pointer);
+  }
+  const auto document =
+      materialsOf(fmt::format(R"({{"asset": {{"version": "2.0"}}, "textures": [{{}}], "materials": [{}],
+                                   "animations": [{{"channels": [{}]}}]}})",
+                              material, channels),
+                  "test.gltf");
+  Diagnostics warnings;
+  return buildGraph(document->materials.at(0), {true, true, false, {true, true}}, {}, warnings);
+}
+
+bool has(const graph::Graph& graph, const std::string& node) {
+  return std::any_of(graph.nodes.begin(), graph.nodes.end(),
+                     [&](const graph::Node& one) { return one.id == node; });
+}
+
+/// "name name!" in the order of the names; an animated one with an exclamation mark.
+std::string parameters(const graph::Graph& graph) {
+  std::vector<std::string> names;
+  for (const ir::Parameter& p : graph.parameters) names.push_back(p.name + (p.animated ? "!" : ""));
+  std::sort(names.begin(), names.end());
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
+  return text;
+}
+
+TEST(Animation, ATermThatStartsNeutralStays) {
+  const char* const kClearcoat = R"({"extensions": {"KHR_materials_clearcoat": {}}})";
+  EXPECT_FALSE(has(animated(kClearcoat, {}), "coat.fresnel"));
+  const graph::Graph graph = animated(kClearcoat, {"extensions/KHR_materials_clearcoat/clearcoatFactor"});
+  EXPECT_TRUE(has(graph, "coat.fresnel"));
+  EXPECT_EQ(parameters(graph),
+            "base_color_factor coat_factor! coat_roughness_factor metallic_factor roughness_factor");
+}
+
+TEST(Animation, EmissionAndAlphaStay) {
+  EXPECT_FALSE(has(animated("{}", {}), "emission"));
+  EXPECT_TRUE(has(animated("{}", {"emissiveFactor"}), "emission"));
+  const char* const kDark = R"({"emissiveFactor": [0, 0, 0], "extensions": {"KHR_materials_emissive_strength":
+                                {"emissiveStrength": 0}}})";
+  // Whatever the factor becomes, nothing times the strength of 0 is light.
+  EXPECT_FALSE(has(animated(kDark, {"emissiveFactor"}), "emission"));
+}
+
+/// A folded number, of which the shader has the default, is a parameter where an animation changes it.
+TEST(Animation, AFoldedNumberIsAParameter) {
+  const char* const kIor = R"({"extensions": {"KHR_materials_ior": {}}})";
+  EXPECT_EQ(parameters(animated(kIor, {})), "base_color_factor metallic_factor roughness_factor");
+  const graph::Graph graph = animated(kIor, {"extensions/KHR_materials_ior/ior"});
+  EXPECT_TRUE(has(graph, "base.f0"));
+  EXPECT_EQ(parameters(graph), "base_color_factor ior! metallic_factor roughness_factor");
+}
+
+/// "Setting IOR to zero permanently switches the material".
+TEST(Animation, AnIorOfZeroStaysFixed) {
+  const char* const kZero = R"({"extensions": {"KHR_materials_ior": {"ior": 0}}})";
+  EXPECT_EQ(animated(kZero, {"extensions/KHR_materials_ior/ior"}).nodes, animated(kZero, {}).nodes);
+  EXPECT_EQ(parameters(animated(kZero, {"extensions/KHR_materials_ior/ior"})),
+            parameters(animated(kZero, {})));
+}
+
+TEST(Animation, AScaleAndATransformAreParameters) {
+  const char* const kNormal =
+      R"({"normalTexture": {"index": 0, "scale": 0, "extensions": {"KHR_texture_transform": {}}}})";
+  EXPECT_FALSE(has(animated(kNormal, {}), "base.normal_map"));
+  const graph::Graph scaled = animated(kNormal, {"normalTexture/scale"});
+  EXPECT_TRUE(has(scaled, "base.normal_map"));
+  EXPECT_NE(parameters(scaled).find("normal_scale!"), std::string::npos) << parameters(scaled);
+  EXPECT_FALSE(has(scaled, "normal.uv"));
+  const graph::Graph moved =
+      animated(kNormal, {"normalTexture/scale", "normalTexture/extensions/KHR_texture_transform/offset"});
+  EXPECT_TRUE(has(moved, "normal.uv"));
+  EXPECT_NE(parameters(moved).find("normal_uv_offset!"), std::string::npos) << parameters(moved);
+  EXPECT_EQ(parameters(moved).find("normal_uv_rotation"), std::string::npos) << parameters(moved);
+}
+
+/// Two uses of a texture with one transform are one lookup, unless one of them moves.
+TEST(Animation, ATransformThatMovesIsNotShared) {
+  const char* const kTwo = R"({"occlusionTexture": {"index": 0, "extensions": {"KHR_texture_transform": {}}},
+      "pbrMetallicRoughness": {"metallicRoughnessTexture":
+      {"index": 0, "extensions": {"KHR_texture_transform": {}}}}})";
+  EXPECT_EQ(animated(kTwo, {}).textures.size(), 1U);
+  const std::string tail = "/extensions/KHR_texture_transform/offset";
+  const graph::Graph one = animated(kTwo, {"occlusionTexture" + tail});
+  EXPECT_EQ(one.textures.size(), 2U);
+  EXPECT_NE(parameters(one).find("occlusion_uv_offset!"), std::string::npos) << parameters(one);
+  const graph::Graph both =
+      animated(kTwo, {"occlusionTexture" + tail, "pbrMetallicRoughness/metallicRoughnessTexture" + tail});
+  EXPECT_EQ(both.textures.size(), 2U);
+  EXPECT_NE(parameters(both).find("metallic_roughness_uv_offset!"), std::string::npos) << parameters(both);
+}
+
+}  // namespace
+}  // namespace lacquer::test
