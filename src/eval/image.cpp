@@ -69,6 +69,47 @@ bool isPngOrJpeg(std::string_view bytes) {
   return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff");
 }
 
+/// One of JPEG's segments of Huffman tables: each table's sixteen counts of codes, then as many values. stb
+/// writes as many as the counts say into room for 256.
+bool huffmanTablesFit(std::string_view segment) {
+  constexpr size_t kCounts = 16;
+  constexpr size_t kMostCodes = 256;
+  while (!segment.empty()) {
+    if (segment.size() < 1 + kCounts) return false;
+    size_t codes = 0;
+    for (size_t i = 1; i <= kCounts; ++i) codes += static_cast<unsigned char>(segment[i]);
+    if (codes > kMostCodes || codes > segment.size() - 1 - kCounts) return false;
+    segment.remove_prefix(1 + kCounts + codes);
+  }
+  return true;
+}
+
+/// True for what is no JPEG, and for a JPEG whose Huffman tables fit. Finds its markers as stb does: between
+/// segments whatever is no 0xFF is passed over, and so is what a scan encodes, with its 0xFF00 and its
+/// restarts.
+bool jpegTablesFit(std::string_view bytes) {
+  constexpr unsigned kStuffed = 0x00, kTables = 0xC4, kRestart0 = 0xD0, kStart = 0xD8, kEnd = 0xD9,
+                     kFill = 0xFF;
+  if (bytes.starts_with('\x89')) return true;
+  const auto at = [&](size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  for (size_t i = 0; i + 1 < bytes.size();) {
+    if (at(i) != kFill) {
+      ++i;
+      continue;
+    }
+    const unsigned marker = at(++i);
+    if (marker == kFill) continue;
+    ++i;
+    if (marker == kStuffed || (marker >= kRestart0 && marker <= kStart)) continue;
+    if (marker == kEnd || i + 2 > bytes.size()) return true;
+    const size_t length = at(i) * size_t{256} + at(i + 1);
+    const size_t here = std::min(length, bytes.size() - i);
+    if (marker == kTables && (length < 2 || !huffmanTablesFit(bytes.substr(i + 2, here - 2)))) return false;
+    i += std::max<size_t>(here, 2);
+  }
+  return true;
+}
+
 const stbi_uc* dataOf(std::string_view bytes) { return reinterpret_cast<const stbi_uc*>(bytes.data()); }
 
 template <class Number>
@@ -107,6 +148,7 @@ Result<ImageSize> sizeOfImage(std::string_view bytes, const Place& place) {
   if (!isPngOrJpeg(bytes)) return unreadable(place, fmt::format("this is {}", formatOf(bytes)));
   if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max()))
     return unreadable(place, "the image is too large");
+  if (!jpegTablesFit(bytes)) return unreadable(place, "the image is damaged: it has a bad Huffman table");
   const int length = static_cast<int>(bytes.size());
   largest_block = kBeside;
   ImageSize size;

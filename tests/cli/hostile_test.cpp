@@ -110,6 +110,23 @@ TEST(HostileImage, onlyPngAndJpegReachADecoder) {
   }
 }
 
+/// A JPEG's Huffman table says how many codes it has: more than the decoder has room for are refused before
+/// it is asked. 0xC4 is the marker of such tables, behind a quantization table or in front.
+TEST(HostileImage, huffmanTablesHaveTheirLength) {
+  const Workplace place;
+  const auto jpeg = [](int codes) {
+    std::string counts(16, '\0');
+    counts[15] = static_cast<char>(codes / 2), counts[14] = static_cast<char>(codes - codes / 2);
+    const std::string table = '\0' + counts + std::string(static_cast<size_t>(codes), '\1');
+    const size_t length = table.size() + 2;
+    return std::string("\xff\xd8\xff\xc4", 4) + static_cast<char>(length / 256) +
+           static_cast<char>(length % 256) + table + "\xff\xd9";
+  };
+  const auto said = [&](int codes) { return evaluated(place, textured(dataUri(jpeg(codes)))).err; };
+  EXPECT_NE(said(257).find("bad Huffman table"), std::string::npos) << said(257);
+  EXPECT_EQ(said(256).find("bad Huffman table"), std::string::npos) << said(256);
+}
+
 TEST(HostileImage, takesNoMoreThanItsBudget) {
   const Workplace place;
   expectRefused(evaluated(place, textured(dataUri(png(16000, 16000, 10)))), "image-too-large");

@@ -1,11 +1,12 @@
 // Node files. The library consists of the input alone, so that an input takes no longer than it is long.
 #include <array>
 
-#include "api/internal.h"
-#include "cache/key.h"
 #include "feeds.h"
 #include "graph/graph.h"
 #include "lower/lower.h"
+#include "shader/language.h"
+#include "shader/module.h"
+#include "shader/print.h"
 #include "tools/node_proofs.h"
 
 namespace lacquer::fuzz {

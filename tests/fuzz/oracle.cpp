@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/internal.h"
 #include "cache/key.h"
 #include "feeds.h"
 #include "graph/graph.h"
 #include "lower/lower.h"
-#include "passes/passes.h"
+#include "passes/pipeline.h"
+#include "shader/language.h"
+#include "shader/module.h"
+#include "shader/print.h"
 #include "stress/subject.h"
 
 namespace lacquer::fuzz {
