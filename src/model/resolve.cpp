@@ -237,7 +237,10 @@ Found Resolver::found(const Value& value, const Line& line) {
 /// see.
 Found Resolver::replacement(const Value& value, uint32_t part) {
   const std::vector<uint32_t>& lines = model_.ids[value.index].replaced;
-  const auto names = [&](const Line& line) { return line.target.path == value.path; };
+  // What stands in the place of a whole value stands in that of its parts, too.
+  const auto names = [&](const Line& line) {
+    return line.target.path.empty() || line.target.path == value.path;
+  };
   const bool own = std::any_of(lines.begin(), lines.end(), [&](uint32_t i) {
     return model_.lines[i].part == part && names(model_.lines[i]);
   });
@@ -245,7 +248,9 @@ Found Resolver::replacement(const Value& value, uint32_t part) {
     const Line& line = model_.lines[*it];
     if (!names(line) || (own && line.part >= part)) continue;
     if (line.term != Line::kNone && !alive(line.term)) continue;
-    if (Found instead = fromLine(line)) return instead;
+    Found instead = fromLine(line);
+    if (line.target.path.empty()) instead = behind(std::move(instead), value.path);
+    if (instead) return instead;
   }
   return {};
 }
