@@ -167,7 +167,7 @@ eval::Point pointOf(const Row& row, double cosine) {
 }
 
 /// The sphere in cells of equal area, each looked at in a finer grid.
-constexpr size_t kRings = 24, kSectors = 36, kFine = 10;
+constexpr size_t kRings = 24, kSectors = 36, kFine = 6;
 constexpr size_t kCells = kRings * kSectors;
 
 size_t cellOf(const Vec3& d) {
