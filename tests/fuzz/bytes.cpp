@@ -3,12 +3,12 @@
 #include <cstring>
 
 #include "check/check.h"
+#include "check/reflect.h"
 #include "cost/cost.h"
 #include "eval/image.h"
 #include "feeds.h"
 #include "tools/points.h"
 #include "vulkan/passthrough.h"
-#include "vulkan/reflect.h"
 
 namespace lacquer::fuzz {
 
@@ -58,9 +58,9 @@ std::string feedSpirv(std::string_view bytes) {
   if (counted > words.size()) return "more instructions than words";
   (void)check::checkSlots(words, words.size() % 2 == 0, "fuzz.spv");
   (void)check::reflectBlocks(words);
-  const Result<vulkan::Interface> vertex = vulkan::reflect(words, vulkan::Stage::Vertex);
+  const Result<check::Interface> vertex = check::reflect(words, check::Stage::Vertex);
   if (!vertex && vertex.error().empty()) return "a module is refused without an error";
-  const Result<vulkan::Interface> fragment = vulkan::reflect(words, vulkan::Stage::Fragment);
+  const Result<check::Interface> fragment = check::reflect(words, check::Stage::Fragment);
   if (fragment) (void)vulkan::passthroughVertex(*fragment);
   // The validator is another's, and takes ten times as long.
   const bool sound = counted % 8 == 0 && check::validate(words, false, "fuzz.spv").empty();
