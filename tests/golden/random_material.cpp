@@ -111,7 +111,8 @@ Json RandomMaterial::material(size_t index) {
       }
     }
   }
-  if (yes(6)) extensions["KHR_materials_sheen"]["sheenColorFactor"] = color(3);
+  if (yes(6) && !extensions.contains("KHR_materials_unlit"))
+    extensions["KHR_materials_sheen"]["sheenColorFactor"] = color(3);
   if (!extensions.empty()) json["extensions"] = extensions;
   return json;
 }
