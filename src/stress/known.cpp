@@ -31,6 +31,8 @@ constexpr Known kKnown[] = {
     {"_by_facet", "0 < cosine", "a direction on the wrong side of the facet is lost"},
     {"_by_facet", "0 < bent2", "nothing leaves beyond the critical angle"},
     {"layer_choice", "choice < share", "a choice"},
+    {"density", "swizzle < 1e-30", "what is black at any distance is black at all of them"},
+    {"extinction", "swizzle < 1e-30", "what is black at any distance is black at all of them"},
     {"film", " < 0", "a film's wave turns over where the base becomes the thinner medium"},
 };
 

@@ -528,7 +528,8 @@ std::vector<std::vector<float>> onDevice(const Subject& subject, FragmentRoute r
 
 bool vague(const analysis::Range& bound) {
   const double scale = std::max(std::abs(bound.lo), std::abs(bound.hi));
-  return !(bound.hi - bound.lo <= std::max(1e-3 * scale, 1e-6));
+  // One without end says nothing: infinity is not above a thousandth of infinity.
+  return !std::isfinite(scale) || !(bound.hi - bound.lo <= std::max(1e-3 * scale, 1e-6));
 }
 
 void compare(const Subject& subject, const std::vector<std::vector<analysis::Range>>& bounds,
