@@ -90,9 +90,9 @@ struct TextureSlot {
   bool environment = false;  ///< given by the template (per frame), not by the material
   bool optional = false;     ///< of an environment: its flat number lies behind the material's textures
   std::optional<Components> texel{};  ///< of an environment: what an evaluation takes without an image
-  int texture = -1;          ///< glTF texture index, -1 when none
-  std::string pointer;       ///< JSON pointer of the textureInfo
-  Binding binding{};         ///< an environment's by the template, a material's by the bind pass
+  int texture = -1;                   ///< glTF texture index, -1 when none
+  std::string pointer;                ///< JSON pointer of the textureInfo
+  Binding binding{};                  ///< an environment's by the template, a material's by the bind pass
 };
 
 struct Attribute {

@@ -7,8 +7,8 @@
 
 namespace lacquer::lang {
 
-/// A property of a glTF object. `type` is Texture2D for a textureInfo and Int for a choice. A number without a
-/// default is there only where a file says it.
+/// A property of a glTF object. `type` is Texture2D for a textureInfo and Int for a choice. A number without
+/// a default is there only where a file says it.
 struct PropertyDecl : Param {
   enum class Kind : uint8_t { Number, Bool, Choice, Texture, Object };
   Kind kind = Kind::Number;
