@@ -78,9 +78,16 @@ std::array<double, 3> direction(double x, double azimuth) {
   return {s * std::cos(azimuth), s * std::sin(azimuth), z};
 }
 
-eval::Bindings bindingsOf(const std::vector<Place>& places, bool environment) {
+/// What a shader is given at places. What its template gives follows from the module: colors() binds it.
+struct Inputs {
   eval::Bindings bindings;
   std::vector<eval::Point> points;
+};
+
+Inputs inputsOf(const std::vector<Place>& places, bool environment) {
+  Inputs inputs;
+  eval::Bindings& bindings = inputs.bindings;
+  std::vector<eval::Point>& points = inputs.points;
   const auto column = [&](const char* name, int components, auto value) {
     std::vector<double> values;
     for (const Place& p : places) values.insert(values.end(), static_cast<size_t>(components), value(p));
@@ -104,7 +111,6 @@ eval::Bindings bindingsOf(const std::vector<Place>& places, bool environment) {
     if (environment) point.light = {0, 0, 0};
     points.push_back(point);
   }
-  eval::bindPoints(module, points, bindings);
   // Texels multiply the factors, which go over all their range all the same.
   const auto texel = [&](const char* name, Axis r, Axis g, Axis b) {
     bindings.textures[name] = [&places, r, g, b](size_t point, const std::array<double, 3>&, double) {
@@ -121,7 +127,7 @@ eval::Bindings bindingsOf(const std::vector<Place>& places, bool environment) {
       return std::array<double, 4>{sky, sky, sky, 1};
     };
   }
-  return bindings;
+  return inputs;
 }
 
 graph::Graph graphOf(const Setting& setting) {
@@ -136,14 +142,16 @@ graph::Graph graphOf(const Setting& setting) {
                           options, warnings);
 }
 
-std::vector<double> colors(const graph::Graph& from, const lang::Library& library,
-                           const eval::Bindings& bindings, size_t points) {
+std::vector<double> colors(const graph::Graph& from, const lang::Library& library, const Inputs& inputs) {
   graph::Graph graph = from;
   for (const Diagnostic& d : graph::check(graph, library)) {
     if (d.severity == Severity::Error) throw std::runtime_error(format(d));
   }
   const Result<ir::Module> module = lower::lower(graph, library, {.evaluable = true});
   if (!module) throw std::runtime_error(format(module.error()[0]));
+  const size_t points = inputs.points.size();
+  eval::Bindings bindings = inputs.bindings;
+  eval::bindPoints(*module, inputs.points, bindings);
   for (const ir::Output& output : module->outputs) {
     if (output.kind != ir::OutputKind::Color) continue;
     const auto values = eval::evaluate<double>(*module, {{output.value}}, bindings, points);
@@ -191,9 +199,9 @@ private:
   }
 
   void keepWorst(std::vector<Place> places) {
-    const eval::Bindings bindings = bindingsOf(places, environment_);
-    const std::vector<double> exact = colors(reference_, library_, bindings, places.size());
-    const std::vector<double> approximate = colors(variant_, library_, bindings, places.size());
+    const Inputs inputs = inputsOf(places, environment_);
+    const std::vector<double> exact = colors(reference_, library_, inputs);
+    const std::vector<double> approximate = colors(variant_, library_, inputs);
     std::vector<double> errors;
     for (size_t i = 0; i < exact.size(); ++i) {
       errors.push_back(std::abs(approximate[i] - exact[i]) / std::max(exact[i], kDark));

@@ -104,7 +104,6 @@ void add(const std::string& name, Work work) {
 }
 
 void addMaterial(const Subject& s) {
-  using Target;
   const ir::Module placed = toPlaced(s);
   const std::vector<std::string> texts = toText(placed, Target::Glsl);
   const std::vector<check::Spirv> compiled = throughGlslang(texts);
