@@ -10,16 +10,6 @@ namespace lacquer {
 using ir::Components;
 using ir::Op;
 
-namespace {
-
-constexpr Op kLastOp = static_cast<Op>(0
-#define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) +1
-#include "ir/ops.def"
-#undef OP
-                                       - 1);
-
-}  // namespace
-
 Preshader::Preshader(const ir::Module& module) {
   std::vector<ir::ValueId> roots;
   for (const ir::PreshaderField& field : module.preshader) roots.push_back(field.value);
