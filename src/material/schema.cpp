@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <cctype>
 #include <iterator>
 
@@ -41,13 +42,15 @@ void addRows(std::vector<Row>& out, std::string_view object, std::span<const lan
 void checkRoles(const Schema& schema, Diagnostics& wrong) {
   for (const auto& [role, providers] : schema.roles) {
     const lang::PropertyDecl& first = *schema.properties[providers[0]].decl;
+    // Without `as` the role is the name itself, in the same place of the text. One may be without it: it is the
+    // one that the others are said to mean.
+    const auto said = [](const lang::PropertyDecl& decl) { return decl.role.data() != decl.name.data(); };
+    bool named = !said(first);
     for (size_t i = 1; i < providers.size(); ++i) {
       const Property& other = schema.properties[providers[i]];
       const bool alike = other.decl->type == first.type && other.decl->kind == first.kind &&
                          other.decl->members.size() == first.members.size();
-      // Without `as` the role is the name itself, in the same place of the text.
-      const auto said = [](const lang::PropertyDecl& decl) { return decl.role.data() != decl.name.data(); };
-      const bool meant = said(*other.decl) || said(first);
+      const bool meant = said(*other.decl) || !std::exchange(named, true);
       if (alike && meant) continue;
       wrong.push_back(problem(
           schema.extensions[other.extension]->origin, "duplicate-name",
