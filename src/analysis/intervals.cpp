@@ -112,13 +112,11 @@ Range Intervals::open(ir::Interval range) const {
 namespace {
 
 /// What glTF asks of vertex data ("Meshes"): normals and tangents are unit vectors, a tangent's sign is 1 or
-/// -1, colours are clamped. A BSDF's own directions are unit vectors too, and its random
-/// numbers below 1 (templates/bsdf.node).
+/// -1, colours are clamped. A BSDF's own directions are unit vectors too (templates/bsdf.node).
 ir::Interval vertexRange(const ir::Input& input) {
   for (const std::string_view name : {"NORMAL", "TANGENT", "VIEW", "LIGHT"}) {
     if (input.name == name) return {-1, 1};
   }
-  if (input.name == "RANDOM") return {0, 1};
   if (input.name.starts_with("COLOR_")) return {0, 1};
   return input.range;
 }

@@ -76,7 +76,7 @@ int runEval(EvalFlags& flags) {
   Messages messages;
   const std::string answer = evaluate(flags.file, flags.material, {}, flags.points, engineOf(flags),
                                       flags.texels, flags.options, messages);
-  print(messages);
+  print(messages, true);
   fmt::print("{}", answer);
   return answer.empty() || hasError(messages) ? 1 : 0;
 }

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 #include <cctype>
 #include <iterator>
+#include <utility>
 
 namespace lacquer::material {
 
@@ -42,8 +42,8 @@ void addRows(std::vector<Row>& out, std::string_view object, std::span<const lan
 void checkRoles(const Schema& schema, Diagnostics& wrong) {
   for (const auto& [role, providers] : schema.roles) {
     const lang::PropertyDecl& first = *schema.properties[providers[0]].decl;
-    // Without `as` the role is the name itself, in the same place of the text. One may be without it: it is the
-    // one that the others are said to mean.
+    // Without `as` the role is the name itself, in the same place of the text. One may be without it: it is
+    // the one that the others are said to mean.
     const auto said = [](const lang::PropertyDecl& decl) { return decl.role.data() != decl.name.data(); };
     bool named = !said(first);
     for (size_t i = 1; i < providers.size(); ++i) {
