@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "support/file.h"
 
@@ -31,12 +32,13 @@ Diagnostics clashes(const std::vector<std::string>& inputs, const std::vector<st
                        : !places.insert(placeOf(output)).second              ? "written twice"
                                                                              : nullptr;
     if (what == nullptr) continue;
-    wrong.push_back({"output-clash",
-                     Severity::Error,
-                     {output, 0, 0, {}},
-                     std::string("this file is to be written and is ") + what,
-                     "nothing was written: name another file or folder",
-                     {}});
+    Diagnostic clash;
+    clash.code = "output-clash";
+    clash.severity = Severity::Error;
+    clash.place.file = output;
+    clash.message = std::string("this file is to be written and is ") + what;
+    clash.help = "nothing was written: name another file or folder";
+    wrong.push_back(std::move(clash));
   }
   return wrong;
 }
