@@ -22,7 +22,11 @@ namespace fs = std::filesystem;
 
 /// Of one shader. The two modules mean the same, but differ in the order of instructions, and of a choice
 /// between values one makes a select, the other a branch: the driver's registers come out otherwise.
-constexpr uint64_t kPercent = 2;  // a path tracer's shaders take up to 1.3, all others at most 1
+/// Percent that one shader may cost more: a path tracer's, which were added with the sampling, up to 1.3.
+uint64_t percentOf(const std::string& where) { return where.find("(bsdf-") == std::string::npos ? 1 : 2; }
+
+/// Instructions that the SPIR-V of one may have more: a fuzz with textures multiplies one product again.
+size_t moreOf(const std::string& where) { return where.find("(forward-fuzz-") == std::string::npos ? 0 : 1; }
 
 /// A distinct shader, written directly, and by way of glslang and spirv-opt.
 struct Sample {
@@ -146,9 +150,7 @@ void expectNoMoreInstructions(const std::vector<Sample>& samples) {
         std::pair(&sample.direct.fragment, &sample.optimized.fragment)};
     for (const auto& [ours, theirs] : stages) {
       ASSERT_EQ(ours->empty(), theirs->empty()) << sample.where;
-      // One more in two hundred may be a product that is multiplied again within a sum; in all, there are
-      // fewer.
-      EXPECT_LE(spirvInstructions(*ours), spirvInstructions(*theirs) * 201 / 200) << sample.where;
+      EXPECT_LE(spirvInstructions(*ours), spirvInstructions(*theirs) + moreOf(sample.where)) << sample.where;
       direct += spirvInstructions(*ours);
       optimized += spirvInstructions(*theirs);
     }
@@ -182,7 +184,7 @@ void expectNoMoreCost(const std::vector<Sample>& samples) {
     }
     const Statistics& ours = *measured[0].outcomes[i].statistics;
     const Statistics& theirs = *measured[1].outcomes[i].statistics;
-    const auto bound = [](uint64_t value) { return value * (100 + kPercent) / 100; };
+    const auto bound = [&](uint64_t value) { return value * (100 + percentOf(samples[i].where)) / 100; };
     EXPECT_LE(ours.instructions, bound(theirs.instructions)) << samples[i].where;
     EXPECT_LE(ours.inverse_throughput, bound(theirs.inverse_throughput)) << samples[i].where;
   }

@@ -24,8 +24,10 @@ void expectAgreement(const std::vector<NamedGraph>& graphs, const MaterialSettin
     EXPECT_EQ(comparison.outside, 0U) << comparison.first;
     all.numbers += comparison.numbers;
     all.vague += comparison.vague;
+    all.endless += comparison.endless;
   }
-  std::cout << all.numbers << " numbers, " << all.vague << " with a vague bound\n";
+  std::cout << all.numbers << " numbers, " << all.vague << " with a vague bound, " << all.endless
+            << " with none\n";
   EXPECT_GT(all.numbers, 10000U);
   // Filters between random texels, mostly.
   EXPECT_LT(static_cast<double>(all.vague), most_vague * static_cast<double>(all.numbers));
@@ -57,8 +59,7 @@ TEST(ParityMaterials, Surface) {
 TEST(ParityMaterials, Bsdf) {
   MaterialSetting setting;
   setting.template_name = "bsdf";
-  // Of the density and the direction that are sampled, what divides by a length that may be none has no end.
-  expectAgreement(exampleGraphs(setting), setting, 256, kSome, 0.32);
+  expectAgreement(exampleGraphs(setting), setting, 256, kSome);
 }
 
 /// Combinations of properties that no example has.
@@ -81,8 +82,8 @@ TEST(ParityMaterials, QuadsWithoutTangents) {
     if (takesDerivatives(materialSubject(graph, setting, 4, 1).module)) graphs.push_back(std::move(graph));
   }
   EXPECT_GT(graphs.size(), 4U);
-  // Differences of interpolated numbers have few digits, and some frames may have no length.
-  expectAgreement(graphs, setting, 256, 1, 0.67);
+  // Differences of interpolated numbers have few digits.
+  expectAgreement(graphs, setting, 256, 1, 0.65);
 }
 
 TEST(ParityMaterials, VertexStages) {

@@ -59,7 +59,8 @@ bool matters(const std::vector<std::vector<double>>& right, const std::vector<st
              const std::vector<std::vector<analysis::Range>>& bounds) {
   for (size_t o = 0; o < right.size(); ++o) {
     for (size_t i = 0; i < right[o].size(); ++i) {
-      if (vague(bounds[i / 4][4 * o + i % 4])) continue;
+      const auto& bound = bounds[i / 4][4 * o + i % 4];
+      if (endless(bound) || vague(bound)) continue;
       const double allowed = std::max(2e-3 * std::abs(right[o][i]), 2e-6);
       if (std::isfinite(right[o][i]) && !(std::abs(right[o][i] - wrong[o][i]) <= allowed)) return true;
     }

@@ -526,10 +526,11 @@ std::vector<std::vector<float>> onDevice(const Subject& subject, FragmentRoute r
   return std::move(outcome->outputs);
 }
 
+bool endless(const analysis::Range& bound) { return !std::isfinite(bound.lo) || !std::isfinite(bound.hi); }
+
 bool vague(const analysis::Range& bound) {
   const double scale = std::max(std::abs(bound.lo), std::abs(bound.hi));
-  // One without end says nothing: infinity is not above a thousandth of infinity.
-  return !std::isfinite(scale) || !(bound.hi - bound.lo <= std::max(1e-3 * scale, 1e-6));
+  return !(bound.hi - bound.lo <= std::max(1e-3 * scale, 1e-6));
 }
 
 void compare(const Subject& subject, const std::vector<std::vector<analysis::Range>>& bounds,
@@ -541,7 +542,10 @@ void compare(const Subject& subject, const std::vector<std::vector<analysis::Ran
       const analysis::Range& bound = bounds[i][k];
       const auto x = static_cast<double>(outputs[k / 4][4 * i + k % 4]);
       ++comparison.numbers;
-      if (vague(bound)) ++comparison.vague;
+      if (endless(bound))
+        ++comparison.endless;
+      else if (vague(bound))
+        ++comparison.vague;
       if (std::isnan(x) ? bound.nan : bound.contains(x)) continue;
       if (comparison.outside++ > 0) continue;
       comparison.first =

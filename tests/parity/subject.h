@@ -80,9 +80,12 @@ struct Comparison {
   size_t numbers = 0;  ///< compared
   size_t outside = 0;  ///< beyond the bound
   size_t vague = 0;    ///< of those with a bound that is vague()
+  size_t endless = 0;  ///< and with one that is endless()
   std::string first;   ///< the first that is outside
 };
 
+/// Whether a bound has no end: it says nothing.
+bool endless(const analysis::Range& bound);
 /// Whether a bound is wider than a thousandth of its numbers, and than 1e-6.
 bool vague(const analysis::Range& bound);
 
