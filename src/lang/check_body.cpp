@@ -26,6 +26,7 @@ void Checker::body(NodeDecl& decl, std::string_view variant, Span place, Body& b
   unused_.clear();
   slots_.clear();
   arms_ = block_depth_ = 0;
+  crowded_ = false;
   may_have_returned_ = false;
   trips_ = 1;
   weight_ = 0;
@@ -80,6 +81,7 @@ void Checker::declare(Name name) {
                     "give this another name");
   }
   if (names_.size() == kMostNames) {
+    if (std::exchange(crowded_, true)) return;
     reporter_.error("node-too-large", name.span, fmt::format("more than {} names are in scope", kMostNames),
                     "write several nodes");
     return;

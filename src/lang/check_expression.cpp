@@ -174,6 +174,7 @@ bool Checker::name(Expr& expr) {
                     fmt::format("call it: `{}(...)`", expr.name));
     return false;
   }
+  if (crowded_ || reporter_.full()) return false;
   std::vector<std::string_view> candidates = around_.names(DeclKind::Const);
   candidates.emplace_back("PI");
   for (const Name& n : names_) candidates.push_back(n.name);

@@ -175,7 +175,8 @@ private:
   bool constants_only_ = false;          ///< the expression must be a constant
   bool ports_allowed_ = false;           ///< the expression is an output's
   std::vector<std::string_view> slots_;  ///< of the body, so far
-  uint32_t arms_ = 0;                    ///< enclosing arms of `if`
+  bool crowded_ = false;  ///< names were left out, and that was said: others are not looked for
+  uint32_t arms_ = 0;     ///< enclosing arms of `if`
   uint32_t block_depth_ = 0;
   bool may_have_returned_ = false;
   uint64_t trips_ = 1;   ///< how often the enclosing loops run what is inside

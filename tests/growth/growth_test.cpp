@@ -10,6 +10,7 @@
 #include <iostream>
 #include <new>
 
+#include "build/processes.h"
 #include "lacquer.h"
 
 namespace {
@@ -36,6 +37,8 @@ void operator delete[](void* at, std::size_t) noexcept { std::free(at); }
 
 namespace lacquer::test {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Cost {
   uint64_t allocations = 0, bytes = 0;
@@ -76,6 +79,33 @@ std::string listOf(size_t n, const std::function<std::string(size_t)>& item) {
   return text;
 }
 
+std::string materials(size_t n) {
+  return R"({"asset":{"version":"2.0"},"materials":[)" +
+         listOf(n,
+                [](size_t i) {
+                  return fmt::format(R"({{"name":"m{}","emissiveFactor":[{},0,0]}})", i,
+                                     static_cast<double>(i % 997 + 1) / 1000);
+                }) +
+         "]}";
+}
+
+TEST(Growth, materials) {
+  const fs::path folder = freshFolder("growth");
+  Options options;
+  options.targets = {Target::Spirv};
+  options.validate = false;
+  options.jobs = 1;
+  options.sync = false;
+  grows("materials", 10000, [&](size_t n) {
+    writeText(folder / "in.gltf", materials(n));
+    Messages messages;
+    fs::remove_all(folder / "out");
+    EXPECT_TRUE(
+        generate({(folder / "in.gltf").string()}, {}, (folder / "out").string(), options, messages).ok);
+  });
+  fs::remove_all(folder.parent_path());
+}
+
 TEST(Growth, textures) {
   grows("textures", 10000, [](size_t n) {
     const std::string text = R"({"asset":{"version":"2.0"},"images":[{"uri":"a.png"}],"textures":[)" +
@@ -111,6 +141,23 @@ TEST(Growth, nodes) {
     messages.clear();
     (void)graph.check(messages);
   });
+}
+
+/// Locals of one node; from 4,096 on there are too many, which costs no more to find.
+TEST(Growth, locals) {
+  const fs::path folder = freshFolder("growth");
+  Options options;
+  options.node_directories = {folder.string()};
+  grows("locals", 10000, [&](size_t n) {
+    std::string text =
+        "/// D.\n/// source: S\nnode many(float x in [0, 1]) -> float in [0, 1] {\n    float v0 = x;\n";
+    for (size_t i = 1; i < n; ++i) text += fmt::format("    float v{} = v{} * 0.5;\n", i, i - 1);
+    writeText(folder / "many.node", text + fmt::format("    return clamp(v{}, 0, 1);\n}}\n", n - 1));
+    Messages messages;
+    (void)nodesJson(options, messages);
+    EXPECT_EQ(messages.size(), n > 4096 ? 1U : 0U) << (messages.empty() ? "" : messages[0].text);
+  });
+  fs::remove_all(folder.parent_path());
 }
 
 }  // namespace
