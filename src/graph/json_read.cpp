@@ -4,7 +4,6 @@
 
 #include <array>
 #include <limits>
-#include <unordered_set>
 
 #include "graph/graph.h"
 #include "graph/text.h"
@@ -22,88 +21,15 @@ using json::Path;
 
 constexpr int kVersion = 1;
 
-/// Finds keys that stand twice in one object. The tree no longer tells: it keeps one of them.
-class DuplicateFinder : public nlohmann::json_sax<Json> {
-public:
-  DuplicateFinder(const std::string& file, Diagnostics& out) : file_(file), out_(out) {}
-
-  bool null() override { return value(); }
-  bool boolean(bool) override { return value(); }
-  bool number_integer(number_integer_t) override { return value(); }
-  bool number_unsigned(number_unsigned_t) override { return value(); }
-  bool number_float(number_float_t, const string_t&) override { return value(); }
-  bool string(string_t&) override { return value(); }
-  bool binary(binary_t&) override { return value(); }
-  bool start_object(std::size_t) override { return open(true); }
-  bool start_array(std::size_t) override { return open(false); }
-  bool end_object() override { return close(); }
-  bool end_array() override { return close(); }
-  bool key(string_t& text) override {
-    Level& level = levels_.back();
-    level.key = text;
-    if (!level.keys.insert(text).second) {
-      out_.push_back({"duplicate-key",
-                      Severity::Error,
-                      {file_, 0, 0, pointer()},
-                      fmt::format("{} stands twice in one object", quote(text)),
-                      "remove one of the two",
-                      {}});
-    }
-    return true;
-  }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
-    return false;
-  }
-
-private:
-  struct Level {
-    bool object = false;
-    std::string key;
-    size_t index = 0;
-    std::unordered_set<std::string> keys;
-  };
-
-  /// In an array, the next value's index is one more.
-  bool value() {
-    if (!levels_.empty()) ++levels_.back().index;
-    return true;
-  }
-  bool open(bool object) {
-    levels_.push_back({object, {}, 0, {}});
-    return true;
-  }
-  bool close() {
-    levels_.pop_back();
-    return value();
-  }
-  std::string pointer() const {
-    std::string text;
-    for (const Level& level : levels_) {
-      text += level.object ? Path(Path(), level.key).text() : "/" + std::to_string(level.index);
-    }
-    return text;
-  }
-
-  const std::string& file_;
-  Diagnostics& out_;
-  std::vector<Level> levels_;
-};
-
 /// The tree of a text without duplicate keys.
 Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits) {
-  Result<Json> json = json::parse(text, file, limits);
-  if (!json) {
-    for (Diagnostic& one : json.error()) {
-      if (one.code == "json-too-deep") one.help = "a graph needs five levels";
-    }
-    return json;
+  Result<Json> json = json::parse(text, file, limits, json::Doubles::Refused);
+  if (json) return json;
+  for (Diagnostic& one : json.error()) {
+    if (one.code == "json-too-deep") one.help = "a graph needs five levels";
   }
-  Diagnostics duplicates;
-  DuplicateFinder finder(file, duplicates);
-  Json::sax_parse(text.begin(), text.end(), &finder);
-  if (duplicates.empty()) return json;
-  shorten(duplicates);
-  return tl::make_unexpected(std::move(duplicates));
+  shorten(json.error());
+  return json;
 }
 
 class Reader {

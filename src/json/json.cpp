@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "json/path.h"
 #include "support/text.h"
 
 namespace lacquer::json {
@@ -34,11 +35,18 @@ size_t tooDeep(std::string_view text, size_t deepest) {
   return std::string_view::npos;
 }
 
+/// Bytes after which no more doubles are noted. A pointer may be as long as the text, so that those of all of
+/// them could be its square.
+constexpr size_t kMostNoted = 1U << 16U;
+
 /// Builds the tree from the parser's events. The library's own builder looks for each new member among those
 /// before it, which takes quadratic time in a large object; here doubles are dropped once, at the end.
 class TreeBuilder : public nlohmann::json_sax<Json> {
 public:
   explicit TreeBuilder(uint64_t most) : most_(most) {}
+
+  /// Where a name stands twice in one object, by its name: the last one counts.
+  std::vector<std::pair<std::string, std::string>> doubles;
 
   bool null() override { return add(nullptr); }
   bool boolean(bool value) override { return add(value); }
@@ -113,7 +121,17 @@ private:
     return &members.back().second;
   }
 
-  static void dropDoubles(Json::object_t& object) {
+  /// The JSON pointer of the innermost open object: what is open is the last of its parent.
+  std::string pointer() const { return pointer(open_.size()); }
+  std::string pointer(size_t depth) const {
+    if (depth <= 1) return {};
+    const Json& parent = *open_[depth - 2];
+    if (parent.is_array()) return fmt::format("{}/{}", pointer(depth - 1), parent.size() - 1);
+    const std::string& name = parent.get_ref<const Json::object_t&>().back().first;
+    return pointer(depth - 1) + Path(Path(), name).text();
+  }
+
+  void dropDoubles(Json::object_t& object) {
     Json::object_t::Container& members = object;  // the library's operator[] is for names only
     std::vector<size_t> order(members.size());
     std::iota(order.begin(), order.end(), size_t{0});
@@ -128,6 +146,11 @@ private:
       dropped[order[i - 1]] = any = true;
     }
     if (!any) return;
+    for (size_t i = 0; i < members.size() && noted_ < kMostNoted; ++i) {
+      if (!dropped[i]) continue;
+      doubles.emplace_back(pointer(), members[i].first);
+      noted_ += 1 + doubles.back().first.size() + doubles.back().second.size();
+    }
     Json::object_t kept;
     for (size_t i = 0; i < members.size(); ++i) {
       if (!dropped[i]) kept.emplace_back(members[i].first, std::move(members[i].second));
@@ -138,6 +161,7 @@ private:
   std::vector<Json*> open_;
   std::string key_;
   uint64_t most_, values_ = 0;
+  size_t noted_ = 0;  ///< bytes of doubles
 };
 
 /// As locate(), but shows only a window of a long line (files without line breaks are common) and nothing
@@ -213,7 +237,7 @@ Diagnostic syntaxError(const TreeBuilder& builder, std::string_view text, const 
 
 }  // namespace
 
-Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits) {
+Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits, Doubles doubles) {
   const Place place{file, 0, 0, {}};
   if (text.size() > limits.json) {
     return fail("json-too-large", place, fmt::format("its JSON has more than {} bytes", limits.json),
@@ -227,7 +251,19 @@ Result<Json> parse(std::string_view text, const std::string& file, const Limits&
     return tl::make_unexpected(Diagnostics{diagnostic});
   }
   TreeBuilder builder(limits.values);
-  if (Json::sax_parse(text.begin(), text.end(), &builder)) return std::move(builder.root);
+  if (Json::sax_parse(text.begin(), text.end(), &builder)) {
+    if (doubles == Doubles::LastCounts || builder.doubles.empty()) return std::move(builder.root);
+    Diagnostics wrong;
+    for (const auto& [object, name] : builder.doubles) {
+      wrong.push_back({"duplicate-key",
+                       Severity::Error,
+                       {file, 0, 0, object + Path(Path(), name).text()},
+                       fmt::format("{} stands twice in one object", quote(name)),
+                       "remove one of the two",
+                       {}});
+    }
+    return tl::make_unexpected(std::move(wrong));
+  }
   if (builder.full()) {
     return fail("json-too-many", place, fmt::format("its JSON has more than {} values", limits.values),
                 raising("values"));

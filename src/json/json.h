@@ -13,11 +13,18 @@ namespace lacquer::json {
 
 using Json = nlohmann::ordered_json;
 
-/// Parses strict JSON (a byte order mark is skipped; of members with the same name the last one counts).
+/// What becomes of members with the same name in one object.
+enum class Doubles : uint8_t {
+  LastCounts,
+  Refused,  ///< an error for each, "duplicate-key"
+};
+
+/// Parses strict JSON (a byte order mark is skipped).
 /// Errors carry line, column and the offending text, cut to a window where the line is long. Takes time and
 /// memory in proportion to the text, whatever it holds, and no stack. Of the limits those of JSON hold:
 /// "json-too-large", "json-too-many", "json-too-deep".
-Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits = {});
+Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits = {},
+                   Doubles doubles = Doubles::LastCounts);
 
 /// The member of an object; nullptr when there is none or when it is not an object.
 const Json* member(const Json& object, std::string_view key);
