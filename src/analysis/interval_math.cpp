@@ -1,5 +1,5 @@
 // Precisions: Vulkan specification, appendix "Precision and Operation of SPIR-V Instructions", single
-// precision.
+// precision, and half precision for `mediump`, whose range is that of the GLSL ES 3.00 specification, 4.5.2.
 #include "analysis/interval_math.h"
 
 #include <algorithm>
@@ -15,8 +15,6 @@ namespace lacquer::analysis {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-/// One unit in the last place of a float32 is at most this part of the number.
-constexpr double kUlp = 0x1p-23;
 constexpr double kPi = 3.14159265358979323846;
 
 bool mayBeInfinite(const Range& a) { return a.lo == -kInf || a.hi == kInf; }
@@ -47,7 +45,37 @@ float nextDown(float f) {
   return std::bit_cast<float>(f > 0 ? bits - 1 : bits + 1);
 }
 
+/// The largest number with 11 bits that is not above x. Beyond 2^14 `mediump` promises nothing.
+double halfDown(double x) {
+  if (x < -0x1p14) return -kInf;
+  if (!(std::abs(x) < kInf)) return x;
+  int exponent = 0;
+  std::frexp(x, &exponent);
+  const double step = std::ldexp(1.0, std::max(exponent, -13) - 11);
+  return std::floor(x / step) * step;
+}
+
 }  // namespace
+
+double RangeMath::ulpOf(Arithmetic arithmetic) {
+  switch (arithmetic) {
+    case Arithmetic::Vulkan:
+    case Arithmetic::Ieee: return 0x1p-23;
+    case Arithmetic::Mediump: return 0x1p-10;
+    case Arithmetic::Real: break;
+  }
+  return 0x1p-52;
+}
+
+double RangeMath::ulps(double vulkan, double ieee, double mediump, double real) const {
+  switch (arithmetic_) {
+    case Arithmetic::Vulkan: return vulkan * ulp_;
+    case Arithmetic::Ieee: return ieee * ulp_;
+    case Arithmetic::Mediump: return mediump * ulp_;
+    case Arithmetic::Real: break;
+  }
+  return real * ulp_;
+}
 
 bool Range::finite() const { return !nan && std::isfinite(lo) && std::isfinite(hi); }
 
@@ -62,10 +90,14 @@ Range meet(const Range& a, const Range& b) {
 
 double RangeMath::down(double x, double error) const {
   if (!float_) return error < 0 ? std::nextafter(x, -kInf) : x;
+  if (arithmetic_ == Arithmetic::Mediump) {
+    const double half = halfDown(error < 0 ? std::nextafter(x, -kInf) : x);
+    return half > 0 && half < least() ? 0 : half;
+  }
   auto f = static_cast<float>(x);
   if (f > x || (f == x && error < 0)) f = nextDown(f);
   // A subnormal number may be flushed to zero.
-  return f > 0 && f < FLT_MIN ? 0 : f;
+  return arithmetic_ == Arithmetic::Vulkan && f > 0 && f < FLT_MIN ? 0 : f;
 }
 
 double RangeMath::up(double x, double error) const { return -down(-x, -error); }
@@ -90,15 +122,14 @@ Range RangeMath::widened(const Range& a, double relative, double absolute) const
 Range RangeMath::constant(double x) const { return rounded(x, 0, x, 0, false); }
 
 Range RangeMath::fact(const ir::Interval& stated) const {
-  return widened({stated.lo, stated.hi, false}, float_ ? kFactSlack : 0, 0);
+  return widened({stated.lo, stated.hi, false}, float_ ? slack() : 0, 0);
 }
 
 Range RangeMath::whole(bool nan) const { return {-kInf, kInf, nan && float_}; }
 
 template <class F>
-Range RangeMath::monotone(const Range& a, F f, double ulps) const {
-  // The functions of the C++ library are within two units of the last place of a double.
-  return widened({f(a.lo), f(a.hi), a.nan}, float_ ? ulps * kUlp : 0x1p-51, 0);
+Range RangeMath::monotone(const Range& a, F f, double relative) const {
+  return widened({f(a.lo), f(a.hi), a.nan}, relative, 0);
 }
 
 Range RangeMath::neg(const Range& a) const { return {0.0 - a.hi, 0.0 - a.lo, a.nan}; }
@@ -124,9 +155,11 @@ Range RangeMath::fract(const Range& a) const {
 
 Range RangeMath::sqrt(const Range& a) const {
   if (a.hi < 0) return {0, 0, true};
-  // Inherited from 1 / inversesqrt(x): 2.5 and 2 ULP.
+  // Inherited from 1 / inversesqrt(x): 2.5 and 2 ULP. The functions of the C++ library are within two units
+  // in the last place of a double.
   Range r = monotone(
-      {std::max(a.lo, 0.0), a.hi, a.nan || a.lo < 0}, [](double x) { return std::sqrt(x); }, 5);
+      {std::max(a.lo, 0.0), a.hi, a.nan || a.lo < 0}, [](double x) { return std::sqrt(x); },
+      ulps(5, 0.5, 5, 2));
   r.lo = std::max(r.lo, 0.0);
   return r;
 }
@@ -135,62 +168,62 @@ Range RangeMath::inverseSqrt(const Range& a) const {
   // Of -0 it is minus infinity.
   if (a.lo <= 0) return whole(true);
   const auto f = [](double x) { return 1 / std::sqrt(x); };
-  return widened({f(a.hi), f(a.lo), a.nan}, float_ ? 2 * kUlp : 0x1p-50, 0);
+  return widened({f(a.hi), f(a.lo), a.nan}, ulps(2, 1, 2, 4), 0);
+}
+
+Range RangeMath::exponential(const Range& a, double (*f)(double)) const {
+  const auto relative = [&](double x) {
+    const double steps = 2 * std::min(std::abs(x), 256.0);
+    return ulps(3 + steps, 1, 1 + steps, 4);
+  };
+  const bool exact = !float_ && f(0) == 1;
+  const Range r = rounded(f(a.lo) * (1 - relative(a.lo)), exact && a.lo == 0 ? 0 : -1,
+                          f(a.hi) * (1 + relative(a.hi)), exact && a.hi == 0 ? 0 : 1, a.nan);
+  return {std::max(r.lo, 0.0), r.hi, r.nan};
 }
 
 Range RangeMath::exp2(const Range& a) const {
-  const auto relative = [&](double x) {
-    return float_ ? (3 + 2 * std::min(std::abs(x), 256.0)) * kUlp : 0x1p-51;
-  };
-  const double lo = std::exp2(a.lo) * (1 - relative(a.lo));
-  const double hi = std::exp2(a.hi) * (1 + relative(a.hi));
-  const Range r = rounded(lo, a.lo == 0 && !float_ ? 0 : -1, hi, a.hi == 0 && !float_ ? 0 : 1, a.nan);
-  return {std::max(r.lo, 0.0), r.hi, r.nan};
+  return exponential(a, [](double x) { return std::exp2(x); });
 }
 
 Range RangeMath::exp(const Range& a) const {
-  const auto relative = [&](double x) {
-    return float_ ? (3 + 2 * std::min(std::abs(x), 256.0)) * kUlp : 0x1p-50;
-  };
-  const Range r =
-      rounded(std::exp(a.lo) * (1 - relative(a.lo)), -1, std::exp(a.hi) * (1 + relative(a.hi)), 1, a.nan);
-  return {std::max(r.lo, 0.0), r.hi, r.nan};
+  return exponential(a, [](double x) { return std::exp(x); });
+}
+
+Range RangeMath::logarithm(const Range& a, double (*f)(double)) const {
+  if (a.hi < 0) return whole(true);
+  const auto of = [&](double x) { return x > 0 ? f(x) : -kInf; };
+  // 3 ULP, but an absolute error within [0.5, 2].
+  const bool near_one = a.lo <= 2 && a.hi >= 0.5;
+  double absolute = 0;
+  if (near_one && arithmetic_ == Arithmetic::Vulkan) absolute = 0x1p-21;
+  if (near_one && arithmetic_ == Arithmetic::Mediump) absolute = 0x1p-7;
+  return widened({of(a.lo), of(a.hi), a.nan || a.lo < 0}, ulps(3, 1, 3, 2), absolute);
 }
 
 Range RangeMath::log2(const Range& a) const {
-  if (a.hi < 0) return whole(true);
-  const auto f = [](double x) { return x > 0 ? std::log2(x) : -kInf; };
-  // 3 ULP, but an absolute 2^-21 within [0.5, 2].
-  const bool near_one = a.lo <= 2 && a.hi >= 0.5;
-  const Range exact{f(a.lo), f(a.hi), a.nan || a.lo < 0};
-  if (!float_) return widened(exact, 0x1p-51, 0);
-  return widened(exact, 3 * kUlp, near_one ? 0x1p-21 : 0);
+  return logarithm(a, [](double x) { return std::log2(x); });
 }
 
 Range RangeMath::log(const Range& a) const {
-  if (a.hi < 0) return whole(true);
-  const auto f = [](double x) { return x > 0 ? std::log(x) : -kInf; };
-  const bool near_one = a.lo <= 2 && a.hi >= 0.5;
-  const Range exact{f(a.lo), f(a.hi), a.nan || a.lo < 0};
-  if (!float_) return widened(exact, 0x1p-51, 0);
-  return widened(exact, 3 * kUlp, near_one ? 0x1p-21 : 0);
+  return logarithm(a, [](double x) { return std::log(x); });
 }
 
 Range RangeMath::wave(const Range& a) const {
-  // An absolute error of 2^-11 within [-pi, pi]. Beyond it no precision is asked for; that the result is a
-  // sine of something is taken for granted.
-  const double end = float_ ? 1 + 0x1p-11 : 1;
+  // An absolute error of 2^-11 within [-pi, pi], in half precision 2^-7. Beyond it no precision is asked for;
+  // that the result is a sine of something is taken for granted.
+  const double end = 1 + ulps(0x1p12, 0, 8, 0);
   return {-end, end, a.nan || (float_ && mayBeInfinite(a))};
 }
 
 Range RangeMath::acos(const Range& a) const {
   // Inherited from atan2(sqrt(1 - x * x), x).
-  const double slack = float_ ? 8192 * kUlp : 0x1p-50;
+  const double slack = ulps(8192, 4, 10, 4);
   return {-slack, kPi + 4 * slack, a.nan || a.lo < -1 || a.hi > 1};
 }
 
 Range RangeMath::atan2(const Range& a, const Range& b) const {
-  const double end = kPi * (1 + (float_ ? 4096 * kUlp : 0x1p-50));
+  const double end = kPi * (1 + ulps(4096, 1, 5, 4));
   return {-end, end, a.nan || b.nan || (a.contains(0) && b.contains(0))};
 }
 
@@ -246,10 +279,10 @@ Range RangeMath::div(const Range& a, const Range& b) const {
   }
   if (lo > hi) return whole(true);
   Range r = rounded(lo, lo_error, hi, hi_error, nan);
-  if (!float_) return r;
+  if (!float_ || arithmetic_ == Arithmetic::Ieee) return r;
   // 2.5 ULP while the divisor is at most 2^126; beyond that its reciprocal may be flushed.
-  r = widened(r, 2.5 * kUlp, 0);
-  if (std::max(std::abs(b.lo), std::abs(b.hi)) > 0x1p126) r = hull(r, {0, 0, false});
+  r = widened(r, 2.5 * ulp_, 0);
+  if (std::max(std::abs(b.lo), std::abs(b.hi)) > 1 / least()) r = hull(r, {0, 0, false});
   return r;
 }
 
@@ -284,7 +317,7 @@ Range RangeMath::blend(const Range& x, const Range& k, const Range& t) const {
   // The blend is linear in each of the three, its error convex: the ends of both together are at corners. The
   // error is that of the difference, of up to six products, and of the sum; or of x * (1 - t) + k * t.
   // Nothing is rounded at t = 0.
-  const double unit = float_ ? kUlp : 0x1p-52;
+  const double unit = ulp_;
   double lo = kInf, hi = -kInf, lo_error = 0, hi_error = 0;
   for (const double a : {x.lo, x.hi}) {
     for (const double b : {k.lo, k.hi}) {
@@ -325,7 +358,7 @@ Range RangeMath::exchange(const Range& q, const Range& p, const Range& t) const 
   const Range r = exact.add(q, exact.mul(p, factor));
   const auto magnitude = [](const Range& x) { return std::max(std::abs(x.lo), std::abs(x.hi)); };
   const double scale = magnitude(q) + magnitude(p) * (1 + magnitude(t));
-  return widened({r.lo, r.hi, q.nan || p.nan || t.nan}, 0, float_ ? 10 * kUlp * scale : 0);
+  return widened({r.lo, r.hi, q.nan || p.nan || t.nan}, 0, float_ ? 10 * ulp_ * scale : 0);
 }
 
 Range RangeMath::ratio(const Range& x, double a, double b) const {
@@ -334,7 +367,7 @@ Range RangeMath::ratio(const Range& x, double a, double b) const {
   // 1 + (a - b) / (x + b) is monotone. Numerator and divisor are rounded once each, then comes the division.
   const double p = (x.lo + a) / (x.lo + b);
   const double q = (x.hi + a) / (x.hi + b);
-  return widened({std::min(p, q), std::max(p, q), x.nan}, float_ ? 6 * kUlp : 0x1p-49, 0);
+  return widened({std::min(p, q), std::max(p, q), x.nan}, ulps(6, 2, 6, 8), 0);
 }
 
 Range RangeMath::sum(std::span<const Range> terms) const {
@@ -346,7 +379,7 @@ Range RangeMath::sum(std::span<const Range> terms) const {
   }
   if (terms.size() < 3 || !float_ || !std::isfinite(magnitude)) return total;
   // Another order of addition rounds differently, but a sum of terms of one sign keeps it.
-  const Range wide = widened(total, 0, static_cast<double>(terms.size() - 2) * kUlp * magnitude);
+  const Range wide = widened(total, 0, static_cast<double>(terms.size() - 2) * ulp_ * magnitude);
   return {total.lo >= 0 ? std::max(wide.lo, 0.0) : wide.lo, total.hi <= 0 ? std::min(wide.hi, 0.0) : wide.hi,
           total.nan};
 }

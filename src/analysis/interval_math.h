@@ -8,9 +8,14 @@
 
 namespace lacquer::analysis {
 
-/// What the values are. Float32: what a GPU may compute, by the precisions that the Vulkan specification asks
-/// for (docs/intervals.md lists them), subnormal numbers flushed or not. Real: the exact function.
-enum class Arithmetic : uint8_t { Float32, Real };
+/// What the values are (docs/intervals.md lists the precisions).
+enum class Arithmetic : uint8_t {
+  Vulkan,   ///< what a GPU may compute in float32 by the Vulkan specification, subnormal numbers flushed or
+            ///< not
+  Ieee,     ///< float32 as IEEE 754 has it, operation by operation, with a good mathematical library
+  Mediump,  ///< what `mediump` of GLSL ES and RelaxedPrecision of SPIR-V allow: 10 bits, magnitudes to 2^14
+  Real,     ///< the exact function
+};
 
 /// One component. An end may be infinite; `nan` says that the value may also be no number.
 struct Range {
@@ -28,13 +33,18 @@ Range hull(const Range& a, const Range& b);
 /// What both hold; `b` alone where they share nothing (a stated fact that contradicts).
 Range meet(const Range& a, const Range& b);
 
-/// Facts (an `assume`, a range of a node) speak of exact numbers. In float32 they may be passed by this part
-/// of each end: a unit vector's component by a few units in the last place. 2^-18.
-inline constexpr double kFactSlack = 1.0 / (1 << 18);
-
 class RangeMath {
 public:
-  explicit RangeMath(Arithmetic arithmetic) : float_(arithmetic == Arithmetic::Float32) {}
+  explicit RangeMath(Arithmetic arithmetic)
+      : arithmetic_(arithmetic), float_(arithmetic != Arithmetic::Real), ulp_(ulpOf(arithmetic)) {}
+
+  /// A unit in the last place is at most this part of a number.
+  double ulp() const { return ulp_; }
+  /// Facts (an `assume`, a range of a node) speak of exact numbers. In floats they may be passed by this part
+  /// of each end: a unit vector's component by a few units in the last place. 2^-18 in float32.
+  double slack() const { return 32 * ulp_; }
+  /// The smallest number that is not flushed to zero.
+  double least() const { return arithmetic_ == Arithmetic::Mediump ? 0x1p-14 : 0x1p-126; }
 
   Range constant(double x) const;
   /// A stated range, with the slack of float32.
@@ -81,14 +91,21 @@ public:
   Range widened(const Range& a, double relative, double absolute) const;
 
 private:
+  static double ulpOf(Arithmetic arithmetic);
+  /// `vulkan`, or what stands for it in the other arithmetics: units in the last place.
+  double ulps(double vulkan, double ieee, double mediump, double real) const;
   double down(double x, double error) const;
   double up(double x, double error) const;
   /// A rounded value with what it lacks of the exact one, at both ends.
   Range rounded(double lo, double lo_error, double hi, double hi_error, bool nan) const;
   template <class F>
-  Range monotone(const Range& a, F f, double ulps) const;
+  Range monotone(const Range& a, F f, double relative) const;
+  Range exponential(const Range& a, double (*f)(double)) const;
+  Range logarithm(const Range& a, double (*f)(double)) const;
 
+  Arithmetic arithmetic_;
   bool float_;
+  double ulp_;
 };
 
 }  // namespace lacquer::analysis

@@ -77,7 +77,7 @@ Shifted shiftedOf(const ir::Dag& dag, ValueId id) {
 
 /// What would be bounded as a whole may be infinite on the way.
 bool Intervals::overflows(ValueId id, int c) const {
-  return options_.arithmetic == Arithmetic::Float32 && !at(id, c).finite();
+  return options_.arithmetic != Arithmetic::Real && !at(id, c).finite();
 }
 
 void Intervals::pattern(ValueId id, int c, Range& range) const {
@@ -114,8 +114,8 @@ void Intervals::blendPattern(ValueId x, ValueId rest, bool negative, int c, Rang
     const Range k = whole ? Range{0, 0, false} : at(difference.args[negative ? 1 : 0], c);
     Range blend = math_.blend(at(x, c), k, t);
     // A factor above 1 may round past the whole difference, and so may a quotient.
-    if (!small && options_.arithmetic == Arithmetic::Float32 && blend.lo == 0)
-      blend.lo = -0x1p-20 * at(x, c).hi;
+    if (!small && options_.arithmetic != Arithmetic::Real && blend.lo == 0)
+      blend.lo = -8 * math_.ulp() * at(x, c).hi;
     blend.nan = true;
     range = meet(range, blend);
     return;
@@ -183,13 +183,13 @@ void Intervals::unitPattern(ValueId id, int c, Range& range) const {
     collect(dag_, dag_[id].args[1 - k], ir::kNoValue, 0, found);
     for (size_t i = 0; i < found.factors.size(); ++i) {
       const ir::Value& root = dag_[found.factors[i]];
-      if (root.op != Op::InverseSqrt || at(root.args[0], 0).lo < 1e-36) continue;
+      if (root.op != Op::InverseSqrt || at(root.args[0], 0).lo < 85 * math_.least()) continue;
       if (!holdsSquare(root.args[0], v, c, 0)) continue;
       // What else is multiplied stretches the unit vector.
       found.factors.erase(i);
       bool small = true;
       const Range others = productOf(found.factors.all(), found.divisors.all(), c, small);
-      Range unit = math_.mul({-1 - 0x1p-20, 1 + 0x1p-20, false}, others);
+      Range unit = math_.mul({-1 - 8 * math_.ulp(), 1 + 8 * math_.ulp(), false}, others);
       unit.nan = true;
       if (!overflows(dag_[id].args[1 - k], c)) range = meet(range, unit);
       return;

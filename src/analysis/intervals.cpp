@@ -70,6 +70,19 @@ void Intervals::look(ValueId id) {
       value.op == Op::InverseSqrt || (product && (of(0).root || of(1).root)) || (quotient && of(0).root);
   facet.difference = value.op == Op::Sub || (product && (of(0).difference || of(1).difference)) ||
                      (quotient && of(0).difference);
+  const auto many = [&](Op first, Op second, uint8_t Facet::*count) {
+    size_t constants = 0;
+    for (size_t k = 0; k < value.count; ++k) {
+      const ir::Value& operand = dag_[value.args[k]];
+      if (operand.op == Op::Constant) ++constants;
+      if (operand.op == first || operand.op == second || operand.op == Op::Neg) constants += of(k).*count;
+    }
+    return static_cast<uint8_t>(std::min<size_t>(constants, 2));
+  };
+  if (value.op == Op::Add || value.op == Op::Sub || value.op == Op::Neg)
+    facet.addends = many(Op::Add, Op::Sub, &Facet::addends);
+  if (value.op == Op::Mul || value.op == Op::Div || value.op == Op::Neg)
+    facet.factors = many(Op::Mul, Op::Div, &Facet::factors);
   // Patterns of a root look for the component's own square.
   facet.alike =
       !ir::isFloatVector(value.type) || ((value.op != Op::Construct || value.count == 1) &&
@@ -94,6 +107,7 @@ void Intervals::evaluate(ValueId id) {
   for (int c = 0; c < std::min(ir::componentCount(value.type), 4); ++c) {
     Range range = component(id, c);
     pattern(id, c, range);
+    if (options_.arithmetic == Arithmetic::Vulkan) range = regrouped(id, c, range);
     rangesOf(id)[static_cast<size_t>(c)] = range;
     if (facets_[id].alike) return rangesOf(id).fill(range);
   }
@@ -192,7 +206,7 @@ void Intervals::vectorOp(ValueId id) {
     }
   } else {
     const Range squared = dot(a, a);
-    const double end = 1 + kFactSlack;
+    const double end = 1 + math_.slack();
     const bool nan =
         squared.nan || squared.contains(0) || squared.hi == std::numeric_limits<double>::infinity();
     for (int c = 0; c < ir::componentCount(value.type); ++c) {
@@ -361,7 +375,7 @@ Range Intervals::derivative(ValueId id, int c) const {
 Range Intervals::interpolated(const Range& a) const {
   if (options_.arithmetic == Arithmetic::Real) return a;
   const Range beyond = math_.sub(a, a);
-  return math_.widened(math_.add(a, beyond), kFactSlack, 0);
+  return math_.widened(math_.add(a, beyond), math_.slack(), 0);
 }
 
 Range Intervals::lights(ValueId id, int c) const {
@@ -378,14 +392,14 @@ Range Intervals::lights(ValueId id, int c) const {
   const Range count{least, most, false};
   Range total = math_.mul(a, count);
   // `most` additions, each rounded; they keep the sign of terms of one sign.
-  const Range wide = math_.widened(total, most * 0x1p-23, 0);
-  const double magnitude = std::max(std::abs(wide.lo), std::abs(wide.hi)) * most * 0x1p-23;
+  const Range wide = math_.widened(total, most * math_.ulp(), 0);
+  const double magnitude = std::max(std::abs(wide.lo), std::abs(wide.hi)) * most * math_.ulp();
   const Range wider = math_.widened(wide, 0, std::isfinite(magnitude) ? magnitude : 0);
   total.lo = a.lo >= 0 ? std::max(wider.lo, 0.0) : wider.lo;
   total.hi = a.hi <= 0 ? std::min(wider.hi, 0.0) : wider.hi;
   // An infinite term beside one of the other sign.
   const double inf = std::numeric_limits<double>::infinity();
-  total.nan = a.nan || (total.lo == -inf && total.hi == inf && options_.arithmetic == Arithmetic::Float32);
+  total.nan = a.nan || (total.lo == -inf && total.hi == inf && options_.arithmetic != Arithmetic::Real);
   return total;
 }
 

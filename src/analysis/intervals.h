@@ -15,10 +15,11 @@ namespace lacquer::analysis {
 using Ranges = std::array<Range, 4>;
 
 struct IntervalOptions {
-  Arithmetic arithmetic = Arithmetic::Float32;
+  Arithmetic arithmetic = Arithmetic::Vulkan;
   /// Stands for the ends that an input's range leaves open: positions, intensities.
   double unbounded = 3.4028234663852886e38;
-  /// In float32, inputs may pass their ranges by kFactSlack: those of a node are values that were computed.
+  /// In floats, inputs may pass their ranges by RangeMath::slack(): those of a node are values that were
+  /// computed.
   bool computed_inputs = false;
 };
 
@@ -60,6 +61,8 @@ private:
     bool alike = false;       ///< all components are computed alike from components that are
     bool root = false;        ///< it may have a reciprocal square root among its factors
     bool difference = false;  ///< or a difference
+    uint8_t addends = 0;      ///< constants among the terms of a sum of sums, at most 2
+    uint8_t factors = 0;      ///< and among the factors of a product of products
     uint32_t place = 0;       ///< of its ranges; 0 while there are none
   };
 
@@ -81,6 +84,11 @@ private:
   Range lights(ir::ValueId id, int c) const;
   Range dot(ir::ValueId a, ir::ValueId b) const;
   Range product(ir::ValueId id, int c) const;
+
+  // What a compiler may make of operations together.
+  Range regrouped(ir::ValueId id, int c, const Range& as_written) const;
+  Range regroupedSum(ir::ValueId id, int c) const;
+  Range regroupedProduct(ir::ValueId id, int c) const;
 
   // What operations show only together.
   bool overflows(ir::ValueId id, int c) const;

@@ -30,7 +30,7 @@ struct Proofs {
 
 /// Of everything that the module's outputs, varyings and preshader reach. An operation whose operand may be
 /// no number (infinity minus infinity, an environment map without an assumption) is not safe.
-Proofs prove(const ir::Module& module, const IntervalOptions& options = {Arithmetic::Float32, kSceneLimit});
+Proofs prove(const ir::Module& module, const IntervalOptions& options = {Arithmetic::Vulkan, kSceneLimit});
 
 /// The same for some values of an evaluated module; operations only.
 std::vector<Proof> prove(const ir::Module& module, const Intervals& intervals,

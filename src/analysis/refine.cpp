@@ -137,7 +137,7 @@ private:
     const auto k = static_cast<size_t>(axis);
     const Range whole = box[k];
     double middle = whole.lo + (whole.hi - whole.lo) / 2;
-    if (options_.arithmetic == Arithmetic::Float32) middle = static_cast<float>(middle);
+    if (options_.arithmetic != Arithmetic::Real) middle = static_cast<float>(middle);
     if (middle <= whole.lo || middle >= whole.hi) return false;
     box[k].hi = middle;
     if (!prove(box, limit, upper)) return false;

@@ -218,14 +218,15 @@ std::string Graph::dump(const Options& options, std::string_view pass, Messages&
   return {};
 }
 
-std::string Graph::prove(const Options& options, Messages& messages) {
+std::string Graph::prove(const Options& options, Messages& messages, Precision precision) {
   if (!filled(impl_.get(), "graph", messages)) return {};
   const Result<ir::Module> module = impl_->module(options, checkReading);
   if (!module) {
     report(module.error(), impl_->file, messages);
     return {};
   }
-  const Result<std::string> proofs = proveGraph(impl_->graph, *module, **libraryFor(options), options);
+  const Result<std::string> proofs =
+      proveGraph(impl_->graph, *module, **libraryFor(options), options, precision);
   if (proofs) return *proofs;
   report(proofs.error(), impl_->file, messages);
   return {};

@@ -43,6 +43,7 @@ struct Flags {
                       dfg = "table";
   bool json = false, no_validate = false, no_ibl = false, no_multiple_scattering = false, quiet = false;
   bool disassembly = false, time = false, replan = false, no_sync = false;
+  lacquer::Precision precision = lacquer::Precision::Vulkan;  ///< of `prove`
   std::string ninja;
   std::optional<std::string> material;
   std::vector<std::string> arguments;  ///< the program's own, as given
@@ -290,7 +291,8 @@ int dump(const Flags& flags) {
 
 int prove(const Flags& flags) {
   Messages messages;
-  const bool good = lacquer::cli::prove(flags.files, flags.materials, flags.json, flags.options, messages);
+  const lacquer::cli::ProveFlags how{flags.json, flags.precision};
+  const bool good = lacquer::cli::prove(flags.files, flags.materials, how, flags.options, messages);
   print(messages);
   return good && !hasError(messages) ? kGood : kFailed;
 }
@@ -357,6 +359,12 @@ int run(int argc, char** argv) {
   prove_verb->add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   prove_verb->add_flag("--json", flags.json, "as JSON, with everything that is proved");
+  const std::map<std::string, lacquer::Precision> precisions = {{"vulkan", lacquer::Precision::Vulkan},
+                                                                {"ieee", lacquer::Precision::Ieee},
+                                                                {"mediump", lacquer::Precision::Mediump}};
+  prove_verb->add_option("--arithmetic", flags.precision, "what operations compute: vulkan, ieee or mediump")
+      ->transform(CLI::CheckedTransformer(precisions))
+      ->default_str("vulkan");
   if (called(prove_verb)) addShared(*prove_verb, flags);
 
   CLI::App* nodes_verb =

@@ -55,8 +55,8 @@ void printShader(const Json& json) {
   }
 }
 
-bool proveNodes(bool as_json, const Options& options, Messages& messages) {
-  const std::string text = proveNodesJson(options, messages);
+bool proveNodes(const ProveFlags& flags, const Options& options, Messages& messages) {
+  const std::string text = proveNodesJson(options, messages, flags.precision);
   if (text.empty()) return false;
   const Json json = Json::parse(text);
   size_t good = 0;
@@ -66,27 +66,27 @@ bool proveNodes(bool as_json, const Options& options, Messages& messages) {
       good += proved(node[kind]);
       all += node[kind].size();
       const std::string variant = node.contains("variant") ? "." + node["variant"].get<std::string>() : "";
-      if (!as_json) printClaims(node[kind], node["name"].get<std::string>() + variant + ", ");
+      if (!flags.json) printClaims(node[kind], node["name"].get<std::string>() + variant + ", ");
     }
   }
-  if (as_json)
+  if (flags.json)
     fmt::print("{}\n", text);
   else
     fmt::print("{} nodes: {} of {} claims proved\n", json["nodes"].size(), good, all);
   return good == all;
 }
 
-bool proveMaterial(const Scene& scene, size_t material, bool as_json, const Options& options,
+bool proveMaterial(const Scene& scene, size_t material, const ProveFlags& flags, const Options& options,
                    Messages& messages) {
   std::vector<Attributes> uses = scene.uses(material);
   if (uses.empty()) uses.push_back(kUnusedAttributes);
   bool good = true;
   for (const Attributes& attributes : uses) {
     Graph graph = scene.graph(material, attributes, options, messages);
-    const std::string text = graph ? graph.prove(options, messages) : std::string();
+    const std::string text = graph ? graph.prove(options, messages, flags.precision) : std::string();
     good &= !text.empty();
     if (text.empty()) continue;
-    if (as_json)
+    if (flags.json)
       fmt::print("{}\n", text);
     else
       printShader(Json::parse(text));
@@ -96,9 +96,9 @@ bool proveMaterial(const Scene& scene, size_t material, bool as_json, const Opti
 
 }  // namespace
 
-bool prove(const std::vector<std::string>& files, const std::vector<std::string>& materials, bool as_json,
-           const Options& options, Messages& messages) {
-  if (files.empty()) return proveNodes(as_json, options, messages);
+bool prove(const std::vector<std::string>& files, const std::vector<std::string>& materials,
+           const ProveFlags& flags, const Options& options, Messages& messages) {
+  if (files.empty()) return proveNodes(flags, options, messages);
   bool good = true;
   size_t found = 0;
   for (const std::string& file : files) {
@@ -109,7 +109,7 @@ bool prove(const std::vector<std::string>& files, const std::vector<std::string>
           std::find(materials.begin(), materials.end(), scene.materialName(i)) != materials.end();
       if (!materials.empty() && !named) continue;
       ++found;
-      good &= proveMaterial(scene, i, as_json, options, messages);
+      good &= proveMaterial(scene, i, flags, options, messages);
     }
   }
   if (found == 0 && good) {

@@ -79,7 +79,7 @@ public:
   std::string dump(const Options& options, std::string_view pass, Messages& messages);
   /// What is proved of the shader for all inputs in their ranges, as JSON (docs/intervals.md). Empty on an
   /// error.
-  std::string prove(const Options& options, Messages& messages);
+  std::string prove(const Options& options, Messages& messages, Precision precision = Precision::Vulkan);
 
 private:
   friend class Scene;

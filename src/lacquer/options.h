@@ -69,6 +69,13 @@ enum class SpirvRoute : uint8_t {
   Glslang,  ///< through glslang from the GLSL; slower, a cross-check
 };
 
+/// What operations are taken to compute where something is proved of them (docs/intervals.md).
+enum class Precision : uint8_t {
+  Vulkan,   ///< float32 as the Vulkan specification asks for it: what a GPU's compiler may make of the shader
+  Ieee,     ///< float32 as IEEE 754 has it, operation by operation, as on a CPU
+  Mediump,  ///< what `mediump` of GLSL ES and RelaxedPrecision of SPIR-V allow
+};
+
 /// What is known of the lights.
 struct Lights {
   enum class Mode : uint8_t {

@@ -84,6 +84,7 @@ bool writeEnvironmentSheen(const std::string& path, uint32_t size, Messages& mes
 std::string nodesJson(const Options& options, Messages& messages);
 /// What is proved of each of its nodes for all inputs in their ranges, as JSON (docs/intervals.md). The same
 /// options. Empty on an error.
-std::string proveNodesJson(const Options& options, Messages& messages);
+std::string proveNodesJson(const Options& options, Messages& messages,
+                           Precision precision = Precision::Vulkan);
 
 }  // namespace lacquer

@@ -148,7 +148,7 @@ private:
   }
 
   void makeRoots(const std::vector<std::pair<std::string, ir::Interval>>& results) {
-    const analysis::RangeMath math(analysis::Arithmetic::Float32);
+    const analysis::RangeMath math(analysis::Arithmetic::Vulkan);
     const ir::Dag& dag = module_.dag;
     std::vector<ir::ValueId> outputs;
     for (size_t i = 0; i < module_.outputs.size(); ++i) {

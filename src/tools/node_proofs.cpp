@@ -40,7 +40,7 @@ Claim claimOf(const ir::Module& module, const analysis::Intervals& exact, ValueI
   return claim;
 }
 
-ValueId parameterInput(ir::Module& module, const lang::Param& param) {
+ValueId parameterInput(ir::Module& module, const lang::Param& param, ir::Rate rate) {
   const std::string name(param.name);
   if (ir::isTexture(param.type)) {
     ir::TextureSlot slot;
@@ -56,19 +56,20 @@ ValueId parameterInput(ir::Module& module, const lang::Param& param) {
   if (param.type == ir::Type::Bool) range = {{0, 1}, 0};
   const auto index = static_cast<uint32_t>(module.parameters.size());
   module.parameters.push_back({name, param.type, {}, range, {}});
-  return module.dag.input({ir::InputKind::Parameter, name, param.type, ir::Rate::Fragment, range, 0, index});
+  return module.dag.input({ir::InputKind::Parameter, name, param.type, rate, range, 0, index});
 }
 
-Claim operationClaim(const ir::Module& module, const analysis::Proof& proof, const std::string& operand) {
+Claim operationClaim(const ir::Module& module, const analysis::Proof& proof, const std::string& operand,
+                     Arithmetic arithmetic) {
   Claim claim{fmt::format("{} of {}", ir::info(module.dag[proof.id].op).name, operand),
               std::string(proof.need), proof.reached, proof.safe};
   if (claim.proved) return claim;
   // One evaluation may not see it; the same on pieces of the ranges may.
   analysis::RefineOptions refine;
-  refine.arithmetic = Arithmetic::Float32;
+  refine.arithmetic = arithmetic;
   refine.computed_inputs = true;
   refine.budget = 4000;
-  const double least = 1e-30;
+  const double least = std::max(1e-30, analysis::RangeMath(arithmetic).least());
   ir::Interval wanted;
   if (proof.need == ">= 0")
     wanted.lo = 0;
@@ -87,10 +88,11 @@ Claim operationClaim(const ir::Module& module, const analysis::Proof& proof, con
 
 std::string rangeText(const ir::Interval& range) { return fmt::format("in [{}, {}]", range.lo, range.hi); }
 
-NodeModule nodeModule(const lang::NodeDecl& node, std::string_view variant) {
+NodeModule nodeModule(const lang::NodeDecl& node, std::string_view variant, ir::Rate rate) {
   NodeModule result;
   std::vector<ValueId> arguments;
-  for (const lang::Param& param : node.params) arguments.push_back(parameterInput(result.module, param));
+  for (const lang::Param& param : node.params)
+    arguments.push_back(parameterInput(result.module, param, rate));
   bool outermost = true;
   lower::Inliner inliner(result.module.dag, [&](const lang::NodeDecl& callee, std::span<const ValueId> args) {
     if (!std::exchange(outermost, false)) result.calls.push_back({&callee, {args.begin(), args.end()}});
@@ -116,15 +118,30 @@ void proveCall(const ir::Module& module, const NodeModule::Call& call, int budge
   }
 }
 
-NodeProof proveNode(const lang::NodeDecl& node, std::string_view variant) {
-  NodeProof proof{std::string(node.name), std::string(variant), {}, {}, {}};
-  const NodeModule made = nodeModule(node, variant);
+namespace {
+
+/// Whether both compute the same, but for the rate of what goes in.
+bool sameOperations(const ir::Dag& a, const ir::Dag& b) {
+  if (a.size() != b.size()) return false;
+  for (ValueId id = 0; id < a.size(); ++id) {
+    const auto args = a[id].operands();
+    const auto others = b[id].operands();
+    if (a[id].op != b[id].op || a[id].type != b[id].type ||
+        !std::equal(args.begin(), args.end(), others.begin(), others.end()))
+      return false;
+    if (a.isConstant(id) && a.constantOf(id) != b.constantOf(id)) return false;
+  }
+  return true;
+}
+
+void proveModule(const lang::NodeDecl& node, const NodeModule& made, Arithmetic arithmetic,
+                 NodeProof& proof) {
   const ir::Module& module = made.module;
   const std::vector<analysis::Proof> operations =
-      analysis::prove(module, {Arithmetic::Float32, analysis::kSceneLimit, true}).operations;
+      analysis::prove(module, {arithmetic, analysis::kSceneLimit, true}).operations;
   const std::vector<std::string> operands = operandTexts(module, operations);
   for (size_t i = 0; i < operands.size(); ++i)
-    proof.operations.push_back(operationClaim(module, operations[i], operands[i]));
+    proof.operations.push_back(operationClaim(module, operations[i], operands[i], arithmetic));
   analysis::Intervals exact(module, {Arithmetic::Real});
   exact.run();
   for (size_t i = 0; i < node.results.size(); ++i) {
@@ -134,15 +151,27 @@ NodeProof proveNode(const lang::NodeDecl& node, std::string_view variant) {
     proof.results.push_back(claimOf(module, exact, module.outputs[i].value, result.range, what, 20000));
   }
   for (const NodeModule::Call& call : made.calls) proveCall(module, call, 20000, proof.calls);
+}
+
+}  // namespace
+
+NodeProof proveNode(const lang::NodeDecl& node, std::string_view variant, Arithmetic arithmetic) {
+  NodeProof proof{std::string(node.name), std::string(variant), {}, {}, {}};
+  const NodeModule made = nodeModule(node, variant);
+  proveModule(node, made, arithmetic, proof);
+  // `uniform(x)` chooses another body where nothing changes from pixel to pixel.
+  const NodeModule even = nodeModule(node, variant, ir::Rate::Material);
+  if (!sameOperations(made.module.dag, even.module.dag)) proveModule(node, even, arithmetic, proof);
   return proof;
 }
 
-std::vector<NodeProof> proveNodes(const lang::Library& library) {
+std::vector<NodeProof> proveNodes(const lang::Library& library, Arithmetic arithmetic) {
   std::vector<NodeProof> proofs;
   for (const std::string_view name : library.names(lang::DeclKind::Node)) {
     const lang::NodeDecl& node = **library.node(name);
-    proofs.push_back(proveNode(node, {}));
-    for (const lang::Variant& variant : node.variants) proofs.push_back(proveNode(node, variant.name));
+    proofs.push_back(proveNode(node, {}, arithmetic));
+    for (const lang::Variant& variant : node.variants)
+      proofs.push_back(proveNode(node, variant.name, arithmetic));
   }
   return proofs;
 }

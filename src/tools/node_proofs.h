@@ -20,7 +20,7 @@ struct Claim {
 
 struct NodeProof {
   std::string node, variant;      ///< variant: empty for the reference
-  std::vector<Claim> operations;  ///< in float32, on arguments that may pass their ranges by rounding
+  std::vector<Claim> operations;  ///< in these floats, on arguments that may pass their ranges by rounding
   std::vector<Claim> results;     ///< of the exact function
   std::vector<Claim> calls;       ///< arguments of the nodes that it calls, of the exact function
 };
@@ -34,17 +34,21 @@ struct NodeModule {
   };
   std::vector<Call> calls;
 };
-NodeModule nodeModule(const lang::NodeDecl& node, std::string_view variant);
+/// `rate`: of all parameters; by it `uniform(x)` in a body chooses.
+NodeModule nodeModule(const lang::NodeDecl& node, std::string_view variant,
+                      ir::Rate rate = ir::Rate::Fragment);
 
 /// The ranges of the arguments of a call against the callee's contract. Appends a claim for each bounded
 /// parameter.
 void proveCall(const ir::Module& module, const NodeModule::Call& call, int budget,
                std::vector<Claim>& claims);
 
-NodeProof proveNode(const lang::NodeDecl& node, std::string_view variant);
+NodeProof proveNode(const lang::NodeDecl& node, std::string_view variant,
+                    analysis::Arithmetic arithmetic = analysis::Arithmetic::Vulkan);
 
 /// Every variant of every node, by name. The library must check.
-std::vector<NodeProof> proveNodes(const lang::Library& library);
+std::vector<NodeProof> proveNodes(const lang::Library& library,
+                                  analysis::Arithmetic arithmetic = analysis::Arithmetic::Vulkan);
 
 /// "in [0, 1]"
 std::string rangeText(const ir::Interval& range);

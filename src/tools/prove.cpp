@@ -27,6 +27,15 @@ Json claimsJson(const std::vector<Claim>& claims) {
   return json;
 }
 
+analysis::Arithmetic arithmeticOf(Precision precision) {
+  switch (precision) {
+    case Precision::Vulkan: break;
+    case Precision::Ieee: return analysis::Arithmetic::Ieee;
+    case Precision::Mediump: return analysis::Arithmetic::Mediump;
+  }
+  return analysis::Arithmetic::Vulkan;
+}
+
 /// The arguments of all nodes of a graph against their contracts, on the module as lowered.
 Result<std::vector<Claim>> contractClaims(const graph::Graph& graph, const lang::Library& library,
                                           const Options& options) {
@@ -46,10 +55,10 @@ Result<std::vector<Claim>> contractClaims(const graph::Graph& graph, const lang:
 }  // namespace
 
 Result<std::string> proveGraph(const graph::Graph& graph, const ir::Module& module,
-                               const lang::Library& library, const Options& options) {
+                               const lang::Library& library, const Options& options, Precision precision) {
   const Result<std::vector<Claim>> claims = contractClaims(graph, library, options);
   if (!claims) return tl::make_unexpected(claims.error());
-  const analysis::Proofs proofs = analysis::prove(module);
+  const analysis::Proofs proofs = analysis::prove(module, {arithmeticOf(precision), analysis::kSceneLimit});
   const std::vector<std::string> operands = operandTexts(module, proofs.operations);
   Json operations = Json::array();
   for (size_t i = 0; i < operands.size(); ++i) {
@@ -69,7 +78,7 @@ Result<std::string> proveGraph(const graph::Graph& graph, const ir::Module& modu
       .dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string proveNodesJson(const Options& options, Messages& messages) {
+std::string proveNodesJson(const Options& options, Messages& messages, Precision precision) {
   const auto library = libraryFor(options);
   if (!library) {
     report(library.error(), {}, messages);
@@ -80,7 +89,7 @@ std::string proveNodesJson(const Options& options, Messages& messages) {
     return {};
   }
   Json nodes = Json::array();
-  for (const NodeProof& proof : proveNodes(**library)) {
+  for (const NodeProof& proof : proveNodes(**library, arithmeticOf(precision))) {
     Json row = {{"name", proof.node}};
     if (!proof.variant.empty()) row["variant"] = proof.variant;
     row["operations"] = claimsJson(proof.operations);

@@ -12,6 +12,6 @@ namespace lacquer {
 
 /// Of a checked graph and the module that the options make of it, for Graph::prove().
 Result<std::string> proveGraph(const graph::Graph& graph, const ir::Module& module,
-                               const lang::Library& library, const Options& options);
+                               const lang::Library& library, const Options& options, Precision precision);
 
 }  // namespace lacquer

@@ -18,7 +18,7 @@ using analysis::Range;
 using analysis::RangeMath;
 using ir::Op;
 
-const RangeMath kFloat(Arithmetic::Float32);
+const RangeMath kFloat(Arithmetic::Vulkan);
 const RangeMath kReal(Arithmetic::Real);
 
 Range apply(const RangeMath& m, Op op, const Range& a, const Range& b, const Range& c) {

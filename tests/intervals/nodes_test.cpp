@@ -55,6 +55,8 @@ TEST(IntervalNodes, WhatIsNotSoIsNotProved) {
       "node b(float x in [0, 1]) -> float in [0, 1] { return x; }\n/// D.\n/// source: S\n"
       "node a(float x in [0, 2]) -> float in [0, 2] { return b(x); }",
       "node a(float x in [0, 1], float y in [0, 1]) -> float { return sqrt(x - y); }",
+      "node a(float x in [0, 1]) -> float { return uniform(x) ? sqrt(x) : sqrt(x - 0.5); }",
+      "node a(float x in [0, 1]) -> float { return uniform(x) ? sqrt(x - 0.5) : sqrt(x); }",
   };
   for (const char* body : kBodies) {
     const auto made = lang::Library::fromFiles({{"t.node", std::string("/// D.\n/// source: S\n") + body}});

@@ -48,7 +48,7 @@ public:
   size_t outside(size_t together, std::string& what) const {
     size_t count = 0;
     for (size_t first = 0; first < kPoints && !doubles_.empty(); first += together) {
-      Intervals intervals(module_, {analysis::Arithmetic::Float32, analysis::kSceneLimit});
+      Intervals intervals(module_, {analysis::Arithmetic::Vulkan, analysis::kSceneLimit});
       for (const ValueId id : inputs_) intervals.fix(id, box(id, first, together));
       intervals.run();
       for (size_t i = first; i < first + together; ++i) {

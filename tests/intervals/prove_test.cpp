@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace lacquer::test {
 namespace {
 
@@ -20,8 +22,9 @@ protected:
     module_.outputs = {{ir::OutputKind::Color, ir::Stage::Fragment, "o", 0, id}};
     return analysis::prove(module_);
   }
-  bool safe(ValueId id) {
-    const analysis::Proofs proofs = of(id);
+  bool safe(ValueId id, analysis::Arithmetic arithmetic = analysis::Arithmetic::Vulkan) {
+    of(id);
+    const analysis::Proofs proofs = analysis::prove(module_, {arithmetic, analysis::kSceneLimit});
     return proofs.operations.size() == 1 && proofs.operations[0].safe;
   }
 
@@ -64,6 +67,52 @@ TEST_F(Prove, AnEnvironmentMapMayHoldAnything) {
   EXPECT_FALSE(safe(root)) << "a maximum need not hide what is no number";
   dag().assume(texel, {0, 65504});
   EXPECT_TRUE(safe(root));
+}
+
+/// A compiler may add the guard to the constant before it, and nothing of it is left.
+TEST_F(Prove, AGuardThatMeetsAConstantIsNone) {
+  const ValueId x = input("x", {0.5, 1});
+  const ValueId decoded = dag().sub(dag().mul(x, dag().constant(2)), dag().constant(1));
+  const auto divided = [&](ValueId by) { return dag().div(dag().constant(1), by); };
+  const ValueId added = divided(dag().add(decoded, dag().constant(1e-14)));
+  EXPECT_FALSE(safe(added)) << "Vulkan";
+  EXPECT_TRUE(safe(added, analysis::Arithmetic::Ieee));
+  const ValueId large = divided(dag().add(decoded, dag().constant(1e-3)));
+  EXPECT_TRUE(safe(large)) << "it is more than the constant's last place";
+  const ValueId bounded = divided(dag().make(Op::Max, {decoded, dag().constant(1e-14)}));
+  EXPECT_TRUE(safe(bounded)) << "a bound stays one";
+}
+
+/// Between them lies a value that may be told apart: (c + x) + (y - c), and a factor that underflows.
+TEST_F(Prove, ConstantsMeetThroughSumsAndProducts) {
+  const ValueId x = input("x", {0, 1});
+  const ValueId y = input("y", {0, 1});
+  const ValueId far = dag().add(dag().add(x, dag().constant(1e-9)), dag().sub(y, dag().constant(-1)));
+  EXPECT_TRUE(safe(dag().div(x, far)));
+  const ValueId taken =
+      dag().add(dag().add(y, dag().constant(-1)),
+                dag().sub(dag().constant(1e-9), dag().make(Op::Neg, {dag().add(x, dag().constant(1))})));
+  EXPECT_FALSE(safe(dag().div(x, taken)));
+  const ValueId z = input("z", {1, 2});
+  const ValueId small = dag().mul(dag().mul(dag().mul(z, dag().constant(1e-20)), y), dag().constant(1e-20));
+  (void)of(small);
+  const ValueId least = dag().mul(dag().mul(dag().mul(input("w", {1e30, 1e31}), dag().constant(1e-25)), z),
+                                  dag().constant(1e-25));
+  EXPECT_TRUE(safe(dag().div(x, least), analysis::Arithmetic::Ieee));
+  EXPECT_FALSE(safe(dag().div(x, least))) << "1e-50 is 0";
+}
+
+TEST_F(Prove, MediumpHasTenBits) {
+  const ValueId x = input("x", {0, 1});
+  const ValueId guarded = dag().div(x, dag().make(Op::Max, {x, dag().constant(1e-6)}));
+  EXPECT_TRUE(safe(guarded));
+  EXPECT_FALSE(safe(guarded, analysis::Arithmetic::Mediump)) << "flushed below 2^-14";
+  const ValueId larger = dag().div(x, dag().make(Op::Max, {x, dag().constant(1e-3)}));
+  EXPECT_TRUE(safe(larger, analysis::Arithmetic::Mediump));
+  const ValueId square = dag().mul(input("y", {0, 200}), input("z", {0, 200}));
+  module_.outputs = {{ir::OutputKind::Color, ir::Stage::Fragment, "o", 0, square}};
+  const analysis::Proofs proofs = analysis::prove(module_, {analysis::Arithmetic::Mediump});
+  EXPECT_EQ(proofs.outputs[0].reached.hi, std::numeric_limits<double>::infinity()) << "beyond 2^14";
 }
 
 TEST_F(Prove, OutputsAreReported) {

@@ -135,7 +135,7 @@ TEST(IntervalSoundness, RandomDags) {
   for (uint32_t seed = 0; seed < 400; ++seed) {
     const RandomDag random(seed);
     expectSound(random.module(), {}, 100, "seed " + std::to_string(seed));
-    expectSound(random.module(), {analysis::Arithmetic::Float32, 1e4}, 100, "seed " + std::to_string(seed));
+    expectSound(random.module(), {analysis::Arithmetic::Vulkan, 1e4}, 100, "seed " + std::to_string(seed));
   }
 }
 
@@ -159,7 +159,7 @@ TEST(IntervalSoundness, Nodes) {
   for (const std::string_view name : library.names(lang::DeclKind::Node)) {
     const NodeModule made = nodeModule(**library.node(name), {});
     // The geometry's cosines are rounded: inputs that were computed.
-    expectSound(made.module, {analysis::Arithmetic::Float32, analysis::kSceneLimit, true}, 5000,
+    expectSound(made.module, {analysis::Arithmetic::Vulkan, analysis::kSceneLimit, true}, 5000,
                 std::string(name));
   }
 }
@@ -195,7 +195,7 @@ void eachExample(F f) {
 
 TEST(IntervalSoundness, Examples) {
   eachExample([](const ir::Module& module, const std::string& name) {
-    expectSound(module, {analysis::Arithmetic::Float32, analysis::kSceneLimit}, 1000, name);
+    expectSound(module, {analysis::Arithmetic::Vulkan, analysis::kSceneLimit}, 1000, name);
   });
 }
 
@@ -206,7 +206,7 @@ TEST(IntervalSoundness, PlacedModules) {
     // looked at.
     module.outputs.clear();
     module.varyings.clear();
-    expectSound(module, {analysis::Arithmetic::Float32, analysis::kSceneLimit}, 1000, name);
+    expectSound(module, {analysis::Arithmetic::Vulkan, analysis::kSceneLimit}, 1000, name);
   });
 }
 

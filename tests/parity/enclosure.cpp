@@ -34,7 +34,7 @@ Enclosure::Enclosure(const ir::Module& module, const eval::Bindings& bindings,
       bindings_(bindings),
       sizes_(sizes),
       options_(options),
-      math_(analysis::Arithmetic::Float32),
+      math_(analysis::Arithmetic::Vulkan),
       values_(module.dag.size()) {
   for (ValueId id = 0; id < dag_.size(); ++id) {
     if (dag_[id].op == Op::SumOverLights) bodies_[id] = ir::reachable(dag_, {{dag_[id].args[0]}});
