@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
 
 #include "lang/checker.h"
 
@@ -37,7 +40,7 @@ void Checker::property(PropertyDecl& item, bool texture_member) {
     }
     return;
   }
-  if (item.kind == Kind::Choice) return;
+  if (item.kind == Kind::Choice) return choices(item);
   if (item.type != Type::Bool && !ir::isFloating(item.type)) {
     reporter_.error("wrong-type", item.span, fmt::format("a property cannot be {}", aType(item.type)),
                     "bools, floats, vectors, textures and choices are possible");
@@ -52,6 +55,49 @@ void Checker::property(PropertyDecl& item, bool texture_member) {
     item.tested = (*tested)[0];
   if (item.neutral_syntax) {
     item.neutral = value(item.neutral_syntax, item.type, fmt::format("the neutral value of '{}'", item.name));
+  }
+  numbers(item, texture_member);
+}
+
+void Checker::choices(const PropertyDecl& item) {
+  std::set<std::string_view> seen;
+  for (const std::string_view choice : item.choices) {
+    if (seen.insert(choice).second) continue;
+    reporter_.error("duplicate-name", spanOf(choice),
+                    fmt::format("'{}' is a value of '{}' already", choice, item.name));
+  }
+}
+
+/// The numbers that stand beside a property's range must make sense with it.
+void Checker::numbers(const PropertyDecl& item, bool texture_member) {
+  if (texture_member && item.type != Type::Float) {
+    reporter_.error("wrong-type", item.span, fmt::format("a textureInfo has no {}", ir::typeName(item.type)),
+                    "its numbers are floats");
+  }
+  constexpr std::string_view kTaken[] = {"index", "texCoord", "extensions", "extras"};
+  if (texture_member && std::find(std::begin(kTaken), std::end(kTaken), item.name) != std::end(kTaken)) {
+    reporter_.error("duplicate-name", item.span, fmt::format("a textureInfo has '{}' anyway", item.name));
+  }
+  const auto outside = [&](const ir::Components& value) {
+    for (int c = 0; c < ir::componentCount(item.type); ++c) {
+      const double x = value[static_cast<size_t>(c)];
+      if (!std::isfinite(x) || (ir::isFloating(item.type) && !item.range.contains(x))) return true;
+    }
+    return false;
+  };
+  if (item.neutral && outside(*item.neutral)) {
+    reporter_.error("out-of-range", item.neutral_syntax ? item.neutral_syntax->span : item.span,
+                    fmt::format("the neutral value of '{}' is not in its range", item.name),
+                    fmt::format("the range is {}", ir::rangeText(item.range)));
+  }
+  if (item.default_value && outside(*item.default_value)) {
+    reporter_.error("out-of-range", item.span,
+                    fmt::format("the default of '{}' is no number of its range", item.name));
+  }
+  if (item.tested && !item.range.contains(*item.tested)) {
+    reporter_.error("out-of-range", item.span,
+                    fmt::format("'{}' is tested to {}, which is not in its range", item.name, *item.tested),
+                    fmt::format("the range is {}", ir::rangeText(item.range)));
   }
 }
 

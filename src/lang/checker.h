@@ -96,6 +96,8 @@ private:
   // check_model.cpp
   void modelDoc(const std::string& doc, const std::string* source, Span span, std::string_view what);
   void property(PropertyDecl& item, bool texture_member);
+  void choices(const PropertyDecl& item);
+  void numbers(const PropertyDecl& item, bool texture_member);
 
   // check_template.cpp
   void parts(TemplateDecl& decl, uint32_t& slots);

@@ -39,6 +39,7 @@ struct ExtensionDecl {
   std::vector<PropertyDecl> properties;
   Origin origin;
   Span span;
+  std::string_view text;  ///< of the file
 };
 
 /// One of the values that a line can have: the first whose condition holds and which is there is the line's.

@@ -59,6 +59,7 @@ void Parser::braces(std::string_view after, Item item) {
 
 ExtensionDecl Parser::extension() {
   ExtensionDecl decl;
+  decl.text = reporter_.text();
   docs(decl.doc, &decl.source);
   decl.core = is("material");
   ++at_;

@@ -7,13 +7,19 @@
 #include <iterator>
 #include <utility>
 
+#include "lang/suggest.h"
+
 namespace lacquer::material {
 
 namespace {
 
-Diagnostic problem(const lang::Origin& origin, std::string code, std::string message, std::string help = {}) {
-  return {std::move(code),    Severity::Error, {std::string(origin.file), origin.line, 0, {}},
-          std::move(message), std::move(help), {}};
+/// `at`: a word of the extension's text.
+Diagnostic problem(const lang::ExtensionDecl& decl, std::string_view at, std::string code,
+                   std::string message, std::string help = {}) {
+  Diagnostic one{std::move(code),    Severity::Error, {std::string(decl.origin.file), 0, 0, {}},
+                 std::move(message), std::move(help), {}};
+  locate(one, decl.text, static_cast<size_t>(at.data() - decl.text.data()), at.size());
+  return one;
 }
 
 void addProperties(Schema& schema, uint16_t extension, std::span<const lang::PropertyDecl> decls,
@@ -53,11 +59,80 @@ void checkRoles(const Schema& schema, Diagnostics& wrong) {
       const bool meant = said(*other.decl) || !std::exchange(named, true);
       if (alike && meant) continue;
       wrong.push_back(problem(
-          schema.extensions[other.extension]->origin, "duplicate-name",
+          *schema.extensions[other.extension], other.decl->name, "duplicate-name",
           fmt::format("two extensions have a property '{}'{}", role, alike ? "" : " of different types"),
           alike ? "where they mean the same, say so by `as`; else give one another name by `as`"
                 : "give one of them another name by `as`"));
     }
+  }
+}
+
+/// Parameters and textures have names of their own, which are made of those of the properties: what one
+/// property takes no other may.
+void checkParameterNames(const Schema& schema, Diagnostics& wrong) {
+  std::map<std::string, const Property*> owners;
+  const auto take = [&](const Property& property, const std::string& name) {
+    const auto [owner, fresh] = owners.try_emplace(name, &property);
+    if (fresh || owner->second->decl->role == property.decl->role) return;
+    const Property& other = *owner->second;
+    wrong.push_back(
+        problem(*schema.extensions[property.extension], property.decl->name, "duplicate-name",
+                fmt::format("'{}' and '{}' of {} would both be called '{}' in shaders", property.decl->name,
+                            other.decl->name, schema.extensions[other.extension]->name, name),
+                "give this one another name by `as`"));
+  };
+  for (const Property& property : schema.properties) {
+    if (property.decl->kind != Kind::Texture) {
+      take(property, property.parameter_name);
+      continue;
+    }
+    take(property, property.parameter_name + "_texture");
+    for (const lang::PropertyDecl& member : property.decl->members)
+      take(property, fmt::format("{}_{}", property.parameter_name, parameterName(member.name)));
+    for (const char* part : {"offset", "rotation", "scale"})
+      take(property, fmt::format("{}_uv_{}", property.parameter_name, part));
+  }
+}
+
+/// The names of other extensions that an extension states are those of some.
+void checkRelations(const Schema& schema, const lang::ExtensionDecl& decl, Diagnostics& wrong) {
+  std::vector<std::string_view> names;
+  for (const lang::ExtensionDecl* one : schema.extensions) {
+    if (one->core) continue;
+    names.push_back(one->name);
+    names.insert(names.end(), one->drafts.begin(), one->drafts.end());
+  }
+  const auto check = [&](const std::vector<std::string_view>& list) {
+    for (const std::string_view name : list) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) {
+        wrong.push_back(problem(decl, name, "unknown-extension",
+                                fmt::format("there is no extension '{}'", name),
+                                lang::didYouMean(name, names)));
+      } else if (name == decl.name) {
+        wrong.push_back(problem(decl, name, "wrong-extension", "this is the extension itself"));
+      }
+    }
+  };
+  for (const auto* list : {&decl.needs, &decl.excludes, &decl.yields_to, &decl.loses_to}) check(*list);
+  for (const std::string_view draft : decl.drafts) {
+    if (std::count(names.begin(), names.end(), draft) == 1) continue;
+    wrong.push_back(
+        problem(decl, draft, "duplicate-name", fmt::format("'{}' is another extension's name", draft)));
+  }
+  for (const std::string_view over : decl.yields_to) {
+    const std::optional<uint16_t> other = schema.find(over);
+    if (!other) continue;
+    const auto& back = schema.extensions[*other]->yields_to;
+    if (std::find(back.begin(), back.end(), decl.name) == back.end()) continue;
+    wrong.push_back(problem(decl, over, "wrong-extension", fmt::format("'{}' yields to this one, too", over),
+                            "neither would have an effect"));
+  }
+  constexpr std::string_view kStatus[] = {"ratified", "candidate", "draft", "archived", "vendor"};
+  if (!decl.status.empty() &&
+      std::find(std::begin(kStatus), std::end(kStatus), decl.status) == std::end(kStatus)) {
+    wrong.push_back(problem(
+        decl, decl.status, "unknown-value", fmt::format("'{}' is no status", decl.status),
+        lang::didYouMean(decl.status, kStatus, "there are ratified, candidate, draft, archived and vendor")));
   }
 }
 
@@ -120,14 +195,15 @@ Result<Schema> schemaOf(const lang::Library& library) {
   for (size_t i = 1; i < schema.extensions.size(); ++i) {
     const lang::ExtensionDecl& decl = *schema.extensions[i];
     if (decl.core) {
-      wrong.push_back(problem(decl.origin, "duplicate-name", "there is another `material`",
+      wrong.push_back(problem(decl, decl.name, "duplicate-name", "there is another `material`",
                               fmt::format("glTF's own is '{}'", schema.extensions[0]->name)));
     }
     // One level is all that glTF has; a longer chain could close in a circle.
     const std::optional<uint16_t> around = decl.inside.empty() ? std::nullopt : schema.find(decl.inside);
     if (!decl.inside.empty() && (!around || !schema.extensions[*around]->inside.empty() || *around == 0)) {
-      wrong.push_back(problem(decl.origin, "unknown-extension",
-                              fmt::format("there is no extension '{}' for it to stand in", decl.inside)));
+      wrong.push_back(problem(decl, decl.inside, "unknown-extension",
+                              fmt::format("there is no extension '{}' for it to stand in", decl.inside),
+                              "it must be one that stands in the material itself"));
     }
   }
   if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
@@ -137,6 +213,8 @@ Result<Schema> schemaOf(const lang::Library& library) {
     addProperties(schema, index, schema.extensions[i]->properties, path.empty() ? "" : path + "/");
   }
   checkRoles(schema, wrong);
+  checkParameterNames(schema, wrong);
+  for (const lang::ExtensionDecl* decl : schema.extensions) checkRelations(schema, *decl, wrong);
   if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
   return schema;
 }

@@ -9,6 +9,7 @@
 #include "lang/parser.h"
 #include "lang/reporter.h"
 #include "lang/suggest.h"
+#include "model/check.h"
 #include "model/model.h"
 #include "model/names.h"
 
@@ -31,26 +32,16 @@ public:
   Result<Model> run(std::string_view profile);
 
 private:
-  /// The text that is being resolved.
-  struct Source {
-    std::string_view file, text;
-  };
-  struct PathUse {
-    uint32_t id;
-    std::string_view path;
-    Span span;
-    Source source;
-  };
-
   void collectParts();
   void insertOver(std::vector<const lang::PartDecl*>& parts);
   void declare(const std::vector<LineDecl>& lines);
   void part(uint32_t index);
   void lines(uint32_t part, uint32_t first_term);
+  void overridden(const LineDecl& own, const LineDecl& other);
   void profileLines();
   const LineDecl* overriding(std::string_view id) const;
   Line line(const LineDecl& decl, uint32_t part, uint32_t term);
-  void place(Line line);
+  void place(Line line, const LineDecl& decl);
   Condition condition(const ExprPtr& expr);
   Condition operation(const Expr& expr);
   Condition comparison(const Expr& expr);
@@ -60,26 +51,24 @@ private:
   void argument(Value& call, const Expr& expr, size_t at);
   bool constant(const Expr& expr, Value& out);
   Value reference(const Expr& expr);
-  void checkPaths();
-  bool fits(const Value& value, std::string_view path, int depth) const;
-  bool fits(uint32_t id, std::string_view path, int depth) const;
+  bool comparable(const Value& left, const Value& right, const Expr& expr);
+  void checkNames();
   void findLive();
   void order();
 
   void error(Span span, std::string code, std::string message, std::string help = {});
-  void error(const Source& source, Span span, std::string code, std::string message, std::string help = {});
+  void error(const Text& source, Span span, std::string code, std::string message, std::string help = {});
 
   const lang::Library& library_;
   Model model_;
   Names names_;
-  Source source_;
+  Text source_;
   Diagnostics wrong_;
-  std::vector<PathUse> paths_;
+  Uses uses_;
   std::set<const LineDecl*> placed_;  ///< the profile's lines that stand in place of others
 };
 
-void Compiler::error(const Source& source, Span span, std::string code, std::string message,
-                     std::string help) {
+void Compiler::error(const Text& source, Span span, std::string code, std::string message, std::string help) {
   lang::Reporter reporter(source.file, source.text);
   reporter.error(code, span, std::move(message), std::move(help));
   Diagnostics one = reporter.take();
@@ -209,6 +198,8 @@ Line Compiler::line(const LineDecl& decl, uint32_t part, uint32_t term) {
       error(decl.target->span, "wrong-line", "only another line's value can be replaced");
   }
   if (decl.kind == LineDecl::Kind::Out) line.id = names_.out(decl.id);
+  if (decl.kind == LineDecl::Kind::Replace && line.target.kind == Value::Kind::Id)
+    uses_.ids.insert(line.target.index);
   if (decl.kind == LineDecl::Kind::Value || decl.kind == LineDecl::Kind::Flag) line.id = names_.id(decl.id);
   for (const lang::Alternative& alternative : decl.alternatives) {
     Alternative one;
@@ -224,7 +215,7 @@ Line Compiler::line(const LineDecl& decl, uint32_t part, uint32_t term) {
   return line;
 }
 
-void Compiler::place(Line line) {
+void Compiler::place(Line line, const LineDecl& decl) {
   const auto index = static_cast<uint32_t>(model_.lines.size());
   switch (line.kind) {
     case LineDecl::Kind::Value:
@@ -238,6 +229,7 @@ void Compiler::place(Line line) {
       break;
   }
   model_.lines.push_back(std::move(line));
+  uses_.lines.push_back({index, &decl, source_});
 }
 
 void Compiler::part(uint32_t index) {
@@ -252,7 +244,10 @@ void Compiler::part(uint32_t index) {
     made.when_reason = term.when_reason;
     made.unless_reason = term.unless_reason;
     made.has_unless = term.unless != nullptr;
-    names_.addTerm(term.name, static_cast<uint32_t>(model_.terms.size()));
+    if (!names_.addTerm(term.name, static_cast<uint32_t>(model_.terms.size()))) {
+      error({decl.origin.file, decl.text}, term.span, "duplicate-name",
+            fmt::format("there is a term or a part '{}' already", term.name), "give this one another name");
+    }
     model_.terms.push_back(std::move(made));
   }
 }
@@ -275,16 +270,26 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
       error(own.span, "unknown-section", fmt::format("there is no section '{}'", own.section),
             "the layers say which sections there are");
     }
-    const Source here = source_;
-    if (other != nullptr) source_ = {model_.profile->origin.file, model_.profile->text};
+    const Text here = source_;
+    if (other != nullptr) overridden(own, *other);
     Line made = line(other == nullptr ? own : *other, part, first_term + own.term);
-    source_ = here;
     constexpr uint32_t kLinesOfPart = 1024, kParts = 1024;
     made.order = (section.value_or(0) * kParts + std::min(part, kParts - 1)) * kLinesOfPart +
                  static_cast<uint32_t>(std::min<size_t>(i, kLinesOfPart - 1));
     if (made.shared) made.order = Line::kNone;
-    place(std::move(made));
+    place(std::move(made), other == nullptr ? own : *other);
+    source_ = here;
   }
+}
+
+/// From here on the profile's text is read, which has a line in place of a part's.
+void Compiler::overridden(const LineDecl& own, const LineDecl& other) {
+  source_ = {model_.profile->origin.file, model_.profile->text};
+  model_.ids[names_.id(own.id)].overridden = true;
+  if (own.kind == other.kind) return;
+  const bool flag = own.kind == LineDecl::Kind::Flag;
+  error(other.span, "wrong-type", fmt::format("'{}' is {}", own.id, flag ? "a bool" : "a value, no bool"),
+        flag ? fmt::format("write `bool {} = ...;`", own.id) : fmt::format("write `{} = ...;`", own.id));
 }
 
 /// What a profile adds beside the lines that it replaces stands outside of all parts.
@@ -298,7 +303,8 @@ void Compiler::profileLines() {
     }
     Line made = line(decl, static_cast<uint32_t>(model_.parts.size()), Line::kNone);
     made.order = Line::kNone;
-    place(std::move(made));
+    uses_.adds.insert(static_cast<uint32_t>(model_.lines.size()));
+    place(std::move(made), decl);
   }
 }
 
@@ -361,8 +367,10 @@ Value Compiler::reference(const Expr& expr) {
           lang::didYouMean(text, candidates));
     return {};
   }
+  if (out.kind == Value::Kind::Id) uses_.ids.insert(out.index);
+  if (out.kind == Value::Kind::Below) uses_.outs.insert(out.index);
   if (out.kind == Value::Kind::Id && !out.path.empty())
-    paths_.push_back({out.index, out.path, expr.span, source_});
+    uses_.paths.push_back({out.index, out.path, source_, expr.span});
   return out;
 }
 
@@ -424,6 +432,7 @@ void Compiler::argument(Value& call, const Expr& expr, size_t at) {
     return error(expr.args[at]->span, "wrong-line", "a line is one node", "give this one a line of its own");
   }
   call.args[index] = value(expr.args[at]);
+  uses_.arguments.push_back({call.args[index], &params[index], source_, expr.args[at]->span});
 }
 
 // -- conditions --
@@ -453,6 +462,7 @@ Condition Compiler::condition(const ExprPtr& expr) {
     if (expr->name == "takes") {
       out.kind = Condition::Kind::Takes;
       out.name = names_.textOf(source_.text, expr->args[0]->span);
+      uses_.ports.push_back({out.name, source_, expr->args[0]->span});
       return out;
     }
   }
@@ -472,6 +482,29 @@ Condition Compiler::operation(const Expr& expr) {
                                  : Condition::Kind::Or;
   for (const ExprPtr& arg : expr.args) out.conditions.push_back(condition(arg));
   return out;
+}
+
+/// Whether a value may be compared with a number, or a bool.
+bool Compiler::comparable(const Value& left, const Value& right, const Expr& expr) {
+  const auto wrong = [&](std::string message, std::string help = {}) {
+    error(expr.span, "wrong-condition", std::move(message), std::move(help));
+    return false;
+  };
+  if (left.kind == Value::Kind::None) return false;  // said already
+  if (left.kind != Value::Kind::Role)
+    return wrong("only a property of the material can be compared with a number");
+  const lang::PropertyDecl* decl = model_.schema->properties[model_.roles[left.index].providers[0]].decl;
+  if (decl->kind == material::Kind::Choice) return true;
+  if (decl->kind == material::Kind::Texture) {
+    if (left.member < 0)
+      return wrong(fmt::format("'{}' is a texture", decl->name),
+                   fmt::format("`!{}` asks whether there is none", decl->name));
+    decl = &decl->members[static_cast<size_t>(left.member)];
+  }
+  if (!left.path.empty()) return wrong("the whole property is compared, no component of it");
+  if (decl->type == right.type) return true;
+  return wrong(fmt::format("'{}' is a {}, it is compared with a {}", decl->name, ir::typeName(decl->type),
+                           ir::typeName(right.type)));
 }
 
 Condition Compiler::comparison(const Expr& expr) {
@@ -503,10 +536,7 @@ Condition Compiler::comparison(const Expr& expr) {
     out.kind = Condition::Kind::Equal;
     out.constant = right.constant;
     if (right.type == ir::Type::Float) out.constant.fill(right.constant[0]);
-    if (left.kind != Value::Kind::Role) {
-      error(expr.args[0]->span, "wrong-condition",
-            "only a property of the material can be compared with a number");
-    }
+    comparable(left, right, *expr.args[0]);
     out.values = {left};
   } else {
     out.kind = Condition::Kind::Same;
@@ -522,7 +552,10 @@ Condition Compiler::comparison(const Expr& expr) {
 Condition Compiler::named(const Expr& expr) {
   const std::string_view text = names_.textOf(source_.text, expr.span);
   Condition out;
-  if (names_.condition(text, out)) return out;
+  if (names_.condition(text, out)) {
+    if (out.kind == Condition::Kind::Flag) uses_.ids.insert(out.index);
+    return out;
+  }
   out.kind = Condition::Kind::Present;
   out.values.push_back(reference(expr));
   return out;
@@ -530,34 +563,19 @@ Condition Compiler::named(const Expr& expr) {
 
 // -- what holds across lines --
 
-/// Whether what is behind an id's point is an output of one of its nodes, or a swizzle.
-bool Compiler::fits(uint32_t id, std::string_view path, int depth) const {
-  constexpr int kDeepest = 32;
-  if (depth > kDeepest) return true;
-  for (const uint32_t line : model_.ids[id].lines) {
-    for (const Alternative& alternative : model_.lines[line].alternatives) {
-      if (fits(alternative.value, path, depth)) return true;
-    }
-  }
-  return false;
-}
-
-bool Compiler::fits(const Value& value, std::string_view path, int depth) const {
-  if (path.empty() || isSwizzle(path)) return true;
-  if (value.kind == Value::Kind::Id) return value.path.empty() ? fits(value.index, path, depth + 1) : false;
-  if (value.kind == Value::Kind::Below) return true;
-  if (value.kind != Value::Kind::Call) return false;
-  const std::string_view head = path.substr(0, path.find('.'));
-  const bool output = std::any_of(value.node->results.begin(), value.node->results.end(),
-                                  [&](const lang::Param& result) { return result.name == head; });
-  return output && (head.size() == path.size() || isSwizzle(path.substr(head.size() + 1)));
-}
-
-void Compiler::checkPaths() {
-  for (const PathUse& use : paths_) {
-    if (fits(use.id, use.path, 0)) continue;
-    error(use.source, use.span, "unknown-output",
-          fmt::format("'{}' has no output '{}'", model_.ids[use.id].name, use.path));
+/// A property's name is that of nothing else that a line could mean.
+void Compiler::checkNames() {
+  for (const Role& role : model_.roles) {
+    Value other;
+    const char* what = names_.hasGiven(role.name) ? "what templates give"
+                       : names_.hasId(role.name)  ? "a line"
+                                                  : nullptr;
+    if (what == nullptr) continue;
+    const material::Property& property = model_.schema->properties[role.providers[0]];
+    const lang::ExtensionDecl& extension = *model_.schema->extensions[property.extension];
+    error({extension.origin.file, extension.text}, property.decl->span, "duplicate-name",
+          fmt::format("'{}' is the name of {}, too", role.name, what),
+          fmt::format("parts can call it otherwise: `{} as NAME`", property.decl->name));
   }
 }
 
@@ -624,7 +642,9 @@ Result<Model> Compiler::run(std::string_view profile) {
   for (uint32_t i = 0; i < model_.parts.size(); ++i) part(i);
   for (uint32_t i = 0; i < model_.parts.size(); ++i) lines(i, model_.parts[i].term);
   profileLines();
-  checkPaths();
+  checkNames();
+  const Diagnostics across = check(library_, model_, uses_);
+  wrong_.insert(wrong_.end(), across.begin(), across.end());
   if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
   findLive();
   order();

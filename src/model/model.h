@@ -57,7 +57,7 @@ struct Condition {
     Term,       ///< `index` in Model::terms
     Uniform,    ///< values[0] does not change from pixel to pixel
     Takes,      ///< the template has a port `name`
-    Replaced,   ///< another part has put something in place of values[0], a line's value
+    Replaced,   ///< another part, or the profile, has put something in place of values[0], a line's value
   };
   Kind kind = Kind::Always;
   uint32_t index = 0;
@@ -94,6 +94,7 @@ struct Id {
   std::string_view name;
   std::vector<uint32_t> lines;     ///< that say it
   std::vector<uint32_t> replaced;  ///< lines that replace it, or one of its outputs, by part
+  bool overridden = false;         ///< the profile has another line in its place
 };
 
 struct Term {

@@ -64,6 +64,12 @@ void Names::addOut(std::string_view name) {
   if (fresh) model_.outs.push_back({name, {}});
 }
 
+bool Names::hasGiven(std::string_view name) const {
+  return std::any_of(givens_.begin(), givens_.end(), [&](const auto& given) {
+    return std::string_view(given.first).substr(0, given.first.find('.')) == name;
+  });
+}
+
 std::optional<uint32_t> Names::section(std::string_view name) const {
   if (name.empty()) return 0;
   const auto it = std::find(sections_.begin(), sections_.end(), name);

@@ -25,11 +25,15 @@ public:
   void addId(std::string_view name);
   void addFlag(std::string_view name) { flags_.insert(name); }
   void addOut(std::string_view name);
-  void addTerm(std::string_view name, uint32_t index) { terms_.emplace(name, index); }
+  /// False when there is one.
+  bool addTerm(std::string_view name, uint32_t index) { return terms_.emplace(name, index).second; }
   void sections(const std::vector<std::string_view>& names) { sections_ = names; }
 
   uint32_t id(std::string_view name) const { return ids_.at(name); }
   uint32_t out(std::string_view name) const { return outs_.at(name); }
+  bool hasId(std::string_view name) const { return ids_.contains(name); }
+  /// "view", "light_sample" of "light_sample.L", a texture of the environment.
+  bool hasGiven(std::string_view name) const;
   /// The place of a section; of none, the first.
   std::optional<uint32_t> section(std::string_view name) const;
 

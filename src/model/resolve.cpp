@@ -404,7 +404,9 @@ bool Resolver::holds(const Condition& condition, const Line& line) {
     case Condition::Kind::Extension: return material_.has(static_cast<uint16_t>(condition.index));
     case Condition::Kind::Term: return alive(condition.index);
     case Condition::Kind::Uniform: return uniform(found(condition.values[0], line));
-    case Condition::Kind::Replaced: return static_cast<bool>(replacement(condition.values[0], line.part));
+    case Condition::Kind::Replaced:
+      return model_.ids[condition.values[0].index].overridden ||
+             static_cast<bool>(replacement(condition.values[0], line.part));
     case Condition::Kind::Takes:
       return std::any_of(template_.ports.begin(), template_.ports.end(),
                          [&](const lang::PortDecl& port) { return port.param.name == condition.name; });

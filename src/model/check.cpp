@@ -1,0 +1,200 @@
+#include "model/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "lang/reporter.h"
+#include "lang/suggest.h"
+#include "model/names.h"
+#include "model/types.h"
+
+namespace lacquer::model {
+
+namespace {
+
+using lang::LineDecl;
+using Kind = LineDecl::Kind;
+
+class Check {
+public:
+  Check(const lang::Library& library, const Model& model, const Uses& uses)
+      : model_(model), uses_(uses), types_(library, model) {}
+
+  Diagnostics run() {
+    paths();
+    arguments();
+    ports();
+    doubles();
+    for (const Uses::Placed& placed : uses_.lines) line(placed);
+    return std::move(wrong_);
+  }
+
+private:
+  void error(const Text& text, lang::Span span, std::string code, std::string message,
+             std::string help = {}) {
+    lang::Reporter reporter(text.file, text.text);
+    reporter.error(code, span, std::move(message), std::move(help));
+    Diagnostics one = reporter.take();
+    wrong_.insert(wrong_.end(), one.begin(), one.end());
+  }
+
+  bool fits(const Value& value, std::string_view path, int depth) const;
+  bool fits(uint32_t id, std::string_view path, int depth) const;
+  void paths();
+  void arguments();
+  void ports();
+  void doubles();
+  void line(const Uses::Placed& placed);
+  void typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, std::string_view what);
+  void added(const Uses::Placed& placed);
+
+  const Model& model_;
+  const Uses& uses_;
+  Types types_;
+  Diagnostics wrong_;
+};
+
+/// Whether what is behind an id's point is an output of one of its nodes, or a swizzle.
+bool Check::fits(uint32_t id, std::string_view path, int depth) const {
+  constexpr int kDeepest = 32;
+  if (depth > kDeepest) return true;
+  for (const uint32_t line : model_.ids[id].lines) {
+    for (const Alternative& alternative : model_.lines[line].alternatives) {
+      if (fits(alternative.value, path, depth)) return true;
+    }
+  }
+  return false;
+}
+
+bool Check::fits(const Value& value, std::string_view path, int depth) const {
+  if (path.empty() || isSwizzle(path)) return true;
+  if (value.kind == Value::Kind::Id) return value.path.empty() ? fits(value.index, path, depth + 1) : false;
+  if (value.kind == Value::Kind::Below) return true;
+  if (value.kind != Value::Kind::Call) return false;
+  const std::string_view head = path.substr(0, path.find('.'));
+  const bool output = std::any_of(value.node->results.begin(), value.node->results.end(),
+                                  [&](const lang::Param& result) { return result.name == head; });
+  return output && (head.size() == path.size() || isSwizzle(path.substr(head.size() + 1)));
+}
+
+void Check::paths() {
+  for (const Uses::Path& use : uses_.paths) {
+    if (fits(use.id, use.path, 0)) continue;
+    error(use.text, use.span, "unknown-output",
+          fmt::format("'{}' has no output '{}'", model_.ids[use.id].name, use.path));
+  }
+}
+
+void Check::arguments() {
+  for (const Uses::Argument& use : uses_.arguments) {
+    const std::optional<ir::Type> type = types_.of(use.value);
+    if (!type) continue;
+    if (*type != use.param->type) {
+      error(use.text, use.span, "wrong-type",
+            fmt::format("'{}' is a {}, this is a {}", use.param->name, ir::typeName(use.param->type),
+                        ir::typeName(*type)));
+      continue;
+    }
+    if (use.value.kind != Value::Kind::Constant) continue;
+    for (int c = 0; c < ir::componentCount(*type); ++c) {
+      const double x = use.value.constant[static_cast<size_t>(c)];
+      if (use.param->range.contains(x)) continue;
+      error(use.text, use.span, "out-of-range",
+            fmt::format("{} is not in the range of '{}'", x, use.param->name),
+            fmt::format("the range is {}", ir::rangeText(use.param->range)));
+      break;
+    }
+  }
+}
+
+/// Ports that lines ask for or put out are those of some template, or what a part above reads.
+void Check::ports() {
+  for (const Uses::Port& use : uses_.ports) {
+    if (types_.port(use.name)) continue;
+    error(use.text, use.span, "unknown-port", fmt::format("no template has a port '{}'", use.name),
+          lang::didYouMean(use.name, types_.ports()));
+  }
+  for (const Uses::Placed& placed : uses_.lines) {
+    if (placed.decl->kind != Kind::Out) continue;
+    const uint32_t out = model_.lines[placed.line].id;
+    if (types_.port(placed.decl->id) || uses_.outs.contains(out)) continue;
+    error(placed.text, placed.decl->span, "unknown-port",
+          fmt::format("no template has a port '{}', and no part reads `below.{}`", placed.decl->id,
+                      placed.decl->id),
+          lang::didYouMean(placed.decl->id, types_.ports()));
+  }
+}
+
+/// One term says an id, or what a port takes, in one line: of two, only the first could ever count. Lines of
+/// a part are not said again by another part.
+void Check::doubles() {
+  std::map<std::tuple<Kind, uint32_t, uint32_t, uint32_t>, const Uses::Placed*> seen;
+  std::map<uint32_t, const Uses::Placed*> of_part;
+  for (const Uses::Placed& placed : uses_.lines) {
+    const Line& line = model_.lines[placed.line];
+    if (line.kind == Kind::Replace || line.kind == Kind::Require) continue;
+    const bool out = line.kind == Kind::Out;
+    const auto [first, fresh] =
+        seen.try_emplace({out ? Kind::Out : Kind::Value, line.id, line.part, line.term}, &placed);
+    if (!fresh) {
+      error(placed.text, placed.decl->span, "duplicate-name",
+            fmt::format("'{}' is said already in this term", placed.decl->id),
+            "what comes instead of it stands in the same line, behind `or`");
+      continue;
+    }
+    if (out) continue;
+    const auto [other, alone] = of_part.try_emplace(line.id, &placed);
+    if (alone || model_.lines[other->second->line].part == line.part) continue;
+    const bool profile = line.part == model_.parts.size();
+    error(placed.text, placed.decl->span, "duplicate-name",
+          fmt::format("'{}' is said already in {}", placed.decl->id, other->second->text.file),
+          profile
+              ? ""
+              : fmt::format("give this line another name; `replace {} with ...` puts a value in its place",
+                            placed.decl->id));
+  }
+}
+
+void Check::typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, std::string_view what) {
+  if (!wanted) return;
+  const Line& line = model_.lines[placed.line];
+  for (size_t i = 0; i < line.alternatives.size(); ++i) {
+    const std::optional<ir::Type> type = types_.of(line.alternatives[i].value);
+    if (!type || *type == *wanted) continue;
+    error(placed.text, placed.decl->alternatives[i].value->span, "wrong-type",
+          fmt::format("{} is a {}, this is a {}", what, ir::typeName(*wanted), ir::typeName(*type)));
+  }
+}
+
+void Check::line(const Uses::Placed& placed) {
+  const Line& line = model_.lines[placed.line];
+  if (line.kind == Kind::Out)
+    typed(placed, types_.port(placed.decl->id), fmt::format("the port '{}'", placed.decl->id));
+  if (line.kind == Kind::Replace && line.target.kind == Value::Kind::Id)
+    typed(placed, types_.of(line.target), fmt::format("'{}'", model_.ids[line.target.index].name));
+  if (uses_.adds.contains(placed.line)) added(placed);
+}
+
+/// What a profile says beside the lines that it replaces must be for something.
+void Check::added(const Uses::Placed& placed) {
+  const Line& line = model_.lines[placed.line];
+  if ((line.kind != Kind::Value && line.kind != Kind::Flag) || uses_.ids.contains(line.id)) return;
+  std::vector<std::string_view> names;
+  for (const Id& id : model_.ids) {
+    if (id.name != placed.decl->id) names.push_back(id.name);
+  }
+  error(placed.text, placed.decl->span, "unknown-line",
+        fmt::format("the profile replaces no line '{}', and nothing reads it", placed.decl->id),
+        lang::didYouMean(placed.decl->id, names));
+}
+
+}  // namespace
+
+Diagnostics check(const lang::Library& library, const Model& model, const Uses& uses) {
+  return Check(library, model, uses).run();
+}
+
+}  // namespace lacquer::model
