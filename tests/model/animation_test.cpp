@@ -81,7 +81,8 @@ Neutral neutralOf(const material::Schema& schema, uint16_t extension, bool in_gl
 
 /// The graphs of a material of neutral extensions all of whose numbers an animation changes, but for other
 /// spellings of that one.
-std::vector<graph::Graph> animatedNeutral(const material::Schema& schema, const material::Property& subject) {
+std::vector<graph::Graph> animatedNeutral(const material::Schema& schema, const material::Property& subject,
+                                          const std::vector<const char*>& templates) {
   const auto spelling = [&](const material::Property& p) {
     return &p != &subject && p.extension == subject.extension && p.decl->role == subject.decl->role;
   };
@@ -95,18 +96,18 @@ std::vector<graph::Graph> animatedNeutral(const material::Schema& schema, const 
       if (wanted) pointers.push_back(p.path);
     }
     const std::string text = fmt::format(R"({{"extensions": {{{}}}}})", fmt::join(neutral.objects, ", "));
-    for (const char* const name : {"forward", "bsdf"}) graphs.push_back(animated(text, pointers, name));
+    for (const char* const name : templates) graphs.push_back(animated(text, pointers, name));
   }
   return graphs;
 }
 
 /// Every number of every extension is a parameter of the shader when an animation changes it, though all
 /// start where they do nothing.
-TEST(Animation, NoTargetOfAPointerIsLost) {
+void expectParameters(const std::vector<const char*>& templates) {
   const material::Schema& schema = builtInSchema();
   for (const material::Property& property : schema.properties) {
     if (property.extension == 0 || property.decl->kind != material::Kind::Number) continue;
-    const std::vector<graph::Graph> graphs = animatedNeutral(schema, property);
+    const std::vector<graph::Graph> graphs = animatedNeutral(schema, property, templates);
     const bool found = std::any_of(graphs.begin(), graphs.end(), [&](const graph::Graph& graph) {
       return std::any_of(graph.parameters.begin(), graph.parameters.end(), [&](const ir::Parameter& p) {
         return p.animated && p.pointer == "/materials/0/" + property.path;
@@ -116,6 +117,11 @@ TEST(Animation, NoTargetOfAPointerIsLost) {
     EXPECT_TRUE(found || property.path.ends_with("Texture/scale")) << property.path;
   }
 }
+
+TEST(Animation, NoTargetOfAPointerIsLost) { expectParameters({"forward", "bsdf"}); }
+
+/// A G-buffer has a place for every number of every extension.
+TEST(Animation, TheSurfaceHasAPortForEveryNumber) { expectParameters({"surface"}); }
 
 TEST(Animation, EmissionAndAlphaStay) {
   EXPECT_FALSE(has(animated("{}", {}), "emission"));
