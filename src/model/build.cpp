@@ -233,11 +233,12 @@ void Writer::writeOrdered() {
 void Writer::notTaken() {
   std::vector<bool> used(model_.terms.size()), made(model_.terms.size());
   for (const Line& line : model_.lines) {
-    if (line.term == Line::kNone || line.kind != lang::LineDecl::Kind::Value) continue;
-    const bool taken = marked_[line.id];
+    const bool value = line.kind == lang::LineDecl::Kind::Value;
+    if (line.term == Line::kNone || (!value && line.kind != lang::LineDecl::Kind::Out)) continue;
+    const bool taken = value ? marked_[line.id] : resolver_.taken(line);
     for (uint32_t term = line.term; term != Line::kNone; term = model_.terms[term].parent) {
       used[term] = used[term] || taken;
-      made[term] = true;
+      made[term] = made[term] || value;
     }
   }
   for (uint32_t i = 0; i < model_.terms.size(); ++i) {

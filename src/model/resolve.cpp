@@ -58,6 +58,7 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
       states_(model.ids.size()),
       values_(model.ids.size()),
       nodes_(model.ids.size()),
+      taken_(model.lines.size()),
       terms_(model.terms.size(), -1),
       unmet_(model.terms.size()) {}
 
@@ -309,7 +310,7 @@ Found Resolver::id(uint32_t id) {
   return values_[id] = std::move(value);
 }
 
-Found Resolver::below(const Value& value, uint32_t part) {
+Found Resolver::below(const Value& value, uint32_t part, uint32_t* from) {
   const std::vector<uint32_t>& lines = model_.outs[value.index].lines;
   for (auto it = lines.rbegin(); it != lines.rend(); ++it) {
     const Line& line = model_.lines[*it];
@@ -317,7 +318,9 @@ Found Resolver::below(const Value& value, uint32_t part) {
     if (line.term != Line::kNone && !alive(line.term)) continue;
     Found found = fromLine(line);
     if (found.kind == Found::Kind::Void) return {};
-    if (found) return behind(std::move(found), value.path);
+    if (!found) continue;
+    if (from != nullptr) *from = *it;
+    return behind(std::move(found), value.path);
   }
   return {};
 }
@@ -326,7 +329,11 @@ Found Resolver::port(std::string_view name) {
   for (uint32_t i = 0; i < model_.outs.size(); ++i) {
     Value value;
     value.index = i;
-    if (model_.outs[i].name == name) return below(value, Line::kNone);
+    if (model_.outs[i].name != name) continue;
+    uint32_t line = Line::kNone;
+    Found found = below(value, Line::kNone, &line);
+    if (line != Line::kNone) taken_[line] = true;
+    return found;
   }
   return {};
 }

@@ -62,6 +62,8 @@ public:
 
   /// What the material is for a port of the template.
   Found port(std::string_view name);
+  /// Whether a line of the kind Out is what a port was given.
+  bool taken(const Line& line) const { return taken_[static_cast<size_t>(&line - model_.lines.data())]; }
   /// Looks at every term of the parts that the material has; those that it could have and has not, with the
   /// reasons.
   std::vector<graph::Skipped> skipped();
@@ -83,7 +85,8 @@ private:
   Found role(const Value& value);
   Found number(const Role& role, const Value& value);
   Found given(const Value& value) const;
-  Found below(const Value& value, uint32_t part);
+  /// With `from`, the line that gives it.
+  Found below(const Value& value, uint32_t part, uint32_t* from = nullptr);
   Found call(const Value& value, const Line& line);
   Found behind(Found value, std::string_view path) const;
   Found replacement(const Value& value, uint32_t part);
@@ -108,6 +111,7 @@ private:
   std::vector<State> states_;
   std::vector<Found> values_;
   std::vector<Node> nodes_;
+  std::vector<bool> taken_;              ///< of the lines
   std::vector<signed char> terms_;       ///< -1 unknown, else whether it is alive
   std::vector<std::string_view> unmet_;  ///< of a term: why a requirement is not met
   std::vector<uint32_t> open_;

@@ -330,7 +330,8 @@ std::string templateOutputs(std::string_view of) {
   for (const std::string& line :
        split(readFile(sourceFolder() / fmt::format("templates/{}.node", of)), "\n")) {
     const bool more = !lines.empty() && lines.back().find(';') == std::string::npos;
-    if (more || line.starts_with("    output ")) lines.push_back(line);
+    if (more || line.starts_with("    output ") || line.starts_with("    optional output "))
+      lines.push_back(line);
   }
   return "```glsl\n" + dedented(lines) + "```\n";
 }

@@ -10,7 +10,8 @@ namespace lacquer::test {
 namespace {
 
 /// The graph of one material, `pointers` of which animations change.
-graph::Graph animated(const std::string& material, const std::vector<std::string>& pointers) {
+graph::Graph animated(const std::string& material, const std::vector<std::string>& pointers,
+                      const char* template_name = "forward") {
   std::string channels;
   for (const std::string& pointer : pointers) {
     channels += fmt::format(R"({}{{"target": {{"path": "pointer", "extensions": {{"KHR_animation_pointer":
@@ -23,7 +24,9 @@ graph::Graph animated(const std::string& material, const std::vector<std::string
                               material, channels),
                   "test.gltf");
   Diagnostics warnings;
-  return buildGraph(document->materials.at(0), {true, true, false, {true, true}}, {}, warnings);
+  BuildSetup setup;
+  setup.template_name = template_name;
+  return buildGraph(document->materials.at(0), {true, true, false, {true, true}}, setup, warnings);
 }
 
 bool has(const graph::Graph& graph, const std::string& node) {
@@ -49,6 +52,76 @@ TEST(Animation, ATermThatStartsNeutralStays) {
   EXPECT_EQ(parameters(graph),
             "base_color_factor coat_factor! coat_roughness_factor metallic_factor roughness_factor");
 }
+
+/// An extension with what it must stand in or beside, all of them empty objects.
+struct Neutral {
+  std::vector<std::string> objects;  ///< of the material's extensions
+  std::vector<uint16_t> members;     ///< those whose numbers are animated
+};
+
+Neutral neutralOf(const material::Schema& schema, uint16_t extension, bool in_glass) {
+  const lang::ExtensionDecl& decl = *schema.extensions[extension];
+  Neutral result{{}, {extension}};
+  std::vector<std::string_view> beside = decl.needs;
+  if (in_glass) beside.insert(beside.end(), {"KHR_materials_transmission", "KHR_materials_volume"});
+  if (!decl.inside.empty()) beside.push_back(decl.inside);
+  for (const std::string_view other : beside) result.members.push_back(*schema.find(other));
+  std::sort(result.members.begin(), result.members.end());
+  result.members.erase(std::unique(result.members.begin(), result.members.end()), result.members.end());
+  for (const uint16_t member : result.members) {
+    const std::string_view name = schema.extensions[member]->name;
+    // A number without a default is there only where the file says it.
+    std::string body = name == "KHR_materials_volume" ? R"("attenuationDistance": 1)" : "";
+    if (name == decl.inside) body = fmt::format(R"("extensions": {{"{}": {{}}}})", decl.name);
+    if (member != extension || decl.inside.empty())
+      result.objects.push_back(fmt::format(R"("{}": {{{}}})", name, body));
+  }
+  return result;
+}
+
+/// The graphs of a material of neutral extensions all of whose numbers an animation changes, but for other
+/// spellings of that one.
+std::vector<graph::Graph> animatedNeutral(const material::Schema& schema, const material::Property& subject,
+                                          const std::vector<const char*>& templates) {
+  const auto spelling = [&](const material::Property& p) {
+    return &p != &subject && p.extension == subject.extension && p.decl->role == subject.decl->role;
+  };
+  std::vector<graph::Graph> graphs;
+  for (const bool in_glass : {false, true}) {
+    const Neutral neutral = neutralOf(schema, subject.extension, in_glass);
+    std::vector<std::string> pointers{"emissiveFactor"};
+    for (const material::Property& p : schema.properties) {
+      const bool wanted = p.decl->kind == material::Kind::Number && !spelling(p) &&
+                          std::binary_search(neutral.members.begin(), neutral.members.end(), p.extension);
+      if (wanted) pointers.push_back(p.path);
+    }
+    const std::string text = fmt::format(R"({{"extensions": {{{}}}}})", fmt::join(neutral.objects, ", "));
+    for (const char* const name : templates) graphs.push_back(animated(text, pointers, name));
+  }
+  return graphs;
+}
+
+/// Every number of every extension is a parameter of the shader when an animation changes it, though all
+/// start where they do nothing.
+void expectParameters(const std::vector<const char*>& templates) {
+  const material::Schema& schema = builtInSchema();
+  for (const material::Property& property : schema.properties) {
+    if (property.extension == 0 || property.decl->kind != material::Kind::Number) continue;
+    const std::vector<graph::Graph> graphs = animatedNeutral(schema, property, templates);
+    const bool found = std::any_of(graphs.begin(), graphs.end(), [&](const graph::Graph& graph) {
+      return std::any_of(graph.parameters.begin(), graph.parameters.end(), [&](const ir::Parameter& p) {
+        return p.animated && p.pointer == "/materials/0/" + property.path;
+      });
+    });
+    // The scale of a normal texture needs the texture.
+    EXPECT_TRUE(found || property.path.ends_with("Texture/scale")) << property.path;
+  }
+}
+
+TEST(Animation, NoTargetOfAPointerIsLost) { expectParameters({"forward", "bsdf"}); }
+
+/// A G-buffer has a place for every number of every extension.
+TEST(Animation, TheSurfaceHasAPortForEveryNumber) { expectParameters({"surface"}); }
 
 TEST(Animation, EmissionAndAlphaStay) {
   EXPECT_FALSE(has(animated("{}", {}), "emission"));

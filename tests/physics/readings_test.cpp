@@ -157,6 +157,21 @@ TEST(Readings, R04EmissionLiesOnACoatAndUnderAClearcoat) {
              shade(m, s), kTight);
 }
 
+// The newer draft's emission lies under the coat too, and gets no colour of it.
+TEST(Readings, E01TheNewerDraftsEmissionLiesUnderTheCoat) {
+  const Sample s = dark(0.35);
+  Material m = glowing();
+  m.coat = Coat{.factor = 0.8, .roughness = 0.1, .color = {0.1, 0.2, 0.3}};
+  Configuration newer;
+  newer.profile = "khr_2025_10_13";
+  const double left = 1 - 0.8 * schlick(0.04, 0.35);
+  expectNear({0.9 * left, 0.8 * left, 0.7 * left, 1}, Subject(m, newer).color<double>(s), kTight);
+  expectNear({0.9, 0.8, 0.7, 1}, shade(m, s), 0);
+  // Nothing else is read in another way.
+  m.emissive = {0, 0, 0};
+  expectNear(shade(m, slanted()), Subject(m, newer).color<double>(slanted()), 0);
+}
+
 TEST(Readings, R05CoatIorZeroReflectsAllAndRefractsNothing) {
   for (const double cosine : {1.0, 0.5, 0.1}) {
     Sample s = slanted();

@@ -68,6 +68,44 @@ Vec3 lacquerWhiteRoom(const StackMaterial& material, double cosine, bool multipl
   return {c[0], c[1], c[2]};
 }
 
+StackMedium lacquerMedium(const StackMaterial& material) {
+  const auto output = [&](const char* name) {
+    Configuration setup;
+    setup.template_name = "bsdf";
+    setup.output = name;
+    return Subject(gltfOf(material), 0, material.texels, setup).color<double>(sampleOf({0, 0, 1}, {0, 0, 1}));
+  };
+  const Vec4 absorption = output("absorption");
+  const Vec4 scattering = output("scattering");
+  StackMedium medium;
+  medium.anisotropy = scattering[3];
+  for (size_t c = 0; c < 3; ++c) {
+    medium.scattering[c] = scattering[c];
+    medium.extinction[c] = absorption[c] + scattering[c];
+  }
+  return medium;
+}
+
+Vec3 lacquerThrough(const StackMaterial& material, const Sample& sample,
+                    const std::function<Vec3(double x, double y, double lod)>& frame, double scale) {
+  Configuration setup;
+  setup.columns["see_through.scene_u"] = eval::Column::constant({1, 0, 0, 0});
+  setup.columns["see_through.scene_v"] = eval::Column::constant({0, 1, 0, 0});
+  setup.columns["see_through.scene_w"] = eval::Column::constant({0, 0, 0, 1});
+  setup.columns["see_through.scene_max_lod"] = eval::Column::constant({16});
+  // Of its three axes one is longer than the others.
+  setup.columns["object.model"] =
+      eval::Column::constant({scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, 3 * scale, 0, 0, 0, 0, 1});
+  setup.textures["scene_behind"] = [&](size_t, const Vec3& uv, double lod) {
+    const Vec3 seen = frame(uv[0], uv[1], lod);
+    return Vec4{seen[0], seen[1], seen[2], 1};
+  };
+  Sample dark = sample;
+  dark.light = {0, 0, 0};
+  const Vec4 c = Subject(gltfOf(material), 0, material.texels, setup).color<double>(dark);
+  return {c[0], c[1], c[2]};
+}
+
 SplitSum splitSum(double cosine, double roughness) {
   const auto texel = eval::environmentSampler("environment_dfg")(0, {cosine, roughness, 0}, 0);
   return {texel[0], texel[1]};

@@ -1,6 +1,7 @@
 // What Lacquer makes of a stack.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ std::string missingOf(const std::vector<std::string>& paths);
 Vec3 lacquerDirect(const StackMaterial& material, const Sample& sample);
 /// White surroundings and no other light.
 Vec3 lacquerWhiteRoom(const StackMaterial& material, double cosine, bool multiple_scattering = true);
+
+/// What the template for path tracers says of the matter inside.
+StackMedium lacquerMedium(const StackMaterial& material);
+/// What comes through of a frame behind, without any other light: the level is over 16, the frame's texture
+/// coordinates are x and y of where it is seen. The frame shows what `frame` makes of x, y and the level.
+Vec3 lacquerThrough(const StackMaterial& material, const Sample& sample,
+                    const std::function<Vec3(double x, double y, double lod)>& frame, double scale = 1);
 
 /// The table that the templates read, in double.
 SplitSum splitSum(double cosine, double roughness);

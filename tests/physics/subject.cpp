@@ -54,7 +54,7 @@ void Subject::make(const std::string& gltf, size_t material, const Configuration
   Result<ir::Module> module = lower::lower(graph_, library(), {.evaluable = true});
   ASSERT_TRUE(module) << textOf(module.error());
   module_ = std::move(*module);
-  quads_ = setup.quads;
+  setup_ = setup;
   if (setup.placed) passes::runPipeline(module_, {{false, {{"directional", 1}}}, {}});
 }
 
@@ -76,7 +76,8 @@ std::vector<Vec4> Subject::colors(std::span<const Sample> samples, const Vec3& e
   }
   eval::Bindings bindings;
   eval::bindPoints(module_, points, bindings);
-  bindings.quads = quads_;
+  bindings.quads = setup_.quads;
+  for (const auto& [name, column] : setup_.columns) bindings.columns[name] = column;
   for (const ir::TextureSlot& slot : module_.textures) {
     Vec4 texel{environment[0], environment[1], environment[2], 1};
     if (!slot.environment) {
@@ -86,6 +87,10 @@ std::vector<Vec4> Subject::colors(std::span<const Sample> samples, const Vec3& e
       if (it != texels_.end()) texel = it->second;
     }
     bindings.textures[slot.name] = [texel](size_t, const Vec3&, double) { return texel; };
+    if (const auto it = setup_.textures.find(slot.name); it != setup_.textures.end()) {
+      bindings.textures[slot.name] = it->second;
+      continue;
+    }
     if (eval::environmentTable(slot.name) == nullptr) continue;
     bindings.textures[slot.name] = eval::environmentSampler(slot.name);
   }
@@ -93,7 +98,8 @@ std::vector<Vec4> Subject::colors(std::span<const Sample> samples, const Vec3& e
   EXPECT_TRUE(eval::bindVaryings<T>(module_, points.size(), bindings));
   std::vector<Vec4> result(samples.size());
   for (const ir::Output& output : module_.outputs) {
-    if (output.kind != ir::OutputKind::Color || output.location != 0) continue;
+    if (output.kind != ir::OutputKind::Color) continue;
+    if (setup_.output.empty() ? output.location != 0 : output.name != setup_.output) continue;
     const auto values = eval::evaluate<T>(module_, {{output.value}}, bindings, points.size());
     EXPECT_TRUE(values) << textOf(values.error());
     if (!values) return result;

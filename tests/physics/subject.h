@@ -23,6 +23,10 @@ struct Configuration {
   bool tangents = true;
   bool quads = false;  ///< samples stand in fours, and derivatives are taken between them
   std::set<std::string> live;
+  std::string output;  ///< the colour output's name; empty for the first
+  /// What an engine gives, in place of what stands for it here: textures by slot, and fields by their names.
+  std::map<std::string, eval::Sampler> textures;
+  eval::Columns columns;
 };
 
 class Subject {
@@ -33,7 +37,7 @@ public:
   Subject(const std::string& gltf, size_t material, std::map<std::string, Vec4> texels,
           const Configuration& setup = {});
 
-  /// The first colour output at each point. A constant environment may be given.
+  /// The colour output at each point. A constant environment may be given.
   template <class T>
   std::vector<Vec4> colors(std::span<const Sample> samples, const Vec3& environment = {0, 0, 0}) const;
   template <class T>
@@ -51,7 +55,7 @@ private:
   graph::Graph graph_;
   ir::Module module_;
   std::map<std::string, Vec4> texels_;
-  bool quads_ = false;
+  Configuration setup_;
 };
 
 }  // namespace lacquer::physics
