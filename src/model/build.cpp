@@ -244,7 +244,15 @@ void Writer::notTaken() {
   for (uint32_t i = 0; i < model_.terms.size(); ++i) {
     if (!made[i] || used[i] || !resolver_.alive(i)) continue;
     const uint32_t parent = model_.terms[i].parent;
-    if ((parent != Line::kNone && !used[parent]) || !resolver_.gives(i)) continue;
+    if (parent != Line::kNone && !used[parent]) continue;
+    if (!resolver_.gives(i)) {
+      // An extension that the material has does not go without a word.
+      std::string why = parent == Line::kNone && !model_.parts[model_.terms[i].part].of.empty()
+                            ? resolver_.missing(i)
+                            : std::string();
+      if (!why.empty()) graph_.skip(model_.terms[i].name, std::move(why));
+      continue;
+    }
     graph_.skip(model_.terms[i].name, "nothing that the template takes needs it");
   }
 }

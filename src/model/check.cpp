@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "lang/checker.h"
 #include "lang/reporter.h"
 #include "lang/suggest.h"
 #include "model/names.h"
@@ -24,6 +25,9 @@ public:
       : model_(model), uses_(uses), types_(library, model) {}
 
   Diagnostics run() {
+    overridden();
+    // What is made of a line of the wrong type is wrong as well.
+    if (!wrong_.empty()) return std::move(wrong_);
     paths();
     arguments();
     ports();
@@ -48,8 +52,12 @@ private:
   void ports();
   void doubles();
   void line(const Uses::Placed& placed);
+  const Uses::Placed* constantLine(const Value& value) const;
+  void range(const Uses::Argument& use);
+  const lang::NodeDecl* several(const Value& value) const;
   void typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, std::string_view what);
   void added(const Uses::Placed& placed);
+  void overridden();
 
   const Model& model_;
   const Uses& uses_;
@@ -88,25 +96,63 @@ void Check::paths() {
   }
 }
 
+/// The line of a name that stands for a number, and for nothing else.
+const Uses::Placed* Check::constantLine(const Value& value) const {
+  if (value.kind != Value::Kind::Id || !value.path.empty()) return nullptr;
+  const Id& id = model_.ids[value.index];
+  if (id.lines.size() != 1 || !id.replaced.empty()) return nullptr;
+  const Line& line = model_.lines[id.lines[0]];
+  const bool constant =
+      line.alternatives.size() == 1 && line.alternatives[0].value.kind == Value::Kind::Constant;
+  return constant ? &uses_.lines[id.lines[0]] : nullptr;
+}
+
+void Check::range(const Uses::Argument& use) {
+  const Uses::Placed* named = constantLine(use.value);
+  const Value& value = named == nullptr ? use.value : model_.lines[named->line].alternatives[0].value;
+  if (value.kind != Value::Kind::Constant) return;
+  for (int c = 0; c < ir::componentCount(value.type); ++c) {
+    const double x = value.constant[static_cast<size_t>(c)];
+    if (use.param->range.contains(x)) continue;
+    error(named == nullptr ? use.text : named->text,
+          named == nullptr ? use.span : named->decl->alternatives[0].value->span, "out-of-range",
+          fmt::format("{} is not in the range of '{}'", x, use.param->name),
+          fmt::format("the range is {}", ir::rangeText(use.param->range)));
+    return;
+  }
+}
+
+/// The node of a value that names none of its results, where every line for it has a node with several.
+const lang::NodeDecl* Check::several(const Value& value) const {
+  if (value.kind != Value::Kind::Id || !value.path.empty()) return nullptr;
+  const lang::NodeDecl* node = nullptr;
+  for (const uint32_t line : model_.ids[value.index].lines) {
+    for (const Alternative& one : model_.lines[line].alternatives) {
+      if (one.value.kind == Value::Kind::None) continue;
+      if (one.value.kind != Value::Kind::Call || one.value.node->results.size() < 2) return nullptr;
+      node = one.value.node;
+    }
+  }
+  return node;
+}
+
 void Check::arguments() {
   for (const Uses::Argument& use : uses_.arguments) {
+    if (const lang::NodeDecl* node = several(use.value)) {
+      error(use.text, use.span, "unknown-output",
+            fmt::format("'{}' has several results", model_.ids[use.value.index].name),
+            fmt::format("name one: '{}.{}'", model_.ids[use.value.index].name, node->results[0].name));
+      continue;
+    }
     const std::optional<ir::Type> type = types_.of(use.value);
     if (!type) continue;
     if (*type != use.param->type) {
       error(use.text, use.span, "wrong-type",
-            fmt::format("'{}' is a {}, this is a {}", use.param->name, ir::typeName(use.param->type),
-                        ir::typeName(*type)));
+            fmt::format("'{}' is {}, this is {}", use.param->name, lang::aType(use.param->type),
+                        lang::aType(*type)));
       continue;
     }
-    if (use.value.kind != Value::Kind::Constant) continue;
-    for (int c = 0; c < ir::componentCount(*type); ++c) {
-      const double x = use.value.constant[static_cast<size_t>(c)];
-      if (use.param->range.contains(x)) continue;
-      error(use.text, use.span, "out-of-range",
-            fmt::format("{} is not in the range of '{}'", x, use.param->name),
-            fmt::format("the range is {}", ir::rangeText(use.param->range)));
-      break;
-    }
+    range(use);
   }
 }
 
@@ -165,7 +211,7 @@ void Check::typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, st
     const std::optional<ir::Type> type = types_.of(line.alternatives[i].value);
     if (!type || *type == *wanted) continue;
     error(placed.text, placed.decl->alternatives[i].value->span, "wrong-type",
-          fmt::format("{} is a {}, this is a {}", what, ir::typeName(*wanted), ir::typeName(*type)));
+          fmt::format("{} is {}, this is {}", what, lang::aType(*wanted), lang::aType(*type)));
   }
 }
 
@@ -189,6 +235,18 @@ void Check::added(const Uses::Placed& placed) {
   error(placed.text, placed.decl->span, "unknown-line",
         fmt::format("the profile replaces no line '{}', and nothing reads it", placed.decl->id),
         lang::didYouMean(placed.decl->id, names));
+}
+
+/// A profile's line is of the type of the one that it replaces.
+void Check::overridden() {
+  for (const Uses::Overridden& pair : uses_.overridden) {
+    std::optional<ir::Type> was;
+    for (const Alternative& one : pair.own.alternatives) {
+      if (!was) was = types_.of(one.value);
+    }
+    const Uses::Placed& by = uses_.lines[pair.by];
+    typed(by, was, fmt::format("'{}'", by.decl->id));
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "lang/checker.h"
 #include "lang/parser.h"
 #include "lang/reporter.h"
 #include "lang/suggest.h"
@@ -271,7 +272,11 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
             "the layers say which sections there are");
     }
     const Text here = source_;
-    if (other != nullptr) overridden(own, *other);
+    if (other != nullptr) {
+      uses_.overridden.push_back(
+          {line(own, part, first_term + own.term), static_cast<uint32_t>(uses_.lines.size())});
+      overridden(own, *other);
+    }
     Line made = line(other == nullptr ? own : *other, part, first_term + own.term);
     constexpr uint32_t kLinesOfPart = 1024, kParts = 1024;
     made.order = (section.value_or(0) * kParts + std::min(part, kParts - 1)) * kLinesOfPart +
@@ -503,8 +508,8 @@ bool Compiler::comparable(const Value& left, const Value& right, const Expr& exp
   }
   if (!left.path.empty()) return wrong("the whole property is compared, no component of it");
   if (decl->type == right.type) return true;
-  return wrong(fmt::format("'{}' is a {}, it is compared with a {}", decl->name, ir::typeName(decl->type),
-                           ir::typeName(right.type)));
+  return wrong(fmt::format("'{}' is {}, it is compared with {}", decl->name, lang::aType(decl->type),
+                           lang::aType(right.type)));
 }
 
 Condition Compiler::comparison(const Expr& expr) {

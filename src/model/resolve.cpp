@@ -484,6 +484,47 @@ bool Resolver::gives(uint32_t term) {
   return last;
 }
 
+std::string Resolver::missing(const Value& value, const Line& line, int depth) {
+  constexpr int kDeepest = 8;
+  if (depth > kDeepest || value.absent || (value.kind != Value::Kind::Call && found(value, line))) return {};
+  switch (value.kind) {
+    case Value::Kind::Role: {
+      const material::Property& property = model_.schema->properties[provider(model_.roles[value.index])];
+      return fmt::format("there is no {}", property.decl->name);
+    }
+    case Value::Kind::Given: return fmt::format("there is no {}", model_.givens[value.index]);
+    case Value::Kind::Id:
+      for (const uint32_t index : model_.ids[value.index].lines) {
+        const Line& inner = model_.lines[index];
+        if (inner.term != Line::kNone && !alive(inner.term)) continue;
+        for (const Alternative& one : inner.alternatives) {
+          if (std::string why = missing(one.value, inner, depth + 1); !why.empty()) return why;
+        }
+      }
+      return {};
+    case Value::Kind::Call:
+      for (size_t i = 0; i < value.args.size(); ++i) {
+        if (value.node->params[i].default_value) continue;
+        if (std::string why = missing(value.args[i], line, depth + 1); !why.empty()) return why;
+      }
+      return {};
+    case Value::Kind::None:
+    case Value::Kind::Constant:
+    case Value::Kind::Below: break;
+  }
+  return {};
+}
+
+std::string Resolver::missing(uint32_t term) {
+  for (const Line& line : model_.lines) {
+    if (line.term != term || line.kind != LineDecl::Kind::Value) continue;
+    for (const Alternative& one : line.alternatives) {
+      if (std::string why = missing(one.value, line, 0); !why.empty()) return why;
+    }
+  }
+  return {};
+}
+
 std::string Resolver::shown(const Condition& equal) const {
   const Value& value = equal.values[0];
   const Role& role = model_.roles[value.index];

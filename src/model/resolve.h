@@ -71,6 +71,9 @@ public:
   bool alive(uint32_t term);
   /// Whether a line of the part, or the last line of the term, comes to something: what it is for.
   bool gives(uint32_t term);
+  /// Of a term that gives nothing: the first thing that a line of it needs and the material, the primitive or
+  /// the template does not have; empty where it is something else.
+  std::string missing(uint32_t term);
   /// A property that stands for a role, and what it is when the file does not say.
   uint16_t provider(const Role& role) const;
   ir::Components numberOf(uint16_t property) const;
@@ -97,6 +100,7 @@ private:
   bool live(const std::vector<std::string_view>& terms) const;
   bool uniform(const Found& value) const;
   bool required(const Term& term);
+  std::string missing(const Value& value, const Line& line, int depth);
   std::string because(const Condition& condition, const Line& line, bool holds);
   std::string shown(const Condition& equal) const;
   void circle(uint32_t id);
