@@ -41,8 +41,11 @@ private:
              std::string help = {}) {
     lang::Reporter reporter(text.file, text.text);
     reporter.error(code, span, std::move(message), std::move(help));
-    Diagnostics one = reporter.take();
-    wrong_.insert(wrong_.end(), one.begin(), one.end());
+    for (Diagnostic& one : reporter.take()) {
+      // A line that is read often is told once.
+      const auto same = [&](const Diagnostic& other) { return format(other) == format(one); };
+      if (std::none_of(wrong_.begin(), wrong_.end(), same)) wrong_.push_back(std::move(one));
+    }
   }
 
   bool fits(const Value& value, std::string_view path, int depth) const;

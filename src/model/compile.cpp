@@ -647,7 +647,10 @@ Result<Model> Compiler::run(std::string_view profile) {
   for (uint32_t i = 0; i < model_.parts.size(); ++i) part(i);
   for (uint32_t i = 0; i < model_.parts.size(); ++i) lines(i, model_.parts[i].term);
   profileLines();
+  const size_t before = wrong_.size();
   checkNames();
+  // A name that is taken hides what the others mean by it: every use of it would be wrong, too.
+  if (wrong_.size() > before) return tl::make_unexpected(std::move(wrong_));
   const Diagnostics across = check(library_, model_, uses_);
   wrong_.insert(wrong_.end(), across.begin(), across.end());
   if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));

@@ -85,7 +85,7 @@ const bool kErrors =
       const lang::Library library = libraryOf(c, found);
       if (found.empty()) {
         const model::Models models(library);
-        const auto model = models.of("khr");
+        const auto model = models.of(c.has("profile") ? "example" : "khr");
         if (!model) found = model.error();
       }
       EXPECT_TRUE(hasError(found));
