@@ -25,9 +25,6 @@ public:
       : model_(model), uses_(uses), types_(library, model) {}
 
   Diagnostics run() {
-    overridden();
-    // What is made of a line of the wrong type is wrong as well.
-    if (!wrong_.empty()) return std::move(wrong_);
     paths();
     arguments();
     ports();
@@ -56,11 +53,11 @@ private:
   void doubles();
   void line(const Uses::Placed& placed);
   const Uses::Placed* constantLine(const Value& value) const;
+  const Uses::Placed* profiles(const Value& value) const;
   void range(const Uses::Argument& use);
   const lang::NodeDecl* several(const Value& value) const;
   void typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, std::string_view what);
   void added(const Uses::Placed& placed);
-  void overridden();
 
   const Model& model_;
   const Uses& uses_;
@@ -110,6 +107,13 @@ const Uses::Placed* Check::constantLine(const Value& value) const {
   return constant ? &uses_.lines[id.lines[0]] : nullptr;
 }
 
+/// The profile's line that a name stands for, where it stands in place of a part's.
+const Uses::Placed* Check::profiles(const Value& value) const {
+  if (value.kind != Value::Kind::Id || !model_.ids[value.index].overridden) return nullptr;
+  const std::vector<uint32_t>& lines = model_.ids[value.index].lines;
+  return lines.empty() ? nullptr : &uses_.lines[lines[0]];
+}
+
 void Check::range(const Uses::Argument& use) {
   const Uses::Placed* named = constantLine(use.value);
   const Value& value = named == nullptr ? use.value : model_.lines[named->line].alternatives[0].value;
@@ -150,6 +154,12 @@ void Check::arguments() {
     const std::optional<ir::Type> type = types_.of(use.value);
     if (!type) continue;
     if (*type != use.param->type) {
+      if (const Uses::Placed* by = profiles(use.value)) {
+        error(by->text, by->decl->alternatives[0].value->span, "wrong-type",
+              fmt::format("'{}' goes into '{}', which is {}; this is {}", by->decl->id, use.param->name,
+                          lang::aType(use.param->type), lang::aType(*type)));
+        continue;
+      }
       error(use.text, use.span, "wrong-type",
             fmt::format("'{}' is {}, this is {}", use.param->name, lang::aType(use.param->type),
                         lang::aType(*type)));
@@ -238,18 +248,6 @@ void Check::added(const Uses::Placed& placed) {
   error(placed.text, placed.decl->span, "unknown-line",
         fmt::format("the profile replaces no line '{}', and nothing reads it", placed.decl->id),
         lang::didYouMean(placed.decl->id, names));
-}
-
-/// A profile's line is of the type of the one that it replaces.
-void Check::overridden() {
-  for (const Uses::Overridden& pair : uses_.overridden) {
-    std::optional<ir::Type> was;
-    for (const Alternative& one : pair.own.alternatives) {
-      if (!was) was = types_.of(one.value);
-    }
-    const Uses::Placed& by = uses_.lines[pair.by];
-    typed(by, was, fmt::format("'{}'", by.decl->id));
-  }
 }
 
 }  // namespace

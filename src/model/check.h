@@ -36,11 +36,6 @@ struct Uses {
     const lang::LineDecl* decl;
     Text text;
   };
-  /// A part's line that the profile has another one for.
-  struct Overridden {
-    Line own;
-    uint32_t by;
-  };
   struct Port {
     std::string_view name;
     Text text;
@@ -49,7 +44,6 @@ struct Uses {
   std::vector<Argument> arguments;
   std::vector<Path> paths;
   std::vector<Placed> lines;
-  std::vector<Overridden> overridden;
   std::vector<Port> ports;  ///< asked for by `takes`
   std::set<uint32_t> ids;   ///< that a line or a condition reads
   std::set<uint32_t> outs;  ///< that a part reads of what lies below

@@ -272,11 +272,7 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
             "the layers say which sections there are");
     }
     const Text here = source_;
-    if (other != nullptr) {
-      uses_.overridden.push_back(
-          {line(own, part, first_term + own.term), static_cast<uint32_t>(uses_.lines.size())});
-      overridden(own, *other);
-    }
+    if (other != nullptr) overridden(own, *other);
     Line made = line(other == nullptr ? own : *other, part, first_term + own.term);
     constexpr uint32_t kLinesOfPart = 1024, kParts = 1024;
     made.order = (section.value_or(0) * kParts + std::min(part, kParts - 1)) * kLinesOfPart +
@@ -647,12 +643,9 @@ Result<Model> Compiler::run(std::string_view profile) {
   for (uint32_t i = 0; i < model_.parts.size(); ++i) part(i);
   for (uint32_t i = 0; i < model_.parts.size(); ++i) lines(i, model_.parts[i].term);
   profileLines();
-  const size_t before = wrong_.size();
   checkNames();
-  // A name that is taken hides what the others mean by it: every use of it would be wrong, too.
-  if (wrong_.size() > before) return tl::make_unexpected(std::move(wrong_));
-  const Diagnostics across = check(library_, model_, uses_);
-  wrong_.insert(wrong_.end(), across.begin(), across.end());
+  // What is made of a wrong line is wrong as well.
+  if (wrong_.empty()) wrong_ = check(library_, model_, uses_);
   if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
   findLive();
   order();
