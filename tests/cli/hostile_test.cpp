@@ -127,6 +127,19 @@ TEST(HostileImage, huffmanTablesHaveTheirLength) {
   EXPECT_EQ(said(256).find("bad Huffman table"), std::string::npos) << said(256);
 }
 
+/// 0xDA is the marker of a scan; its head says that it has no component, which the decoder would refuse.
+TEST(HostileImage, hasAHundredScansAtMost) {
+  const Workplace place;
+  const auto said = [&](size_t scans) {
+    std::string jpeg = "\xff\xd8";
+    for (size_t i = 0; i < scans; ++i) jpeg += std::string("\xff\xda\0\x06\0\0\x3f\0", 8);
+    return evaluated(place, textured(dataUri(jpeg + "\xff\xd9")));
+  };
+  expectRefused(said(101), "image-unreadable");
+  EXPECT_NE(said(101).err.find("more than 100 scans"), std::string::npos) << said(101).err;
+  EXPECT_EQ(said(100).err.find("more than 100 scans"), std::string::npos) << said(100).err;
+}
+
 TEST(HostileImage, takesNoMoreThanItsBudget) {
   const Workplace place;
   expectRefused(evaluated(place, textured(dataUri(png(16000, 16000, 10)))), "image-too-large");
@@ -135,7 +148,9 @@ TEST(HostileImage, takesNoMoreThanItsBudget) {
   expectRefused(evaluated(place, textured(dataUri(grey2x2())), {"--limit", "images=3"}), "image-too-large");
   EXPECT_EQ(evaluated(place, textured(dataUri(grey2x2())), {"--limit", "images=4"}).status, 0);
   // Four pixels, and a stream that unpacks to sixteen million.
-  expectRefused(evaluated(place, textured(dataUri(png(2, 2, 16'000'000)))), "image-unreadable");
+  const Outcome bomb = evaluated(place, textured(dataUri(png(2, 2, 16'000'000))));
+  expectRefused(bomb, "image-unreadable");
+  EXPECT_EQ(bomb.err.find("mem"), std::string::npos) << bomb.err;
 }
 
 TEST(HostileImage, liesInTheFilesFolder) {
