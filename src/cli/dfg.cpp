@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "cli/streams.h"
 #include "cli/table.h"
 #include "lacquer.h"
@@ -20,8 +22,28 @@ CLI::App* addDfg(CLI::App& app, DfgFlags& flags) {
   return verb;
 }
 
+namespace {
+
+/// By whatever names; of files that are not there yet, too.
+bool sameFile(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  const auto place = [&error](const std::string& path) {
+    return fs::weakly_canonical(fs::absolute(path, error), error);
+  };
+  return place(a) == place(b) && !error;
+}
+
+}  // namespace
+
 int runDfg(const DfgFlags& flags) {
   Messages messages;
+  if (!flags.output.empty() && !flags.sheen.empty() && sameFile(flags.output, flags.sheen)) {
+    say("{}: error: this file is to be written and is written twice [output-clash]\n",
+        printable(flags.sheen));
+    return 1;
+  }
   const bool split_sum = !flags.output.empty() || flags.sheen.empty();
   bool written = !split_sum || writeEnvironmentDfg(flags.output, flags.size, messages);
   if (!flags.sheen.empty()) written = writeEnvironmentSheen(flags.sheen, flags.size, messages) && written;

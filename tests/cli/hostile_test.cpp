@@ -331,6 +331,90 @@ TEST(Outputs, areNoInputs) {
   EXPECT_EQ(place.read("out/" + shader), gltf);
 }
 
+/// What is no file stays what it is, by whatever link it is named.
+TEST(Outputs, areFiles) {
+  const Workplace place;
+  place.write("a.gltf", readFile(example("clearcoat.gltf")));
+  ASSERT_EQ(mkfifo((place / "pipe").c_str(), 0600), 0);
+  fs::create_directories(place / "folder");
+  fs::create_symlink("pipe", place / "to_pipe");
+  const std::set<std::string> before = place.names();
+  for (const char* output : {"pipe", "to_pipe", "folder", "/dev/null"}) {
+    const std::vector<std::vector<std::string>> all = {
+        {"gen", "a.gltf", "-q", "-o", "out", "--depfile", output},
+        {"gen", "a.gltf", "-q", "-o", "out", "--shard", output},
+        {"plan", "a.gltf", "-q", "-o", "out", "--ninja", output},
+        {"preview", "a.gltf", "-o", output, "--size", "16"},
+        {"dfg", "-o", output, "--size", "2"},
+    };
+    for (const std::vector<std::string>& words : all) {
+      expectRefused(place.run(words, std::chrono::seconds(20)), "file-unwritable");
+      EXPECT_EQ(place.names(), before) << words[0] << " " << output;
+    }
+  }
+  EXPECT_TRUE(fs::is_fifo(place / "pipe"));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  fs::create_directories(place / "out");
+  fs::create_symlink("../pipe", place / "out/manifest.json");
+  expectRefused(place.run({"gen", "a.gltf", "-q", "-o", "out"}), "file-unwritable");
+  EXPECT_TRUE(fs::is_fifo(place / "pipe"));
+  // A link to a file, or to nothing, is replaced.
+  fs::create_symlink("nothing", place / "a.d");
+  const std::string gltf = place.read("a.gltf");
+  EXPECT_EQ(place.run({"gen", "a.gltf", "-q", "-o", "out2", "--target", "glsl", "--depfile", "a.d"}).status,
+            0);
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(place / "a.d")));
+  EXPECT_FALSE(place.has("nothing"));
+  EXPECT_EQ(place.read("a.gltf"), gltf);
+}
+
+TEST(Outputs, areNotTheCachesKey) {
+  const Workplace place;
+  const std::string key(32, 'k');
+  place.write("key", key);
+  place.write("a.gltf", readFile(example("clearcoat.gltf")));
+  const std::vector<std::vector<std::string>> all = {
+      {"gen", "a.gltf", "-q", "-o", "out", "--depfile", "key"},
+      {"gen", "a.gltf", "-q", "-o", "out", "--shard", "key"},
+      {"plan", "a.gltf", "-q", "-o", "out", "--ninja", "key"},
+  };
+  for (std::vector<std::string> words : all) {
+    words.insert(words.end(), {"--cache", "c", "--cache-key", "key"});
+    expectRefused(place.run(words), "output-clash");
+    EXPECT_EQ(place.read("key"), key);
+    EXPECT_FALSE(place.has("out"));
+  }
+}
+
+/// However two names are spelled, and whether the files are there or not.
+TEST(Outputs, areDifferentFiles) {
+  const Workplace place;
+  place.write("a.gltf", readFile(example("clearcoat.gltf")));
+  place.write("sub/x", "");
+  fs::create_directory_symlink("sub", place / "lnk");
+  const auto refused = [&](const std::vector<std::string>& words) {
+    SCOPED_TRACE(words.back());
+    const std::set<std::string> before = place.names();
+    expectRefused(place.run(words), "output-clash");
+    EXPECT_EQ(place.names(), before);
+  };
+  const auto two = [&](const std::string& a, const std::string& b) {
+    refused({"gen", "a.gltf", "-q", "-o", "out", "--shard", a, "--depfile", b});
+    refused({"dfg", "--size", "2", "-o", a, "--sheen", b});
+  };
+  two("A.d", "./A.d");
+  two("B.d", "sub/../B.d");
+  two("sub/C.d", "lnk/C.d");
+  two("D.d", (place / "D.d").string());
+  for (const std::string name : {"out/manifest.json", "out/glsl/x", "./out/cpp/y/z", "sub/../out/spirv/x"}) {
+    refused({"gen", "a.gltf", "-q", "-o", "out", "--depfile", name});
+    refused({"gen", "a.gltf", "-q", "-o", "out", "--shard", name});
+    refused({"plan", "a.gltf", "-q", "-o", "out", "--ninja", name});
+  }
+  EXPECT_EQ(
+      place.run({"gen", "a.gltf", "-q", "-o", "out", "--target", "glsl", "--depfile", "out/a.d"}).status, 0);
+}
+
 TEST(BuildFiles, holdNoNameThatTheyCannot) {
   const Workplace place;
   const std::string gltf = readFile(example("clearcoat.gltf"));
