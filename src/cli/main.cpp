@@ -251,7 +251,7 @@ int plan(const Flags& flags) {
   const bool good = report.ok && !hasError(messages);
   if (!flags.quiet && good) {
     fmt::print("{} materials, {} distinct shaders: run ninja -f {}\n", report.materials.size(),
-               report.shaders.size(), flags.ninja);
+               report.shaders.size(), lacquer::cli::printable(flags.ninja));
   }
   if (flags.time) lacquer::cli::printTimes(report, wall.count());
   return good ? kGood : kFailed;

@@ -496,6 +496,53 @@ TEST(CacheSize, isAPlainNumber) {
   }
 }
 
+/// Nothing that a terminal obeys, and no line that nobody wrote.
+void expectHarmless(const Outcome& outcome) {
+  for (const std::string* text : {&outcome.out, &outcome.err}) {
+    for (const char* acting : {"\x1b", "\x7f", "\xc2\x9b", "\xd8\x9c", "\xe2\x80\x8f", "\xe2\x80\xae",
+                               "\xe2\x80\xa8", "\xe2\x81\xa6", "\nFORGED", "\rFORGED"}) {
+      EXPECT_EQ(text->find(acting), std::string::npos) << *text;
+    }
+  }
+}
+
+TEST(HostileNames, actOnNoTerminal) {
+  const Workplace place;
+  const std::string acting =
+      "x\x1b[2J\x7f\xc2\x9b\xd8\x9c\xe2\x80\x8f\xe2\x80\xae\xe2\x80\xa8\xe2\x81\xa6\nFORGED\rFORGED\nFORGED";
+  const std::string name = nlohmann::json(acting).dump();
+  const std::string file = acting + ".gltf";
+  place.write(
+      file, gltfOf({R"({"name": )" + name + R"(, "alphaCutoff": -1})",
+                    R"({"name": )" + name + R"(, "alphaMode": )" + name + "}", R"({"name": )" + name + "}"}));
+  const Outcome generated = place.run({"gen", file, "-o", "out", "--target", "spirv"});
+  EXPECT_NE(generated.out.find("FORGED"), std::string::npos) << generated.out;
+  EXPECT_NE(generated.err.find("\\x1b[2J\\x7f\\x9b\\u061c\\u200f\\u202e\\u2028\\u2066\\nFORGED"),
+            std::string::npos)
+      << generated.err;
+  expectHarmless(generated);
+  place.write("one.gltf", gltfOf({R"({"name": )" + name + "}"}));
+  const Outcome proved = place.run({"prove", "one.gltf"});
+  EXPECT_NE(proved.out.find("FORGED"), std::string::npos) << proved.out;
+  expectHarmless(proved);
+  expectHarmless(place.run({"gen", acting, "-o", "out"}));
+  expectHarmless(place.run({"prove", acting, "--material", acting}));
+  expectHarmless(
+      place.run({"preview", "one.gltf", "-o", "a.png", "--size", "16", "--compare", "float", "double"}));
+  place.write("g.json", R"({"lacquer_graph": 1, "name": )" + name + R"(, "template": "bsdf", "nodes": [],
+"outputs": {}, "skipped": {)" +
+                            name + ": " + name + "}}");
+  expectHarmless(place.run({"gen", "--graph", "g.json", "-o", "out", "--target", "glsl"}));
+  place.write("h.json", R"({"lacquer_graph": 1, "template": )" + name + R"(, "nodes": [{"id": )" + name +
+                            R"(, "node": )" + name + R"(, "inputs": {)" + name + R"(: {"given": )" + name +
+                            R"(}}}], "outputs": {)" + name + R"(: {"parameter": )" + name + "}}}");
+  expectHarmless(place.run({"gen", "--graph", "h.json", "-o", "out", "--target", "glsl"}));
+  place.write("cost/manifest.json", R"({"lacquer": )" + name + R"(, "schema": 1, "files": [], "shaders": {)" +
+                                        name + R"(: {"files": {"spirv": {"frag": )" + name + "}}}}}");
+  expectHarmless(place.run({"cost", "cost"}));
+  expectHarmless(place.run({"merge", "cost/manifest.json", "-o", "merged"}));
+}
+
 TEST(LongLines, areCut) {
   const Workplace place;
   place.write("nodes/a.node", "node a(float x) -> float { return " + std::string(1'000'000, 'y') + "; }\n");
