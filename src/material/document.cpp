@@ -11,6 +11,7 @@
 #include "json/json.h"
 #include "json/path.h"
 #include "json/report.h"
+#include "material/beside.h"
 #include "material/material.h"
 #include "material/reader.h"
 #include "support/file.h"
@@ -83,13 +84,13 @@ void checkExtensions(const Json& root, const Schema& schema, Report& report) {
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i) {
     if (!(*required)[i].is_string()) continue;
     const auto& name = (*required)[i].get_ref<const std::string&>();
-    // Extensions of geometry, textures and so on are none of a shader generator's business; variants choose a
-    // whole material, and never reach a shader.
+    if (schema.find(name) || !besideMaterials(name).empty()) continue;
+    // What nobody here knows may change materials, whatever its name is.
     const bool of_materials = name.find("_materials_") != std::string::npos;
-    if (!of_materials || name == "KHR_materials_variants" || schema.find(name)) continue;
     report.warning("required-extension", Path(requiredPath, i),
                    fmt::format("{} is required, but Lacquer does not implement it", printable(name)),
-                   "materials that use it will look different");
+                   of_materials ? "materials that use it will look different"
+                                : "if it changes materials, they will look different");
   }
   const Path extensionsPath(path, "extensions");
   const Json* extensions = json::member(root, "extensions");
