@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
 #include "lacquer.h"
@@ -14,10 +15,13 @@ CLI::App* addDfg(CLI::App& app, DfgFlags& flags) {
   CLI::App* verb = app.add_subcommand(
       "dfg", "the textures environment_dfg and environment_sheen, for engines that have none");
   verb->add_option("-o,--output", flags.output,
-                   "the DDS file to write environment_dfg to: 16-bit UNORM, two channels");
-  verb->add_option("--sheen", flags.sheen, "the same for environment_sheen, beside the other or alone");
+                   "the DDS file to write environment_dfg to: 16-bit UNORM, two channels")
+      ->check(kNotEmpty);
+  verb->add_option("--sheen", flags.sheen, "the same for environment_sheen, beside the other or alone")
+      ->check(kNotEmpty);
   verb->add_option("--size", flags.size, "texels in a row and in a column")
       ->check(CLI::Range(2, 1024))
+      ->check(kWhole)
       ->capture_default_str();
   return verb;
 }
