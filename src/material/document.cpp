@@ -8,6 +8,7 @@
 
 #include "gltf/container.h"
 #include "gltf/scene.h"
+#include "json/doubles.h"
 #include "json/json.h"
 #include "json/path.h"
 #include "json/report.h"
@@ -111,7 +112,8 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
                               const ReadOptions& options) {
   const Result<std::string_view> text = gltf::jsonText(bytes, name);
   if (!text) return tl::make_unexpected(text.error());
-  Result<Json> root = json::parse(*text, name, options.limits);
+  Document document;
+  Result<Json> root = json::parseTelling(*text, name, options.limits, document.diagnostics);
   if (!root) {
     if (text->data() != bytes.data()) {
       for (Diagnostic& one : root.error()) one.message += " (in the GLB's JSON chunk)";
@@ -123,7 +125,6 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
   checkRoot(*root, report);
   if (hasError(fatal)) return tl::make_unexpected(std::move(fatal));
 
-  Document document;
   document.path = name;
   gltf::readScene(*root, document);
   const FileFacts facts{name, document, options.permissive};
