@@ -1,4 +1,5 @@
 #include "cli/build.h"
+#include "cli/checks.h"
 
 #include <fmt/format.h>
 
@@ -33,6 +34,7 @@ void addLimit(CLI::App& app, Options& options) {
   app.add_option(
          "--limit", options.limits,
          "NAME=NUMBER: what an input may be at most, such as images=1G (docs/security.md; may be repeated)")
+      ->check(kLimit)
       ->allow_extra_args(false);
 }
 

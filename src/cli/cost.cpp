@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "cli/table.h"
+
 namespace lacquer::cli {
 namespace {
 
@@ -45,7 +47,7 @@ std::string cells(const GpuCost& gpu) {
 
 void printTable(const std::vector<ShaderCost>& costs) {
   size_t width = 6;
-  for (const ShaderCost& shader : costs) width = std::max(width, shader.name.size());
+  for (const ShaderCost& shader : costs) width = std::max(width, printable(shader.name).size());
   const std::vector<GpuCost>& gpus = costs[0].gpus;
   if (!gpus.empty()) {
     std::string head = fmt::format("{:{}}", "", width + 8);
@@ -56,15 +58,15 @@ void printTable(const std::vector<ShaderCost>& costs) {
   for (size_t i = 0; i < gpus.size(); ++i) head += " | instructions VGPRs SGPRs latency inv.throughput";
   fmt::print("{}\n", head);
   for (const ShaderCost& shader : costs) {
-    std::string line = fmt::format("{:{}} {:>7}", shader.name, width, shader.spirv_instructions);
+    std::string line = fmt::format("{:{}} {:>7}", printable(shader.name), width, shader.spirv_instructions);
     for (const GpuCost& gpu : shader.gpus) line += cells(gpu);
     fmt::print("{}\n", line);
   }
   for (const ShaderCost& shader : costs) {
     for (const GpuCost& gpu : shader.gpus) {
       if (gpu.spilled_sgprs + gpu.spilled_vgprs == 0) continue;
-      fmt::print("{} spills {} SGPRs and {} VGPRs on {}\n", shader.name, gpu.spilled_sgprs, gpu.spilled_vgprs,
-                 gpu.gpu);
+      fmt::print("{} spills {} SGPRs and {} VGPRs on {}\n", printable(shader.name), gpu.spilled_sgprs,
+                 gpu.spilled_vgprs, gpu.gpu);
     }
   }
 }
@@ -77,7 +79,8 @@ void printCosts(const std::vector<ShaderCost>& costs, bool as_json) {
   printTable(costs);
   for (const ShaderCost& shader : costs) {
     for (const GpuCost& gpu : shader.gpus) {
-      if (!gpu.disassembly.empty()) fmt::print("\n{} on {}:\n{}\n", shader.name, gpu.gpu, gpu.disassembly);
+      if (!gpu.disassembly.empty())
+        fmt::print("\n{} on {}:\n{}\n", printable(shader.name), gpu.gpu, gpu.disassembly);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/build.h"
+#include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
 
@@ -21,9 +22,11 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
       ->check(CLI::IsMember({"float", "double", "vulkan"}))
       ->capture_default_str();
   verb->add_option("--template", flags.options.template_name,
-                   "a template that puts out a colour; without it the default");
+                   "a template that puts out a colour; without it the default")
+      ->check(kNotEmpty);
   verb->add_option("--profile", flags.options.profile,
-                   "the reading of the specification, one of `lacquer nodes`; without it the default");
+                   "the reading of the specification, one of `lacquer nodes`; without it the default")
+      ->check(kNotEmpty);
   verb->add_option(
           "--spirv-from", flags.spirv_from,
           "what --engine vulkan runs: direct, or through glslang: its GLSL (glslang), its HLSL (hlsl)")
@@ -34,7 +37,8 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
       ->capture_default_str();
   verb->add_option("--error-budget", flags.options.error_budget,
                    "relative error of the colour that cheaper variants of the terms may bring, such as 1e-3")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(CLI::Range(0.0, 1.0))
+      ->check(kNumber);
   verb->add_option("--texel", flags.texels,
                    "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
       ->allow_extra_args(false);
@@ -48,10 +52,12 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
       ->capture_default_str();
   verb->add_flag("--permissive", flags.options.permissive,
                  "drop an extension that must not be there instead of failing");
-  verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files");
+  verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files")
+      ->check(kNotEmpty);
   addLimit(*verb, flags.options);
   verb->add_option("--allow", flags.options.allow,
                    "a folder in which images may lie, beside the file's own (may be repeated)")
+      ->check(kNotEmpty)
       ->allow_extra_args(false);
   return verb;
 }

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "cli/build.h"
+#include "cli/checks.h"
 #include "cli/cost.h"
 #include "cli/dfg.h"
 #include "cli/eval.h"
@@ -24,17 +25,18 @@ namespace {
 
 using lacquer::Messages;
 using lacquer::Options;
+using lacquer::cli::kNotEmpty;
+using lacquer::cli::kNumber;
+using lacquer::cli::kWhole;
 using lacquer::cli::print;
 using lacquer::cli::say;
 
 constexpr int kGood = 0;
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
+constexpr const char kNoOutput[] =
+    "lacquer: error: the standard output cannot be written [output-unwritable]\n";
 constexpr int kMostJobs = 1024;  ///< more threads than that are a mistyped number
-
-/// An empty folder name is a script's unset variable, and would lead to the root of the file system.
-const CLI::Validator kNotEmpty(
-    [](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "");
 
 struct Flags {
   Options options;
@@ -132,12 +134,15 @@ std::string finish(Flags& flags) {
 
 void addShared(CLI::App& app, Flags& flags) {
   app.add_option("--template", flags.options.template_name,
-                 "a template of `lacquer nodes`; without it the default");
+                 "a template of `lacquer nodes`; without it the default")
+      ->check(kNotEmpty);
   app.add_option("--profile", flags.options.profile,
-                 "the reading of the specification, one of `lacquer nodes`; without it the default");
+                 "the reading of the specification, one of `lacquer nodes`; without it the default")
+      ->check(kNotEmpty);
   app.add_option("--error-budget", flags.options.error_budget,
                  "relative error of the colour that cheaper variants of the terms may bring, such as 1e-3")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(CLI::Range(0.0, 1.0))
+      ->check(kNumber);
   app.add_option(
          "--params", flags.params,
          "uniform: numbers stay editable; baked: they are constants; spec: they are specialization constants")
@@ -163,6 +168,7 @@ void addShared(CLI::App& app, Flags& flags) {
   app.add_flag("--permissive", flags.options.permissive,
                "drop an extension that must not be there instead of failing");
   app.add_option("--nodes", flags.options.node_directories, "a folder with more node files (may be repeated)")
+      ->check(kNotEmpty)
       ->allow_extra_args(false);
   lacquer::cli::addLimit(app, flags.options);
 }
@@ -184,13 +190,16 @@ void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");
   verb.add_flag("--unused", flags.options.unused, "also materials that no primitive uses");
   verb.add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
-      ->check(CLI::Range(0, kMostJobs));
-  verb.add_option("--cache", flags.options.cache, "a folder that keeps results between runs");
+      ->check(CLI::Range(0, kMostJobs))
+      ->check(kWhole);
+  verb.add_option("--cache", flags.options.cache, "a folder that keeps results between runs")
+      ->check(kNotEmpty);
   verb.add_option("--cache-size", flags.options.cache_size, "bytes that it may take, such as 500MB (1 GiB)")
       ->transform(CLI::AsSizeValue(false))
       ->transform(kPlainSize);
   verb.add_option("--cache-key", flags.options.cache_key,
-                  "a file: entries of the cache count only when they were written with its bytes");
+                  "a file: entries of the cache count only when they were written with its bytes")
+      ->check(kNotEmpty);
   verb.add_flag("--no-sync", flags.no_sync,
                 "do not wait for the disk: after a power cut files may be broken");
   verb.add_flag("--time", flags.time, "the time of every stage, on stderr");
@@ -205,8 +214,10 @@ void addGen(CLI::App& verb, Flags& flags) {
           ->allow_extra_args(false)
           ->excludes(files);
   verb.add_option("--depfile", flags.options.depfile,
-                  "a file for Make and Ninja: what manifest.json depends on");
-  verb.add_option("--shard", flags.options.shard, "in place of manifest.json: a file for `merge`");
+                  "a file for Make and Ninja: what manifest.json depends on")
+      ->check(kNotEmpty);
+  verb.add_option("--shard", flags.options.shard, "in place of manifest.json: a file for `merge`")
+      ->check(kNotEmpty);
   addGeneration(verb, flags);
   graphs->excludes(verb.get_option("--material"));
   // A graph says itself which variants it has, and nothing was measured on it.
@@ -216,7 +227,8 @@ void addGen(CLI::App& verb, Flags& flags) {
 void addPlan(CLI::App& verb, Flags& flags) {
   verb.add_option("files", flags.files, ".gltf or .glb files")->required();
   verb.add_option("--ninja", flags.ninja, "the Ninja file; what its commands read is put beside it")
-      ->required();
+      ->required()
+      ->check(kNotEmpty);
   verb.add_flag("--replan", flags.replan, "the Ninja file makes itself anew when an input has changed");
   addGeneration(verb, flags);
 }
@@ -251,7 +263,7 @@ int plan(const Flags& flags) {
   const bool good = report.ok && !hasError(messages);
   if (!flags.quiet && good) {
     fmt::print("{} materials, {} distinct shaders: run ninja -f {}\n", report.materials.size(),
-               report.shaders.size(), flags.ninja);
+               report.shaders.size(), lacquer::cli::printable(flags.ninja));
   }
   if (flags.time) lacquer::cli::printTimes(report, wall.count());
   return good ? kGood : kFailed;
@@ -374,6 +386,7 @@ int run(int argc, char** argv) {
   nodes_verb
       ->add_option("--nodes", flags.options.node_directories,
                    "a folder with more node files (may be repeated)")
+      ->check(kNotEmpty)
       ->allow_extra_args(false);
 
   CLI::App* cost_verb =
@@ -435,12 +448,15 @@ int main(int argc, char** argv) {
   try {
     const int status = run(argc, argv);
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
-    say("lacquer: error: the standard output cannot be written [output-unwritable]\n");
+    say(kNoOutput);
   } catch (const std::bad_alloc&) {
     say("lacquer: error: there is not enough memory [out-of-memory]\n");
   } catch (const std::exception& error) {
-    // A full pipe: nothing that input alone can cause.
-    say("lacquer: error: {} [stopped]\n", error.what());
+    // The formatter throws when a stream takes nothing more; all else is nothing that input alone can cause.
+    if (std::ferror(stdout) != 0)
+      say(kNoOutput);
+    else
+      say("lacquer: error: {} [stopped]\n", error.what());
   }
   return kFailed;
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/build.h"
+#include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
 
@@ -16,14 +17,16 @@ CLI::App* addPreview(CLI::App& app, PreviewFlags& flags) {
   verb->add_option("files", flags.files, ".gltf or .glb files")->required();
   verb->add_option("-o,--output", flags.preview.output, "the PNG file to write")
       ->required()
-      ->check([](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "");
+      ->check(kNotEmpty);
   verb->add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   verb->add_option("--size", flags.preview.size, "pixels of a ball")
       ->check(CLI::Range(16, 2048))
+      ->check(kWhole)
       ->capture_default_str();
   verb->add_option("--columns", flags.preview.columns, "materials in a row; a good number when absent")
-      ->check(CLI::Range(1, 100));
+      ->check(CLI::Range(1, 100))
+      ->check(kWhole);
   verb->add_option("--engine", flags.engine, "float or double: the arithmetic")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();
@@ -42,14 +45,17 @@ CLI::App* addPreview(CLI::App& app, PreviewFlags& flags) {
   verb->add_flag("--permissive", flags.options.permissive,
                  "drop an extension that must not be there instead of failing");
   verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files")
+      ->check(kNotEmpty)
       ->allow_extra_args(false);
   verb->add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
-      ->check(CLI::Range(0, 1024));
+      ->check(CLI::Range(0, 1024))
+      ->check(kWhole);
   verb->add_flag("--json", flags.json, "what was measured, as JSON");
   verb->add_flag("-q,--quiet", flags.quiet, "no table, no progress");
   addLimit(*verb, flags.options);
   verb->add_option("--allow", flags.options.allow,
                    "a folder in which images may lie, beside the file's own (may be repeated)")
+      ->check(kNotEmpty)
       ->allow_extra_args(false);
   return verb;
 }

@@ -14,6 +14,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// A member that is a text, as a terminal may show it: names come from the file.
+std::string textOf(const Json& json, const char* key) { return printable(json[key].get<std::string>()); }
+
 std::string rangeText(const Json& range) {
   const auto end = [](const Json& x) {
     return x.is_string() ? x.get<std::string>() : fmt::format("{:.7g}", x.get<double>());
@@ -24,8 +27,8 @@ std::string rangeText(const Json& range) {
 void printClaims(const Json& claims, const std::string& where) {
   for (const Json& claim : claims) {
     if (claim["proved"].get<bool>()) continue;
-    fmt::print("  {}{}: must be {}, may be {}\n", where, claim["what"].get<std::string>(),
-               claim["need"].get<std::string>(), rangeText(claim["reached"]));
+    fmt::print("  {}{}: must be {}, may be {}\n", where, textOf(claim, "what"), textOf(claim, "need"),
+               rangeText(claim["reached"]));
   }
 }
 
@@ -40,18 +43,17 @@ void printShader(const Json& json) {
   for (const Json& row : operations) safe += row["safe"].get<bool>() ? 1 : 0;
   const Json& contracts = json["contracts"];
   fmt::print("{} ({}): {} of {} operations safe, {} of {} arguments within their nodes' contracts\n",
-             json["material"].get<std::string>(), json["shader"].get<std::string>(), safe, operations.size(),
-             proved(contracts), contracts.size());
+             textOf(json, "material"), textOf(json, "shader"), safe, operations.size(), proved(contracts),
+             contracts.size());
   for (const Json& row : operations) {
     if (row["safe"].get<bool>()) continue;
-    fmt::print("  {}{}: {} of {}: must be {}, may be {}\n", row["term"].get<std::string>(),
-               row.contains("name") ? "." + row["name"].get<std::string>() : "",
-               row["operation"].get<std::string>(), row["operand"].get<std::string>(),
-               row["need"].get<std::string>(), rangeText(row["reached"]));
+    fmt::print("  {}{}: {} of {}: must be {}, may be {}\n", textOf(row, "term"),
+               row.contains("name") ? "." + textOf(row, "name") : "", textOf(row, "operation"),
+               textOf(row, "operand"), textOf(row, "need"), rangeText(row["reached"]));
   }
   printClaims(contracts, "argument ");
   for (const Json& output : json["outputs"]) {
-    fmt::print("  output {} is in {}\n", output["name"].get<std::string>(), rangeText(output["reached"]));
+    fmt::print("  output {} is in {}\n", textOf(output, "name"), rangeText(output["reached"]));
   }
 }
 
@@ -65,8 +67,8 @@ bool proveNodes(const ProveFlags& flags, const Options& options, Messages& messa
     for (const char* kind : {"operations", "results", "calls"}) {
       good += proved(node[kind]);
       all += node[kind].size();
-      const std::string variant = node.contains("variant") ? "." + node["variant"].get<std::string>() : "";
-      if (!flags.json) printClaims(node[kind], node["name"].get<std::string>() + variant + ", ");
+      const std::string variant = node.contains("variant") ? "." + textOf(node, "variant") : "";
+      if (!flags.json) printClaims(node[kind], textOf(node, "name") + variant + ", ");
     }
   }
   if (flags.json)

@@ -28,7 +28,7 @@ void put(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stder
 
 void print(const Messages& messages, bool notes) {
   for (const Message& message : messages) {
-    if (notes || message.level != Message::Level::Note) say("{}\n", printable(message.text));
+    if (notes || message.level != Message::Level::Note) say("{}\n", printable(message.text, "\n\t"));
   }
 }
 

@@ -22,7 +22,7 @@ void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   put(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-/// Errors and warnings, and notes when they are wanted, as a terminal may show them.
+/// Errors and warnings, and notes when they are wanted. Their texts have lines of their own and no other.
 void print(const Messages& messages, bool notes = false);
 
 }  // namespace lacquer::cli

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/build.h"
+#include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
 
@@ -19,20 +20,27 @@ CLI::App* addStress(CLI::App& app, StressFlags& flags) {
   CLI::Option* samples =
       verb->add_option("--samples", flags.stress.samples, "inputs for each node and each material")
           ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+          ->check(kWhole)
           ->capture_default_str();
   verb->add_option("--total", flags.stress.total, "inputs for all of them together, the same number for each")
       ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+      ->check(kWhole)
       ->excludes(samples);
   verb->add_option(
-      "--profile", flags.options.profile,
-      "the reading of the specification, of materials, one of `lacquer nodes`; without it the default");
-  verb->add_option("--seed", flags.stress.seed, "another one draws other inputs")->capture_default_str();
+          "--profile", flags.options.profile,
+          "the reading of the specification, of materials, one of `lacquer nodes`; without it the default")
+      ->check(kNotEmpty);
+  verb->add_option("--seed", flags.stress.seed, "another one draws other inputs")
+      ->check(kWhole)
+      ->capture_default_str();
   verb->add_flag("--mediump", flags.stress.mediump,
                  "round every operation to half precision and only report what comes of it");
   verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files")
+      ->check(kNotEmpty)
       ->allow_extra_args(false);
   verb->add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
-      ->check(CLI::Range(0, 1024));
+      ->check(CLI::Range(0, 1024))
+      ->check(kWhole);
   verb->add_flag("--json", flags.json, "as JSON, with a case for each finding");
   verb->add_flag("-q,--quiet", flags.quiet, "no progress, and only what was found");
   addLimit(*verb, flags.options);

@@ -23,15 +23,29 @@ int terminalWidth() {
   return 0;
 }
 
-std::string printable(std::string_view text) {
+namespace {
+
+/// Bytes of what acts on a terminal at the start of `text`, in UTF-8; 0 where the first byte is shown.
+size_t actingBytes(std::string_view text) {
+  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  if (byte(0) < 0x20 || byte(0) == 0x7F) return 1;
+  if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0) return 2;  // U+0080 to U+009F
+  if (byte(0) == 0xD8 && byte(1) == 0x9C) return 2;                    // U+061C
+  if (byte(0) != 0xE2) return 0;
+  const bool marks = byte(1) == 0x80 && ((byte(2) >= 0x8E && byte(2) <= 0x8F) ||  // U+200E, U+200F
+                                         (byte(2) >= 0xA8 && byte(2) <= 0xAE));   // U+2028 to U+202E
+  const bool isolates = byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9;    // U+2066 to U+2069
+  return marks || isolates ? 3 : 0;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::string_view kept) {
   std::string result;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    // U+0080 to U+009F are control characters, too.
-    const bool two = byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
-    const bool control = two || (byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7F;
-    result += control ? '?' : text[i];
-    i += two ? 1 : 0;
+  for (size_t i = 0; i < text.size();) {
+    const size_t acting = kept.find(text[i]) == std::string_view::npos ? actingBytes(text.substr(i)) : 0;
+    result += acting != 0 ? '?' : text[i];
+    i += acting != 0 ? acting : 1;
   }
   return result;
 }
@@ -49,12 +63,12 @@ void printWrapped(const std::string& label, const std::vector<std::string>& word
   for (size_t i = 0; i < words.size(); ++i) {
     const std::string word = words[i] + (i + 1 < words.size() ? "," : "");
     if (line.size() + word.size() + 1 > kLineWidth && line.size() > indent.size()) {
-      fmt::print("{}\n", line);
+      fmt::print("{}\n", printable(line));
       line = indent;
     }
     line += (line.size() > indent.size() ? " " : "") + word;
   }
-  if (!words.empty()) fmt::print("{}\n", line);
+  if (!words.empty()) fmt::print("{}\n", printable(line));
 }
 
 /// "coat: fresnel absorption", one entry for each group of terms.
@@ -131,7 +145,7 @@ void printReport(const Report& report, const Options& options) {
   for (const MaterialReport& material : report.materials) {
     if (material.file != file) {
       file = material.file;
-      fmt::print("\n{}\n", file);
+      fmt::print("\n{}\n", printable(file));
     }
     if (++listed > kMostMaterials) continue;
     std::string ids;
@@ -156,11 +170,11 @@ void printReport(const Report& report, const Options& options) {
   if (!report.shaders.empty()) fmt::print("\nshaders\n");
   for (const ShaderReport& shader : report.shaders) {
     if (report.shaders.size() > kMostMaterials) break;
-    fmt::print("  {}  {}\n", shader.id,
+    fmt::print("  {}  {}\n", printable(shader.id),
                shader.validated   ? "validated"
                : options.validate ? "NOT VALID"
                                   : "not validated (--no-validate)");
-    for (const auto& [path, bytes] : shader.files) fmt::print("      {:>7} {}\n", bytes, path);
+    for (const auto& [path, bytes] : shader.files) fmt::print("      {:>7} {}\n", bytes, printable(path));
   }
   size_t valid = 0;
   for (const ShaderReport& shader : report.shaders) valid += shader.validated ? 1 : 0;

@@ -84,13 +84,17 @@ bool huffmanTablesFit(std::string_view segment) {
   return true;
 }
 
-/// True for what is no JPEG, and for a JPEG whose Huffman tables fit. Finds its markers as stb does: between
-/// segments whatever is no 0xFF is passed over, and so is what a scan encodes, with its 0xFF00 and its
-/// restarts.
-bool jpegTablesFit(std::string_view bytes) {
+/// Scans of a JPEG. Each goes over all of its pixels, however few bytes it has; encoders write about ten.
+constexpr size_t kMostScans = 100;
+
+/// What the decoder must not see in a JPEG; empty where all is well, and for what is no JPEG. Finds its
+/// markers as stb does: between segments whatever is no 0xFF is passed over, and so is what a scan encodes,
+/// with its 0xFF00 and its restarts.
+std::string jpegFault(std::string_view bytes) {
   constexpr unsigned kStuffed = 0x00, kTables = 0xC4, kRestart0 = 0xD0, kStart = 0xD8, kEnd = 0xD9,
-                     kFill = 0xFF;
-  if (bytes.starts_with('\x89')) return true;
+                     kScan = 0xDA, kFill = 0xFF;
+  if (bytes.starts_with('\x89')) return {};
+  size_t scans = 0;
   const auto at = [&](size_t i) { return static_cast<unsigned char>(bytes[i]); };
   for (size_t i = 0; i + 1 < bytes.size();) {
     if (at(i) != kFill) {
@@ -101,13 +105,23 @@ bool jpegTablesFit(std::string_view bytes) {
     if (marker == kFill) continue;
     ++i;
     if (marker == kStuffed || (marker >= kRestart0 && marker <= kStart)) continue;
-    if (marker == kEnd || i + 2 > bytes.size()) return true;
+    if (marker == kEnd || i + 2 > bytes.size()) return {};
+    if (marker == kScan && ++scans > kMostScans)
+      return fmt::format("it has more than {} scans", kMostScans);
     const size_t length = at(i) * size_t{256} + at(i + 1);
     const size_t here = std::min(length, bytes.size() - i);
-    if (marker == kTables && (length < 2 || !huffmanTablesFit(bytes.substr(i + 2, here - 2)))) return false;
+    if (marker == kTables && (length < 2 || !huffmanTablesFit(bytes.substr(i + 2, here - 2))))
+      return "it has a bad Huffman table";
     i += std::max<size_t>(here, 2);
   }
-  return true;
+  return {};
+}
+
+/// The decoder's words for what it was not given are no fault of the machine's memory: takeBlock() has no more
+/// for a stream that unpacks to more than its image.
+std::string damaged() {
+  const std::string_view reason = stbi_failure_reason();
+  return "the image is damaged" + (reason == "outofmem" ? std::string() : fmt::format(": {}", reason));
 }
 
 const stbi_uc* dataOf(std::string_view bytes) { return reinterpret_cast<const stbi_uc*>(bytes.data()); }
@@ -115,8 +129,7 @@ const stbi_uc* dataOf(std::string_view bytes) { return reinterpret_cast<const st
 template <class Number>
 Result<Image> imageOf(const Number* pixels, int width, int height, const ImageSize& size,
                       const Place& place) {
-  if (pixels == nullptr)
-    return unreadable(place, fmt::format("the image is damaged: {}", stbi_failure_reason()));
+  if (pixels == nullptr) return unreadable(place, damaged());
   if (width != size.width || height != size.height) return unreadable(place, "the image is damaged");
   Image::Texels<Number> texels(size.pixels());
   std::memcpy(texels.data(), pixels, texels.size() * sizeof texels[0]);
@@ -148,7 +161,8 @@ Result<ImageSize> sizeOfImage(std::string_view bytes, const Place& place) {
   if (!isPngOrJpeg(bytes)) return unreadable(place, fmt::format("this is {}", formatOf(bytes)));
   if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max()))
     return unreadable(place, "the image is too large");
-  if (!jpegTablesFit(bytes)) return unreadable(place, "the image is damaged: it has a bad Huffman table");
+  if (const std::string fault = jpegFault(bytes); !fault.empty())
+    return unreadable(place, "the image is damaged: " + fault);
   const int length = static_cast<int>(bytes.size());
   largest_block = kBeside;
   ImageSize size;

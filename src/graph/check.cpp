@@ -31,6 +31,10 @@ using lang::Ties;
 constexpr size_t kLast = std::numeric_limits<size_t>::max();
 
 /// A name from the graph as it stands in a message.
+/// Shaders compute with 32-bit floats: in one a larger number would be infinite.
+bool fitsFloat(double x) { return std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max()); }
+constexpr std::string_view kFloatHelp = "it must fit a 32-bit float: at most about 3.4e38";
+
 std::string quote(std::string_view name) { return "'" + printable(name) + "'"; }
 
 /// The sections of the JSON form, in its order.
@@ -266,6 +270,12 @@ void GraphCheck::parameter(size_t index) {
     return error(spot, at("/type"), "wrong-type", fmt::format("a parameter cannot be {}", article(p.type)),
                  "it is a float, vec2, vec3, vec4 or bool");
   }
+  // Without an end a range is infinite, which is no number of the file's.
+  for (const double end : {p.range.lo, p.range.hi, p.range.gap}) {
+    if (!std::isfinite(end) || fitsFloat(end)) continue;
+    return error(spot, at("/range"), "out-of-range",
+                 fmt::format("the range of {} has the end {}", quote(p.name), end), std::string(kFloatHelp));
+  }
   if (!(p.range.lo <= p.range.hi) || p.range.gap > p.range.hi) {
     return error(spot, at("/range"), "wrong-range", fmt::format("{} is no range", ir::rangeText(p.range)),
                  "write the lowest value, then the highest");
@@ -274,6 +284,14 @@ void GraphCheck::parameter(size_t index) {
     const double x = p.value[static_cast<size_t>(i)];
     if (!std::isfinite(x)) {
       return error(spot, at("/value"), "not-finite", fmt::format("the value of {} is {}", quote(p.name), x));
+    }
+    if (!fitsFloat(x)) {
+      return error(spot, at("/value"), "out-of-range", fmt::format("the value of {} is {}", quote(p.name), x),
+                   std::string(kFloatHelp));
+    }
+    if (const double neutral = p.neutral[static_cast<size_t>(i)]; !fitsFloat(neutral)) {
+      return error(spot, at("/default"), "out-of-range",
+                   fmt::format("the default of {} is {}", quote(p.name), neutral), std::string(kFloatHelp));
     }
     if (!p.range.contains(x)) {
       return error(
@@ -517,8 +535,11 @@ std::optional<Type> GraphCheck::typeOf(const Literal& literal, const Sink& sink)
   }
   for (int i = 0; i < ir::componentCount(literal.type); ++i) {
     const double x = literal.value[static_cast<size_t>(i)];
-    if (std::isfinite(x)) continue;
-    error(sink, "not-finite", fmt::format("the value written for {} is {}", textOf(sink), x));
+    if (fitsFloat(x)) continue;
+    const bool finite = std::isfinite(x);
+    error(sink, finite ? "out-of-range" : "not-finite",
+          fmt::format("the value written for {} is {}", textOf(sink), x),
+          finite ? std::string(kFloatHelp) : std::string());
     return std::nullopt;
   }
   return literal.type;

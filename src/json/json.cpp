@@ -1,4 +1,5 @@
 #include "json/json.h"
+#include "json/doubles.h"
 
 #include <fmt/format.h>
 
@@ -237,7 +238,12 @@ Diagnostic syntaxError(const TreeBuilder& builder, std::string_view text, const 
 
 }  // namespace
 
-Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits, Doubles doubles) {
+namespace {
+
+using DoubledNames = std::vector<std::pair<std::string, std::string>>;  ///< the object's pointer, the name
+
+Result<Json> build(std::string_view text, const std::string& file, const Limits& limits,
+                   DoubledNames& doubles) {
   const Place place{file, 0, 0, {}};
   if (text.size() > limits.json) {
     return fail("json-too-large", place, fmt::format("its JSON has more than {} bytes", limits.json),
@@ -252,23 +258,46 @@ Result<Json> parse(std::string_view text, const std::string& file, const Limits&
   }
   TreeBuilder builder(limits.values);
   if (Json::sax_parse(text.begin(), text.end(), &builder)) {
-    if (doubles == Doubles::LastCounts || builder.doubles.empty()) return std::move(builder.root);
-    Diagnostics wrong;
-    for (const auto& [object, name] : builder.doubles) {
-      wrong.push_back({"duplicate-key",
-                       Severity::Error,
-                       {file, 0, 0, object + Path(Path(), name).text()},
-                       fmt::format("{} stands twice in one object", quote(name)),
-                       "remove one of the two",
-                       {}});
-    }
-    return tl::make_unexpected(std::move(wrong));
+    doubles = std::move(builder.doubles);
+    return std::move(builder.root);
   }
   if (builder.full()) {
     return fail("json-too-many", place, fmt::format("its JSON has more than {} values", limits.values),
                 raising("values"));
   }
   return tl::make_unexpected(Diagnostics{syntaxError(builder, text, file)});
+}
+
+Diagnostic doubled(const std::pair<std::string, std::string>& one, Severity severity,
+                   const std::string& file) {
+  return {"duplicate-key",
+          severity,
+          {file, 0, 0, one.first + Path(Path(), one.second).text()},
+          fmt::format("{} stands twice in one object", quote(one.second)),
+          severity == Severity::Error ? "remove one of the two"
+                                      : "the last one counts here: remove one of the two",
+          {}};
+}
+
+}  // namespace
+
+Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits, Doubles doubles) {
+  DoubledNames names;
+  Result<Json> json = build(text, file, limits, names);
+  if (!json || doubles == Doubles::LastCounts || names.empty()) return json;
+  Diagnostics wrong;
+  for (const auto& one : names) wrong.push_back(doubled(one, Severity::Error, file));
+  return tl::make_unexpected(std::move(wrong));
+}
+
+Result<Json> parseTelling(std::string_view text, const std::string& file, const Limits& limits,
+                          Diagnostics& told) {
+  constexpr size_t kMost = 20;
+  DoubledNames names;
+  Result<Json> json = build(text, file, limits, names);
+  for (size_t i = 0; json && i < std::min(kMost, names.size()); ++i)
+    told.push_back(doubled(names[i], Severity::Warning, file));
+  return json;
 }
 
 const Json* member(const Json& object, std::string_view key) {

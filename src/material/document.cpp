@@ -8,9 +8,11 @@
 
 #include "gltf/container.h"
 #include "gltf/scene.h"
+#include "json/doubles.h"
 #include "json/json.h"
 #include "json/path.h"
 #include "json/report.h"
+#include "material/beside.h"
 #include "material/material.h"
 #include "material/reader.h"
 #include "support/file.h"
@@ -83,13 +85,13 @@ void checkExtensions(const Json& root, const Schema& schema, Report& report) {
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i) {
     if (!(*required)[i].is_string()) continue;
     const auto& name = (*required)[i].get_ref<const std::string&>();
-    // Extensions of geometry, textures and so on are none of a shader generator's business; variants choose a
-    // whole material, and never reach a shader.
+    if (schema.find(name) || !besideMaterials(name).empty()) continue;
+    // What nobody here knows may change materials, whatever its name is.
     const bool of_materials = name.find("_materials_") != std::string::npos;
-    if (!of_materials || name == "KHR_materials_variants" || schema.find(name)) continue;
     report.warning("required-extension", Path(requiredPath, i),
                    fmt::format("{} is required, but Lacquer does not implement it", printable(name)),
-                   "materials that use it will look different");
+                   of_materials ? "materials that use it will look different"
+                                : "if it changes materials, they will look different");
   }
   const Path extensionsPath(path, "extensions");
   const Json* extensions = json::member(root, "extensions");
@@ -110,7 +112,8 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
                               const ReadOptions& options) {
   const Result<std::string_view> text = gltf::jsonText(bytes, name);
   if (!text) return tl::make_unexpected(text.error());
-  Result<Json> root = json::parse(*text, name, options.limits);
+  Document document;
+  Result<Json> root = json::parseTelling(*text, name, options.limits, document.diagnostics);
   if (!root) {
     if (text->data() != bytes.data()) {
       for (Diagnostic& one : root.error()) one.message += " (in the GLB's JSON chunk)";
@@ -122,7 +125,6 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
   checkRoot(*root, report);
   if (hasError(fatal)) return tl::make_unexpected(std::move(fatal));
 
-  Document document;
   document.path = name;
   gltf::readScene(*root, document);
   const FileFacts facts{name, document, options.permissive};

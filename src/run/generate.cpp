@@ -89,7 +89,11 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     depfile = depfileText(path, run.inputs());
     if (!depfile) run.wrote(tl::make_unexpected(depfile.error()));
   }
-  if (!run.mayWrite(outputs) || !depfile) return run.finish();
+  Strings named;
+  for (const std::string& one : {options.shard, options.depfile}) {
+    if (!one.empty()) named.push_back(one);
+  }
+  if (!run.mayWrite(outputs) || !run.mayName(named, folder) || !depfile) return run.finish();
   std::optional<Receipt> receipt =
       inputs.scenes && !shard ? run.receipt(inputs.files, inputs.materials, folder) : std::nullopt;
   if (receipt && run.find(*receipt)) {
@@ -117,7 +121,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   if (!shard || run.result().ok) {
     const Result<bool> written = manifest.finish();
     run.wrote(written);
-    if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.inputs());
+    if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
   }
   if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, *depfile, {nullptr, options.sync}));
   if (receipt) run.keep(*receipt);

@@ -1,11 +1,16 @@
 #include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "json/json.h"
 #include "json/text.h"
 #include "run/manifest.h"
+#include "run/manifest_check.h"
 #include "shader/messages.h"
 #include "shader/options.h"
 #include "support/outputs.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -13,37 +18,42 @@ namespace {
 
 constexpr size_t kEntryDepth = 2;  ///< manifest, "files" or "shaders"
 
-tl::unexpected<Diagnostics> noManifest(const std::string& path, std::string message) {
-  return fail("no-manifest", {path, 0, 0, {}}, std::move(message),
-              "name what `lacquer gen` wrote: a manifest or a shard");
-}
-
-Result<Json> readManifest(const std::string& path) {
+Result<Json> readManifest(const std::string& path, std::vector<NamedShader>& named) {
   const Result<std::string> text = readFile(path);
   if (!text) return tl::make_unexpected(text.error());
-  Result<Json> read = json::parse(*text, path);
-  if (!read) return read;
-  Json& json = *read;
-  const auto is = [&](const char* name, Json::value_t type) {
-    const Json* found = json::member(json, name);
-    return found != nullptr && found->type() == type;
-  };
-  if (!is("lacquer", Json::value_t::string) || !is("files", Json::value_t::array) ||
-      !is("shaders", Json::value_t::object)) {
-    return noManifest(path, "this is no manifest of Lacquer's");
-  }
-  if (json["lacquer"] != version()) {
-    return noManifest(path, "it was written by version " + json["lacquer"].get<std::string>());
-  }
-  return read;
+  Result<Json> json = json::parse(*text, path);
+  if (!json) return json;
+  if (Result<void> good = checkManifest(*json, path, named); !good)
+    return tl::make_unexpected(std::move(good.error()));
+  return json;
 }
 
 std::string entryText(const Json& json) { return JsonText(kEntryDepth).json(json).take(); }
 
+using Shaders = std::map<std::string, std::pair<std::string, std::string>>;  ///< id: entry, where it is from
+
+/// An error for each use whose shader is in none of the shards.
+Diagnostics absent(const std::vector<std::pair<std::string, std::vector<NamedShader>>>& named,
+                   const Shaders& shaders) {
+  Diagnostics wrong;
+  for (const auto& [path, uses] : named) {
+    for (const NamedShader& use : uses) {
+      if (shaders.contains(use.id)) continue;
+      wrong.push_back({"no-such-shader",
+                       Severity::Error,
+                       {path, 0, 0, use.pointer},
+                       "there is no shader " + quote(use.id),
+                       "merge its shard, too",
+                       {}});
+    }
+  }
+  return wrong;
+}
+
 }  // namespace
 
 bool merge(const std::vector<std::string>& shards, const std::string& folder, Messages& messages) {
-  std::map<std::string, std::pair<std::string, std::string>> shaders;  // id: entry, where it comes from
+  Shaders shaders;
   if (const Result<void> named = hasPath("the output folder", folder); !named) {
     report(named.error(), {}, messages);
     return false;
@@ -58,8 +68,9 @@ bool merge(const std::vector<std::string>& shards, const std::string& folder, Me
   }
   const Scratch scratch(folder);
   ManifestFile manifest(folder + "/manifest.json", {&scratch});
+  std::vector<std::pair<std::string, std::vector<NamedShader>>> named;  // by the shard
   for (const std::string& path : shards) {
-    const Result<Json> json = readManifest(path);
+    const Result<Json> json = readManifest(path, named.emplace_back(path, std::vector<NamedShader>()).second);
     if (!json) {
       report(json.error(), {}, messages);
       return false;
@@ -76,6 +87,10 @@ bool merge(const std::vector<std::string>& shards, const std::string& folder, Me
              {}, messages);
       return false;
     }
+  }
+  if (const Diagnostics wrong = absent(named, shaders); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return false;
   }
   for (const auto& [id, entry] : shaders) manifest.shader(id, entry.first);
   const Result<bool> written = manifest.finish();

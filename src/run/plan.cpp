@@ -192,7 +192,8 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
     run.wrote(tl::make_unexpected(wrong));
     return run.finish();
   }
-  if (!run.mayWrite({plan.ninja, all_materials})) return run.finish();
+  const Strings outputs = {plan.ninja, all_materials};
+  if (!run.mayWrite(outputs) || !run.mayName(outputs, folder)) return run.finish();
   const Writing how{nullptr, options.sync};
   ManifestFile manifest(all_materials, how);
   run.readScenes(files, materials, [&](FileResult& file) { manifest.file(file.text); });

@@ -193,8 +193,16 @@ bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt*
   return true;
 }
 
-bool Run::mayWrite(const Strings& outputs) {
-  const Diagnostics wrong = clashes(inputs(), outputs);
+bool Run::mayWrite(const Strings& outputs) { return allGood(clashes(readFiles(), outputs)); }
+
+bool Run::mayName(const Strings& outputs, const std::string& folder) {
+  Strings folders;
+  for (size_t t = 0; t < kTargetCount; ++t)
+    folders.push_back(fmt::format("{}/{}", folder, targetName(static_cast<Target>(t))));
+  return allGood(reservedNames(folders, {folder + "/manifest.json"}, outputs));
+}
+
+bool Run::allGood(const Diagnostics& wrong) {
   if (wrong.empty()) return true;
   report(wrong, {});
   report_.ok = false;
@@ -213,6 +221,12 @@ void Run::wrote(const Result<bool>& written) {
 std::vector<std::string> Run::inputs() const {
   std::vector<std::string> all = inputs_;
   all.insert(all.end(), node_files_.begin(), node_files_.end());
+  return all;
+}
+
+std::vector<std::string> Run::readFiles() const {
+  std::vector<std::string> all = inputs();
+  if (!options_.cache_key.empty()) all.push_back(options_.cache_key);
   return all;
 }
 

@@ -40,6 +40,9 @@ public:
   }
   /// False, with messages, when one of these outputs is an input of the run or another output.
   bool mayWrite(const Strings& outputs);
+  /// False, with messages, when one of these, which the user named, is the folder's manifest or lies where
+  /// its shaders do.
+  bool mayName(const Strings& outputs, const std::string& folder);
   /// Reports what went wrong with a file that was to be written.
   void wrote(const Result<bool>& written);
   Structures& structures() { return *structures_; }
@@ -47,8 +50,11 @@ public:
   Report finish();
   /// Every file that the run reads: the inputs, then the node files.
   std::vector<std::string> inputs() const;
+  /// The same and what no result depends on, but must not be written to: the cache's key.
+  std::vector<std::string> readFiles() const;
 
 private:
+  bool allGood(const Diagnostics& wrong);
   void readAll(const std::vector<std::string>& files,
                const std::function<FileResult(const std::string&)>& read,
                const std::function<void(FileResult&)>& each);

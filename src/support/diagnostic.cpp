@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "support/shown.h"
+
 namespace lacquer {
 
 tl::unexpected<Diagnostics> fail(std::string code, Place place, std::string message, std::string help) {
@@ -22,34 +24,21 @@ std::string_view severityName(Severity severity) {
   return "";
 }
 
-/// Bytes that would act on a terminal are shown, not sent.
-static std::string shown(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 && c != '\n' && c != '\t')
-      safe += fmt::format("\\x{:02x}", byte);
-    else if (byte == 0x7F)
-      safe += "\\x7f";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
 std::string format(const Diagnostic& diagnostic) {
   const Place& place = diagnostic.place;
-  std::string where = place.file;
+  // Names come from files of others: none may end a line, which would begin a message that nobody wrote.
+  std::string where = shown(place.file);
   if (place.line != 0) {
     where += fmt::format("{}{}:{}", where.empty() ? "" : ":", place.line, place.column);
   } else if (!place.pointer.empty()) {
-    where += (where.empty() ? "" : ":") + place.pointer;
+    where += (where.empty() ? "" : ":") + shown(place.pointer);
   }
   std::string text = where.empty() ? "" : where + ": ";
-  text += fmt::format("{}: {} [{}]", severityName(diagnostic.severity), diagnostic.message, diagnostic.code);
-  if (!diagnostic.excerpt.empty()) text += "\n" + diagnostic.excerpt;
-  if (!diagnostic.help.empty()) text += "\n  help: " + diagnostic.help;
-  return shown(text);
+  text += fmt::format("{}: {} [{}]", severityName(diagnostic.severity), shown(diagnostic.message),
+                      shown(diagnostic.code));
+  if (!diagnostic.excerpt.empty()) text += "\n" + shown(diagnostic.excerpt, "\n\t");
+  if (!diagnostic.help.empty()) text += "\n  help: " + shown(diagnostic.help);
+  return text;
 }
 
 bool hasError(const Diagnostics& diagnostics) {

@@ -1,5 +1,7 @@
 #include "support/file.h"
 
+#include "support/outputs.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -270,6 +272,10 @@ ReplacingFile::ReplacingFile(std::string path, const Writing& how)
     : path_(std::move(path)), of_scratch_(how.scratch != nullptr), sync_(how.sync) {
   const std::string parent = fs::path(path_).parent_path().string();
   folder_ = of_scratch_ ? how.scratch->path() : parent.empty() ? "." : parent;
+  if (const auto what = inTheWay(path_)) {
+    wrong_ = fmt::format("this is {}", *what);
+    return;
+  }
   old_ = openOld(path_);
   if (old_ == nullptr)
     create();

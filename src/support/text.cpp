@@ -3,16 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
+
+#include "support/shown.h"
 
 namespace lacquer {
 
 namespace {
 
-/// Bytes of the well-formed UTF-8 sequence that `text` starts with; 0 when it starts with none.
-size_t sequenceLength(std::string_view text) {
+struct Character {
+  uint32_t code = 0;
+  size_t length = 0;  ///< bytes; 0 for what is no well-formed UTF-8
+};
+
+/// What `text` starts with; it is not empty.
+Character firstOf(std::string_view text) {
   const auto lead = static_cast<unsigned char>(text[0]);
   const size_t length = lead < 0x80   ? 1
                         : lead < 0xC2 ? 0
@@ -20,11 +30,37 @@ size_t sequenceLength(std::string_view text) {
                         : lead < 0xF0 ? 3
                         : lead < 0xF5 ? 4
                                       : 0;
-  if (length > text.size()) return 0;
+  if (length == 0 || length > text.size()) return {};
+  uint32_t code = length == 1 ? lead : lead & (0x7FU >> length);
   for (size_t i = 1; i < length; ++i) {
-    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return 0;
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if ((byte & 0xC0) != 0x80) return {};
+    code = code << 6 | (byte & 0x3FU);
   }
-  return length;
+  // A longer form of a shorter character would pass by those who look for it.
+  constexpr std::array<uint32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};
+  constexpr uint32_t kMost = 0x10FFFF;
+  return code < kLeast[length] || code > kMost ? Character{} : Character{code, length};
+}
+
+/// Moves, colours, reorders or breaks what a terminal shows, instead of being shown.
+bool acts(uint32_t code) {
+  constexpr std::pair<uint32_t, uint32_t> kRanges[] = {
+      {0x00, 0x1F},      // C0
+      {0x7F, 0x9F},      // DEL, C1
+      {0x61C, 0x61C},    // Arabic letter mark
+      {0x200E, 0x200F},  // marks of direction
+      {0x2028, 0x202E},  // separators of lines and paragraphs; embeddings and overrides
+      {0x2066, 0x2069},  // isolates
+  };
+  return std::any_of(std::begin(kRanges), std::end(kRanges),
+                     [code](const auto& range) { return code >= range.first && code <= range.second; });
+}
+
+std::string escape(uint32_t code) {
+  if (code == '\n') return "\\n";
+  if (code == '\t') return "\\t";
+  return code < 0x100 ? fmt::format("\\x{:02x}", code) : fmt::format("\\u{:04x}", code);
 }
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
@@ -51,19 +87,33 @@ size_t editDistance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string shown(std::string_view text, std::string_view kept) {
+  std::string out;
+  out.reserve(text.size());
+  for (size_t at = 0; at < text.size();) {
+    const Character one = firstOf(text.substr(at));
+    const size_t length = std::max<size_t>(1, one.length);
+    const bool stays = one.length != 0 && (!acts(one.code) || kept.find(text[at]) != std::string_view::npos);
+    if (stays)
+      out += text.substr(at, length);
+    else
+      out += escape(one.length == 0 ? static_cast<unsigned char>(text[at]) : one.code);
+    at += length;
+  }
+  return out;
+}
+
 std::string printable(std::string_view text, size_t longest) {
   std::string out;
   for (size_t at = 0; at < text.size();) {
-    const size_t length = sequenceLength(text.substr(at));
-    if (out.size() + std::max<size_t>(1, length) > longest) return out + "...";
-    const auto byte = static_cast<unsigned char>(text[at]);
-    if (length == 0 || byte < 0x20 || byte == 0x7F) {
+    const Character one = firstOf(text.substr(at));
+    const size_t length = std::max<size_t>(1, one.length);
+    if (out.size() + length > longest) return out + "...";
+    if (one.length == 0 || acts(one.code))
       out += '?';
-      at += 1;
-    } else {
+    else
       out += text.substr(at, length);
-      at += length;
-    }
+    at += length;
   }
   return out;
 }

@@ -10,6 +10,7 @@
 
 #include "json/json.h"
 #include "lacquer/tools.h"
+#include "run/manifest_check.h"
 #include "shader/messages.h"
 #include "support/contain.h"
 #include "support/file.h"
@@ -81,16 +82,9 @@ void addManifest(const fs::path& folder, Subjects& subjects, Messages& messages)
   if (!text) return report(text.error(), path, messages);
   const Result<json::Json> manifest = json::parse(*text, path);
   if (!manifest) return report(manifest.error(), path, messages);
+  if (const Result<void> head = checkManifestHead(*manifest, path); !head)
+    return report(head.error(), path, messages);
   const json::Json* shaders = json::member(*manifest, "shaders");
-  if (shaders == nullptr || !shaders->is_object()) {
-    const Diagnostic wrong{"manifest-unreadable",
-                           Severity::Error,
-                           {path, 0, 0, {}},
-                           "this is no manifest of Lacquer",
-                           "`lacquer gen FILE -o FOLDER` writes one",
-                           {}};
-    return report({wrong}, path, messages);
-  }
   const size_t before = subjects.size();
   for (const auto& [id, shader] : shaders->items()) {
     const std::string vertex = textAt(shader, {"files", "spirv", "vert"});

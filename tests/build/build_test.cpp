@@ -331,6 +331,65 @@ TEST_F(Build, ManifestsOfSeparateRunsMerge) {
   EXPECT_FALSE(fs::exists(folder_ / "x/manifest.json"));
 }
 
+/// A shard comes from another machine: what it says is looked at before it becomes part of a manifest.
+TEST_F(Build, LiesAreNotMerged) {
+  files_.resize(1);
+  ASSERT_EQ(runProgram(gen("out", {"--target", "glsl", "--no-validate"}), folder_), 0);
+  const auto good = nlohmann::json::parse(filesBelow(folder_ / "out").at("manifest.json").bytes);
+  const std::string id = good["shaders"].begin().key();
+  const std::string shader = "/shaders/" + id;
+  const std::string paths = shader + "/files/glsl";
+  const std::string use = "/files/0/materials/0/uses/0";
+  struct Lie {
+    std::string at;
+    nlohmann::json value;  ///< discarded: the member is not there
+    std::string pointer, code;
+  };
+  const nlohmann::json none = nlohmann::json::value_t::discarded;
+  const Lie kLies[] = {
+      {"/schema", 2, "/schema", "no-manifest"},
+      {"/schema", 1e300, "/schema", "no-manifest"},
+      {"/schema", none, "", "no-manifest"},
+      {"/lacquer", "9.9.9", "/lacquer", "no-manifest"},
+      {"/files", nlohmann::json::object(), "", "no-manifest"},
+      {"/files/0", 3, "/files/0", "wrong-type"},
+      {"/files/0/source", 3, "/files/0/source", "wrong-type"},
+      {"/files/0/materials", none, "/files/0", "missing-property"},
+      {"/files/0/materials/0/uses", "none", "/files/0/materials/0/uses", "wrong-type"},
+      {use, {3}, use, "wrong-type"},
+      {use + "/attributes/0", 3, use + "/attributes", "wrong-type"},
+      {use + "/shader", "../../x", use + "/shader", "no-such-shader"},
+      {use + "/shader", 3, use + "/shader", "wrong-type"},
+      {"/shaders/..~1..~1x", good["shaders"][id], "/shaders/..~1..~1x", "wrong-id"},
+      {shader, nlohmann::json::array(), shader, "wrong-type"},
+      {shader + "/validated", {{"glsl", 1}}, shader + "/validated", "wrong-type"},
+      {shader + "/files/metal", nlohmann::json::object(), shader + "/files/metal", "unknown-target"},
+      {paths + "/frag", "/etc/passwd", paths + "/frag", "wrong-path"},
+      {paths + "/frag", "../x.frag.glsl", paths + "/frag", "wrong-path"},
+      {paths + "/comp", "glsl/x", paths + "/comp", "wrong-path"},
+  };
+  const auto merged = [&](const nlohmann::json& manifest, std::string& output) {
+    writeText(folder_ / "lie.json", manifest.dump());
+    return runProgram({LACQUER_PROGRAM, "merge", "-o", "x", "lie.json"}, folder_, &output);
+  };
+  std::string output;
+  EXPECT_EQ(merged(good, output), 0) << output;
+  fs::remove_all(folder_ / "x");
+  for (const Lie& lie : kLies) {
+    nlohmann::json manifest = good;
+    const nlohmann::json::json_pointer at(lie.at);
+    if (lie.value.is_discarded())
+      manifest[at.parent_pointer()].erase(at.back());
+    else
+      manifest[at] = lie.value;
+    EXPECT_EQ(merged(manifest, output), 1) << lie.at;
+    const std::string place = "lie.json" + (lie.pointer.empty() ? "" : ":" + lie.pointer) + ": error: ";
+    EXPECT_TRUE(output.starts_with(place)) << lie.at << "\n" << output;
+    EXPECT_NE(output.find("[" + lie.code + "]"), std::string::npos) << lie.at << "\n" << output;
+    EXPECT_FALSE(fs::exists(folder_ / "x/manifest.json")) << lie.at;
+  }
+}
+
 TEST_F(Build, ManyMaterialsOfFewKinds) {
   writeText(folder_ / "many.gltf", RandomGltf(9).text(2000, 3));
   files_ = {"many.gltf"};

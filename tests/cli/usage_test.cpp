@@ -96,6 +96,54 @@ TEST(Usage, wrongUsageIsTwo) {
   }
 }
 
+/// What a script's unset variable or a wrong sum makes of an option.
+TEST(Usage, wrongNumbersAreTwo) {
+  const Workplace place;
+  const std::string coat = example("coat.gltf");
+  const Words kAll[] = {
+      {"gen", coat, "-o", "out"},
+      {"plan", coat, "-o", "out", "--ninja", "n"},
+      {"graph", coat},
+      {"dump", coat},
+      {"prove", coat},
+      {"eval", coat, "--points", "p"},
+      {"preview", coat, "-o", "a.png"},
+      {"stress", coat},
+  };
+  const auto refused = [&](Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    SCOPED_TRACE(joined(words));
+    const Outcome outcome = place.run(words, std::chrono::seconds(20));
+    EXPECT_EQ(outcome.status, 2) << outcome.all();
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(more[0]), std::string::npos) << outcome.err;
+    EXPECT_TRUE(place.names().empty());
+  };
+  for (const Words& words : kAll) {
+    for (const char* limit :
+         {"foo", "colour=2", "file=-1", "file=", "file=0", "depth=nan", "", "file=99999T"})
+      refused(words, {"--limit", limit});
+  }
+  for (size_t i = 0; i < 6; ++i) {
+    for (const char* budget : {"nan", "-nan", "inf", "-1", "1.5", ""})
+      refused(kAll[i], {"--error-budget", budget});
+    refused(kAll[i], {"--template", ""});
+    refused(kAll[i], {"--profile", ""});
+    refused(kAll[i], {"--nodes", ""});
+  }
+  for (const char* number : {"-1", "18446744073709551616", "", "1e3", "0x10", "010", " 1", "nan"}) {
+    for (const char* option : {"--seed", "--samples", "--total", "--jobs"})
+      refused(kAll[7], {option, number});
+    for (const char* option : {"--size", "--columns", "--jobs"}) refused(kAll[6], {option, number});
+    refused(kAll[0], {"--jobs", number});
+    refused({"dfg", "-o", "x"}, {"--size", number});
+  }
+  for (const char* option : {"--cache", "--cache-key", "--depfile", "--shard"})
+    refused(kAll[0], {option, ""});
+  refused({"plan", coat, "-o", "out"}, {"--ninja", ""});
+  refused({"dfg"}, {"--sheen", ""});
+}
+
 /// An option that may be repeated leaves the file behind its argument alone.
 TEST(Usage, filesMayStandAnywhere) {
   const Workplace place;

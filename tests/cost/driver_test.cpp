@@ -130,9 +130,10 @@ TEST_F(Paths, FilesFoldersAndManifests) {
   write("a.vert.spv", compile(kVertex, check::Stage::Vertex));
   Messages messages;
   EXPECT_EQ(measureCost({fragment, folder_}, false, messages).size(), 2U);
-  write("manifest.json",
-        std::string(
-            R"({"shaders": {"x": {"files": {"spirv": {"vert": "a.vert.spv", "frag": "a.frag.spv"}}}}})"));
+  write(
+      "manifest.json",
+      std::string(
+          R"({"lacquer": "0.2.0", "schema": 1, "files": [], "shaders": {"x": {"files": {"spirv": {"vert": "a.vert.spv", "frag": "a.frag.spv"}}}}})"));
   const std::vector<ShaderCost> costs = measureCost({folder_}, false, messages);
   ASSERT_EQ(costs.size(), 1U);
   EXPECT_EQ(costs[0].name, "x");
@@ -151,10 +152,17 @@ TEST_F(Paths, WhatIsWrongIsSaid) {
   EXPECT_EQ(codeOf(folder_), "no-spirv");
   EXPECT_EQ(codeOf(write("text.spv", std::string("this is text"))), "spirv-unreadable");
   EXPECT_EQ(codeOf(write("empty.spv", std::string())), "spirv-unreadable");
-  write("manifest.json", std::string("{\"shaders\": 1}"));
-  EXPECT_EQ(codeOf(folder_), "manifest-unreadable");
-  write("manifest.json",
-        std::string(R"({"shaders": {"x": {"files": {"glsl": {"frag": "a"}}, "y": 3}, "z": []}})"));
+  for (const char* head : {R"("shaders": 1)", R"("lacquer": "0.2.0", "files": [], "shaders": {})",
+                           R"("lacquer": "0.2.0", "schema": 2, "files": [], "shaders": {})",
+                           R"("lacquer": "0.2.0", "schema": 1e300, "files": [], "shaders": {})",
+                           R"("lacquer": "0.1.0", "schema": 1, "files": [], "shaders": {})"}) {
+    write("manifest.json", "{" + std::string(head) + "}");
+    EXPECT_EQ(codeOf(folder_), "no-manifest") << head;
+  }
+  write(
+      "manifest.json",
+      std::string(
+          R"({"lacquer": "0.2.0", "schema": 1, "files": [], "shaders": {"x": {"files": {"glsl": {"frag": "a"}}, "y": 3}, "z": []}})"));
   EXPECT_EQ(codeOf(folder_), "no-spirv");
 }
 

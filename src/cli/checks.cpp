@@ -1,0 +1,49 @@
+#include "cli/checks.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+#include "cli/table.h"
+#include "lacquer.h"
+
+namespace lacquer::cli {
+
+namespace {
+
+std::string empty(const std::string& text) { return text.empty() ? "must not be empty" : ""; }
+
+std::string whole(const std::string& text) {
+  uint64_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto [read, error] = std::from_chars(text.data(), end, number);
+  const bool octal = text.size() > 1 && text.starts_with('0');
+  return error == std::errc{} && read == end && !octal ? "" : "must be a whole number below 2^64";
+}
+
+std::string number(const std::string& text) {
+  double number = 0;
+  return CLI::detail::lexical_cast(text, number) && std::isfinite(number) ? "" : "must be a number";
+}
+
+/// The library is asked to read nothing under that limit.
+std::string limit(const std::string& text) {
+  Options options;
+  options.limits = {text};
+  Messages messages;
+  (void)Scene::fromMemory({}, {}, options, messages);
+  for (const Message& message : messages) {
+    if (message.code == "unknown-limit" || message.code == "bad-limit")
+      return printable(message.message + "; " + message.help + " [" + message.code + "]");
+  }
+  return {};
+}
+
+}  // namespace
+
+const CLI::Validator kNotEmpty(empty, "");
+const CLI::Validator kWhole(whole, "");
+const CLI::Validator kNumber(number, "");
+const CLI::Validator kLimit(limit, "");
+
+}  // namespace lacquer::cli
