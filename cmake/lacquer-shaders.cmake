@@ -21,7 +21,7 @@ function(lacquer_add_shaders target)
   cmake_path(ABSOLUTE_PATH arg_OUTPUT BASE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}" NORMALIZE)
   set(manifest "${arg_OUTPUT}/manifest.json")
 
-  # Paths reach the manifest as they are given: relative ones make it the same in every checkout.
+  # Relative names: what is said of the files is the same in every checkout.
   set(inputs "")
   set(names "")
   foreach(file IN LISTS arg_FILES)

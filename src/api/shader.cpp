@@ -5,6 +5,7 @@
 #include "shader/interface.h"
 #include "shader/module.h"
 #include "shader/options.h"
+#include "shader/print.h"
 
 namespace lacquer {
 
@@ -18,12 +19,14 @@ bool Shader::hasVertexStage() const { return impl().has_vertex; }
 const std::vector<uint32_t>& Shader::vertexSpirv() const { return impl().spirv[0]; }
 const std::vector<uint32_t>& Shader::fragmentSpirv() const { return impl().spirv[1]; }
 const std::string& Shader::headerText() const { return impl().text[static_cast<size_t>(Target::Cpp)][1]; }
+const std::string& Shader::moduleTypes() const { return impl().text[static_cast<size_t>(Target::Js)][0]; }
+const std::string& Shader::moduleText() const { return impl().text[static_cast<size_t>(Target::Js)][1]; }
 const std::string& Shader::interfaceJson() const { return impl().interface; }
 
 static const std::string& textOf(const std::string (&text)[kTargetCount][2], Target target, int stage) {
   static const std::string kNone;
   const auto row = static_cast<size_t>(target);
-  return target == Target::Cpp || row >= kTargetCount ? kNone : text[row][stage];
+  return row >= kTargetCount || packsBlock(target) ? kNone : text[row][stage];
 }
 
 const std::string& Shader::vertexText(Target target) const { return textOf(impl().text, target, 0); }

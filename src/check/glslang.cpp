@@ -155,6 +155,7 @@ std::optional<Diagnostic> wrongVersion(std::string_view text, Target target, con
     case Target::Hlsl: return std::nullopt;
     case Target::Spirv:
     case Target::Cpp:
+    case Target::Js:
       return fail(std::string(kCode), {name, 0, 0, {}}, "the target has no text of a stage").value()[0];
   }
   size_t at = text.starts_with("#version") ? 0 : text.find("\n#version");
@@ -204,7 +205,8 @@ EShMessages setUp(glslang::TShader& shader, Target target, EShLanguage stage) {
     case Target::Essl: return EShMsgDefault;
     case Target::Hlsl: return setUpHlsl(shader, stage);
     case Target::Spirv:
-    case Target::Cpp: break;  // wrongVersion() has refused them
+    case Target::Cpp:
+    case Target::Js: break;  // wrongVersion() has refused them
   }
   return EShMsgDefault;
 }

@@ -14,8 +14,9 @@ namespace lacquer::cli {
 CLI::App* addDfg(CLI::App& app, DfgFlags& flags) {
   CLI::App* verb = app.add_subcommand(
       "dfg", "the textures environment_dfg and environment_sheen, for engines that have none");
-  verb->add_option("-o,--output", flags.output,
-                   "the DDS file to write environment_dfg to: 16-bit UNORM, two channels")
+  verb->add_option(
+          "-o,--output", flags.output,
+          "the file to write environment_dfg to: .dds (16-bit UNORM), .ktx2 (half floats) or .png (16 bits)")
       ->check(kNotEmpty);
   verb->add_option("--sheen", flags.sheen, "the same for environment_sheen, beside the other or alone")
       ->check(kNotEmpty);

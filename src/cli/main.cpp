@@ -177,7 +177,7 @@ void addShared(CLI::App& app, Flags& flags) {
 void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
   verb.add_option("--target", flags.targets,
-                  "of glsl, glsl-gl, essl, hlsl, spirv, cpp; all but cpp when absent")
+                  "of glsl, glsl-gl, essl, hlsl, spirv, cpp, js; all but cpp and js when absent")
       ->delimiter(',')
       ->allow_extra_args(false);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")

@@ -63,14 +63,16 @@ public:
   /// stem.
   const std::string& id() const;
   bool hasVertexStage() const;
-  /// Empty for a target that was not asked for, that has no text of a stage (Spirv, Cpp) or does not exist,
-  /// and where there is no vertex stage.
+  /// Empty for a target that was not asked for, that has no text of a stage (Spirv, Cpp, Js) or does not
+  /// exist, and where there is no vertex stage.
   const std::string& vertexText(Target target) const;
   const std::string& fragmentText(Target target) const;
   /// Words in the machine's byte order; empty when Target::Spirv was not asked for.
   const std::vector<uint32_t>& vertexSpirv() const;
   const std::vector<uint32_t>& fragmentSpirv() const;
   const std::string& headerText() const;     ///< of Target::Cpp; empty when it was not asked for
+  const std::string& moduleText() const;     ///< of Target::Js: the module; empty when it was not asked for
+  const std::string& moduleTypes() const;    ///< of Target::Js: the types
   const std::string& interfaceJson() const;  ///< the shader's entry in manifest.json (docs/manifest.md)
 
   /// Bytes of the material's uniform block, a multiple of 16; 0 when there is none.

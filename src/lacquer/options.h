@@ -49,9 +49,10 @@ enum class Target : uint8_t {
   Hlsl,    ///< HLSL for Shader Model 5 and 6
   Spirv,   ///< SPIR-V 1.3 for Vulkan 1.1
   Cpp,     ///< no shader: a C++11 header that packs the material's uniform block (docs/parameters.md)
+  Js,      ///< no shader: the same as an ES module with its types
 };
-/// "glsl", "glsl-gl", "essl", "hlsl", "spirv", "cpp": the names of `--target` and of the output folders.
-/// Empty for what is no enumerator.
+/// "glsl", "glsl-gl", "essl", "hlsl", "spirv", "cpp", "js": the names of `--target` and of the output
+/// folders. Empty for what is no enumerator.
 std::string_view targetName(Target target);
 /// False, and `target` untouched, when there is none of that name.
 bool findTarget(std::string_view name, Target& target);

@@ -100,7 +100,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     const Scratch left_by_killed_runs(folder);
     return run.finish();
   }
-  if (!run.open()) return run.finish();
+  if (!run.open(folder)) return run.finish();
   // Said once here instead of for every file.
   if (const Result<bool> usable = makeFolder(folder); !usable) {
     run.report(usable.error(), {});

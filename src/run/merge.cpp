@@ -10,6 +10,7 @@
 #include "shader/messages.h"
 #include "shader/options.h"
 #include "support/outputs.h"
+#include "support/relative.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -26,6 +27,13 @@ Result<Json> readManifest(const std::string& path, std::vector<NamedShader>& nam
   if (Result<void> good = checkManifest(*json, path, named); !good)
     return tl::make_unexpected(std::move(good.error()));
   return json;
+}
+
+/// What a file's entry says of its source holds in the new manifest's folder.
+void rebase(Json& file, const std::string& from, const std::string& to) {
+  const Json* source = json::member(file, "source");
+  if (source == nullptr || !source->is_string()) return;
+  file["source"] = relativeTo(to, fromFolder(from, source->get<std::string>()));
 }
 
 std::string entryText(const Json& json) { return JsonText(kEntryDepth).json(json).take(); }
@@ -70,12 +78,15 @@ bool merge(const std::vector<std::string>& shards, const std::string& folder, Me
   ManifestFile manifest(folder + "/manifest.json", {&scratch});
   std::vector<std::pair<std::string, std::vector<NamedShader>>> named;  // by the shard
   for (const std::string& path : shards) {
-    const Result<Json> json = readManifest(path, named.emplace_back(path, std::vector<NamedShader>()).second);
+    Result<Json> json = readManifest(path, named.emplace_back(path, std::vector<NamedShader>()).second);
     if (!json) {
       report(json.error(), {}, messages);
       return false;
     }
-    for (const Json& file : (*json)["files"]) manifest.file(entryText(file));
+    for (Json& file : (*json)["files"]) {
+      rebase(file, folderOf(path), folder);
+      manifest.file(entryText(file));
+    }
     for (const auto& [id, shader] : (*json)["shaders"].items()) {
       std::string text = entryText(shader);
       const auto [it, fresh] = shaders.try_emplace(id, text, path);

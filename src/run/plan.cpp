@@ -11,6 +11,7 @@
 #include "shader/options.h"
 #include "shader/print.h"
 #include "support/jobs.h"
+#include "support/relative.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -181,8 +182,8 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
     run.result().ok = false;
     return run.finish();
   }
-  if (!run.open()) return run.finish();
   const std::string all_materials = plan.ninja + ".plan/materials.json";
+  if (!run.open(folderOf(all_materials))) return run.finish();
   Strings paths{plan.ninja, folder, plan.program};
   const Strings read = run.inputs();
   paths.insert(paths.end(), read.begin(), read.end());

@@ -63,7 +63,7 @@ bool Run::prepare() {
   return true;
 }
 
-bool Run::open() {
+bool Run::open(const std::string& folder) {
   if (!prepared_ && !prepare()) return false;
   const StageTimer timer(&times_, StageOfRun::Library);
   const auto library = libraryFor(options_);
@@ -83,7 +83,7 @@ bool Run::open() {
     report_.ok = false;
     return false;
   }
-  setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_, *limitsOf(options_)});
+  setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_, *limitsOf(options_), folder});
   structures_.emplace(*setting_);
   return true;
 }

@@ -18,7 +18,8 @@ public:
   /// False, with a message, when the options contradict each other. Opens the cache.
   bool prepare();
   /// False, with a message, when the node library cannot be read. Prepares, when that has not been done.
-  bool open();
+  /// `folder`: that the manifest lies in.
+  bool open(const std::string& folder);
   /// What an earlier run with these inputs and options has left behind; nothing without a cache.
   std::optional<Receipt> receipt(const Strings& files, const Strings& materials, const std::string& folder);
   /// True when that is all there still: then there is nothing to do but to finish().

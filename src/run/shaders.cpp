@@ -149,8 +149,9 @@ std::string Maker::entry(const std::string& id, const Structure& structure,
   json.beginObject().key("files").beginObject();
   for (const Target target : setting_.options.targets) {
     json.key(targetName(target)).beginObject();
-    if (firstStage(target, structure.has_vertex) == 0) json.key("vert").string(shaderPath(target, id, 0));
-    json.key(target == Target::Cpp ? "header" : "frag").string(shaderPath(target, id, 1)).endObject();
+    for (int stage = firstStage(target, structure.has_vertex); stage < 2; ++stage)
+      json.key(fileKind(target, stage)).string(shaderPath(target, id, stage));
+    json.endObject();
   }
   json.endObject().key("validated").beginObject();
   for (const Target target : setting_.options.targets) {

@@ -18,6 +18,7 @@
 #include "shader/language.h"
 #include "shader/module.h"
 #include "shader/options.h"
+#include "support/relative.h"
 
 namespace lacquer {
 
@@ -319,7 +320,7 @@ FileResult SceneFile::run(const material::Document& document) {
   result.diagnostics = document.diagnostics;
   result.ok = !hasError(result.diagnostics);
   JsonText json(kFileDepth);
-  json.beginObject().key("source").string(path_).key("materials").beginArray();
+  json.beginObject().key("source").string(relativeTo(setting_.folder, path_)).key("materials").beginArray();
   std::set<Key> seen;
   UsesOf uses;
   std::string default_text;
@@ -359,12 +360,17 @@ FileResult SceneFile::run(const material::Document& document) {
   return result;
 }
 
-FileResult unreadable(const std::string& path, const Diagnostics& why) {
+FileResult unreadable(const std::string& path, const Setting& setting, const Diagnostics& why) {
   FileResult result;
   result.diagnostics = why;
   result.ok = false;
   JsonText json(kFileDepth);
-  json.beginObject().key("source").string(path).key("materials").beginArray().endArray();
+  json.beginObject()
+      .key("source")
+      .string(relativeTo(setting.folder, path))
+      .key("materials")
+      .beginArray()
+      .endArray();
   json.key("diagnostics").beginArray();
   for (const Diagnostic& d : why) json.json(diagnosticJson(d));
   result.text = json.endArray().endObject().take();
@@ -375,7 +381,7 @@ FileResult unreadable(const std::string& path, const Diagnostics& why) {
 
 Key fileKey(const std::string& path, const std::string& bytes, const Setting& setting) {
   KeyBuilder key;
-  key.text("file").key(setting.base).text(path).key(keyOf(bytes));
+  key.text("file").key(setting.base).text(path).text(relativeTo(setting.folder, path)).key(keyOf(bytes));
   addOptions(setting.options, {Decides::Graph, Decides::Module}, key);
   return key.finish();
 }
@@ -419,7 +425,7 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
     const StageTimer timer(setting.times, StageOfRun::Read);
     bytes = readFile(path, setting.limits.file);
   }
-  if (!bytes) return unreadable(path, bytes.error());
+  if (!bytes) return unreadable(path, setting, bytes.error());
   const bool keep = setting.cache != nullptr && only.empty();
   const Key key = keep ? fileKey(path, *bytes, setting) : Key{};
   if (keep) {
@@ -427,14 +433,14 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
       return std::move(*cached);
   }
   const Result<const material::Schema*> schema = setting.library.models.schema();
-  if (!schema) return unreadable(path, schema.error());
+  if (!schema) return unreadable(path, setting, schema.error());
   Result<material::Document> document;
   {
     const StageTimer timer(setting.times, StageOfRun::Read);
     document = material::readText(*bytes, path, **schema, {setting.options.permissive, setting.limits});
     *bytes = {};
   }
-  if (!document) return unreadable(path, document.error());
+  if (!document) return unreadable(path, setting, document.error());
   FileResult result = SceneFile(path, only, setting, structures).run(*document);
   if (keep && result.ok && result.text.size() <= setting.options.cache_size / kCachePart) {
     const StageTimer timer(setting.times, StageOfRun::Cache);
@@ -447,7 +453,7 @@ FileResult readGraph(const std::string& path, const Setting& setting, Structures
   const Result<std::string> text = readFile(path, setting.limits.file);
   Result<graph::Graph> graph =
       text ? graph::fromJson(*text, path, setting.limits) : tl::make_unexpected(text.error());
-  if (!graph) return unreadable(path, graph.error());
+  if (!graph) return unreadable(path, setting, graph.error());
   static const material::Material kNone;
   MaterialText material(path, kNone, setting, structures);
   const std::string name = graph->name;
@@ -459,7 +465,13 @@ FileResult readGraph(const std::string& path, const Setting& setting, Structures
   result.ok = done.report.ok;
   result.materials.push_back(std::move(done.report));
   JsonText json(kFileDepth);
-  json.beginObject().key("source").string(path).key("materials").beginArray().raw(done.text).endArray();
+  json.beginObject()
+      .key("source")
+      .string(relativeTo(setting.folder, path))
+      .key("materials")
+      .beginArray()
+      .raw(done.text)
+      .endArray();
   json.key("diagnostics").beginArray().endArray();
   result.text = json.endObject().take();
   return result;

@@ -48,6 +48,7 @@ struct Setting {
   Cache* cache = nullptr;
   StageTimes* times = nullptr;
   Limits limits = {};
+  std::string folder = {};  ///< that the manifest lies in: sources are relative to it
 };
 
 /// The address of a graph without what belongs to one material: names, JSON pointers, texture indices and,

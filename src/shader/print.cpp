@@ -16,7 +16,14 @@ namespace lacquer {
 std::string shaderPath(Target target, const std::string& id, int stage) {
   const targets::Row& row = targets::row(target);
   if (target == Target::Cpp) return fmt::format("{}/{}.{}", row.name, id, row.extension);
+  if (target == Target::Js) return fmt::format("{}/{}.{}", row.name, id, stage == 0 ? "d.ts" : row.extension);
   return fmt::format("{}/{}.{}.{}", row.name, id, stage == 0 ? "vert" : "frag", row.extension);
+}
+
+std::string_view fileKind(Target target, int stage) {
+  if (target == Target::Cpp) return "header";
+  if (target == Target::Js) return stage == 0 ? "types" : "module";
+  return stage == 0 ? "vert" : "frag";
 }
 
 namespace {
@@ -53,6 +60,7 @@ public:
         case Target::Hlsl: text(legalized(), target); break;
         case Target::Spirv: spirv(); break;
         case Target::Cpp: header(); break;
+        case Target::Js: esModule(); break;
       }
     }
   }
@@ -73,6 +81,15 @@ private:
   void header() {
     const StageTimer timer(times_, StageOfRun::Print, Target::Cpp);
     shader_.text[static_cast<int>(Target::Cpp)][1] = targets::headerText(shader_.module, shader_.id, head());
+  }
+
+  /// As the header.
+  void esModule() {
+    const StageTimer timer(times_, StageOfRun::Print, Target::Js);
+    targets::ModuleText made = targets::moduleText(shader_.module, shader_.id, head());
+    std::string(&text)[2] = shader_.text[static_cast<int>(Target::Js)];
+    text[0] = std::move(made.types);
+    text[1] = std::move(made.code);
   }
 
   void text(const ir::Module& module, Target target) {

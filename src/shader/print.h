@@ -16,8 +16,9 @@ struct ShaderData {
   ir::Module module;  ///< placed and bound
   std::string id;
   bool has_vertex = false;
-  std::string text[kTargetCount]
-                  [2];  ///< by target, by stage; Target::Cpp's one file stands with the fragments
+  /// By target, by stage. Target::Cpp's one file stands with the fragments, as Target::Js's code does; its
+  /// types stand before it.
+  std::string text[kTargetCount][2];
   std::vector<uint32_t> spirv[2];
   std::string interface;
 };
@@ -29,13 +30,22 @@ using Wrong = std::array<Diagnostics, kTargetCount>;
 /// go to `wrong`; the code is there all the same.
 void print(ShaderData& shader, const Options& options, Wrong& wrong, StageTimes* times = nullptr);
 
-/// The path below the output folder: "glsl/ID.frag.glsl", "cpp/ID.h".
+/// The path below the output folder: "glsl/ID.frag.glsl", "cpp/ID.h", "js/ID.d.ts".
 std::string shaderPath(Target target, const std::string& id, int stage);
 
-/// The first of the stages, 0 or 1, that have a file; the last is 1. Target::Cpp has one file.
-inline int firstStage(Target target, bool has_vertex) { return has_vertex && target != Target::Cpp ? 0 : 1; }
+/// What the file is called in the manifest: "vert", "frag", "header", "types", "module".
+std::string_view fileKind(Target target, int stage);
+
+/// The target has no stages: it packs the material's block.
+inline bool packsBlock(Target target) { return target == Target::Cpp || target == Target::Js; }
+
+/// The first of the stages, 0 or 1, that have a file; the last is 1. Target::Cpp has one file, Target::Js
+/// two.
+inline int firstStage(Target target, bool has_vertex) {
+  return target == Target::Js || (has_vertex && target != Target::Cpp) ? 0 : 1;
+}
 
 /// Some compiler or validator checks the target's code.
-inline bool hasValidator(Target target) { return target != Target::Cpp; }
+inline bool hasValidator(Target target) { return !packsBlock(target); }
 
 }  // namespace lacquer

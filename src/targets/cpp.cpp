@@ -3,10 +3,10 @@
 // bytes are the same.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
@@ -14,6 +14,7 @@
 #include "ir/fold.h"
 #include "ir/names.h"
 #include "targets/clike.h"
+#include "targets/packer.h"
 
 namespace lacquer::targets {
 
@@ -23,21 +24,6 @@ using ir::Type;
 using ir::ValueId;
 
 namespace {
-
-/// The fold column of ops.def: an op's meaning in C++, with T for the arithmetic and a, b, c for the
-/// operands.
-constexpr std::array<std::string_view, ir::kOpCount> kFolds = {{
-#define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) #fold,
-#include "ir/ops.def"
-#undef OP
-}};
-
-std::string_view foldOf(Op op) { return kFolds[static_cast<size_t>(op)]; }
-
-/// True when the op is one function of <cmath>.
-bool standard(Op op) { return foldOf(op).starts_with("std::"); }
-
-bool isOperator(Op op) { return std::isalpha(static_cast<unsigned char>(ir::info(op).glsl.front())) == 0; }
 
 /// A number in double: the shortest text that reads back as the same.
 std::string doubleLiteral(double x) {
@@ -96,8 +82,8 @@ public:
   }
 
   std::string call(Op op, Type result, std::string_view arguments) const override {
-    if (!standard(op) || result != Type::Float) return Dialect::call(op, result, arguments);
-    const std::string_view fold = foldOf(op);
+    if (!isStandard(op) || result != Type::Float) return Dialect::call(op, result, arguments);
+    const std::string_view fold = foldText(op);
     return fmt::format("{}({})", fold.substr(0, fold.find('(')), arguments);
   }
 
@@ -176,7 +162,7 @@ private:
   }
 
   void needMap(Use use) {
-    if (!isOperator(use.op) && !standard(use.op)) scalar_.insert(use.op);
+    if (!isOperator(use.op) && !isStandard(use.op)) scalar_.insert(use.op);
     if (use.result == Type::Float) return;
     const std::array<Type, 4> given = use.types;
     for (size_t k = 0; k < use.count && !isOperator(use.op); ++k) {
@@ -192,7 +178,7 @@ private:
     for (int k = 0; k < ir::info(op).arity; ++k)
       parameters += fmt::format("{}T {}", k == 0 ? "" : ", ", "abc"[k]);
     text.line(fmt::format("template <class T> T {}({}) {{ return {}; }}", dialect_.spelling(op), parameters,
-                          foldOf(op)));
+                          foldText(op)));
   }
 
   void vector(Text& text, Type type) const {
@@ -306,10 +292,8 @@ std::string identifier(std::string_view text, bool upper) {
 
 class Header {
 public:
-  Header(const ir::Module& module, std::string_view name) : module_(module), name_(identifier(name, false)) {
-    for (const ir::Block& block : module.blocks) {
-      if (block.role == ir::BlockRole::Material) block_ = &block;
-    }
+  Header(const ir::Module& module, std::string_view name)
+      : module_(module), name_(identifier(name, false)), block_(materialBlock(module)) {
     for (const ir::PreshaderField& field : module.preshader) roots_.push_back(field.value);
     for (const char* word : {"p", "block", "bytes", "store", "to_float", "pack"}) names_.take(word);
     for (const uint32_t index : ir::usedParameters(module)) {
@@ -473,21 +457,6 @@ private:
     return fmt::format("{{{}, {}, {}}}", at.set, at.binding, at.flat);
   }
 
-  bool uses(const ir::Block& block) const {
-    const auto index = static_cast<uint32_t>(&block - module_.blocks.data());
-    const bool counted = std::any_of(module_.light_groups.begin(), module_.light_groups.end(),
-                                     [](const ir::LightGroup& group) { return group.count < 0; });
-    if (counted && index == module_.light_count.block) return true;
-    std::vector<ValueId> roots;
-    for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
-    const std::vector<ValueId> live = ir::reachable(module_.dag, roots);
-    return std::any_of(live.begin(), live.end(), [&](ValueId id) {
-      if (module_.dag[id].op != Op::Input) return false;
-      const ir::Input& input = module_.dag.inputOf(id);
-      return input.kind == ir::InputKind::BlockField && input.block == index;
-    });
-  }
-
   void bindings() {
     text_.blank();
     doc("Where something is bound: descriptor set and binding for Vulkan, `flat` where there are no sets.");
@@ -495,7 +464,7 @@ private:
     text_.line("    unsigned set, binding, flat;");
     text_.line("};");
     for (const ir::Block& block : module_.blocks) {
-      if (!uses(block)) continue;
+      if (!usesBlock(module_, block)) continue;
       const std::string place = Header::place(block.binding);
       text_.line(fmt::format("constexpr Binding k{}Binding = {};", block.name, place));
     }
@@ -524,7 +493,7 @@ private:
 
   const ir::Module& module_;
   std::string name_;
-  const ir::Block* block_ = nullptr;
+  const ir::Block* block_;
   std::vector<ValueId> roots_;
   std::vector<uint32_t> parameters_;  ///< by name
   ir::Names names_;

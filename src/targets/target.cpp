@@ -9,13 +9,14 @@ namespace lacquer::targets {
 
 namespace {
 
-constexpr std::array<Row, 6> kRows = {{
+constexpr std::array<Row, 7> kRows = {{
     {Target::Glsl, "glsl", "glsl", "GLSL 4.50 for Vulkan"},
     {Target::GlslGl, "glsl-gl", "glsl", "GLSL 4.50 for OpenGL 4.5"},
     {Target::Essl, "essl", "glsl", "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
     {Target::Hlsl, "hlsl", "hlsl", "HLSL for Shader Model 5 and 6"},
     {Target::Spirv, "spirv", "spv", "SPIR-V 1.3 for Vulkan 1.1"},
     {Target::Cpp, "cpp", "h", "a C++11 header that packs the material's uniform block"},
+    {Target::Js, "js", "js", "an ES module that packs the material's uniform block, with its types"},
 }};
 
 }  // namespace
@@ -32,6 +33,7 @@ std::string printText(const ir::Module& module, const schedule::Program& program
     case Target::Hlsl: return printProgram(hlsl(), module, program, head);
     case Target::Spirv: break;  // words, not text: writeSpirv
     case Target::Cpp: break;    // no stage: headerText
+    case Target::Js: break;     // no stage: moduleText
   }
   assert(false && "not a target with a text");
   return {};

@@ -14,9 +14,9 @@ namespace lacquer::targets {
 
 struct Row {
   Target id;
-  std::string_view
-      name;  ///< on the command line and in DIR/<target>/: "glsl", "glsl-gl", "essl", "hlsl", "spirv", "cpp"
-  std::string_view extension;  ///< "glsl", "hlsl", "spv", "h"
+  std::string_view name;  ///< on the command line and in DIR/<target>/: "glsl", "glsl-gl", "essl", "hlsl",
+                          ///< "spirv", "cpp", "js"
+  std::string_view extension;  ///< "glsl", "hlsl", "spv", "h", "js"
   std::string_view prose;
 };
 
@@ -33,6 +33,12 @@ std::string printText(const ir::Module& module, const schedule::Program& program
 /// block, the preshader as a function, and the bindings. The module must be placed and bound. `name`: the
 /// shader's id. `head` as above.
 std::string headerText(const ir::Module& module, std::string_view name, std::string_view head);
+
+/// Target::Js: the same as an ES module, and its types.
+struct ModuleText {
+  std::string code, types;
+};
+ModuleText moduleText(const ir::Module& module, std::string_view name, std::string_view head);
 
 /// What every text calls a block: an array of `Light` lies in `Lights`.
 std::string blockName(const ir::Block& block);

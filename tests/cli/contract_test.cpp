@@ -235,7 +235,7 @@ TEST(Stale, NothingThatIsNeededGoes) {
   const Workplace place;
   place.write("m.gltf", gltfOf({R"({"name": "a"})"}));
   for (int i = 0; i < 2; ++i) {
-    ASSERT_EQ(place.run({"gen", "m.gltf", "-o", "out", "--target", "glsl,spirv,cpp"}).status, 0);
+    ASSERT_EQ(place.run({"gen", "m.gltf", "-o", "out", "--target", "glsl,spirv,cpp,js"}).status, 0);
     for (const auto& [id, shader] : place.manifest("out")["shaders"].items()) {
       for (const auto& [target, stages] : shader["files"].items()) {
         for (const auto& [stage, path] : stages.items())
@@ -243,6 +243,37 @@ TEST(Stale, NothingThatIsNeededGoes) {
       }
     }
   }
+}
+
+/// The same files into the same folder, named from three places: the same bytes.
+TEST(Sources, AreRelativeToTheManifest) {
+  const Workplace place;
+  place.write("assets/m.gltf", gltfOf({R"({"name": "a"})"}));
+  place.write("below/file", "");
+  std::filesystem::create_directory_symlink("assets", place / "link");
+  ASSERT_EQ(place.run({"gen", "assets/m.gltf", "-o", "out", "--target", "glsl"}).status, 0);
+  EXPECT_EQ(place.manifest("out")["files"][0]["source"], "../assets/m.gltf");
+  const std::string expected = place.read("out/manifest.json");
+  const std::string whole = (place / "assets/m.gltf").string();
+  const std::vector<std::pair<std::string, std::vector<std::string>>> calls = {
+      {".", {whole, "-o", (place / "out").string()}},
+      {"below", {"../assets/m.gltf", "-o", "../out/"}},
+      {"assets", {"./m.gltf", "-o", "../below/../out"}}};
+  for (const auto& [folder, words] : calls) {
+    std::string command = fmt::format("cd '{}' && '{}' gen -q --target glsl", (place / folder).string(), LACQUER_PROGRAM);
+    for (const std::string& word : words) command += " '" + word + "'";
+    std::filesystem::remove_all(place / "out");
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    EXPECT_EQ(place.read("out/manifest.json"), expected) << command;
+  }
+  // Through a link the name stays; out of one `..` leads where the link does.
+  ASSERT_EQ(place.run({"gen", "link/m.gltf", "-o", "out", "--target", "glsl"}).status, 0);
+  EXPECT_EQ(place.manifest("out")["files"][0]["source"], "../link/m.gltf");
+  ASSERT_EQ(place.run({"gen", "assets/m.gltf", "-o", "link", "--target", "glsl"}).status, 0);
+  EXPECT_EQ(place.manifest("assets")["files"][0]["source"], "m.gltf");
+  // Merged into another folder they lead to the same file.
+  ASSERT_EQ(place.run({"merge", "out/manifest.json", "-o", "below/deep"}).status, 0);
+  EXPECT_EQ(place.manifest("below/deep")["files"][0]["source"], "../../link/m.gltf");
 }
 
 TEST(Schema, EveryManifestIsValid) {
@@ -255,7 +286,7 @@ TEST(Schema, EveryManifestIsValid) {
       {"leaf.gltf", "--template", "surface"},
       {"leaf.gltf", "--template", "bsdf", "--no-validate"},
       {"leaf.gltf", "--error-budget", "0.01"},
-      {"leaf.gltf", "--target", "cpp"},
+      {"leaf.gltf", "--target", "cpp,js"},
       {"leaf.gltf", "--unused", "--lights", "directional:1"},
       {"absent.gltf"},
       {example("car_paint.gltf"), example("coat.gltf"), example("core.gltf"), "--target", "spirv"},

@@ -68,7 +68,7 @@ TEST_F(Manifest, debugNamesTheNodesFiles) {
 TEST_F(Manifest, hasTheFieldsOfTheContract) {
   EXPECT_EQ(manifest_["lacquer"], version());
   ASSERT_EQ(manifest_["files"].size(), 1u);
-  EXPECT_EQ(manifest_["files"][0]["source"], "car.gltf");
+  EXPECT_EQ(manifest_["files"][0]["source"], "../car.gltf");
   ASSERT_EQ(manifest_["files"][0]["materials"].size(), 4u);
   for (size_t i = 0; i < 4; ++i) {
     SCOPED_TRACE(i);

@@ -10,24 +10,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As `./dev bless` does it: relative names, from the source folder.
-Json generateExamples(const fs::path& folder) {
-  const WorkingFolder here(sourceFolder());
-  return generateWell(exampleFiles(), folder, {});
+/// As `./dev bless` does it: into `generated`, beside `examples`.
+Json generateExamples(const Folder& folder) {
+  fs::create_directory_symlink(sourceFolder() / "examples", folder.path() / "examples");
+  const WorkingFolder here(folder.path());
+  return generateWell(exampleFiles(), "generated", {});
 }
 
 TEST(Golden, generatedFolderIsWhatTheProgramMakes) {
   const Folder folder;
-  generateExamples(folder.path());
-  const std::string found = outputDifferences(sourceFolder() / "generated", folder.path());
+  generateExamples(folder);
+  const std::string found = outputDifferences(sourceFolder() / "generated", folder.path() / "generated");
   EXPECT_EQ(found, "") << "generated/ is not what the program makes of examples/; `./dev bless` renews it";
 }
 
 /// An output that belongs to this machine could not be compared on another.
 TEST(Golden, outputNamesNoFolderOfThisMachine) {
   const Folder folder;
-  generateExamples(folder.path());
-  const auto files = filesOf(folder.path());
+  generateExamples(folder);
+  const auto files = filesOf(folder.path() / "generated");
   ASSERT_GT(files.size(), 1u);
   for (const auto& [name, bytes] : files) {
     EXPECT_EQ(bytes.find(sourceFolder().string()), std::string::npos) << name;
@@ -40,11 +41,13 @@ TEST(Golden, outputNamesNoFolderOfThisMachine) {
 
 TEST(Golden, everyExampleMaterialHasAShader) {
   const Folder folder;
-  const Json manifest = generateExamples(folder.path());
+  const Json manifest = generateExamples(folder);
   const auto examples = exampleJson();
   ASSERT_EQ(manifest["files"].size(), examples.size());
   for (const Json& file : manifest["files"]) {
-    const std::string source = file["source"];
+    std::string source = file["source"];
+    ASSERT_TRUE(source.starts_with("../")) << source;
+    source.erase(0, 3);
     ASSERT_TRUE(examples.contains(source)) << source;
     EXPECT_EQ(file["materials"].size(), examples.at(source)["materials"].size()) << source;
     for (const Json& material : file["materials"]) {

@@ -36,17 +36,18 @@ Graph chain(size_t length) {
 }
 
 struct Lengths {
-  size_t interface, header, proofs;
+  size_t interface, header, module, proofs;
 };
 
 Lengths lengthsOf(size_t length) {
   Options options;
-  options.targets = {Target::Cpp};
+  options.targets = {Target::Cpp, Target::Js};
   Messages messages;
   Graph graph = chain(length);
   const Shader shader = graph.generate(options, messages);
   EXPECT_TRUE(shader);
-  return {shader.interfaceJson().size(), shader.headerText().size(), graph.prove(options, messages).size()};
+  return {shader.interfaceJson().size(), shader.headerText().size(), shader.moduleText().size(),
+          graph.prove(options, messages).size()};
 }
 
 TEST(Expressions, GrowWithTheNumberOfOperations) {
@@ -54,6 +55,7 @@ TEST(Expressions, GrowWithTheNumberOfOperations) {
   const Lengths twice = lengthsOf(200);
   EXPECT_LT(twice.interface, some.interface * 21 / 10);
   EXPECT_LT(twice.header, some.header * 21 / 10);
+  EXPECT_LT(twice.module, some.module * 21 / 10);
   EXPECT_LT(twice.proofs, some.proofs * 21 / 10);
   EXPECT_LT(twice.interface, 200 * 500U);
 }

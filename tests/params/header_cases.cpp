@@ -84,12 +84,6 @@ std::vector<Member> membersOf(const std::string& header) {
   return members;
 }
 
-std::string hexOf(const std::vector<uint8_t>& bytes) {
-  std::string text;
-  for (const uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
-  return text;
-}
-
 std::vector<std::vector<std::string>> packedByCompiler(const std::vector<HeaderCase>& cases) {
   const auto folder = freshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
   for (const HeaderCase& one : cases) writeText(folder / (one.id + ".h"), one.text);

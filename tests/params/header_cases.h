@@ -1,14 +1,12 @@
 // Headers of the cpp target, compiled by the system's compiler and run on numbers.
 #pragma once
 
-#include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
-namespace lacquer::test {
+#include "packs.h"
 
-using Numbers = std::map<std::string, std::vector<double>>;  ///< components of parameters, by name
+namespace lacquer::test {
 
 struct HeaderCase {
   std::string id;    ///< of the shader: the header's file name
@@ -30,8 +28,5 @@ std::vector<Member> membersOf(const std::string& header);
 /// the block, in hexadecimal. Numbers of parameters that a header does not have are left out. Empty, and the
 /// test failed, when something goes wrong.
 std::vector<std::vector<std::string>> packedByCompiler(const std::vector<HeaderCase>& cases);
-
-/// Bytes in hexadecimal.
-std::string hexOf(const std::vector<uint8_t>& bytes);
 
 }  // namespace lacquer::test

@@ -1,116 +1,22 @@
 // The cpp target: what a compiler makes of its headers must be what the library packs, to the bit.
-#include "shader/preshader.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "header_cases.h"
-#include "ir/names.h"
-#include "lacquer.h"
+#include "packs.h"
 #include "targets/target.h"
 
 namespace lacquer::test {
-namespace {
-
 using Json = nlohmann::json;
-
-std::vector<std::string> exampleFiles() {
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(LACQUER_EXAMPLES)) {
-    if (entry.path().extension() == ".gltf") files.push_back(entry.path().string());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-Options headerOptions() {
-  Options options;
-  options.targets = {Target::Cpp};
-  options.validate = false;
-  options.unused = true;
-  return options;
-}
-
-/// Every graph of the examples, with its shader.
-void eachExample(const Options& options, const std::function<void(Graph&, const Shader&)>& call) {
-  Messages messages;
-  for (const std::string& file : exampleFiles()) {
-    const Scene scene = Scene::load(file, options, messages);
-    ASSERT_TRUE(scene) << file;
-    for (size_t m = 0; m < scene.materialCount(); ++m) {
-      std::vector<Attributes> uses = scene.uses(m);
-      if (uses.empty()) uses.push_back({true, true, false, {true, true, false, false}});
-      for (const Attributes& attributes : uses) {
-        Graph graph = scene.graph(m, attributes, options, messages);
-        if (!graph) continue;
-        const Shader shader = graph.generate(options, messages);
-        ASSERT_TRUE(shader) << file << " " << m;
-        call(graph, shader);
-      }
-    }
-  }
-}
-
-std::vector<double> valueOf(const Json& parameter) {
-  const Json& value = parameter["value"];
-  if (value.is_boolean()) return {value.get<bool>() ? 1.0 : 0.0};
-  return value.is_array() ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
-}
-
-Numbers valuesOf(const Json& parameters) {
-  Numbers numbers;
-  for (const auto& [name, parameter] : parameters.items()) numbers[name] = valueOf(parameter);
-  return numbers;
-}
-
-/// Numbers in the ranges, and at their ends.
-Numbers randomValues(const Json& parameters, std::mt19937& random) {
-  Numbers numbers = valuesOf(parameters);
-  for (auto& [name, components] : numbers) {
-    const Json range = parameters[name].value("range", Json::array({nullptr, nullptr}));
-    const auto end = [&](size_t i, double open) {
-      return range[i].is_number() ? range[i].get<double>() : open;
-    };
-    const double lo = std::max(end(0, -10), -10.0);
-    const double hi = std::min(end(1, 10), 10.0);
-    for (double& x : components) {
-      const uint32_t kind = random() % 10;
-      x = kind == 0 ? lo : kind == 1 ? hi : std::uniform_real_distribution<double>(lo, hi)(random);
-    }
-  }
-  return numbers;
-}
-
-std::string packedByLibrary(const Shader& shader, const Numbers& numbers) {
-  std::vector<uint8_t> bytes(shader.uniformSize());
-  const bool packed = shader.pack(
-      [&](std::string_view name, std::span<double> components) {
-        const auto& values = numbers.at(std::string(name));
-        std::copy_n(values.begin(), components.size(), components.begin());
-        return true;
-      },
-      std::as_writable_bytes(std::span(bytes)));
-  EXPECT_TRUE(packed);
-  return hexOf(bytes);
-}
-
-}  // namespace
 
 TEST(Header, BytesOfTheExamplesAreTheLibrarys) {
   std::vector<HeaderCase> cases;
   std::vector<std::vector<std::string>> expected;
   std::map<std::string, size_t> index;
   std::mt19937 random(1);
-  eachExample(headerOptions(), [&](Graph& graph, const Shader& shader) {
+  eachExample(packingOptions(Target::Cpp), [&](Graph& graph, const Shader& shader) {
     const auto [it, fresh] = index.emplace(shader.id(), cases.size());
     if (fresh) {
       cases.push_back({shader.id(), shader.headerText(), shader.uniformSize(), {}});
@@ -134,7 +40,7 @@ TEST(Header, BytesOfTheExamplesAreTheLibrarys) {
 
 TEST(Header, NeutralValuesAreGltfsDefaults) {
   std::string all;
-  eachExample(headerOptions(), [&](Graph&, const Shader& shader) { all += shader.headerText(); });
+  eachExample(packingOptions(Target::Cpp), [&](Graph&, const Shader& shader) { all += shader.headerText(); });
   for (const char* line :
        {"double coat_ior = 1.5;", "double base_color_factor[4] = {1.0, 1.0, 1.0, 1.0};",
         "double coat_factor = 0.0;", "double metallic_factor = 1.0;", "double normal_scale = 1.0;",
@@ -146,7 +52,7 @@ TEST(Header, NeutralValuesAreGltfsDefaults) {
 }
 
 TEST(Header, BakedHasNoBlock) {
-  Options options = headerOptions();
+  Options options = packingOptions(Target::Cpp);
   options.parameters = Parameters::Baked;
   std::vector<HeaderCase> cases;
   eachExample(options, [&](Graph&, const Shader& shader) {
@@ -157,154 +63,11 @@ TEST(Header, BakedHasNoBlock) {
   EXPECT_EQ(packedByCompiler(cases), nothing);
 }
 
-namespace {
-
-/// A preshader of every operation on every type, with names that mean something in C++.
-class RandomPreshader {
-public:
-  explicit RandomPreshader(uint32_t seed) : random_(seed) {
-    const char* names[] = {"double",   "p",   "min_of", "block", "detail",
-                           "to_float", "mix", "store",  "Block", "length"};
-    for (uint32_t i = 0; i < std::size(names); ++i)
-      addParameter(names[i], ir::floatType(1 + static_cast<int>(i % 4)));
-    addParameter("flag", ir::Type::Bool);
-    addParameter("register", ir::Type::Bool);
-    for (const double x : {0.5, -2.0, 1e-7, 3.0, -0.125}) keep(dag().constant(x));
-    keep(dag().constant(ir::Type::Vec3, {0.1, 0.2, -0.3}));
-    keep(dag().constant(ir::Type::Vec2, {4, 4}));
-  }
-
-  ir::Module make(int operations) {
-    for (int i = 0; i < operations; ++i) {
-      dag().setTerm(dag().addTerm({fmt::format("term.{}", i / 7), "a \"source\" \\"}));
-      operation();
-    }
-    module_.template_name = "random";
-    ir::Block block{ir::BlockRole::Material, "Material", "material", {}, 0, 0};
-    ir::Names names;
-    for (const ir::ValueId id : all_) {
-      const bool boolean = dag()[id].type == ir::Type::Bool;
-      const ir::ValueId value =
-          boolean ? dag().make(ir::Op::Select, {id, dag().constant(1), dag().constant(0)}) : id;
-      module_.preshader.push_back({static_cast<uint32_t>(block.fields.size()), value});
-      block.fields.push_back({names.pick("field"), dag()[value].type, 0, {}, {}});
-    }
-    block.size = ir::layout(block.fields);
-    module_.blocks.push_back(block);
-    return std::move(module_);
-  }
-
-private:
-  ir::Dag& dag() { return module_.dag; }
-  uint32_t below(uint32_t n) { return random_() % n; }
-
-  void addParameter(const std::string& name, ir::Type type) {
-    const auto index = static_cast<uint32_t>(module_.parameters.size());
-    ir::Parameter parameter{name, type, {}, {-4, 4}, {}};
-    parameter.neutral = {0.25, -1, 2, 1e-9};
-    module_.parameters.push_back(parameter);
-    keep(dag().input({ir::InputKind::Parameter, name, type, ir::Rate::Material, {}, 0, index}));
-  }
-
-  void keep(ir::ValueId id) {
-    all_.push_back(id);
-    constexpr std::array kNames = {"pow", "class", "p", "block", "value", "x", "sqrt"};
-    if (below(2) == 0) dag().name(id, kNames[below(kNames.size())]);
-  }
-
-  ir::ValueId pick(ir::Type type) {
-    std::vector<ir::ValueId> fitting;
-    std::copy_if(all_.begin(), all_.end(), std::back_inserter(fitting),
-                 [&](ir::ValueId id) { return dag()[id].type == type; });
-    return fitting[below(static_cast<uint32_t>(fitting.size()))];
-  }
-
-  void operation() {
-    static constexpr std::array kOps = {
-        ir::Op::Neg,   ir::Op::Abs,         ir::Op::Sign,      ir::Op::Floor,     ir::Op::Fract,
-        ir::Op::Sqrt,  ir::Op::InverseSqrt, ir::Op::Exp2,      ir::Op::Log2,      ir::Op::Exp,
-        ir::Op::Log,   ir::Op::Sin,         ir::Op::Cos,       ir::Op::Acos,      ir::Op::Add,
-        ir::Op::Sub,   ir::Op::Mul,         ir::Op::Div,       ir::Op::Min,       ir::Op::Max,
-        ir::Op::Pow,   ir::Op::Atan2,       ir::Op::Mix,       ir::Op::Clamp,     ir::Op::Dot,
-        ir::Op::Cross, ir::Op::Length,      ir::Op::Normalize, ir::Op::Construct, ir::Op::Swizzle,
-        ir::Op::Less,  ir::Op::LessEqual,   ir::Op::Equal,     ir::Op::And,       ir::Op::Or,
-        ir::Op::Not,   ir::Op::Select};
-    const ir::Op op = kOps[turn_++ % kOps.size()];
-    const ir::Type vector = ir::floatType(1 + static_cast<int>(below(4)));
-    if (op == ir::Op::Construct) return keep(construct(ir::floatType(2 + static_cast<int>(below(3)))));
-    if (op == ir::Op::Swizzle) return keep(swizzle());
-    std::array<ir::Type, 3> types{vector, vector, vector};
-    switch (ir::info(op).signature) {
-      case ir::Signature::Map:
-        for (ir::Type& type : types) type = below(3) == 0 ? ir::Type::Float : vector;
-        break;
-      case ir::Signature::Cross: types.fill(ir::Type::Vec3); break;
-      case ir::Signature::Compare: types.fill(ir::Type::Float); break;
-      case ir::Signature::Logic: types.fill(ir::Type::Bool); break;
-      case ir::Signature::Select: types[0] = ir::Type::Bool; break;
-      case ir::Signature::Reduce2:
-      case ir::Signature::Length:
-      case ir::Signature::Same:
-      case ir::Signature::Special: break;
-    }
-    std::array<ir::ValueId, 3> operands{};
-    const auto count = static_cast<size_t>(ir::info(op).arity);
-    for (size_t k = 0; k < count; ++k) operands[k] = pick(types[k]);
-    keep(dag().make(op, {operands.data(), count}));
-  }
-
-  ir::ValueId construct(ir::Type type) {
-    if (below(4) == 0) return dag().construct(type, {pick(ir::Type::Float)});
-    std::vector<ir::ValueId> parts;
-    for (int left = ir::componentCount(type); left > 0;) {
-      const int width = 1 + static_cast<int>(below(static_cast<uint32_t>(std::min(left, 3))));
-      parts.push_back(pick(ir::floatType(width)));
-      left -= width;
-    }
-    return dag().construct(type, parts);
-  }
-
-  ir::ValueId swizzle() {
-    const ir::Type from = ir::floatType(2 + static_cast<int>(below(3)));
-    std::vector<int> components(1 + below(4));
-    for (int& c : components) c = static_cast<int>(below(static_cast<uint32_t>(ir::componentCount(from))));
-    return dag().swizzle(pick(from), components);
-  }
-
-  std::mt19937 random_;
-  ir::Module module_;
-  std::vector<ir::ValueId> all_;
-  size_t turn_ = 0;
-};
-
-std::string evaluated(const ir::Module& module, const Numbers& numbers) {
-  const Preshader preshader(module);
-  std::vector<ir::Components> parameters;
-  for (const ir::Parameter& p : module.parameters) {
-    ir::Components components{};
-    const std::vector<double>& values = numbers.at(p.name);
-    std::copy(values.begin(), values.end(), components.begin());
-    parameters.push_back(components);
-  }
-  std::vector<uint8_t> bytes(module.blocks[0].size);
-  const auto values = preshader.evaluate([&](uint32_t i) -> const ir::Components& { return parameters[i]; });
-  for (size_t i = 0; i < values.size(); ++i) {
-    const Preshader::Field& field = preshader.fields()[i];
-    for (int c = 0; c < ir::componentCount(field.type); ++c) {
-      const auto x = static_cast<float>(values[i][static_cast<size_t>(c)]);
-      std::memcpy(bytes.data() + field.offset + 4 * c, &x, 4);
-    }
-  }
-  return hexOf(bytes);
-}
-
-}  // namespace
-
 TEST(Header, EveryOperationIsTheLibrarys) {
   std::vector<HeaderCase> cases;
   std::vector<std::vector<std::string>> expected;
   for (uint32_t seed = 0; seed < 6; ++seed) {
-    const ir::Module module = RandomPreshader(seed).make(180);
+    const ir::Module module = randomPreshader(seed, 180, preshaderOps());
     ASSERT_TRUE(ir::verify(module).empty());
     const std::string id = fmt::format("random-{}", seed);
     HeaderCase one{id, targets::headerText(module, id, "a head"), module.blocks[0].size, {}};
@@ -314,19 +77,10 @@ TEST(Header, EveryOperationIsTheLibrarys) {
     std::mt19937 random(seed);
     std::vector<std::string> bytes;
     for (int row = 0; row < 40; ++row) {
-      Numbers by_name;
       Numbers by_member;
-      for (const ir::Parameter& p : module.parameters) {
-        std::vector<double>& values = by_name[p.name];
-        for (int c = 0; c < ir::componentCount(p.type); ++c) {
-          const double x = std::uniform_real_distribution<double>(-4, 4)(random);
-          values.push_back(p.type == ir::Type::Bool ? static_cast<double>(x > 0)
-                           : row % 5 == 0           ? std::round(x)
-                                                    : x);
-        }
-      }
+      const Numbers by_name = randomNumbers(module, random, row % 5 == 0);
       for (size_t i = 0; i < used.size(); ++i)
-        by_member[members[i].name] = by_name[module.parameters[used[i]].name];
+        by_member[members[i].name] = by_name.at(module.parameters[used[i]].name);
       one.rows.push_back(by_member);
       bytes.push_back(evaluated(module, by_name));
     }

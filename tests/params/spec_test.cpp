@@ -166,7 +166,7 @@ TEST(Spec, ManifestListsTheConstants) {
 TEST(Spec, OtherTargetsHaveNone) {
   const fs::path folder = freshFolder("targets");
   const std::string file = std::string(LACQUER_EXAMPLES) + "/coat.gltf";
-  for (const char* target : {"hlsl", "essl", "glsl-gl", "cpp"}) {
+  for (const char* target : {"hlsl", "essl", "glsl-gl", "cpp", "js"}) {
     std::string said;
     EXPECT_EQ(runProgram({LACQUER_PROGRAM, "gen", file, "-o", "out", "--params", "spec", "--target", target},
                          folder, &said),

@@ -1,0 +1,19 @@
+// Paths as a file names them that lies in another folder than the working one.
+#pragma once
+
+#include <string>
+
+namespace lacquer {
+
+/// `path`, as seen from `folder`, with `/` between the parts: what the two were given by, the working folder
+/// included, does not show. Links in `folder` are followed, so that `..` leads where it says; the folder need
+/// not exist. On systems with several roots a path on another one stays absolute.
+std::string relativeTo(const std::string& folder, const std::string& path);
+
+/// The other way: a path in a file of `folder`, for a program that is in the working folder.
+std::string fromFolder(const std::string& folder, const std::string& path);
+
+/// The folder that a file lies in: "." for one without.
+std::string folderOf(const std::string& path);
+
+}  // namespace lacquer

@@ -1,0 +1,23 @@
+// What the targets share that write no stage but pack the material's block: cpp, js.
+#pragma once
+
+#include <string_view>
+
+#include "ir/module.h"
+
+namespace lacquer::targets {
+
+/// The fold column of ops.def: an op's meaning in C++, with T for the arithmetic and a, b, c for the
+/// operands.
+std::string_view foldText(ir::Op op);
+/// True when the op is one function of <cmath>.
+bool isStandard(ir::Op op);
+/// True when the op stands before or between its operands.
+bool isOperator(ir::Op op);
+
+/// The block that is packed; null where there is none.
+const ir::Block* materialBlock(const ir::Module& module);
+/// True when a stage reads the block.
+bool usesBlock(const ir::Module& module, const ir::Block& block);
+
+}  // namespace lacquer::targets

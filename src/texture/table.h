@@ -1,0 +1,28 @@
+// Tables of two channels, as shaders look them up, as files: DDS, KTX2, PNG.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lacquer::texture {
+
+enum class Container : uint8_t {
+  Dds,   ///< R16G16_UNORM
+  Ktx2,  ///< R16G16_SFLOAT, which every API filters, WebGL 2 too
+  Png,   ///< 16 bits of red and green, blue 0; decoders of 8 bits see the nearest of theirs
+};
+
+/// By the name's ending, in capitals or not: ".dds", ".ktx2", ".png".
+std::optional<Container> containerOf(std::string_view path);
+
+/// The whole file of one level. `values`: `size` rows of as many texels of two numbers in [0, 1]; the first
+/// row is the first in the file.
+std::string tableFile(Container container, uint32_t size, std::span<const float> values);
+
+/// The half nearest to a number in [0, 1], the even one of two: its bits.
+uint16_t halfBits(float x);
+
+}  // namespace lacquer::texture
