@@ -35,7 +35,10 @@ std::string shaderPath(Target target, const std::string& id, int stage);
 /// The first of the stages, 0 or 1, that have a file; the last is 1. Target::Cpp has one file.
 inline int firstStage(Target target, bool has_vertex) { return has_vertex && target != Target::Cpp ? 0 : 1; }
 
-/// Some compiler or validator checks the target's code.
-inline bool hasValidator(Target target) { return target != Target::Cpp; }
+/// What is made is a shader: the manifest says whether it was validated.
+inline bool isShader(Target target) { return target != Target::Cpp; }
+/// Some compiler or validator on this machine checks the target's code. WGSL's need not be installed, and
+/// Metal's is nowhere.
+bool hasValidator(Target target);
 
 }  // namespace lacquer
