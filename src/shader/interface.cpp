@@ -226,9 +226,10 @@ bool isShown(std::string_view member, const Options& options) {
 
 std::string interfaceJson(const ir::Module& module, bool has_vertex, const material::Schema* schema,
                           const Options& options) {
+  const Json all = interfaceOf(module, has_vertex, schema);
   json::JsonText json;
   Json shown;
-  for (const auto& [name, value] : interfaceOf(module, has_vertex, schema).items()) {
+  for (const auto& [name, value] : all.items()) {
     if (isShown(name, options)) shown[name.substr(0, name.find(' '))] = value;
   }
   return json.json(shown).take();
