@@ -120,13 +120,18 @@ private:
   /// WebGPU's defaults (WebGPU, "Limits"), and what the shader comes to.
   Json limits() const {
     constexpr size_t kHalfFloats = 8;  // bytes of an rgba16float, and of an rgba8unorm as WebGPU counts
-    const size_t colors =
-        count(module_.outputs, [](const ir::Output& o) { return o.kind == ir::OutputKind::Color; });
+    size_t colors = 0;
+    size_t places = 0;  // a shader may leave some out, and has later ones all the same
+    for (const ir::Output& output : module_.outputs) {
+      if (output.kind != ir::OutputKind::Color) continue;
+      ++colors;
+      places = std::max<size_t>(places, output.location + 1);
+    }
     Json asked = Json::object();
     const auto ask = [&](const char* limit, size_t least, size_t wanted) {
       if (wanted > least) asked[limit] = wanted;
     };
-    ask("maxColorAttachments", 8, colors);
+    ask("maxColorAttachments", 8, places);
     ask("maxColorAttachmentBytesPerSample", 32, kHalfFloats * colors);
     ask("maxSampledTexturesPerShaderStage", 16, most(&Used::textures));
     ask("maxSamplersPerShaderStage", 16, most(&Used::textures));
@@ -135,14 +140,12 @@ private:
     return asked;
   }
 
-  template <class List, class Is>
-  static size_t count(const List& list, Is is) {
-    return static_cast<size_t>(std::count_if(list.begin(), list.end(), is));
-  }
-
   size_t most(std::vector<bool> Used::*list) const {
     size_t most = 0;
-    for (const Used& used : used_) most = std::max(most, count(used.*list, [](bool is) { return is; }));
+    for (const Used& used : used_) {
+      const std::vector<bool>& flags = used.*list;
+      most = std::max(most, static_cast<size_t>(std::count(flags.begin(), flags.end(), true)));
+    }
     return most;
   }
 
