@@ -16,6 +16,10 @@ target_compile_features(lacquer_library PUBLIC cxx_std_20)
 target_link_libraries(lacquer_library PRIVATE fmt::fmt glslang::glslang glslang::SPIRV
                       glslang::glslang-default-resource-limits SPIRV-Tools-opt SPIRV-Tools-static TBB::tbb
                       PkgConfig::sodium_pc Threads::Threads ${CMAKE_DL_LIBS})
+if(TARGET PkgConfig::spirv_cross_pc)
+  set(LACQUER_SPIRV_CROSS ON)
+  target_link_libraries(lacquer_library PRIVATE PkgConfig::spirv_cross_pc)
+endif()
 add_library(lacquer::lacquer ALIAS lacquer_library)
 add_executable(lacquer::lacquer_cli ALIAS lacquer_cli)
 

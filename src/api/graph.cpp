@@ -189,7 +189,7 @@ Shader Graph::generate(const Options& options, Messages& messages) {
   const Result<const material::Schema*> schema = language->models.schema();
   impl->id = shaderId(*module, *language);
   impl->has_vertex = lacquer::hasVertexStage(*module);
-  impl->interface = interfaceJson(*module, impl->has_vertex, schema ? *schema : nullptr);
+  impl->interface = interfaceJson(*module, impl->has_vertex, schema ? *schema : nullptr, options);
   impl->preshader = Preshader(*module);
   impl->module = std::move(*module);
   Wrong wrong;

@@ -14,6 +14,7 @@ enum class Decides : uint8_t {
   Module,     ///< what becomes of a graph
   Code,       ///< what is printed of a module, or known of it
   SpirvCode,  ///< the same, of SPIR-V alone
+  MslCode,    ///< the same, of Metal's language alone
   Run,        ///< which outputs a run has
   Nothing,    ///< neither outputs nor what is reported
 };
@@ -25,7 +26,7 @@ void eachOption(const Options& options, Each each) {
   const auto& [profile, error_budget, template_name, targets, parameters, lights, switches, ibl,
                multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, spirv_route, debug,
                live, node_directories, jobs, cache, cache_size, depfile, shard, limits, allow, cache_key,
-               sync] = options;
+               argument_buffers, sync] = options;
   each(Decides::Graph, profile);
   each(Decides::Graph, error_budget);
   each(Decides::Graph, template_name);
@@ -53,6 +54,7 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Graph, limits);
   each(Decides::Nothing, allow);
   each(Decides::Nothing, cache_key);
+  each(Decides::MslCode, argument_buffers);
   each(Decides::Nothing, sync);
 }
 

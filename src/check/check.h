@@ -57,4 +57,18 @@ std::string dxcIdentity();
 /// "dxc-missing". Code "dxc". Safe to call from several threads, as long as none changes the environment.
 Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::string& name);
 
+/// True when `lacquer-wgsl-check` (checks/wgsl) is on the PATH and can be run from here (on POSIX systems
+/// only).
+bool haveTint();
+
+/// What tells it from another one without running it: the file that it leads to, its size, when it was
+/// modified, and the description of the package with the compiler. Empty where there is none.
+std::string tintIdentity();
+
+/// Compiles WGSL with Tint, Dawn's compiler, of either stage. An empty list when it has nothing to say;
+/// warnings and notes are said as such. Code "tint"; where there is no program or no compiler in it one
+/// error, "tint-missing". The program is started once and lives as long as the process. Safe to call from
+/// several threads, which take turns, as long as none changes the environment.
+Diagnostics compileWithTint(const std::string& text, const std::string& name);
+
 }  // namespace lacquer::check

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "check/check.h"
+#include "check/program.h"
 
 #if defined(__unix__) || defined(__APPLE__)
 #define LACQUER_POSIX 1
@@ -53,21 +54,6 @@ public:
 private:
   fs::path path_;
 };
-
-/// The program that a shell would run; empty entries of the PATH, which mean the current folder, are passed
-/// over.
-std::optional<fs::path> findProgram(const char* name) {
-  const char* path = std::getenv("PATH");
-  if (path == nullptr) return std::nullopt;
-  std::istringstream entries(path);
-  for (std::string entry; std::getline(entries, entry, ':');) {
-    if (entry.empty()) continue;
-    fs::path file = fs::path(entry) / name;
-    std::error_code ignored;
-    if (fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0) return file;
-  }
-  return std::nullopt;
-}
 
 /// Runs a program without a shell, all that it says going to the file `log`. Its exit status, or nothing when
 /// it could not be started or was killed.
@@ -127,12 +113,7 @@ std::optional<Diagnostic> diagnosticOf(std::string_view line, const std::string&
   }
   diagnostic.message = line;
 
-  size_t begin = 0;
-  for (uint32_t i = 1; i < numbers[0] && begin != std::string::npos; ++i) {
-    begin = text.find('\n', begin);
-    if (begin != std::string::npos) ++begin;
-  }
-  if (begin != std::string::npos && numbers[1] != 0) locate(diagnostic, text, begin + numbers[1] - 1);
+  locateInText(diagnostic, text);
   return diagnostic;
 }
 
@@ -156,13 +137,7 @@ bool haveDxc() { return findProgram("dxc").has_value(); }
 
 std::string dxcIdentity() {
   const auto program = findProgram("dxc");
-  if (!program) return {};
-  // A package's links stay the same when what they lead to is replaced.
-  std::error_code ignored;
-  const fs::path file = fs::canonical(*program, ignored);
-  const uintmax_t size = fs::file_size(file, ignored);
-  const auto time = fs::last_write_time(file, ignored).time_since_epoch().count();
-  return fmt::format("{} {} {}", file.string(), size, time);
+  return program ? identityOf(*program) : std::string();
 }
 
 Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::string& name) {

@@ -154,6 +154,8 @@ std::optional<Diagnostic> wrongVersion(std::string_view text, Target target, con
     case Target::Essl: wanted = "#version 300 es"; break;
     case Target::Hlsl: return std::nullopt;
     case Target::Spirv:
+    case Target::Wgsl:
+    case Target::Msl:
     case Target::Cpp:
     case Target::Js:
       return fail(std::string(kCode), {name, 0, 0, {}}, "the target has no text of a stage").value()[0];
@@ -205,6 +207,8 @@ EShMessages setUp(glslang::TShader& shader, Target target, EShLanguage stage) {
     case Target::Essl: return EShMsgDefault;
     case Target::Hlsl: return setUpHlsl(shader, stage);
     case Target::Spirv:
+    case Target::Wgsl:
+    case Target::Msl:
     case Target::Cpp:
     case Target::Js: break;  // wrongVersion() has refused them
   }

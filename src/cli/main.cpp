@@ -117,12 +117,14 @@ std::string finish(Flags& flags) {
   for (const std::string& name : flags.targets) {
     lacquer::Target target{};
     if (!lacquer::findTarget(name, target)) {
-      return fmt::format("--target: there is no '{}'; targets are glsl, glsl-gl, essl, hlsl, spirv and cpp",
-                         name);
+      return fmt::format(
+          "--target: there is no '{}'; targets are glsl, glsl-gl, essl, hlsl, spirv, cpp, wgsl and msl",
+          name);
     }
-    if (spec && target != lacquer::Target::Glsl && target != lacquer::Target::Spirv) {
-      return fmt::format("--target: {} has no specialization constants; --params spec is for glsl and spirv",
-                         name);
+    if (spec && !lacquer::hasSpecializationConstants(target)) {
+      return fmt::format(
+          "--target: {} has no specialization constants; --params spec is for glsl, spirv, wgsl and msl",
+          name);
     }
     if (std::find(options.targets.begin(), options.targets.end(), target) == options.targets.end()) {
       options.targets.push_back(target);
@@ -177,11 +179,13 @@ void addShared(CLI::App& app, Flags& flags) {
 void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
   verb.add_option("--target", flags.targets,
-                  "of glsl, glsl-gl, essl, hlsl, spirv, cpp, js; all but cpp and js when absent")
+                  "of glsl, glsl-gl, essl, hlsl, spirv, cpp, js, wgsl, msl; the first five when absent")
       ->delimiter(',')
       ->allow_extra_args(false);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
+  verb.add_flag("--msl-argument-buffers", flags.options.argument_buffers,
+                "Metal's resources in one argument buffer for each set, not in plain bindings");
   verb.add_option("--spirv-from", flags.spirv_from, "direct, or glslang: through the GLSL, as a cross-check")
       ->check(CLI::IsMember({"direct", "glslang"}))
       ->capture_default_str();

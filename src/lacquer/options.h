@@ -50,18 +50,25 @@ enum class Target : uint8_t {
   Spirv,   ///< SPIR-V 1.3 for Vulkan 1.1
   Cpp,     ///< no shader: a C++11 header that packs the material's uniform block (docs/parameters.md)
   Js,      ///< no shader: the same as an ES module with its types
+  Wgsl,    ///< WGSL for WebGPU
+  Msl,     ///< Metal's language, from the SPIR-V by SPIRV-Cross; nothing validates it
 };
-/// "glsl", "glsl-gl", "essl", "hlsl", "spirv", "cpp", "js": the names of `--target` and of the output
-/// folders. Empty for what is no enumerator.
+/// "glsl", "glsl-gl", "essl", "hlsl", "spirv", "cpp", "js", "wgsl", "msl": the names of `--target` and of the
+/// output folders. Empty for what is no enumerator.
 std::string_view targetName(Target target);
 /// False, and `target` untouched, when there is none of that name.
 bool findTarget(std::string_view name, Target& target);
+
+/// Whether Parameters::Spec is for the target.
+constexpr bool hasSpecializationConstants(Target target) {
+  return target == Target::Glsl || target == Target::Spirv || target == Target::Wgsl || target == Target::Msl;
+}
 
 /// What becomes of a material's numbers. The structure of the shader is specialised in each.
 enum class Parameters : uint8_t {
   Uniform,  ///< editable through a uniform block
   Baked,    ///< constants in the shader
-  Spec,     ///< specialization constants; Target::Glsl and Target::Spirv alone have them
+  Spec,     ///< specialization constants, of the targets that have them
 };
 
 /// Where SPIR-V comes from. The shaders compute the same.
@@ -90,7 +97,7 @@ struct Lights {
   std::map<std::string, uint32_t, std::less<>> counts{};
 };
 
-/// Everything that is a shader: what is made where nobody says.
+/// What is made where nobody says: not what compilers check that are not everywhere where Lacquer is.
 inline constexpr Target kShaderTargets[] = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl,
                                             Target::Spirv};
 
@@ -132,7 +139,8 @@ struct Options {
   Strings limits;         ///< "images=1G", each: what an input may be at most (docs/security.md)
   Strings allow;          ///< folders in which images may lie, beside the glTF file's own
   std::string cache_key;  ///< a file: what was not written to the cache with its bytes is not there
-  bool sync = true;       ///< what is written is on the disk before it gets its name
+  bool argument_buffers = false;  ///< Target::Msl: one for each descriptor set, not plain bindings
+  bool sync = true;               ///< what is written is on the disk before it gets its name
 };
 
 /// The terms that Options::live can keep, of the options' library and profile: "coat.darkening", in

@@ -145,7 +145,7 @@ private:
       return report_.error("unknown-target", path, fmt::format("there is no target {}", quote(name)));
     if (!json.is_object()) return report_.wrongType(path, "the target's entry", json, kObject);
     for (const auto& [stage, file] : json.get_ref<const Json::object_t&>()) {
-      const bool known = target == Target::Cpp ? stage == "header" : stage == "vert" || stage == "frag";
+      const bool known = stage == fileKind(target, 0) || stage == fileKind(target, 1);
       if (!known) {
         report_.error("wrong-path", Path(path, stage),
                       fmt::format("{} is no stage of this target", quote(stage)));

@@ -60,11 +60,15 @@ std::vector<Key> contentsOf(const Strings& files, uint64_t largest) {
   return contents;
 }
 
-/// The compiler that checks the HLSL a second time, where it does.
-std::string dxcOf(const Options& options) {
-  const auto& targets = options.targets;
-  const bool hlsl = std::find(targets.begin(), targets.end(), Target::Hlsl) != targets.end();
-  return hlsl && options.validate ? check::dxcIdentity() : "";
+/// The compilers that check the HLSL a second time and the WGSL, where they do.
+std::string compilersOf(const Options& options) {
+  const auto wanted = [&](Target target) {
+    const auto& targets = options.targets;
+    return options.validate && std::find(targets.begin(), targets.end(), target) != targets.end();
+  };
+  std::string compilers = wanted(Target::Hlsl) ? check::dxcIdentity() : "";
+  if (wanted(Target::Wgsl)) compilers += '\n' + check::tintIdentity();
+  return compilers;
 }
 
 void writeReport(const Report& report, BlobWriter& blob) {
@@ -114,9 +118,11 @@ Receipt::Receipt(const Strings& files, const Strings& materials, const std::stri
   std::error_code ignored;  // the working folder only keeps projects apart that name theirs alike
   KeyBuilder key;
   key.text("receipt").key(base).text(std::filesystem::current_path(ignored).string()).text(folder);
-  addOptions(options, {Decides::Graph, Decides::Module, Decides::Code, Decides::SpirvCode, Decides::Run},
-             key);
-  key.text(dxcOf(options));
+  addOptions(
+      options,
+      {Decides::Graph, Decides::Module, Decides::Code, Decides::SpirvCode, Decides::MslCode, Decides::Run},
+      key);
+  key.text(compilersOf(options));
   key.number(materials.size());
   for (const std::string& name : materials) key.text(name);
   for (const std::string& file : files) key.text(file);

@@ -9,6 +9,7 @@
 #include "check/check.h"
 #include "json/text.h"
 #include "run/manifest.h"
+#include "shader/interface.h"
 #include "shader/print.h"
 
 namespace lacquer {
@@ -34,7 +35,10 @@ class Maker {
 public:
   Maker(const Setting& setting, const std::string& folder, const Scratch& scratch, const Receipt* receipt)
       : setting_(setting), folder_(folder), writing_{&scratch, setting.options.sync}, receipt_(receipt) {
-    if (setting.cache != nullptr && setting.options.validate) dxc_ = check::dxcIdentity();
+    if (setting.cache != nullptr && setting.options.validate) {
+      dxc_ = check::dxcIdentity();
+      tint_ = check::tintIdentity();
+    }
   }
 
   MadeShader make(const std::string& id, Distinct& shader) const;
@@ -54,7 +58,8 @@ private:
   const std::string& folder_;
   Writing writing_;
   const Receipt* receipt_;
-  std::string dxc_;  ///< that validates the HLSL, too; empty where there is none
+  std::string dxc_;   ///< that validates the HLSL, too; empty where there is none
+  std::string tint_;  ///< that validates the WGSL; empty where there is none
 };
 
 /// The base covers this build with its compilers and validators, and the node library; the id covers the
@@ -65,7 +70,9 @@ Key Maker::keyOf(const std::string& id, Target target) const {
   key.text("shader").key(setting_.base).text(id).text(targetName(target));
   addOptions(options, {Decides::Code}, key);
   if (target == Target::Spirv) addOptions(options, {Decides::SpirvCode}, key);
+  if (target == Target::Msl) addOptions(options, {Decides::MslCode}, key);
   if (target == Target::Hlsl && options.validate) key.text(dxc_);
+  if (target == Target::Wgsl && options.validate) key.text(tint_);
   return key.finish();
 }
 
@@ -116,13 +123,14 @@ void Maker::print(const std::string& id, Distinct& shader, const std::vector<Tar
                                                   : std::move(data.text[static_cast<size_t>(target)][stage]);
     }
     Diagnostics& found = wrong[static_cast<size_t>(target)];
+    const size_t before = made.wrong.size();
     code.validated = options.validate && hasValidator(target) && found.empty();
     for (Diagnostic& w : found) {
       if (!w.place.file.empty()) w.place.file = folder_ + "/" + w.place.file;
       made.wrong.push_back(std::move(w));
     }
     // What is not valid is our bug, and is said again in every run.
-    if (code.validated || !options.validate || !hasValidator(target)) save(keyOf(id, target), code);
+    if (made.wrong.size() == before) save(keyOf(id, target), code);
   }
 }
 
@@ -155,10 +163,12 @@ std::string Maker::entry(const std::string& id, const Structure& structure,
   }
   json.endObject().key("validated").beginObject();
   for (const Target target : setting_.options.targets) {
-    if (hasValidator(target)) json.key(targetName(target)).boolean(codes.at(target).validated);
+    if (isShader(target)) json.key(targetName(target)).boolean(codes.at(target).validated);
   }
   json.endObject();
-  for (const auto& [name, text] : structure.interface) json.key(name).raw(text);
+  for (const auto& [name, text] : structure.interface) {
+    if (isShown(name, setting_.options)) json.key(name.substr(0, name.find(' '))).raw(text);
+  }
   return json.endObject().take();
 }
 
@@ -170,7 +180,9 @@ MadeShader Maker::make(const std::string& id, Distinct& shader) const {
     made.cached = true;
     made.validated = left->validated;
     made.files = left->files;
-    for (const Target target : setting_.options.targets) codes[target].validated = left->validated;
+    for (const Target target : setting_.options.targets) {
+      codes[target].validated = left->validated && hasValidator(target);
+    }
     made.text = entry(id, *shader.structure, codes);
     shader.module.reset();
     return made;
@@ -186,6 +198,7 @@ MadeShader Maker::make(const std::string& id, Distinct& shader) const {
   made.validated = setting_.options.validate;
   for (const auto& [target, code] : codes) {
     if (!code.made) return made;
+    // Of what nothing here compiles the manifest says so.
     made.validated &= code.validated || !hasValidator(target);
   }
   write(id, *shader.structure, codes, made);

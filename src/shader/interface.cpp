@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "json/text.h"
+#include "shader/apis.h"
 #include "shader/proofs.h"
 #include "targets/target.h"
 
@@ -207,12 +208,31 @@ Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Sche
   }
   json["outputs"] = std::move(outputs);
   json["proofs"] = proofsJson(module);
+  json[kWebGpu] = webgpuOf(module);
+  json[kMetal] = metalOf(module, false);
+  json[kMetalArgumentBuffers] = metalOf(module, true);
   return json;
 }
 
-std::string interfaceJson(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
+bool isShown(std::string_view member, const Options& options) {
+  const auto wanted = [&](Target target) {
+    return std::find(options.targets.begin(), options.targets.end(), target) != options.targets.end();
+  };
+  if (member == kWebGpu) return wanted(Target::Wgsl);
+  if (member == kMetal) return wanted(Target::Msl) && !options.argument_buffers;
+  if (member == kMetalArgumentBuffers) return wanted(Target::Msl) && options.argument_buffers;
+  return true;
+}
+
+std::string interfaceJson(const ir::Module& module, bool has_vertex, const material::Schema* schema,
+                          const Options& options) {
+  const Json all = interfaceOf(module, has_vertex, schema);
   json::JsonText json;
-  return json.json(interfaceOf(module, has_vertex, schema)).take();
+  Json shown;
+  for (const auto& [name, value] : all.items()) {
+    if (isShown(name, options)) shown[name.substr(0, name.find(' '))] = value;
+  }
+  return json.json(shown).take();
 }
 
 }  // namespace lacquer

@@ -99,10 +99,10 @@ Diagnostics checkOptions(const Options& options) {
     } else if (!seen.insert(target).second) {
       add(wrong, "duplicate-target", fmt::format("the target {} is asked for twice", targetName(target)),
           "name each once");
-    } else if (options.parameters == Parameters::Spec && target != Target::Glsl && target != Target::Spirv) {
+    } else if (options.parameters == Parameters::Spec && !hasSpecializationConstants(target)) {
       add(wrong, "no-specialization-constants",
           fmt::format("the target {} has no specialization constants", targetName(target)),
-          "glsl and spirv have them; for the others, parameters are uniform or baked");
+          "glsl, spirv, wgsl and msl have them; for the others, parameters are uniform or baked");
     }
   }
   return wrong;

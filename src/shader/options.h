@@ -12,7 +12,7 @@
 
 namespace lacquer {
 
-inline constexpr size_t kTargetCount = static_cast<size_t>(Target::Js) + 1;
+inline constexpr size_t kTargetCount = static_cast<size_t>(Target::Msl) + 1;
 
 /// What inputs may be at most, with the options' changes. Errors: those of setLimit().
 Result<Limits> limitsOf(const Options& options);

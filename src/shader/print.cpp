@@ -26,6 +26,11 @@ std::string_view fileKind(Target target, int stage) {
   return stage == 0 ? "vert" : "frag";
 }
 
+bool hasValidator(Target target) {
+  if (target == Target::Wgsl) return check::haveTint();
+  return isShader(target) && target != Target::Msl;
+}
+
 namespace {
 
 constexpr ir::Stage kStages[] = {ir::Stage::Vertex, ir::Stage::Fragment};
@@ -35,6 +40,12 @@ void append(Diagnostics& to, const Diagnostics& from) { to.insert(to.end(), from
 /// Compiles one text; whatever a compiler says is a bug of ours.
 void checkText(const std::string& text, Target target, int stage, const std::string& name,
                Diagnostics& wrong) {
+  if (target == Target::Wgsl) {
+    for (Diagnostic& said : check::compileWithTint(text, name)) {
+      if (said.severity == Severity::Error) wrong.push_back(std::move(said));
+    }
+    return;
+  }
   const auto check_stage = stage == 0 ? check::Stage::Vertex : check::Stage::Fragment;
   const Result<check::Spirv> words = check::compile(text, target, check_stage, name);
   if (!words) return append(wrong, words.error());
@@ -57,8 +68,10 @@ public:
         case Target::Glsl:
         case Target::GlslGl:
         case Target::Essl:
-        case Target::Hlsl: text(legalized(), target); break;
+        case Target::Hlsl:
+        case Target::Wgsl: text(legalized(), target); break;
         case Target::Spirv: spirv(); break;
+        case Target::Msl: msl(); break;
         case Target::Cpp: header(); break;
         case Target::Js: esModule(); break;
       }
@@ -99,7 +112,7 @@ private:
         const StageTimer timer(times_, StageOfRun::Print, target);
         text = print(module, target, stage);
       }
-      if (!options_.validate) continue;
+      if (!options_.validate || !hasValidator(target)) continue;
       const StageTimer timer(times_, StageOfRun::Validate, target);
       checkText(text, target, stage, shaderPath(target, shader_.id, stage), wrongOf(target));
     }
@@ -127,6 +140,20 @@ private:
       const StageTimer timer(times_, StageOfRun::Validate, Target::Spirv);
       append(wrongOf(Target::Spirv), check::validate(shader_.spirv[stage], false, path));
       append(wrongOf(Target::Spirv), check::checkSlots(shader_.spirv[stage], false, path));
+    }
+  }
+
+  /// Of the direct words, however `spirv` gets its own.
+  void msl() {
+    for (int stage = firstStage(); stage < 2; ++stage) {
+      const StageTimer timer(times_, StageOfRun::Print, Target::Msl);
+      const schedule::Program program = schedule::schedule(shader_.module, kStages[stage]);
+      Result<std::string> text = targets::mslText(shader_.module, program, options_.argument_buffers, head());
+      if (text) {
+        shader_.text[static_cast<int>(Target::Msl)][stage] = std::move(*text);
+      } else {
+        append(wrongOf(Target::Msl), text.error());
+      }
     }
   }
 

@@ -45,7 +45,10 @@ inline int firstStage(Target target, bool has_vertex) {
   return target == Target::Js || (has_vertex && target != Target::Cpp) ? 0 : 1;
 }
 
-/// Some compiler or validator checks the target's code.
-inline bool hasValidator(Target target) { return !packsBlock(target); }
+/// What is made is a shader: the manifest says whether it was validated.
+inline bool isShader(Target target) { return !packsBlock(target); }
+/// Some compiler or validator on this machine checks the target's code. WGSL's need not be installed, and
+/// Metal's is nowhere.
+bool hasValidator(Target target);
 
 }  // namespace lacquer

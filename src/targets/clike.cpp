@@ -79,6 +79,8 @@ private:
   std::string target(const ir::Output& output) const;
   /// An item of an argument list, where any expression may stand.
   std::string argument(ValueId id) const { return use(id).text; }
+  /// An operand of an operation.
+  Expression operand(const ir::Value& value, size_t index) const;
 
   const Dialect& dialect_;
   const ir::Module& module_;
@@ -90,7 +92,14 @@ private:
 Expression Printer::use(ValueId id) const {
   if (written_ != nullptr) return (*written_)[id];
   const std::string& name = program_.names[id];
-  return name.empty() ? compute(id) : Expression{name};
+  return name.empty() ? compute(id) : Expression{dialect_.name(name)};
+}
+
+Expression Printer::operand(const ir::Value& value, size_t index) const {
+  const ValueId id = value.args[index];
+  const Expression expression = use(id);
+  return lateOperand(dag_, value) == static_cast<int>(index) ? dialect_.late(dag_[id].type, expression)
+                                                             : expression;
 }
 
 Expression Printer::compute(ValueId id) const {
@@ -101,10 +110,11 @@ Expression Printer::compute(ValueId id) const {
   if (value.op == Op::Construct) return construct(value);
   if (value.op == Op::Swizzle) return swizzle(value);
   if (value.op == Op::Texture) {
-    return {dialect_.texture(argument(value.args[0]), argument(value.args[1]), {})};
+    return {dialect_.texture(dag_[value.args[0]].type, argument(value.args[0]), use(value.args[1]), {})};
   }
   if (value.op == Op::TextureLod) {
-    return {dialect_.texture(argument(value.args[0]), argument(value.args[1]), argument(value.args[2]))};
+    return {dialect_.texture(dag_[value.args[0]].type, argument(value.args[0]), use(value.args[1]),
+                             argument(value.args[2]))};
   }
   if (value.op == Op::TextureCompare || value.op == Op::TextureCompareLod) {
     const bool top = value.op == Op::TextureCompareLod;
@@ -136,7 +146,7 @@ Expression Printer::constant(ValueId id) const {
 
 Expression Printer::input(const ir::Input& input) const {
   switch (input.kind) {
-    case InputKind::SpecConstant: return {input.name};
+    case InputKind::SpecConstant: return {dialect_.name(input.name)};
     case InputKind::Parameter:
       return {dialect_.parameter(input)};  // in the preshader; in a shader it is a field of a block
     case InputKind::BlockField: return blockField(input);
@@ -147,7 +157,7 @@ Expression Printer::input(const ir::Input& input) const {
       assert(found != all.end());
       return {attributeName(*found)};
     }
-    case InputKind::Texture: return {module_.textures[input.field].name};
+    case InputKind::Texture: return {dialect_.name(module_.textures[input.field].name)};
     case InputKind::FrontFacing: return {std::string(dialect_.frontFacing())};
     case InputKind::LightIndex: return {ir::kLightIndexName};
     case InputKind::Varying: return {varyingName(module_.varyings[input.field])};
@@ -158,10 +168,13 @@ Expression Printer::input(const ir::Input& input) const {
 
 Expression Printer::blockField(const ir::Input& input) const {
   const ir::Block& block = module_.blocks[input.block];
-  const std::string field = block.fields[input.field].elementName(input.index);
-  if (block.array == 0) return {fmt::format("{}.{}", block.instance, field)};
-  if (input.element >= 0) return {fmt::format("{}s[{}].{}", block.instance, input.element, field)};
-  return {fmt::format("{}s[{}].{}", block.instance, ir::kLightIndexName, field)};
+  const ir::BlockField& declared = block.fields[input.field];
+  std::string field = declared.elementName(input.index);
+  field.replace(0, declared.name.size(), dialect_.name(declared.name));
+  if (block.array == 0) return {fmt::format("{}.{}", dialect_.name(block.instance), field)};
+  const std::string array = dialect_.name(block.instance + "s");
+  if (input.element >= 0) return {fmt::format("{}[{}].{}", array, input.element, field)};
+  return {fmt::format("{}[{}].{}", array, ir::kLightIndexName, field)};
 }
 
 Expression Printer::construct(const ir::Value& value) const {
@@ -190,10 +203,10 @@ std::string Printer::arguments(const ir::Value& value) const {
   for (size_t i = 0; i < value.count; ++i) {
     const ValueId operand = value.args[i];
     const bool beside = map && types[i] == Type::Float && value.type != Type::Float;
-    const bool splat = beside && !Dialect::takesFloat(value.op, {types.data(), value.count}, i);
+    const bool splat = beside && !dialect_.takesFloat(value.op, {types.data(), value.count}, i);
+    const Expression text = this->operand(value, i);
     list += i == 0 ? "" : ", ";
-    list +=
-        splat ? dialect_.splat(value.type, use(operand), dag_.isConstant(operand)).text : argument(operand);
+    list += splat ? dialect_.splat(value.type, text, dag_.isConstant(operand)).text : text.text;
   }
   return list;
 }
@@ -204,17 +217,10 @@ Expression Printer::operation(const ir::Value& value) const {
     return {fmt::format("{}({})", ir::info(value.op).name, arguments(value))};
   assert(!spelling.empty() && "not an op that a shader can say");
   const auto& args = value.args;
-  if (value.op == Op::Select) {
-    // A choice in the middle is in parentheses for the reader's sake, one at the end reads as a list of
-    // cases.
-    const Precedence inner = tighter(Precedence::Ternary);
-    return {fmt::format("{} ? {} : {}", parenthesized(use(args[0]), inner),
-                        parenthesized(use(args[1]), inner), use(args[2]).text),
-            Precedence::Ternary};
-  }
+  if (value.op == Op::Select) return dialect_.select(use(args[0]), use(args[1]), use(args[2]));
   if (!isOperator(spelling)) return {dialect_.call(value.op, value.type, arguments(value))};
-  if (value.count == 1) return operatorText(spelling, std::array{use(args[0])});
-  return operatorText(spelling, std::array{use(args[0]), use(args[1])});
+  if (value.count == 1) return dialect_.operation(spelling, std::array{operand(value, 0)});
+  return dialect_.operation(spelling, std::array{operand(value, 0), operand(value, 1)});
 }
 
 void Printer::section(Text& text, ir::TermId id) const {
@@ -224,27 +230,29 @@ void Printer::section(Text& text, ir::TermId id) const {
 
 std::string Printer::lightCount() const {
   const ir::Block& block = module_.blocks[module_.light_count.block];
-  return fmt::format("{}.{}", block.instance, block.fields[module_.light_count.field].name);
+  return fmt::format("{}.{}", dialect_.name(block.instance),
+                     dialect_.name(block.fields[module_.light_count.field].name));
 }
 
 void Printer::openLoop(Text& text, const Statement& statement) const {
   for (ValueId sum : statement.sums) {
     const Type type = dag_[sum].type;
     const Expression zero = floatLiteral(0);
-    text.line(fmt::format("{} {} = {};", dialect_.type(type), program_.names[sum],
-                          type == Type::Float ? zero.text : dialect_.splat(type, zero, true).text));
+    text.line(dialect_.variable(type, dialect_.name(program_.names[sum]),
+                                type == Type::Float ? zero.text : dialect_.splat(type, zero, true).text,
+                                true));
   }
   const ir::LightGroup& group = module_.light_groups[statement.group];
   const std::string end = group.count < 0 ? lightCount() : fmt::format("{}", group.first + group.count);
-  text.line(fmt::format("for (int {0} = {1}; {0} < {2}; ++{0}) {{", ir::kLightIndexName, group.first, end));
+  text.line(dialect_.loop(group.first, end));
   text.indent();
 }
 
 std::string Printer::target(const ir::Output& output) const {
   switch (output.kind) {
     case OutputKind::Position: return std::string(dialect_.position());
-    case OutputKind::Color: return outputName(output);
-    case OutputKind::Varying: return varyingName(module_.varyings[output.location]);
+    case OutputKind::Color: return dialect_.assigned(outputName(output));
+    case OutputKind::Varying: return dialect_.assigned(varyingName(module_.varyings[output.location]));
     case OutputKind::Discard: break;  // a statement of its own
   }
   assert(false && "not an output that is assigned");
@@ -255,12 +263,13 @@ void Printer::statement(Text& text, const Statement& s) const {
   switch (s.kind) {
     case StatementKind::Section: section(text, s.term); return;
     case StatementKind::Let:
-      text.line(fmt::format("{} {} = {};", dialect_.type(dag_[s.value].type), program_.names[s.value],
-                            compute(s.value).text));
+      text.line(dialect_.variable(dag_[s.value].type, dialect_.name(program_.names[s.value]),
+                                  compute(s.value).text, false));
       return;
     case StatementKind::LoopBegin: openLoop(text, s); return;
     case StatementKind::Accumulate:
-      text.line(fmt::format("{} += {};", program_.names[s.value], root(dag_[s.value].args[0])));
+      text.line(
+          fmt::format("{} += {};", dialect_.name(program_.names[s.value]), root(dag_[s.value].args[0])));
       return;
     case StatementKind::LoopEnd:
       text.outdent();
@@ -373,7 +382,7 @@ void Text::comments(std::string_view text) {
   }
 }
 
-bool Dialect::takesFloat(Op op, std::span<const Type> operands, size_t index) {
+bool Dialect::takesFloat(Op op, std::span<const Type> operands, size_t index) const {
   if (op == Op::Min || op == Op::Max) return index == 1;
   if (op == Op::Mix) return index == 2;
   if (op == Op::Clamp) return index > 0 && operands[1] == operands[2];
@@ -392,17 +401,59 @@ std::string Dialect::call(Op op, Type, std::string_view arguments) const {
   return fmt::format("{}({})", spelling(op), arguments);
 }
 
+Expression Dialect::operation(std::string_view spelling, std::span<const Expression> operands) const {
+  return operatorText(spelling, operands);
+}
+
+Expression Dialect::select(const Expression& condition, const Expression& yes, const Expression& no) const {
+  // A choice in the middle is in parentheses for the reader's sake, one at the end reads as a list of cases.
+  const Precedence inner = tighter(Precedence::Ternary);
+  return {fmt::format("{} ? {} : {}", parenthesized(condition, inner), parenthesized(yes, inner), no.text),
+          Precedence::Ternary};
+}
+
+Expression Dialect::late(Type, const Expression& number) const { return number; }
+
+std::string Dialect::variable(Type type, std::string_view name, std::string_view value, bool) const {
+  return fmt::format("{} {} = {};", this->type(type), name, value);
+}
+
+std::string Dialect::loop(int32_t first, std::string_view end) const {
+  return fmt::format("for (int {0} = {1}; {0} < {2}; ++{0}) {{", ir::kLightIndexName, first, end);
+}
+
+std::string Dialect::member(Type type, std::string_view name, uint32_t array) const {
+  return fmt::format("{} {}{};", this->type(type), name, array == 0 ? "" : fmt::format("[{}]", array));
+}
+
+int lateOperand(const ir::Dag& dag, const ir::Value& value) {
+  const std::span<const ValueId> operands = value.operands();
+  const auto constant = [&](ValueId id) { return dag.isConstant(id); };
+  const bool moves = value.op == Op::Construct || value.op == Op::Swizzle || value.op == Op::Select;
+  if (operands.empty() || moves) return -1;
+  if (std::all_of(operands.begin(), operands.end(), constant)) return 0;
+  if (value.op != Op::Clamp || !constant(operands[1]) || !constant(operands[2])) return -1;
+  for (int i = 0; i < ir::componentCount(value.type); ++i) {
+    const auto end = [&](ValueId id) {
+      const bool one = dag[id].type == Type::Float;
+      return dag.constantOf(id)[one ? 0 : static_cast<size_t>(i)];
+    };
+    if (end(operands[2]) < end(operands[1])) return 1;
+  }
+  return -1;
+}
+
 std::string attributeName(const ir::Attribute& attribute) { return "in_" + lower(attribute.name); }
 
 std::string varyingName(const ir::Varying& varying) { return "v_" + varying.name; }
 
 std::string outputName(const ir::Output& output) { return "out_" + output.name; }
 
-void printMembers(Text& text, const Dialect& dialect, const ir::Block& block) {
+void printMembers(Text& text, const Dialect& dialect, const ir::Block& block, bool whole) {
   uint32_t cursor = 0;
   int paddings = 0;
   const auto pad = [&] {
-    text.line(fmt::format("{} lacquer_padding_{};", dialect.type(Type::Float), paddings++));
+    text.line(dialect.member(Type::Float, fmt::format("lacquer_padding_{}", paddings++), 0));
     cursor += 4;
   };
   text.indent();
@@ -411,12 +462,11 @@ void printMembers(Text& text, const Dialect& dialect, const ir::Block& block) {
            hlslOffset(field.offset, field.type) == field.offset);
     while (std140Offset(cursor, field.type) != field.offset || hlslOffset(cursor, field.type) != field.offset)
       pad();
-    const std::string elements = field.array == 0 ? "" : fmt::format("[{}]", field.array);
-    text.line(fmt::format("{} {}{};", dialect.type(field.type), field.name, elements));
+    text.line(dialect.member(field.type, dialect.name(field.name), field.array));
     cursor = field.offset + field.stride() * field.elements();
   }
   // The elements of an array, and blocks as a whole, end at a multiple of 16 of themselves.
-  while (roundUp(cursor, 16) < block.size) pad();
+  while ((whole ? cursor : roundUp(cursor, 16)) < block.size) pad();
   text.outdent();
 }
 
@@ -426,6 +476,7 @@ std::string printProgram(const Dialect& dialect, const ir::Module& module, const
   dialect.open(text, module, program, head);
   text.indent();
   Printer(dialect, module, program).statements(text);
+  dialect.close(text, program);
   text.outdent();
   text.line("}");
   return text.take();

@@ -1,6 +1,6 @@
-// The one printer of GLSL and HLSL. It walks a schedule::Program from front to back and asks a Dialect, the
-// few hooks in which the languages differ, for every spelling. It decides nothing, never looks back and never
-// edits what it wrote.
+// The one printer of GLSL, HLSL and WGSL. It walks a schedule::Program from front to back and asks a Dialect,
+// the few hooks in which the languages differ, for every spelling. It decides nothing, never looks back and
+// never edits what it wrote.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace lacquer::targets {
 
-/// How tightly an expression's outermost operator binds, loosest first; one order for GLSL and HLSL.
+/// How tightly an expression's outermost operator binds, loosest first; one order for GLSL, HLSL and WGSL.
 enum class Precedence : uint8_t {
   Ternary,
   Or,
@@ -73,10 +73,12 @@ public:
   virtual std::string_view spelling(ir::Op op) const = 0;
   virtual std::string_view position() const = 0;
   virtual std::string_view frontFacing() const = 0;
+  /// What stands for a name that a template or the schedule gave: another one where the language keeps it for
+  /// itself. The printers' own prefixes are never kept.
+  virtual std::string name(std::string_view wanted) const { return std::string(wanted); }
   /// True when the function has an overload that takes a Float at `index` beside the vectors among
-  /// `operands`. Elsewhere it is printed as a splat. The same in all dialects: what GLSL has, and HLSL
-  /// promotes any.
-  static bool takesFloat(ir::Op op, std::span<const ir::Type> operands, size_t index);
+  /// `operands`. Elsewhere it is printed as a splat. As it is here: what GLSL has, and HLSL promotes any.
+  virtual bool takesFloat(ir::Op op, std::span<const ir::Type> operands, size_t index) const;
   /// A number: floatLiteral's.
   virtual Expression literal(double x) const;
   /// A parameter where no place pass has been: its name.
@@ -85,18 +87,43 @@ public:
   virtual std::string swizzle(ir::Type result, std::string_view vector, std::string_view picks) const;
   /// A vector with one number in all components. `literal`: `x` is a literal.
   virtual Expression splat(ir::Type type, const Expression& x, bool literal) const = 0;
-  /// A texel; `lod` is empty for implicit derivatives.
-  virtual std::string texture(std::string_view name, std::string_view at, std::string_view lod) const = 0;
+  /// A texel of a texture of a type; `lod` is empty for implicit derivatives.
+  virtual std::string texture(ir::Type type, std::string_view name, const Expression& at,
+                              std::string_view lod) const = 0;
   /// What a depth map gives for the place `at`, whose third component is compared; `top`: at level 0.
   virtual std::string comparison(std::string_view name, const Expression& at, bool top) const = 0;
   /// A call of a function of ops.def.
   virtual std::string call(ir::Op op, ir::Type result, std::string_view arguments) const;
+  /// An operator of ops.def before its operand or between its two: operatorText's.
+  virtual Expression operation(std::string_view spelling, std::span<const Expression> operands) const;
+  /// The choice of `yes` where the condition holds: `?:`.
+  virtual Expression select(const Expression& condition, const Expression& yes, const Expression& no) const;
+  /// A number that no compiler may fold: lateOperand()'s. Where folding what is not finite is no error, the
+  /// number itself.
+  virtual Expression late(ir::Type type, const Expression& number) const;
+
+  /// A variable with its value; `changes`: the sum of a loop.
+  virtual std::string variable(ir::Type type, std::string_view name, std::string_view value,
+                               bool changes) const;
+  /// The opening line of the loop over lights from `first` to before `end`.
+  virtual std::string loop(int32_t first, std::string_view end) const;
+  /// A member of a block; `array`: 0 or the number of elements.
+  virtual std::string member(ir::Type type, std::string_view name, uint32_t array) const;
+  /// A fragment output or an interpolant where it is assigned.
+  virtual std::string assigned(std::string_view name) const { return std::string(name); }
 
   /// All that stands before the statements of main: the head as comments, the interface, and main's opening
   /// line.
   virtual void open(Text& text, const ir::Module& module, const schedule::Program& program,
                     std::string_view head) const = 0;
+  /// What stands behind the last statement of main.
+  virtual void close(Text&, const schedule::Program&) const {}
 };
+
+/// An operation on nothing but numbers is there only because it is not finite, and a clamp may have a number
+/// for its lower end above that for its upper one. The operand that a language must not see as a number then,
+/// where it refuses what it can tell of such operations; -1 elsewhere.
+int lateOperand(const ir::Dag& dag, const ir::Value& value);
 
 /// The dialects' interface names, the same in all of them. Variables of a Program never begin with these
 /// prefixes.
@@ -106,7 +133,8 @@ std::string outputName(const ir::Output& output);           ///< out_…
 
 /// The members of a block, one a line. Where std140 or HLSL's packing would place a member elsewhere than the
 /// block says, padding stands before it, so that one declaration means the same bytes in every dialect.
-void printMembers(Text& text, const Dialect& dialect, const ir::Block& block);
+/// `whole`: and behind the last one, up to the block's size; elsewhere the language fills the last 16 bytes.
+void printMembers(Text& text, const Dialect& dialect, const ir::Block& block, bool whole = false);
 
 /// The whole text of a stage.
 std::string printProgram(const Dialect& dialect, const ir::Module& module, const schedule::Program& program,
@@ -136,5 +164,6 @@ const Dialect& glslVulkan();
 const Dialect& glslOpenGl();
 const Dialect& essl300();
 const Dialect& hlsl();
+const Dialect& wgsl();
 
 }  // namespace lacquer::targets

@@ -71,7 +71,7 @@ public:
     return {fmt::format("{}({})", ir::typeName(type), x.text)};
   }
 
-  std::string texture(std::string_view, std::string_view, std::string_view) const override {
+  std::string texture(Type, std::string_view, const Expression&, std::string_view) const override {
     assert(false && "no texture has material rate");
     return {};
   }
@@ -167,7 +167,7 @@ private:
     const std::array<Type, 4> given = use.types;
     for (size_t k = 0; k < use.count && !isOperator(use.op); ++k) {
       // The printer writes a splat where GLSL has no overload.
-      if (!Dialect::takesFloat(use.op, {given.data(), use.count}, k)) use.types[k] = use.result;
+      if (!dialect_.takesFloat(use.op, {given.data(), use.count}, k)) use.types[k] = use.result;
     }
     uses_.insert(use);
   }

@@ -39,13 +39,14 @@ public:
     return {fmt::format("{}({})", ir::typeName(type), x.text)};
   }
 
-  std::string texture(std::string_view name, std::string_view at, std::string_view lod) const override {
-    return lod.empty() ? fmt::format("texture({}, {})", name, at)
-                       : fmt::format("textureLod({}, {}, {})", name, at, lod);
+  std::string texture(Type, std::string_view name, const Expression& at,
+                      std::string_view lod) const override {
+    return lod.empty() ? fmt::format("texture({}, {})", name, at.text)
+                       : fmt::format("textureLod({}, {}, {})", name, at.text, lod);
   }
 
   std::string comparison(std::string_view name, const Expression& at, bool top) const override {
-    return texture(name, at.text, top ? "0.0" : "");
+    return texture(Type::Texture2DShadow, name, at, top ? "0.0" : "");
   }
 
   void open(Text& text, const ir::Module& module, const schedule::Program& program,

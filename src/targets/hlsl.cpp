@@ -62,9 +62,10 @@ public:
     return {fmt::format("{}({})", this->type(type), list)};
   }
 
-  std::string texture(std::string_view name, std::string_view at, std::string_view lod) const override {
-    return lod.empty() ? fmt::format("{0}.Sample({0}_sampler, {1})", name, at)
-                       : fmt::format("{0}.SampleLevel({0}_sampler, {1}, {2})", name, at, lod);
+  std::string texture(Type, std::string_view name, const Expression& at,
+                      std::string_view lod) const override {
+    return lod.empty() ? fmt::format("{0}.Sample({0}_sampler, {1})", name, at.text)
+                       : fmt::format("{0}.SampleLevel({0}_sampler, {1}, {2})", name, at.text, lod);
   }
 
   std::string comparison(std::string_view name, const Expression& at, bool top) const override {

@@ -9,7 +9,7 @@ namespace lacquer::targets {
 
 namespace {
 
-constexpr std::array<Row, 7> kRows = {{
+constexpr std::array<Row, 9> kRows = {{
     {Target::Glsl, "glsl", "glsl", "GLSL 4.50 for Vulkan"},
     {Target::GlslGl, "glsl-gl", "glsl", "GLSL 4.50 for OpenGL 4.5"},
     {Target::Essl, "essl", "glsl", "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
@@ -17,6 +17,8 @@ constexpr std::array<Row, 7> kRows = {{
     {Target::Spirv, "spirv", "spv", "SPIR-V 1.3 for Vulkan 1.1"},
     {Target::Cpp, "cpp", "h", "a C++11 header that packs the material's uniform block"},
     {Target::Js, "js", "js", "an ES module that packs the material's uniform block, with its types"},
+    {Target::Wgsl, "wgsl", "wgsl", "WGSL for WebGPU"},
+    {Target::Msl, "msl", "metal", "MSL 2.1 for Metal, made of the SPIR-V"},
 }};
 
 }  // namespace
@@ -31,7 +33,9 @@ std::string printText(const ir::Module& module, const schedule::Program& program
     case Target::GlslGl: return printProgram(glslOpenGl(), module, program, head);
     case Target::Essl: return printProgram(essl300(), module, program, head);
     case Target::Hlsl: return printProgram(hlsl(), module, program, head);
+    case Target::Wgsl: return printProgram(wgsl(), module, program, head);
     case Target::Spirv: break;  // words, not text: writeSpirv
+    case Target::Msl: break;    // not printed: made of the words
     case Target::Cpp: break;    // no stage: headerText
     case Target::Js: break;     // no stage: moduleText
   }
@@ -42,6 +46,12 @@ std::string printText(const ir::Module& module, const schedule::Program& program
 std::string headerText(const ir::Module& module, std::string_view name, std::string_view head) {
   assert(ir::verify(module).empty());
   return printHeader(module, name, head);
+}
+
+std::string commentText(std::string_view lines) {
+  Text text;
+  text.comments(lines);
+  return text.take();
 }
 
 std::string blockName(const ir::Block& block) { return block.array == 0 ? block.name : block.name + "s"; }

@@ -9,14 +9,15 @@
 #include "ir/module.h"
 #include "lacquer/options.h"
 #include "schedule/schedule.h"
+#include "support/diagnostic.h"
 
 namespace lacquer::targets {
 
 struct Row {
   Target id;
   std::string_view name;  ///< on the command line and in DIR/<target>/: "glsl", "glsl-gl", "essl", "hlsl",
-                          ///< "spirv", "cpp", "js"
-  std::string_view extension;  ///< "glsl", "hlsl", "spv", "h", "js"
+                          ///< "spirv", "cpp", "js", "wgsl", "msl"
+  std::string_view extension;  ///< "glsl", "hlsl", "spv", "h", "js", "wgsl", "metal"
   std::string_view prose;
 };
 
@@ -40,9 +41,34 @@ struct ModuleText {
 };
 ModuleText moduleText(const ir::Module& module, std::string_view name, std::string_view head);
 
+/// Where WGSL binds what the contract has at a set and a binding: blocks and textures at twice the binding, a
+/// texture's sampler behind it. So no two resources share a place where the contract's do not.
+struct WgslBinding {
+  uint32_t group = 0, binding = 0;
+  uint32_t sampler = 0;  ///< of a texture
+};
+WgslBinding wgslBinding(const ir::Binding& binding);
+
+/// Where Metal has it. Plain: a block, a texture or a sampler at `index` of its kind, the flat number of the
+/// contract. In argument buffers: at `index`, a texture's sampler behind it, of the buffer of the set.
+struct MslBinding {
+  uint32_t buffer = 0;  ///< the argument buffer
+  uint32_t index = 0, sampler = 0;
+};
+MslBinding mslBinding(const ir::Binding& binding, bool argument_buffers);
+
+/// Target::Msl: the text of one stage, whose function is called `main0`. The module must be placed and bound.
+/// `head` as above. Errors: "msl-unavailable" where Lacquer was built without SPIRV-Cross; "spirv-cross",
+/// which is a bug.
+Result<std::string> mslText(const ir::Module& module, const schedule::Program& program, bool argument_buffers,
+                            std::string_view head);
+
+/// Lines as comments of the C-like languages.
+std::string commentText(std::string_view lines);
+
 /// What every text calls a block: an array of `Light` lies in `Lights`.
 std::string blockName(const ir::Block& block);
-/// What HLSL calls a texture's sampler; in the other texts it has none of its own.
+/// What HLSL and WGSL call a texture's sampler; in the other texts it has none of its own.
 std::string samplerName(const ir::TextureSlot& slot);
 
 /// The preshader in GLSL, for people and for other tools. Its length is linear in the number of operations.

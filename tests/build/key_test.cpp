@@ -43,6 +43,7 @@ const std::vector<Row>& rows() {
       {"limits", Decides::Graph, [](Options& o) { o.limits = {"file=1M"}; }},
       {"allow", Decides::Nothing, [](Options& o) { o.allow = {"images"}; }},
       {"cache_key", Decides::Nothing, [](Options& o) { o.cache_key = "key"; }},
+      {"argument_buffers", Decides::MslCode, [](Options& o) { o.argument_buffers = true; }},
       {"sync", Decides::Nothing, [](Options& o) { o.sync = false; }},
   };
   return kRows;
@@ -60,8 +61,8 @@ Key keyOf(const Options& options, Decides what) {
   return key.finish();
 }
 
-constexpr Decides kAll[] = {Decides::Graph,     Decides::Module, Decides::Code,
-                            Decides::SpirvCode, Decides::Run,    Decides::Nothing};
+constexpr Decides kAll[] = {Decides::Graph,   Decides::Module, Decides::Code,   Decides::SpirvCode,
+                            Decides::MslCode, Decides::Run,    Decides::Nothing};
 
 TEST(OptionKeys, HoldWhatTheOptionDecides) {
   const Options none;

@@ -86,7 +86,7 @@ Json generateWell(const std::vector<std::string>& files, const fs::path& folder,
 
 std::map<std::string, std::string> codeOf(const Shader& shader) {
   std::map<std::string, std::string> code;
-  for (const Target target : {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl}) {
+  for (const Target target : {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl, Target::Wgsl}) {
     code[std::string(targetName(target)) + " vert"] = shader.vertexText(target);
     code[std::string(targetName(target)) + " frag"] = shader.fragmentText(target);
   }

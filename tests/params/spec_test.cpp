@@ -171,9 +171,11 @@ TEST(Spec, OtherTargetsHaveNone) {
     EXPECT_EQ(runProgram({LACQUER_PROGRAM, "gen", file, "-o", "out", "--params", "spec", "--target", target},
                          folder, &said),
               2);
-    EXPECT_EQ(said, fmt::format(
-                        "--target: {} has no specialization constants; --params spec is for glsl and spirv\n",
-                        target));
+    EXPECT_EQ(
+        said,
+        fmt::format(
+            "--target: {} has no specialization constants; --params spec is for glsl, spirv, wgsl and msl\n",
+            target));
     EXPECT_FALSE(fs::exists(folder / "out"));
   }
   Messages messages;

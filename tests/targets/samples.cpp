@@ -246,6 +246,12 @@ std::string joined(const Diagnostics& diagnostics) {
 check::Spirv expectCompiles(const std::string& text, Stage stage, Target target) {
   const check::Stage check_stage = stage == Stage::Vertex ? check::Stage::Vertex : check::Stage::Fragment;
   const std::string name = fmt::format("shader.{}", row(target).name);
+  if (target == Target::Wgsl) {
+    if (!check::haveTint()) return {};
+    const Diagnostics wrong = check::compileWithTint(text, name);
+    EXPECT_TRUE(wrong.empty()) << joined(wrong) << text;
+    return {};
+  }
   const Result<check::Spirv> words = check::compile(text, target, check_stage, name);
   if (!words) {
     ADD_FAILURE() << joined(words.error()) << text;

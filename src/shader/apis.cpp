@@ -1,0 +1,164 @@
+#include "shader/apis.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "targets/target.h"
+
+namespace lacquer {
+
+namespace {
+
+using json::Json;
+
+constexpr std::array kStages = {ir::Stage::Vertex, ir::Stage::Fragment};
+
+/// The blocks and textures that a stage reads, by index.
+struct Used {
+  std::vector<bool> blocks, textures;
+};
+
+Used usedBy(const ir::Module& module, ir::Stage stage) {
+  Used used{std::vector<bool>(module.blocks.size()), std::vector<bool>(module.textures.size())};
+  for (const ir::ValueId id : ir::reachable(module, stage)) {
+    const ir::Value& value = module.dag[id];
+    if (value.op == ir::Op::SumOverLights && module.light_groups[value.payload].count < 0)
+      used.blocks[module.light_count.block] = true;
+    if (value.op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    if (input.kind == ir::InputKind::BlockField) used.blocks[input.block] = true;
+    if (input.kind == ir::InputKind::Texture) used.textures[input.field] = true;
+  }
+  return used;
+}
+
+class Describer {
+public:
+  explicit Describer(const ir::Module& module)
+      : module_(module), used_{usedBy(module, kStages[0]), usedBy(module, kStages[1])} {}
+
+  Json webgpu() const { return {{"bindings", webgpuBindings()}, {"limits", limits()}}; }
+
+  Json metal(bool argument_buffers) const {
+    Json list = Json::array();
+    const auto row = [&](const std::string& name, const ir::Binding& binding, bool block) {
+      const targets::MslBinding at = targets::mslBinding(binding, argument_buffers);
+      Json json = {{"name", name}};
+      if (argument_buffers) {
+        json["argument_buffer"] = at.buffer;
+        json["id"] = at.index;
+        if (!block) json["sampler_id"] = at.sampler;
+      } else {
+        json[block ? "buffer" : "texture"] = at.index;
+        if (!block) json["sampler"] = at.sampler;
+      }
+      return json;
+    };
+    for (size_t i = 0; i < module_.blocks.size(); ++i) {
+      const ir::Block& block = module_.blocks[i];
+      add(list, row(targets::blockName(block), block.binding, true),
+          [&](const Used& used) { return used.blocks[i]; }, {});
+    }
+    for (size_t i = 0; i < module_.textures.size(); ++i) {
+      const ir::TextureSlot& slot = module_.textures[i];
+      add(list, row(slot.name, slot.binding, false), [&](const Used& used) { return used.textures[i]; }, {});
+    }
+    return {{"entry", "main0"}, {"argument_buffers", argument_buffers}, {"bindings", std::move(list)}};
+  }
+
+private:
+  Json webgpuBindings() const {
+    Json list = Json::array();
+    const auto row = [](const std::string& name, uint32_t group, uint32_t binding) {
+      return Json{{"name", name}, {"group", group}, {"binding", binding}};
+    };
+    for (size_t i = 0; i < module_.blocks.size(); ++i) {
+      const ir::Block& block = module_.blocks[i];
+      const uint32_t size = std::max(block.array, 1U) * block.size;
+      const targets::WgslBinding at = targets::wgslBinding(block.binding);
+      add(list, row(targets::blockName(block), at.group, at.binding),
+          [&](const Used& used) { return used.blocks[i]; },
+          {{"buffer", {{"type", "uniform"}, {"minBindingSize", size}}}});
+    }
+    for (size_t i = 0; i < module_.textures.size(); ++i) {
+      const ir::TextureSlot& slot = module_.textures[i];
+      const targets::WgslBinding at = targets::wgslBinding(slot.binding);
+      const auto reads = [&](const Used& used) { return used.textures[i]; };
+      const bool compares = slot.type == ir::Type::Texture2DShadow;
+      add(list, row(slot.name, at.group, at.binding), reads,
+          {{"texture",
+            {{"sampleType", compares ? "depth" : "float"}, {"viewDimension", dimension(slot.type)}}}});
+      add(list, row(targets::samplerName(slot), at.group, at.sampler), reads,
+          {{"sampler", {{"type", compares ? "comparison" : "filtering"}}}});
+    }
+    return list;
+  }
+
+  /// What some stage reads, with the stages and `what` behind them.
+  template <class Uses>
+  void add(Json& list, Json row, Uses uses, const Json& what) const {
+    Json stages = Json::array();
+    for (size_t s = 0; s < kStages.size(); ++s) {
+      if (uses(used_[s])) stages.push_back(kStages[s] == ir::Stage::Vertex ? "vertex" : "fragment");
+    }
+    if (stages.empty()) return;
+    row["visibility"] = std::move(stages);
+    if (!what.is_null()) row.update(what);
+    list.push_back(std::move(row));
+  }
+
+  static std::string_view dimension(ir::Type type) {
+    switch (type) {
+      case ir::Type::TextureCube: return "cube";
+      case ir::Type::Texture2DArray: return "2d-array";
+      case ir::Type::Texture3D: return "3d";
+      default: return "2d";
+    }
+  }
+
+  /// WebGPU's defaults (WebGPU, "Limits"), and what the shader comes to.
+  Json limits() const {
+    constexpr size_t kHalfFloats = 8;  // bytes of an rgba16float, and of an rgba8unorm as WebGPU counts
+    size_t colors = 0;
+    size_t places = 0;  // a shader may leave some out, and has later ones all the same
+    for (const ir::Output& output : module_.outputs) {
+      if (output.kind != ir::OutputKind::Color) continue;
+      ++colors;
+      places = std::max<size_t>(places, output.location + 1);
+    }
+    Json asked = Json::object();
+    const auto ask = [&](const char* limit, size_t least, size_t wanted) {
+      if (wanted > least) asked[limit] = wanted;
+    };
+    ask("maxColorAttachments", 8, places);
+    ask("maxColorAttachmentBytesPerSample", 32, kHalfFloats * colors);
+    ask("maxSampledTexturesPerShaderStage", 16, most(&Used::textures));
+    ask("maxSamplersPerShaderStage", 16, most(&Used::textures));
+    ask("maxUniformBuffersPerShaderStage", 12, most(&Used::blocks));
+    ask("maxInterStageShaderVariables", 16, module_.varyings.size());
+    return asked;
+  }
+
+  size_t most(std::vector<bool> Used::*list) const {
+    size_t most = 0;
+    for (const Used& used : used_) {
+      const std::vector<bool>& flags = used.*list;
+      most = std::max(most, static_cast<size_t>(std::count(flags.begin(), flags.end(), true)));
+    }
+    return most;
+  }
+
+  const ir::Module& module_;
+  std::array<Used, 2> used_;
+};
+
+}  // namespace
+
+Json webgpuOf(const ir::Module& module) { return Describer(module).webgpu(); }
+
+Json metalOf(const ir::Module& module, bool argument_buffers) {
+  return Describer(module).metal(argument_buffers);
+}
+
+}  // namespace lacquer
