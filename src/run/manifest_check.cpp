@@ -33,7 +33,6 @@ struct Member {
 bool isObject(const Json& json) { return json.is_object(); }
 bool isText(const Json& json) { return json.is_string(); }
 bool isWhole(const Json& json) { return json.is_number_integer(); }
-bool isArray(const Json& json) { return json.is_array(); }
 bool isTexts(const Json& json) { return json.is_array() && std::all_of(json.begin(), json.end(), isText); }
 bool isObjects(const Json& json) {
   return json.is_array() && std::all_of(json.begin(), json.end(), isObject);
@@ -151,7 +150,7 @@ private:
                       fmt::format("{} is no stage of this target", quote(stage)));
         continue;
       }
-      const std::string expected = shaderPath(target, id, stage == "vert" ? 0 : 1);
+      const std::string expected = shaderPath(target, id, stage == fileKind(target, 0) ? 0 : 1);
       if (file.is_string() && file.get_ref<const std::string&>() == expected) continue;
       report_.error("wrong-path", Path(path, stage), "this is not where the shader lies",
                     fmt::format("it must be \"{}\"", expected));

@@ -76,7 +76,9 @@ void expectBindings(const json& shader, const std::string& vertex, const std::st
     EXPECT_EQ(line.find("var<uniform>") != std::string::npos, buffer) << line;
     EXPECT_EQ(line.find(": sampler") != std::string::npos, b.contains("sampler")) << line;
     EXPECT_EQ(line.find(": texture_") != std::string::npos, b.contains("texture")) << line;
-    if (!buffer) EXPECT_NE(line.find(" " + b["name"].get<std::string>() + ":"), std::string::npos) << line;
+    if (!buffer) {
+      EXPECT_NE(line.find(" " + b["name"].get<std::string>() + ":"), std::string::npos) << line;
+    }
   }
   EXPECT_EQ(declared, said);
 }

@@ -286,7 +286,9 @@ TEST(Wgsl, LayoutsAreThoseOfTheContract) {
       EXPECT_EQ(members.at(field.name).offset, field.offset) << field.name;
     }
     EXPECT_EQ((size + 15) / 16 * 16, block.size);
-    if (block.array != 0) EXPECT_EQ(size, block.size) << "the stride";
+    if (block.array != 0) {
+      EXPECT_EQ(size, block.size) << "the stride";
+    }
   }
   expectText(text, "@group(0) @binding(2) var<uniform> lights: array<Light, 4>;\n");
   expectCompiles(text, Stage::Fragment, Target::Wgsl);
