@@ -185,7 +185,7 @@ bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt*
   for (const Target target : options_.targets) {
     if (!options_.validate || made.empty() || !isShader(target) || hasValidator(target)) continue;
     report({{"not-validated",
-             Severity::Note,
+             Severity::Warning,
              {},
              fmt::format("nothing here compiles the target {}: its shaders are not validated",
                          targetName(target)),
