@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 #include "cli/table.h"
 #include "lacquer.h"
@@ -33,8 +34,11 @@ std::string limit(const std::string& text) {
   Messages messages;
   (void)Scene::fromMemory({}, {}, options, messages);
   for (const Message& message : messages) {
-    if (message.code == "unknown-limit" || message.code == "bad-limit")
-      return printable(message.message + "; " + message.help + " [" + message.code + "]");
+    if (message.code != "unknown-limit" && message.code != "bad-limit") continue;
+    constexpr std::string_view kOption = "--limit: ";  // CLI11 says it, too
+    const bool named = message.message.starts_with(kOption);
+    return printable(message.message.substr(named ? kOption.size() : 0) + "; " + message.help + " [" +
+                     message.code + "]");
   }
   return {};
 }

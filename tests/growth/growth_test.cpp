@@ -118,6 +118,64 @@ TEST(Growth, textures) {
   });
 }
 
+/// A run over a file with so many entries of one kind, all of which the manifest lists.
+void listed(const char* what, const std::function<std::string(size_t)>& text) {
+  const fs::path folder = freshFolder("growth");
+  Options options;
+  options.targets = {Target::Spirv};
+  options.validate = false;
+  options.jobs = 1;
+  options.sync = false;
+  grows(what, 5000, [&](size_t n) {
+    writeText(folder / "in.gltf",
+              R"({"asset":{"version":"2.0"},"accessors":[{"count":3,"type":"VEC3","componentType":5126}],)" +
+                  text(n) + "}");
+    Messages messages;
+    fs::remove_all(folder / "out");
+    EXPECT_TRUE(
+        generate({(folder / "in.gltf").string()}, {}, (folder / "out").string(), options, messages).ok)
+        << (messages.empty() ? "" : messages[0].text);
+  });
+  fs::remove_all(folder.parent_path());
+}
+
+TEST(Growth, listedTextures) {
+  listed("listed textures", [](size_t n) {
+    return R"("images":[)" + listOf(n, [](size_t i) { return fmt::format(R"({{"uri":"{}.png"}})", i); }) +
+           R"(],"samplers":[)" + listOf(n, [](size_t) { return R"({"wrapS":10497})"; }) +
+           R"(],"textures":[)" +
+           listOf(n, [](size_t i) { return fmt::format(R"({{"source":{},"sampler":{}}})", i, i); }) +
+           R"(],"materials":[)" +
+           listOf(n, [](size_t i) { return fmt::format(R"({{"emissiveTexture":{{"index":{}}}}})", i); }) +
+           "]";
+  });
+}
+
+TEST(Growth, primitives) {
+  listed("primitives", [](size_t n) {
+    return R"("materials":[{}],"meshes":[{"primitives":[)" +
+           listOf(n, [](size_t) { return R"({"attributes":{"POSITION":0},"material":0})"; }) + "]}]";
+  });
+  listed("meshes", [](size_t n) {
+    return R"("materials":[{}],"meshes":[)" +
+           listOf(n,
+                  [](size_t) { return R"({"primitives":[{"attributes":{"POSITION":0},"material":0}]})"; }) +
+           "]";
+  });
+}
+
+/// A name that stands in one object again and again.
+TEST(Growth, doubledNames) {
+  grows("doubled names", 10000, [](size_t n) {
+    const std::string text = R"({"asset":{"version":"2.0"},"extras":{)" +
+                             listOf(n, [](size_t i) { return fmt::format(R"("a{}":1,"a{}":2)", i, i); }) +
+                             "}}";
+    Messages messages;
+    EXPECT_TRUE(Scene::fromMemory(text, "a.gltf", {}, messages));
+    EXPECT_EQ(messages.size(), 20U);
+  });
+}
+
 /// A chain of nodes, each over the one before, the last of them first in the file.
 std::string chain(size_t n) {
   return R"({"lacquer_graph":1,"template":"bsdf","parameters":{"x":{"type":"float","value":0.5,"range":[0,1]}},"nodes":[)" +
