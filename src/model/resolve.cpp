@@ -65,9 +65,9 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
 // -- the material's values --
 
 /// The property that has a say: of an extension that the material has, one that the file names (an animation
-/// names it, too) before one
-/// that it leaves out, and of those one that stands inside of another; else of one that stands inside of
-/// such, whose place is known; else the first that needs nothing which is not there.
+/// names it, too) before one that it leaves out, and of those one that stands inside of another; else of one
+/// that stands inside of such, whose place is known; else the first that needs nothing which is not there,
+/// one that is neutral at its default before others.
 uint16_t Resolver::provider(const Role& role) const {
   const material::Schema& schema = *model_.schema;
   if (role.providers.size() == 1) return role.providers[0];
@@ -93,11 +93,15 @@ uint16_t Resolver::provider(const Role& role) const {
     return !around.empty() && material_.has(*schema.find(around));
   });
   if (within) return *within;
-  const auto free = find([&](uint16_t extension) {
+  const auto free = [&](uint16_t extension) {
     const lang::ExtensionDecl& decl = *schema.extensions[extension];
     return decl.inside.empty() && decl.needs.empty();
-  });
-  return free.value_or(role.providers[0]);
+  };
+  for (const uint16_t property : role.providers) {
+    const material::Property& row = schema.properties[property];
+    if (free(row.extension) && !row.decl->neutral) return property;
+  }
+  return find(free).value_or(role.providers[0]);
 }
 
 ir::Components Resolver::numberOf(uint16_t property) const {
@@ -130,11 +134,13 @@ Found Resolver::number(const Role& role, const Value& value) {
     now = numberOf(out.property);
     out.animated = material_.isAnimated(out.property);
   }
+  // What it is without the extension is no more to be changed than what it is by default.
+  ir::Components rest = decl->default_value.value_or(ir::Components{});
+  if (!material_.has(model_.schema->properties[out.property].extension)) rest = decl->neutral.value_or(rest);
   const auto member = static_cast<size_t>(value.member);
   const bool kept =
       value.member < 0 ? live(role.live) : member < role.member_live.size() && live(role.member_live[member]);
-  const bool folded =
-      decl->folded && now == decl->default_value.value_or(ir::Components{}) && !kept && !out.animated;
+  const bool folded = decl->folded && now == rest && !kept && !out.animated;
   const bool fixed = decl->kind == Kind::Bool || decl->kind == Kind::Choice;
   out.type = decl->type;
   out.constant = now;

@@ -138,6 +138,16 @@ void writeSurface(const material::Material& material, const material::Schema& sc
   if (sides) json.key("double_sided").boolean(*sides != 0);
 }
 
+void writeExtensions(const material::Material& material, const material::Schema& schema, JsonText& json) {
+  if (material.extensions.empty()) return;
+  json.key("extensions").beginObject();
+  for (const uint16_t extension : material.extensions) {
+    const lang::ExtensionDecl& decl = *schema.extensions[extension];
+    json.key(decl.name).string(decl.status);
+  }
+  json.endObject();
+}
+
 void writeTextureInfo(const material::Material& material, const std::string& pointer, JsonText& json) {
   const auto it = std::find_if(material.textures.begin(), material.textures.end(),
                                [&](const auto& texture) { return texture.info.pointer == pointer; });

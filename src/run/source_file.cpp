@@ -225,8 +225,10 @@ Done MaterialText::finish(const Wanted& wanted) {
   json.beginObject().key("index").integer(wanted.index).key("name").string(wanted.name);
   if (!wanted.from_graph) {
     json.key("profile").string(setting_.options.profile);
-    if (const Result<const material::Schema*> schema = setting_.library.models.schema())
+    if (const Result<const material::Schema*> schema = setting_.library.models.schema()) {
       writeSurface(material_, **schema, json);
+      writeExtensions(material_, **schema, json);
+    }
   }
   json.key("uses").raw(uses_.endArray().take());
   const bool shared = !met_.empty() && done.report.terms == met_[0]->terms;

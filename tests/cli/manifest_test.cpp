@@ -83,6 +83,28 @@ TEST_F(Manifest, hasTheFieldsOfTheContract) {
   }
 }
 
+// Open proposals are told from what is ratified; what has no effect is not listed.
+TEST_F(Manifest, extensionsHaveTheirStatus) {
+  EXPECT_EQ(material(0)["extensions"], json({{"KHR_materials_coat", "draft"}}));
+  EXPECT_FALSE(material(1).contains("extensions"));
+  place_.write("stack.gltf", R"({"asset": {"version": "2.0"}, "materials": [{"extensions": {
+      "KHR_materials_sheen": {"sheenColorFactor": [1, 0, 0]}, "KHR_materials_fuzz": {"fuzzFactor": 0.5},
+      "KHR_materials_transmission": {"transmissionFactor": 0.5}, "ADOBE_materials_thin_transparency": {},
+      "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5},
+      "KHR_materials_specular": {"extensions": {"EXT_materials_specular_edge_color": {}}}}},
+      {"extensions": {"KHR_materials_pbrSpecularGlossiness": {}}},
+      {"extensions": {"ADOBE_materials_thin_transparency": {}}}]})");
+  ASSERT_EQ(place_.run({"gen", "-q", "stack.gltf", "-o", "stack", "--target", "glsl"}).status, 0);
+  const json materials = place_.manifest("stack")["files"][0]["materials"];
+  EXPECT_EQ(materials[0]["extensions"], json({{"EXT_materials_specular_edge_color", "draft"},
+                                              {"KHR_materials_diffuse_transmission", "candidate"},
+                                              {"KHR_materials_fuzz", "draft"},
+                                              {"KHR_materials_specular", "ratified"},
+                                              {"KHR_materials_transmission", "ratified"}}));
+  EXPECT_EQ(materials[1]["extensions"], json({{"KHR_materials_pbrSpecularGlossiness", "archived"}}));
+  EXPECT_EQ(materials[2]["extensions"], json({{"ADOBE_materials_thin_transparency", "vendor"}}));
+}
+
 TEST_F(Manifest, materialWithTwoKindsOfPrimitives) {
   const json& paint = material(0);
   EXPECT_EQ(paint["name"], "Paint");

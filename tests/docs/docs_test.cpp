@@ -136,9 +136,9 @@ TEST(Docs, ReadingsNameNodesFilesAndTests) {
 /// The keys of objects whose keys are part of the form; those that name materials, fields, shaders and so on
 /// are not.
 void collectKeys(const Json& json, const std::string& under, std::set<std::string>& keys) {
-  static const std::set<std::string> kNamed = {"skipped",           "parameters", "files of a shader",
-                                               "validated",         "shaders",    "textures of a use",
-                                               "uniforms of a use", "attributes", "absent_parameters"};
+  static const std::set<std::string> kNamed = {
+      "skipped",           "parameters",        "files of a shader", "validated",         "shaders",
+      "textures of a use", "uniforms of a use", "attributes",        "absent_parameters", "extensions"};
   if (json.is_array()) {
     for (const Json& element : json) collectKeys(element, under, keys);
   }

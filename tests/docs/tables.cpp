@@ -302,18 +302,19 @@ std::string propertiesTable(std::string_view of) {
 
 std::string extensionsTable() {
   const material::Schema& schema = builtInSchema();
-  std::string out = "| extension | stands in | properties |\n|---|---|---|\n";
+  std::string out = "| extension | status | stands in | properties |\n|---|---|---|---|\n";
   for (const lang::ExtensionDecl* decl : schema.extensions) {
     if (decl->core) continue;
     std::vector<std::string> names;
     for (const PropertyDecl& property : decl->properties) names.push_back(fmt::format("`{}`", property.name));
     out += fmt::format(
-        "| `{}` | {} | {} |\n", decl->name,
+        "| `{}` | {} | {} | {} |\n", decl->name, decl->status,
         decl->inside.empty() ? "the material's extensions" : fmt::format("{}.extensions", decl->inside),
         fmt::join(names, ", "));
   }
   return out +
-         "| `KHR_texture_transform` | a textureInfo's extensions | `offset`, `rotation`, `scale`, `texCoord` "
+         "| `KHR_texture_transform` | ratified | a textureInfo's extensions | `offset`, `rotation`, `scale`, "
+         "`texCoord` "
          "|\n";
 }
 
