@@ -63,7 +63,7 @@ TEST(Expressions, GrowWithTheNumberOfOperations) {
 /// A shader that computes the fields from the parameters.
 std::string shaderOf(const Json& parameters, const Json& block) {
   std::string text =
-      "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() {\n  color = vec4(0.0);\n";
+      "#version 450\nlayout(location = 0) out vec4 test_sum;\nvoid main() {\n  test_sum = vec4(0.0);\n";
   const auto add = [&](const std::string& type, const std::string& name, const std::string& value) {
     text += fmt::format("  {} {} = {};\n", type, name, value);
   };
@@ -84,7 +84,7 @@ std::string shaderOf(const Json& parameters, const Json& block) {
                                : type == "vec3" ? ", 0.0"
                                : type == "vec2" ? ", 0.0, 0.0"
                                                 : "";
-    text += fmt::format("  color += vec4({}{});\n", field["expression"].get<std::string>(), vector);
+    text += fmt::format("  test_sum += vec4({}{});\n", field["expression"].get<std::string>(), vector);
   }
   return text + "}\n";
 }
