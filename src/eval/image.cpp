@@ -106,8 +106,7 @@ std::string jpegFault(std::string_view bytes) {
     ++i;
     if (marker == kStuffed || (marker >= kRestart0 && marker <= kStart)) continue;
     if (marker == kEnd || i + 2 > bytes.size()) return {};
-    if (marker == kScan && ++scans > kMostScans)
-      return fmt::format("it has more than {} scans", kMostScans);
+    if (marker == kScan && ++scans > kMostScans) return fmt::format("it has more than {} scans", kMostScans);
     const size_t length = at(i) * size_t{256} + at(i + 1);
     const size_t here = std::min(length, bytes.size() - i);
     if (marker == kTables && (length < 2 || !huffmanTablesFit(bytes.substr(i + 2, here - 2))))
@@ -117,8 +116,8 @@ std::string jpegFault(std::string_view bytes) {
   return {};
 }
 
-/// The decoder's words for what it was not given are no fault of the machine's memory: takeBlock() has no more
-/// for a stream that unpacks to more than its image.
+/// The decoder's words for what it was not given are no fault of the machine's memory: takeBlock() has no
+/// more for a stream that unpacks to more than its image.
 std::string damaged() {
   const std::string_view reason = stbi_failure_reason();
   return "the image is damaged" + (reason == "outofmem" ? std::string() : fmt::format(": {}", reason));

@@ -356,7 +356,7 @@ TEST_F(Build, LiesAreNotMerged) {
       {"/files/0/source", 3, "/files/0/source", "wrong-type"},
       {"/files/0/materials", none, "/files/0", "missing-property"},
       {"/files/0/materials/0/uses", "none", "/files/0/materials/0/uses", "wrong-type"},
-      {use, {3}, use, "wrong-type"},
+      {use, {3}, "/files/0/materials/0/uses", "wrong-type"},
       {use + "/attributes/0", 3, use + "/attributes", "wrong-type"},
       {use + "/shader", "../../x", use + "/shader", "no-such-shader"},
       {use + "/shader", 3, use + "/shader", "wrong-type"},

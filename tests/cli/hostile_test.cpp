@@ -548,9 +548,9 @@ TEST(HostileStreams, aFullOutputIsAnErrorOfEveryVerb) {
   const Workplace place;
   place.write("a.gltf", gltfOf({"{}"}));
   place.write("p.json", kPoint);
-  for (const char* words :
-       {"nodes", "nodes --json", "nodes coat_f0", "graph a.gltf", "graph a.gltf --format dot", "dump a.gltf",
-        "prove a.gltf --json", "eval a.gltf --points p.json", "gen a.gltf -o out --target glsl"}) {
+  for (const char* words : {"nodes", "nodes --json", "nodes coat_absorption", "graph a.gltf",
+                            "graph a.gltf --format dot", "dump a.gltf", "prove a.gltf --json",
+                            "eval a.gltf --points p.json", "gen a.gltf -o out --target glsl"}) {
     const Outcome outcome = shell(place, fmt::format("'{}' {} >/dev/full", LACQUER_PROGRAM, words));
     expectRefused(outcome, "output-unwritable");
     EXPECT_EQ(outcome.err.find("[stopped]"), std::string::npos) << words << outcome.err;

@@ -121,7 +121,7 @@ TEST(Usage, wrongNumbersAreTwo) {
   };
   for (const Words& words : kAll) {
     for (const char* limit :
-         {"foo", "colour=2", "file=-1", "file=", "file=0", "depth=nan", "", "file=99999T"})
+         {"foo", "colour=2", "file=-1", "file=", "file=0", "depth=nan", "", "file=9999999T"})
       refused(words, {"--limit", limit});
   }
   for (size_t i = 0; i < 6; ++i) {
