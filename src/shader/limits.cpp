@@ -22,7 +22,8 @@ struct Limit {
 
 /// The least of Vulkan 1.1 (maxFragmentOutputAttachments, maxUniformBufferRange,
 /// maxPerStageDescriptorSamplers), OpenGL 4.5 (MAX_DRAW_BUFFERS, MAX_UNIFORM_BLOCK_SIZE,
-/// MAX_TEXTURE_IMAGE_UNITS) and OpenGL ES 3.0 (the same); of Direct3D 11 what it has, where there is no more.
+/// MAX_TEXTURE_IMAGE_UNITS) and OpenGL ES 3.0 (the same); of WebGPU the limits that a device has without
+/// asking; of Direct3D 11 and Metal what they have, where there is no more.
 Limit limitOf(Target target) {
   switch (target) {
     case Target::Glsl:
@@ -30,14 +31,17 @@ Limit limitOf(Target target) {
     case Target::GlslGl: return {8, 16384, 16};
     case Target::Essl: return {4, 16384, 16};
     case Target::Hlsl: return {8, 65536, 16};
-    case Target::Cpp: break;  // no shader
+    case Target::Wgsl: return {8, 65536, 16};
+    case Target::Msl: return {8, 65536, 16};
+    case Target::Cpp:
+    case Target::Js: break;  // no shader
   }
   return {~0U, ~0U, ~0U};
 }
 
-class Limits {
+class Measure {
 public:
-  explicit Limits(std::span<const Target> targets) : targets_(targets) {}
+  explicit Measure(std::span<const Target> targets) : targets_(targets) {}
 
   /// `what` begins the message: "the shader writes 9 colour outputs". Where `hard`, Direct3D compiles no
   /// more.
@@ -71,7 +75,7 @@ private:
 }  // namespace
 
 Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets) {
-  Limits limits(targets);
+  Measure limits(targets);
   uint32_t outputs = 0;
   for (const ir::Output& output : module.outputs) {
     if (output.kind == ir::OutputKind::Color) outputs = std::max(outputs, output.location + 1);

@@ -255,7 +255,7 @@ TEST(Templates, WhatPlatformsDoNotHaveIsSaid) {
   };
   const Over kOver[] = {
       {outputs,
-       {},
+       {"--target", "glsl,glsl-gl,essl,hlsl,spirv"},
        1,
        "error: the shader has 10 colour outputs; no more are possible than: 4 in glsl, 8 in glsl-gl, "
        "4 in essl, 8 in hlsl, 4 in spirv [over-limit]"},
