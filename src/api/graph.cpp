@@ -5,6 +5,7 @@
 #include "api/internal.h"
 #include "shader/interface.h"
 #include "shader/language.h"
+#include "shader/limits.h"
 #include "shader/messages.h"
 #include "shader/module.h"
 #include "shader/options.h"
@@ -184,6 +185,9 @@ Shader Graph::generate(const Options& options, Messages& messages) {
     report(module.error(), impl_->file, messages);
     return shader;
   }
+  const Diagnostics over = overLimits(*module, options.targets);
+  report(over, impl_->file, messages);
+  if (lacquer::hasError(over)) return shader;
   auto impl = std::make_shared<Shader::Impl>();
   const std::shared_ptr<const Language> language = *libraryFor(options);
   const Result<const material::Schema*> schema = language->models.schema();

@@ -93,7 +93,8 @@ std::string parseLights(const std::string& text, lacquer::Lights& lights) {
       return fmt::format("--lights: '{}' is not KIND:COUNT with a kind of the template's and up to {}", part,
                          kMostLights);
     }
-    lights.counts[type] += static_cast<uint32_t>(count);
+    if (!lights.counts.emplace(type, static_cast<uint32_t>(count)).second)
+      return fmt::format("--lights: '{}' is counted twice", type);
   }
   return {};
 }

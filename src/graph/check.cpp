@@ -24,6 +24,7 @@ namespace {
 using ir::Type;
 using ir::typeName;
 using json::Path;
+using lang::kFragment;
 using lang::kLight;
 using lang::kVertex;
 using lang::Ties;
@@ -94,11 +95,11 @@ private:
     Spot spot;
     Diagnostic diagnostic;
   };
-  /// A value that differs with the light or the vertex, and the given that brought it: the first of each
-  /// kind.
+  /// A value that differs with the light or the vertex, or is of the fragment, and the given that brought it:
+  /// the first of each kind.
   struct Tied {
     Ties ties = 0;
-    std::string_view light, vertex;
+    std::string_view light, vertex, fragment;
   };
   using Names = std::vector<std::string_view>;
 
@@ -693,9 +694,10 @@ GraphCheck::Tied GraphCheck::tiedOf(const Source& source, const std::vector<Tied
   const auto* given = std::get_if<GivenRef>(&source.from);
   if (given == nullptr) return {};
   const Ties ties = template_->find(given->name)->given->ties;
-  Tied tied{ties, {}, {}};
+  Tied tied{ties, {}, {}, {}};
   if ((ties & kLight) != 0) tied.light = given->name;
   if ((ties & kVertex) != 0) tied.vertex = given->name;
+  if ((ties & kFragment) != 0) tied.fragment = given->name;
   return tied;
 }
 
@@ -710,6 +712,7 @@ void GraphCheck::rates() {
       tied.ties |= from.ties;
       if (tied.light.empty()) tied.light = from.light;
       if (tied.vertex.empty()) tied.vertex = from.vertex;
+      if (tied.fragment.empty()) tied.fragment = from.fragment;
     }
     tied.ties &= static_cast<Ties>(~decls_[index]->unties);
   }
@@ -737,6 +740,12 @@ void GraphCheck::rates() {
             fmt::format("the port {} takes values of the fragment, its source has those of the vertices",
                         quote(name)),
             fmt::format("it depends on {}, which is not interpolated", quote(tied.vertex)));
+    }
+    if ((wrong & kFragment) != 0) {
+      error(spot, pointerTo("outputs", name), "fragment-rate",
+            fmt::format("the port {} takes values of the vertices, its source has those of the fragment",
+                        quote(name)),
+            fmt::format("it depends on {}, which is of the fragment", quote(tied.fragment)));
     }
   }
 }

@@ -146,6 +146,8 @@ bool Names::grab(std::string_view name) {
   return true;
 }
 
+bool Names::taken(std::string_view name) const { return taken_[slotOf(taken_, hashOf(name))] != 0; }
+
 void Names::take(std::string_view name) {
   const uint64_t hash = hashOf(name);
   uint64_t& entry = taken_[slotOf(taken_, hash)];

@@ -17,6 +17,8 @@ public:
   std::string pick(std::string_view wanted, std::string_view layer = {});
   /// Marks a name as taken without changing it.
   void take(std::string_view name);
+  /// Whether the name is taken; a reserved one need not be.
+  bool taken(std::string_view name) const;
 
 private:
   /// Takes the name when it is free.

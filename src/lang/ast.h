@@ -175,8 +175,9 @@ struct NodeDecl {
 enum class BlockRole : uint8_t { Frame, Lights, Object };
 
 struct BlockFieldDecl : Param {
-  uint32_t slot = 0;   ///< of an array, the first element's; the others follow
-  uint32_t array = 0;  ///< 0: not an array
+  uint32_t slot = 0;        ///< of an array, the first element's; the others follow
+  uint32_t array = 0;       ///< 0: not an array
+  bool miscounted = false;  ///< the number of elements was wrong, and that was said
   ExprPtr array_syntax;
 
   uint32_t elements() const { return array == 0 ? 1 : array; }
@@ -191,7 +192,8 @@ struct BlockDecl {
   uint32_t array = 0;          ///< 0: not an array
   std::vector<BlockFieldDecl> fields;
   std::string_view prose;
-  Span span;
+  Span span;       ///< of the instance
+  Span type_span;  ///< of the type's name
   ExprPtr array_syntax;
   ExprPtr count_syntax;     ///< of the lights: how many are in use
   uint32_t count_slot = 0;  ///< the field that `count_syntax` names
@@ -251,7 +253,8 @@ struct GivenDecl {
   std::vector<Param> results;  ///< one without a name, or those of the node whose call `value` is
   bool multiple = false;       ///< a graph writes `name.result`
   bool has_type = false;
-  uint32_t slot = 0;  ///< of the first result; the others follow
+  bool inherited = false;  ///< from a template that this one extends
+  uint32_t slot = 0;       ///< of the first result; the others follow
   std::string_view prose;
   Span span;
   ExprPtr value;
@@ -267,6 +270,7 @@ struct GivenResult {
 /// What a graph must deliver, or may where there is a default.
 struct PortDecl {
   Param param;
+  bool inherited = false;  ///< from a template that this one extends
   uint32_t slot = 0;
   ExprPtr default_value;  ///< any expression over what the template declares before it; null: must deliver
   Ties refused = 0;       ///< what its value may not be tied to: tie()
@@ -276,8 +280,9 @@ enum class OutputRole : uint8_t { Position, Color, Discard };
 
 struct OutputDecl {
   OutputRole role = OutputRole::Color;
-  bool replaces = false;  ///< `replace output`: it takes the place of the base's of that name
-  bool optional = false;  ///< it is not there where the graph delivers none of the ports that it reads
+  bool replaces = false;   ///< `replace output`: it takes the place of the base's of that name
+  bool optional = false;   ///< it is not there where the graph delivers none of the ports that it reads
+  bool inherited = false;  ///< from a template that this one extends
   ir::Type type = ir::Type::Vec4;
   std::string_view name;
   std::string_view prose;

@@ -220,6 +220,7 @@ bool Checker::index(ExprPtr& expr) {
   const std::optional<int> index = constantInt(expr->args[1], "the index");
   if (!index) return false;
   if (*index < 0 || static_cast<uint32_t>(*index) >= member.array) {
+    if (member.field != nullptr && member.field->miscounted) return false;
     reporter_.error("wrong-index", expr->args[1]->span,
                     fmt::format("'{}' has no element {}", member.name, *index),
                     fmt::format("it has {}: 0 to {}", member.array, member.array - 1));

@@ -16,6 +16,12 @@ using ir::typeName;
 
 namespace {
 
+/// Where it stands in a text that the reporter does not have.
+template <class T>
+void inherit(std::vector<T>& list) {
+  for (T& part : list) part.inherited = true;
+}
+
 /// What the base declares goes before what the template itself does.
 template <class T>
 void prepend(std::vector<T>& list, std::vector<T>&& base) {
@@ -122,8 +128,9 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
     parts(base, slots);
     places.take(base);
     for (AttributeDecl& attribute : base.attributes) attribute.location = locations++;
+    // At once: the next one on the way extends these blocks.
+    for (Name& name : names_) name.inherited = true;
   }
-  for (Name& name : names_) name.inherited = true;
   parts(decl, slots);
   places.take(decl);
   for (TemplateDecl& base : bases) places.takeOptional(base);
@@ -137,6 +144,9 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
   for (LightKindDecl& kind : decl.light_kinds) lightKind(kind, slots);
   decl.slots = slots;
   for (auto base = bases.rbegin(); base != bases.rend(); ++base) {
+    inherit(base->givens);
+    inherit(base->ports);
+    inherit(base->outputs);
     prepend(decl.blocks, std::move(base->blocks));
     prepend(decl.attributes, std::move(base->attributes));
     prepend(decl.environments, std::move(base->environments));
@@ -212,6 +222,7 @@ void Checker::attribute(AttributeDecl& decl, uint32_t& slots) {
     reporter_.error("wrong-type", decl.span, fmt::format("an attribute cannot be {}", aType(decl.type)),
                     "attributes are floats and vectors");
   }
+  if (find(decl.name) == nullptr) templateNames(decl);
   decl.slot = slots++;
   declare({decl.name, Name::Kind::Attribute, decl.type, decl.slot, decl.span, true, false, {}});
 }
@@ -224,6 +235,7 @@ void Checker::environment(EnvironmentDecl& decl, uint32_t& slots) {
   if (decl.texel_syntax) {
     if (const Constant texel = constantValue(decl.texel_syntax, Type::Vec4, "the texel")) decl.texel = *texel;
   }
+  if (find(decl.name) == nullptr) templateNames(decl);
   decl.slot = slots++;
   declare({decl.name, Name::Kind::Environment, decl.type, decl.slot, decl.span, true, false, {}});
 }
@@ -263,15 +275,11 @@ void Checker::lightCount(BlockDecl& decl) {
     return;
   }
   if (!typed(decl.count_syntax, Type::Int, "the number of lights")) return;
-  for (const BlockDecl* block : blocks_) {
-    if (block->role != BlockRole::Frame) continue;
-    for (const BlockFieldDecl& field : block->fields) {
-      const bool same = decl.count_syntax->kind == Expr::Kind::Slot && decl.count_syntax->slot == field.slot;
-      if (!same) continue;
-      decl.count_slot = field.slot;
-      return;
-    }
-  }
+  const Expr& count = *decl.count_syntax;
+  decl.count_slot = count.slot;
+  const auto& counts = frame_ints_;
+  if (count.kind == Expr::Kind::Slot && std::find(counts.begin(), counts.end(), count.slot) != counts.end())
+    return;
   reporter_.error("wrong-block", decl.count_syntax->span, "the number of lights is no field of a frame block",
                   std::string(kHelp));
 }
@@ -299,7 +307,9 @@ void Checker::blockName(const BlockDecl& decl) {
 
 void Checker::block(BlockDecl& decl, uint32_t& slots) {
   blockArray(decl);
+  const size_t errors = reporter_.count();
   blockName(decl);
+  if (reporter_.count() == errors && find(decl.instance) == nullptr) templateNames(decl);
   blocks_.push_back(&decl);
   Name instance{decl.instance, Name::Kind::Instance, Type::Float, slots, decl.span, true, true, {}};
   fields(decl, instance, slots);
@@ -321,6 +331,11 @@ void Checker::extendedBlock(BlockDecl& decl, uint32_t& slots) {
     }
     return;
   }
+  const auto extended = std::find_if(blocks_.begin(), blocks_.end(), [&](const BlockDecl* other) {
+    return other->instance == decl.instance;
+  });
+  decl.role = (*extended)->role;
+  templateNames(decl);
   fields(decl, *base, slots);
 }
 
@@ -340,7 +355,8 @@ void Checker::fields(BlockDecl& decl, Name& instance, uint32_t& slots) {
     defaultOf(field);
     field.slot = slots;
     slots += field.elements();
-    instance.members.push_back({field.name, field.type, field.slot, field.array});
+    if (decl.role == BlockRole::Frame && field.type == Type::Int) frame_ints_.push_back(field.slot);
+    instance.members.push_back({field.name, field.type, field.slot, field.array, &field});
   }
 }
 
@@ -352,6 +368,7 @@ void Checker::fieldArray(BlockFieldDecl& field) {
                     fmt::format("a field cannot have {} elements", *count), "1 to 256 are possible");
   }
   field.array = count ? static_cast<uint32_t>(std::clamp(*count, 1, 256)) : 1;
+  field.miscounted = !count || static_cast<uint32_t>(std::max(*count, 0)) != field.array;
   if (field.type == Type::Vec4 || field.type == Type::Mat4) return;
   reporter_.error("wrong-type", field.span, fmt::format("an array cannot be of {}", typeName(field.type)),
                   "GLSL and HLSL lay out arrays of vec4 and mat4 alone in one way");
@@ -392,6 +409,9 @@ void Checker::lightKind(LightKindDecl& decl, uint32_t first_property) {
     } else if (typed(field.value, member->type, fmt::format("'{}'", field.name))) {
       if (!scratch_) scratch_.emplace();
       field.constant = evaluateConstant(*scratch_, *field.value);
+      if (field.constant && member->field != nullptr)
+        inRange(*member->field, *field.constant, field.value->span, "value-out-of-range",
+                fmt::format("'{}'", field.name));
     }
   }
   names_ = std::move(outer);
@@ -457,6 +477,7 @@ void Checker::port(PortDecl& decl, uint32_t& slots) {
 }
 
 void Checker::output(OutputDecl& decl) {
+  templateNames(decl);
   const Type wanted = decl.role == OutputRole::Discard ? Type::Bool : Type::Vec4;
   if (decl.type != wanted) {
     reporter_.error("wrong-type", decl.span,

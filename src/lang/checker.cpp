@@ -124,14 +124,21 @@ void Checker::defaultOf(Param& param) {
   }
   param.default_value =
       constantValue(param.default_syntax, param.type, fmt::format("the default of '{}'", param.name));
-  if (!param.default_value || !param.has_range) return;
+  if (!param.default_value) return;
+  inRange(param, *param.default_value, param.default_syntax->span, "default-out-of-range", "the default");
+}
+
+bool Checker::inRange(const Param& param, const ir::Components& value, Span span, std::string_view code,
+                      std::string_view what) {
+  if (!param.has_range) return true;
   for (int i = 0; i < ir::componentCount(param.type); ++i) {
-    const double x = (*param.default_value)[static_cast<size_t>(i)];
+    const double x = value[static_cast<size_t>(i)];
     if (param.range.contains(x)) continue;
-    reporter_.error("default-out-of-range", param.default_syntax->span,
-                    fmt::format("the default {} lies outside {}", shown(x), ir::rangeText(param.range)));
-    return;
+    reporter_.error(code, span,
+                    fmt::format("{} {} lies outside {}", what, shown(x), ir::rangeText(param.range)));
+    return false;
   }
+  return true;
 }
 
 void Checker::node(NodeDecl& decl) {

@@ -1,6 +1,7 @@
 // Names, types and the other static rules; resolves what the parser left open.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,7 +56,8 @@ private:
     std::string_view name;
     ir::Type type = ir::Type::Float;
     uint32_t slot = 0;
-    uint32_t array = 0;  ///< 0: not an array
+    uint32_t array = 0;                     ///< 0: not an array
+    const BlockFieldDecl* field = nullptr;  ///< of a block's
   };
   struct Name {
     enum class Kind : uint8_t {
@@ -89,6 +91,9 @@ private:
   void rangeOf(Param& param);
   std::optional<ir::Interval> interval(RangeSyntax& syntax, ir::Type type);
   void defaultOf(Param& param);
+  /// Whether a value lies in the declared range; reports it when not. `what` begins the message.
+  bool inRange(const Param& param, const ir::Components& value, Span span, std::string_view code,
+               std::string_view what);
   Constant constantValue(ExprPtr& expr, ir::Type type, std::string_view what);
   std::optional<int> constantInt(ExprPtr& expr, std::string_view what);
   std::string_view written(Span span) const { return reporter_.text(span); }
@@ -116,6 +121,14 @@ private:
   void output(OutputDecl& decl);
   void outputRules(TemplateDecl& decl);
   bool unlike(const Param& param, const Expr& value, std::string_view what);
+
+  // check_names.cpp
+  void templateNames(const BlockDecl& decl);
+  void templateNames(const AttributeDecl& decl);
+  void templateNames(const EnvironmentDecl& decl);
+  void templateNames(const OutputDecl& decl);
+  bool spelled(std::string_view name, Span span);
+  void claim(std::string text, Span span, std::string what);
 
   // check_body.cpp
   void body(NodeDecl& decl, std::string_view variant, Span place, Body& body);
@@ -172,7 +185,10 @@ private:
   NodeDecl* node_ = nullptr;                               ///< whose body is checked
   TemplateDecl* template_ = nullptr;                       ///< whose parts are checked
   std::vector<const BlockDecl*> blocks_;                   ///< of the template, so far
-  std::vector<const LightKindDecl*> light_kinds_;          ///< of the template, so far
+  /// What the template's declarations are called in the shaders, so far, and what each name is.
+  std::map<std::string, std::string, std::less<>> claimed_;
+  std::vector<uint32_t> frame_ints_;               ///< slots of ints of its frame blocks, so far
+  std::vector<const LightKindDecl*> light_kinds_;  ///< of the template, so far
   std::string_view variant_;
   bool constants_only_ = false;          ///< the expression must be a constant
   bool ports_allowed_ = false;           ///< the expression is an output's

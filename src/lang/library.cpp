@@ -30,6 +30,13 @@ std::string_view kindName(DeclKind kind) {
       ->name;
 }
 
+/// "a node", "an extension".
+std::string aKind(DeclKind kind) {
+  const std::string_view name = kindName(kind);
+  const bool vowel = std::string_view("aeiou").find(name[0]) != std::string_view::npos;
+  return fmt::format("{} {}", vowel ? "an" : "a", name);
+}
+
 /// Constants, nodes and templates share one namespace; each other kind has its own.
 size_t spaceOf(DeclKind kind) {
   return kind <= DeclKind::Template ? 0 : static_cast<size_t>(kind) - static_cast<size_t>(DeclKind::Template);
@@ -129,7 +136,7 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
             {static_cast<uint32_t>(decl.name.data() - file.text.data()),
              static_cast<uint32_t>(decl.name.size())},
             fmt::format("'{}' is declared twice", decl.name),
-            fmt::format("the other, a {}, is at {}:{}", kindName(other.kind), other.file->name, other.line));
+            fmt::format("the other, {}, is at {}:{}", aKind(other.kind), other.file->name, other.line));
         continue;
       }
       Entry& entry = entries.emplace_back();
@@ -203,7 +210,7 @@ tl::unexpected<Diagnostics> Library::Impl::missing(DeclKind kind, std::string_vi
   const auto& index = index_[spaceOf(kind)];
   const auto it = index.find(name);
   std::string help = it == index.end() ? didYouMean(name, names(kind))
-                                       : fmt::format("'{}' is a {}", name, kindName(it->second->kind));
+                                       : fmt::format("'{}' is {}", name, aKind(it->second->kind));
   return fail(fmt::format("unknown-{}", what), {}, fmt::format("there is no {} '{}'", what, name),
               std::move(help));
 }

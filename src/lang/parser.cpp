@@ -384,8 +384,7 @@ bool Parser::block(TemplateDecl& decl) {
   if (role == kRoles.end()) return syntax("expected the block's role", "it is frame, lights or object");
   ++at_;
   item.role = role->second;
-  Span ignored;
-  if (!name(item.type_name, ignored, "the block's type name")) return false;
+  if (!name(item.type_name, item.type_span, "the block's type name")) return false;
   if (!name(item.instance, item.span, "the block's own name")) return false;
   if (accept("[")) {
     item.array_syntax = expression();

@@ -16,77 +16,152 @@ Ties untiedBy(const Expr& expr) {
   return lang::untiedBy(expr.builtin->op);
 }
 
-/// What a template's expressions see of its slots.
-struct Slots {
-  std::vector<Ties> ties;     ///< of the slot's value
-  std::vector<bool> port;     ///< the slot is a port
-  std::vector<Ties> refused;  ///< of a port: ties under which it is used without being untied
-};
-
-/// The ties of an expression. What is refused where the expression stands is refused to the ports in it.
-Ties tiesOf(const Expr& root, Slots& slots, Ties refused) {
-  struct Open {
-    const Expr* expr;
-    Ties untied;
-  };
-  Ties ties = 0;
-  std::vector<Open> open = {{&root, 0}};
-  while (!open.empty()) {
-    const auto [expr, outer] = open.back();
-    open.pop_back();
-    if (expr == nullptr) continue;
-    if (expr->kind == Expr::Kind::Slot && expr->slot < slots.ties.size()) {
-      ties |= slots.ties[expr->slot] & static_cast<Ties>(~outer);
-      if (slots.port[expr->slot]) slots.refused[expr->slot] |= refused & static_cast<Ties>(~outer);
-    }
-    const Ties untied = outer | untiedBy(*expr);
-    for (const ExprPtr& arg : expr->args) open.push_back({arg.get(), untied});
-  }
-  return ties;
+/// An operation's op; nothing for what is no operation.
+std::optional<ir::Op> opOf(const Expr& expr) {
+  if (expr.kind != Expr::Kind::Operation || expr.builtin == nullptr) return std::nullopt;
+  return expr.builtin->op;
 }
+
+class Tying {
+public:
+  Tying(TemplateDecl& decl, Reporter& reporter)
+      : decl_(decl),
+        reporter_(reporter),
+        vertex_stage_(std::any_of(decl.outputs.begin(), decl.outputs.end(),
+                                  [](const auto& output) { return output.role == OutputRole::Position; })),
+        ties_(decl.slots),
+        port_(decl.slots),
+        refused_(decl.slots),
+        unmade_(decl.slots) {}
+
+  void run() {
+    inputs();
+    for (GivenDecl& given : decl_.givens) {
+      given.ties = given.value ? tiesOf(*given.value, {given.inherited}) : Ties{0};
+      for (size_t i = 0; i < given.results.size(); ++i) ties_[given.slot + i] = given.ties;
+    }
+    for (const PortDecl& port : decl_.ports) port_[port.slot] = true;
+    for (const OutputDecl& output : decl_.outputs) {
+      if (output.value) this->output(output);
+    }
+    // A port's default may use the ports before it, in its place.
+    for (size_t i = decl_.ports.size(); i > 0; --i) {
+      PortDecl& port = decl_.ports[i - 1];
+      if (port.default_value)
+        tiesOf(*port.default_value, {port.inherited, refused_[port.slot], unmade_[port.slot]});
+      port.refused = refused_[port.slot] | unmade_[port.slot];
+    }
+  }
+
+private:
+  /// Where an expression stands.
+  struct Place {
+    bool inherited = false;  ///< in the text of a template that this one extends
+    Ties refused = 0;        ///< what the caller reports
+    Ties unmade = 0;         ///< what cannot be made there: reported where it stands
+    bool position = false;   ///< not in interpolate(), but in a position
+  };
+
+  void inputs() {
+    for (const BlockDecl& block : decl_.blocks) {
+      const Ties ties = block.role == BlockRole::Lights                    ? kLight
+                        : block.role == BlockRole::Object && vertex_stage_ ? kVertex
+                                                                           : Ties{0};
+      for (const BlockFieldDecl& field : block.fields)
+        std::fill_n(ties_.begin() + field.slot, field.elements(), ties);
+    }
+    // Without a vertex stage the attributes come to the fragment as they are.
+    for (const AttributeDecl& attribute : decl_.attributes)
+      ties_[attribute.slot] = vertex_stage_ ? kVertex : kFragment;
+    if (decl_.front_facing) ties_[*decl_.front_facing] = kFragment;
+  }
+
+  void output(const OutputDecl& output) {
+    const bool vertex = output.role == OutputRole::Position;
+    const Place place{output.inherited, vertex ? kLight : Ties{kLight | kVertex},
+                      vertex ? kFragment : Ties{0}, vertex};
+    const Ties ties = tiesOf(*output.value, place);
+    const Span span = output.inherited ? decl_.span : output.span;
+    if ((ties & kLight) != 0) {
+      reporter_.error("one-light", span, fmt::format("'{}' is the value of one light", output.name),
+                      "write sum_over_lights(...) around what differs from light to light");
+    }
+    if ((ties & kVertex) != 0 && !vertex) {
+      reporter_.error("one-vertex", span, fmt::format("'{}' is the value of one vertex", output.name),
+                      "write interpolate(...) around what differs from vertex to vertex");
+    }
+  }
+
+  /// The ties of an expression. What is refused where the expression stands is refused to the ports in it.
+  Ties tiesOf(const Expr& root, const Place& place) {
+    struct Open {
+      const Expr* expr;
+      Ties untied;
+      Place place;
+    };
+    Ties ties = 0;
+    std::vector<Open> open = {{&root, 0, place}};
+    while (!open.empty()) {
+      auto [expr, outer, here] = open.back();
+      open.pop_back();
+      if (expr == nullptr) continue;
+      if (expr->kind == Expr::Kind::Slot && expr->slot < ties_.size()) {
+        ties |= ties_[expr->slot] & static_cast<Ties>(~outer);
+        if (port_[expr->slot]) {
+          refused_[expr->slot] |= here.refused;
+          unmade_[expr->slot] |= here.unmade;
+        }
+        unmade(*expr, ties_[expr->slot], here);
+      }
+      const Ties untied = untiedBy(*expr);
+      here.refused &= static_cast<Ties>(~untied);
+      if (const std::optional<ir::Op> op = opOf(*expr)) {
+        ties |= tiedBy(*op);
+        unmade(*expr, tiedBy(*op), here);
+        here.unmade &= static_cast<Ties>(~untied);
+        if (*op == ir::Op::Interpolate) {
+          here.unmade |= kFragment | kLight;
+          here.position = false;
+        }
+      } else {
+        here.unmade &= static_cast<Ties>(~untied);
+      }
+      for (const ExprPtr& arg : expr->args)
+        open.push_back({arg.get(), static_cast<Ties>(outer | untied), here});
+    }
+    return ties;
+  }
+
+  void unmade(const Expr& expr, Ties ties, const Place& place) {
+    ties &= place.unmade;
+    if (ties == 0) return;
+    const std::string_view what =
+        (ties & kFragment) != 0 ? "this is one of the fragment" : "this is one of a light";
+    reporter_.error(
+        "wrong-rate", place.inherited ? decl_.span : expr.span,
+        fmt::format("{}, and {}",
+                    place.position ? "a position is a value of the vertex"
+                                   : "interpolate() takes values of the vertex",
+                    what),
+        (ties & kFragment) != 0
+            ? "made at the vertices: what has no interpolate(), sum_over_lights(), dFdx(), dFdy() "
+              "and gl_FrontFacing in it"
+            : "write interpolate(...) around what does not differ from light to light");
+  }
+
+  TemplateDecl& decl_;
+  Reporter& reporter_;
+  bool vertex_stage_;
+  // By slot.
+  std::vector<Ties> ties_;
+  std::vector<bool> port_;     ///< it is a port
+  std::vector<Ties> refused_;  ///< of a port: ties under which it is used without being untied
+  std::vector<Ties> unmade_;   ///< of a port: ties that cannot be made where it is used
+};
 
 }  // namespace
 
-void tie(TemplateDecl& decl, Reporter& reporter) {
-  const bool vertex_stage = std::any_of(decl.outputs.begin(), decl.outputs.end(), [](const auto& output) {
-    return output.role == OutputRole::Position;
-  });
-  Slots slots{std::vector<Ties>(decl.slots), std::vector<bool>(decl.slots), std::vector<Ties>(decl.slots)};
-  for (const BlockDecl& block : decl.blocks) {
-    const Ties ties = block.role == BlockRole::Lights                   ? kLight
-                      : block.role == BlockRole::Object && vertex_stage ? kVertex
-                                                                        : Ties{0};
-    for (const BlockFieldDecl& field : block.fields)
-      std::fill_n(slots.ties.begin() + field.slot, field.elements(), ties);
-  }
-  // Without a vertex stage the attributes come to the fragment as they are.
-  for (const AttributeDecl& attribute : decl.attributes)
-    slots.ties[attribute.slot] = vertex_stage ? kVertex : 0;
-  for (GivenDecl& given : decl.givens) {
-    given.ties = given.value ? tiesOf(*given.value, slots, 0) : Ties{0};
-    for (size_t i = 0; i < given.results.size(); ++i) slots.ties[given.slot + i] = given.ties;
-  }
-  for (const PortDecl& port : decl.ports) slots.port[port.slot] = true;
-  for (const OutputDecl& output : decl.outputs) {
-    if (!output.value) continue;
-    const bool vertex = output.role == OutputRole::Position;
-    const Ties ties = tiesOf(*output.value, slots, vertex ? Ties{0} : Ties{kLight | kVertex});
-    if ((ties & kLight) != 0) {
-      reporter.error("one-light", output.span, fmt::format("'{}' is the value of one light", output.name),
-                     "write sum_over_lights(...) around what differs from light to light");
-    }
-    if ((ties & kVertex) != 0 && !vertex) {
-      reporter.error("one-vertex", output.span, fmt::format("'{}' is the value of one vertex", output.name),
-                     "write interpolate(...) around what differs from vertex to vertex");
-    }
-  }
-  // A port's default may use the ports before it, in its place.
-  for (size_t i = decl.ports.size(); i > 0; --i) {
-    PortDecl& port = decl.ports[i - 1];
-    if (port.default_value) tiesOf(*port.default_value, slots, slots.refused[port.slot]);
-    port.refused = slots.refused[port.slot];
-  }
-}
+void tie(TemplateDecl& decl, Reporter& reporter) { Tying(decl, reporter).run(); }
 
 std::optional<GivenResult> TemplateDecl::find(std::string_view given) const {
   const size_t dot = given.find('.');

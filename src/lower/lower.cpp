@@ -319,20 +319,37 @@ private:
     }
   }
 
-  /// What no check of the template alone can find: a position may only be made of what vertices know.
+  /// What the checks of the template and of the graph do not find, for they do not look into nodes: a
+  /// position, and what is interpolated, may only be made of what vertices know.
   Diagnostics rates() const {
     Diagnostics wrong;
+    const auto report = [&](std::string_view file, uint32_t line, std::string message) {
+      wrong.push_back(
+          {"wrong-rate",
+           Severity::Error,
+           {std::string(file), line, 0, {}},
+           std::move(message),
+           "made at the vertices: what has no interpolate(), sum_over_lights(), dFdx(), dFdy() and "
+           "gl_FrontFacing in it",
+           {}});
+    };
+    std::vector<ir::ValueId> roots;
     for (const ir::Output& output : module_.outputs) {
+      roots.push_back(output.value);
       const ir::Rate rate = module_.dag[output.value].rate;
       if (output.stage != ir::Stage::Vertex || rate <= ir::Rate::Vertex) continue;
-      wrong.push_back({"wrong-rate",
-                       Severity::Error,
-                       {std::string(template_->origin.file), template_->origin.line, 0, {}},
-                       fmt::format("the output '{}' of the template '{}' is of the rate {}", output.name,
-                                   template_->name, ir::rateName(rate)),
-                       "a position is made at the vertices: without textures' derivatives, interpolate() and "
-                       "gl_FrontFacing",
-                       {}});
+      report(template_->origin.file, template_->origin.line,
+             fmt::format("the output '{}' of the template '{}' is of the rate {}", output.name,
+                         template_->name, ir::rateName(rate)));
+    }
+    for (const ir::ValueId id : ir::reachable(module_.dag, roots)) {
+      const ir::Value& value = module_.dag[id];
+      if (value.op != ir::Op::Interpolate) continue;
+      const ir::Rate rate = module_.dag[value.args[0]].rate;
+      if (rate <= ir::Rate::Vertex) continue;
+      const ir::Term& term = module_.dag.terms()[module_.dag.termOf(id)];
+      report(term.file, term.line,
+             fmt::format("'{}' interpolates what is of the rate {}", term.name, ir::rateName(rate)));
     }
     return wrong;
   }

@@ -3,7 +3,6 @@
 #include <map>
 
 #include "ir/module.h"
-#include "ir/names.h"
 #include "passes/passes.h"
 
 namespace lacquer::passes {
@@ -61,28 +60,8 @@ Diagnostics checkPlaces(const ir::Module& module) {
     take(flat, std::pair(texture, at.flat), name,
          fmt::format("{} {}", texture ? "texture unit" : "buffer binding", at.flat));
   };
-  // A template's names are those of the contract: they cannot be changed where a target keeps them for
-  // itself.
-  const auto spell = [&](std::string_view name) {
-    if (ir::Names().pick(name) == name) return;
-    wrong.push_back(
-        {"reserved-name",
-         Severity::Error,
-         {},
-         fmt::format("'{}' in the template '{}' is no name in every target", name, module.template_name),
-         "give it another",
-         {}});
-  };
-  for (const ir::Block& block : module.blocks) {
-    add(block.binding, block.instance, false);
-    if (block.role == ir::BlockRole::Material) continue;
-    for (const std::string& name : {block.name, block.instance}) spell(name);
-    for (const ir::BlockField& field : block.fields) spell(field.name);
-  }
-  for (const ir::TextureSlot& slot : module.textures) {
-    add(slot.binding, slot.name, true);
-    if (slot.environment) spell(slot.name);
-  }
+  for (const ir::Block& block : module.blocks) add(block.binding, block.instance, false);
+  for (const ir::TextureSlot& slot : module.textures) add(slot.binding, slot.name, true);
   return wrong;
 }
 

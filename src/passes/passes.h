@@ -53,8 +53,7 @@ void place(ir::Module& module);
 /// Gives the material's textures that are left their places, and drops the others.
 void bind(ir::Module& module);
 
-/// Two resources in one place ("slot-clash"), or a name of the template that a target keeps for itself
-/// ("reserved-name"). The first is a mistake of Lacquer's, or of whoever made the module.
+/// Two resources in one place ("slot-clash"): a mistake of Lacquer's, or of whoever made the module.
 Diagnostics checkPlaces(const ir::Module& module);
 
 }  // namespace lacquer::passes

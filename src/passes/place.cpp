@@ -159,7 +159,10 @@ void nameTextures(ir::Module& module) {
   ir::Names names;
   names.take(ir::kLightIndexName);
   names.take("material");
-  for (const ir::Block& block : module.blocks) names.take(block.instance), names.take(block.instance + "s");
+  for (const ir::Block& block : module.blocks) {
+    for (const std::string& name : {block.name, block.instance}) names.take(name), names.take(name + "s");
+    names.take(block.name + "Block");
+  }
   for (const ir::TextureSlot& slot : module.textures) {
     if (slot.environment) names.take(slot.name), names.take(slot.name + "_sampler");
   }
@@ -169,7 +172,9 @@ void nameTextures(ir::Module& module) {
     std::string name = slot.name;
     if (name[0] >= 'A' && name[0] <= 'Z') name = "texture_" + name;
     if (name.ends_with("_sampler")) name += "_map";
-    slot.name = names.pick(name);
+    do {
+      slot.name = names.pick(name);
+    } while (names.taken(slot.name + "_sampler"));
     names.take(slot.name + "_sampler");
   }
 }

@@ -12,6 +12,7 @@
 #include "run/report_blob.h"
 #include "shader/budget.h"
 #include "shader/interface.h"
+#include "shader/limits.h"
 #include "shader/module.h"
 #include "shader/options.h"
 
@@ -239,6 +240,8 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
   addOptions(setting.options, {Decides::Module}, key);
   key.number(lights.any).number(lights.counts.size());
   for (const auto& [kind, count] : lights.counts) key.text(kind).number(count);
+  // They decide what is said of the shader.
+  for (const Target target : setting.options.targets) key.number(target);
   StructureKey(key, baked).graph(graph);
   return key.finish();
 }
@@ -262,6 +265,9 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
     structure.diagnostics.insert(structure.diagnostics.end(), module.error().begin(), module.error().end());
     return std::nullopt;
   }
+  const Diagnostics over = overLimits(*module, setting.options.targets);
+  structure.diagnostics.insert(structure.diagnostics.end(), over.begin(), over.end());
+  if (hasError(over)) return std::nullopt;
   structure.graph = graph::toJson(plain);
   // Places are those in the graph as it comes, which check() may have ordered, but not its parameters and
   // textures.

@@ -30,7 +30,7 @@ struct Statement {
 };
 
 struct Program {
-  ir::Stage stage;
+  ir::Stage stage = ir::Stage::Fragment;
   std::vector<Statement> statements;
   /// By value id: the variable's name, or empty when the value is written where it is used. Names are unique
   /// in the stage and are identifiers in every target. An Input never has a name.

@@ -109,15 +109,19 @@ Expression Printer::compute(ValueId id) const {
   if (value.op == Op::Input) return input(dag_.inputOf(id));
   if (value.op == Op::Construct) return construct(value);
   if (value.op == Op::Swizzle) return swizzle(value);
+  // Implicit derivatives exist in fragments only, and Direct3D has no lookup without a level elsewhere: a
+  // vertex samples the first, as GLSL's texture() does there.
+  const bool implicit = program_.stage == ir::Stage::Fragment;
   if (value.op == Op::Texture) {
-    return {dialect_.texture(dag_[value.args[0]].type, argument(value.args[0]), use(value.args[1]), {})};
+    const std::string_view level = implicit ? "" : "0.0";
+    return {dialect_.texture(dag_[value.args[0]].type, argument(value.args[0]), use(value.args[1]), level)};
   }
   if (value.op == Op::TextureLod) {
     return {dialect_.texture(dag_[value.args[0]].type, argument(value.args[0]), use(value.args[1]),
                              argument(value.args[2]))};
   }
   if (value.op == Op::TextureCompare || value.op == Op::TextureCompareLod) {
-    const bool top = value.op == Op::TextureCompareLod;
+    const bool top = !implicit || value.op == Op::TextureCompareLod;
     return {dialect_.comparison(argument(value.args[0]), use(value.args[1]), top)};
   }
   return operation(value);

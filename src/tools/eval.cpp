@@ -54,6 +54,37 @@ Result<void> bindUniforms(const ir::Module& module, const EvalPoints& points, co
   return {};
 }
 
+/// The points' light is one of KHR_lights_punctual, and directional.
+constexpr std::string_view kPointLight = "directional";
+
+bool hasPointLight(const ir::Module& module) {
+  return std::any_of(module.light_kinds.begin(), module.light_kinds.end(),
+                     [](const ir::LightKind& kind) { return kind.name == kPointLight; });
+}
+
+/// A template with other lights sees nothing of the points' own: its light is what "uniforms" says.
+void noteLights(const ir::Module& module, const EvalPoints& points, const std::string& file,
+                Messages& messages) {
+  if (!module.sums_lights || hasPointLight(module)) return;
+  for (const ir::Block& block : module.blocks) {
+    if (block.role != ir::BlockRole::Lights) continue;
+    const auto given = points.uniforms.lower_bound(block.instance + ".");
+    if (given != points.uniforms.end() && given->first.starts_with(block.instance + ".")) return;
+    std::string fields;
+    for (const ir::BlockField& field : block.fields)
+      fields += fmt::format("{}\"{}.{}\"", fields.empty() ? "" : ", ", block.instance, field.name);
+    report(
+        {{"light-unused",
+          Severity::Warning,
+          {file, 0, 0, {}},
+          fmt::format("the points' 'l' and 'light' go nowhere: the template '{}' has no kind of light '{}'",
+                      module.template_name, kPointLight),
+          fmt::format("say in \"uniforms\" what its light is: {}", fields),
+          {}}},
+        file, messages);
+  }
+}
+
 /// The points' own values, the environment of each, and what comes from the stages before the fragment's.
 Result<void> bind(EvalMaterial& material, const EvalPoints& points, const std::string& file,
                   eval::Bindings& bindings) {
@@ -249,7 +280,12 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
       !lowered) {
     return tl::make_unexpected(std::move(lowered.error()));
   }
-  if (engine != Engine::Double) evaluated.place({false, {{"directional", 1}}});
+  noteLights(evaluated.module(), points, points_file, messages);
+  if (engine != Engine::Double) {
+    evaluated.place(hasPointLight(evaluated.module())
+                        ? passes::LightFacts{false, {{std::string(kPointLight), 1}}}
+                        : passes::LightFacts{});
+  }
   eval::Bindings bindings;
   const Result<void> bound = bind(evaluated, points, points_file, bindings);
   report(images.takeNotes(), file, messages);

@@ -185,8 +185,138 @@ template more extends forward {
   const Outcome outcome = place.run({"gen", example("core.gltf"), "--material", "Textured", "--nodes", "more",
                                      "--template", "more", "-o", "out"});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.err.find("'sample' in the template 'more' is no name in every target"), std::string::npos)
+  EXPECT_NE(outcome.err.find("more/more.node:3:35: error: 'sample' is no name in every target"),
+            std::string::npos)
       << outcome.err;
+}
+
+/// Runs `lacquer gen` with a template `b`.
+Outcome genWith(const Workplace& place, const std::string& node, const Words& more = {}) {
+  std::filesystem::create_directory(place / "more");
+  place.write("more/more.node", node);
+  return place.run(with({"gen", example("core.gltf"), "--material", "Textured", "--nodes", "more",
+                         "--template", "b", "-o", "out"},
+                        more));
+}
+
+TEST(Templates, WhatExtendsBlocksCanBeExtended) {
+  const Workplace place;
+  const Outcome outcome = genWith(place, R"(/// D.
+template a extends engine { extend block frame { float gamma in [0.1, 4] = 2; } }
+/// D.
+template b extends a {
+    extend block frame { float gain = 1; }
+    extend block atmosphere { float height = 1; }
+    output color vec4 other = vec4(frame.exposure, frame.gamma, frame.gain, atmosphere.height);
+}
+)",
+                                  {"--nodes", example("engine")});
+  ASSERT_EQ(outcome.status, 0) << outcome.all();
+  const Json manifest = Json::parse(place.read("out/manifest.json"));
+  EXPECT_TRUE(resources(manifest).contains("Atmosphere 0.5 4"));
+  std::string fields;
+  for (const Json& block : (*manifest["shaders"].begin())["uniforms"]) {
+    if (block["block"] != "Frame") continue;
+    for (const Json& field : block["fields"]) fields += field["name"].get<std::string>() + " ";
+  }
+  EXPECT_NE(fields.find("light_count exposure gamma gain "), std::string::npos) << fields;
+}
+
+TEST(Templates, NoNameOfATemplateMeetsOneOfAMaterial) {
+  const std::pair<const char*, const char*> kParts[] = {
+      {"block frame base_color_texture film { vec4 x; }", "film.x"},
+      {"block frame Film base_color_texture { vec4 x; }", "base_color_texture.x"},
+      {"environment sampler2D base_color_texture_sampler;", "texture(base_color_texture_sampler, uv0)"},
+  };
+  for (const auto& [part, value] : kParts) {
+    const Workplace place;
+    const Outcome outcome = genWith(
+        place, fmt::format("/// D.\ntemplate b extends forward {{ {} output color vec4 more = {}; }}\n", part,
+                           value));
+    EXPECT_EQ(outcome.status, 0) << part << outcome.all();
+  }
+}
+
+TEST(Templates, WhatPlatformsDoNotHaveIsSaid) {
+  std::string outputs, textures, sum = "vec4(0)";
+  for (int i = 0; i < 9; ++i) outputs += fmt::format("output color vec4 o{} = vec4(1);\n", i);
+  for (int i = 0; i < 17; ++i) {
+    textures += fmt::format("environment sampler2D t{};\n", i);
+    sum += fmt::format(" + texture(t{}, uv0)", i);
+  }
+  struct Over {
+    std::string parts;
+    Words options;
+    int status;
+    std::string said;
+  };
+  const auto block = [](const char* field) {
+    return fmt::format("block frame Q q {{ {} }} output color vec4 o = q.a[0];", field);
+  };
+  const Over kOver[] = {
+      {outputs,
+       {"--target", "glsl,glsl-gl,essl,hlsl,spirv"},
+       1,
+       "error: the shader has 10 colour outputs; no more are possible than: 4 in glsl, 8 in glsl-gl, "
+       "4 in essl, 8 in hlsl, 4 in spirv [over-limit]"},
+      {outputs,
+       {"--target", "glsl-gl"},
+       0,
+       "warning: the shader has 10 colour outputs; sure to be there are: 8 in glsl-gl"},
+      {textures + "output color vec4 o = " + sum + ";",
+       {"--target", "essl"},
+       0,
+       "warning: the shader reads 24 textures; sure to be there are: 16 in essl"},
+      {block("vec4 a[256]; mat4 b[256];"),
+       {"--target", "essl,hlsl"},
+       0,
+       "warning: the block 'Q' has 20480 bytes; sure to be there are: 16384 in essl"},
+      {block("vec4 a[256]; mat4 b[256]; mat4 c[256]; mat4 d[256]; mat4 e[256];"),
+       {"--target", "hlsl"},
+       1,
+       "error: the block 'Q' has 69632 bytes; no more are possible than: 65536 in hlsl"},
+      {block("vec4 a[256]; mat4 b[128];"), {}, 0, ""},
+  };
+  for (const auto& [parts, options, status, said] : kOver) {
+    const Workplace place;
+    const Outcome outcome =
+        genWith(place, "/// D.\ntemplate b extends forward {\n" + parts + "\n}\n", options);
+    EXPECT_EQ(outcome.status, status) << outcome.all();
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << said << "\n" << outcome.all();
+    EXPECT_EQ(outcome.err.find("over-limit") == std::string::npos, said.empty()) << outcome.all();
+    // A second run finds what the first left, and says so again.
+    const Outcome again = genWith(place, place.read("more/more.node"), options);
+    EXPECT_NE(again.err.find(said), std::string::npos) << said << "\n" << again.all();
+  }
+}
+
+TEST(Templates, PointsWhoseLightGoesNowhereAreToldSo) {
+  const Workplace place;
+  std::filesystem::create_directory(place / "more");
+  place.write("more/more.node", R"(/// D.
+template b {
+    block frame Frame frame { int n in [0, 8] = 1; }
+    block lights Area area[8] count frame.n { vec3 radiance in [0, inf]; }
+    light kind disk { radiance = color * intensity; }
+    output color vec4 color = vec4(sum_over_lights(area.radiance), 1);
+}
+)");
+  const auto eval = [&](const std::string& points, const std::string& engine) {
+    place.write("points.json", points);
+    return place.run({"eval", example("core.gltf"), "--material", "Textured", "--nodes", "more", "--template",
+                      "b", "--points", "points.json", "--engine", engine});
+  };
+  for (const char* engine : {"double", "float"}) {
+    const Outcome dark = eval(R"({"points": [{}]})", engine);
+    EXPECT_EQ(dark.status, 0) << dark.all();
+    EXPECT_NE(dark.err.find("the points' 'l' and 'light' go nowhere"), std::string::npos) << dark.err;
+    EXPECT_NE(dark.err.find("\"uniforms\" what its light is: \"area.radiance\""), std::string::npos)
+        << dark.err;
+    const Outcome lit = eval(R"({"uniforms": {"area.radiance": [1, 2, 3]}, "points": [{}]})", engine);
+    ASSERT_EQ(lit.status, 0) << lit.all();
+    EXPECT_EQ(lit.err.find("go nowhere"), std::string::npos) << lit.err;
+    EXPECT_EQ(Json::parse(lit.out)["rgba"][0], Json({1, 2, 3, 1}));
+  }
 }
 
 TEST(Templates, LightsAreThoseThatTheTemplateNames) {

@@ -70,6 +70,7 @@ TEST(Usage, wrongUsageIsTwo) {
       {{"gen", coat, "-o", "out", "--params", "frozen"}, "frozen"},
       {{"gen", coat, "-o", "out", "--spirv-from", "hlsl"}, "hlsl"},
       {{"gen", coat, "-o", "out", "--lights", "point:-1"}, "point:-1"},
+      {{"gen", coat, "-o", "out", "--lights", "point:1,point:2"}, "'point' is counted twice"},
       {{"gen", coat, "-o", "out", "--jobs", "-1"}, "--jobs"},
       {{"gen", coat, "-o", "out", "--jobs", "many"}, "--jobs"},
       {{"gen", coat, "-o", "out", "--jobs", "99999999"}, "--jobs"},

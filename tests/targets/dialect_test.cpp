@@ -73,6 +73,29 @@ TEST(Dialect, NothingUnusedIsDeclared) {
   }
 }
 
+/// Direct3D has no Sample in a vertex shader; glslang takes it all the same.
+TEST(Dialect, AVertexSamplesTheFirstLevel) {
+  Builder b;
+  const ir::ValueId at = b.attribute("POSITION", ir::Type::Vec4);
+  const ir::ValueId uv = b.dag().swizzle(at, std::array{0, 1});
+  const ir::ValueId uvz = b.dag().swizzle(at, std::array{0, 1, 2});
+  const ir::ValueId texel = b.dag().make(ir::Op::Texture, {{b.texture("heights", ir::Type::Texture2D), uv}});
+  const ir::ValueId shown =
+      b.dag().make(ir::Op::TextureCompare, {{b.texture("depths", ir::Type::Texture2DShadow), uvz}});
+  b.position(b.dag().mul(texel, shown));
+  constexpr std::array kWanted = {
+      std::pair{Target::Glsl,
+                "textureLod(heights, in_position.xy, 0.0) * textureLod(depths, in_position.xyz, 0.0)"},
+      std::pair{Target::Hlsl,
+                "heights.SampleLevel(heights_sampler, in_position.xy, 0.0) * depths.SampleCmpLevelZero("}};
+  for (const auto& [target, wanted] : kWanted) {
+    const std::string text = print(b.module, Stage::Vertex, target);
+    EXPECT_NE(text.find(wanted), std::string::npos) << text;
+  }
+  for (const Target target : kTextTargets)
+    expectCompiles(print(b.module, Stage::Vertex, target), Stage::Vertex, target);
+}
+
 TEST(Targets, RowsLieInTheOrderOfTheEnumeration) {
   ASSERT_EQ(rows().size(), 9U);
   for (const Row& of : rows()) EXPECT_EQ(row(of.id).name, of.name);

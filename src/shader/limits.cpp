@@ -1,0 +1,103 @@
+#include "shader/limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "targets/target.h"
+
+namespace lacquer {
+
+namespace {
+
+/// What every device of the platform has.
+struct Limit {
+  uint32_t outputs;
+  uint32_t block_bytes;
+  uint32_t textures;
+};
+
+/// The least of Vulkan 1.1 (maxFragmentOutputAttachments, maxUniformBufferRange,
+/// maxPerStageDescriptorSamplers), OpenGL 4.5 (MAX_DRAW_BUFFERS, MAX_UNIFORM_BLOCK_SIZE,
+/// MAX_TEXTURE_IMAGE_UNITS) and OpenGL ES 3.0 (the same); of WebGPU the limits that a device has without
+/// asking; of Direct3D 11 and Metal what they have, where there is no more.
+Limit limitOf(Target target) {
+  switch (target) {
+    case Target::Glsl:
+    case Target::Spirv: return {4, 16384, 16};
+    case Target::GlslGl: return {8, 16384, 16};
+    case Target::Essl: return {4, 16384, 16};
+    case Target::Hlsl: return {8, 65536, 16};
+    case Target::Wgsl: return {8, 65536, 16};
+    case Target::Msl: return {8, 65536, 16};
+    case Target::Cpp:
+    case Target::Js: break;  // no shader
+  }
+  return {~0U, ~0U, ~0U};
+}
+
+class Measure {
+public:
+  explicit Measure(std::span<const Target> targets) : targets_(targets) {}
+
+  /// `what` begins the message: "the shader writes 9 colour outputs". Where `hard`, Direct3D compiles no
+  /// more.
+  void check(const std::string& what, uint32_t count, uint32_t Limit::*limit, bool hard) {
+    std::string over;
+    bool wrong = false;
+    for (const Target target : targets_) {
+      const uint32_t most = limitOf(target).*limit;
+      if (count <= most) continue;
+      over += fmt::format("{}{} in {}", over.empty() ? "" : ", ", most, targets::row(target).name);
+      wrong = wrong || (hard && target == Target::Hlsl);
+    }
+    if (over.empty()) return;
+    found_.push_back(
+        {"over-limit",
+         wrong ? Severity::Error : Severity::Warning,
+         {},
+         fmt::format("{}; {}: {}", what, wrong ? "no more are possible than" : "sure to be there are", over),
+         wrong ? "take fewer, or leave the target out with --target"
+               : "a device may have more: ask it before it is given the shader",
+         {}});
+  }
+
+  Diagnostics take() { return std::move(found_); }
+
+private:
+  std::span<const Target> targets_;
+  Diagnostics found_;
+};
+
+}  // namespace
+
+Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets) {
+  Measure limits(targets);
+  uint32_t outputs = 0;
+  for (const ir::Output& output : module.outputs) {
+    if (output.kind == ir::OutputKind::Color) outputs = std::max(outputs, output.location + 1);
+  }
+  limits.check(fmt::format("the shader has {} colour outputs", outputs), outputs, &Limit::outputs, true);
+  // By index: the blocks and textures that a stage reads.
+  std::set<uint32_t> blocks, textures;
+  for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
+    if (module.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    if (input.kind == ir::InputKind::BlockField) blocks.insert(input.block);
+    if (input.kind == ir::InputKind::Texture) textures.insert(input.field);
+  }
+  for (const uint32_t index : blocks) {
+    const ir::Block& block = module.blocks[index];
+    const uint32_t bytes = block.size * std::max(block.array, 1U);
+    limits.check(fmt::format("the block '{}' has {} bytes", targets::blockName(block), bytes), bytes,
+                 &Limit::block_bytes, true);
+  }
+  const auto count = static_cast<uint32_t>(textures.size());
+  limits.check(fmt::format("the shader reads {} textures", count), count, &Limit::textures, false);
+  return limits.take();
+}
+
+}  // namespace lacquer
