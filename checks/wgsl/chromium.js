@@ -73,8 +73,10 @@ async function withPage(use) {
     return await Promise.race([use(evaluate), gone]);
   } finally {
     browser.removeAllListeners('exit');
-    browser.kill('SIGKILL');
-    fs.rmSync(profile, {recursive: true, force: true, maxRetries: 5});
+    const ended = new Promise((resolve) => browser.once('exit', resolve));
+    if (browser.exitCode === null && browser.kill('SIGKILL')) await ended;
+    // Its own processes end a moment after it.
+    fs.rmSync(profile, {recursive: true, force: true, maxRetries: 50, retryDelay: 100});
   }
 }
 

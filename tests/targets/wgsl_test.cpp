@@ -175,7 +175,7 @@ TEST(Wgsl, AndBesideOrIsInParentheses) {
   b.discard(either);
   b.color("color", v);
   const std::string text = wgslOf(b.module);
-  expectText(text, "if ((v_v.x < 0.5 && v_v.y < 0.5) || (v_v.z < 0.5 && v_v.w < 0.5)) {");
+  expectText(text, "= (v_v.x < 0.5 && v_v.y < 0.5) || (v_v.z < 0.5 && v_v.w < 0.5);");
   expectCompiles(text, Stage::Fragment, Target::Wgsl);
 }
 

@@ -10,6 +10,7 @@ fn main(
     @location(1) v_v3: vec3f,
 ) -> FragmentOutputs {
     var out_stage: FragmentOutputs;
+
     let abs_0_value = abs(v_x.w);
     let abs_1_value = abs(v_v3);
     let sign_0_value = sign(v_x.w);

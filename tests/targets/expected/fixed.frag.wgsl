@@ -20,6 +20,7 @@ fn main(
     @location(1) v_weight: f32,
 ) -> FragmentOutputs {
     var out_stage: FragmentOutputs;
+
     // alpha.mask: glTF 2.0, "Alpha Coverage"
     if (v_weight < 0.5) {
         discard;

@@ -43,6 +43,7 @@ fn main(
     @builtin(front_facing) in_front_facing: bool,
 ) -> FragmentOutputs {
     var out_stage: FragmentOutputs;
+
     // surface.normal: glTF 2.0, "Double Sided"
     let unit_normal = normalize(v_normal);
     let normal = select(-unit_normal, unit_normal, in_front_facing);

@@ -29,6 +29,7 @@ fn main(
     @location(2) in_texcoord_0: vec2f,
 ) -> VertexOutputs {
     var out_stage: VertexOutputs;
+
     // vertex.position
     let world_position = object.model * vec4f(in_position, 1.0);
 
