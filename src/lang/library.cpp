@@ -222,7 +222,8 @@ void Library::Impl::check(Entry& entry, Reporter& reporter) {
     }
     case DeclKind::Extension: checker.extension(*entry.extension); break;
     case DeclKind::Part: checker.part(*entry.part); break;
-    case DeclKind::Profile: checker.profile(*entry.profile); break;
+    case DeclKind::Profile:
+    case DeclKind::Lod: checker.profile(*entry.profile, kindName(entry.kind)); break;
     case DeclKind::Layers:
     case DeclKind::Switch: break;
   }
@@ -304,6 +305,7 @@ void Library::Impl::parse(Entry& entry, Reporter& reporter) {
       entry.part->origin = origin;
       break;
     case DeclKind::Profile:
+    case DeclKind::Lod:
       entry.profile = std::make_unique<ProfileDecl>(parser.profile());
       entry.profile->origin = origin;
       break;
@@ -409,6 +411,10 @@ Result<const PartDecl*> Library::part(std::string_view name) const {
 
 Result<const ProfileDecl*> Library::profile(std::string_view name) const {
   return impl_->get(DeclKind::Profile, name, &Entry::profile);
+}
+
+Result<const ProfileDecl*> Library::lod(std::string_view name) const {
+  return impl_->get(DeclKind::Lod, name, &Entry::profile);
 }
 
 Result<const LayersDecl*> Library::layers(std::string_view name) const {

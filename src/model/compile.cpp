@@ -28,7 +28,7 @@ public:
       : library_(library), names_(library, schema, model_) {
     model_.schema = &schema;
   }
-  Result<Model> run(std::string_view profile);
+  Result<Model> run(std::string_view profile, const std::set<std::string, std::less<>>& lods);
 
 private:
   /// The text that is being resolved.
@@ -47,8 +47,8 @@ private:
   void declare(const std::vector<LineDecl>& lines);
   void part(uint32_t index);
   void lines(uint32_t part, uint32_t first_term);
-  void profileLines();
-  const LineDecl* overriding(std::string_view id) const;
+  void addedLines(const lang::ProfileDecl& overlay);
+  static const LineDecl* overriding(const lang::ProfileDecl& overlay, std::string_view id);
   Line line(const LineDecl& decl, uint32_t part, uint32_t term);
   void place(Line line);
   Condition condition(const ExprPtr& expr);
@@ -75,7 +75,8 @@ private:
   Source source_;
   Diagnostics wrong_;
   std::vector<PathUse> paths_;
-  std::set<const LineDecl*> placed_;  ///< the profile's lines that stand in place of others
+  std::vector<const lang::ProfileDecl*> overlays_;  ///< the lods, then the profile: the first has its say
+  std::set<const LineDecl*> placed_;                ///< their lines that stand in place of others
 };
 
 void Compiler::error(const Source& source, Span span, std::string code, std::string message,
@@ -184,8 +185,8 @@ void Compiler::declare(const std::vector<LineDecl>& lines) {
 
 // -- lines --
 
-const LineDecl* Compiler::overriding(std::string_view id) const {
-  for (const LineDecl& line : model_.profile->lines) {
+const LineDecl* Compiler::overriding(const lang::ProfileDecl& overlay, std::string_view id) {
+  for (const LineDecl& line : overlay.lines) {
     const bool value = line.kind == LineDecl::Kind::Value || line.kind == LineDecl::Kind::Flag;
     if (value && line.id == id) return &line;
   }
@@ -268,32 +269,41 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
   for (size_t i = 0; i < decl.lines.size(); ++i) {
     const LineDecl& own = decl.lines[i];
     const bool value = own.kind == LineDecl::Kind::Value || own.kind == LineDecl::Kind::Flag;
-    const LineDecl* other = value ? overriding(own.id) : nullptr;
-    if (other != nullptr && !placed_.insert(other).second) continue;
     const std::optional<uint32_t> section = names_.section(own.section);
     if (!section) {
       error(own.span, "unknown-section", fmt::format("there is no section '{}'", own.section),
             "the layers say which sections there are");
     }
-    const Source here = source_;
-    if (other != nullptr) source_ = {model_.profile->origin.file, model_.profile->text};
-    Line made = line(other == nullptr ? own : *other, part, first_term + own.term);
-    source_ = here;
     constexpr uint32_t kLinesOfPart = 1024, kParts = 1024;
-    made.order = (section.value_or(0) * kParts + std::min(part, kParts - 1)) * kLinesOfPart +
-                 static_cast<uint32_t>(std::min<size_t>(i, kLinesOfPart - 1));
-    if (made.shared) made.order = Line::kNone;
-    place(std::move(made));
+    const uint32_t order = (section.value_or(0) * kParts + std::min(part, kParts - 1)) * kLinesOfPart +
+                           static_cast<uint32_t>(std::min<size_t>(i, kLinesOfPart - 1));
+    const auto put = [&](const LineDecl& line_decl) {
+      Line made = line(line_decl, part, first_term + own.term);
+      made.order = made.shared ? Line::kNone : order;
+      place(std::move(made));
+    };
+    bool replaced = false;
+    for (size_t k = 0; value && !replaced && k < overlays_.size(); ++k) {
+      const LineDecl* other = overriding(*overlays_[k], own.id);
+      if (other == nullptr) continue;
+      // Where a lod's line comes to nothing, the one in whose place it stands holds.
+      replaced = overlays_[k] == model_.profile;
+      if (!placed_.insert(other).second) continue;
+      source_ = {overlays_[k]->origin.file, overlays_[k]->text};
+      put(*other);
+      source_ = {decl.origin.file, decl.text};
+    }
+    if (!replaced) put(own);
   }
 }
 
-/// What a profile adds beside the lines that it replaces stands outside of all parts.
-void Compiler::profileLines() {
-  source_ = {model_.profile->origin.file, model_.profile->text};
-  for (const LineDecl& decl : model_.profile->lines) {
+/// What a profile or a lod adds beside the lines that it replaces stands outside of all parts.
+void Compiler::addedLines(const lang::ProfileDecl& overlay) {
+  source_ = {overlay.origin.file, overlay.text};
+  for (const LineDecl& decl : overlay.lines) {
     if (placed_.contains(&decl)) continue;
     if (decl.kind == LineDecl::Kind::Require) {
-      error(decl.span, "wrong-line", "a profile has no terms that could require something");
+      error(decl.span, "wrong-line", "profiles and lods have no terms that could require something");
       continue;
     }
     Line made = line(decl, static_cast<uint32_t>(model_.parts.size()), Line::kNone);
@@ -613,17 +623,23 @@ void Compiler::order() {
                    [&](uint32_t a, uint32_t b) { return model_.lines[a].order < model_.lines[b].order; });
 }
 
-Result<Model> Compiler::run(std::string_view profile) {
+Result<Model> Compiler::run(std::string_view profile, const std::set<std::string, std::less<>>& lods) {
   const Result<const lang::ProfileDecl*> found = library_.profile(profile);
   if (!found) return tl::make_unexpected(found.error());
   model_.profile = *found;
+  for (const std::string& name : lods) {
+    const Result<const lang::ProfileDecl*> lod = library_.lod(name);
+    if (!lod) return tl::make_unexpected(lod.error());
+    overlays_.push_back(*lod);
+  }
+  overlays_.push_back(model_.profile);
   names_.addRoles();
   names_.addSwitches(wrong_);
   collectParts();
-  declare(model_.profile->lines);
+  for (const lang::ProfileDecl* overlay : overlays_) declare(overlay->lines);
   for (uint32_t i = 0; i < model_.parts.size(); ++i) part(i);
   for (uint32_t i = 0; i < model_.parts.size(); ++i) lines(i, model_.parts[i].term);
-  profileLines();
+  for (const lang::ProfileDecl* overlay : overlays_) addedLines(*overlay);
   checkPaths();
   if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
   findLive();
@@ -633,9 +649,9 @@ Result<Model> Compiler::run(std::string_view profile) {
 
 }  // namespace
 
-Result<Model> compile(const lang::Library& library, const material::Schema& schema,
-                      std::string_view profile) {
-  return Compiler(library, schema).run(profile);
+Result<Model> compile(const lang::Library& library, const material::Schema& schema, std::string_view profile,
+                      const std::set<std::string, std::less<>>& lods) {
+  return Compiler(library, schema).run(profile, lods);
 }
 
 }  // namespace lacquer::model
