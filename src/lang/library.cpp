@@ -34,7 +34,8 @@ std::string_view kindName(DeclKind kind) {
 size_t spaceOf(DeclKind kind) {
   return kind <= DeclKind::Template ? 0 : static_cast<size_t>(kind) - static_cast<size_t>(DeclKind::Template);
 }
-constexpr size_t kSpaces = 6;
+constexpr size_t kSpaces =
+    static_cast<size_t>(DeclKind::Switch) - static_cast<size_t>(DeclKind::Template) + 1;
 
 struct File {
   std::string owned_name, owned_text;  ///< empty for an embedded file
