@@ -279,20 +279,6 @@ std::string svg(const std::vector<Measured>& measured) {
   return plot(panels, "cycles of inverse throughput", "RMS error");
 }
 
-/// The rows of src/shader/variants.def: those that a budget may pick.
-std::string table(const std::vector<Measured>& measured) {
-  std::string text =
-      "// Made by `./dev bench error` from its measurements (bench/error.json): node, variant, the largest\n"
-      "// relative error of a colour for any IOR and for 1.5, cycles of inverse throughput that a material "
-      "saves.\n";
-  for (const Measured& m : measured) {
-    if (m.variant.empty() || m.in.empty() || m.inverse_throughput >= 0) continue;
-    text += fmt::format("{{\"{}\", \"{}\", {:.3g}, {:.3g}, {}}},\n", m.node, m.variant, roundedUp(m.color[0]),
-                        roundedUp(m.color[1]), -m.inverse_throughput);
-  }
-  return text;
-}
-
 /// Replaces what stands between the marks of the page.
 bool renewPage(const std::string& path, const std::string& tables) {
   Result<std::string> page = readFile(path);
@@ -331,9 +317,7 @@ int runError() {
   fmt::print("{}", page);
   const bool written =
       writeFile(kRoot + "/bench/error.json", toJson(measured, driver, device).dump(2) + "\n") &&
-      writeFile(kRoot + "/docs/images/error.svg", svg(measured)) &&
-      writeFile(kRoot + "/src/shader/variants.def", table(measured)) &&
-      renewPage(kRoot + "/docs/error.md", page);
+      writeFile(kRoot + "/docs/images/error.svg", svg(measured)) && renewPage(kRoot + "/docs/error.md", page);
   if (written) return 0;
   fmt::print(stderr, "bench error: the files could not be renewed\n");
   return 1;

@@ -1,9 +1,9 @@
-// bench/error.json, docs/error.md, docs/images/error.svg and the table that `gen --error-budget` picks from.
+// bench/error.json, docs/error.md and docs/images/error.svg.
 #pragma once
 
 namespace lacquer::bench {
 
-/// Measures the variants of all nodes and writes the four files. The exit status.
+/// Measures the variants of all nodes and writes the three files. The exit status.
 int runError();
 
 }  // namespace lacquer::bench

@@ -23,12 +23,12 @@ enum class Decides : uint8_t {
 /// the names must be all of Options.
 template <class Each>
 void eachOption(const Options& options, Each each) {
-  const auto& [profile, error_budget, template_name, targets, parameters, lights, switches, ibl,
+  const auto& [profile, simplify, template_name, targets, parameters, lights, switches, ibl,
                multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, spirv_route, debug,
                live, node_directories, jobs, cache, cache_size, depfile, shard, limits, allow, cache_key,
                argument_buffers, sync] = options;
   each(Decides::Graph, profile);
-  each(Decides::Graph, error_budget);
+  each(Decides::Graph, simplify);
   each(Decides::Graph, template_name);
   each(Decides::Run, targets);
   each(Decides::Module, parameters);

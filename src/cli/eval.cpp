@@ -35,10 +35,6 @@ CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
   verb->add_option("--params", flags.params, "uniform, baked or spec, as for gen; the colours are the same")
       ->check(CLI::IsMember({"uniform", "baked", "spec"}))
       ->capture_default_str();
-  verb->add_option("--error-budget", flags.options.error_budget,
-                   "relative error of the colour that cheaper variants of the terms may bring, such as 1e-3")
-      ->check(CLI::Range(0.0, 1.0))
-      ->check(kNumber);
   verb->add_option("--texel", flags.texels,
                    "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
       ->allow_extra_args(false);

@@ -14,6 +14,7 @@
 #include "cli/cost.h"
 #include "cli/dfg.h"
 #include "cli/eval.h"
+#include "cli/lod.h"
 #include "cli/preview.h"
 #include "cli/prove.h"
 #include "cli/streams.h"
@@ -142,10 +143,6 @@ void addShared(CLI::App& app, Flags& flags) {
   app.add_option("--profile", flags.options.profile,
                  "the reading of the specification, one of `lacquer nodes`; without it the default")
       ->check(kNotEmpty);
-  app.add_option("--error-budget", flags.options.error_budget,
-                 "relative error of the colour that cheaper variants of the terms may bring, such as 1e-3")
-      ->check(CLI::Range(0.0, 1.0))
-      ->check(kNumber);
   app.add_option(
          "--params", flags.params,
          "uniform: numbers stay editable; baked: they are constants; spec: they are specialization constants")
@@ -156,6 +153,9 @@ void addShared(CLI::App& app, Flags& flags) {
   // Options that may be repeated take one argument each time: the next one may be a file.
   app.add_option("--live", flags.options.live, "terms to keep though today's value would remove them")
       ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--simplify", flags.options.simplify,
+                 "what is left out or made simpler, such as without:coat.absorption (may be repeated)")
       ->allow_extra_args(false);
   app.add_option("--switch", flags.switches,
                  "NAME=on or NAME=off: a switch of the node library (may be repeated)")
@@ -225,8 +225,8 @@ void addGen(CLI::App& verb, Flags& flags) {
       ->check(kNotEmpty);
   addGeneration(verb, flags);
   graphs->excludes(verb.get_option("--material"));
-  // A graph says itself which variants it has, and nothing was measured on it.
-  graphs->excludes(verb.get_option("--error-budget"));
+  // A graph is what it is.
+  graphs->excludes(verb.get_option("--simplify"));
 }
 
 void addPlan(CLI::App& verb, Flags& flags) {
@@ -236,6 +236,28 @@ void addPlan(CLI::App& verb, Flags& flags) {
       ->check(kNotEmpty);
   verb.add_flag("--replan", flags.replan, "the Ninja file makes itself anew when an input has changed");
   addGeneration(verb, flags);
+}
+
+void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
+  verb.add_option("files", flags.files, ".gltf or .glb files")->required();
+  verb.add_option("-o,--output", lod.lod.output, "the folder to write to")->required()->check(kNotEmpty);
+  verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
+      ->allow_extra_args(false);
+  lacquer::cli::addLod(verb, lod);
+  verb.add_option("--target", flags.targets,
+                  "of glsl, glsl-gl, essl, hlsl, spirv, cpp; all but cpp when absent")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");
+  verb.add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
+      ->check(CLI::Range(0, kMostJobs));
+  verb.add_option("--allow", flags.options.allow,
+                  "a folder in which images may lie, beside the file's own (may be repeated)")
+      ->allow_extra_args(false);
+  verb.add_flag("--no-sync", flags.no_sync,
+                "do not wait for the disk: after a power cut files may be broken");
+  verb.add_flag("-q,--quiet", lod.quiet, "no table, no progress");
+  addShared(verb, flags);
 }
 
 int gen(Flags& flags) {
@@ -406,6 +428,10 @@ int run(int argc, char** argv) {
   CLI::App* dfg_verb = lacquer::cli::addDfg(app, dfg_flags);
   lacquer::cli::PreviewFlags preview_flags;
   CLI::App* preview_verb = lacquer::cli::addPreview(app, preview_flags);
+  lacquer::cli::LodFlags lod_flags;
+  CLI::App* lod_verb =
+      app.add_subcommand("lod", "levels of detail: cheaper shaders whose difference is seen, not feared");
+  if (called(lod_verb)) addLevels(*lod_verb, flags, lod_flags);
   lacquer::cli::StressFlags stress_flags;
   CLI::App* stress_verb = lacquer::cli::addStress(app, stress_flags);
 
@@ -435,6 +461,7 @@ int run(int argc, char** argv) {
   if (*eval_verb) return lacquer::cli::runEval(eval_flags);
   if (*dfg_verb) return lacquer::cli::runDfg(dfg_flags);
   if (*preview_verb) return lacquer::cli::runPreview(preview_flags);
+  if (*lod_verb) return lacquer::cli::runLod(lod_flags, flags.files, flags.materials, flags.options);
   if (*stress_verb) return lacquer::cli::runStress(stress_flags);
   if (*gen_verb) return gen(flags);
   if (*plan_verb) return plan(flags);

@@ -119,26 +119,6 @@ void printNode(const nlohmann::json& node) {
 
 }  // namespace
 
-namespace {
-
-/// What a budget took of one material, what it saves, and what error it expects.
-void printBudget(const MaterialTerms& terms, const Options& options) {
-  if (options.error_budget == 0) return;
-  std::vector<std::string> words;
-  double saved = 0;
-  for (const MaterialTerms::Variant& v : terms.variants) {
-    words.push_back(fmt::format("{}::{} ({}; error {}, saves {} cycles)", v.node, v.variant,
-                                fmt::join(v.terms, " "), v.error, v.saved));
-    saved += v.saved;
-  }
-  printWrapped("      variants ", words);
-  if (words.empty()) return fmt::print("      budget    {:g}: no variant meets it\n", options.error_budget);
-  fmt::print("      budget    {:g}: expected error at most {:.3g}, saves {:g} cycles of inverse throughput\n",
-             options.error_budget, terms.expected_error, saved);
-}
-
-}  // namespace
-
 void printReport(const Report& report, const Options& options) {
   std::string file;
   size_t listed = 0;
@@ -162,7 +142,6 @@ void printReport(const Report& report, const Options& options) {
     for (const auto& [term, reason] : material.terms->skipped)
       skipped.push_back(fmt::format("{} ({})", term, reason));
     printWrapped("      skipped  ", skipped);
-    printBudget(*material.terms, options);
   }
   if (listed > kMostMaterials)
     fmt::print("  … and {} more materials, in manifest.json\n", listed - kMostMaterials);

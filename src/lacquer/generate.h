@@ -96,15 +96,6 @@ private:
 struct MaterialTerms {
   Strings terms;                                             ///< ids of the nodes: "coat.absorption"
   std::vector<std::pair<std::string, std::string>> skipped;  ///< term, why it is not there
-  /// A cheaper body in place of the reference.
-  struct Variant {
-    std::string node, variant;
-    Strings terms;  ///< that have it
-    double error;   ///< expected, relative, of the colour
-    double saved;   ///< cycles on navi21 (docs/error.md)
-  };
-  std::vector<Variant> variants;  ///< what Options::error_budget took
-  double expected_error = 0;      ///< of all of them together
 };
 struct MaterialReport {
   std::string file, name;

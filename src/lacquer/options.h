@@ -106,9 +106,9 @@ inline constexpr Target kShaderTargets[] = {Target::Glsl, Target::GlslGl, Target
 struct Options {
   /// How the texts are read: a profile of the library (docs/accuracy.md); empty for the default one.
   std::string profile;
-  /// Relative error of colours, from 0 to 1, that cheaper variants of terms may bring (docs/error.md); 0 for
-  /// none.
-  double error_budget = 0;
+  /// What is left out of a material or made simpler, in words (docs/lod.md): "without:coat.absorption". Each
+  /// concerns the materials that have it.
+  Strings simplify;
   /// What Scene::graph() builds for: a template of the library or of `node_directories`; empty for the one
   /// that says it is the default.
   std::string template_name;

@@ -2,6 +2,8 @@
 /// says what holds for every declaration.
 #pragma once
 
+#include <vector>
+
 #include "lacquer/options.h"
 
 namespace lacquer {
@@ -35,6 +37,24 @@ struct Preview {
 /// left out, with messages. Uses threads.
 std::string drawPreview(const Preview& preview, const Strings& files, const Strings& materials,
                         const Options& options, Messages& messages, const Progress& progress = {});
+
+/// Levels of detail (docs/lod.md).
+struct Lod {
+  std::string output;   ///< the folder to write to
+  uint32_t levels = 4;  ///< how many at most, the exact shader among them; from 2 to 16
+  std::vector<double>
+      errors;  ///< instead, the mean colour difference of each level but the exact one, ascending
+  std::vector<double>
+      costs;              ///< instead, the part of the exact shader's cost for each, in (0, 1), descending
+  double most_error = 2;  ///< of the last of `levels`, at the size at which it is used
+  uint32_t size = 48;     ///< pixels of the balls that candidates are compared by, from 16 to 512
+  Strings texels;         ///< as for evaluate()
+};
+/// Looks for the materials' levels (of those of the names in `materials` where that is not empty), and writes
+/// their shaders, manifest.json and a report with pictures. Returns what was found as JSON; empty on an
+/// error. A material that fails is left out, with messages. Uses threads, and processes for the costs.
+std::string makeLevels(const Lod& lod, const Strings& files, const Strings& materials, const Options& options,
+                       Messages& messages, const Progress& progress = {});
 
 /// How an attack is made (docs/stress.md).
 struct Stress {

@@ -117,8 +117,8 @@ void Checker::part(PartDecl& decl) {
   modelDoc(decl.doc, nullptr, decl.span, fmt::format("part '{}'", decl.name));
 }
 
-void Checker::profile(ProfileDecl& decl) {
-  modelDoc(decl.doc, nullptr, decl.span, fmt::format("profile '{}'", decl.name));
+void Checker::profile(ProfileDecl& decl, std::string_view kind) {
+  modelDoc(decl.doc, nullptr, decl.span, fmt::format("{} '{}'", kind, decl.name));
 }
 
 }  // namespace lacquer::lang

@@ -48,7 +48,7 @@ public:
   void templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases);
   void extension(ExtensionDecl& decl);
   void part(PartDecl& decl);
-  void profile(ProfileDecl& decl);
+  void profile(ProfileDecl& decl, std::string_view kind);
 
 private:
   /// What an identifier in scope stands for.

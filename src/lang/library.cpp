@@ -41,7 +41,8 @@ std::string aKind(DeclKind kind) {
 size_t spaceOf(DeclKind kind) {
   return kind <= DeclKind::Template ? 0 : static_cast<size_t>(kind) - static_cast<size_t>(DeclKind::Template);
 }
-constexpr size_t kSpaces = 6;
+constexpr size_t kSpaces =
+    static_cast<size_t>(DeclKind::Switch) - static_cast<size_t>(DeclKind::Template) + 1;
 
 struct File {
   std::string owned_name, owned_text;  ///< empty for an embedded file
@@ -229,7 +230,8 @@ void Library::Impl::check(Entry& entry, Reporter& reporter) {
     }
     case DeclKind::Extension: checker.extension(*entry.extension); break;
     case DeclKind::Part: checker.part(*entry.part); break;
-    case DeclKind::Profile: checker.profile(*entry.profile); break;
+    case DeclKind::Profile:
+    case DeclKind::Lod: checker.profile(*entry.profile, kindName(entry.kind)); break;
     case DeclKind::Layers:
     case DeclKind::Switch: break;
   }
@@ -311,6 +313,7 @@ void Library::Impl::parse(Entry& entry, Reporter& reporter) {
       entry.part->origin = origin;
       break;
     case DeclKind::Profile:
+    case DeclKind::Lod:
       entry.profile = std::make_unique<ProfileDecl>(parser.profile());
       entry.profile->origin = origin;
       break;
@@ -416,6 +419,10 @@ Result<const PartDecl*> Library::part(std::string_view name) const {
 
 Result<const ProfileDecl*> Library::profile(std::string_view name) const {
   return impl_->get(DeclKind::Profile, name, &Entry::profile);
+}
+
+Result<const ProfileDecl*> Library::lod(std::string_view name) const {
+  return impl_->get(DeclKind::Lod, name, &Entry::profile);
 }
 
 Result<const LayersDecl*> Library::layers(std::string_view name) const {

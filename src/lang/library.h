@@ -21,7 +21,7 @@ struct SourceFile {
   std::string text;
 };
 
-enum class DeclKind : uint8_t { Const, Node, Template, Extension, Part, Profile, Layers, Switch };
+enum class DeclKind : uint8_t { Const, Node, Template, Extension, Part, Profile, Lod, Layers, Switch };
 
 class Library {
 public:
@@ -44,6 +44,7 @@ public:
   Result<const ExtensionDecl*> extension(std::string_view name) const;
   Result<const PartDecl*> part(std::string_view name) const;
   Result<const ProfileDecl*> profile(std::string_view name) const;
+  Result<const ProfileDecl*> lod(std::string_view name) const;
   Result<const LayersDecl*> layers(std::string_view name) const;
   Result<const SwitchDecl*> switch_(std::string_view name) const;
 

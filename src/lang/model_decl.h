@@ -91,7 +91,8 @@ struct PartDecl {
   std::string_view text;  ///< of the file
 };
 
-/// Lines in place of the parts' lines of the same ids, and others that they need.
+/// Lines in place of the parts' lines of the same ids, and others that they need: another reading (a
+/// profile), or a simpler material (a lod).
 struct ProfileDecl {
   std::string_view name;
   std::string doc, source;

@@ -305,10 +305,11 @@ ProfileDecl Parser::profile() {
   ProfileDecl decl;
   decl.text = reporter_.text();
   docs(decl.doc, &decl.source);
-  accept("profile");
-  if (!name(decl.name, decl.span, "the profile's name")) return decl;
-  decl.by_default = accept("default");
-  braces("the profile's name", [&] {
+  const bool lod = accept("lod");
+  if (!lod) accept("profile");
+  if (!name(decl.name, decl.span, lod ? "the lod's name" : "the profile's name")) return decl;
+  decl.by_default = !lod && accept("default");
+  braces("the name", [&] {
     LineDecl line;
     if (!this->line(line)) return false;
     decl.lines.push_back(std::move(line));

@@ -23,6 +23,7 @@ inline constexpr DeclWord kDeclWords[] = {
     {"material", DeclKind::Extension, "extension", false},
     {"part", DeclKind::Part, "part", false},
     {"profile", DeclKind::Profile, "profile", false},
+    {"lod", DeclKind::Lod, "lod", false},
     {"layers", DeclKind::Layers, "order of layers", false},
     {"switch", DeclKind::Switch, "switch", false},
 };

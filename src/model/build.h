@@ -15,6 +15,9 @@ struct BuildOptions {
   bool decode_srgb = false;  ///< decode colour textures in the shader instead of by their format
   std::set<std::string, std::less<>> live;            ///< terms kept though their value would remove them
   std::map<std::string, bool, std::less<>> switches;  ///< other values than the library's
+  std::set<std::string, std::less<>> without;         ///< terms left out, whatever the material says
+  /// By a texture's name in glTF: what stands for every texel of it.
+  std::map<std::string, ir::Components, std::less<>> texels = {};
 };
 
 /// Builds the graph of a material whose diagnostics hold no error, for a template of the library.

@@ -195,6 +195,7 @@ void Check::doubles() {
   for (const Uses::Placed& placed : uses_.lines) {
     const Line& line = model_.lines[placed.line];
     if (line.kind == Kind::Replace || line.kind == Kind::Require) continue;
+    if (uses_.overlays.contains(placed.line)) continue;
     const bool out = line.kind == Kind::Out;
     const auto [first, fresh] =
         seen.try_emplace({out ? Kind::Out : Kind::Value, line.id, line.part, line.term}, &placed);

@@ -44,10 +44,11 @@ struct Uses {
   std::vector<Argument> arguments;
   std::vector<Path> paths;
   std::vector<Placed> lines;
-  std::vector<Port> ports;  ///< asked for by `takes`
-  std::set<uint32_t> ids;   ///< that a line or a condition reads
-  std::set<uint32_t> outs;  ///< that a part reads of what lies below
-  std::set<uint32_t> adds;  ///< lines of the profile that replace none
+  std::vector<Port> ports;      ///< asked for by `takes`
+  std::set<uint32_t> ids;       ///< that a line or a condition reads
+  std::set<uint32_t> outs;      ///< that a part reads of what lies below
+  std::set<uint32_t> overlays;  ///< lines of the profile or of a lod that stand in place of others
+  std::set<uint32_t> adds;      ///< lines of the profile that replace none
 };
 
 /// Errors at their places.

@@ -30,7 +30,7 @@ public:
       : library_(library), names_(library, schema, model_) {
     model_.schema = &schema;
   }
-  Result<Model> run(std::string_view profile);
+  Result<Model> run(std::string_view profile, const std::set<std::string, std::less<>>& lods);
 
 private:
   void collectParts();
@@ -39,8 +39,8 @@ private:
   void part(uint32_t index);
   void lines(uint32_t part, uint32_t first_term);
   void overridden(const LineDecl& own, const LineDecl& other);
-  void profileLines();
-  const LineDecl* overriding(std::string_view id) const;
+  void addedLines(const lang::ProfileDecl& overlay);
+  static const LineDecl* overriding(const lang::ProfileDecl& overlay, std::string_view id);
   Line line(const LineDecl& decl, uint32_t part, uint32_t term);
   void place(Line line, const LineDecl& decl);
   Condition condition(const ExprPtr& expr);
@@ -66,7 +66,8 @@ private:
   Text source_;
   Diagnostics wrong_;
   Uses uses_;
-  std::set<const LineDecl*> placed_;  ///< the profile's lines that stand in place of others
+  std::vector<const lang::ProfileDecl*> overlays_;  ///< the lods, then the profile: the first has its say
+  std::set<const LineDecl*> placed_;                ///< their lines that stand in place of others
 };
 
 void Compiler::error(const Text& source, Span span, std::string code, std::string message, std::string help) {
@@ -174,8 +175,8 @@ void Compiler::declare(const std::vector<LineDecl>& lines) {
 
 // -- lines --
 
-const LineDecl* Compiler::overriding(std::string_view id) const {
-  for (const LineDecl& line : model_.profile->lines) {
+const LineDecl* Compiler::overriding(const lang::ProfileDecl& overlay, std::string_view id) {
+  for (const LineDecl& line : overlay.lines) {
     const bool value = line.kind == LineDecl::Kind::Value || line.kind == LineDecl::Kind::Flag;
     if (value && line.id == id) return &line;
   }
@@ -264,28 +265,38 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
   for (size_t i = 0; i < decl.lines.size(); ++i) {
     const LineDecl& own = decl.lines[i];
     const bool value = own.kind == LineDecl::Kind::Value || own.kind == LineDecl::Kind::Flag;
-    const LineDecl* other = value ? overriding(own.id) : nullptr;
-    if (other != nullptr && !placed_.insert(other).second) continue;
     const std::optional<uint32_t> section = names_.section(own.section);
     if (!section) {
       error(own.span, "unknown-section", fmt::format("there is no section '{}'", own.section),
             "the layers say which sections there are");
     }
-    const Text here = source_;
-    if (other != nullptr) overridden(own, *other);
-    Line made = line(other == nullptr ? own : *other, part, first_term + own.term);
     constexpr uint32_t kLinesOfPart = 1024, kParts = 1024;
-    made.order = (section.value_or(0) * kParts + std::min(part, kParts - 1)) * kLinesOfPart +
-                 static_cast<uint32_t>(std::min<size_t>(i, kLinesOfPart - 1));
-    if (made.shared) made.order = Line::kNone;
-    place(std::move(made), other == nullptr ? own : *other);
-    source_ = here;
+    const uint32_t order = (section.value_or(0) * kParts + std::min(part, kParts - 1)) * kLinesOfPart +
+                           static_cast<uint32_t>(std::min<size_t>(i, kLinesOfPart - 1));
+    const auto put = [&](const LineDecl& line_decl) {
+      Line made = line(line_decl, part, first_term + own.term);
+      made.order = made.shared ? Line::kNone : order;
+      place(std::move(made), line_decl);
+    };
+    bool replaced = false;
+    for (size_t k = 0; value && !replaced && k < overlays_.size(); ++k) {
+      const LineDecl* other = overriding(*overlays_[k], own.id);
+      if (other == nullptr) continue;
+      // Where a lod's line comes to nothing, the one in whose place it stands holds.
+      replaced = overlays_[k] == model_.profile;
+      if (!placed_.insert(other).second) continue;
+      source_ = {overlays_[k]->origin.file, overlays_[k]->text};
+      overridden(own, *other);
+      uses_.overlays.insert(static_cast<uint32_t>(model_.lines.size()));
+      put(*other);
+      source_ = {decl.origin.file, decl.text};
+    }
+    if (!replaced) put(own);
   }
 }
 
-/// From here on the profile's text is read, which has a line in place of a part's.
+/// `other`, of a profile or a lod, stands in place of a part's line.
 void Compiler::overridden(const LineDecl& own, const LineDecl& other) {
-  source_ = {model_.profile->origin.file, model_.profile->text};
   model_.ids[names_.id(own.id)].overridden = true;
   if (own.kind == other.kind) return;
   const bool flag = own.kind == LineDecl::Kind::Flag;
@@ -293,13 +304,13 @@ void Compiler::overridden(const LineDecl& own, const LineDecl& other) {
         flag ? fmt::format("write `bool {} = ...;`", own.id) : fmt::format("write `{} = ...;`", own.id));
 }
 
-/// What a profile adds beside the lines that it replaces stands outside of all parts.
-void Compiler::profileLines() {
-  source_ = {model_.profile->origin.file, model_.profile->text};
-  for (const LineDecl& decl : model_.profile->lines) {
+/// What a profile or a lod adds beside the lines that it replaces stands outside of all parts.
+void Compiler::addedLines(const lang::ProfileDecl& overlay) {
+  source_ = {overlay.origin.file, overlay.text};
+  for (const LineDecl& decl : overlay.lines) {
     if (placed_.contains(&decl)) continue;
     if (decl.kind == LineDecl::Kind::Require) {
-      error(decl.span, "wrong-line", "a profile has no terms that could require something");
+      error(decl.span, "wrong-line", "profiles and lods have no terms that could require something");
       continue;
     }
     Line made = line(decl, static_cast<uint32_t>(model_.parts.size()), Line::kNone);
@@ -632,17 +643,23 @@ void Compiler::order() {
                    [&](uint32_t a, uint32_t b) { return model_.lines[a].order < model_.lines[b].order; });
 }
 
-Result<Model> Compiler::run(std::string_view profile) {
+Result<Model> Compiler::run(std::string_view profile, const std::set<std::string, std::less<>>& lods) {
   const Result<const lang::ProfileDecl*> found = library_.profile(profile);
   if (!found) return tl::make_unexpected(found.error());
   model_.profile = *found;
+  for (const std::string& name : lods) {
+    const Result<const lang::ProfileDecl*> lod = library_.lod(name);
+    if (!lod) return tl::make_unexpected(lod.error());
+    overlays_.push_back(*lod);
+  }
+  overlays_.push_back(model_.profile);
   names_.addRoles();
   names_.addSwitches(wrong_);
   collectParts();
-  declare(model_.profile->lines);
+  for (const lang::ProfileDecl* overlay : overlays_) declare(overlay->lines);
   for (uint32_t i = 0; i < model_.parts.size(); ++i) part(i);
   for (uint32_t i = 0; i < model_.parts.size(); ++i) lines(i, model_.parts[i].term);
-  profileLines();
+  for (const lang::ProfileDecl* overlay : overlays_) addedLines(*overlay);
   checkNames();
   // What is made of a wrong line is wrong as well.
   if (wrong_.empty()) wrong_ = check(library_, model_, uses_);
@@ -654,9 +671,9 @@ Result<Model> Compiler::run(std::string_view profile) {
 
 }  // namespace
 
-Result<Model> compile(const lang::Library& library, const material::Schema& schema,
-                      std::string_view profile) {
-  return Compiler(library, schema).run(profile);
+Result<Model> compile(const lang::Library& library, const material::Schema& schema, std::string_view profile,
+                      const std::set<std::string, std::less<>>& lods) {
+  return Compiler(library, schema).run(profile, lods);
 }
 
 }  // namespace lacquer::model

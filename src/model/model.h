@@ -152,8 +152,10 @@ struct Model {
   std::vector<std::pair<std::string, std::vector<double>>> layers() const;
 };
 
-/// Resolves the library's parts under a profile. Errors have the place in the text.
-Result<Model> compile(const lang::Library& library, const material::Schema& schema, std::string_view profile);
+/// Resolves the library's parts under a profile, with the lines of these lods in place of both's. Errors have
+/// the place in the text.
+Result<Model> compile(const lang::Library& library, const material::Schema& schema, std::string_view profile,
+                      const std::set<std::string, std::less<>>& lods = {});
 
 /// The profiles' names, the default one first, then by name. Errors: a wrong profile, or not just one
 /// default.
@@ -165,7 +167,8 @@ public:
   explicit Models(const lang::Library& library);
   ~Models();
   Result<const material::Schema*> schema() const;
-  Result<const Model*> of(std::string_view profile) const;
+  Result<const Model*> of(std::string_view profile,
+                          const std::set<std::string, std::less<>>& lods = {}) const;
 
 private:
   struct State;

@@ -24,13 +24,16 @@ Result<const material::Schema*> Models::schema() const {
   return &**state_->schema;
 }
 
-Result<const Model*> Models::of(std::string_view profile) const {
+Result<const Model*> Models::of(std::string_view profile,
+                                const std::set<std::string, std::less<>>& lods) const {
   const Result<const material::Schema*> schema = this->schema();
   if (!schema) return tl::make_unexpected(schema.error());
   const std::lock_guard lock(state_->mutex);
-  auto it = state_->models.find(profile);
+  std::string key(profile);
+  for (const std::string& lod : lods) key += "\n" + lod;
+  auto it = state_->models.find(key);
   if (it == state_->models.end())
-    it = state_->models.emplace(std::string(profile), compile(state_->library, **schema, profile)).first;
+    it = state_->models.emplace(key, compile(state_->library, **schema, profile, lods)).first;
   if (!it->second) return tl::make_unexpected(it->second.error());
   return &*it->second;
 }

@@ -62,6 +62,19 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
       terms_(model.terms.size(), -1),
       unmet_(model.terms.size()) {}
 
+namespace {
+
+/// The components of a texel that a swizzle names, all without one.
+Found constantTexel(const ir::Components& texel, std::string_view swizzle) {
+  constexpr std::string_view kLetters = "xyzwrgbastpq";
+  if (swizzle.empty()) return Found::of(Found::Kind::Constant, ir::Type::Vec4, texel);
+  ir::Components picked{};
+  for (size_t i = 0; i < swizzle.size(); ++i) picked[i] = texel[kLetters.find(swizzle[i]) % 4];
+  return Found::of(Found::Kind::Constant, ir::floatType(static_cast<int>(swizzle.size())), picked);
+}
+
+}  // namespace
+
 // -- the material's values --
 
 /// The property that has a say: of an extension that the material has, one that the file names (an animation
@@ -167,9 +180,11 @@ Found Resolver::role(const Value& value) {
     return out;
   }
   out.type = ir::Type::Vec4;
-  out.swizzle = std::string(model_.schema->properties[out.property].decl->channels);
+  const lang::PropertyDecl& texture = *model_.schema->properties[out.property].decl;
+  out.swizzle = std::string(texture.channels);
   if (!value.path.empty()) out.swizzle = std::string(value.path);
-  return out;
+  const auto texel = options_.texels.find(texture.name);
+  return texel == options_.texels.end() ? out : constantTexel(texel->second, out.swizzle);
 }
 
 Found Resolver::given(const Value& value) const {
@@ -468,6 +483,7 @@ bool Resolver::alive(uint32_t index) {
   context.term = index;
   const bool inner = term.parent != Line::kNone;
   bool good = inner ? alive(term.parent) : has(model_.parts[term.part]);
+  good = good && !options_.without.contains(term.name);
   good = good && holds(term.when, context);
   good = good && (!term.has_unless || options_.live.contains(term.name) || !holds(term.unless, context));
   terms_[index] = good ? 1 : 0;
@@ -604,7 +620,9 @@ std::vector<graph::Skipped> Resolver::skipped() {
     Line context = kNoLine;
     context.part = term.part;
     std::string reason;
-    if (!holds(term.when, context)) {
+    if (options_.without.contains(term.name)) {
+      reason = "it is left out";
+    } else if (!holds(term.when, context)) {
       // A `when` without a reason is a matter of which material it is, not of its values.
       if (term.when_reason.empty()) continue;
       reason = term.when_reason;

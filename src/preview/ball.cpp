@@ -112,9 +112,12 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
   shading.look_ = std::make_shared<const Look>(std::move(look));
   const Look& of = *shading.look_;
   shading.base_ = of.textures;
+  shading.base_.lights = studio.lights(of.module);
+  shading.base_.columns["frame.light_count"] =
+      eval::Column::constant({static_cast<double>(shading.base_.lights.size())});
   for (const std::string& name : of.specular) {
-    shading.base_.textures[name] = [](size_t, const Vec3& direction, double lod) -> Rgba {
-      const Vec3 c = Studio::radiance(direction, lod);
+    shading.base_.textures[name] = [&studio](size_t, const Vec3& direction, double lod) -> Rgba {
+      const Vec3 c = studio.radiance(direction, lod);
       return {c[0], c[1], c[2], 1};
     };
   }
@@ -153,10 +156,11 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
 }
 
 void Shading::bind(std::span<const eval::Point> points, eval::Bindings& bindings) const {
+  eval::Column count = base_.columns.find("frame.light_count")->second;
   eval::bindPoints(look_->module, points, bindings);
-  bindings.columns["frame.light_count"] = eval::Column::constant({Studio::kLights});
+  bindings.columns["frame.light_count"] = std::move(count);
   bindings.columns["frame.environment_max_lod"] = eval::Column::constant({1});  // the level is the roughness
-  bindings.lights = Studio::lights(look_->module);
+  bindings.lights = base_.lights;
 }
 
 template <class T>

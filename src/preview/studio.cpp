@@ -23,23 +23,47 @@ Vec3 unit(const Vec3& a) {
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 
-/// A luminous rectangle that faces the ball.
-struct Softbox {
-  Vec3 to;               ///< its middle
-  double width, height;  ///< halves, at the distance 1
-  Vec3 radiance;
-};
+Vec3 turned(const Vec3& d, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c * d[0] + s * d[2], d[1], c * d[2] - s * d[0]};
+}
 
-// Seen in a glossy coat: a window at the upper left, a strip at the right, and a rim from behind.
-constexpr Softbox kBoxes[] = {
-    {{-0.62, 0.62, 0.62}, 0.36, 0.36, {4.6, 4.5, 4.35}},
-    {{0.95, 0.22, 0.30}, 0.10, 0.75, {2.4, 2.6, 2.9}},
-    {{0.15, 0.45, -1.0}, 1.10, 0.14, {2.4, 2.4, 2.4}},
-};
-// So bright that a white diffuse ball stays below the tone mapper's shoulder but for its brightest part.
-constexpr Vec3 kZenith{0.34, 0.38, 0.44};
-constexpr Vec3 kHorizon{0.20, 0.205, 0.215};
-constexpr Vec3 kGround{0.055, 0.052, 0.048};
+/// Seen in a glossy coat: a window at the upper left, a strip at the right, and a rim from behind. So bright
+/// that a white diffuse ball stays below the tone mapper's shoulder but for its brightest part.
+Surroundings sheetStudio() {
+  return {"studio",
+          {{{-0.62, 0.62, 0.62}, 0.36, 0.36, {4.6, 4.5, 4.35}},
+           {{0.95, 0.22, 0.30}, 0.10, 0.75, {2.4, 2.6, 2.9}},
+           {{0.15, 0.45, -1.0}, 1.10, 0.14, {2.4, 2.4, 2.4}}},
+          {0.34, 0.38, 0.44},
+          {0.20, 0.205, 0.215},
+          {0.055, 0.052, 0.048},
+          {{"directional", {-0.62, 0.62, 0.62}, {1.0, 0.97, 0.93}},
+           {"directional", {0.95, 0.22, 0.30}, {0.2, 0.22, 0.25}}}};
+}
+
+/// The sun, forty times as bright as the sky in what mirrors it, and as a light.
+Surroundings clearDay() {
+  return {
+      "day",
+      {{{0.48, 0.72, 0.50}, 0.05, 0.05, {24, 22.5, 20}}, {{-1.0, 0.10, 0.25}, 0.60, 0.10, {0.9, 0.85, 0.75}}},
+      {0.22, 0.36, 0.62},
+      {0.62, 0.68, 0.74},
+      {0.16, 0.14, 0.11},
+      {{"directional", {0.48, 0.72, 0.50}, {2.0, 1.9, 1.75}}}};
+}
+
+/// Hardly anything but a bulb beside the ball and a spot from above.
+Surroundings darkRoom() {
+  return {
+      "night",
+      {{{0.9, 0.35, 0.45}, 0.18, 0.26, {1.5, 1.2, 0.8}}, {{-0.9, -0.1, 0.5}, 0.08, 0.5, {0.25, 0.4, 0.8}}},
+      {0.02, 0.025, 0.035},
+      {0.035, 0.035, 0.04},
+      {0.02, 0.018, 0.015},
+      {{"point", {-1.3, 0.7, 1.4}, {4.2, 3.4, 2.4}}, {"spot", {0.8, 2.2, 1.5}, {9, 9.5, 10}}}};
+}
 
 /// The edges of a box for a mirror are this soft (the tangent of an angle): an edge of a step function would
 /// be a staircase however many samples a pixel has.
@@ -81,23 +105,27 @@ std::array<double, 9> basis(const Vec3& d) {
 
 }  // namespace
 
-Vec3 Studio::radiance(const Vec3& direction, double roughness) {
+Vec3 Studio::radiance(const Vec3& direction, double roughness) const {
   const double deviation = kSharpest + kSpread * roughness * roughness;
   const double above = edge(direction[1], 0.02 + 0.5 * deviation);
   const double height = std::sqrt(std::clamp(direction[1], 0.0, 1.0));
   Vec3 result{};
   for (size_t i = 0; i < 3; ++i) {
-    const double sky = kHorizon[i] + (kZenith[i] - kHorizon[i]) * height;
-    result[i] = kGround[i] + (sky - kGround[i]) * above;
+    const double sky = around_.horizon[i] + (around_.zenith[i] - around_.horizon[i]) * height;
+    result[i] = around_.ground[i] + (sky - around_.ground[i]) * above;
   }
-  for (const Softbox& box : kBoxes) {
+  for (const Softbox& box : around_.boxes) {
     const double part = seen(box, direction, deviation);
     for (size_t i = 0; i < 3; ++i) result[i] += part * box.radiance[i];
   }
   return result;
 }
 
-Studio::Studio() {
+Studio::Studio() : Studio(sheetStudio()) {}
+
+Studio::Studio(Surroundings around, double turn) : around_(std::move(around)) {
+  for (Softbox& box : around_.boxes) box.to = turned(box.to, turn);
+  for (Lamp& lamp : around_.lamps) lamp.to = turned(lamp.to, turn);
   // The convolution with the cosine over pi, by order.
   constexpr double kCosine[] = {1.0, 2.0 / 3.0, 0.25};
   constexpr size_t kOrder[] = {0, 1, 1, 1, 2, 2, 2, 2, 2};
@@ -129,16 +157,30 @@ Vec3 Studio::irradiance(const Vec3& normal) const {
   return result;
 }
 
-std::vector<eval::Columns> Studio::lights(const ir::Module& module) {
-  const auto light = [&](const Vec3& to, const Vec3& radiance) {
-    const Vec3 direction = unit(to);
+std::vector<eval::Columns> Studio::lights(const ir::Module& module) const {
+  std::vector<eval::Columns> lights;
+  for (const Lamp& lamp : around_.lamps) {
+    const bool known = std::any_of(module.light_kinds.begin(), module.light_kinds.end(),
+                                   [&](const ir::LightKind& kind) { return kind.name == lamp.kind; });
+    if (!known) continue;
+    const Vec3 to = unit(lamp.to);
     eval::Columns properties;
-    properties["direction"] = eval::Column::constant({-direction[0], -direction[1], -direction[2]});
-    properties["color"] = eval::Column::constant({radiance.begin(), radiance.end()});
+    properties["direction"] = eval::Column::constant({-to[0], -to[1], -to[2]});
+    properties["position"] = eval::Column::constant({lamp.to.begin(), lamp.to.end()});
+    properties["color"] = eval::Column::constant({lamp.color.begin(), lamp.color.end()});
     properties["intensity"] = eval::Column::constant({1});
-    return eval::lightOf(module, "directional", std::move(properties), 1);
-  };
-  return {light({-0.62, 0.62, 0.62}, {1.0, 0.97, 0.93}), light({0.95, 0.22, 0.30}, {0.2, 0.22, 0.25})};
+    properties["outerConeAngle"] = eval::Column::constant({lamp.outer});
+    lights.push_back(eval::lightOf(module, lamp.kind, std::move(properties), 1));
+  }
+  return lights;
+}
+
+std::vector<Studio> comparisonStudios() {
+  std::vector<Studio> studios;
+  studios.emplace_back();
+  studios.emplace_back(clearDay(), -0.6);
+  studios.emplace_back(darkRoom(), 0.5);
+  return studios;
 }
 
 }  // namespace lacquer::preview

@@ -11,13 +11,8 @@
 namespace lacquer {
 
 template <class Archive>
-void fields(Archive& archive, MaterialTerms::Variant& v) {
-  archive(v.node, v.variant, v.terms, v.error, v.saved);
-}
-
-template <class Archive>
 void fields(Archive& archive, MaterialTerms& t) {
-  archive(t.terms, t.skipped, t.variants, t.expected_error);
+  archive(t.terms, t.skipped);
 }
 
 /// The materials of one file, without its name. Terms that they share are written once.

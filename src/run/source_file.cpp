@@ -14,7 +14,6 @@
 #include "run/manifest.h"
 #include "run/manifest_scene.h"
 #include "run/report_blob.h"
-#include "shader/budget.h"
 #include "shader/language.h"
 #include "shader/module.h"
 #include "shader/options.h"
@@ -153,27 +152,6 @@ void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
   written_.push_back(attributes);
 }
 
-/// Those that are not there yet.
-void addVariants(const std::vector<MaterialTerms::Variant>& from, std::vector<MaterialTerms::Variant>& to) {
-  for (const MaterialTerms::Variant& variant : from) {
-    const auto same = [&](const auto& other) {
-      return other.node == variant.node && other.variant == variant.variant;
-    };
-    if (std::none_of(to.begin(), to.end(), same)) to.push_back(variant);
-  }
-}
-
-/// What the budget took and what that comes to.
-void writeBudget(const MaterialTerms& terms, JsonText& json) {
-  json.key("variants").beginArray();
-  for (const MaterialTerms::Variant& v : terms.variants) {
-    json.beginObject().key("node").string(v.node).key("variant").string(v.variant).key("terms");
-    writeList(v.terms, json);
-    json.key("error").json(Json(v.error)).key("saved").json(Json(v.saved)).endObject();
-  }
-  json.endArray().key("expected_error").json(Json(terms.expected_error));
-}
-
 /// Of all uses, each once.
 std::shared_ptr<const MaterialTerms> MaterialText::terms() const {
   if (met_.empty()) return std::make_shared<MaterialTerms>();
@@ -194,8 +172,6 @@ std::shared_ptr<const MaterialTerms> MaterialText::terms() const {
       else
         it->second = skipped.second;
     }
-    addVariants(structure->terms->variants, all->variants);
-    all->expected_error = expectedError(all->variants);
   }
   return all;
 }
@@ -242,7 +218,6 @@ Done MaterialText::finish(const Wanted& wanted) {
     json.raw(met_[0]->skipped_text);
   else
     writeSkipped(done.report.terms->skipped, json);
-  if (setting_.options.error_budget > 0 && !wanted.from_graph) writeBudget(*done.report.terms, json);
   json.key("ignored");
   writeList(material_.ignored, json);
   json.key("diagnostics").beginArray();

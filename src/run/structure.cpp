@@ -10,7 +10,6 @@
 #include "run/manifest.h"
 #include "run/manifest_scene.h"
 #include "run/report_blob.h"
-#include "shader/budget.h"
 #include "shader/interface.h"
 #include "shader/limits.h"
 #include "shader/module.h"
@@ -142,8 +141,6 @@ void describe(const graph::Graph& graph, Structure& structure) {
   auto terms = std::make_shared<MaterialTerms>();
   for (const graph::Node& node : graph.nodes) terms->terms.push_back(node.id);
   for (const graph::Skipped& s : graph.skipped) terms->skipped.emplace_back(s.term, s.reason);
-  terms->variants = variantsOf(graph);
-  terms->expected_error = expectedError(terms->variants);
   structure.terms = terms;
 }
 

@@ -6,8 +6,8 @@
 
 #include "lower/lower.h"
 #include "model/build.h"
-#include "shader/budget.h"
 #include "shader/options.h"
+#include "shader/simplify.h"
 
 namespace lacquer {
 
@@ -24,7 +24,9 @@ passes::LightFacts lightsOf(const gltf::Scene& scene) {
 
 Result<graph::Graph> buildGraph(const material::Material& material, const gltf::VertexAttributes& attributes,
                                 const Language& language, const Options& options, Diagnostics& warnings) {
-  const Result<const model::Model*> model = language.models.of(options.profile);
+  const Result<Simplification> simpler = simplificationOf(options.simplify);
+  if (!simpler) return tl::make_unexpected(simpler.error());
+  const Result<const model::Model*> model = language.models.of(options.profile, simpler->lods);
   if (!model) return tl::make_unexpected(model.error());
   const Result<const lang::TemplateDecl*> wanted = language.template_(options.template_name);
   if (!wanted) return tl::make_unexpected(wanted.error());
@@ -36,8 +38,12 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
                          {"multiple_scattering", options.multiple_scattering},
                          {"dfg_table", options.dfg_table}});
   build.live = {options.live.begin(), options.live.end()};
-  Result<graph::Graph> graph = model::build(**model, **wanted, material, attributes, build, warnings);
-  if (graph) applyBudget(*graph, options.error_budget);
+  build.without = simpler->without;
+  build.texels = simpler->texels;
+  for (const auto& [name, value] : simpler->switches) build.switches.insert_or_assign(name, value);
+  Result<graph::Graph> graph = model::build(
+      **model, **wanted, withoutTextures(material, *(*model)->schema, *simpler), attributes, build, warnings);
+  if (graph) simplify(*graph, language, *simpler);
   return graph;
 }
 

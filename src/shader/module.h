@@ -12,7 +12,7 @@
 namespace lacquer {
 
 passes::LightFacts lightsOf(const gltf::Scene& scene);
-/// The graph of a material as the options want it: the profile, then the variants that the budget allows.
+/// The graph of a material as the options want it: the profile, then what is to be simpler.
 Result<graph::Graph> buildGraph(const material::Material& material, const gltf::VertexAttributes& attributes,
                                 const Language& language, const Options& options, Diagnostics& warnings);
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "shader/language.h"
+#include "shader/simplify.h"
 #include "targets/target.h"
 
 namespace lacquer {
@@ -43,6 +44,10 @@ void checkNames(const Options& options, Diagnostics& wrong) {
         fmt::format("there are {}", fmt::join((*language)->names(lang::DeclKind::Switch), ", ")));
   }
   // Only who asks for terms waits here for the parts to be read.
+  if (!options.simplify.empty()) {
+    const Diagnostics words = checkSimplification(options.simplify, **language);
+    wrong.insert(wrong.end(), words.begin(), words.end());
+  }
   if (options.live.empty()) return;
   const Strings known = liveTerms(options);
   for (const std::string& term : options.live) {
@@ -80,10 +85,6 @@ Diagnostics checkReading(const Options& options) {
   Diagnostics wrong;
   if (const Result<Limits> limits = limitsOf(options); !limits) wrong = limits.error();
   checkNames(options, wrong);
-  if (!(options.error_budget >= 0 && options.error_budget <= 1)) {
-    add(wrong, "bad-error-budget", fmt::format("the error budget is {}", options.error_budget),
-        "it is a relative error from 0 to 1");
-  }
   checkEnumerator("Options::parameters", options.parameters, 3, wrong);
   checkEnumerator("Lights::mode", options.lights.mode, 3, wrong);
   return wrong;

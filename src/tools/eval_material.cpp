@@ -37,6 +37,17 @@ std::string propertyOf(const ir::TextureSlot& slot) {
   return slot.pointer.substr(slot.pointer.rfind('/') + 1);
 }
 
+std::array<double, 4> neutralTexel(const ir::TextureSlot& slot) {
+  const std::string property = propertyOf(slot);
+  const auto ends = [&](std::string_view end) {
+    return property.size() >= end.size() &&
+           property.compare(property.size() - end.size(), end.size(), end) == 0;
+  };
+  if (ends("ormalTexture")) return {0.5, 0.5, 1, 1};
+  if (ends("nisotropyTexture")) return {1, 0.5, 1, 1};
+  return {1, 1, 1, 1};
+}
+
 FileImages::FileImages(std::string file, const Options& options)
     : file_(std::move(file)), access_{limitsOf(options).value_or(Limits{}), options.allow} {}
 

@@ -124,4 +124,8 @@ private:
 /// The last part of the slot's pointer: "coatNormalTexture".
 std::string propertyOf(const ir::TextureSlot& slot);
 
+/// What stands for an image that is absent: white, but where white would bend something, a flat normal and an
+/// anisotropy along the tangent.
+std::array<double, 4> neutralTexel(const ir::TextureSlot& slot);
+
 }  // namespace lacquer

@@ -117,6 +117,7 @@ std::string nodesJson(const Options& options, Messages& messages) {
       {"lacquer", version()},
       {"extensions", listOf(all, lang::DeclKind::Extension, &lang::Library::extension, extensionJson)},
       {"profiles", listOf(all, lang::DeclKind::Profile, &lang::Library::profile, documented)},
+      {"lods", listOf(all, lang::DeclKind::Lod, &lang::Library::lod, documented)},
       {"switches", listOf(all, lang::DeclKind::Switch, &lang::Library::switch_,
                           [&](const lang::SwitchDecl& decl) {
                             Json row = documented(decl);

@@ -23,18 +23,6 @@ constexpr uint32_t kLeastSize = 16;  ///< pixels of a ball
 constexpr uint32_t kMostSize = 2048;
 constexpr uint32_t kMostColumns = 100;
 
-/// White, but where white would bend something: a flat normal, and an anisotropy along the tangent.
-std::array<double, 4> neutralTexel(const ir::TextureSlot& slot) {
-  const std::string property = propertyOf(slot);
-  const auto ends = [&](std::string_view end) {
-    return property.size() >= end.size() &&
-           property.compare(property.size() - end.size(), end.size(), end) == 0;
-  };
-  if (ends("ormalTexture")) return {0.5, 0.5, 1, 1};
-  if (ends("nisotropyTexture")) return {1, 0.5, 1, 1};
-  return {1, 1, 1, 1};
-}
-
 struct Measured {
   std::string file, name;
   preview::Difference difference;

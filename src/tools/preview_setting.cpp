@@ -5,9 +5,17 @@
 #include <algorithm>
 #include <iterator>
 
+#include "shader/simplify.h"
+
 namespace lacquer {
 
 namespace {
+
+Result<void> checkSimplification(const PreviewSetting& setting) {
+  if (const auto simpler = simplificationOf(setting.options.simplify); !simpler)
+    return tl::make_unexpected(simpler.error());
+  return {};
+}
 
 struct Word {
   const char* name;
@@ -30,6 +38,12 @@ constexpr Word kWords[] = {
 constexpr std::string_view kVariant = "variant:";
 
 Result<void> applyWord(const std::string& word, PreviewSetting& setting) {
+  // Of one node, with a `=`, it is a level's word.
+  const bool of_all = word.starts_with(kVariant) && word.find('=') == std::string::npos;
+  if (word.find(':') != std::string::npos && !of_all) {
+    setting.options.simplify.push_back(word);
+    return checkSimplification(setting);
+  }
   if (word.starts_with(kVariant) && word.size() > kVariant.size()) {
     setting.variant = word.substr(kVariant.size());
     return {};
@@ -46,7 +60,9 @@ Result<void> applyWord(const std::string& word, PreviewSetting& setting) {
     for (const std::string& name : readings) known += name + ", ";
     for (const Word& w : kWords) known += fmt::format("{}, ", w.name);
     return fail("unknown-setting", {}, fmt::format("--compare: there is no setting '{}'", word),
-                fmt::format("there are {}and variant:NAME; several are joined by +", known));
+                fmt::format("there are {}variant:NAME and the words of levels of detail, such as "
+                            "without:coat; several are joined by +",
+                            known));
   }
   found->apply(setting);
   return {};

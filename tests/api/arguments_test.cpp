@@ -32,7 +32,8 @@ constexpr WrongOption kWrongOptions[] = {
      [](Options& o) { o.parameters = static_cast<Parameters>(3); }},
     {"lights", "unknown-enumerator", false, [](Options& o) { o.lights.mode = static_cast<Lights::Mode>(9); }},
     {"profile", "unknown-profile", false, [](Options& o) { o.profile = "nobody"; }},
-    {"budget", "bad-error-budget", false, [](Options& o) { o.error_budget = -1; }},
+    {"simplification", "bad-simplification", false, [](Options& o) { o.simplify = {"coat"}; }},
+    {"left_out", "unknown-term", false, [](Options& o) { o.simplify = {"without:coat.absorbtion"}; }},
     {"live", "unknown-term", false, [](Options& o) { o.live = {"coat.darkning"}; }},
 };
 

@@ -54,7 +54,7 @@ std::string feedDeclaration(std::string_view bytes) {
   Options options = optionsOf(bytes);
   options.template_name.clear();
   options.profile.clear();
-  options.error_budget = 0;
+  options.simplify.clear();
   if (!resolveNames(language, options) || !language.models.of(options.profile)) return {};
   const auto document = material::readText(std::string(kMaterials), "fuzz.gltf", **schema, {});
   if (!document || !good) return {};

@@ -30,7 +30,7 @@ Options optionsOf(std::string_view bytes) {
   options.permissive = below(4) == 0;
   options.decode_srgb = below(4) == 0;
   options.ibl = below(4) != 0;
-  options.error_budget = below(4) == 0 ? 0.05 : 0;
+  if (below(4) == 0) options.simplify = {"without:coat.absorption", "lod:coat_mean_fresnel"};
   if (below(4) == 0) options.profile = "openpbr";
   return options;
 }

@@ -29,7 +29,7 @@ TEST(Studio, IrradianceIsTheMeanOverTheCosine) {
       const Vec3 d = spiral(k, kDirections);
       const double cosine = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
       if (cosine <= 0) continue;
-      const Vec3 light = Studio::radiance(d, 0);
+      const Vec3 light = studio.radiance(d, 0);
       for (size_t c = 0; c < 3; ++c) sum[c] += cosine * light[c];
       weights += cosine;
     }
@@ -40,31 +40,33 @@ TEST(Studio, IrradianceIsTheMeanOverTheCosine) {
 }
 
 TEST(Studio, RadianceIsPositiveAndMovesSmoothly) {
+  const Studio studio;
   const double step = 1e-4;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 d = spiral(i, 2000);
     const Vec3 e = spiral(i, 2000 + 1);  // a little beside
     for (const double roughness : {0.0, 0.3, 1.0}) {
       for (size_t c = 0; c < 3; ++c) {
-        const double x = Studio::radiance(d, roughness)[c];
+        const double x = studio.radiance(d, roughness)[c];
         EXPECT_GT(x, 0);
-        EXPECT_TRUE(std::isfinite(Studio::radiance(e, roughness)[c]));
-        EXPECT_NEAR(Studio::radiance(d, std::min(roughness + step, 1.0))[c], x, 0.05);
+        EXPECT_TRUE(std::isfinite(studio.radiance(e, roughness)[c]));
+        EXPECT_NEAR(studio.radiance(d, std::min(roughness + step, 1.0))[c], x, 0.05);
       }
     }
   }
 }
 
 TEST(Studio, RoughnessBlursAndKeepsTheLight) {
+  const Studio studio;
   // The box that is 4.6 bright is seen by a mirror, and is spread by a rough lobe.
   const Vec3 to_box{-std::sqrt(1 / 3.0), std::sqrt(1 / 3.0), std::sqrt(1 / 3.0)};
-  EXPECT_GT(Studio::radiance(to_box, 0)[0], 4);
-  EXPECT_LT(Studio::radiance(to_box, 1)[0], 1.5);
+  EXPECT_GT(studio.radiance(to_box, 0)[0], 4);
+  EXPECT_LT(studio.radiance(to_box, 1)[0], 1.5);
   double sharp = 0;
   double blurred = 0;
   for (int k = 0; k < 20000; ++k) {
-    sharp += Studio::radiance(spiral(k, 20000), 0)[0];
-    blurred += Studio::radiance(spiral(k, 20000), 0.4)[0];
+    sharp += studio.radiance(spiral(k, 20000), 0)[0];
+    blurred += studio.radiance(spiral(k, 20000), 0.4)[0];
   }
   EXPECT_NEAR(blurred / sharp, 1, 0.05);
 }

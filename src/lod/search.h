@@ -1,0 +1,50 @@
+// The search for levels: sets of words, what each of them costs and how wrong it looks, and of all that were
+// tried those that no other one beats in both.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lacquer::lod {
+
+using Words = std::vector<std::string>;  ///< sorted
+
+/// What was measured of a set of words.
+struct Tried {
+  Words words;
+  double cost = 0;   ///< cycles
+  double error = 0;  ///< how wrong it looks
+};
+
+/// Measures sets of words; nothing for one that makes no shader, or none that may be a level.
+using Measure = std::function<std::vector<std::optional<Tried>>(const std::vector<Words>& sets)>;
+/// What two words cannot both be in a set for.
+using Subject = std::function<std::string(const std::string& word)>;
+
+struct Bounds {
+  double most_error = 4;  ///< what looks worse is not simplified further
+  size_t steps = 24;      ///< words in a set, at most
+  size_t tried = 10;      ///< sets that each step measures
+};
+
+/// From the exact shader on, `exact`, to simpler ones: all that was tried, in the order in which it was. Each
+/// word is tried alone; then the sets grow by the words that promise the most cycles for the least error,
+/// from what they have done alone, each set measured.
+std::vector<Tried> search(const Tried& exact, const Words& words, const Subject& subject,
+                          const Bounds& bounds, const Measure& measure);
+
+/// Of these, by falling cost: the first, which is the exact shader, and those cheaper ones that no other
+/// beats in both, of equal ones the first. Errors rise from one of them to the next.
+std::vector<Tried> front(std::vector<Tried> all);
+
+/// Of a front that begins with the exact shader, the places of at most `count` levels: the first, the last
+/// whose error is at most `most`, and between them those whose costs are the nearest to an even division.
+std::vector<size_t> byCount(const std::vector<Tried>& front, size_t count, double most);
+/// The first, and for each bound the cheapest whose error is at most that.
+std::vector<size_t> byError(const std::vector<Tried>& front, const std::vector<double>& bounds);
+/// The first, and for each part of its cost the one with the least error that costs no more.
+std::vector<size_t> byCost(const std::vector<Tried>& front, const std::vector<double>& parts);
+
+}  // namespace lacquer::lod

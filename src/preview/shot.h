@@ -1,0 +1,35 @@
+// Pictures to measure instead of to show: a ball with a facet cut off, so that it has an edge and a flat
+// side, in display light without the steps of eight bits.
+#pragma once
+
+#include <vector>
+
+#include "picture/flip.h"
+#include "preview/ball.h"
+
+namespace lacquer::preview {
+
+struct Shot {
+  picture::Pixels pixels;        ///< what a display shows: tone mapped, linear, in [0, 1]
+  std::vector<uint32_t> inside;  ///< the pixels that show the ball, at least in part
+};
+
+/// The ball, `size` pixels wide, each with `grid` times `grid` samples. Uses threads.
+Shot shoot(const Shading& shading, uint32_t size, uint32_t grid);
+
+/// Samples of a pixel along each side that measurements at that size take: small pictures have few pixels.
+inline uint32_t gridOf(uint32_t size) { return size < 48 ? 4 : 2; }
+
+/// How different two of them look: over the pixels that show the ball, the mean and the 95th percentile.
+struct Seen {
+  double delta_e = 0, delta_e_95 = 0;  ///< CIEDE2000
+  double flip = 0, flip_95 = 0;        ///< in [0, 1]
+};
+/// Of pairs of equal size, all of their pixels together.
+Seen compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b);
+
+/// The shot before `background`, as sRGB; and where and how much two differ, by FLIP, from black to yellow.
+Picture shown(const Shot& shot);
+Picture shownDifference(const Shot& a, const Shot& b);
+
+}  // namespace lacquer::preview

@@ -1,0 +1,86 @@
+// One material while its levels are looked for: simpler shaders of it, measured.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lod/search.h"
+#include "preview/shot.h"
+#include "tools/eval_material.h"
+
+namespace lacquer {
+
+/// What was measured of a shader.
+struct LodFigures {
+  uint64_t instructions = 0, cycles = 0;  ///< on navi21; cycles of inverse throughput
+  uint64_t quarter_cycles = 0;            ///< the same with roots and the like at a quarter of the rate
+  preview::Seen seen;                     ///< against the exact shader
+};
+
+class LodMaterial {
+public:
+  struct Given {
+    const material::Material& material;
+    gltf::VertexAttributes attributes;  ///< of the primitives that use it
+    passes::LightFacts lights;          ///< of the file
+    FileImages& images;
+    const Language& language;
+    const Options& options;  ///< with its names resolved
+    const Strings& texels;
+  };
+  /// What is given must outlive this. Pictures to search by are `size` pixels wide.
+  LodMaterial(const Given& given, uint32_t size) : given_(given), size_(size) {}
+
+  /// Measures the exact shader. What is to be said of the material goes to `messages`.
+  Result<lod::Tried> open(Messages& messages);
+  /// The words that change the material's graph, those for its textures' means among them.
+  lod::Words words() const;
+  /// For lod::search(). A set that makes no shader, or one with other textures, is none.
+  std::vector<std::optional<lod::Tried>> measure(const std::vector<lod::Words>& sets);
+  /// The same words with a few numbers of the material fitted again to the exact pictures; nothing where that
+  /// cannot be, or changes nothing.
+  std::optional<lod::Words> fitted(const lod::Words& words) const;
+
+  /// The shader of a set of words, placed.
+  Result<ir::Module> module(const lod::Words& words) const;
+  /// Pictures by a set of words, one for each studio.
+  Result<std::vector<preview::Shot>> shots(const lod::Words& words, uint32_t size) const;
+  /// What was found of a set that was measured.
+  const LodFigures& figures(const lod::Words& words) const { return figures_.at(ids_.at(words)); }
+  /// "Mesa 22.3.6"; empty where the costs are estimates.
+  const std::string& driver() const { return driver_; }
+  size_t measured() const { return figures_.size(); }
+
+  /// Measures modules: cycles and instructions alone.
+  Result<std::vector<LodFigures>> costs(const std::vector<ir::Module>& modules);
+
+private:
+  using Change = std::function<void(ir::Module&)>;
+  struct Parameter;
+
+  Options optionsOf(const lod::Words& words) const;
+  Result<graph::Graph> graphOf(const lod::Words& words) const;
+  Result<std::vector<preview::Shading>> shadings(const lod::Words& words, Messages& messages,
+                                                 const Change& change = {}) const;
+  std::vector<Parameter> fittable(const lod::Words& words) const;
+  std::optional<std::vector<preview::Shot>> shotsWith(const lod::Words& words,
+                                                      const std::vector<Parameter>& parameters,
+                                                      const std::vector<double>& scales) const;
+  void readTextures(EvalMaterial& evaluated);
+
+  Given given_;
+  uint32_t size_;
+  std::vector<preview::Studio> studios_ = preview::comparisonStudios();
+  std::vector<preview::Shot> exact_, small_;  ///< to compare with; to fit to
+  std::string exact_graph_;
+  std::optional<ir::Module> exact_module_;
+  lod::Words means_;              ///< words for textures that have images
+  std::set<std::string> absent_;  ///< textures that have none: nothing is known of them
+  std::map<lod::Words, std::string> ids_;
+  std::map<std::string, LodFigures> figures_;  ///< by shader
+  std::string driver_;
+};
+
+}  // namespace lacquer

@@ -1,0 +1,218 @@
+// Levels of detail from files, as the public function makes them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "cost/cost.h"
+#include "lacquer.h"
+#include "shader/language.h"
+#include "shader/options.h"
+#include "support/cases.h"
+#include "tools/lod_material.h"
+
+namespace lacquer::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class Levels : public testing::Test {
+protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              fmt::format("lacquer_levels_{}", testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static Options quick() {
+    Options options;
+    options.targets = {Target::Spirv, Target::Glsl};
+    options.lights = {Lights::Mode::Fixed, {{"directional", 1}}};
+    return options;
+  }
+
+  json make(const std::string& file, Lod lod, const Options& options, const std::string& to = "out") {
+    lod.output = (folder_ / to).string();
+    Messages messages;
+    const std::string answer = makeLevels(lod, {file}, {}, options, messages);
+    EXPECT_FALSE(hasError(messages)) << messages[0].text;
+    return answer.empty() ? json() : json::parse(answer);
+  }
+
+  static std::string work(const char* name) {
+    return (sourceFolder() / "bench/works" / (std::string(name) + ".gltf")).string();
+  }
+
+  fs::path folder_;
+};
+
+const json* materialBlock(const json& shader) {
+  for (const json& block : shader["uniforms"]) {
+    if (block["role"] == "material") return &block;
+  }
+  return nullptr;
+}
+
+/// The chain of everything that a coat has: what the page of the levels promises.
+TEST_F(Levels, AreAChainOfOneInterfaceThatIsAsMeasured) {
+  Lod lod;
+  lod.size = 24;
+  const json answer = make(work("w3"), lod, quick());
+  ASSERT_EQ(answer["materials"].size(), 1U);
+  const json& levels = answer["materials"][0]["levels"];
+  ASSERT_GE(levels.size(), 3U);
+  const json manifest = json::parse(readFile(folder_ / "out/manifest.json"));
+  EXPECT_EQ(manifest["levels"], answer["materials"]);
+
+  const json& exact = manifest["shaders"][levels[0]["shader"].get<std::string>()];
+  EXPECT_TRUE(levels[0]["simplify"].empty());
+  EXPECT_EQ(levels[0]["error"]["delta_e"]["mean"], 0);
+  for (size_t i = 0; i < levels.size(); ++i) {
+    const json& shader = manifest["shaders"][levels[i]["shader"].get<std::string>()];
+    EXPECT_TRUE(shader["validated"]["spirv"].get<bool>());
+    EXPECT_TRUE(shader["validated"]["glsl"].get<bool>());
+    for (const json& texture : shader["textures"])
+      EXPECT_NE(std::find(exact["textures"].begin(), exact["textures"].end(), texture),
+                exact["textures"].end());
+    if (const json* block = materialBlock(shader)) {
+      const json* whole = materialBlock(exact);
+      ASSERT_NE(whole, nullptr);
+      EXPECT_EQ((*block)["size"], (*whole)["size"]);
+      EXPECT_EQ((*block)["binding"], (*whole)["binding"]);
+      EXPECT_EQ((*block)["fields"], (*whole)["fields"]);
+    }
+    if (i == 0) continue;
+    EXPECT_LT(levels[i]["cost"]["inverse_throughput"], levels[i - 1]["cost"]["inverse_throughput"]);
+    EXPECT_GE(levels[i]["error"]["delta_e"]["mean"], levels[i - 1]["error"]["delta_e"]["mean"]);
+    EXPECT_GT(levels[i]["cost"]["quarter_rate"], levels[i]["cost"]["inverse_throughput"]);
+    EXPECT_TRUE(fs::exists(folder_ / "out" / fmt::format("pictures/0-0-{}.png", i)));
+  }
+  EXPECT_EQ(levels.back()["screen_size"], 32);
+  EXPECT_LE(levels.back()["error"]["delta_e"]["mean"], 2);
+
+  if (!cost::unavailable().empty()) GTEST_SKIP() << "the costs are estimates: " << cost::unavailable();
+  Messages messages;
+  for (const ShaderCost& cost : measureCost({(folder_ / "out").string()}, false, messages)) {
+    for (const json& level : levels) {
+      if (level["shader"] != cost.name) continue;
+      EXPECT_EQ(level["cost"]["inverse_throughput"], cost.gpus[0].inverse_throughput) << cost.name;
+    }
+  }
+}
+
+TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
+  Lod lod;
+  lod.size = 24;
+  lod.levels = 2;
+  const Options options = quick();
+  const json answer = make(work("w1"), lod, options);
+  const json& level = answer["materials"][0]["levels"].back();
+  Options named = options;
+  const auto language = libraryFor(named);
+  ASSERT_TRUE(language.has_value());
+  ASSERT_TRUE(resolveNames(**language, named).has_value());
+  const auto document = readMaterials(work("w1"), **language, named);
+  ASSERT_TRUE(document.has_value());
+  FileImages images(work("w1"), named);
+  const Strings no_texels;
+  LodMaterial again({document->materials[0], document->uses[0][0], lightsOf(*document), images, **language,
+                     named, no_texels},
+                    24);
+  const auto words = level["simplify"].get<lod::Words>();
+  const auto exact = again.shots({}, 24);
+  const auto simpler = again.shots(words, 24);
+  ASSERT_TRUE(exact && simpler);
+  const preview::Seen seen = preview::compareShots(*exact, *simpler);
+  EXPECT_EQ(seen.delta_e, level["error"]["delta_e"]["mean"].get<double>());
+  EXPECT_EQ(seen.flip_95, level["error"]["flip"]["p95"].get<double>());
+  EXPECT_GT(seen.delta_e, 0);
+}
+
+/// A coat that hardly is one can go.
+TEST_F(Levels, AWeakCoatCostsLess) {
+  json gltf = json::parse(readFile(work("w1")));
+  gltf["materials"][0]["extensions"]["KHR_materials_clearcoat"]["clearcoatFactor"] = 0.02;
+  const std::string file = (folder_ / "weak.gltf").string();
+  std::ofstream(file) << gltf.dump();
+  Lod lod;
+  lod.size = 24;
+  lod.errors = {0.5};
+  const json levels = make(file, lod, quick())["materials"][0]["levels"];
+  ASSERT_EQ(levels.size(), 2U);
+  EXPECT_LE(levels[1]["error"]["delta_e"]["mean"], 0.5);
+  EXPECT_LE(levels[1]["cost"]["inverse_throughput"].get<double>(),
+            0.85 * levels[0]["cost"]["inverse_throughput"].get<double>());
+}
+
+TEST_F(Levels, EqualInputGivesEqualBytes) {
+  Lod lod;
+  lod.size = 16;
+  lod.levels = 3;
+  make(work("w1"), lod, quick(), "a");
+  make(work("w1"), lod, quick(), "b");
+  size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "a")) {
+    if (!entry.is_regular_file()) continue;
+    ++files;
+    EXPECT_EQ(readFile(entry.path()), readFile(folder_ / "b" / fs::relative(entry.path(), folder_ / "a")))
+        << entry.path();
+  }
+  EXPECT_GE(files, 8U);
+}
+
+TEST_F(Levels, WrongRequestsAreMessages) {
+  struct Wrong {
+    const char* code;
+    std::function<void(Lod&, Options&)> make;
+  };
+  const Wrong kWrong[] = {
+      {"no-path", [](Lod& lod, Options&) { lod.output.clear(); }},
+      {"out-of-range", [](Lod& lod, Options&) { lod.levels = 1; }},
+      {"out-of-range", [](Lod& lod, Options&) { lod.size = 1 << 20; }},
+      {"out-of-range",
+       [](Lod& lod, Options&) {
+         lod.errors = {2, 1};
+       }},
+      {"out-of-range", [](Lod& lod, Options&) { lod.errors = {std::nan("")}; }},
+      {"out-of-range", [](Lod& lod, Options&) { lod.costs = {1.5}; }},
+      {"out-of-range", [](Lod& lod, Options&) { lod.most_error = -1; }},
+      {"wrong-count", [](Lod& lod, Options&) { lod.errors = {1}, lod.costs = {0.5}; }},
+      {"lod-parameters",
+       [](Lod&, Options& options) {
+         options.parameters = Parameters::Spec;
+         options.targets = {Target::Spirv};
+       }},
+      {"lod-template", [](Lod&, Options& options) { options.template_name = "surface"; }},
+      {"bad-texel", [](Lod& lod, Options&) { lod.texels = {"nonsense"}; }},
+      {"unknown-term", [](Lod&, Options& options) { options.simplify = {"without:nobody"}; }},
+  };
+  for (const Wrong& wrong : kWrong) {
+    Lod lod;
+    lod.output = (folder_ / "out").string();
+    Options options = quick();
+    options.lights = {};
+    wrong.make(lod, options);
+    Messages messages;
+    EXPECT_TRUE(makeLevels(lod, {work("w0")}, {}, options, messages).empty()) << wrong.code;
+    const bool said = std::any_of(messages.begin(), messages.end(),
+                                  [&](const Message& message) { return message.code == wrong.code; });
+    EXPECT_TRUE(said) << wrong.code << ": " << (messages.empty() ? "nothing" : messages[0].text);
+    EXPECT_FALSE(fs::exists(folder_ / "out/manifest.json"));
+  }
+  Lod lod;
+  lod.output = (folder_ / "out").string();
+  Messages messages;
+  EXPECT_TRUE(makeLevels(lod, {(folder_ / "absent.gltf").string()}, {}, quick(), messages).empty());
+  EXPECT_TRUE(hasError(messages));
+}
+
+}  // namespace
+}  // namespace lacquer::test

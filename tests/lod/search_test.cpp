@@ -1,0 +1,110 @@
+// The search over made-up shaders, and the choice of levels; the cycles that roots and the like add.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "cost/quarter.h"
+#include "lod/search.h"
+
+namespace lacquer::lod {
+namespace {
+
+/// Words that save and spoil independently of each other, but for two that save the same.
+struct World {
+  std::map<std::string, std::pair<double, double>> words{
+      {"a:1", {40, 0.0}}, {"b:1", {30, 0.1}}, {"c:1", {20, 0.5}}, {"d:1", {50, 3.0}},
+      {"e:1", {-5, 0.0}}, {"f:1", {30, 0.2}}, {"f:2", {35, 0.9}}, {"g:1", {10, 40.0}}};
+  mutable size_t measured = 0;
+
+  std::optional<Tried> operator()(const Words& set) const {
+    Tried tried{set, 400, 0};
+    ++measured;
+    for (const std::string& word : set) {
+      if (word == "broken:1") return std::nullopt;
+      tried.cost -= words.at(word).first;
+      tried.error += words.at(word).second;
+    }
+    return tried;
+  }
+  std::vector<std::optional<Tried>> all(const std::vector<Words>& sets) const {
+    std::vector<std::optional<Tried>> result;
+    for (const Words& set : sets) result.push_back((*this)(set));
+    return result;
+  }
+};
+
+std::string subjectOf(const std::string& word) { return word.substr(0, 1); }
+
+std::vector<Tried> found(const World& world) {
+  Words words{"broken:1"};
+  for (const auto& [word, ignored] : world.words) words.push_back(word);
+  return search(*world({}), words, subjectOf, {10, 24, 10},
+                [&](const std::vector<Words>& sets) { return world.all(sets); });
+}
+
+TEST(Search, GrowsByTheWordsThatSaveTheMostForTheLeast) {
+  const World world;
+  const std::vector<Tried> best = front(found(world));
+  ASSERT_FALSE(best.empty());
+  EXPECT_TRUE(best[0].words.empty());
+  EXPECT_EQ(best.back().words, (Words{"a:1", "b:1", "c:1", "d:1", "f:1"}));
+  EXPECT_EQ(best[1].words, Words{"a:1"});
+}
+
+TEST(Search, NoSetIsMeasuredTwiceAndNoneHasTwoWordsForOneThing) {
+  const World world;
+  const std::vector<Tried> all = found(world);
+  std::set<Words> seen;
+  for (const Tried& one : all) {
+    EXPECT_TRUE(seen.insert(one.words).second);
+    std::set<std::string> subjects;
+    for (const std::string& word : one.words) EXPECT_TRUE(subjects.insert(subjectOf(word)).second);
+  }
+}
+
+TEST(Search, TheFrontIsWhatNoOtherBeats) {
+  const World world;
+  const std::vector<Tried> all = found(world);
+  const std::vector<Tried> best = front(all);
+  for (size_t i = 1; i < best.size(); ++i) {
+    EXPECT_LT(best[i].cost, best[i - 1].cost);
+    EXPECT_GE(best[i].error, best[i - 1].error);
+    for (const Tried& one : all)
+      EXPECT_FALSE(one.cost <= best[i].cost && one.error < best[i].error) << "level " << i;
+  }
+}
+
+const std::vector<Tried> kFront{{{}, 400, 0},      {{"a"}, 360, 0.1}, {{"b"}, 300, 0.4},
+                                {{"c"}, 250, 0.9}, {{"d"}, 200, 1.5}, {{"e"}, 150, 3.0}};
+
+TEST(Choice, ByCountDividesTheCostsEvenly) {
+  EXPECT_EQ(byCount(kFront, 4, 2), (std::vector<size_t>{0, 1, 3, 4}));
+  EXPECT_EQ(byCount(kFront, 2, 100), (std::vector<size_t>{0, 5}));
+  EXPECT_EQ(byCount(kFront, 16, 100), (std::vector<size_t>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(byCount(kFront, 4, 0.05), (std::vector<size_t>{0}));
+}
+
+TEST(Choice, ByErrorTakesTheCheapest) {
+  EXPECT_EQ(byError(kFront, {0.5, 1, 1.2, 2}), (std::vector<size_t>{0, 2, 3, 4}));
+  EXPECT_EQ(byError(kFront, {0.01}), (std::vector<size_t>{0}));
+}
+
+TEST(Choice, ByCostTakesTheNearest) {
+  EXPECT_EQ(byCost(kFront, {0.9, 0.5, 0.1}), (std::vector<size_t>{0, 1, 4}));
+}
+
+TEST(QuarterRate, RootsAddSixCyclesAndEightfoldInALoop) {
+  EXPECT_EQ(cost::quarterRateCycles("BB0:\n\tv_mul_f32_e32 v0, v1, v2 ; 1\n\tv_rsq_f32_e32 v0, v0 ; 2\n"),
+            6U);
+  EXPECT_EQ(
+      cost::quarterRateCycles("BB0:\n\tv_rcp_f32_e32 v0, v0\nBB1:\n\ts_cbranch_scc1 BB3 ; x\n"
+                              "\tv_exp_f32_e32 v0, v0\n\ts_branch BB1 ; y\nBB3:\n\tv_sqrt_f32_e32 v0, v0\n"),
+      6U + 48U + 6U);
+  EXPECT_EQ(cost::quarterRateCycles(""), 0U);
+  EXPECT_EQ(cost::quarterRateCycles("s_branch BB7\nv_sqrt"), 0U);
+}
+
+}  // namespace
+}  // namespace lacquer::lod
