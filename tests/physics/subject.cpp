@@ -83,8 +83,11 @@ std::vector<Vec4> Subject::colors(std::span<const Sample> samples, const Vec3& e
     if (!slot.environment) {
       const std::string property = slot.pointer.substr(slot.pointer.rfind('/') + 1);
       const auto it = texels_.find(property);
-      EXPECT_NE(it, texels_.end()) << "no texel for " << property;
-      if (it != texels_.end()) texel = it->second;
+      EXPECT_TRUE(it != texels_.end() || setup_.texel) << "no texel for " << property;
+      if (it != texels_.end())
+        texel = it->second;
+      else if (setup_.texel)
+        texel = *setup_.texel;
     }
     bindings.textures[slot.name] = [texel](size_t, const Vec3&, double) { return texel; };
     if (const auto it = setup_.textures.find(slot.name); it != setup_.textures.end()) {

@@ -1,6 +1,7 @@
 // What Lacquer makes of a material: its DAG, evaluated.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ struct Configuration {
   bool tangents = true;
   bool quads = false;  ///< samples stand in fours, and derivatives are taken between them
   std::set<std::string> live;
-  std::string output;  ///< the colour output's name; empty for the first
+  std::optional<Vec4> texel;  ///< of material textures without one of their own
+  std::string output;         ///< the colour output's name; empty for the first
   /// What an engine gives, in place of what stands for it here: textures by slot, and fields by their names.
   std::map<std::string, eval::Sampler> textures;
   eval::Columns columns;
