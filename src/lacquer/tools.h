@@ -6,6 +6,8 @@
 
 namespace lacquer {
 
+class Scene;
+
 /// What computes colours.
 enum class Engine : uint8_t {
   Double,      ///< on the CPU, the reference
@@ -21,6 +23,16 @@ std::string evaluate(const std::string& file, const std::string& material, const
                      const std::string& points_name, Engine engine, const Strings& texels,
                      const Options& options, Messages& messages);
 
+/// The same of a material of a scene. `points` is the text itself. A scene from memory has the images that
+/// are in it; "no-such-material" for an index that does not exist.
+std::string evaluate(const Scene& scene, size_t material, const std::string& points, Engine engine,
+                     const Strings& texels, const Options& options, Messages& messages);
+/// A lit ball of a material of a scene, in float: `size` rows from the top of `size` pixels of three bytes,
+/// sRGB. Empty on an error. Where an image is absent a neutral colour stands for it, with a note. Uses
+/// threads.
+std::vector<uint8_t> drawBall(const Scene& scene, size_t material, uint32_t size, const Strings& texels,
+                              const Options& options, Messages& messages);
+
 /// A contact sheet (docs/preview.md).
 struct Preview {
   std::string output;    ///< the PNG file to write
@@ -35,6 +47,16 @@ struct Preview {
 /// left out, with messages. Uses threads.
 std::string drawPreview(const Preview& preview, const Strings& files, const Strings& materials,
                         const Options& options, Messages& messages, const Progress& progress = {});
+
+/// A page to look at files with (docs/web.md).
+struct View {
+  std::string output;  ///< the HTML file to write
+  std::string page;    ///< the page without files, which `./dev web` makes
+};
+/// Puts the files, with the buffers and images that they name, into the page, which is then one file that
+/// needs no other. What a file names and is not there is left out, with a warning. False on an error:
+/// "no-page", "file-unreadable" and the like.
+bool writeView(const View& view, const Strings& files, const Options& options, Messages& messages);
 
 /// How an attack is made (docs/stress.md).
 struct Stress {
