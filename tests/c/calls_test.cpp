@@ -198,6 +198,8 @@ TEST_F(CCalls, packTakesValuesByName) {
 }
 
 TEST_F(CCalls, aMaterialIsEvaluatedAndDrawn) {
+  const std::string path = (sourceFolder() / "examples/coat.gltf").string();
+  scene_.reset(lacquer_scene_load(path.c_str(), options_.get(), messages_));  // with its images
   const std::string points = R"([{"v": [0, 0, 1], "l": [0, 0.6, 0.8]}])";
   const Json answer = Json::parse(textOf(CText(lacquer_scene_evaluate(
       scene_.get(), 0, points.data(), points.size(), LACQUER_FLOAT, options_.get(), messages_))));

@@ -10,7 +10,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-const Words kVerbs = {"gen", "plan", "merge", "graph", "dump", "nodes", "cost", "eval", "preview", "stress"};
+const Words kVerbs = {"gen", "plan", "merge", "graph", "dump", "nodes", "cost", "eval", "preview", "stress", "view"};
 
 std::string joined(const Words& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
