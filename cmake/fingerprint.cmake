@@ -1,6 +1,10 @@
 # lacquer_fingerprint(TARGET TEXT): defines lacquer::fingerprint(), which stands for the sources, the node library and
 # TEXT (the version). What is linked says its version at run time.
 function(lacquer_fingerprint target text)
+  get_target_property(type "${target}" TYPE)
+  if(type STREQUAL "INTERFACE_LIBRARY")
+    return()  # left out of this build
+  endif()
   file(GLOB_RECURSE files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/*.cpp" "${PROJECT_SOURCE_DIR}/src/*.h"
        "${PROJECT_SOURCE_DIR}/src/*.def" "${PROJECT_SOURCE_DIR}/nodes/*.node" "${PROJECT_SOURCE_DIR}/templates/*.node")
   list(FILTER files EXCLUDE REGEX "/src/cli/")

@@ -15,7 +15,7 @@ target_compile_features(lacquer_library PUBLIC cxx_std_20)
 # What its objects need at link time; lacquer-config.cmake finds the same. Header-only libraries are in the objects.
 target_link_libraries(lacquer_library PRIVATE fmt::fmt glslang::glslang glslang::SPIRV
                       glslang::glslang-default-resource-limits SPIRV-Tools-opt SPIRV-Tools-static TBB::tbb
-                      PkgConfig::sodium_pc Threads::Threads ${CMAKE_DL_LIBS})
+                      PkgConfig::sodium_pc PkgConfig::stb_pc Threads::Threads ${CMAKE_DL_LIBS})
 if(TARGET PkgConfig::spirv_cross_pc)
   set(LACQUER_SPIRV_CROSS ON)
   target_link_libraries(lacquer_library PRIVATE PkgConfig::spirv_cross_pc)
@@ -25,8 +25,10 @@ add_executable(lacquer::lacquer_cli ALIAS lacquer_cli)
 
 set(package "${CMAKE_INSTALL_LIBDIR}/cmake/lacquer")
 install(TARGETS lacquer_library lacquer_cli EXPORT lacquer_targets)
-install(FILES src/lacquer.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(FILES src/lacquer.h src/lacquer_c.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(DIRECTORY src/lacquer DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+# The page of `lacquer view`, where `./dev web` has made it.
+install(FILES "${PROJECT_SOURCE_DIR}/build/web/view.html" DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/lacquer" OPTIONAL)
 install(EXPORT lacquer_targets NAMESPACE lacquer:: FILE lacquer-targets.cmake DESTINATION "${package}")
 configure_package_config_file(cmake/lacquer-config.cmake.in "${PROJECT_BINARY_DIR}/lacquer-config.cmake"
                               INSTALL_DESTINATION "${package}")

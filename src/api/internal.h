@@ -28,6 +28,10 @@ struct Graph::Impl {
 struct Scene::Impl {
   material::Document document;
   std::shared_ptr<const Language> language;  ///< whose declarations the materials follow
+  std::shared_ptr<const std::string> bytes;  ///< the file's, where it was read from memory
+
+  /// A material of that index; null, and "no-such-material", when there is none.
+  const material::Material* material(size_t index, Messages& messages) const;
 };
 
 struct Shader::Impl : ShaderData {

@@ -5,6 +5,7 @@
 #include "shader/messages.h"
 #include "shader/module.h"
 #include "shader/options.h"
+#include "tools/of_scene.h"
 
 namespace lacquer {
 
@@ -31,6 +32,15 @@ const Scene::Impl& Scene::impl() const {
   return impl_ ? *impl_ : kNone;
 }
 
+const material::Material* Scene::Impl::material(size_t index, Messages& messages) const {
+  if (index < document.materials.size()) return &document.materials[index];
+  report(fail("no-such-material", {}, fmt::format("there is no material {}", index),
+              fmt::format("the file has {}, counted from 0", document.materials.size()))
+             .value(),
+         document.path, messages);
+  return nullptr;
+}
+
 Scene Scene::load(const std::string& path, const Options& options, Messages& messages) {
   Scene scene;
   const Result<SchemaOf> schema = schemaFor(options);
@@ -41,7 +51,7 @@ Scene Scene::load(const std::string& path, const Options& options, Messages& mes
     return scene;
   }
   report(document->diagnostics, path, messages);
-  scene.impl_ = std::make_shared<Impl>(Impl{std::move(*document), schema->language});
+  scene.impl_ = std::make_shared<Impl>(Impl{std::move(*document), schema->language, {}});
   return scene;
 }
 
@@ -58,7 +68,8 @@ Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const
     return scene;
   }
   report(document->diagnostics, name, messages);
-  scene.impl_ = std::make_shared<Impl>(Impl{std::move(*document), schema->language});
+  scene.impl_ = std::make_shared<Impl>(
+      Impl{std::move(*document), schema->language, std::make_shared<const std::string>(bytes)});
   return scene;
 }
 
@@ -93,14 +104,9 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   Graph result;
   if (!filled(impl_.get(), "scene", messages)) return result;
   const material::Document& document = impl_->document;
-  if (material >= document.materials.size()) {
-    report(fail("no-such-material", {}, fmt::format("there is no material {}", material),
-                fmt::format("the file has {}, counted from 0", document.materials.size()))
-               .value(),
-           document.path, messages);
-    return result;
-  }
-  const material::Material& m = document.materials[material];
+  const material::Material* found = impl_->material(material, messages);
+  if (found == nullptr) return result;
+  const material::Material& m = *found;
   report(m.diagnostics, document.path, messages);
   if (lacquer::hasError(m.diagnostics)) return result;
   if (const Diagnostics wrong = checkReading(options); !wrong.empty()) {
@@ -121,6 +127,26 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   result.impl_ =
       std::make_shared<Graph::Impl>(Graph::Impl{std::move(*graph), document.path, lightsOf(document)});
   return result;
+}
+
+std::string evaluate(const Scene& scene, size_t material, const std::string& points, Engine engine,
+                     const Strings& texels, const Options& options, Messages& messages) {
+  if (!filled(scene.impl_.get(), "scene", messages)) return {};
+  const Scene::Impl& impl = scene.impl();
+  const material::Material* found = impl.material(material, messages);
+  if (found == nullptr) return {};
+  return evaluateOf({*found, *impl.language, impl.document.path, impl.bytes}, points, engine, texels, options,
+                    messages);
+}
+
+std::vector<uint8_t> drawBall(const Scene& scene, size_t material, uint32_t size, const Strings& texels,
+                              const Options& options, Messages& messages) {
+  if (!filled(scene.impl_.get(), "scene", messages)) return {};
+  const Scene::Impl& impl = scene.impl();
+  const material::Material* found = impl.material(material, messages);
+  if (found == nullptr) return {};
+  return drawBallOf({*found, *impl.language, impl.document.path, impl.bytes}, size, texels, options,
+                    messages);
 }
 
 }  // namespace lacquer

@@ -20,6 +20,7 @@
 #include "cli/streams.h"
 #include "cli/stress.h"
 #include "cli/table.h"
+#include "cli/view.h"
 #include "lacquer.h"
 
 namespace {
@@ -434,6 +435,9 @@ int run(int argc, char** argv) {
   if (called(lod_verb)) addLevels(*lod_verb, flags, lod_flags);
   lacquer::cli::StressFlags stress_flags;
   CLI::App* stress_verb = lacquer::cli::addStress(app, stress_flags);
+  lacquer::cli::ViewFlags view_flags;
+  view_flags.program = argc > 0 ? argv[0] : "";
+  CLI::App* view_verb = lacquer::cli::addView(app, view_flags);
 
   for (CLI::App* verb : app.get_subcommands({}))
     verb->set_version_flag("--version", std::string(lacquer::version()));
@@ -463,6 +467,7 @@ int run(int argc, char** argv) {
   if (*preview_verb) return lacquer::cli::runPreview(preview_flags);
   if (*lod_verb) return lacquer::cli::runLod(lod_flags, flags.files, flags.materials, flags.options);
   if (*stress_verb) return lacquer::cli::runStress(stress_flags);
+  if (*view_verb) return lacquer::cli::runView(view_flags);
   if (*gen_verb) return gen(flags);
   if (*plan_verb) return plan(flags);
   if (*merge_verb) return merge(flags);

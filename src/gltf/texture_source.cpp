@@ -107,14 +107,22 @@ const Json* element(const Json& root, std::string_view array, std::optional<size
 Result<TextureFile> TextureFile::open(const std::string& path, const TextureAccess& access) {
   const Result<std::string> bytes = readFile(path, access.limits.file);
   if (!bytes) return tl::make_unexpected(bytes.error());
-  const Result<std::string_view> text = jsonText(*bytes, path);
+  Result<TextureFile> file = fromMemory(*bytes, path, access);
+  if (file) file->in_memory_ = false;
+  return file;
+}
+
+Result<TextureFile> TextureFile::fromMemory(std::string_view bytes, const std::string& name,
+                                            const TextureAccess& access) {
+  const Result<std::string_view> text = jsonText(bytes, name);
   if (!text) return tl::make_unexpected(text.error());
-  Result<Json> root = parseJson(*text, path, access.limits);
+  Result<Json> root = parseJson(*text, name, access.limits);
   if (!root) return tl::make_unexpected(std::move(root.error()));
   TextureFile file;
-  file.path_ = path;
+  file.path_ = name;
   file.access_ = access;
-  file.binary_ = binaryChunk(*bytes);
+  file.in_memory_ = true;
+  file.binary_ = binaryChunk(bytes);
   file.root_ = std::move(*root);
   return file;
 }
@@ -132,6 +140,10 @@ Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& p
     if (base64) bytes = fromBase64(std::string_view(uri).substr(comma + 1));
     if (!bytes) return missing("the data URI cannot be decoded", "it must be base64");
     return *bytes;
+  }
+  if (in_memory_) {
+    return missing(fmt::format("{} is a file, and the scene was read from memory", quote(uri)),
+                   "its images must be in it");
   }
   const std::string relative = percentDecoded(uri);
   if (hasScheme(uri) || std::filesystem::path(relative).is_absolute() ||
@@ -195,6 +207,21 @@ Result<TextureSource> TextureFile::texture(int index) const {
   source.image = static_cast<size_t>(image);
   source.place = {path_, 0, 0, fmt::format("/images/{}", image)};
   return source;
+}
+
+std::vector<std::string> TextureFile::fileUris() const {
+  std::vector<std::string> uris;
+  for (const std::string_view array : {"buffers", "images"}) {
+    for (size_t i = 0; i < json::arraySize(root_, array); ++i) {
+      const Json* object = element(root_, array, i);
+      const Json* uri = object == nullptr ? nullptr : member(*object, "uri");
+      if (uri == nullptr || !uri->is_string()) continue;
+      const std::string& text = uri->get_ref<const std::string&>();
+      const bool data = text.starts_with("data:");
+      if (!data && std::find(uris.begin(), uris.end(), text) == uris.end()) uris.push_back(text);
+    }
+  }
+  return uris;
 }
 
 Result<std::string> TextureFile::image(const TextureSource& source) const {

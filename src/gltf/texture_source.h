@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gltf/facts.h"
@@ -30,6 +31,9 @@ class TextureFile {
 public:
   /// Reads a .gltf or .glb.
   static Result<TextureFile> open(const std::string& path, const TextureAccess& access);
+  /// The same from its bytes; `name` stands for the file in messages. Its images are in it: no file is read.
+  static Result<TextureFile> fromMemory(std::string_view bytes, const std::string& name,
+                                        const TextureAccess& access);
 
   /// The texture of that index. Errors: "image-missing".
   Result<TextureSource> texture(int index) const;
@@ -39,7 +43,12 @@ public:
   /// for a path that leads elsewhere, which nobody looks at.
   Result<std::string> image(const TextureSource& source) const;
 
-  /// Those that image() has read, as paths.
+  /// The URIs of buffers and images that lie in files of their own, each once, in the order of the JSON.
+  std::vector<std::string> fileUris() const;
+  /// The bytes behind such a URI. Errors: those of image().
+  Result<std::string> fileBytes(const std::string& uri) const { return uriBytes(uri, {path_, 0, 0, {}}); }
+
+  /// Those that image() and fileBytes() have read, as paths.
   const std::vector<std::string>& filesRead() const { return read_; }
 
 private:
@@ -49,6 +58,7 @@ private:
 
   std::string path_, binary_;
   TextureAccess access_;
+  bool in_memory_ = false;
   mutable std::vector<std::string> read_;
   Json root_;
 };

@@ -12,6 +12,8 @@
 
 namespace lacquer {
 
+enum class Engine : uint8_t;
+
 /// The vertex attributes of a primitive beside POSITION.
 struct Attributes {
   bool normal = true, tangent = false, color0 = false;
@@ -49,6 +51,10 @@ public:
               Messages& messages) const;
 
 private:
+  friend std::string evaluate(const Scene&, size_t, const std::string&, Engine, const Strings&,
+                              const Options&, Messages&);
+  friend std::vector<uint8_t> drawBall(const Scene&, size_t, uint32_t, const Strings&, const Options&,
+                                       Messages&);
   struct Impl;
   const Impl& impl() const;
   std::shared_ptr<Impl> impl_;

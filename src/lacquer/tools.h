@@ -8,6 +8,8 @@
 
 namespace lacquer {
 
+class Scene;
+
 /// What computes colours.
 enum class Engine : uint8_t {
   Double,      ///< on the CPU, the reference
@@ -22,6 +24,16 @@ enum class Engine : uint8_t {
 std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
                      const std::string& points_name, Engine engine, const Strings& texels,
                      const Options& options, Messages& messages);
+
+/// The same of a material of a scene. `points` is the text itself. A scene from memory has the images that
+/// are in it; "no-such-material" for an index that does not exist.
+std::string evaluate(const Scene& scene, size_t material, const std::string& points, Engine engine,
+                     const Strings& texels, const Options& options, Messages& messages);
+/// A lit ball of a material of a scene, in float: `size` rows from the top of `size` pixels of three bytes,
+/// sRGB. Empty on an error. Where an image is absent a neutral colour stands for it, with a note. Uses
+/// threads.
+std::vector<uint8_t> drawBall(const Scene& scene, size_t material, uint32_t size, const Strings& texels,
+                              const Options& options, Messages& messages);
 
 /// A contact sheet (docs/preview.md).
 struct Preview {
@@ -55,6 +67,16 @@ struct Lod {
 /// error. A material that fails is left out, with messages. Uses threads, and processes for the costs.
 std::string makeLevels(const Lod& lod, const Strings& files, const Strings& materials, const Options& options,
                        Messages& messages, const Progress& progress = {});
+
+/// A page to look at files with (docs/web.md).
+struct View {
+  std::string output;  ///< the HTML file to write
+  std::string page;    ///< the page without files, which `./dev web` makes
+};
+/// Puts the files, with the buffers and images that they name, into the page, which is then one file that
+/// needs no other. What a file names and is not there is left out, with a warning. False on an error:
+/// "no-page", "file-unreadable" and the like.
+bool writeView(const View& view, const Strings& files, const Options& options, Messages& messages);
 
 /// How an attack is made (docs/stress.md).
 struct Stress {
@@ -90,8 +112,8 @@ std::vector<ShaderCost> measureCost(const Strings& paths, bool disassembly, Mess
 /// at texel centres, scale and bias of F0 in each, all in [0, 1]. `size` is from 2 to 1024; else empty, and
 /// "out-of-range".
 std::vector<float> environmentDfg(uint32_t size, Messages& messages);
-/// The same as a file: by the name's ending .dds (R16G16_UNORM), .ktx2 (R16G16_SFLOAT) or .png (16 bits; red and
-/// green). False on an error, "table-format" for another ending.
+/// The same as a file: by the name's ending .dds (R16G16_UNORM), .ktx2 (R16G16_SFLOAT) or .png (16 bits; red
+/// and green). False on an error, "table-format" for another ending.
 bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messages);
 /// The table behind environment_sheen (docs/bindings.md): `size` rows of the sheen's roughness with `size`
 /// columns of a cosine at texel centres, what the sheen reflects and what its lobe is multiplied by in each.

@@ -11,6 +11,7 @@
 #include "support/text.h"
 #include "tools/eval_material.h"
 #include "tools/gpu.h"
+#include "tools/of_scene.h"
 #include "tools/points.h"
 
 namespace lacquer {
@@ -255,28 +256,25 @@ Result<Colors> colorsOnGpu(const ir::Module& module, const eval::Bindings& bindi
   return result;
 }
 
-Result<std::string> evaluateOne(const std::string& file, const std::string& material,
-                                const EvalPoints& points, const std::string& points_file, Engine engine,
-                                const std::vector<std::string>& texels, const Options& options,
-                                Messages& messages) {
-  const auto library = libraryFor(options);
-  if (!library) return tl::make_unexpected(library.error());
-  const Result<material::Document> document = readMaterials(file, **library, options);
-  if (!document) return tl::make_unexpected(document.error());
-  report(document->diagnostics, file, messages);
-  Diagnostics warnings;
-  const Result<size_t> place =
-      material::findMaterial(*document, material.empty() ? std::nullopt : std::optional(material), warnings);
-  if (!place) return tl::make_unexpected(place.error());
-  report(warnings, file, messages);
-  const material::Material& found = document->materials[*place];
+/// How to evaluate, beside the material.
+struct Evaluation {
+  const EvalPoints& points;
+  const std::string& points_file;
+  Engine engine;
+  const Strings& texels;
+  const Options& options;
+};
+
+Result<std::string> evaluateMaterial(const material::Material& found, const Language& library,
+                                     FileImages& images, const Evaluation& how, Messages& messages) {
+  const auto& [points, points_file, engine, texels, options] = how;
+  const std::string& file = images.file();
   report(found.diagnostics, file, messages);
   if (lacquer::hasError(found.diagnostics)) return std::string();
-  FileImages images(file, options);
   EvalMaterial evaluated(images, options);
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
-  if (Result<void> lowered = evaluated.lower(found, **library, points.has_environment, {}, messages);
+  if (Result<void> lowered = evaluated.lower(found, library, points.has_environment, {}, messages);
       !lowered) {
     return tl::make_unexpected(std::move(lowered.error()));
   }
@@ -299,6 +297,22 @@ Result<std::string> evaluateOne(const std::string& file, const std::string& mate
           : colorsOnGpu(module, bindings, gpuTextures(evaluated, points), count, routeOf(engine));
   if (!answer) return tl::make_unexpected(answer.error());
   return answerOf(*answer, found.name, evaluated.profile(), engine);
+}
+
+Result<std::string> evaluateFile(const std::string& file, const std::string& material, const Evaluation& how,
+                                 Messages& messages) {
+  const auto library = libraryFor(how.options);
+  if (!library) return tl::make_unexpected(library.error());
+  const Result<material::Document> document = readMaterials(file, **library, how.options);
+  if (!document) return tl::make_unexpected(document.error());
+  report(document->diagnostics, file, messages);
+  Diagnostics warnings;
+  const Result<size_t> place =
+      material::findMaterial(*document, material.empty() ? std::nullopt : std::optional(material), warnings);
+  if (!place) return tl::make_unexpected(place.error());
+  report(warnings, file, messages);
+  FileImages images(file, how.options);
+  return evaluateMaterial(document->materials[*place], **library, images, how, messages);
 }
 
 Diagnostics checkEvaluation(Engine engine, const Options& options) {
@@ -341,9 +355,26 @@ std::string evaluate(const std::string& file, const std::string& material, const
     report(read.error(), points_name, messages);
     return {};
   }
-  text = evaluateOne(file, material, *read, points_name, engine, texels, options, messages);
+  text = evaluateFile(file, material, {*read, points_name, engine, texels, options}, messages);
   if (text) return std::move(*text);
   report(text.error(), file, messages);
+  return {};
+}
+
+std::string evaluateOf(const SceneMaterial& of, const std::string& points, Engine engine,
+                       const Strings& texels, const Options& options, Messages& messages) {
+  static const std::string kPoints = "points";
+  if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return {};
+  }
+  const Result<EvalPoints> read = readPoints(points, kPoints, *limitsOf(options));
+  if (!read) return report(read.error(), kPoints, messages), std::string();
+  FileImages images(of.file, options, of.bytes);
+  Result<std::string> text =
+      evaluateMaterial(of.material, of.language, images, {*read, kPoints, engine, texels, options}, messages);
+  if (text) return std::move(*text);
+  report(text.error(), of.file, messages);
   return {};
 }
 

@@ -48,8 +48,10 @@ std::array<double, 4> neutralTexel(const ir::TextureSlot& slot) {
   return {1, 1, 1, 1};
 }
 
-FileImages::FileImages(std::string file, const Options& options)
-    : file_(std::move(file)), access_{limitsOf(options).value_or(Limits{}), options.allow} {}
+FileImages::FileImages(std::string file, const Options& options, std::shared_ptr<const std::string> bytes)
+    : file_(std::move(file)),
+      bytes_(std::move(bytes)),
+      access_{limitsOf(options).value_or(Limits{}), options.allow} {}
 
 bool FileImages::makeRoom(uint64_t pixels) {
   while (pixels > access_.limits.images - std::min(held_, access_.limits.images)) {
@@ -98,7 +100,8 @@ void FileImages::passedOver(int texture, const gltf::TextureSource& source) {
 
 Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
   if (!opened_) {
-    Result<gltf::TextureFile> opened = gltf::TextureFile::open(file_, access_);
+    Result<gltf::TextureFile> opened = bytes_ ? gltf::TextureFile::fromMemory(*bytes_, file_, access_)
+                                              : gltf::TextureFile::open(file_, access_);
     if (!opened) return tl::make_unexpected(std::move(opened.error()));
     opened_ = std::move(*opened);
   }

@@ -21,7 +21,8 @@ namespace lacquer {
 /// more go, the longest unused first, when others need their room.
 class FileImages {
 public:
-  FileImages(std::string file, const Options& options);
+  /// With `bytes` they are the file's, and `file` only stands for it.
+  FileImages(std::string file, const Options& options, std::shared_ptr<const std::string> bytes = {});
 
   const std::string& file() const { return file_; }
   struct Loaded {
@@ -48,6 +49,7 @@ private:
   bool makeRoom(uint64_t pixels);
 
   std::string file_;
+  std::shared_ptr<const std::string> bytes_;
   gltf::TextureAccess access_;
   std::optional<gltf::TextureFile> opened_;
   std::map<size_t, Held> images_;  ///< by the image's index

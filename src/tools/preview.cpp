@@ -13,6 +13,7 @@
 #include "support/outputs.h"
 #include "support/text.h"
 #include "tools/eval_material.h"
+#include "tools/of_scene.h"
 #include "tools/preview_setting.h"
 
 namespace lacquer {
@@ -22,6 +23,50 @@ namespace {
 constexpr uint32_t kLeastSize = 16;  ///< pixels of a ball
 constexpr uint32_t kMostSize = 2048;
 constexpr uint32_t kMostColumns = 100;
+
+/// A material compiled for the studio. `substituted` is the number of images that a neutral colour stands
+/// for.
+Result<preview::Shading> shadingOf(const material::Material& material, const Language& library,
+                                   FileImages& images, const PreviewSetting& of, const Strings& texels,
+                                   const preview::Studio& studio, Messages& messages, size_t& substituted) {
+  EvalMaterial evaluated(images, of.options);
+  if (Result<void> set = evaluated.setTexels(texels); !set)
+    return tl::make_unexpected(std::move(set.error()));
+  if (Result<void> lowered = evaluated.lower(material, library, true, of.variant, messages); !lowered)
+    return tl::make_unexpected(std::move(lowered.error()));
+  if (of.in_float) evaluated.place({false, {{"directional", preview::Studio::kLights}}});
+  preview::Look look;
+  look.in_float = of.in_float;
+  for (const ir::TextureSlot* slot : evaluated.environments()) {
+    const bool specular = slot->name.find("irradiance") == std::string::npos;
+    (specular ? look.specular : look.irradiance).push_back(slot->name);
+  }
+  const auto neutral = [&](const ir::TextureSlot& slot, const Diagnostics& why) {
+    ++substituted;
+    for (Diagnostic one : why) {
+      // Absent images are counted; one that is there and not taken is worth a word.
+      if (one.code == "image-missing") continue;
+      one.severity = Severity::Warning;
+      report({one}, images.file(), messages);
+    }
+    return neutralTexel(slot);
+  };
+  const Result<void> bound = evaluated.bindTextures(neutral, look.textures);
+  report(images.takeNotes(), images.file(), messages);
+  if (!bound) return tl::make_unexpected(bound.error());
+  look.module = evaluated.module();
+  return preview::Shading::make(std::move(look), studio);
+}
+
+Diagnostic absentImages(const material::Material& material, const std::string& file, size_t count) {
+  return {
+      "image-missing",
+      Severity::Note,
+      {file, 0, 0, fmt::format("/materials/{}", material.index)},
+      fmt::format("{} image{} absent: a neutral colour stands for each", count, count == 1 ? " is" : "s are"),
+      "or give a constant: --texel SLOT=r,g,b,a",
+      {}};
+}
 
 struct Measured {
   std::string file, name;
@@ -125,38 +170,10 @@ private:
 
   Result<preview::Shading> shading(const material::Material& material, FileImages& images, size_t setting,
                                    size_t& substituted) {
-    const PreviewSetting& of = settings_[setting];
-    EvalMaterial evaluated(images, of.options);
-    if (Result<void> set = evaluated.setTexels(preview_.texels); !set)
-      return tl::make_unexpected(std::move(set.error()));
     // Warnings about the material are the same for both settings.
     Messages again;
-    Messages& to = setting == 0 ? messages_ : again;
-    if (Result<void> lowered = evaluated.lower(material, *libraries_[setting], true, of.variant, to);
-        !lowered)
-      return tl::make_unexpected(std::move(lowered.error()));
-    if (of.in_float) evaluated.place({false, {{"directional", preview::Studio::kLights}}});
-    preview::Look look;
-    look.in_float = of.in_float;
-    for (const ir::TextureSlot* slot : evaluated.environments()) {
-      const bool specular = slot->name.find("irradiance") == std::string::npos;
-      (specular ? look.specular : look.irradiance).push_back(slot->name);
-    }
-    const auto neutral = [&](const ir::TextureSlot& slot, const Diagnostics& why) {
-      ++substituted;
-      for (Diagnostic one : why) {
-        // Absent images are counted; one that is there and not taken is worth a word.
-        if (one.code == "image-missing") continue;
-        one.severity = Severity::Warning;
-        report({one}, images.file(), to);
-      }
-      return neutralTexel(slot);
-    };
-    const Result<void> bound = evaluated.bindTextures(neutral, look.textures);
-    report(images.takeNotes(), images.file(), messages_);
-    if (!bound) return tl::make_unexpected(bound.error());
-    look.module = evaluated.module();
-    return preview::Shading::make(std::move(look), studio_);
+    return shadingOf(material, *libraries_[setting], images, settings_[setting], preview_.texels, studio_,
+                     setting == 0 ? messages_ : again, substituted);
   }
 
   void draw(const material::Material& material, FileImages& images, preview::Section& section) {
@@ -192,14 +209,7 @@ private:
   void noteAbsent(const material::Material& material, const std::string& file, size_t count,
                   preview::Cell& cell) {
     cell.lines.push_back(fmt::format("{} image{} absent", count, count == 1 ? "" : "s"));
-    const std::string what = fmt::format("{} image{} absent", count, count == 1 ? " is" : "s are");
-    report({{"image-missing",
-             Severity::Note,
-             {file, 0, 0, fmt::format("/materials/{}", material.index)},
-             what + ": a neutral colour stands for each",
-             "or give a constant: --texel SLOT=r,g,b,a",
-             {}}},
-           file, messages_);
+    report({absentImages(material, file, count)}, file, messages_);
   }
 
   std::string answer(const std::string& title) const {
@@ -239,6 +249,38 @@ std::string drawPreview(const Preview& preview, const std::vector<std::string>& 
            [&] { made = Previewing(preview, options, messages, progress).make(files, materials); });
   if (made) return std::move(*made);
   report(made.error(), {}, messages);
+  return {};
+}
+
+static Result<std::vector<uint8_t>> ballOf(const SceneMaterial& of, uint32_t size, const Strings& texels,
+                                           const Options& options, Messages& messages) {
+  if (Diagnostics wrong = checkReading(options); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  if (Result<void> good = inRange("the size of a ball", size, kLeastSize, kMostSize, "pixels"); !good)
+    return tl::make_unexpected(std::move(good.error()));
+  report(of.material.diagnostics, of.file, messages);
+  if (lacquer::hasError(of.material.diagnostics)) return std::vector<uint8_t>();
+  FileImages images(of.file, options, of.bytes);
+  const preview::Studio studio;
+  size_t substituted = 0;
+  const Result<preview::Shading> shading = shadingOf(
+      of.material, of.language, images, {"", options, true, ""}, texels, studio, messages, substituted);
+  if (!shading) return tl::make_unexpected(shading.error());
+  if (substituted > 0) report({absentImages(of.material, of.file, substituted)}, of.file, messages);
+  const preview::Picture picture = preview::drawBall(*shading, size, preview::kBackground);
+  std::vector<uint8_t> rgb;
+  for (uint32_t y = 0; y < size; ++y) {
+    for (uint32_t x = 0; x < size; ++x)
+      rgb.insert(rgb.end(), picture.at(x, y).begin(), picture.at(x, y).end());
+  }
+  return rgb;
+}
+
+std::vector<uint8_t> drawBallOf(const SceneMaterial& of, uint32_t size, const Strings& texels,
+                                const Options& options, Messages& messages) {
+  Result<std::vector<uint8_t>> made = std::vector<uint8_t>();
+  withJobs(options.jobs, [&] { made = ballOf(of, size, texels, options, messages); });
+  if (made) return std::move(*made);
+  report(made.error(), of.file, messages);
   return {};
 }
 

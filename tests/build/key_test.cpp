@@ -18,7 +18,7 @@ struct Row {
 const std::vector<Row>& rows() {
   static const std::vector<Row> kRows = {
       {"profile", Decides::Graph, [](Options& o) { o.profile = "openpbr"; }},
-      {"error_budget", Decides::Graph, [](Options& o) { o.error_budget = 0.01; }},
+      {"simplify", Decides::Graph, [](Options& o) { o.simplify = {"without:coat"}; }},
       {"template_name", Decides::Graph, [](Options& o) { o.template_name = "surface"; }},
       {"targets", Decides::Run, [](Options& o) { o.targets = {Target::Hlsl}; }},
       {"parameters", Decides::Module, [](Options& o) { o.parameters = Parameters::Baked; }},

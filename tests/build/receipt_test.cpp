@@ -148,7 +148,7 @@ TEST_F(Receipt, WhatIsDoneToOutputsIsSeenAndRepaired) {
 TEST_F(Receipt, OtherInputsAndOptionsAreOtherRuns) {
   // Each in a folder of its own, whose outputs are as its receipt has them when the options differ.
   const std::vector<Words> options = {{"--profile", "openpbr"},
-                                      {"--error-budget", "0.4"},
+                                      {"--simplify", "without:coat"},
                                       {"--template", "surface"},
                                       {"--target", "glsl"},
                                       {"--params", "baked"},

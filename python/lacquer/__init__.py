@@ -1,0 +1,360 @@
+"""Lacquer in Python: glTF materials to shaders. The way is Scene -> Graph -> Shader.
+
+What cannot be done raises Error, which has the library's messages; what is worth knowing is appended to the list
+`messages` that every call takes.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+from ctypes import byref, c_double, c_float, c_size_t, c_uint8
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._native import Value, load
+
+__all__ = [
+    "ATTRIBUTES", "Error", "Evaluation", "Graph", "Message", "Scene", "Shader", "environment_dfg", "environment_sheen",
+    "nodes", "version",
+]
+
+_lib = load()
+
+ATTRIBUTES = ("NORMAL", "TANGENT", "COLOR_0", "TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3")
+_UNUSED = ("NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1")
+_LEVELS = ("note", "warning", "error")
+_STAGES = {"vertex": 0, "fragment": 1}
+_ENGINES = {"double": 0, "float": 1, "vulkan": 2, "vulkan-glsl": 3, "vulkan-hlsl": 4}
+_NONE = c_size_t(-1).value
+
+Options = Mapping[str, Any]
+Numbers = Union[float, Sequence[float]]
+
+
+@dataclass(frozen=True)
+class Message:
+    """Something that is wrong with the input, or worth knowing."""
+
+    level: str
+    code: str
+    file: str
+    pointer: str
+    line: int
+    column: int
+    message: str
+    help: str
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class Error(Exception):
+    """What a call raises that cannot do what it is for."""
+
+    def __init__(self, messages: List[Message]):
+        super().__init__("\n".join(m.text for m in messages if m.level == "error") or "the call failed")
+        self.messages = messages
+
+
+def _sized(function: Callable[..., Optional[int]], *arguments: Any) -> str:
+    size = c_size_t()
+    at = function(*arguments, byref(size))
+    return ctypes.string_at(at, size.value).decode("utf-8", "replace") if at else ""
+
+
+def _taken(handle: Optional[int]) -> str:
+    if not handle:
+        return ""
+    text = ctypes.string_at(_lib.lacquer_text_data(handle), _lib.lacquer_text_size(handle))
+    _lib.lacquer_text_free(handle)
+    return text.decode("utf-8", "replace")
+
+
+def _said(handle: int) -> List[Message]:
+    def part(index: int, which: int) -> str:
+        return _sized(_lib.lacquer_message_part, handle, index, which)
+
+    return [
+        Message(_LEVELS[_lib.lacquer_message_level(handle, i)], part(i, 0), part(i, 1), part(i, 2),
+                _lib.lacquer_message_line(handle, i), _lib.lacquer_message_column(handle, i), part(i, 3), part(i, 4),
+                part(i, 5))
+        for i in range(_lib.lacquer_messages_count(handle))
+    ]
+
+
+def _calling(options: Optional[Options], messages: Optional[List[Message]], call: Callable[[int, Optional[int]], Any]) -> Any:
+    """What `call` gives with messages and options; raises where that is nothing."""
+    handle = _lib.lacquer_messages_new()
+    made = None
+    try:
+        result = None
+        if options is not None:
+            text = json.dumps(dict(options)).encode()
+            made = _lib.lacquer_options_new(text, len(text), handle)
+        if options is None or made:
+            result = call(handle, made)
+        said = _said(handle)
+        if messages is not None:
+            messages.extend(said)
+        if not result:
+            raise Error(said)
+        return result
+    finally:
+        _lib.lacquer_options_free(made)
+        _lib.lacquer_messages_free(handle)
+
+
+class _Handle:
+    _free: Callable[[Optional[int]], None]
+
+    def __init__(self, at: int):
+        self._at: Optional[int] = at
+
+    def __del__(self) -> None:
+        at, self._at = getattr(self, "_at", None), None
+        if at:
+            type(self)._free(at)
+
+
+class Shader(_Handle):
+    """The code of a graph."""
+
+    _free = _lib.lacquer_shader_free
+
+    @property
+    def id(self) -> str:
+        """Equal for equal code and different for different code: "forward-coat-1f0a9b1c2d3e4f50"."""
+        return _lib.lacquer_shader_id(self._at).decode()
+
+    @property
+    def has_vertex_stage(self) -> bool:
+        return bool(_lib.lacquer_shader_has_vertex_stage(self._at))
+
+    def text(self, target: str, stage: str = "fragment") -> str:
+        """Empty for a target that was not asked for or that has no text."""
+        return _sized(_lib.lacquer_shader_text, self._at, target.encode(), _STAGES[stage])
+
+    def spirv(self, stage: str = "fragment") -> NDArray[np.uint32]:
+        """Words in the machine's byte order; empty when "spirv" was not asked for."""
+        count = c_size_t()
+        at = _lib.lacquer_shader_spirv(self._at, _STAGES[stage], byref(count))
+        return np.frombuffer(ctypes.string_at(at, 4 * count.value) if at else b"", dtype=np.uint32)
+
+    @property
+    def interface(self) -> Dict[str, Any]:
+        """Its entry in manifest.json: blocks with their fields, textures, inputs."""
+        return json.loads(_sized(_lib.lacquer_shader_interface, self._at))
+
+    @property
+    def uniform_size(self) -> int:
+        """Bytes of the material's uniform block; 0 when there is none."""
+        return _lib.lacquer_shader_uniform_size(self._at)
+
+    def pack(self, values: Optional[Mapping[str, Numbers]] = None, messages: Optional[List[Message]] = None) -> bytes:
+        """The preshader: the bytes of the material's uniform block. Parameters that are not given have today's value;
+        names that this shader has no parameter of are passed over."""
+        rows = (Value * len(values or {}))()
+        for row, (name, value) in zip(rows, (values or {}).items()):
+            numbers = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
+            row.name = name.encode()
+            row.numbers = (c_double * len(numbers))(*numbers)
+            row.count = len(numbers)
+        size = self.uniform_size
+        block = (c_uint8 * size)()
+        _calling(None, messages, lambda said, _: _lib.lacquer_shader_pack(self._at, rows, len(rows), block, size, said))
+        return bytes(block)
+
+
+class Graph(_Handle):
+    """A node graph: one term of the specification is one node. An edit that fails raises, and leaves it as it was."""
+
+    _free = _lib.lacquer_graph_free
+
+    @classmethod
+    def from_json(cls, graph: Union[str, Mapping[str, Any]], name: str = "graph.json",
+                  messages: Optional[List[Message]] = None) -> "Graph":
+        text = (graph if isinstance(graph, str) else json.dumps(dict(graph))).encode()
+        return cls(_calling(None, messages, lambda said, _: _lib.lacquer_graph_read(text, len(text), name.encode(), said)))
+
+    def to_text(self) -> str:
+        """The JSON form as the program writes it."""
+        return _taken(_lib.lacquer_graph_json(self._at))
+
+    def to_json(self) -> Dict[str, Any]:
+        return json.loads(self.to_text())
+
+    def to_dot(self) -> str:
+        return _taken(_lib.lacquer_graph_dot(self._at))
+
+    def parameters(self) -> List[Dict[str, Any]]:
+        """name, type, value, low, high (None: unbounded), or_zero, pointer of each editable number."""
+        return json.loads(_taken(_lib.lacquer_graph_parameters(self._at)))
+
+    def add_node(self, id: str, type: str, messages: Optional[List[Message]] = None) -> None:
+        self._edit(messages, _lib.lacquer_graph_add_node, id, type)
+
+    def remove_node(self, id: str, messages: Optional[List[Message]] = None) -> None:
+        self._edit(messages, _lib.lacquer_graph_remove_node, id)
+
+    def connect(self, node: str, input: str, source: Any, messages: Optional[List[Message]] = None) -> None:
+        """`source`: 0.5, [1, 0, 0], {"node": "coat.f0"}, {"parameter": "x"}, {"texture": "x"}, {"given": "view"}."""
+        self._edit(messages, _lib.lacquer_graph_connect, node, input, json.dumps(source))
+
+    def set_output(self, port: str, source: Any, messages: Optional[List[Message]] = None) -> None:
+        self._edit(messages, _lib.lacquer_graph_set_output, port, json.dumps(source))
+
+    def set_parameter(self, name: str, value: Numbers, messages: Optional[List[Message]] = None) -> None:
+        numbers = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
+        array = (c_double * len(numbers))(*numbers)
+        _calling(None, messages, lambda said, _: _lib.lacquer_graph_set_parameter(self._at, name.encode(), array,
+                                                                                  len(numbers), said))
+
+    def set_range(self, parameter: str, low: float, high: float, or_zero: bool = False,
+                  messages: Optional[List[Message]] = None) -> None:
+        _calling(None, messages, lambda said, _: _lib.lacquer_graph_set_range(self._at, parameter.encode(), low, high,
+                                                                              int(or_zero), said))
+
+    def check(self, options: Optional[Options] = None) -> List[Message]:
+        """What is wrong with it and worth knowing; it may change the order of the nodes."""
+        messages: List[Message] = []
+        try:
+            _calling(options, messages, lambda said, how: _lib.lacquer_graph_check(self._at, how, said))
+        except Error:
+            pass
+        return messages
+
+    def generate(self, options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> Shader:
+        return Shader(_calling(options, messages, lambda said, how: _lib.lacquer_graph_generate(self._at, how, said)))
+
+    def dump(self, after: str = "", options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> str:
+        """The values of the code with their rates, after a pass; after the last without one."""
+        return _taken(_calling(options, messages, lambda said, how: _lib.lacquer_graph_dump(self._at, after.encode(),
+                                                                                           how, said)))
+
+    def _edit(self, messages: Optional[List[Message]], function: Callable[..., int], *texts: str) -> None:
+        words = [text.encode() for text in texts]
+        _calling(None, messages, lambda said, _: function(self._at, *words, said))
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Linear colours: `rgba` has a row of four for each point, NaN where a number is not finite."""
+
+    material: str
+    engine: str
+    profile: str
+    rgba: NDArray[np.float64]
+    discarded: NDArray[np.bool_]
+
+
+def _plain(value: Any) -> Any:
+    """Arrays as lists, for JSON."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} is no number, text, list or array")
+
+
+class Scene(_Handle):
+    """The materials of a glTF file."""
+
+    _free = _lib.lacquer_scene_free
+
+    @classmethod
+    def load(cls, path: Union[str, Path], options: Optional[Options] = None,
+             messages: Optional[List[Message]] = None) -> "Scene":
+        """Reads .gltf or .glb; buffers and images need not exist."""
+        name = str(path).encode()
+        return cls(_calling(options, messages, lambda said, how: _lib.lacquer_scene_load(name, how, said)))
+
+    @classmethod
+    def read(cls, data: bytes, name: str = "scene.gltf", options: Optional[Options] = None,
+             messages: Optional[List[Message]] = None) -> "Scene":
+        """The same from bytes; `name` stands for the file in messages. Such a scene reads no files."""
+        return cls(_calling(options, messages, lambda said, how: _lib.lacquer_scene_read(data, len(data), name.encode(),
+                                                                                        how, said)))
+
+    @property
+    def materials(self) -> List[str]:
+        """Their names, in order."""
+        count = _lib.lacquer_scene_material_count(self._at)
+        return [_sized(_lib.lacquer_scene_material_name, self._at, i) for i in range(count)]
+
+    def find(self, name: Optional[str] = None, messages: Optional[List[Message]] = None) -> int:
+        """The index of the first material of that name; without one of the only material."""
+        text = None if name is None else name.encode()
+
+        def call(said: int, _: Optional[int]) -> int:
+            found = _lib.lacquer_scene_find_material(self._at, text, said)
+            return 0 if found == _NONE else found + 1
+
+        return _calling(None, messages, call) - 1
+
+    def uses(self, material: int) -> List[List[str]]:
+        """Attributes of the primitives that use a material, each kind once."""
+        bits = [_lib.lacquer_scene_use(self._at, material, i)
+                for i in range(_lib.lacquer_scene_use_count(self._at, material))]
+        return [[name for i, name in enumerate(ATTRIBUTES) if use >> i & 1] for use in bits]
+
+    def graph(self, material: int = 0, options: Optional[Options] = None, attributes: Optional[Sequence[str]] = None,
+              messages: Optional[List[Message]] = None) -> Graph:
+        """On primitives with these attributes; those of its first use where none are named."""
+        if attributes is None:
+            attributes = next(iter(self.uses(material)), _UNUSED)
+        bits = sum(1 << ATTRIBUTES.index(name) for name in attributes)
+        return Graph(_calling(options, messages, lambda said, how: _lib.lacquer_scene_graph(self._at, material, bits, how,
+                                                                                           said)))
+
+    def evaluate(self, material: int, points: Union[Sequence[Mapping[str, Any]], Mapping[str, Any]],
+                 engine: str = "double", options: Optional[Options] = None,
+                 messages: Optional[List[Message]] = None) -> Evaluation:
+        """Linear colours at points (docs/eval.md), whose values may be arrays."""
+        text = json.dumps(points, default=_plain).encode()
+        answer = json.loads(_taken(_calling(options, messages, lambda said, how: _lib.lacquer_scene_evaluate(
+            self._at, material, text, len(text), _ENGINES[engine], how, said))))
+        rgba = np.array(answer["rgba"], dtype=np.float64).reshape(-1, 4)
+        discarded = np.array(answer.get("discarded", [False] * len(rgba)), dtype=bool)
+        return Evaluation(answer["material"], answer["engine"], answer["profile"], rgba, discarded)
+
+    def preview(self, material: int = 0, pixels: int = 256, options: Optional[Options] = None,
+                messages: Optional[List[Message]] = None) -> NDArray[np.uint8]:
+        """A lit ball: `pixels` rows of `pixels` by 3, sRGB; from 16 to 2048 pixels."""
+        picture = np.zeros((pixels, pixels, 3), dtype=np.uint8)
+        at = picture.ctypes.data_as(ctypes.POINTER(c_uint8))
+        _calling(options, messages, lambda said, how: _lib.lacquer_scene_preview(self._at, material, pixels, at,
+                                                                                picture.size, how, said))
+        return picture
+
+
+def version() -> str:
+    """The library's: "0.2.0"."""
+    return _lib.lacquer_version().decode()
+
+
+def nodes(options: Optional[Options] = None) -> Dict[str, Any]:
+    """Nodes, templates, profiles, extensions and their properties, as `lacquer nodes --json`."""
+    return json.loads(_taken(_calling(options, None, lambda said, how: _lib.lacquer_nodes(how, said))))
+
+
+def _table(function: Callable[..., int], size: int) -> NDArray[np.float32]:
+    table = np.zeros((size, size, 2), dtype=np.float32)
+    at = table.ctypes.data_as(ctypes.POINTER(c_float))
+    _calling(None, None, lambda said, _: function(size, at, table.size, said))
+    return table
+
+
+def environment_dfg(size: int = 128) -> NDArray[np.float32]:
+    """The table behind environment_dfg: rows of roughness, columns of N.V, pairs; from 2 to 1024."""
+    return _table(_lib.lacquer_environment_dfg, size)
+
+
+def environment_sheen(size: int = 128) -> NDArray[np.float32]:
+    """The table behind environment_sheen."""
+    return _table(_lib.lacquer_environment_sheen, size)

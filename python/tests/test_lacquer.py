@@ -1,0 +1,132 @@
+"""The package over the library of a build: golden texts, arrays, and what a caller can get wrong."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import lacquer
+
+ROOT = Path(__file__).resolve().parents[2]
+MANIFEST = json.loads((ROOT / "generated/manifest.json").read_text())
+EXTENSIONS = {"glsl": "glsl", "glsl-gl": "glsl", "essl": "glsl", "hlsl": "hlsl"}
+
+
+@pytest.fixture
+def coat():
+    return lacquer.Scene.load(ROOT / "examples/coat.gltf")
+
+
+@pytest.mark.parametrize("entry", MANIFEST["files"], ids=lambda entry: entry["source"])
+def test_texts_are_those_of_generated(entry):
+    scene = lacquer.Scene.read((ROOT / entry["source"]).read_bytes(), entry["source"])
+    compared = 0
+    for material in entry["materials"]:
+        assert scene.materials[material["index"]] == material["name"]
+        for use in material["uses"]:
+            assert sorted(use["attributes"]) in [sorted(names) for names in scene.uses(material["index"])]
+            graph = scene.graph(material["index"], attributes=use["attributes"])
+            shader = graph.generate({"validate": False, "targets": ["spirv", *EXTENSIONS]})
+            assert shader.id == use["shader"]
+            for stage, short in (("vertex", "vert"), ("fragment", "frag")):
+                for target, extension in EXTENSIONS.items():
+                    file = ROOT / "generated" / target / f"{shader.id}.{short}.{extension}"
+                    assert shader.text(target, stage) == file.read_text(), file
+                words = (ROOT / "generated/spirv" / f"{shader.id}.{short}.spv").read_bytes()
+                assert shader.spirv(stage).tobytes() == words
+                compared += 1
+    assert compared > 0
+
+
+def test_evaluate_gives_arrays(coat):
+    points = [{"v": np.array([0, 0, 1]), "l": [0, 0.6, 0.8]}, {"v": [0, 0.6, 0.8]}]
+    answer = coat.evaluate(0, points)
+    assert answer.rgba.shape == (2, 4) and answer.rgba.dtype == np.float64
+    assert (answer.rgba[:, :3] > 0).all() and not answer.discarded.any()
+    rounded = coat.evaluate(0, points, engine="float")
+    assert rounded.engine == "float"
+    assert np.allclose(answer.rgba, rounded.rgba, rtol=1e-4) and (answer.rgba != rounded.rgba).any()
+
+
+def test_preview_is_a_picture(coat):
+    picture = coat.preview(0, 32)
+    assert picture.shape == (32, 32, 3) and picture.dtype == np.uint8
+    assert (picture[0, 0] == picture[0, 31]).all() and (picture[16, 16] != picture[0, 0]).any()
+
+
+def test_pack_takes_values_by_name(coat):
+    shader = coat.graph(0).generate({"targets": ["essl"], "validate": False})
+    today = shader.pack()
+    assert len(today) == shader.uniform_size > 0
+    assert shader.pack({"coat_roughness_factor": 0.25, "no_such_factor": 1}) != today
+    with pytest.raises(lacquer.Error, match="wrong-count"):
+        shader.pack({"coat_roughness_factor": [1, 2]})
+
+
+def test_graph_is_edited_and_checked(coat):
+    graph = coat.graph(0)
+    assert lacquer.Graph.from_json(graph.to_json()).to_text() == graph.to_text()
+    graph.add_node("mine", "schlick")
+    graph.connect("mine", "F0", 0.04)
+    graph.remove_node("mine")
+    assert graph.check() == []
+    with pytest.raises(lacquer.Error, match="no-such-node"):
+        graph.remove_node("mine")
+    graph.set_output("nowhere", 1)
+    assert [m.level for m in graph.check()] == ["error"]
+    assert "; fragment" in coat.graph(0).dump()
+
+
+def test_errors_have_the_librarys_messages(coat):
+    with pytest.raises(lacquer.Error) as error:
+        lacquer.Scene.read(b'{"asset": ', "broken.gltf")
+    message = error.value.messages[0]
+    assert (message.level, message.file, message.line) == ("error", "broken.gltf", 1)
+    for call, code in (
+        (lambda: lacquer.Scene.load("no-such.gltf"), "file-unreadable"),
+        (lambda: coat.find("nobody"), "no-such-material"),
+        (lambda: coat.graph(99), "no-such-material"),
+        (lambda: coat.graph(0, {"colour": 1}), "unknown-option"),
+        (lambda: coat.evaluate(0, [{"w": 1}]), "unknown"),
+        (lambda: coat.preview(0, 1), "out-of-range"),
+        (lambda: lacquer.environment_dfg(1), "out-of-range"),
+    ):
+        with pytest.raises(lacquer.Error, match=code):
+            call()
+
+
+def test_tables_and_nodes():
+    table = lacquer.environment_dfg(16)
+    assert table.shape == (16, 16, 2) and (table.sum(axis=2) <= 1.001).all() and table.max() > 0.9
+    assert lacquer.environment_sheen(4).shape == (4, 4, 2)
+    assert any(node["name"] == "schlick" for node in lacquer.nodes()["nodes"])
+    assert lacquer.version().count(".") == 2
+
+
+def test_handles_are_freed():
+    # Two hundred scenes, graphs and shaders: what is not freed shows as memory of the process.
+    import resource
+
+    data = (ROOT / "examples/coat.gltf").read_bytes()
+
+    def work():
+        shader = lacquer.Scene.read(data).graph(0).generate({"targets": ["essl"], "validate": False})
+        assert shader.uniform_size > 0
+
+    for _ in range(50):
+        work()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    for _ in range(200):
+        work()
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4096
+
+
+def test_example_runs(tmp_path):
+    picture = tmp_path / "coat.ppm"
+    done = subprocess.run([sys.executable, ROOT / "python/examples/coat.py", picture], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert picture.read_bytes().startswith(b"P6")
+    assert "forward-coat-" in done.stdout

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <optional>
+
+#include "c/handles.h"
+
+namespace lacquer::c {
+
+const Scene& sceneOf(const lacquer_scene* scene) {
+  static const Scene kNone;
+  return scene == nullptr ? kNone : scene->scene;
+}
+
+namespace {
+
+uint32_t bitsOf(const Attributes& attributes) {
+  uint32_t bits = 0;
+  const auto add = [&](bool there, int bit) { bits |= there ? static_cast<uint32_t>(bit) : 0U; };
+  add(attributes.normal, LACQUER_NORMAL);
+  add(attributes.tangent, LACQUER_TANGENT);
+  add(attributes.color0, LACQUER_COLOR_0);
+  for (size_t i = 0; i < attributes.texCoord.size(); ++i)
+    add(attributes.texCoord[i], LACQUER_TEXCOORD_0 << static_cast<int>(i));
+  return bits;
+}
+
+Attributes attributesOf(uint32_t bits) {
+  Attributes attributes{
+      (bits & LACQUER_NORMAL) != 0, (bits & LACQUER_TANGENT) != 0, (bits & LACQUER_COLOR_0) != 0, {}};
+  for (size_t i = 0; i < attributes.texCoord.size(); ++i)
+    attributes.texCoord[i] = (bits & static_cast<uint32_t>(LACQUER_TEXCOORD_0) << i) != 0;
+  return attributes;
+}
+
+lacquer_scene* handleOf(Scene scene) { return scene ? new lacquer_scene{std::move(scene)} : nullptr; }
+
+constexpr lacquer_scene* kNoScene = nullptr;
+
+}  // namespace
+
+}  // namespace lacquer::c
+
+using namespace lacquer::c;
+using lacquer::Messages;
+
+lacquer_scene* lacquer_scene_load(const char* path, const lacquer_options* options,
+                                  lacquer_messages* messages) {
+  return guarded(messages, kNoScene, [&](Messages& to) {
+    return handleOf(lacquer::Scene::load(textOf(path), optionsOf(options).options, to));
+  });
+}
+
+lacquer_scene* lacquer_scene_read(const char* bytes, size_t size, const char* name,
+                                  const lacquer_options* options, lacquer_messages* messages) {
+  return guarded(messages, kNoScene, [&](Messages& to) {
+    return handleOf(lacquer::Scene::fromMemory(std::string(bytesOf(bytes, size)), textOf(name),
+                                               optionsOf(options).options, to));
+  });
+}
+
+void lacquer_scene_free(lacquer_scene* scene) { delete scene; }
+
+size_t lacquer_scene_material_count(const lacquer_scene* scene) { return sceneOf(scene).materialCount(); }
+
+const char* lacquer_scene_material_name(const lacquer_scene* scene, size_t material, size_t* size) {
+  return give(sceneOf(scene).materialName(material), size);
+}
+
+size_t lacquer_scene_find_material(const lacquer_scene* scene, const char* name, lacquer_messages* messages) {
+  return guarded(messages, LACQUER_NONE, [&](Messages& to) {
+    const std::optional<std::string> wanted =
+        name == nullptr ? std::nullopt : std::optional<std::string>(name);
+    return sceneOf(scene).findMaterial(wanted, to).value_or(LACQUER_NONE);
+  });
+}
+
+size_t lacquer_scene_use_count(const lacquer_scene* scene, size_t material) {
+  return guarded(nullptr, size_t{0}, [&](Messages&) { return sceneOf(scene).uses(material).size(); });
+}
+
+uint32_t lacquer_scene_use(const lacquer_scene* scene, size_t material, size_t use) {
+  return guarded(nullptr, uint32_t{0}, [&](Messages&) {
+    const std::vector<lacquer::Attributes> uses = sceneOf(scene).uses(material);
+    return use < uses.size() ? bitsOf(uses[use]) : 0U;
+  });
+}
+
+lacquer_graph* lacquer_scene_graph(const lacquer_scene* scene, size_t material, uint32_t attributes,
+                                   const lacquer_options* options, lacquer_messages* messages) {
+  return guarded(messages, static_cast<lacquer_graph*>(nullptr), [&](Messages& to) -> lacquer_graph* {
+    lacquer::Graph graph =
+        sceneOf(scene).graph(material, attributesOf(attributes), optionsOf(options).options, to);
+    return graph ? new lacquer_graph{std::move(graph)} : nullptr;
+  });
+}
+
+lacquer_text* lacquer_scene_evaluate(const lacquer_scene* scene, size_t material, const char* points,
+                                     size_t size, int engine, const lacquer_options* options,
+                                     lacquer_messages* messages) {
+  return guarded(messages, static_cast<lacquer_text*>(nullptr), [&](Messages& to) {
+    constexpr int kNoEngine = 255;
+    const auto wanted = static_cast<lacquer::Engine>(engine < 0 || engine > kNoEngine ? kNoEngine : engine);
+    const lacquer_options& how = optionsOf(options);
+    return textFrom(lacquer::evaluate(sceneOf(scene), material, std::string(bytesOf(points, size)), wanted,
+                                      how.texels, how.options, to));
+  });
+}
+
+int lacquer_scene_preview(const lacquer_scene* scene, size_t material, uint32_t pixels, uint8_t* rgb,
+                          size_t capacity, const lacquer_options* options, lacquer_messages* messages) {
+  return guarded(messages, 0, [&](Messages& to) {
+    const lacquer_options& how = optionsOf(options);
+    const uint64_t needed = uint64_t{3} * pixels * pixels;
+    if (rgb == nullptr || capacity < needed) {
+      sayError(messages, "block-too-small", "there is no room for the picture",
+               "it takes 3 * pixels * pixels bytes");
+      return 0;
+    }
+    const std::vector<uint8_t> drawn =
+        lacquer::drawBall(sceneOf(scene), material, pixels, how.texels, how.options, to);
+    if (drawn.size() != needed) return 0;
+    std::copy(drawn.begin(), drawn.end(), rgb);
+    return 1;
+  });
+}

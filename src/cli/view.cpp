@@ -1,0 +1,60 @@
+#include "cli/view.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/build.h"
+#include "cli/streams.h"
+#include "cli/table.h"
+
+namespace lacquer::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Where the page is when nobody says: in the data folder of an installation, or where `./dev web` has put
+/// it.
+std::string pageOf(const std::string& program) {
+  std::error_code error;
+  fs::path self = fs::read_symlink("/proc/self/exe", error);
+  if (error) self = fs::absolute(program, error);
+  const fs::path folder = self.parent_path();
+  const fs::path installed = folder / "../share/lacquer/view.html";
+  const fs::path built = folder / "../web/view.html";
+  return (fs::exists(built, error) && !fs::exists(installed, error) ? built : installed)
+      .lexically_normal()
+      .string();
+}
+
+}  // namespace
+
+CLI::App* addView(CLI::App& app, ViewFlags& flags) {
+  const CLI::Validator not_empty(
+      [](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "");
+  CLI::App* verb = app.add_subcommand(
+      "view", "a page that shows and edits materials, with the compiler inside, as one file");
+  verb->add_option("files", flags.files, ".gltf or .glb files");
+  verb->add_option("-o,--output", flags.view.output, "the HTML file to write")->required()->check(not_empty);
+  verb->add_option("--page", flags.view.page,
+                   "the page without files, in place of the one that is installed");
+  addLimit(*verb, flags.options);
+  verb->add_option("--allow", flags.options.allow,
+                   "a folder in which buffers and images may lie, beside the file's own (may be repeated)")
+      ->allow_extra_args(false);
+  return verb;
+}
+
+int runView(ViewFlags& flags) {
+  if (flags.view.page.empty()) flags.view.page = pageOf(flags.program);
+  Messages messages;
+  const bool written = writeView(flags.view, flags.files, flags.options, messages);
+  print(messages);
+  if (!written) return 1;
+  fmt::print("{} file{} in {}\n", flags.files.size(), flags.files.size() == 1 ? "" : "s",
+             printable(flags.view.output));
+  return 0;
+}
+
+}  // namespace lacquer::cli

@@ -1,0 +1,224 @@
+/* Lacquer for programs in C, and for every language that can call C: glTF materials to GLSL, HLSL and SPIR-V.
+ *
+ * The way is scene -> graph -> shader, as in lacquer.h, which says what each of them is. The same functions
+ * are those that the WebAssembly module exports (docs/web.md). What holds for all of them:
+ *
+ * Handles are opaque. What a function named `_new`, `_load`, `_read`, `_graph`, `_generate` or one that gives
+ * a lacquer_text returns belongs to the caller, who frees it with the function named `_free` of its type,
+ * once, in any order: nothing depends on the handle that it was made from. NULL means that the call failed.
+ *
+ * NULL may stand for any handle: it may be freed, what it is asked for is empty or 0, a call that needs the
+ * object fails with "empty-handle", options are the defaults, and messages are not wanted.
+ *
+ * Texts that come in are UTF-8, ended by a NUL, or have their size in bytes beside them. A `const char*` that
+ * comes out is ended by a NUL, belongs to the handle, and stays until that is changed or freed; it is never
+ * NULL. `size`, where it is not NULL, is given the bytes before the NUL: names may hold NULs of their own. A
+ * NULL in the place of a text that comes in is an empty text.
+ *
+ * Functions that return int return 1 when they did what they are for, and 0, with an error among the
+ * messages, when not. Indices begin with 0; for one that does not exist the answer is empty or 0. Messages
+ * are appended.
+ *
+ * No exception leaves a call: "out-of-memory" and "internal" are messages. Distinct handles may be used from
+ * distinct threads at once, and so may functions with const handles. Equal input gives equal bytes. */
+#ifndef LACQUER_C_H
+#define LACQUER_C_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define LACQUER_C __attribute__((visibility("default")))
+#else
+#define LACQUER_C
+#endif
+
+/* Of this interface. A function, a key of the options or a constant may come; none goes or changes its
+ * meaning while this number stays. */
+#define LACQUER_C_VERSION 1
+LACQUER_C uint32_t lacquer_c_version(void);
+/* The library's: "0.2.0". */
+LACQUER_C const char* lacquer_version(void);
+
+/* ---- texts that calls make */
+
+typedef struct lacquer_text lacquer_text;
+LACQUER_C const char* lacquer_text_data(const lacquer_text* text);
+LACQUER_C size_t lacquer_text_size(const lacquer_text* text);
+LACQUER_C void lacquer_text_free(lacquer_text* text);
+
+/* ---- messages: what is wrong with the input, or worth knowing */
+
+typedef struct lacquer_messages lacquer_messages;
+enum { LACQUER_NOTE = 0, LACQUER_WARNING = 1, LACQUER_ERROR = 2 };
+enum {
+  LACQUER_MESSAGE_CODE = 0,    /* stable, lower-case, dash-separated: "factor-out-of-range" */
+  LACQUER_MESSAGE_FILE = 1,    /* as it was given; may be empty */
+  LACQUER_MESSAGE_POINTER = 2, /* JSON pointer into the file; may be empty */
+  LACQUER_MESSAGE_WHAT = 3,    /* what is wrong */
+  LACQUER_MESSAGE_HELP = 4,    /* what is right; may be empty */
+  LACQUER_MESSAGE_TEXT = 5     /* all of it as the command line prints it */
+};
+LACQUER_C lacquer_messages* lacquer_messages_new(void);
+LACQUER_C void lacquer_messages_free(lacquer_messages* messages);
+LACQUER_C void lacquer_messages_clear(lacquer_messages* messages);
+LACQUER_C size_t lacquer_messages_count(const lacquer_messages* messages);
+/* 1 when one of them is an error. */
+LACQUER_C int lacquer_messages_have_error(const lacquer_messages* messages);
+/* LACQUER_NOTE, ...; -1 for an index that does not exist. */
+LACQUER_C int lacquer_message_level(const lacquer_messages* messages, size_t index);
+LACQUER_C const char* lacquer_message_part(const lacquer_messages* messages, size_t index, int part,
+                                           size_t* size);
+/* From 1, the column in bytes; 0 where there is no place in a text. */
+LACQUER_C uint32_t lacquer_message_line(const lacquer_messages* messages, size_t index);
+LACQUER_C uint32_t lacquer_message_column(const lacquer_messages* messages, size_t index);
+
+/* ---- options */
+
+/* From a JSON object. Its keys are the members of lacquer::Options, `template` instead of `template_name`,
+ * with the command line's words: {"profile": "openpbr", "targets": ["essl"], "parameters": "baked", "live":
+ * ["coat"], "lights": {"directional": 1}}; "lights" may be "any" or "scene". "texels" is for evaluations and
+ * previews alone: ["coatTexture=1,1,1,1"]. An empty text is an empty object. NULL, and a message, for another
+ * key and for a value of another kind. */
+typedef struct lacquer_options lacquer_options;
+LACQUER_C lacquer_options* lacquer_options_new(const char* json, size_t size, lacquer_messages* messages);
+LACQUER_C void lacquer_options_free(lacquer_options* options);
+
+/* ---- scenes: the materials of a glTF file */
+
+typedef struct lacquer_scene lacquer_scene;
+typedef struct lacquer_graph lacquer_graph;
+typedef struct lacquer_shader lacquer_shader;
+/* No index: what lacquer_scene_find_material() returns when there is none. */
+#define LACQUER_NONE ((size_t)-1)
+/* The vertex attributes of a primitive beside POSITION, as bits. */
+enum {
+  LACQUER_NORMAL = 1,
+  LACQUER_TANGENT = 2,
+  LACQUER_COLOR_0 = 4,
+  LACQUER_TEXCOORD_0 = 8,
+  LACQUER_TEXCOORD_1 = 16,
+  LACQUER_TEXCOORD_2 = 32,
+  LACQUER_TEXCOORD_3 = 64,
+  LACQUER_UNUSED_ATTRIBUTES = 27 /* what a material that no primitive uses is read with */
+};
+/* Reads a .gltf or .glb file; buffers and images need not exist. */
+LACQUER_C lacquer_scene* lacquer_scene_load(const char* path, const lacquer_options* options,
+                                            lacquer_messages* messages);
+/* The same from its bytes, which are copied; `name` stands for the file in messages. Such a scene reads
+ * images from data URIs and buffer views, and no files. */
+LACQUER_C lacquer_scene* lacquer_scene_read(const char* bytes, size_t size, const char* name,
+                                            const lacquer_options* options, lacquer_messages* messages);
+LACQUER_C void lacquer_scene_free(lacquer_scene* scene);
+LACQUER_C size_t lacquer_scene_material_count(const lacquer_scene* scene);
+LACQUER_C const char* lacquer_scene_material_name(const lacquer_scene* scene, size_t material, size_t* size);
+/* Without a name (NULL) the only material. LACQUER_NONE, and an error, when there is none or several. */
+LACQUER_C size_t lacquer_scene_find_material(const lacquer_scene* scene, const char* name,
+                                             lacquer_messages* messages);
+/* Of the primitives that use a material, each kind once. */
+LACQUER_C size_t lacquer_scene_use_count(const lacquer_scene* scene, size_t material);
+LACQUER_C uint32_t lacquer_scene_use(const lacquer_scene* scene, size_t material, size_t use);
+LACQUER_C lacquer_graph* lacquer_scene_graph(const lacquer_scene* scene, size_t material, uint32_t attributes,
+                                             const lacquer_options* options, lacquer_messages* messages);
+
+/* ---- what computes colours on the processor, or on a device (native builds alone) */
+
+enum {
+  LACQUER_DOUBLE = 0,
+  LACQUER_FLOAT = 1,
+  LACQUER_VULKAN = 2,
+  LACQUER_VULKAN_GLSL = 3,
+  LACQUER_VULKAN_HLSL = 4
+};
+/* A material's linear colours at points, JSON in and out (docs/eval.md). */
+LACQUER_C lacquer_text* lacquer_scene_evaluate(const lacquer_scene* scene, size_t material,
+                                               const char* points, size_t size, int engine,
+                                               const lacquer_options* options, lacquer_messages* messages);
+/* Draws a lit ball of `pixels` by `pixels`, from 16 to 2048, into `rgb`: rows from the top, three bytes of
+ * sRGB for each pixel. `capacity`, the bytes that there are, is at least 3 * pixels * pixels. */
+LACQUER_C int lacquer_scene_preview(const lacquer_scene* scene, size_t material, uint32_t pixels,
+                                    uint8_t* rgb, size_t capacity, const lacquer_options* options,
+                                    lacquer_messages* messages);
+
+/* ---- graphs: one node for each term of the specification */
+
+/* From the JSON form (docs/graph-format.md). */
+LACQUER_C lacquer_graph* lacquer_graph_read(const char* json, size_t size, const char* name,
+                                            lacquer_messages* messages);
+LACQUER_C void lacquer_graph_free(lacquer_graph* graph);
+LACQUER_C lacquer_text* lacquer_graph_json(const lacquer_graph* graph);
+LACQUER_C lacquer_text* lacquer_graph_dot(const lacquer_graph* graph);
+/* A JSON array of the editable numbers: name, type, value, low, high (null: unbounded), or_zero, pointer. */
+LACQUER_C lacquer_text* lacquer_graph_parameters(const lacquer_graph* graph);
+/* Edits, as those of lacquer::Graph: one that fails leaves the graph as it was. */
+LACQUER_C int lacquer_graph_add_node(lacquer_graph* graph, const char* id, const char* type,
+                                     lacquer_messages* messages);
+LACQUER_C int lacquer_graph_remove_node(lacquer_graph* graph, const char* id, lacquer_messages* messages);
+/* `source` is JSON: 0.5, [1, 0, 0], {"node": "coat.f0"}, {"parameter": "x"}, {"texture": "x"}, {"given":
+ * "view"} */
+LACQUER_C int lacquer_graph_connect(lacquer_graph* graph, const char* node, const char* input,
+                                    const char* source, lacquer_messages* messages);
+LACQUER_C int lacquer_graph_set_output(lacquer_graph* graph, const char* port, const char* source,
+                                       lacquer_messages* messages);
+LACQUER_C int lacquer_graph_set_parameter(lacquer_graph* graph, const char* name, const double* numbers,
+                                          size_t count, lacquer_messages* messages);
+LACQUER_C int lacquer_graph_set_range(lacquer_graph* graph, const char* parameter, double low, double high,
+                                      int or_zero, lacquer_messages* messages);
+/* Types, ranges, names, cycles: 1 when there is no error. It may change the order of the nodes. */
+LACQUER_C int lacquer_graph_check(lacquer_graph* graph, const lacquer_options* options,
+                                  lacquer_messages* messages);
+LACQUER_C lacquer_shader* lacquer_graph_generate(lacquer_graph* graph, const lacquer_options* options,
+                                                 lacquer_messages* messages);
+/* The values of the code with their rates, after the pass of that name; "" for the last. */
+LACQUER_C lacquer_text* lacquer_graph_dump(lacquer_graph* graph, const char* pass,
+                                           const lacquer_options* options, lacquer_messages* messages);
+
+/* ---- shaders */
+
+enum { LACQUER_VERTEX = 0, LACQUER_FRAGMENT = 1 };
+LACQUER_C void lacquer_shader_free(lacquer_shader* shader);
+LACQUER_C const char* lacquer_shader_id(const lacquer_shader* shader);
+LACQUER_C int lacquer_shader_has_vertex_stage(const lacquer_shader* shader);
+/* `target` is one of the command line's: "glsl", "glsl-gl", "essl", "hlsl"; "cpp" has its header as the
+ * LACQUER_FRAGMENT. Empty for a target that was not asked for, that has no text or that does not exist. */
+LACQUER_C const char* lacquer_shader_text(const lacquer_shader* shader, const char* target, int stage,
+                                          size_t* size);
+/* Words in the machine's byte order, `count` of them; NULL and 0 when "spirv" was not asked for. */
+LACQUER_C const uint32_t* lacquer_shader_spirv(const lacquer_shader* shader, int stage, size_t* count);
+/* The shader's entry in manifest.json (docs/manifest.md). */
+LACQUER_C const char* lacquer_shader_interface(const lacquer_shader* shader, size_t* size);
+/* Bytes of the material's uniform block, a multiple of 16; 0 when there is none. */
+LACQUER_C size_t lacquer_shader_uniform_size(const lacquer_shader* shader);
+/* A parameter's numbers. */
+typedef struct lacquer_value {
+  const char* name;
+  const double* numbers;
+  size_t count;
+} lacquer_value;
+/* The preshader: material values in, the first lacquer_shader_uniform_size() bytes of `block` out. Parameters
+ * that are not among the `values` have today's; names that this shader has no parameter of are passed over,
+ * since parameters leave it with their terms. "wrong-count" for another number of components,
+ * "block-too-small" where `capacity`, in bytes, does not suffice. */
+LACQUER_C int lacquer_shader_pack(const lacquer_shader* shader, const lacquer_value* values, size_t count,
+                                  void* block, size_t capacity, lacquer_messages* messages);
+
+/* ---- the library of nodes, and tables */
+
+/* Nodes, templates, profiles, extensions and their properties as JSON, as `lacquer nodes --json`. */
+LACQUER_C lacquer_text* lacquer_nodes(const lacquer_options* options, lacquer_messages* messages);
+/* The tables behind environment_dfg and environment_sheen (docs/bindings.md): `size` rows of `size` pairs,
+ * from 2 to 1024, into `pairs`, which has room for `capacity` floats. */
+LACQUER_C int lacquer_environment_dfg(uint32_t size, float* pairs, size_t capacity,
+                                      lacquer_messages* messages);
+LACQUER_C int lacquer_environment_sheen(uint32_t size, float* pairs, size_t capacity,
+                                        lacquer_messages* messages);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

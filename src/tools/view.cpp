@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "gltf/texture_source.h"
+#include "shader/language.h"
+#include "shader/messages.h"
+#include "shader/options.h"
+#include "support/file.h"
+#include "support/outputs.h"
+#include "tools/eval_material.h"
+
+namespace lacquer {
+
+namespace {
+
+/// Where the page has its files: JSON stands between this and the end of the element.
+constexpr std::string_view kPlace = "<script type=\"application/json\" id=\"files\">";
+constexpr std::string_view kEmpty = "[]</script>";
+
+std::string toBase64(std::string_view bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](size_t at) -> uint32_t {
+      return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0U;
+    };
+    const uint32_t three = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    for (size_t digit = 0; digit < 4; ++digit) {
+      text += i + digit > bytes.size() ? '=' : kDigits[three >> (18 - 6 * digit) & 63];
+    }
+  }
+  return text;
+}
+
+/// JSON for an HTML script element: no name in it ends the element.
+std::string scriptText(const json::Json& json) {
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, json::Json::error_handler_t::replace)) {
+    if (c == '<')
+      text += "\\u003c";
+    else
+      text += c;
+  }
+  return text;
+}
+
+class Viewing {
+public:
+  Viewing(const Options& options, Messages& messages)
+      : options_(options), messages_(messages), limits_(limitsOf(options).value_or(Limits{})) {}
+
+  Result<void> write(const View& view, const Strings& files) {
+    if (const Result<Limits> limits = limitsOf(options_); !limits) return tl::make_unexpected(limits.error());
+    if (Result<void> path = hasPath("the page", view.output); !path) return path;
+    Result<std::string> page = readFile(view.page, limits_.file);
+    const size_t place = page ? page->find(kPlace) : std::string::npos;
+    if (place == std::string::npos || page->compare(place + kPlace.size(), kEmpty.size(), kEmpty) != 0) {
+      return fail("no-page", {view.page, 0, 0, {}}, page ? "this is not the page" : "the page is not there",
+                  "`./dev web` makes it, and an installation has it in share/lacquer/view.html");
+    }
+    inputs_.push_back(view.page);
+    json::Json all = json::Json::array();
+    for (const std::string& file : files) {
+      Result<json::Json> entry = read(file);
+      if (!entry) return tl::make_unexpected(std::move(entry.error()));
+      all.push_back(std::move(*entry));
+    }
+    page->replace(place + kPlace.size(), 2, scriptText(all));
+    if (Diagnostics wrong = clashes(inputs_, {view.output}); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    const Result<bool> written = writeFile(view.output, *page, {nullptr, options_.sync});
+    if (!written) return tl::make_unexpected(written.error());
+    return {};
+  }
+
+private:
+  Result<json::Json> read(const std::string& path) {
+    const Result<gltf::TextureFile> file = gltf::TextureFile::open(path, {limits_, options_.allow});
+    if (!file) return tl::make_unexpected(file.error());
+    const Result<std::string> bytes = readFile(path, limits_.file);
+    if (!bytes) return tl::make_unexpected(bytes.error());
+    json::Json resources = json::Json::array();
+    for (const std::string& uri : file->fileUris()) {
+      Result<std::string> resource = file->fileBytes(uri);
+      if (resource) {
+        resources.push_back({{"uri", uri}, {"bytes", toBase64(*resource)}});
+        continue;
+      }
+      for (Diagnostic& diagnostic : resource.error()) diagnostic.severity = Severity::Warning;
+      report(resource.error(), path, messages_);
+    }
+    inputs_.push_back(path);
+    const Strings of_resources = file->filesRead();
+    inputs_.insert(inputs_.end(), of_resources.begin(), of_resources.end());
+    return json::Json{{"name", std::filesystem::path(path).filename().string()},
+                      {"bytes", toBase64(*bytes)},
+                      {"resources", std::move(resources)}};
+  }
+
+  const Options& options_;
+  Messages& messages_;
+  Limits limits_;
+  Strings inputs_;
+};
+
+}  // namespace
+
+bool writeView(const View& view, const Strings& files, const Options& options, Messages& messages) {
+  const Result<void> written = Viewing(options, messages).write(view, files);
+  if (written) return true;
+  report(written.error(), {}, messages);
+  return false;
+}
+
+}  // namespace lacquer

@@ -1,0 +1,41 @@
+// Each function of the C++ headers is there to link with; that they work is tested elsewhere.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "lacquer.h"
+
+namespace lacquer::test {
+namespace {
+
+template <class Function>
+void have(std::vector<bool>& there, Function function) {
+  there.push_back(function != nullptr);
+}
+
+TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
+  std::vector<bool> there;
+  const auto all = [&](auto... functions) { (have(there, functions), ...); };
+  all(&version, static_cast<bool (*)(const Messages&)>(&hasError), &targetName, &findTarget, &liveTerms,
+      &profiles, &passNames);
+  all(&Scene::load, &Scene::fromMemory, &Scene::materialCount, &Scene::materialName, &Scene::findMaterial,
+      &Scene::uses, &Scene::graph);
+  all(&Graph::fromJson, &Graph::toJson, &Graph::toDot, &Graph::parameters, &Graph::addNode,
+      &Graph::removeNode, &Graph::connect, &Graph::setOutput, &Graph::setParameter, &Graph::setRange,
+      &Graph::check, &Graph::generate, &Graph::dump, &Graph::prove);
+  all(&Shader::id, &Shader::hasVertexStage, &Shader::vertexText, &Shader::fragmentText, &Shader::vertexSpirv,
+      &Shader::fragmentSpirv, &Shader::headerText, &Shader::interfaceJson, &Shader::uniformSize,
+      &Shader::pack);
+  all(&generate, &generateGraphs, &plan, &merge);
+  all(static_cast<std::string (*)(const Scene&, size_t, const std::string&, Engine, const Strings&,
+                                  const Options&, Messages&)>(&evaluate),
+      static_cast<std::string (*)(const std::string&, const std::string&, const std::string&,
+                                  const std::string&, Engine, const Strings&, const Options&, Messages&)>(
+          &evaluate),
+      &drawBall, &drawPreview, &writeView, &stressNodes, &measureCost, &environmentDfg, &writeEnvironmentDfg,
+      &environmentSheen, &writeEnvironmentSheen, &nodesJson, &proveNodesJson);
+  for (const bool one : there) EXPECT_TRUE(one);
+}
+
+}  // namespace
+}  // namespace lacquer::test

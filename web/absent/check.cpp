@@ -1,0 +1,20 @@
+// In place of src/check/: this build has no compilers and validators of others.
+#include "check/check.h"
+
+namespace lacquer::check {
+
+static tl::unexpected<Diagnostics> absent() {
+  return fail("no-validator", {}, "this build of Lacquer has no validators of shaders",
+              "let the option `validate` be false, and the SPIR-V come from the DAG");
+}
+
+Result<Spirv> compile(std::string_view, Target, Stage, const std::string&) { return absent(); }
+Diagnostics validate(const Spirv&, bool, const std::string&) { return absent().value(); }
+Diagnostics checkSlots(const Spirv&, bool, const std::string&) { return {}; }
+Result<Spirv> optimize(const Spirv&, const std::string&) { return absent(); }
+std::string toolVersions() { return {}; }
+bool haveDxc() { return false; }
+std::string dxcIdentity() { return {}; }
+Diagnostics compileWithDxc(const std::string&, Stage, const std::string&) { return absent().value(); }
+
+}  // namespace lacquer::check

@@ -1,0 +1,54 @@
+// Bundles the ES module of the npm package, and the page of `lacquer view` with everything in it.
+//   node build.mjs WASM OUTPUT EXAMPLES
+import { build } from 'esbuild';
+import { execFileSync } from 'node:child_process';
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+
+const [wasm, output, examples] = process.argv.slice(2);
+const here = dirname(fileURLToPath(import.meta.url));
+const tsc = (...args) => execFileSync(process.execPath, [join(here, 'node_modules/typescript/bin/tsc'), ...args], { cwd: here, stdio: 'inherit' });
+
+/** A file with what it names, as `lacquer view` puts it into the page. */
+function embedded(file) {
+  const json = JSON.parse(readFileSync(file, 'utf8'));
+  const uris = [...(json.buffers ?? []), ...(json.images ?? [])].map(({ uri }) => uri).filter((uri) => uri && !uri.startsWith('data:'));
+  const resources = [...new Set(uris)].map((uri) => ({ uri, bytes: readFileSync(join(dirname(file), decodeURIComponent(uri))).toString('base64') }));
+  return { name: file.slice(file.lastIndexOf('/') + 1), bytes: readFileSync(file).toString('base64'), resources };
+}
+
+async function makePackage() {
+  const folder = join(output, 'package');
+  mkdirSync(folder, { recursive: true });
+  await build({
+    entryPoints: [join(here, 'src/index.ts')], outfile: join(folder, 'index.js'), bundle: true, format: 'esm', target: 'es2022',
+  });
+  tsc('-p', '.', '--noEmit');
+  tsc('-p', 'tsconfig.types.json', '--outDir', folder);
+  copyFileSync(wasm, join(folder, 'lacquer.wasm'));
+  for (const file of ['package.json', 'README.md']) copyFileSync(join(here, 'package', file), join(folder, file));
+  copyFileSync(join(here, '../LICENSE'), join(folder, 'LICENSE'));
+}
+
+async function makePage() {
+  const bundle = await build({
+    entryPoints: [join(here, 'page/main.ts')], bundle: true, format: 'esm', target: 'es2022', minify: true, write: false,
+    define: { 'import.meta.url': 'location.href' }, legalComments: 'inline',
+  });
+  const inScript = (text) => text.replace(/<\/script/gi, '<\\/script');
+  const samples = readdirSync(examples).filter((name) => name.endsWith('.gltf')).sort().map((name) => embedded(join(examples, name)));
+  const parts = {
+    '/*style*/': readFileSync(join(here, 'page/style.css'), 'utf8'),
+    '<!--samples-->': JSON.stringify(samples).replace(/</g, '\\u003c'),
+    '<!--wasm-->': gzipSync(readFileSync(wasm), { level: 9 }).toString('base64'),
+    '<!--script-->': inScript(bundle.outputFiles[0].text),
+  };
+  let page = readFileSync(join(here, 'page/index.html'), 'utf8');
+  for (const [mark, text] of Object.entries(parts)) page = page.replace(mark, () => text);
+  writeFileSync(join(output, 'view.html'), page);
+}
+
+await makePackage();
+await makePage();

@@ -1,0 +1,60 @@
+// Generated text with its words coloured, in the sections that its comments begin: one for each term.
+import { h } from './dom';
+
+const kWords =
+  /(\/\/[^\n]*)|(#[^\n]*)|\b(const|in|out|inout|uniform|layout|precision|highp|struct|if|else|for|return|void|cbuffer|register|static|let|fn|var|switch|case)\b|\b(float[1-4]?(?:x[34])?|vec[234]|mat[34]|int|uint|bool|sampler\w*|Texture\w+|SamplerState|double)\b|(\b\d[\w.]*(?:e[+-]?\d+)?\b)/g;
+const kKinds = ['comment', 'directive', 'keyword', 'type', 'number'];
+
+function line(text: string): HTMLElement {
+  const row = h('span', { class: 'line' });
+  let at = 0;
+  for (const match of text.matchAll(kWords)) {
+    row.append(text.slice(at, match.index));
+    const kind = kKinds[match.slice(1).findIndex((group) => group !== undefined)];
+    row.append(h('span', { class: kind }, match[0]));
+    at = match.index + match[0].length;
+  }
+  row.append(text.slice(at), '\n');
+  return row;
+}
+
+/** The name of the term whose lines a comment begins: "coat.fresnel" of `// coat.fresnel: source`. */
+export function termOf(text: string): string | null {
+  const match = /^\s*\/\/ ([a-z_][\w.]*)(?::|$)/.exec(text);
+  return match ? match[1] : null;
+}
+
+/** The text as elements; a click on a section tells its term. */
+export function showCode(root: HTMLElement, text: string, chosen: (term: string) => void): void {
+  let section: HTMLElement = root;
+  const made: HTMLElement[] = [];
+  for (const each of text.replace(/\n$/, '').split('\n')) {
+    const term = termOf(each);
+    if (term !== null || section === root || each.trim() === '') {
+      section = h('span', term === null ? { class: 'section' } : { class: 'section term', 'data-term': term });
+      if (term !== null) section.addEventListener('click', () => chosen(term));
+      made.push(section);
+    }
+    section.append(line(each));
+  }
+  root.replaceChildren(...made);
+}
+
+export function selectTerm(root: HTMLElement, term: string, scroll: boolean): void {
+  let first = true;
+  for (const section of root.querySelectorAll<HTMLElement>('.section.term')) {
+    const selected = section.dataset.term === term;
+    section.classList.toggle('selected', selected);
+    if (selected && first && scroll) section.scrollIntoView({ block: 'center' });
+    if (selected) first = false;
+  }
+}
+
+/** SPIR-V as numbers: it has no text of its own. */
+export function hexOf(words: Uint32Array): string {
+  const lines: string[] = [];
+  for (let i = 0; i < words.length; i += 8) {
+    lines.push(Array.from(words.subarray(i, i + 8), (word) => word.toString(16).padStart(8, '0')).join(' '));
+  }
+  return lines.join('\n');
+}

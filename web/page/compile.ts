@@ -1,0 +1,61 @@
+// From the edited document to what the viewport draws and the panels show.
+import { load, type Graph, type GraphJson, type Lacquer, type Message, type Options, type Shader } from '../src/index';
+import type { Document } from './document';
+import { fromBase64 } from './gltf';
+import type { Look } from './viewport';
+
+/** The compiler that the page has in it, unpacked. */
+export async function compiler(packed: string): Promise<Lacquer> {
+  const stream = new Blob([fromBase64(packed).slice()]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return load(await new Response(stream).arrayBuffer());
+}
+
+export function graphOf(lacquer: Lacquer, of: Document, options: Options, messages: Message[]): Graph {
+  const text = of.graphs.get(of.material);
+  if (text !== undefined) {
+    const graph = lacquer.graph(text, 'graph.json', messages);
+    for (const { name, pointer } of graph.parameters()) {
+      const value = pointer ? of.get(pointer) : undefined;
+      if (typeof value === 'number' || Array.isArray(value)) graph.setParameter(name, value, messages);
+    }
+    return graph;
+  }
+  const scene = lacquer.scene(of.slim(), of.file.name, options, messages);
+  try {
+    return scene.graph(of.material, options, of.uses[of.material], messages);
+  } finally {
+    scene.free();
+  }
+}
+
+/** Calls with the graph and the shader of a target, which are freed. */
+export function withShader<T>(
+  lacquer: Lacquer,
+  of: Document,
+  options: Options,
+  messages: Message[],
+  use: (shader: Shader, graph: Graph) => T,
+): T {
+  const graph = graphOf(lacquer, of, options, messages);
+  try {
+    const shader = graph.generate(options, messages);
+    try {
+      return use(shader, graph);
+    } finally {
+      shader.free();
+    }
+  } finally {
+    graph.free();
+  }
+}
+
+export function lookOf(of: Document, shader: Shader, graph: GraphJson): Look {
+  const material = of.json.materials[of.material] ?? {};
+  return {
+    id: shader.id,
+    block: shader.pack(),
+    slots: new Map(Object.entries(graph.textures ?? {}).map(([slot, { texture, srgb }]) => [slot, { texture, srgb }])),
+    doubleSided: material.doubleSided === true,
+    blended: material.alphaMode === 'BLEND',
+  };
+}

@@ -1,0 +1,155 @@
+// The file that is edited: what is read from it, what changes it, and the way back.
+import type { Attribute, Lacquer } from '../src/index';
+import { geometry, openFile, type Drawable, type GltfFile } from './gltf';
+
+export interface Input {
+  name: string;
+  bytes: Uint8Array;
+  resources: Map<string, Uint8Array>;
+}
+
+/** All that an edit may change of one material. */
+interface Snapshot {
+  index: number;
+  material: string; // JSON
+  extensionsUsed: string; // JSON
+  graph: string | null;
+}
+
+export class Document {
+  readonly file: GltfFile;
+  readonly drawables: Drawable[];
+  readonly uses: Attribute[][] = [];
+  readonly names: string[] = [];
+  material = 0;
+  /** The graph in its JSON form where it was edited itself; then the material only gives its parameters' values. */
+  graphs = new Map<number, string>();
+  private past: Snapshot[] = [];
+  private future: Snapshot[] = [];
+  private last = '';
+
+  /** Throws a LacquerError for what the library cannot read. */
+  constructor(lacquer: Lacquer, input: Input) {
+    const scene = lacquer.scene(input.bytes, input.name);
+    for (let i = 0; i < scene.materialCount; ++i) {
+      this.names.push(scene.materialName(i));
+      this.uses.push(scene.uses(i)[0] ?? ['NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1']);
+    }
+    scene.free();
+    this.file = openFile(input.name, input.bytes, input.resources);
+    this.drawables = geometry(this.file);
+  }
+
+  get json(): any {
+    return this.file.json;
+  }
+  /** What the library is given: the file without what makes it large. Places and names stay. */
+  slim(): string {
+    const { asset, extensionsUsed, textures, samplers, images, materials } = this.json;
+    return JSON.stringify({
+      asset,
+      extensionsUsed,
+      textures,
+      samplers,
+      images: images?.map(({ mimeType, name }: any) => ({ mimeType, name, uri: 'image' })),
+      materials: materials.map((each: any, i: number) => (i === this.material ? each : {})),
+    });
+  }
+
+  /** The value at a JSON pointer; undefined where there is none. */
+  get(pointer: string): any {
+    return parts(pointer).reduce((at, part) => at?.[part], this.json);
+  }
+  /** Sets it, making the objects on the way; undefined removes it. Edits of one `key` in a row are one step back. */
+  set(pointer: string, value: unknown, key: string): void {
+    this.keep(key);
+    const path = parts(pointer);
+    const last = path.pop()!;
+    const at = path.reduce((object, part) => (object[part] ??= {}), this.json);
+    if (value === undefined) delete at[last];
+    else at[last] = value;
+  }
+  /** Adds or removes an extension of the material, with an empty object as its value. */
+  setExtension(pointer: string, name: string, on: boolean): void {
+    this.set(pointer, on ? {} : undefined, `extension ${name} ${on}`);
+    const used = new Set<string>(this.json.extensionsUsed ?? []);
+    if (on) used.add(name);
+    this.json.extensionsUsed = [...used];
+  }
+  setGraph(text: string | null, key: string): void {
+    this.keep(key);
+    if (text === null) this.graphs.delete(this.material);
+    else this.graphs.set(this.material, text);
+  }
+
+  // ---- the way back
+
+  get canUndo(): boolean {
+    return this.past.length > 0;
+  }
+  get canRedo(): boolean {
+    return this.future.length > 0;
+  }
+  undo(): void {
+    this.travel(this.past, this.future);
+  }
+  redo(): void {
+    this.travel(this.future, this.past);
+  }
+  /** The next edit is a step of its own. */
+  settle(): void {
+    this.last = '';
+  }
+  private keep(key: string): void {
+    if (key !== this.last) this.past.push(this.snapshot(this.material));
+    if (this.past.length > 500) this.past.shift();
+    this.future = [];
+    this.last = key;
+  }
+  private snapshot(index: number): Snapshot {
+    return {
+      index,
+      material: JSON.stringify(this.json.materials[index]),
+      extensionsUsed: JSON.stringify(this.json.extensionsUsed ?? []),
+      graph: this.graphs.get(index) ?? null,
+    };
+  }
+  private travel(from: Snapshot[], to: Snapshot[]): void {
+    const target = from.pop();
+    if (!target) return;
+    to.push(this.snapshot(target.index));
+    this.material = target.index;
+    this.json.materials[target.index] = JSON.parse(target.material);
+    this.json.extensionsUsed = JSON.parse(target.extensionsUsed);
+    if (target.graph === null) this.graphs.delete(target.index);
+    else this.graphs.set(target.index, target.graph);
+    this.settle();
+  }
+
+  // ---- out again
+
+  /** The edited file in the form that it came in: a .glb stays one. */
+  export(): { name: string; bytes: Uint8Array<ArrayBuffer> } {
+    const text = new TextEncoder().encode(JSON.stringify(this.json, null, this.file.binary ? 0 : 2));
+    if (!this.file.binary) return { name: this.file.name, bytes: new Uint8Array(text) };
+    const chunk = (kind: number, bytes: Uint8Array, pad: number) => {
+      const size = Math.ceil(bytes.length / 4) * 4;
+      const made = new Uint8Array(8 + size).fill(pad);
+      new DataView(made.buffer).setUint32(0, size, true);
+      new DataView(made.buffer).setUint32(4, kind, true);
+      made.set(bytes, 8);
+      return made;
+    };
+    const chunks = [chunk(0x4e4f534a, text, 0x20), chunk(0x004e4942, this.file.binary, 0)];
+    const bytes = new Uint8Array(12 + chunks[0].length + chunks[1].length);
+    const view = new DataView(bytes.buffer);
+    [0x46546c67, 2, bytes.length].forEach((word, i) => view.setUint32(4 * i, word, true));
+    bytes.set(chunks[0], 12);
+    bytes.set(chunks[1], 12 + chunks[0].length);
+    return { name: this.file.name, bytes };
+  }
+}
+
+function parts(pointer: string): string[] {
+  return pointer.split('/').slice(1).map((part) => part.replace(/~1/g, '/').replace(/~0/g, '~'));
+}

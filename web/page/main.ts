@@ -1,0 +1,477 @@
+// The page of `lacquer view`: a material's properties, its picture, its shaders and its node graph, all from one file that
+// is edited in place.
+import { LacquerError, type GraphJson, type Lacquer, type Message, type Options } from '../src/index';
+import { hexOf, selectTerm, showCode } from './code';
+import { compiler, graphOf, lookOf, withShader } from './compile';
+import { Document, type Input } from './document';
+import { byId, download, h } from './dom';
+import { kEnvironments } from './environment';
+import { fromBase64 } from './gltf';
+import { kRates, NodeGraph, nodeEditor, ratesOf } from './nodegraph';
+import { Properties } from './properties';
+import { Viewport, type Look } from './viewport';
+
+const kTargets = ['essl', 'glsl', 'glsl-gl', 'hlsl', 'spirv', 'cpp'];
+
+class Page {
+  private of: Document | null = null;
+  private readonly properties: Properties;
+  private readonly graph: NodeGraph;
+  private readonly nodes: any;
+  private graphJson: GraphJson | null = null;
+  private selected = '';
+  private panelsPending = 0;
+  private messages: Message[] = [];
+  /** Milliseconds that the last compilation took, from the edited file to the block. */
+  took = 0;
+
+  constructor(readonly lacquer: Lacquer, readonly viewport: Viewport) {
+    this.nodes = lacquer.nodes();
+    const order = (name: string) => (name === 'gltf' ? '' : name);
+    const extensions = [...this.nodes.extensions].sort((a, b) => (order(a.name) < order(b.name) ? -1 : 1));
+    this.properties = new Properties(byId('properties'), extensions, (structure) => {
+      if (structure) this.properties.show(this.of!);
+      this.compile();
+    });
+    this.graph = new NodeGraph(byId('graph'), (node) => this.select(node, 'graph'));
+    byId('version').textContent = lacquer.version;
+    this.fillSelects();
+    this.connectControls();
+    this.connectPointer();
+    this.connectFiles();
+  }
+
+  // ---- files
+
+  open(input: Input): boolean {
+    try {
+      this.of = new Document(this.lacquer, input);
+    } catch (error) {
+      this.fail(error);
+      return false;
+    }
+    const { of, viewport } = this;
+    viewport.forgetTextures();
+    viewport.looks.clear();
+    viewport.useBall = of.drawables.length === 0;
+    byId<HTMLSelectElement>('shape').value = viewport.useBall ? 'ball' : 'own';
+    byId<HTMLSelectElement>('shape').disabled = of.drawables.length === 0;
+    viewport.setScene(of.drawables);
+    byId('file').textContent = input.name;
+    const materials = byId<HTMLSelectElement>('material');
+    materials.replaceChildren(...of.names.map((name, i) => h('option', { value: i }, name || `(material ${i})`)));
+    // Each material has its look before one of them is chosen: they may all be seen.
+    for (let i = of.names.length - 1; i >= 0; --i) {
+      of.material = i;
+      this.compileLook([]);
+    }
+    this.choose(0);
+    return true;
+  }
+
+  choose(material: number): void {
+    if (!this.of || this.of.names.length === 0) return;
+    this.of.material = material;
+    this.of.settle();
+    byId<HTMLSelectElement>('material').value = String(material);
+    this.viewport.shown = material;
+    this.properties.show(this.of);
+    this.compile();
+  }
+
+  // ---- compiling
+
+  options(): Options {
+    const profile = byId<HTMLSelectElement>('profile').value;
+    return { profile, targets: ['essl'] };
+  }
+
+  /** The look of the current material; null, and what is wrong in `messages`, when it has an error. */
+  private compileLook(messages: Message[], options = this.options()): { look: Look; graph: GraphJson } | null {
+    const of = this.of!;
+    try {
+      return withShader(this.lacquer, of, options, messages, (shader, graph) => {
+        const json = graph.toJson();
+        const look = lookOf(of, shader, json);
+        this.viewport.prepare(shader);
+        this.viewport.looks.set(of.material, look);
+        void this.viewport.loadTextures(of.file, look);
+        return { look, graph: json };
+      });
+    } catch (error) {
+      if (!(error instanceof LacquerError)) messages.push(messageOf(error)); // of the browser's driver
+      return null;
+    }
+  }
+
+  compile(): void {
+    if (!this.of) return;
+    const begin = performance.now();
+    this.messages = [];
+    const made = this.compileLook(this.messages);
+    this.took = performance.now() - begin;
+    if (made) {
+      this.graphJson = made.graph;
+      const pointers = new Set(Object.values(made.graph.parameters).map(({ pointer }) => pointer ?? ''));
+      this.properties.mark({ pointers });
+      byId('id').textContent = made.look.id;
+    }
+    byId('took').textContent = `${this.took.toFixed(1)} ms`;
+    this.compare();
+    this.viewport.redraw();
+    this.showMessages();
+    byId<HTMLButtonElement>('undo').disabled = !this.of.canUndo;
+    byId<HTMLButtonElement>('redo').disabled = !this.of.canRedo;
+    clearTimeout(this.panelsPending);
+    this.panelsPending = window.setTimeout(() => this.showPanels(), 120);
+  }
+
+  /** The same material under another profile, right of the middle. */
+  private compare(): void {
+    const other = byId<HTMLSelectElement>('compare').value;
+    const figures = byId('figures');
+    const mine = this.of && this.viewport.looks.get(this.of.material);
+    this.viewport.other = null;
+    figures.textContent = '';
+    if (!other || !mine) return;
+    const theirs = this.compileLook([], { ...this.options(), profile: other });
+    this.viewport.looks.set(this.of!.material, mine);
+    if (!theirs) return;
+    this.viewport.other = { look: theirs.look, split: 0.5 };
+    const { max, mean } = this.viewport.difference(mine, theirs.look);
+    figures.textContent = `${byId<HTMLSelectElement>('profile').value} | ${other}: differ by at most ${max.toPrecision(3)}, ${mean.toPrecision(3)} in the mean`;
+  }
+
+  // ---- panels
+
+  private showPanels(): void {
+    if (!this.of || !this.graphJson) return;
+    const tab = document.querySelector<HTMLElement>('[role=tab][aria-selected=true]')!.dataset.tab;
+    if (tab === 'code') this.showText();
+    if (tab === 'graph') this.showGraph();
+    this.showSkipped();
+  }
+
+  /** The text of the chosen target and stage, as `lacquer gen` writes it. */
+  text(target: string, stage: 'vertex' | 'fragment'): string {
+    return withShader(this.lacquer, this.of!, { ...this.options(), targets: [target] }, [], (shader) =>
+      target === 'spirv' ? hexOf(shader.spirv(stage)) : shader.text(target, stage),
+    );
+  }
+
+  private showText(): void {
+    const target = byId<HTMLSelectElement>('target').value;
+    const stage = byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment';
+    const code = byId('code');
+    try {
+      const text = this.text(target, stage);
+      showCode(code, text, (term) => this.select(term, 'code'));
+      byId('size').textContent = target === 'spirv' ? `${text.split(/\s+/).length} words` : `${text.length} bytes`;
+      if (this.selected) selectTerm(code, this.selected, false);
+    } catch (error) {
+      if (!(error instanceof LacquerError)) throw error;
+      code.replaceChildren();
+    }
+  }
+
+  private dump(): string {
+    const graph = graphOf(this.lacquer, this.of!, this.options(), []);
+    try {
+      return graph.dump('', this.options());
+    } catch (error) {
+      if (!(error instanceof LacquerError)) throw error;
+      return '';
+    } finally {
+      graph.free();
+    }
+  }
+
+  private showGraph(): void {
+    const { terms } = ratesOf(this.dump());
+    this.graph.show(this.graphJson!, terms);
+    if (this.selected) this.graph.select(this.selected, false);
+    this.showEditor();
+  }
+
+  private showSkipped(): void {
+    const { operations } = ratesOf(this.dump());
+    byId('operations').textContent = kRates
+      .filter((rate) => operations.has(rate))
+      .map((rate) => `${operations.get(rate)} ${rate}`)
+      .join(', ');
+    byId('skipped').replaceChildren(
+      ...Object.entries(this.graphJson!.skipped ?? {}).map(([term, reason]) => h('li', {}, h('b', {}, term), ` ${reason}`)),
+    );
+  }
+
+  select(term: string, from: 'code' | 'graph'): void {
+    this.selected = term;
+    selectTerm(byId('code'), term, from === 'graph');
+    this.graph.select(term, from === 'code');
+    this.showEditor();
+  }
+
+  private showEditor(): void {
+    const place = byId('editor');
+    const id = this.selected;
+    if (!this.graphJson?.nodes.some((node) => node.id === id)) {
+      place.replaceChildren(h('p', { class: 'doc' }, 'Choose a node to see its inputs.'));
+      return;
+    }
+    const act = {
+      connect: (input: string, source: string) => this.editGraph((graph) => graph.connect(id, input, JSON.parse(source))),
+      remove: () => this.editGraph((graph) => graph.removeNode(id)),
+    };
+    place.replaceChildren(nodeEditor(this.graphJson!, id, this.nodes.nodes, act));
+  }
+
+  /** Edits the graph itself: from then on the material's numbers are its parameters, and its terms stay. */
+  editGraph(edit: (graph: ReturnType<typeof graphOf>) => void): void {
+    if (!this.of) return;
+    const graph = graphOf(this.lacquer, this.of, this.options(), []);
+    try {
+      edit(graph);
+      this.of.setGraph(graph.toText(), `graph ${performance.now()}`);
+      this.of.settle();
+      this.graphJson = graph.toJson();
+    } catch (error) {
+      return this.fail(error);
+    } finally {
+      graph.free();
+    }
+    this.compile();
+    this.showPanels();
+  }
+
+  private showMessages(): void {
+    const wrong = this.messages.some(({ level }) => level === 'error');
+    const list = byId('messages');
+    list.replaceChildren(...this.messages.map(({ level, text }) => h('li', { class: level }, text)));
+    const count = this.messages.length;
+    byId('status').textContent = wrong ? this.messages.find(({ level }) => level === 'error')!.message : count > 0 ? `${count} message${count > 1 ? 's' : ''}` : '';
+    byId('status').className = wrong ? 'error' : '';
+  }
+
+  /** Says what is wrong and leaves everything as it is. */
+  fail(error: unknown): void {
+    if (error instanceof LacquerError) this.messages = error.messages;
+    else this.messages = [messageOf(error)];
+    this.showMessages();
+  }
+
+  // ---- controls
+
+  private fillSelects(): void {
+    const profiles: { name: string; doc: string }[] = this.nodes.profiles;
+    const option = ({ name, doc }: { name: string; doc: string }) => h('option', { value: name, title: doc }, name);
+    byId('profile').replaceChildren(...profiles.map(option));
+    byId('compare').replaceChildren(h('option', { value: '' }, 'nothing'), ...profiles.map(option));
+    byId('environment').replaceChildren(...Object.keys(kEnvironments).map((name) => h('option', {}, name)));
+    byId('target').replaceChildren(...kTargets.map((name) => h('option', {}, name)));
+    byId('new-type').replaceChildren(...this.nodes.nodes.map(({ name, doc }: any) => h('option', { value: name, title: doc }, name)));
+  }
+
+  private on(id: string, event: string, act: () => void): void {
+    byId(id).addEventListener(event, act);
+  }
+
+  private connectControls(): void {
+    const step = (act: (of: Document) => void) => () => {
+      if (!this.of) return;
+      act(this.of);
+      this.choose(this.of.material);
+    };
+    this.on('undo', 'click', step((of) => of.undo()));
+    this.on('redo', 'click', step((of) => of.redo()));
+    addEventListener('keydown', (event) => {
+      if (!(event.ctrlKey || event.metaKey) || (event.target as HTMLElement).matches?.('input[type=text], input[type=number]')) return;
+      if (event.key.toLowerCase() !== 'z' && event.key.toLowerCase() !== 'y') return;
+      event.preventDefault();
+      step((of) => (event.key.toLowerCase() === 'y' || event.shiftKey ? of.redo() : of.undo()))();
+    });
+    this.on('material', 'change', () => this.choose(Number(byId<HTMLSelectElement>('material').value)));
+    for (const id of ['profile', 'compare']) this.on(id, 'change', () => this.compile());
+    for (const id of ['target', 'stage']) this.on(id, 'change', () => this.showText());
+    this.on('export', 'click', () => {
+      if (!this.of) return;
+      const { name, bytes } = this.of.export();
+      download(name, bytes, name.endsWith('.glb') ? 'model/gltf-binary' : 'model/gltf+json');
+    });
+    this.on('export-graph', 'click', () => {
+      if (!this.of) return;
+      const graph = graphOf(this.lacquer, this.of, this.options(), []);
+      download(`${this.of.names[this.of.material] || 'material'}.json`, graph.toText(), 'application/json');
+      graph.free();
+    });
+    this.on('forget-graph', 'click', () => {
+      this.of?.setGraph(null, `graph ${performance.now()}`);
+      this.of?.settle();
+      this.compile();
+    });
+    this.on('add-node', 'click', () => {
+      const type = byId<HTMLSelectElement>('new-type').value;
+      const id = byId<HTMLInputElement>('new-id').value || `my.${type}`;
+      this.selected = id;
+      this.editGraph((graph) => graph.addNode(id, type));
+    });
+    this.on('zoom-in', 'click', () => this.graph.setZoom(this.graph.zoomed * 1.25));
+    this.on('zoom-out', 'click', () => this.graph.setZoom(this.graph.zoomed / 1.25));
+    this.on('environment', 'change', () => {
+      this.viewport.environment = byId<HTMLSelectElement>('environment').value;
+      this.compare();
+      this.viewport.redraw();
+    });
+    this.on('shape', 'change', () => {
+      this.viewport.useBall = byId<HTMLSelectElement>('shape').value === 'ball';
+      this.viewport.fit();
+    });
+    this.on('exposure', 'input', () => {
+      this.viewport.exposure = 2 ** Number(byId<HTMLInputElement>('exposure').value);
+      this.viewport.redraw();
+    });
+    this.on('theme', 'click', () => {
+      const dark = getComputedStyle(document.documentElement).colorScheme === 'dark';
+      document.documentElement.dataset.theme = dark ? 'light' : 'dark';
+      this.viewport.redraw();
+    });
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.viewport.redraw());
+    const tabs = [...document.querySelectorAll<HTMLElement>('[role=tab]')];
+    const show = (tab: HTMLElement) => {
+      for (const each of tabs) {
+        each.setAttribute('aria-selected', String(each === tab));
+        each.tabIndex = each === tab ? 0 : -1;
+        byId(`panel-${each.dataset.tab}`).hidden = each !== tab;
+      }
+      this.showPanels();
+    };
+    tabs.forEach((tab, i) => {
+      tab.addEventListener('click', () => show(tab));
+      tab.addEventListener('keydown', (event) => {
+        const step = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
+        if (step === 0) return;
+        const next = tabs[(i + step + tabs.length) % tabs.length];
+        next.focus();
+        show(next);
+      });
+    });
+  }
+
+  private connectPointer(): void {
+    const { canvas, orbit } = this.viewport;
+    const turn = (x: number, y: number) => {
+      orbit.yaw -= x;
+      orbit.pitch = Math.min(Math.max(orbit.pitch + y, -1.5), 1.5);
+      this.viewport.redraw();
+    };
+    const near = (by: number) => {
+      orbit.distance = Math.min(Math.max(orbit.distance * by, 1.2), 20);
+      this.viewport.redraw();
+    };
+    canvas.addEventListener('pointerdown', (event) => canvas.setPointerCapture(event.pointerId));
+    canvas.addEventListener('pointermove', (event) => {
+      if (event.buttons & 1) turn(event.movementX / 150, event.movementY / 150);
+    });
+    canvas.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      near(Math.exp(event.deltaY / 900));
+    }, { passive: false });
+    canvas.addEventListener('keydown', (event) => {
+      const steps: Record<string, () => void> = {
+        ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
+        '+': () => near(0.9), '-': () => near(1.1),
+      };
+      if (!steps[event.key]) return;
+      event.preventDefault();
+      steps[event.key]();
+    });
+    new ResizeObserver(() => this.viewport.redraw()).observe(canvas);
+  }
+
+  private connectFiles(): void {
+    const picker = byId<HTMLInputElement>('picker');
+    this.on('open', 'click', () => picker.click());
+    picker.addEventListener('change', () => {
+      void this.take([...(picker.files ?? [])]);
+      picker.value = '';
+    });
+    for (const event of ['dragover', 'dragenter']) {
+      addEventListener(event, (drag) => {
+        drag.preventDefault();
+        document.body.classList.add('dropping');
+      });
+    }
+    addEventListener('dragleave', () => document.body.classList.remove('dropping'));
+    addEventListener('drop', (event) => {
+      event.preventDefault();
+      document.body.classList.remove('dropping');
+      void this.take([...(event.dataTransfer?.files ?? [])]);
+    });
+  }
+
+  /** Files that were dropped or picked: a .gltf with its buffers and images, a .glb, or a graph in JSON. */
+  async take(files: File[]): Promise<void> {
+    const bytesOf = async (file: File) => new Uint8Array(await file.arrayBuffer());
+    const graph = files.find(({ name }) => name.endsWith('.json'));
+    if (graph && this.of) {
+      const text = await graph.text();
+      try {
+        this.lacquer.graph(text, graph.name).free();
+      } catch (error) {
+        return this.fail(error);
+      }
+      this.of.setGraph(text, `graph ${graph.name}`);
+      this.of.settle();
+      return this.compile();
+    }
+    const main = files.find(({ name }) => /\.(gltf|glb)$/i.test(name)) ?? files[0];
+    if (!main) return;
+    const resources = new Map<string, Uint8Array>();
+    for (const file of files) if (file !== main) resources.set(file.name, await bytesOf(file));
+    this.open({ name: main.name, bytes: await bytesOf(main), resources });
+  }
+
+  /** What a test asks. */
+  get document(): Document | null {
+    return this.of;
+  }
+  lookNow(): Look | undefined {
+    return this.of ? this.viewport.looks.get(this.of.material) : undefined;
+  }
+}
+
+function messageOf(error: unknown): Message {
+  const message = error instanceof Error ? error.message : String(error);
+  return { level: 'error', code: 'page', file: '', pointer: '', line: 0, column: 0, message, help: '', text: `error: ${message}` };
+}
+
+interface Embedded {
+  name: string;
+  bytes: string;
+  resources: { uri: string; bytes: string }[];
+}
+
+function inputOf({ name, bytes, resources }: Embedded): Input {
+  return { name, bytes: fromBase64(bytes), resources: new Map(resources.map((each) => [each.uri, fromBase64(each.bytes)])) };
+}
+
+async function start(): Promise<void> {
+  const embedded = (id: string): Embedded[] => JSON.parse(byId(id).textContent ?? '[]');
+  const lacquer = await compiler(byId('wasm').textContent!.trim());
+  const viewport = new Viewport(byId<HTMLCanvasElement>('viewport'), lacquer.environmentDfg(128), lacquer.environmentSheen(64));
+  const page = new Page(lacquer, viewport);
+  (window as any).lacquerPage = page;
+  const own = embedded('files');
+  const samples = embedded('samples');
+  const all = [...own, ...samples];
+  const choice = byId<HTMLSelectElement>('sample');
+  choice.replaceChildren(...all.map(({ name }, i) => h('option', { value: i }, name)));
+  choice.addEventListener('change', () => page.open(inputOf(all[Number(choice.value)])));
+  if (all.length > 0) page.open(inputOf(all[0]));
+  document.body.classList.add('ready');
+}
+
+start().catch((error: unknown) => {
+  byId('status').textContent = error instanceof Error ? error.message : String(error);
+  byId('status').className = 'error';
+  document.body.classList.add('ready');
+});

@@ -1,0 +1,549 @@
+// Draws materials with their own shaders: the Essl texts, blocks by the offsets that the shader's interface tells.
+import type { Interface, Shader } from '../src/index';
+import { constantEnvironment, kEnvironments, makeEnvironment, type Environment } from './environment';
+import { ball, bounds, flatDrawable, image, type Drawable, type GltfFile } from './gltf';
+import { add, lookAt, multiply, normalMatrix, perspective, scale, unit, type Mat4, type Vec3 } from './math';
+
+export interface Light {
+  direction: Vec3; // to the light
+  radiance: Vec3;
+}
+
+/** A material to draw with: its program, and its textures by slot. */
+export interface Look {
+  id: string;
+  block: Uint8Array;
+  /** glTF texture index and colour space by slot. */
+  slots: Map<string, { texture: number; srgb: boolean }>;
+  doubleSided: boolean;
+  blended: boolean;
+}
+
+interface Program {
+  program: WebGLProgram;
+  interface: Interface;
+  inputs: { name: string; location: number }[];
+  samplers: { name: string; type: string; unit: number }[];
+}
+
+interface Mesh {
+  drawable: Drawable;
+  arrays: WebGLVertexArrayObject;
+  count: number;
+}
+
+const kBlocks = ['Frame', 'Lights', 'Object', 'Material', 'SeeThrough'];
+const kInputs: Record<string, string> = {
+  in_position: 'POSITION', in_normal: 'NORMAL', in_tangent: 'TANGENT', in_color_0: 'COLOR_0',
+  in_texcoord_0: 'TEXCOORD_0', in_texcoord_1: 'TEXCOORD_1', in_texcoord_2: 'TEXCOORD_2', in_texcoord_3: 'TEXCOORD_3',
+};
+/** Where the vertex shaders have their attributes (docs/bindings.md). */
+const kLocations = ['POSITION', 'NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3', 'COLOR_0'];
+/** What stands for an absent image. */
+function neutral(slot: string): [number, number, number, number] {
+  if (slot.endsWith('normal_texture')) return [128, 128, 255, 255];
+  if (slot.endsWith('anisotropy_texture')) return [255, 128, 255, 255];
+  return [255, 255, 255, 255];
+}
+
+export class Viewport {
+  readonly gl: WebGL2RenderingContext;
+  private programs = new Map<string, Program>();
+  private meshes: Mesh[] = [];
+  private ballMesh: Mesh;
+  private environments = new Map<string, Environment>();
+  private textures = new Map<string, WebGLTexture>();
+  private blocks: WebGLBuffer[] = [];
+  private show: WebGLProgram;
+  private target: { frame: WebGLFramebuffer; resolved: WebGLFramebuffer; color: WebGLTexture; width: number; height: number } | null = null;
+  private tables: { dfg: WebGLTexture; sheen: WebGLTexture };
+  private behind: WebGLTexture;
+  private pending = 0;
+
+  orbit = { yaw: 0.35, pitch: 0.2, distance: 3.4 };
+  middle: Vec3 = [0, 0, 0];
+  radius = 1;
+  environment = 'Studio';
+  exposure = 1;
+  useBall = true;
+  lights: Light[] = [
+    { direction: unit([-0.62, 0.62, 0.62]), radiance: [1, 0.97, 0.93] },
+    { direction: unit([0.95, 0.22, 0.3]), radiance: [0.2, 0.22, 0.25] },
+  ];
+  /** What to draw of each material; -1 stands for the default one. */
+  looks = new Map<number, Look>();
+  /** The material that the ball shows. */
+  shown = 0;
+  /** Another look of the shown material, right of the place (0 to 1 of the width). */
+  other: { look: Look; split: number } | null = null;
+
+  constructor(readonly canvas: HTMLCanvasElement, dfg: Float32Array, sheen: Float32Array) {
+    const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, preserveDrawingBuffer: true });
+    if (!gl) throw new Error('this browser has no WebGL 2');
+    this.gl = gl;
+    if (!gl.getExtension('EXT_color_buffer_float')) throw new Error('this browser cannot draw to floating point');
+    this.blocks = kBlocks.map(() => gl.createBuffer()!);
+    this.ballMesh = this.upload(ball());
+    this.tables = { dfg: this.pairs(dfg), sheen: this.pairs(sheen) };
+    this.behind = this.board();
+    this.show = this.link(kShowVertex, kShowFragment);
+  }
+
+  // ---- what there is to draw
+
+  setScene(drawables: Drawable[]): void {
+    for (const mesh of this.meshes) this.gl.deleteVertexArray(mesh.arrays);
+    this.meshes = drawables.map((each) => this.upload(each));
+    this.fit();
+  }
+  fit(): void {
+    const own = !this.useBall && this.meshes.length > 0;
+    const { middle, radius } = own ? bounds(this.meshes.map((m) => m.drawable)) : { middle: [0, 0, 0] as Vec3, radius: 1 };
+    this.middle = middle;
+    this.radius = radius;
+    this.redraw();
+  }
+
+  /** Loads the file's textures that a look has, then draws again. */
+  async loadTextures(file: GltfFile, look: Look): Promise<void> {
+    for (const { texture, srgb } of look.slots.values()) {
+      const key = `${texture}:${srgb}`;
+      if (this.textures.has(key)) continue;
+      const of = file.json.textures?.[texture];
+      const bitmap = of ? await image(file, of.source ?? -1) : null;
+      if (!bitmap || this.textures.has(key)) continue;
+      this.textures.set(key, this.imageTexture(bitmap, srgb, file.json.samplers?.[of.sampler] ?? {}));
+    }
+    this.redraw();
+  }
+  forgetTextures(): void {
+    for (const texture of this.textures.values()) this.gl.deleteTexture(texture);
+    this.textures.clear();
+  }
+
+  /** Makes the program of a shader where there is none yet. Throws what the driver says. */
+  prepare(shader: Shader): void {
+    const id = shader.id;
+    if (this.programs.has(id)) return;
+    const { gl } = this;
+    const program = this.link(shader.text('essl', 'vertex'), shader.text('essl', 'fragment'));
+    const inputs: Program['inputs'] = [];
+    for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_ATTRIBUTES); ++i) {
+      const { name } = gl.getActiveAttrib(program, i)!;
+      inputs.push({ name: kInputs[name] ?? name, location: gl.getAttribLocation(program, name) });
+    }
+    kBlocks.forEach((name, binding) => {
+      const index = gl.getUniformBlockIndex(program, name);
+      if (index !== gl.INVALID_INDEX) gl.uniformBlockBinding(program, index, binding);
+    });
+    gl.useProgram(program);
+    const samplers = shader.interface.textures.map(({ name, type }, unit) => {
+      gl.uniform1i(gl.getUniformLocation(program, name), unit);
+      return { name, type, unit };
+    });
+    this.programs.set(id, { program, interface: shader.interface, inputs, samplers });
+  }
+  get programCount(): number {
+    return this.programs.size;
+  }
+
+  // ---- drawing
+
+  redraw(): void {
+    if (this.pending === 0) this.pending = requestAnimationFrame(() => this.draw());
+  }
+
+  draw(): void {
+    this.pending = 0;
+    const { gl, canvas } = this;
+    const ratio = Math.min(devicePixelRatio, 2);
+    const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    const target = this.targetOf(width, height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    const environment = this.environmentOf(this.environment);
+    this.frame(this.eye(), this.viewProjection(width / height), environment, this.lights);
+    gl.enable(gl.SCISSOR_TEST);
+    const cut = this.other ? Math.round(width * this.other.split) : width;
+    gl.scissor(0, 0, cut, height);
+    this.drawAll(environment, null);
+    if (this.other) {
+      gl.scissor(cut, 0, width - cut, height);
+      this.drawAll(environment, this.other.look);
+    }
+    gl.disable(gl.SCISSOR_TEST);
+    this.present(target, cut);
+  }
+
+  private drawAll(environment: Environment, instead: Look | null): void {
+    const own = !this.useBall && this.meshes.length > 0;
+    const meshes = own ? this.meshes : [this.ballMesh];
+    const lookOf = (mesh: Mesh) => {
+      const material = own ? mesh.drawable.material : this.shown;
+      return instead && material === this.shown ? instead : this.looks.get(material);
+    };
+    for (const blended of [false, true]) {
+      for (const mesh of meshes) {
+        const look = lookOf(mesh);
+        if (look && look.blended === blended) this.drawMesh(mesh, look, environment);
+      }
+    }
+  }
+
+  private drawMesh(mesh: Mesh, look: Look, environment: Environment): void {
+    const { gl } = this;
+    const made = this.programs.get(look.id);
+    if (!made) return;
+    gl.useProgram(made.program);
+    gl.enable(gl.DEPTH_TEST);
+    gl[look.doubleSided ? 'disable' : 'enable'](gl.CULL_FACE);
+    gl[look.blended ? 'enable' : 'disable'](gl.BLEND);
+    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    this.fill('Material', look.block);
+    const object = new Float32Array(32);
+    object.set(mesh.drawable.model);
+    object.set(mesh.drawable.normal, 16);
+    this.fill('Object', new Uint8Array(object.buffer));
+    for (const { name, type, unit } of made.samplers) {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(type === 'samplerCube' ? gl.TEXTURE_CUBE_MAP : gl.TEXTURE_2D, this.textureOf(name, look, environment));
+    }
+    gl.bindVertexArray(mesh.arrays);
+    gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
+    gl.bindVertexArray(null);
+  }
+
+  private textureOf(name: string, look: Look, environment: Environment): WebGLTexture {
+    if (name === 'environment_irradiance') return environment.irradiance;
+    if (name === 'environment_specular' || name === 'environment_charlie') return environment.specular;
+    if (name === 'environment_dfg') return this.tables.dfg;
+    if (name === 'environment_sheen') return this.tables.sheen;
+    if (name === 'scene_behind') return this.behind;
+    const slot = look.slots.get(name);
+    return (slot && this.textures.get(`${slot.texture}:${slot.srgb}`)) ?? this.colorTexture(neutral(name));
+  }
+
+  /** The blocks of a frame, by the fields' places in templates/mesh.node (docs/bindings.md). */
+  private frame(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[]): void {
+    const frame = new DataView(new ArrayBuffer(96));
+    viewProjection.forEach((x, i) => frame.setFloat32(4 * i, x, true));
+    eye.forEach((x, i) => frame.setFloat32(64 + 4 * i, x, true));
+    frame.setFloat32(76, 1, true);
+    frame.setFloat32(80, environment.lastLevel, true);
+    frame.setInt32(84, lights.length, true);
+    this.fill('Frame', new Uint8Array(frame.buffer));
+    const all = new Float32Array(16 * 16);
+    lights.forEach(({ direction, radiance }, i) => {
+      // position, positional, radiance, inverse_range_4, direction, spot_scale, spot_offset
+      all.set([...direction, 0, ...radiance, 0, ...scale(direction, -1), 0, 1], 16 * i);
+    });
+    this.fill('Lights', new Uint8Array(all.buffer));
+    const through = new Float32Array(16);
+    const m = viewProjection;
+    for (let k = 0; k < 4; ++k) {
+      through[k] = 0.5 * (m[4 * k] + m[4 * k + 3]);
+      through[4 + k] = 0.5 * (m[4 * k + 1] + m[4 * k + 3]);
+      through[8 + k] = m[4 * k + 3];
+    }
+    through[12] = 6; // the board's last level
+    this.fill('SeeThrough', new Uint8Array(through.buffer));
+  }
+
+  private fill(block: string, bytes: Uint8Array): void {
+    const { gl } = this;
+    const binding = kBlocks.indexOf(block);
+    gl.bindBuffer(gl.UNIFORM_BUFFER, this.blocks[binding]);
+    gl.bufferData(gl.UNIFORM_BUFFER, bytes.length > 0 ? bytes : new Uint8Array(16), gl.DYNAMIC_DRAW);
+    gl.bindBufferBase(gl.UNIFORM_BUFFER, binding, this.blocks[binding]);
+  }
+
+  eye(): Vec3 {
+    const { yaw, pitch, distance } = this.orbit;
+    const to: Vec3 = [Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw) * Math.cos(pitch)];
+    return add(this.middle, scale(to, distance * this.radius));
+  }
+  private viewProjection(aspect: number): Mat4 {
+    const { distance } = this.orbit;
+    const fov = aspect < 1 ? 2 * Math.atan(Math.tan(0.36) / aspect) : 0.72;
+    const near = Math.max(distance - 1.5, 0.02) * this.radius;
+    return multiply(perspective(fov, aspect, near, (distance + 3) * this.radius), lookAt(this.eye(), this.middle));
+  }
+
+  private present(target: NonNullable<Viewport['target']>, cut: number): void {
+    const { gl } = this;
+    const { width, height } = target;
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target.frame);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, target.resolved);
+    gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.disable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+    gl.disable(gl.CULL_FACE);
+    gl.useProgram(this.show);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, target.color);
+    gl.uniform1f(gl.getUniformLocation(this.show, 'exposure'), this.exposure);
+    gl.uniform1f(gl.getUniformLocation(this.show, 'cut'), this.other ? cut : -10);
+    const back = getComputedStyle(this.canvas).getPropertyValue('--viewport').trim().split(' ').map(Number);
+    gl.uniform3f(gl.getUniformLocation(this.show, 'back'), back[0] / 255, back[1] / 255, back[2] / 255);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+
+  // ---- single colours
+
+  /** What a look's shader gives for a point seen from +z, under one light or none, in a constant environment or none: the
+   * linear colour as `lacquer eval` has it. */
+  probe(look: Look, at: { n: Vec3; t: number[]; l: Vec3; light: Vec3; env: Vec3; uv: number[] }): number[] {
+    const { gl } = this;
+    const corners = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
+    const four = (x: number[]) => [...x, ...x, ...x, ...x];
+    const mesh = this.upload(flatDrawable(corners, four(at.n), four(at.t), four(at.uv), [0, 1, 2, 0, 2, 3]));
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, 1, 1);
+    const frame = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+    gl.viewport(0, 0, 1, 1);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    const environment = constantEnvironment(gl, at.env);
+    const flat = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.01, 0, 0, 0, 0, 1]);
+    this.frame([0, 0, 1], flat, environment, [{ direction: at.l, radiance: at.light }]);
+    this.drawMesh(mesh, { ...look, blended: false, doubleSided: true }, environment);
+    const rgba = new Float32Array(4);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, rgba);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.deleteFramebuffer(frame);
+    gl.deleteTexture(texture);
+    gl.deleteTexture(environment.specular);
+    gl.deleteTexture(environment.irradiance);
+    gl.deleteVertexArray(mesh.arrays);
+    this.redraw();
+    return [...rgba];
+  }
+
+  /** How two looks of the shown material differ over the ball's linear colours: the largest and the mean difference. */
+  difference(a: Look, b: Look): { max: number; mean: number } {
+    const size = 96;
+    const draw = (look: Look) => {
+      const { gl } = this;
+      const target = this.makeTarget(size, size);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+      gl.viewport(0, 0, size, size);
+      gl.clearColor(0, 0, 0, 0);
+      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+      const environment = this.environmentOf(this.environment);
+      this.frame(this.eye(), this.viewProjection(1), environment, this.lights);
+      this.drawAll(environment, look);
+      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target.frame);
+      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, target.resolved);
+      gl.blitFramebuffer(0, 0, size, size, 0, 0, size, size, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, target.resolved);
+      const pixels = new Float32Array(4 * size * size);
+      gl.readPixels(0, 0, size, size, gl.RGBA, gl.FLOAT, pixels);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+      this.dropTarget(target);
+      return pixels;
+    };
+    const [x, y] = [draw(a), draw(b)];
+    let max = 0;
+    let sum = 0;
+    let count = 0;
+    for (let i = 0; i < x.length; ++i) {
+      if (i % 4 === 3 || (x[i | 3] === 0 && y[i | 3] === 0)) continue;
+      const d = Math.abs(x[i] - y[i]);
+      max = Math.max(max, d);
+      sum += d;
+      ++count;
+    }
+    return { max, mean: count > 0 ? sum / count : 0 };
+  }
+
+  // ---- objects of WebGL
+
+  private environmentOf(name: string): Environment {
+    let made = this.environments.get(name);
+    if (!made) this.environments.set(name, (made = makeEnvironment(this.gl, kEnvironments[name] ?? kEnvironments.Studio)));
+    return made;
+  }
+
+  private upload(drawable: Drawable): Mesh {
+    const { gl } = this;
+    const arrays = gl.createVertexArray()!;
+    gl.bindVertexArray(arrays);
+    kLocations.forEach((name, location) => {
+      const attribute = drawable.attributes.get(name);
+      if (!attribute) {
+        // Generic values: what a primitive without the attribute is drawn with.
+        gl.vertexAttrib4f(location, ...(name === 'COLOR_0' ? [1, 1, 1, 1] : [1, 0, 0, 1]) as [number, number, number, number]);
+        return;
+      }
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, attribute.data, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, attribute.size, gl.FLOAT, false, 0, 0);
+    });
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, drawable.indices, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+    drawable.normal = normalMatrix(drawable.model);
+    return { drawable, arrays, count: drawable.indices.length };
+  }
+
+  private compile(kind: number, text: string): WebGLShader {
+    const { gl } = this;
+    const shader = gl.createShader(kind)!;
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader) ?? 'no shader');
+    return shader;
+  }
+  private link(vertex: string, fragment: string): WebGLProgram {
+    const { gl } = this;
+    const program = gl.createProgram()!;
+    const parts = [this.compile(gl.VERTEX_SHADER, vertex), this.compile(gl.FRAGMENT_SHADER, fragment)];
+    for (const part of parts) gl.attachShader(program, part);
+    for (const [name, attribute] of Object.entries(kInputs))
+      gl.bindAttribLocation(program, kLocations.indexOf(attribute), name);
+    gl.linkProgram(program);
+    for (const part of parts) gl.deleteShader(part);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) ?? 'no program');
+    return program;
+  }
+
+  private pairs(data: Float32Array): WebGLTexture {
+    const { gl } = this;
+    const size = Math.sqrt(data.length / 2);
+    const texture = gl.createTexture()!;
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG16F, size, size, 0, gl.RG, gl.FLOAT, data);
+    for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+    return texture;
+  }
+
+  private colorTexture(rgba: [number, number, number, number]): WebGLTexture {
+    const key = `color:${rgba}`;
+    let made = this.textures.get(key);
+    if (!made) {
+      const { gl } = this;
+      made = gl.createTexture()!;
+      gl.bindTexture(gl.TEXTURE_2D, made);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 1, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(rgba));
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+      this.textures.set(key, made);
+    }
+    return made;
+  }
+
+  private imageTexture(bitmap: ImageBitmap, srgb: boolean, sampler: any): WebGLTexture {
+    const { gl } = this;
+    const texture = gl.createTexture()!;
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+    gl.texImage2D(gl.TEXTURE_2D, 0, srgb ? gl.SRGB8_ALPHA8 : gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
+    gl.generateMipmap(gl.TEXTURE_2D);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, sampler.wrapS ?? gl.REPEAT);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, sampler.wrapT ?? gl.REPEAT);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, sampler.magFilter ?? gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    return texture;
+  }
+
+  /** What is seen through what transmits: a board, blurred from level to level. */
+  private board(): WebGLTexture {
+    const { gl } = this;
+    const size = 64;
+    const texels = new Uint8Array(4 * size * size);
+    for (let i = 0; i < size * size; ++i) {
+      const light = ((i % size >> 3) + (Math.floor(i / size) >> 3)) % 2 ? 150 : 90;
+      texels.set([light, light, light, 255], 4 * i);
+    }
+    const texture = gl.createTexture()!;
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, texels);
+    gl.generateMipmap(gl.TEXTURE_2D);
+    for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
+    return texture;
+  }
+
+  private targetOf(width: number, height: number): NonNullable<Viewport['target']> {
+    if (this.target?.width === width && this.target.height === height) return this.target;
+    if (this.target) this.dropTarget(this.target);
+    return (this.target = this.makeTarget(width, height));
+  }
+  private makeTarget(width: number, height: number): NonNullable<Viewport['target']> {
+    const { gl } = this;
+    const samples = Math.min(4, gl.getParameter(gl.MAX_SAMPLES));
+    const frame = gl.createFramebuffer()!;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    const buffer = (format: number, attachment: number) => {
+      const made = gl.createRenderbuffer();
+      gl.bindRenderbuffer(gl.RENDERBUFFER, made);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, format, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, made);
+    };
+    buffer(gl.RGBA16F, gl.COLOR_ATTACHMENT0);
+    buffer(gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT);
+    const color = gl.createTexture()!;
+    gl.bindTexture(gl.TEXTURE_2D, color);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA16F, width, height);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+    const resolved = gl.createFramebuffer()!;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, resolved);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, color, 0);
+    return { frame, resolved, color, width, height };
+  }
+  private dropTarget(target: NonNullable<Viewport['target']>): void {
+    const { gl } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+    for (const attachment of [gl.COLOR_ATTACHMENT0, gl.DEPTH_ATTACHMENT]) {
+      const name = gl.getFramebufferAttachmentParameter(gl.FRAMEBUFFER, attachment, gl.FRAMEBUFFER_ATTACHMENT_OBJECT_NAME);
+      gl.deleteRenderbuffer(name);
+    }
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.deleteFramebuffer(target.frame);
+    gl.deleteFramebuffer(target.resolved);
+    gl.deleteTexture(target.color);
+  }
+}
+
+const kShowVertex = `#version 300 es
+void main() {
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}`;
+
+/** Exposure, the Khronos PBR neutral tone mapper, and sRGB, before the page's colour. */
+const kShowFragment = `#version 300 es
+precision highp float;
+uniform sampler2D picture;
+uniform float exposure, cut;
+uniform vec3 back;
+out vec4 shown;
+vec3 neutral(vec3 c) {
+  const float start = 0.8 - 0.04, desaturation = 0.15;
+  float least = min(c.r, min(c.g, c.b));
+  c -= least < 0.08 ? least - 6.25 * least * least : 0.04;
+  float peak = max(c.r, max(c.g, c.b));
+  if (peak < start) return c;
+  float d = 1.0 - start;
+  float new_peak = 1.0 - d * d / (peak + d - start);
+  c *= new_peak / peak;
+  return mix(c, vec3(new_peak), 1.0 - 1.0 / (desaturation * (peak - new_peak) + 1.0));
+}
+vec3 encode(vec3 c) {
+  return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  vec4 c = texelFetch(picture, at, 0);
+  float a = clamp(c.a, 0.0, 1.0);
+  vec3 lit = encode(clamp(neutral(max(c.rgb / max(a, 1e-4), 0.0) * exposure), 0.0, 1.0));
+  shown = vec4(mix(back, lit, a), 1.0);
+  if (abs(gl_FragCoord.x - cut) < 1.0) shown.rgb = vec3(0.85);
+}`;

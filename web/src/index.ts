@@ -1,0 +1,344 @@
+// Lacquer in JavaScript: glTF materials to shaders. The way is Scene -> Graph -> Shader.
+import { Instance, type Source } from './module.js';
+import {
+  LacquerError,
+  type Attribute,
+  type Evaluation,
+  type GraphJson,
+  type GraphSource,
+  type Interface,
+  type Level,
+  type Message,
+  type Options,
+  type Parameter,
+  type Point,
+  type Stage,
+  type Target,
+} from './types.js';
+
+export * from './types.js';
+export type { Source };
+
+const kLevels: Level[] = ['note', 'warning', 'error'];
+const kAttributes: Attribute[] = ['NORMAL', 'TANGENT', 'COLOR_0', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3'];
+/** What a material that no primitive uses is read with. */
+export const kUnusedAttributes: Attribute[] = ['NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1'];
+const kStages: Record<Stage, number> = { vertex: 0, fragment: 1 };
+const kInterfaceVersion = 1;
+
+function readMessages(it: Instance, handle: number): Message[] {
+  const part = (index: number, which: number) => it.sized('lacquer_message_part', handle, index, which);
+  return Array.from({ length: it.call.lacquer_messages_count(handle) }, (_, i) => ({
+    level: kLevels[it.call.lacquer_message_level(handle, i)],
+    code: part(i, 0),
+    file: part(i, 1),
+    pointer: part(i, 2),
+    line: it.call.lacquer_message_line(handle, i),
+    column: it.call.lacquer_message_column(handle, i),
+    message: part(i, 3),
+    help: part(i, 4),
+    text: part(i, 5),
+  }));
+}
+
+/** Calls with messages and, where there are any, options. What it said is appended to `to`; an error among it is thrown
+ * when the call gives 0. */
+function calling(it: Instance, options: Options | undefined, to: Message[], call: (messages: number, options: number) => number) {
+  const handle = it.call.lacquer_messages_new();
+  let made = 0;
+  let result = 0;
+  try {
+    if (options) made = it.withText(JSON.stringify(options), (at, size) => it.call.lacquer_options_new(at, size, handle));
+    if (!options || made) result = call(handle, made);
+    const said = readMessages(it, handle);
+    to.push(...said);
+    if (result === 0) throw new LacquerError(said);
+    return result;
+  } finally {
+    it.call.lacquer_options_free(made);
+    it.call.lacquer_messages_free(handle);
+  }
+}
+
+/** Frees what nobody has any more; `free()` does it at once. */
+const forgotten = new FinalizationRegistry<() => void>((free) => free());
+
+/** An object of the module. */
+abstract class Handle {
+  /** @internal */
+  protected at: number;
+  private readonly release: (at: number) => void;
+
+  /** @internal */
+  constructor(protected readonly it: Instance, at: number, free: string) {
+    this.at = at;
+    this.release = (address) => it.call[free](address);
+    const release = this.release;
+    forgotten.register(this, () => release(at), this);
+  }
+  /** Gives its memory back. It is empty from then on. */
+  free(): void {
+    if (this.at === 0) return;
+    forgotten.unregister(this);
+    this.release(this.at);
+    this.at = 0;
+  }
+}
+
+/** The code of a graph. */
+export class Shader extends Handle {
+  /** @internal */
+  constructor(it: Instance, at: number) {
+    super(it, at, 'lacquer_shader_free');
+  }
+  /** Equal for equal code and different for different code: "forward-coat-1f0a9b1c2d3e4f50". */
+  get id(): string {
+    const at = this.it.call.lacquer_shader_id(this.at);
+    let size = 0;
+    while (this.it.bytes(at + size, 1)[0] !== 0) ++size;
+    return this.it.text(at, size);
+  }
+  get hasVertexStage(): boolean {
+    return this.it.call.lacquer_shader_has_vertex_stage(this.at) === 1;
+  }
+  /** Empty for a target that was not asked for or that has no text. */
+  text(target: Target, stage: Stage): string {
+    return this.it.withText(target, (name) => this.it.sized('lacquer_shader_text', this.at, name, kStages[stage]));
+  }
+  /** Empty when "spirv" was not asked for. */
+  spirv(stage: Stage): Uint32Array {
+    return this.it.withBytes(4, (count) => {
+      const at = this.it.call.lacquer_shader_spirv(this.at, kStages[stage], count);
+      return new Uint32Array(this.it.bytes(at, 4 * this.it.word(count)).slice().buffer);
+    });
+  }
+  /** Its entry in manifest.json: blocks with their fields, textures, inputs. */
+  get interface(): Interface {
+    return JSON.parse(this.it.sized('lacquer_shader_interface', this.at));
+  }
+  /** Bytes of the material's uniform block; 0 when there is none. */
+  get uniformSize(): number {
+    return this.it.call.lacquer_shader_uniform_size(this.at);
+  }
+  /** The preshader: the bytes of the material's uniform block. Parameters that are not given have today's value; names
+   * that this shader has no parameter of are passed over. */
+  pack(values: Record<string, number | number[]> = {}, messages: Message[] = []): Uint8Array {
+    const entries = Object.entries(values).map(([name, value]) => [name, [value].flat()] as const);
+    const numbers = entries.flatMap(([, value]) => value);
+    return this.it.withTexts(entries.map(([name]) => name), (names) =>
+      this.it.withBytes(new Uint8Array(new Float64Array(numbers).buffer), (doubles) => {
+        const rows = new Uint32Array(3 * entries.length);
+        let used = 0;
+        entries.forEach(([, value], i) => {
+          rows.set([names[i], doubles + 8 * used, value.length], 3 * i);
+          used += value.length;
+        });
+        return this.it.withBytes(new Uint8Array(rows.buffer), (list) =>
+          this.it.withBytes(this.uniformSize, (block, size) => {
+            calling(this.it, undefined, messages, (said) =>
+              this.it.call.lacquer_shader_pack(this.at, list, entries.length, block, size, said),
+            );
+            return this.it.bytes(block, size).slice();
+          }),
+        );
+      }),
+    );
+  }
+}
+
+/** A node graph: one term of the specification is one node. An edit that fails throws, and leaves the graph as it was. */
+export class Graph extends Handle {
+  /** @internal */
+  constructor(it: Instance, at: number) {
+    super(it, at, 'lacquer_graph_free');
+  }
+  toJson(): GraphJson {
+    return JSON.parse(this.toText());
+  }
+  /** The JSON form as the program writes it. */
+  toText(): string {
+    return this.it.taken(this.it.call.lacquer_graph_json(this.at));
+  }
+  toDot(): string {
+    return this.it.taken(this.it.call.lacquer_graph_dot(this.at));
+  }
+  parameters(): Parameter[] {
+    return JSON.parse(this.it.taken(this.it.call.lacquer_graph_parameters(this.at)) || '[]');
+  }
+  addNode(id: string, type: string, messages?: Message[]): void {
+    this.edit('lacquer_graph_add_node', [id, type], messages);
+  }
+  removeNode(id: string, messages?: Message[]): void {
+    this.edit('lacquer_graph_remove_node', [id], messages);
+  }
+  connect(node: string, input: string, source: GraphSource, messages?: Message[]): void {
+    this.edit('lacquer_graph_connect', [node, input, JSON.stringify(source)], messages);
+  }
+  setOutput(port: string, source: GraphSource, messages?: Message[]): void {
+    this.edit('lacquer_graph_set_output', [port, JSON.stringify(source)], messages);
+  }
+  setParameter(name: string, value: number | number[], messages: Message[] = []): void {
+    const numbers = [value].flat();
+    this.it.withText(name, (at) =>
+      this.it.withBytes(new Uint8Array(new Float64Array(numbers).buffer), (list) =>
+        calling(this.it, undefined, messages, (said) =>
+          this.it.call.lacquer_graph_set_parameter(this.at, at, list, numbers.length, said),
+        ),
+      ),
+    );
+  }
+  setRange(parameter: string, low: number, high: number, orZero = false, messages: Message[] = []): void {
+    this.it.withText(parameter, (at) =>
+      calling(this.it, undefined, messages, (said) =>
+        this.it.call.lacquer_graph_set_range(this.at, at, low, high, orZero ? 1 : 0, said),
+      ),
+    );
+  }
+  /** What is wrong with it and worth knowing; it may change the order of the nodes. */
+  check(options?: Options): Message[] {
+    const messages: Message[] = [];
+    try {
+      calling(this.it, options, messages, (said, how) => this.it.call.lacquer_graph_check(this.at, how, said));
+    } catch (error) {
+      if (!(error instanceof LacquerError)) throw error;
+    }
+    return messages;
+  }
+  generate(options?: Options, messages: Message[] = []): Shader {
+    const call = (said: number, how: number) => this.it.call.lacquer_graph_generate(this.at, how, said);
+    return new Shader(this.it, calling(this.it, options, messages, call));
+  }
+  /** The values of the code with their rates, after the pass of that name; after the last without one. */
+  dump(pass = '', options?: Options, messages: Message[] = []): string {
+    return this.it.withText(pass, (at) =>
+      this.it.taken(
+        calling(this.it, options, messages, (said, how) => this.it.call.lacquer_graph_dump(this.at, at, how, said)),
+      ),
+    );
+  }
+
+  private edit(call: string, texts: string[], messages: Message[] = []): void {
+    this.it.withTexts(texts, (at) =>
+      calling(this.it, undefined, messages, (said) => this.it.call[call](this.at, ...at, said)),
+    );
+  }
+}
+
+/** The materials of a glTF file. */
+export class Scene extends Handle {
+  /** @internal */
+  constructor(it: Instance, at: number) {
+    super(it, at, 'lacquer_scene_free');
+  }
+  get materialCount(): number {
+    return this.it.call.lacquer_scene_material_count(this.at);
+  }
+  materialName(material: number): string {
+    return this.it.sized('lacquer_scene_material_name', this.at, material);
+  }
+  /** Of the primitives that use a material, each kind once. */
+  uses(material: number): Attribute[][] {
+    const count = this.it.call.lacquer_scene_use_count(this.at, material);
+    return Array.from({ length: count }, (_, i) => {
+      const bits = this.it.call.lacquer_scene_use(this.at, material, i);
+      return kAttributes.filter((_name, bit) => (bits >> bit) & 1);
+    });
+  }
+  /** On primitives with these attributes; those of its first use where none are named. */
+  graph(material: number, options?: Options, attributes?: Attribute[], messages: Message[] = []): Graph {
+    const names = attributes ?? this.uses(material)[0] ?? kUnusedAttributes;
+    const bits = names.reduce((sum, name) => sum | (1 << kAttributes.indexOf(name)), 0);
+    const call = (said: number, how: number) => this.it.call.lacquer_scene_graph(this.at, material, bits, how, said);
+    return new Graph(this.it, calling(this.it, options, messages, call));
+  }
+  /** Linear colours at points, as `lacquer eval`. */
+  evaluate(
+    material: number,
+    points: Point[] | { points: Point[]; uniforms?: Record<string, number | number[]> },
+    options?: Options & { engine?: 'double' | 'float' },
+    messages: Message[] = [],
+  ): Evaluation {
+    const { engine, ...rest } = options ?? {};
+    return this.it.withText(JSON.stringify(points), (at, size) => {
+      const call = (said: number, how: number) =>
+        this.it.call.lacquer_scene_evaluate(this.at, material, at, size, engine === 'float' ? 1 : 0, how, said);
+      return JSON.parse(this.it.taken(calling(this.it, rest, messages, call)));
+    });
+  }
+  /** A lit ball of that many pixels on a side, from 16 to 2048: RGBA, for an ImageData. */
+  preview(material: number, pixels: number, options?: Options, messages: Message[] = []): Uint8ClampedArray {
+    return this.it.withBytes(3 * pixels * pixels, (at, size) => {
+      calling(this.it, options, messages, (said, how) =>
+        this.it.call.lacquer_scene_preview(this.at, material, pixels, at, size, how, said),
+      );
+      const rgb = this.it.bytes(at, size);
+      const rgba = new Uint8ClampedArray(4 * pixels * pixels).fill(255);
+      for (let i = 0; i < pixels * pixels; ++i) rgba.set(rgb.subarray(3 * i, 3 * i + 3), 4 * i);
+      return rgba;
+    });
+  }
+}
+
+/** The library. */
+export class Lacquer {
+  /** @internal */
+  constructor(private readonly it: Instance) {
+    const version = it.call.lacquer_c_version();
+    if (version !== kInterfaceVersion) throw new Error(`lacquer.wasm has the interface ${version}, not ${kInterfaceVersion}`);
+  }
+  /** "0.2.0" */
+  get version(): string {
+    const at = this.it.call.lacquer_version();
+    let size = 0;
+    while (this.it.bytes(at + size, 1)[0] !== 0) ++size;
+    return this.it.text(at, size);
+  }
+  /** Bytes of memory that the module has. */
+  get memory(): number {
+    return (this.it.call as unknown as { memory: WebAssembly.Memory }).memory.buffer.byteLength;
+  }
+  /** Reads .gltf or .glb; `name` stands for the file in messages. Images that are not in it are absent. */
+  scene(bytes: Uint8Array | string, name: string, options?: Options, messages: Message[] = []): Scene {
+    const data = typeof bytes === 'string' ? new TextEncoder().encode(bytes) : bytes;
+    const handle = this.it.withBytes(data, (at, size) =>
+      this.it.withText(name, (named) =>
+        calling(this.it, options, messages, (said, how) => this.it.call.lacquer_scene_read(at, size, named, how, said)),
+      ),
+    );
+    return new Scene(this.it, handle);
+  }
+  /** Reads the JSON form of a graph. */
+  graph(json: GraphJson | string, name = 'graph.json', messages: Message[] = []): Graph {
+    const text = typeof json === 'string' ? json : JSON.stringify(json);
+    const handle = this.it.withText(text, (at, size) =>
+      this.it.withText(name, (named) =>
+        calling(this.it, undefined, messages, (said) => this.it.call.lacquer_graph_read(at, size, named, said)),
+      ),
+    );
+    return new Graph(this.it, handle);
+  }
+  /** Nodes, templates, profiles, extensions and their properties, as `lacquer nodes --json`. */
+  nodes(options?: Options): any {
+    return JSON.parse(this.it.taken(calling(this.it, options, [], (said, how) => this.it.call.lacquer_nodes(how, said))));
+  }
+  /** The table behind environment_dfg: `size` rows of `size` pairs. */
+  environmentDfg(size: number): Float32Array {
+    return this.table('lacquer_environment_dfg', size);
+  }
+  /** The table behind environment_sheen. */
+  environmentSheen(size: number): Float32Array {
+    return this.table('lacquer_environment_sheen', size);
+  }
+
+  private table(name: string, size: number): Float32Array {
+    return this.it.withBytes(8 * size * size, (at, bytes) => {
+      calling(this.it, undefined, [], (said) => this.it.call[name](size, at, bytes / 4, said));
+      return new Float32Array(this.it.bytes(at, bytes).slice().buffer);
+    });
+  }
+}
+
+/** Makes the library; without a source from lacquer.wasm beside this file. */
+export async function load(source: Source = new URL('./lacquer.wasm', import.meta.url)): Promise<Lacquer> {
+  return new Lacquer(await Instance.make(source));
+}

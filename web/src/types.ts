@@ -1,0 +1,138 @@
+// What goes in and comes out, as lacquer_c.h and the documents say it.
+
+export type Level = 'note' | 'warning' | 'error';
+
+/** Something that is wrong with the input, or worth knowing. */
+export interface Message {
+  level: Level;
+  /** Stable, lower-case, dash-separated: "factor-out-of-range". */
+  code: string;
+  file: string;
+  /** JSON pointer into the file; may be empty. */
+  pointer: string;
+  /** From 1, the column in bytes; 0 where there is no place in a text. */
+  line: number;
+  column: number;
+  /** What is wrong, and what is right. */
+  message: string;
+  help: string;
+  /** All of it as the command line prints it. */
+  text: string;
+}
+
+/** What a call throws that cannot do what it is for. */
+export class LacquerError extends Error {
+  constructor(readonly messages: Message[]) {
+    super(messages.filter((m) => m.level === 'error').map((m) => m.text).join('\n') || 'the call failed');
+    this.name = 'LacquerError';
+  }
+}
+
+/** Names of targets; a library may know more of them. */
+export type Target = 'glsl' | 'glsl-gl' | 'essl' | 'hlsl' | 'spirv' | 'cpp' | (string & {});
+export type Stage = 'vertex' | 'fragment';
+
+/** How shaders are made; what is absent is as on the command line. */
+export interface Options {
+  profile?: string;
+  error_budget?: number;
+  template?: string;
+  targets?: Target[];
+  parameters?: 'uniform' | 'baked' | 'spec';
+  lights?: 'any' | 'scene' | Record<string, number>;
+  switches?: Record<string, boolean>;
+  ibl?: boolean;
+  multiple_scattering?: boolean;
+  dfg_table?: boolean;
+  decode_srgb?: boolean;
+  permissive?: boolean;
+  debug?: boolean;
+  live?: string[];
+  limits?: string[];
+  /** Of evaluations and previews: "SLOT=r,g,b,a", constants instead of images. */
+  texels?: string[];
+}
+
+/** Vertex attributes of a primitive beside POSITION. */
+export type Attribute = 'NORMAL' | 'TANGENT' | 'COLOR_0' | 'TEXCOORD_0' | 'TEXCOORD_1' | 'TEXCOORD_2' | 'TEXCOORD_3';
+
+/** An editable number of a material. */
+export interface Parameter {
+  name: string;
+  type: 'float' | 'vec2' | 'vec3' | 'vec4' | 'bool';
+  value: number | number[];
+  /** null: unbounded. */
+  low: number | null;
+  high: number | null;
+  /** 0 is one of its values although `low` is above it. */
+  or_zero: boolean;
+  /** JSON pointer of the glTF property; may be empty. */
+  pointer: string;
+}
+
+/** Where an input of a node comes from (docs/graph-format.md). */
+export type GraphSource =
+  | number
+  | boolean
+  | number[]
+  | { node: string; output?: string; swizzle?: string }
+  | { parameter: string; swizzle?: string }
+  | { texture: string }
+  | { given: string; swizzle?: string };
+
+/** The JSON form of a graph. */
+export interface GraphJson {
+  lacquer_graph: number;
+  name: string;
+  template: string;
+  parameters: Record<string, { type: string; value: number | number[]; range?: number[]; pointer?: string }>;
+  textures: Record<string, { type: string; srgb: boolean; texture: number; pointer: string }>;
+  nodes: { id: string; node: string; variant?: string; inputs: Record<string, GraphSource> }[];
+  outputs: Record<string, GraphSource>;
+  skipped?: Record<string, string>;
+}
+
+/** A point of `evaluate` (docs/eval.md). */
+export interface Point {
+  n?: number[];
+  t?: number[];
+  v?: number[];
+  l?: number[];
+  uv0?: number[];
+  uv1?: number[];
+  uv2?: number[];
+  uv3?: number[];
+  color0?: number[];
+  light?: number[];
+  env?: number[];
+  position?: number[];
+  front_facing?: boolean;
+}
+export interface Evaluation {
+  material: string;
+  engine: 'double' | 'float';
+  profile: string;
+  /** Linear; null where the material drops the fragment or the number is not finite. */
+  rgba: (number | null)[][];
+  discarded?: boolean[];
+}
+
+/** A field of a uniform block. */
+export interface Field {
+  name: string;
+  type: string;
+  offset: number;
+  array?: number;
+  stride?: number;
+  expression?: string;
+  meaning?: string;
+}
+/** A shader's entry in manifest.json (docs/manifest.md), as far as the types say it. */
+export interface Interface {
+  template: string;
+  uniforms: { block: string; role: string; size: number; array?: number; stride?: number; fields: Field[] }[];
+  parameters: { name: string; type: string; fields: string[] }[];
+  textures: { name: string; type: string; role: string; color_space?: string }[];
+  inputs?: { name: string; location: number; type: string }[];
+  [key: string]: unknown;
+}

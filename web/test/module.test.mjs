@@ -1,0 +1,210 @@
+// The package in Node: what it makes is what the native program makes, to the byte.
+import assert from 'node:assert/strict';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { before, test } from 'node:test';
+import { gzipSync } from 'node:zlib';
+import { inputs, lacquer, output, read, root, withFolder } from './native.mjs';
+
+const { load, LacquerError, kUnusedAttributes } = await import(join(output, 'package/index.js'));
+const kExtensions = { glsl: 'glsl', 'glsl-gl': 'glsl', essl: 'glsl', hlsl: 'hlsl' };
+const kStages = { vertex: 'vert', fragment: 'frag' };
+/** Bytes of lacquer.wasm after gzip: what the library takes today and a twentieth more. */
+const kMostBytes = 834_000;
+
+let library;
+before(async () => {
+  library = await load();
+});
+
+function codeOf(shader) {
+  const files = {};
+  for (const [stage, short] of Object.entries(kStages)) {
+    for (const [target, extension] of Object.entries(kExtensions)) {
+      const text = shader.text(target, stage);
+      if (text !== '') files[`${target}/${shader.id}.${short}.${extension}`] = Buffer.from(text);
+    }
+    const words = shader.spirv(stage);
+    if (words.length > 0) files[`spirv/${shader.id}.${short}.spv`] = Buffer.from(words.buffer);
+  }
+  return files;
+}
+
+for (const file of inputs()) {
+  test(`${file.slice(file.lastIndexOf('/') + 1)}: ids, texts and SPIR-V are the native program's`, () => withFolder((folder) => {
+    try {
+      lacquer('gen', '-q', '--no-validate', '--no-sync', '--unused', file, '-o', folder);
+    } catch (error) {
+      if (!existsSync(join(folder, 'manifest.json'))) {
+        // What the program refuses, the module refuses.
+        assert.throws(() => library.scene(read(file), file), LacquerError);
+        return;
+      }
+    }
+    const manifest = JSON.parse(readFileSync(join(folder, 'manifest.json'), 'utf8'));
+    const scene = library.scene(read(file), file);
+    let compared = 0;
+    for (const material of manifest.files[0].materials) {
+      if (material.index < 0) continue; // the default material of primitives without one
+      assert.equal(scene.materialName(material.index), material.name);
+      for (const use of material.uses) {
+        const graph = scene.graph(material.index, undefined, use.attributes);
+        const shader = graph.generate();
+        assert.equal(shader.id, use.shader);
+        for (const [name, bytes] of Object.entries(codeOf(shader))) {
+          assert.ok(bytes.equals(readFileSync(join(folder, name))), name);
+          ++compared;
+        }
+        shader.free();
+        graph.free();
+      }
+    }
+    scene.free();
+    const expected = manifest.files[0].materials.some(({ index, uses }) => index >= 0 && uses.length > 0);
+    assert.ok(compared > 0 || !expected);
+  }));
+}
+
+test('packed bytes are those of the values in the manifest', () => {
+  const manifest = JSON.parse(readFileSync(join(root, 'generated/manifest.json'), 'utf8'));
+  let compared = 0;
+  for (const file of manifest.files) {
+    const scene = library.scene(read(file.source), file.source);
+    for (const material of file.materials) {
+      for (const use of material.uses) {
+        const graph = scene.graph(material.index, { targets: ['essl'] }, use.attributes);
+        const shader = graph.generate({ targets: ['essl'] });
+        const block = new DataView(shader.pack().buffer);
+        const described = shader.interface.uniforms.find(({ role }) => role === 'material');
+        assert.equal(block.byteLength, described?.size ?? 0);
+        for (const { name, offset } of described?.fields ?? []) {
+          [use.uniforms[name]].flat().forEach((value, i) => {
+            assert.equal(block.getFloat32(offset + 4 * i, true), Math.fround(value), `${shader.id} ${name}`);
+            ++compared;
+          });
+        }
+        shader.free();
+        graph.free();
+      }
+    }
+    scene.free();
+  }
+  assert.ok(compared > 100);
+});
+
+test('colours are those of `lacquer eval`', () => {
+  const points = [{ v: [0, 0, 1], l: [0, 0.6, 0.8] }, { v: [0, 0.6, 0.8], l: [0.6, 0, 0.8], env: [0.3, 0.4, 0.5] }];
+  for (const engine of ['double', 'float']) withFolder((folder) => {
+    const scene = library.scene(read('examples/coat.gltf'), 'examples/coat.gltf');
+    for (let i = 0; i < scene.materialCount; ++i) {
+      const name = scene.materialName(i);
+      let native;
+      try {
+        native = JSON.parse(lacquer('eval', 'examples/coat.gltf', '--material', name, '--engine', engine, '--points', writePoints(folder, points),
+          '--texel', 'coatNormalTexture=0.5,0.5,1,1', '--texel', 'coatAnisotropyTexture=1,0.5,1,1'));
+      } catch {
+        assert.fail(`eval failed for ${name}`);
+      }
+      const mine = scene.evaluate(i, points, { engine, texels: ['coatNormalTexture=0.5,0.5,1,1', 'coatAnisotropyTexture=1,0.5,1,1'] });
+      mine.rgba.flat().forEach((x, k) => {
+        const y = native.rgba.flat()[k];
+        // The same formulas over another mathematical library: a few units in the last place.
+        assert.ok(Math.abs(x - y) <= (engine === 'double' ? 1e-12 : 1e-5) * Math.max(Math.abs(y), 1e-3), `${name} ${x} ${y}`);
+      });
+    }
+    scene.free();
+  });
+});
+
+test('a ball is drawn', () => {
+  const scene = library.scene(read('examples/core.gltf'), 'core.gltf');
+  const rgba = scene.preview(0, 32);
+  assert.equal(rgba.length, 4 * 32 * 32);
+  assert.notDeepEqual([...rgba.slice(0, 4)], [...rgba.slice(4 * (16 * 32 + 16), 4 * (16 * 32 + 16) + 4)]);
+  assert.throws(() => scene.preview(0, 3), /out-of-range/);
+  scene.free();
+});
+
+test('graphs are edited and checked', () => {
+  const scene = library.scene(read('examples/coat.gltf'), 'coat.gltf');
+  const graph = scene.graph(0);
+  const text = graph.toText();
+  assert.equal(library.graph(text).toText(), text);
+  graph.addNode('mine', 'schlick');
+  graph.connect('mine', 'F0', 0.04);
+  assert.throws(() => graph.connect('nobody', 'F0', 0.04), /no-such-node/);
+  assert.throws(() => graph.setOutput('alpha', { no: 1 }), LacquerError);
+  graph.removeNode('mine');
+  assert.deepEqual(graph.check(), []);
+  graph.setOutput('nowhere', 1);
+  assert.equal(graph.check()[0].level, 'error');
+  assert.throws(() => graph.generate(), LacquerError);
+  assert.match(scene.graph(0).dump(), /; fragment/);
+  const name = graph.parameters()[0].name;
+  graph.setParameter(name, graph.parameters()[0].value);
+  assert.throws(() => graph.setRange(name, 1, 0), /wrong-range/);
+});
+
+test('what is wrong is a message of the library', () => {
+  const wrong = [
+    [() => library.scene('{"asset": ', 'broken.gltf'), /broken\.gltf:1:/],
+    [() => library.scene('', 'empty.gltf'), /empty\.gltf/],
+    [() => library.scene(read('examples/coat.gltf'), 'coat.gltf').graph(99), /no-such-material/],
+    [() => library.scene(read('examples/coat.gltf'), 'coat.gltf', { colour: 1 }), /unknown-option/],
+    [() => library.graph('[]'), LacquerError],
+    [() => library.environmentDfg(1), /out-of-range/],
+  ];
+  for (const [call, expected] of wrong) assert.throws(call, expected);
+  // The library lives on.
+  assert.ok(library.scene(read('examples/coat.gltf'), 'coat.gltf').graph(0).generate().id);
+});
+
+test('long sessions take no more memory', () => {
+  const bytes = read('examples/car_paint.gltf');
+  const once = (value) => {
+    const scene = library.scene(bytes, 'car_paint.gltf');
+    const graph = scene.graph(0, { targets: ['essl'] });
+    graph.setParameter('coat_roughness_factor', value);
+    const shader = graph.generate({ targets: ['essl'] });
+    const block = shader.pack({ coat_factor: value });
+    for (const handle of [shader, graph, scene]) handle.free();
+    return block.length;
+  };
+  for (let i = 0; i < 20; ++i) once(i / 20);
+  const before = library.memory;
+  for (let i = 0; i < 300; ++i) once(i / 300);
+  assert.equal(library.memory, before);
+});
+
+test('the types say what a graph needs where nobody names attributes', () => {
+  assert.deepEqual(kUnusedAttributes, ['NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1']);
+});
+
+test('it is quick, and small enough to be sent', async () => {
+  const wasm = readFileSync(join(output, 'package/lacquer.wasm'));
+  const packed = gzipSync(wasm, { level: 9 }).length;
+  assert.ok(packed <= kMostBytes, `${packed} bytes`);
+  const module = await WebAssembly.compile(wasm);
+  const fresh = await load(module);
+  const bytes = read('examples/car_paint.gltf');
+  const once = () => {
+    const begin = performance.now();
+    const scene = fresh.scene(bytes, 'car_paint.gltf');
+    const graph = scene.graph(0);
+    const shader = graph.generate({ targets: ['essl'] });
+    shader.text('essl', 'fragment');
+    const took = performance.now() - begin;
+    for (const handle of [shader, graph, scene]) handle.free();
+    return took;
+  };
+  const first = once();
+  const later = Math.min(...Array.from({ length: 40 }, once));
+  console.log(`# lacquer.wasm: ${wasm.length} bytes, ${packed} after gzip; the first material ${first.toFixed(1)} ms, later ones ${later.toFixed(2)} ms`);
+  assert.ok(later < 50);
+});
+
+function writePoints(folder, points) {
+  const file = join(folder, 'points.json');
+  writeFileSync(file, JSON.stringify(points));
+  return file;
+}
