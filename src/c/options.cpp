@@ -123,11 +123,7 @@ constexpr std::string_view kTruth = "true or false";
 constexpr std::string_view kTexts = "an array of strings";
 constexpr Row kRows[] = {
     {"profile", "a string", setText<&Options::profile>},
-    {"error_budget", "a number",
-     [](const Json& value, lacquer_options& to) {
-       if (value.is_number()) to.options.error_budget = value.get<double>();
-       return value.is_number();
-     }},
+    {"simplify", kTexts, setStrings<&Options::simplify>},
     {"template", "a string", setText<&Options::template_name>},
     {"targets", "an array of names of targets", setTargets},
     {"parameters", "\"uniform\", \"baked\" or \"spec\"", setParameters},

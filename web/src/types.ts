@@ -35,7 +35,7 @@ export type Stage = 'vertex' | 'fragment';
 /** How shaders are made; what is absent is as on the command line. */
 export interface Options {
   profile?: string;
-  error_budget?: number;
+  simplify?: string[];
   template?: string;
   targets?: Target[];
   parameters?: 'uniform' | 'baked' | 'spec';
