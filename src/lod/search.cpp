@@ -123,16 +123,20 @@ private:
     }
   }
 
-  /// Words of the best sets may have become needless: each is left out once.
+  /// Words of the best sets may have become needless: each is left out, and stays out where nothing is lost
+  /// by that.
   void shrink() {
-    for (const Tried& one : front(all_)) {
-      if (one.words.size() < 2) continue;
-      std::vector<Words> sets;
-      for (size_t i = 0; i < one.words.size() && i < bounds_.tried; ++i) {
-        sets.push_back(one.words);
-        sets.back().erase(sets.back().begin() + static_cast<ptrdiff_t>(i));
+    for (Tried one : front(all_)) {
+      for (size_t i = 0; i < one.words.size();) {
+        Words fewer = one.words;
+        fewer.erase(fewer.begin() + static_cast<ptrdiff_t>(i));
+        const std::optional<Tried> found = measured({fewer})[0];
+        if (found && found->cost <= one.cost && found->error <= one.error) {
+          one = *found;
+        } else {
+          ++i;
+        }
       }
-      measured(std::move(sets));
     }
   }
 
@@ -157,7 +161,9 @@ std::vector<Tried> front(std::vector<Tried> all) {
   const Tried exact = all[0];
   std::erase_if(all, [&](const Tried& one) { return !(one.cost < exact.cost); });
   std::stable_sort(all.begin(), all.end(), [](const Tried& a, const Tried& b) {
-    return a.cost < b.cost || (a.cost == b.cost && a.error < b.error);
+    if (a.cost != b.cost) return a.cost < b.cost;
+    // Of equal shaders the one with the fewest words.
+    return a.error < b.error || (a.error == b.error && a.words.size() < b.words.size());
   });
   std::vector<Tried> best;
   double least = std::numeric_limits<double>::infinity();

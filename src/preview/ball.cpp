@@ -156,11 +156,13 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
 }
 
 void Shading::bind(std::span<const eval::Point> points, eval::Bindings& bindings) const {
+  // These bindings may be the base itself, and points bring a light of their own.
   eval::Column count = base_.columns.find("frame.light_count")->second;
+  std::vector<eval::Columns> lights = base_.lights;
   eval::bindPoints(look_->module, points, bindings);
   bindings.columns["frame.light_count"] = std::move(count);
   bindings.columns["frame.environment_max_lod"] = eval::Column::constant({1});  // the level is the roughness
-  bindings.lights = base_.lights;
+  bindings.lights = std::move(lights);
 }
 
 template <class T>
