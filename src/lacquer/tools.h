@@ -70,8 +70,8 @@ std::vector<ShaderCost> measureCost(const Strings& paths, bool disassembly, Mess
 /// at texel centres, scale and bias of F0 in each, all in [0, 1]. `size` is from 2 to 1024; else empty, and
 /// "out-of-range".
 std::vector<float> environmentDfg(uint32_t size, Messages& messages);
-/// The same as a file: by the name's ending .dds (R16G16_UNORM), .ktx2 (R16G16_SFLOAT) or .png (16 bits; red and
-/// green). False on an error, "table-format" for another ending.
+/// The same as a file: by the name's ending .dds (R16G16_UNORM), .ktx2 (R16G16_SFLOAT) or .png (16 bits; red
+/// and green). False on an error, "table-format" for another ending.
 bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messages);
 /// The table behind environment_sheen (docs/bindings.md): `size` rows of the sheen's roughness with `size`
 /// columns of a cosine at texel centres, what the sheen reflects and what its lobe is multiplied by in each.

@@ -260,7 +260,8 @@ TEST(Sources, AreRelativeToTheManifest) {
       {"below", {"../assets/m.gltf", "-o", "../out/"}},
       {"assets", {"./m.gltf", "-o", "../below/../out"}}};
   for (const auto& [folder, words] : calls) {
-    std::string command = fmt::format("cd '{}' && '{}' gen -q --target glsl", (place / folder).string(), LACQUER_PROGRAM);
+    std::string command =
+        fmt::format("cd '{}' && '{}' gen -q --target glsl", (place / folder).string(), LACQUER_PROGRAM);
     for (const std::string& word : words) command += " '" + word + "'";
     std::filesystem::remove_all(place / "out");
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
