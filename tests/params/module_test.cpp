@@ -257,7 +257,7 @@ TEST(Module, TextsOfAnExample) {
   const fs::path folder = sourceFolder() / "tests/params/expected";
   expectFile(folder / "coat.js", shader.moduleText());
   expectFile(folder / "coat.d.ts", shader.moduleTypes());
-  expectFile(folder / "coat.h", shader.headerText());
+  expectFile(folder / "coat.header", shader.headerText());
 }
 
 }  // namespace lacquer::test
