@@ -117,6 +117,7 @@ std::string png(uint32_t size, std::span<const float> values) {
 
 uint16_t halfBits(float x) {
   assert(x >= 0 && x <= 1);
+  if (x == 0) return 0;
   int exponent = 0;
   std::frexp(x, &exponent);
   // The spacing of halves about x: 10 bits behind the first, and no finer than the least of them.

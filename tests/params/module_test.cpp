@@ -183,22 +183,31 @@ TEST(Module, TheRestOfItIsWhatTheTypesSay) {
   if (!haveProgram("node")) GTEST_SKIP() << kNoNode;
   const std::vector<ModuleCase> cases = exampleCases(packingOptions(Target::Js), 1);
   const fs::path folder = freshFolder("rest");
+  std::string ids;
   for (const ModuleCase& one : cases) {
-    writeText(folder / "m.mjs", one.code);
-    writeText(folder / "main.mjs", R"(import * as m from "./m.mjs";
-import assert from "node:assert";
-assert.deepEqual(m.pack(), m.pack(m.defaults));
-assert.throws(() => m.pack({}, new Uint8Array(m.blockSize - 1)), RangeError);
-for (const { offset, components } of Object.values(m.fields)) assert(offset + 4 * components <= m.blockSize);
-for (const list of [m.blocks, m.textures]) {
-  for (const { name, set, binding, flat } of list) assert(name && set >= 0 && binding >= 0 && flat >= 0);
+    writeText(folder / (one.id + ".mjs"), one.code);
+    ids += fmt::format("\"{}\",", one.id);
+  }
+  writeText(folder / "main.mjs", "import assert from \"node:assert\";\nfor (const id of [" + ids + R"(]) {
+  const m = await import(`./${id}.mjs`);
+  assert(m.id === id);
+  assert.deepEqual(m.pack(), m.pack(m.defaults));
+  assert.throws(() => m.pack({}, new Uint8Array(m.blockSize - 1)), RangeError);
+  for (const { offset, components } of Object.values(m.fields)) assert(offset + 4 * components <= m.blockSize);
+  for (const list of [m.blocks, m.textures]) {
+    for (const { name, set, binding, flat } of list) assert(name && set >= 0 && binding >= 0 && flat >= 0);
+  }
+  assert(m.blocks.some((block) => block.name === "Material" && block.size === m.blockSize));
+  console.log(JSON.stringify({ exports: Object.keys(m).sort(), defaults: Object.keys(m.defaults) }));
 }
-assert(m.blocks.some((block) => block.name === "Material" && block.size === m.blockSize));
-console.log(JSON.stringify({ exports: Object.keys(m).sort(), defaults: Object.keys(m.defaults) }));
 )");
-    std::string said;
-    ASSERT_EQ(runProgram({"node", "main.mjs"}, folder, &said), 0) << said;
-    const Json names = Json::parse(said);
+  std::string said;
+  ASSERT_EQ(runProgram({"node", "main.mjs"}, folder, &said), 0) << said;
+  std::istringstream lines(said);
+  for (const ModuleCase& one : cases) {
+    std::string line;
+    ASSERT_TRUE(std::getline(lines, line));
+    const Json names = Json::parse(line);
     for (const Json& name : names["exports"]) {
       const bool function = name == "pack";
       const std::string declared = fmt::format("export declare {} {}{}", function ? "function" : "const",
@@ -226,15 +235,12 @@ TEST(Module, TheTypesAreTypeScript) {
   writeText(folder / "good.ts", use);
   writeText(folder / "bad.ts", use + "pack({ no_such_parameter: 1 });\n");
   std::string said;
-  const std::vector<std::string> words = {"tsc", "--noEmit", "--strict", "--target", "es2020"};
-  const auto checked = [&](const char* file) {
-    std::vector<std::string> all = words;
-    all.emplace_back(file);
-    return runProgram(all, folder, &said);
-  };
-  EXPECT_EQ(checked("good.ts"), 0) << said;
-  EXPECT_NE(checked("bad.ts"), 0);
+  EXPECT_NE(
+      runProgram({"tsc", "--noEmit", "--strict", "--target", "es2020", "good.ts", "bad.ts"}, folder, &said),
+      0);
   EXPECT_NE(said.find("no_such_parameter"), std::string::npos) << said;
+  EXPECT_EQ(said.find("good.ts"), std::string::npos) << said;
+  EXPECT_EQ(said.find("m.d.ts"), std::string::npos) << said;
   fs::remove_all(folder.parent_path());
 }
 
@@ -251,7 +257,7 @@ TEST(Module, TextsOfAnExample) {
   const fs::path folder = sourceFolder() / "tests/params/expected";
   expectFile(folder / "coat.js", shader.moduleText());
   expectFile(folder / "coat.d.ts", shader.moduleTypes());
-  expectFile(folder / "coat.h", shader.headerText());
+  expectFile(folder / "coat.header", shader.headerText());
 }
 
 }  // namespace lacquer::test
