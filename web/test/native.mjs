@@ -39,4 +39,13 @@ export function withFolder(use) {
   }
 }
 
+/** A glTF file of examples/ with its images in it: a scene from memory reads no others. */
+export function withImages(json) {
+  const gltf = JSON.parse(json);
+  for (const each of gltf.images ?? []) {
+    each.uri = `data:image/png;base64,${readFileSync(join(root, 'examples', each.uri)).toString('base64')}`;
+  }
+  return JSON.stringify(gltf);
+}
+
 export const read = (file) => readFileSync(resolve(root, file));
