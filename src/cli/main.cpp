@@ -47,7 +47,7 @@ struct Flags {
                       dfg = "table";
   bool json = false, no_validate = false, no_ibl = false, no_multiple_scattering = false, quiet = false;
   bool disassembly = false, time = false, replan = false, no_sync = false;
-  lacquer::Precision precision = lacquer::Precision::Vulkan;  ///< of `prove`
+  std::string arithmetic = "vulkan";  ///< of `prove`
   std::string ninja;
   std::optional<std::string> material;
   std::vector<std::string> arguments;  ///< the program's own, as given
@@ -331,7 +331,11 @@ int dump(const Flags& flags) {
 
 int prove(const Flags& flags) {
   Messages messages;
-  const lacquer::cli::ProveFlags how{flags.json, flags.precision};
+  using lacquer::Precision;
+  const Precision precision = flags.arithmetic == "ieee"      ? Precision::Ieee
+                              : flags.arithmetic == "mediump" ? Precision::Mediump
+                                                              : Precision::Vulkan;
+  const lacquer::cli::ProveFlags how{flags.json, precision};
   const bool good = lacquer::cli::prove(flags.files, flags.materials, how, flags.options, messages);
   print(messages);
   return good && !hasError(messages) ? kGood : kFailed;
@@ -399,12 +403,9 @@ int run(int argc, char** argv) {
   prove_verb->add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   prove_verb->add_flag("--json", flags.json, "as JSON, with everything that is proved");
-  const std::map<std::string, lacquer::Precision> precisions = {{"vulkan", lacquer::Precision::Vulkan},
-                                                                {"ieee", lacquer::Precision::Ieee},
-                                                                {"mediump", lacquer::Precision::Mediump}};
-  prove_verb->add_option("--arithmetic", flags.precision, "what operations compute: vulkan, ieee or mediump")
-      ->transform(CLI::CheckedTransformer(precisions))
-      ->default_str("vulkan");
+  prove_verb->add_option("--arithmetic", flags.arithmetic, "what operations are taken to compute")
+      ->check(CLI::IsMember({"vulkan", "ieee", "mediump"}))
+      ->capture_default_str();
   if (called(prove_verb)) addShared(*prove_verb, flags);
 
   CLI::App* nodes_verb =
