@@ -43,26 +43,21 @@ class Measure {
 public:
   explicit Measure(std::span<const Target> targets) : targets_(targets) {}
 
-  /// `what` begins the message: "the shader writes 9 colour outputs". Where `hard`, Direct3D compiles no
-  /// more.
-  void check(const std::string& what, uint32_t count, uint32_t Limit::*limit, bool hard) {
+  /// `what` begins the message: "the shader writes 9 colour outputs".
+  void check(const std::string& what, uint32_t count, uint32_t Limit::*limit, Severity severity) {
     std::string over;
-    bool wrong = false;
     for (const Target target : targets_) {
       const uint32_t most = limitOf(target).*limit;
       if (count <= most) continue;
       over += fmt::format("{}{} in {}", over.empty() ? "" : ", ", most, targets::row(target).name);
-      wrong = wrong || (hard && target == Target::Hlsl);
     }
     if (over.empty()) return;
-    found_.push_back(
-        {"over-limit",
-         wrong ? Severity::Error : Severity::Warning,
-         {},
-         fmt::format("{}; {}: {}", what, wrong ? "no more are possible than" : "sure to be there are", over),
-         wrong ? "take fewer, or leave the target out with --target"
-               : "a device may have more: ask it before it is given the shader",
-         {}});
+    found_.push_back({"over-limit",
+                      severity,
+                      {},
+                      fmt::format("{}; sure to be there are: {}", what, over),
+                      "a device may have more: ask it before it is given the shader",
+                      {}});
   }
 
   Diagnostics take() { return std::move(found_); }
@@ -74,13 +69,16 @@ private:
 
 }  // namespace
 
+/// Of colour outputs a note: a template such as `surface` has a port for whatever an engine might want, and
+/// the engine takes those that it has room for.
 Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets) {
   Measure limits(targets);
   uint32_t outputs = 0;
   for (const ir::Output& output : module.outputs) {
     if (output.kind == ir::OutputKind::Color) outputs = std::max(outputs, output.location + 1);
   }
-  limits.check(fmt::format("the shader has {} colour outputs", outputs), outputs, &Limit::outputs, true);
+  limits.check(fmt::format("the shader has {} colour outputs", outputs), outputs, &Limit::outputs,
+               Severity::Note);
   // By index: the blocks and textures that a stage reads.
   std::set<uint32_t> blocks, textures;
   for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
@@ -93,10 +91,11 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
     const ir::Block& block = module.blocks[index];
     const uint32_t bytes = block.size * std::max(block.array, 1U);
     limits.check(fmt::format("the block '{}' has {} bytes", targets::blockName(block), bytes), bytes,
-                 &Limit::block_bytes, true);
+                 &Limit::block_bytes, Severity::Warning);
   }
   const auto count = static_cast<uint32_t>(textures.size());
-  limits.check(fmt::format("the shader reads {} textures", count), count, &Limit::textures, false);
+  limits.check(fmt::format("the shader reads {} textures", count), count, &Limit::textures,
+               Severity::Warning);
   return limits.take();
 }
 
