@@ -84,8 +84,7 @@ TEST(Dialect, AVertexSamplesTheFirstLevel) {
       b.dag().make(ir::Op::TextureCompare, {{b.texture("depths", ir::Type::Texture2DShadow), uvz}});
   b.position(b.dag().mul(texel, shown));
   constexpr std::array kWanted = {
-      std::pair{Target::Glsl,
-                "textureLod(heights, in_position.xy, 0.0) * textureLod(depths, in_position.xyz, 0.0)"},
+      std::pair{Target::Glsl, "textureLod(heights, in_position.xy, 0.0) * textureLod(depths, swizzle, 0.0)"},
       std::pair{Target::Hlsl,
                 "heights.SampleLevel(heights_sampler, in_position.xy, 0.0) * depths.SampleCmpLevelZero("}};
   for (const auto& [target, wanted] : kWanted) {
