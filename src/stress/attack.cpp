@@ -149,6 +149,18 @@ double heightOf(const Subject& subject, const Values& values, size_t below, size
   return height;
 }
 
+/// The condition that a jump at a crossing is of: its own, or where a known one turns at the same place,
+/// that.
+size_t turning(const Subject& subject, const Values& values, size_t own, size_t crossing) {
+  const size_t below = 2 * crossing * subject.group;
+  for (size_t r = 0; r < subject.roots.size(); ++r) {
+    if (subject.roots[r].kind != Root::Kind::Condition) continue;
+    const bool turns = values[r][below] != values[r][below + subject.group];
+    if (turns && !knownJump(subject.name, subject.roots[r].name).empty()) return r;
+  }
+  return own;
+}
+
 void probe(const Subject& subject, std::span<const double> samples, size_t count, Finds& finds) {
   const size_t width = subject.space.width() * subject.group;
   const size_t groups = count / subject.group;
@@ -187,7 +199,7 @@ void probe(const Subject& subject, std::span<const double> samples, size_t count
   const Values values = subject.evaluate(Arithmetic::Double, both, 2 * crossings.size() * subject.group);
   for (size_t k = 0; k < crossings.size(); ++k) {
     if (heightOf(subject, values, 2 * k * subject.group, (2 * k + 1) * subject.group) < kJump) continue;
-    Found& found = finds[{Fault::Jump, subject.roots[crossings[k].root].name}];
+    Found& found = finds[{Fault::Jump, subject.roots[turning(subject, values, crossings[k].root, k)].name}];
     if (found.count++ == 0)
       found.input.assign(both.begin() + static_cast<ptrdiff_t>(2 * k * width),
                          both.begin() + static_cast<ptrdiff_t>(2 * (k + 1) * width));

@@ -14,6 +14,10 @@ struct Known {
 constexpr Known kKnown[] = {
     {"distribution", "0 < NdotSum",
      "Appendix B's D ends with a step at N.H = 0; it is seen past the horizon alone"},
+    {"distribution", "0 < straight",
+     "Appendix B's D ends with a step at N.H = 0; it is seen past the horizon alone"},
+    {"anisotropy.decoded", "1e-12 < length2",
+     "a texel of no length has no direction; the tangent stands for it"},
     {"anisotropy_texel", "1e-12 < length2",
      "a texel of no length has no direction; the tangent stands for it"},
     {"flat_normal", "dot < 0", "a triangle seen from its edge turns its other side"},

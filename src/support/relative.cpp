@@ -20,11 +20,9 @@ fs::path plain(const fs::path& path) {
 }  // namespace
 
 std::string relativeTo(const std::string& folder, const std::string& path) {
-  std::error_code failed;
-  const fs::path here = fs::current_path(failed);
-  if (failed) return path;
-  fs::path from = fs::weakly_canonical(here / folder, failed);
-  if (failed) from = (here / folder).lexically_normal();
+  // A call that fails ends the run: without it the path would be another one, and the manifest say so.
+  const fs::path here = fs::current_path();
+  fs::path from = fs::weakly_canonical(here / folder);
   if (!from.has_filename()) from = from.parent_path();  // "a/" is "a" and an empty name
   const fs::path to = plain(here / path);
   const fs::path relative = to.lexically_relative(from);

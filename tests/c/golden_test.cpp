@@ -48,7 +48,9 @@ public:
       listed = listed || lacquer_scene_use(scene, material, i) == bits;
     EXPECT_TRUE(listed) << use["attributes"];
     const CGraph graph(lacquer_scene_graph(scene, material, bits, nullptr, messages));
-    const CShader shader(lacquer_graph_generate(graph.get(), nullptr, messages));
+    const COptions options =
+        optionsFrom(R"({"targets": ["glsl", "glsl-gl", "essl", "hlsl", "spirv", "wgsl"]})", messages);
+    const CShader shader(lacquer_graph_generate(graph.get(), options.get(), messages));
     EXPECT_EQ(messages.takeCodes(), "");
     ASSERT_NE(shader, nullptr);
     const std::string id = lacquer_shader_id(shader.get());
@@ -85,7 +87,7 @@ TEST(CGolden, everyFileOfGeneratedComesThroughTheInterface) {
   for (const Json& file : manifest["files"]) {
     CMessages messages;
     const std::string source = file["source"];
-    const std::string bytes = readFile(sourceFolder() / source);
+    const std::string bytes = readFile(sourceFolder() / "generated" / source);
     const CScene scene(lacquer_scene_read(bytes.data(), bytes.size(), source.c_str(), nullptr, messages));
     ASSERT_NE(scene, nullptr) << messages.takeCodes();
     for (const Json& material : file["materials"]) {

@@ -184,8 +184,8 @@ Floats World::input(const ir::Input& input) const {
 Floats World::texel(bool environment, std::string_view texture, const Floats& coordinates) const {
   Random random(mix(mix(seed_, texture.data(), texture.size()), coordinates.data(), sizeof coordinates));
   Floats out{};
-  // The table's two channels add up to an albedo, which its node states.
-  const bool table = texture == "environment_dfg";
+  // The two channels of a table add up to an albedo, or are in [0, 1], which their nodes state.
+  const bool table = texture == "environment_dfg" || texture == "environment_sheen";
   const double least = table ? 0.15 : 0;
   const double most = table ? 0.5 : environment ? 65504 : 1;
   for (float& x : out) x = inRange(random, least, most, limit_);

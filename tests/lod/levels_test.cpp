@@ -61,11 +61,17 @@ const json* materialBlock(const json& shader) {
   return nullptr;
 }
 
-/// The chain of everything that a coat has: what the page of the levels promises.
+/// What a block has where: that a shader makes a field of what it does is its own.
+json placesOf(const json& fields) {
+  json places = json::array();
+  for (const json& field : fields) places.push_back({field["name"], field["offset"], field["type"]});
+  return places;
+}
+
 TEST_F(Levels, AreAChainOfOneInterfaceThatIsAsMeasured) {
   Lod lod;
-  lod.size = 24;
-  const json answer = make(work("w3"), lod, quick());
+  lod.size = 16;
+  const json answer = make(work("w1"), lod, quick());
   ASSERT_EQ(answer["materials"].size(), 1U);
   const json& levels = answer["materials"][0]["levels"];
   ASSERT_GE(levels.size(), 3U);
@@ -87,7 +93,7 @@ TEST_F(Levels, AreAChainOfOneInterfaceThatIsAsMeasured) {
       ASSERT_NE(whole, nullptr);
       EXPECT_EQ((*block)["size"], (*whole)["size"]);
       EXPECT_EQ((*block)["binding"], (*whole)["binding"]);
-      EXPECT_EQ((*block)["fields"], (*whole)["fields"]);
+      EXPECT_EQ(placesOf((*block)["fields"]), placesOf((*whole)["fields"]));
     }
     if (i == 0) continue;
     EXPECT_LT(levels[i]["cost"]["inverse_throughput"], levels[i - 1]["cost"]["inverse_throughput"]);
