@@ -46,7 +46,7 @@ public:
   explicit Measure(std::span<const Target> targets) : targets_(targets) {}
 
   /// `what` begins the message: "the shader writes 9 colour outputs".
-  void check(const std::string& what, uint32_t count, uint32_t Limit::*limit, Severity severity) {
+  void check(const std::string& what, uint32_t count, uint32_t Limit::*limit) {
     std::string over;
     for (const Target target : targets_) {
       const uint32_t most = limitOf(target).*limit;
@@ -55,7 +55,7 @@ public:
     }
     if (over.empty()) return;
     found_.push_back({"over-limit",
-                      severity,
+                      Severity::Warning,
                       {},
                       fmt::format("{}; sure to be there are: {}", what, over),
                       "a device may have more: ask it before it is given the shader",
@@ -79,8 +79,7 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
   for (const ir::Output& output : module.outputs) {
     if (output.kind == ir::OutputKind::Color) outputs = std::max(outputs, output.location + 1);
   }
-  limits.check(fmt::format("the shader has {} colour outputs", outputs), outputs, &Limit::outputs,
-               Severity::Note);
+  limits.check(fmt::format("the shader has {} colour outputs", outputs), outputs, &Limit::outputs);
   // By index: the blocks and textures that a stage reads.
   std::set<uint32_t> blocks, textures;
   for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
@@ -93,11 +92,10 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
     const ir::Block& block = module.blocks[index];
     const uint32_t bytes = block.size * std::max(block.array, 1U);
     limits.check(fmt::format("the block '{}' has {} bytes", targets::blockName(block), bytes), bytes,
-                 &Limit::block_bytes, Severity::Warning);
+                 &Limit::block_bytes);
   }
   const auto count = static_cast<uint32_t>(textures.size());
-  limits.check(fmt::format("the shader reads {} textures", count), count, &Limit::textures,
-               Severity::Warning);
+  limits.check(fmt::format("the shader reads {} textures", count), count, &Limit::textures);
   return limits.take();
 }
 

@@ -257,12 +257,12 @@ TEST(Templates, WhatPlatformsDoNotHaveIsSaid) {
       {outputs,
        {"--target", "glsl,glsl-gl,essl,hlsl,spirv"},
        0,
-       "note: the shader has 10 colour outputs; sure to be there are: 8 in glsl, 8 in glsl-gl, "
+       "warning: the shader has 10 colour outputs; sure to be there are: 8 in glsl, 8 in glsl-gl, "
        "8 in essl, 8 in hlsl, 8 in spirv [over-limit]"},
       {outputs,
        {"--target", "glsl-gl"},
        0,
-       "note: the shader has 10 colour outputs; sure to be there are: 8 in glsl-gl"},
+       "warning: the shader has 10 colour outputs; sure to be there are: 8 in glsl-gl"},
       {textures + "output color vec4 o = " + sum + ";",
        {"--target", "essl"},
        0,

@@ -210,7 +210,7 @@ TEST(Usage, graphRoundTrip) {
   EXPECT_EQ(first.status, 0) << first.all();
   EXPECT_EQ(second.status, 0) << second.all();
   EXPECT_EQ(place.manifest("a")["shaders"], place.manifest("b")["shaders"]);
-  EXPECT_EQ(place.manifest("a")["files"][0]["source"], "paint.json");
+  EXPECT_EQ(place.manifest("a")["files"][0]["source"], "../paint.json");
   EXPECT_EQ(place.manifest("a")["files"][0]["materials"][0]["name"], "Car paint");
   const Outcome dot = place.run({"graph", paint, "--material", "Car paint", "--format", "dot"});
   EXPECT_EQ(dot.status, 0);

@@ -53,7 +53,7 @@ TEST_F(View, whatIsAbsentIsLeftOutWithAWarning) {
   place_.write("file.gltf", naming("absent.bin"));
   const Outcome outcome = view({"file.gltf"});
   EXPECT_EQ(outcome.status, 0) << outcome.all();
-  EXPECT_NE(outcome.err.find("warning: 'absent.bin' cannot be read"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: \"absent.bin\" cannot be read"), std::string::npos) << outcome.err;
   EXPECT_EQ(files()[0]["resources"], json::array());
 }
 

@@ -175,8 +175,11 @@ TEST_F(Apis, PipelinesAreMade) {
     const json manifest = generate(with(setting, {"--target", "wgsl"}));
     const auto [status, said] = run("out");
     EXPECT_EQ(status, 0) << said;
-    EXPECT_NE(said.find(fmt::format("{} pipelines\n", manifest["shaders"].size())), std::string::npos)
-        << said;
+    // What has more colours than a device without a GPU takes is counted apart.
+    size_t made = 0, skipped = 0;
+    EXPECT_EQ(std::sscanf(said.c_str(), "%zu pipelines\n%zu shaders", &made, &skipped) >= 1, true) << said;
+    EXPECT_EQ(made + skipped, manifest["shaders"].size()) << said;
+    EXPECT_GT(made, 0U) << said;
     std::filesystem::remove_all(place_ / "out");
   }
   // One that says something else is refused.
