@@ -36,6 +36,7 @@ protected:
     Options options;
     options.targets = {Target::Spirv, Target::Glsl};
     options.lights = {Lights::Mode::Fixed, {{"directional", 1}}};
+    options.ibl = false;  // half the candidates
     return options;
   }
 
