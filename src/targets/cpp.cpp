@@ -58,7 +58,7 @@ public:
     return ir::isFloatVector(input.type) ? member : "p." + member;
   }
   void nameParameter(const std::string& name, const std::string& member) { members_[name] = member; }
-  const std::string& member(const std::string& name) const { return members_.at(name); }
+  const std::string& memberOf(const std::string& name) const { return members_.at(name); }
 
   std::string swizzle(Type result, std::string_view vector, std::string_view picks) const override {
     if (result == Type::Float) return fmt::format("{}.{}", vector, picks);
@@ -332,7 +332,7 @@ public:
 
 private:
   const std::string& memberOf(const ir::Parameter& parameter) const {
-    return dialect_.member(parameter.name);
+    return dialect_.memberOf(parameter.name);
   }
 
   void doc(std::string_view words) { text_.line(fmt::format("/// {}", words)); }

@@ -238,13 +238,6 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
 
 // -- fitting --
 
-/// A component of a number of the material.
-struct LodMaterial::Parameter {
-  std::string name;
-  size_t component = 0, components = 1;
-  double value = 0;
-};
-
 /// Those that the simpler shader has, may be from 0 to 1, and are neither animated nor 0.
 std::vector<LodMaterial::Parameter> LodMaterial::fittable(const lod::Words& words) const {
   constexpr size_t kMost = 8;

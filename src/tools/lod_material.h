@@ -58,7 +58,12 @@ public:
 
 private:
   using Change = std::function<void(ir::Module&)>;
-  struct Parameter;
+  /// A component of a number of the material.
+  struct Parameter {
+    std::string name;
+    size_t component = 0, components = 1;
+    double value = 0;
+  };
 
   Options optionsOf(const lod::Words& words) const;
   Result<graph::Graph> graphOf(const lod::Words& words) const;
