@@ -16,6 +16,9 @@ constexpr uint64_t kProbed = 8;
 constexpr size_t kMostCrossings = 16;  ///< of a threshold in a chunk
 /// Halvings: afterwards the two sides differ in the last bits of a double.
 constexpr int kHalvings = 50;
+/// How often that begins anew between the sides found: a length that vanishes at one end, such as a normal's,
+/// turns within the last step of the first round, and every cosine with it.
+constexpr int kRounds = 3;
 /// A step of a result that counts as a jump, relative to 1 and to the result: above what steep functions do
 /// over two neighbouring doubles, and below what an eye sees.
 constexpr double kJump = 1e-3;
@@ -96,13 +99,38 @@ struct Crossing {
   bool turned = false;  ///< the condition at `below`
 };
 
+/// The two sides of each crossing, group by group, below first.
+std::vector<double> sides(const Subject& subject, const Crossing& c) {
+  const size_t width = subject.space.width();
+  std::vector<double> samples(2 * subject.group * width);
+  for (size_t side = 0; side < 2; ++side) {
+    for (size_t g = 0; g < subject.group; ++g) {
+      subject.space.between(std::span(c.a).subspan(g * width, width),
+                            std::span(c.b).subspan(g * width, width), side == 0 ? c.below : c.above,
+                            std::span(samples).subspan((side * subject.group + g) * width, width));
+    }
+  }
+  return samples;
+}
+
+/// Goes on between the two sides that were found: the way's parts are the finest near its own ends.
+void recentre(const Subject& subject, Crossing& c) {
+  const std::vector<double> found = sides(subject, c);
+  const auto middle = found.begin() + static_cast<ptrdiff_t>(found.size() / 2);
+  c.a.assign(found.begin(), middle);
+  c.b.assign(middle, found.end());
+  c.below = 0;
+  c.above = 1;
+}
+
 /// Halves all of them at once.
 void bisect(const Subject& subject, std::vector<Crossing>& crossings) {
   const size_t width = subject.space.width() * subject.group;
   std::vector<double> samples(crossings.size() * width);
-  for (int step = 0; step < kHalvings; ++step) {
+  for (int step = 0; step < kRounds * kHalvings; ++step) {
     for (size_t k = 0; k < crossings.size(); ++k) {
-      const Crossing& c = crossings[k];
+      Crossing& c = crossings[k];
+      if (step % kHalvings == 0) recentre(subject, c);
       for (size_t g = 0; g < subject.group; ++g) {
         const size_t from = g * subject.space.width();
         subject.space.between(std::span(c.a).subspan(from, subject.space.width()),
@@ -119,20 +147,6 @@ void bisect(const Subject& subject, std::vector<Crossing>& crossings) {
   }
 }
 
-/// The two sides of each crossing, group by group, below first.
-std::vector<double> sides(const Subject& subject, const Crossing& c) {
-  const size_t width = subject.space.width();
-  std::vector<double> samples(2 * subject.group * width);
-  for (size_t side = 0; side < 2; ++side) {
-    for (size_t g = 0; g < subject.group; ++g) {
-      subject.space.between(std::span(c.a).subspan(g * width, width),
-                            std::span(c.b).subspan(g * width, width), side == 0 ? c.below : c.above,
-                            std::span(samples).subspan((side * subject.group + g) * width, width));
-    }
-  }
-  return samples;
-}
-
 /// How far results are apart at the two sides, relative to 1 and to them.
 double heightOf(const Subject& subject, const Values& values, size_t below, size_t above) {
   double height = 0;
@@ -147,18 +161,6 @@ double heightOf(const Subject& subject, const Values& values, size_t below, size
     }
   }
   return height;
-}
-
-/// The condition that a jump at a crossing is of: its own, or where a known one turns at the same place,
-/// that.
-size_t turning(const Subject& subject, const Values& values, size_t own, size_t crossing) {
-  const size_t below = 2 * crossing * subject.group;
-  for (size_t r = 0; r < subject.roots.size(); ++r) {
-    if (subject.roots[r].kind != Root::Kind::Condition) continue;
-    const bool turns = values[r][below] != values[r][below + subject.group];
-    if (turns && !knownJump(subject.name, subject.roots[r].name).empty()) return r;
-  }
-  return own;
 }
 
 void probe(const Subject& subject, std::span<const double> samples, size_t count, Finds& finds) {
@@ -199,7 +201,7 @@ void probe(const Subject& subject, std::span<const double> samples, size_t count
   const Values values = subject.evaluate(Arithmetic::Double, both, 2 * crossings.size() * subject.group);
   for (size_t k = 0; k < crossings.size(); ++k) {
     if (heightOf(subject, values, 2 * k * subject.group, (2 * k + 1) * subject.group) < kJump) continue;
-    Found& found = finds[{Fault::Jump, subject.roots[turning(subject, values, crossings[k].root, k)].name}];
+    Found& found = finds[{Fault::Jump, subject.roots[crossings[k].root].name}];
     if (found.count++ == 0)
       found.input.assign(both.begin() + static_cast<ptrdiff_t>(2 * k * width),
                          both.begin() + static_cast<ptrdiff_t>(2 * (k + 1) * width));

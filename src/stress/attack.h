@@ -70,4 +70,12 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report);
 /// Why a jump there is none of ours; empty when nothing is known of it.
 std::string_view knownJump(std::string_view subject, std::string_view condition);
 
+/// What a material gives back beyond its base because of the texts' own formulas.
+struct KnownSurplus {
+  std::string_view parameter;  ///< that the material has
+  double most = 0;             ///< of a white sky's light
+  std::string_view why;
+};
+std::span<const KnownSurplus> knownSurpluses();
+
 }  // namespace lacquer::stress

@@ -25,11 +25,11 @@ class Light {
 public:
   explicit Light(const Subject& subject) : subject_(subject), width_(subject.space.width()) {}
 
-  bool has(const char* name) const { return subject_.space.find(name) != nullptr; }
+  bool has(std::string_view name) const { return subject_.space.find(name) != nullptr; }
 
   bool layered() const {
     return std::any_of(subject_.layers.begin(), subject_.layers.end(),
-                       [&](const auto& layer) { return has(layer.first.c_str()); });
+                       [&](const auto& layer) { return has(layer.first); });
   }
 
   void set(std::vector<double>& sample, const char* name, const std::vector<double>& values) const {
@@ -76,23 +76,12 @@ public:
     return sample;
   }
 
-  /// Red of each pair of directions; what does not come from the light is taken away.
+  /// Red of each pair of directions; what does not come from the light, seen from there, is taken away.
   std::vector<double> colors(const std::vector<double>& material,
                              const std::vector<std::array<Vec3, 2>>& pairs) const {
-    std::vector<double> samples;
-    samples.reserve(pairs.size() * width_);
-    for (const auto& [v, l] : pairs) {
-      std::vector<double> sample = material;
-      set(sample, "v", {v[0], v[1], v[2]});
-      set(sample, "l", {l[0], l[1], l[2]});
-      samples.insert(samples.end(), sample.begin(), sample.end());
-    }
-    const Values values = subject_.evaluate(Arithmetic::Double, samples, pairs.size());
-    std::vector<double> dark = material;
-    set(dark, "light", {0, 0, 0});
-    const double own = subject_.evaluate(Arithmetic::Double, dark, 1)[0][0];
-    std::vector<double> result(pairs.size());
-    for (size_t i = 0; i < pairs.size(); ++i) result[i] = values[0][4 * i] - own;
+    const std::vector<double> lit = reds(material, pairs, {1, 1, 1});
+    std::vector<double> result = reds(material, pairs, {0, 0, 0});
+    for (size_t i = 0; i < pairs.size(); ++i) result[i] = lit[i] - result[i];
     return result;
   }
 
@@ -132,7 +121,32 @@ public:
     return worst;
   }
 
+  /// Why so much beyond the bound is none of ours; empty when nothing is known of it.
+  std::string_view known(double surplus) const {
+    for (const KnownSurplus& one : knownSurpluses()) {
+      if (has(one.parameter) && surplus <= one.most) return one.why;
+    }
+    return {};
+  }
+
 private:
+  std::vector<double> reds(const std::vector<double>& material, const std::vector<std::array<Vec3, 2>>& pairs,
+                           const std::vector<double>& light) const {
+    std::vector<double> samples;
+    samples.reserve(pairs.size() * width_);
+    for (const auto& [v, l] : pairs) {
+      std::vector<double> sample = material;
+      set(sample, "v", {v[0], v[1], v[2]});
+      set(sample, "l", {l[0], l[1], l[2]});
+      set(sample, "light", light);
+      samples.insert(samples.end(), sample.begin(), sample.end());
+    }
+    const Values values = subject_.evaluate(Arithmetic::Double, samples, pairs.size());
+    std::vector<double> result(pairs.size());
+    for (size_t i = 0; i < pairs.size(); ++i) result[i] = values[0][4 * i];
+    return result;
+  }
+
   /// Of the base and what lies over it: every roughness has one, stretched where there is a strength of the
   /// same name. A lobe that is not quite the material's own costs accuracy alone.
   std::vector<Lobe> lobes(const std::vector<double>& material) const {
@@ -158,11 +172,12 @@ private:
 void measureLight(const Subject& subject, const Plan& plan, Report& report) {
   const Light light(subject);
   report.energy.measured = true;
-  const auto tell = [&](Fault fault, const char* what, double value, const std::vector<double>& input) {
+  const auto tell = [&](Fault fault, const char* what, double value, const std::vector<double>& input,
+                        std::string_view known = {}) {
     for (const Finding& finding : report.findings) {
-      if (finding.fault == fault) return;
+      if (finding.fault == fault && (finding.known.empty() || !known.empty())) return;
     }
-    report.findings.push_back({fault, what, 1, value, input, {}});
+    report.findings.push_back({fault, what, 1, value, input, std::string(known)});
   };
   const bool layered = light.layered();
   for (size_t k = 0; k < kMaterials; ++k) {
@@ -185,7 +200,8 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report) {
       // where the text's Lambert under 1 - F(V.H) does.
       std::vector<double> at = whole;
       light.set(at, "v", {v[0], v[1], v[2]});
-      if (!(all <= std::max(1.0, of_base) + kTolerance)) tell(Fault::Energy, "layers", all, at);
+      const double bound = std::max(1.0, of_base) + kTolerance;
+      if (!(all <= bound)) tell(Fault::Energy, "layers", all, at, light.known(all - bound));
     }
     if (light.has("metallic_factor")) {
       // Metal alone has nothing to gain from: one bounce of a perfect mirror at most.
