@@ -20,11 +20,13 @@ void expectAgreement(const std::vector<NamedGraph>& graphs, const MaterialSettin
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
   Comparison all;
   for (size_t i = 0; i < graphs.size(); i += stride) {
-    const Comparison comparison = compareEngines(materialSubject(graphs[i], setting, points, i));
-    EXPECT_EQ(comparison.outside, 0U) << comparison.first;
-    all.numbers += comparison.numbers;
-    all.vague += comparison.vague;
-    all.endless += comparison.endless;
+    for (const Subject& subject : inPasses(materialSubject(graphs[i], setting, points, i))) {
+      const Comparison comparison = compareEngines(subject);
+      EXPECT_EQ(comparison.outside, 0U) << comparison.first;
+      all.numbers += comparison.numbers;
+      all.vague += comparison.vague;
+      all.endless += comparison.endless;
+    }
   }
   std::cout << all.numbers << " numbers, " << all.vague << " with a vague bound, " << all.endless
             << " with none\n";
@@ -33,15 +35,38 @@ void expectAgreement(const std::vector<NamedGraph>& graphs, const MaterialSettin
   EXPECT_LT(static_cast<double>(all.vague), most_vague * static_cast<double>(all.numbers));
 }
 
-// Films and what refracts have wide bounds.
-TEST(ParityMaterials, Forward) { expectAgreement(exampleGraphs({}), {}, 1024, 1, 0.3); }
+/// Those of the extensions beside the coats: their films and what refracts have wider bounds.
+bool beside(const NamedGraph& graph) {
+  constexpr std::string_view kFiles[] = {"cloth", "film", "glass", "wax"};
+  return std::any_of(std::begin(kFiles), std::end(kFiles),
+                     [&](std::string_view file) { return graph.name.starts_with(file); });
+}
+
+std::vector<NamedGraph> ofThose(const MaterialSetting& setting, bool extensions) {
+  std::vector<NamedGraph> graphs = exampleGraphs(setting);
+  std::erase_if(graphs, [&](const NamedGraph& graph) { return beside(graph) != extensions; });
+  EXPECT_GT(graphs.size(), 8U);
+  return graphs;
+}
+
+TEST(ParityMaterials, Forward) { expectAgreement(ofThose({}, false), {}, 1024); }
+
+// Seven tenths of the numbers of a film and of what refracts are vague: sines and exponentials that Vulkan
+// allows to be off by much more than float32 is. Every number is compared all the same.
+TEST(ParityMaterials, ForwardOfExtensions) { expectAgreement(ofThose({}, true), {}, 1024, 1, 0.5); }
 
 TEST(ParityMaterials, ForwardWithAnyLights) {
   MaterialSetting setting;
   setting.lights = {};
   // The light that the facets exchange is a difference of terms that depend on each other: its enclosure is
   // wide.
-  expectAgreement(exampleGraphs(setting), setting, 256, kSome, 0.4);
+  expectAgreement(ofThose(setting, false), setting, 256, kSome, 0.35);
+}
+
+TEST(ParityMaterials, ForwardOfExtensionsWithAnyLights) {
+  MaterialSetting setting;
+  setting.lights = {};
+  expectAgreement(ofThose(setting, true), setting, 256, kSome, 0.5);
 }
 
 TEST(ParityMaterials, ForwardThatDecodesSrgb) {
@@ -51,25 +76,12 @@ TEST(ParityMaterials, ForwardThatDecodesSrgb) {
   expectAgreement(exampleGraphs(setting), setting, 256, kSome, 0.45);
 }
 
+/// All their colours, eight at a time: the inputs of some extensions stand behind those that a device must
+/// have.
 TEST(ParityMaterials, Surface) {
   MaterialSetting setting;
   setting.template_name = "surface";
-  // The outputs of some extensions stand behind those that this device has.
-  constexpr uint32_t kMostOutputs = 8;
-  std::vector<NamedGraph> graphs;
-  size_t beyond = 0;
-  for (NamedGraph& graph : exampleGraphs(setting)) {
-    uint32_t outputs = 0;
-    for (const ir::Output& output : materialSubject(graph, setting, 4, 1).module.outputs)
-      outputs = std::max(outputs, output.kind == ir::OutputKind::Color ? output.location + 1 : 0);
-    if (outputs > kMostOutputs)
-      ++beyond;
-    else
-      graphs.push_back(std::move(graph));
-  }
-  std::cout << "NOT RUN: " << beyond << " surfaces with more than " << kMostOutputs << " colours\n";
-  EXPECT_LT(beyond, graphs.size());
-  expectAgreement(graphs, setting, 256, kSome);
+  expectAgreement(exampleGraphs(setting), setting, 256, kSome);
 }
 
 TEST(ParityMaterials, Bsdf) {

@@ -162,6 +162,26 @@ std::vector<ValueId> Subject::roots() const {
   return values;
 }
 
+std::vector<Subject> inPasses(Subject subject) {
+  constexpr size_t kMost = 8;
+  std::vector<ir::Output> colors, others;
+  for (const ir::Output& output : subject.module.outputs)
+    (output.kind == ir::OutputKind::Color ? colors : others).push_back(output);
+  std::sort(colors.begin(), colors.end(),
+            [](const auto& a, const auto& b) { return a.location < b.location; });
+  std::vector<Subject> passes;
+  for (size_t first = 0; first == 0 || first < colors.size(); first += kMost) {
+    Subject pass = subject;
+    pass.module.outputs = others;
+    for (size_t i = first; i < std::min(first + kMost, colors.size()); ++i) {
+      colors[i].location = static_cast<uint32_t>(i - first);
+      pass.module.outputs.push_back(colors[i]);
+    }
+    passes.push_back(std::move(pass));
+  }
+  return passes;
+}
+
 Subject nodeSubject(const lang::NodeDecl& node, std::string_view variant, size_t points) {
   Subject subject;
   subject.name = variant.empty() ? std::string(node.name) : fmt::format("{}.{}", node.name, variant);

@@ -65,6 +65,9 @@ std::vector<NamedGraph> randomGraphs(const MaterialSetting& setting, uint64_t fi
 Subject materialSubject(const NamedGraph& graph, const MaterialSetting& setting, size_t points,
                         uint64_t seed);
 
+/// The same with at most eight colours each, as many as every device takes: as many of them as that needs.
+std::vector<Subject> inPasses(Subject subject);
+
 /// What the vertex stage of a material does, as a fragment shader: attributes come as fragment inputs, the
 /// clip position and the varyings go out as colours. Matrices are random.
 Subject vertexSubject(const NamedGraph& graph, const MaterialSetting& setting, size_t points, uint64_t seed);
