@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <string_view>
 
@@ -26,6 +27,8 @@ constexpr Verb kVerbs[] = {
 };
 
 int run(int argc, char** argv) {
+  if (argc == 4 && std::string_view(argv[1]) == "repeat")
+    return lacquer::bench::repeat(argv[2], std::strtoul(argv[3], nullptr, 10));
   for (const Verb& verb : kVerbs) {
     if (argc == 2 && verb.name == argv[1]) return verb.run();
   }

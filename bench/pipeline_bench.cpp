@@ -220,4 +220,15 @@ int runPipeline() {
   return 0;
 }
 
+int repeat(std::string_view work, size_t count) {
+  for (const Subject& subject : subjects()) {
+    if (subject.name != work) continue;
+    toSpirv(toPlaced(subject));
+    for (size_t i = 0; i < count; ++i) toSpirv(toPlaced(subject));
+    return 0;
+  }
+  fmt::print(stderr, "there is no work '{}'\n", work);
+  return 2;
+}
+
 }  // namespace lacquer::bench

@@ -1,9 +1,16 @@
 // The time that making shaders takes, against the compilers that would do the same from text.
 #pragma once
 
+#include <cstddef>
+#include <string_view>
+
 namespace lacquer::bench {
 
 /// Renews bench/pipeline.json and prints it. 0 when all went well.
 int runPipeline();
+
+/// A work's way from the Material struct to SPIR-V, once to be warm and `count` times more: what `./dev bench
+/// instructions` runs under callgrind. 2 where there is no such work.
+int repeat(std::string_view work, size_t count);
 
 }  // namespace lacquer::bench
