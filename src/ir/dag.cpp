@@ -222,10 +222,11 @@ ValueId Dag::swizzle(ValueId value, std::span<const int> components) {
 ValueId Dag::component(ValueId value, int index) { return swizzle(value, {{index}}); }
 
 ValueId Dag::remake(ValueId id, std::span<const ValueId> operands) {
-  const Value value = values_[id];
+  const Value& now = values_[id];
   bool same = true;
-  for (size_t k = 0; k < operands.size(); ++k) same &= operands[k] == value.args[k];
+  for (size_t k = 0; k < operands.size(); ++k) same &= operands[k] == now.args[k];
   if (same) return id;
+  const Value value = now;
   if (value.op == Op::Construct) return construct(value.type, operands);
   if (value.op != Op::Swizzle) return make(value.op, operands, value.payload);
   std::array<int, 4> picks{};
@@ -410,19 +411,17 @@ std::vector<ValueId> reachable(const Dag& dag, std::span<const ValueId> roots) {
   for (const ValueId root : roots) last = std::max(last, root + 1);
   std::vector<uint8_t> seen(last, 0);
   for (const ValueId root : roots) seen[root] = 1;
-  // Operands have smaller ids, so one descending sweep finds everything.
-  size_t count = 0;
+  // Operands have smaller ids, so one descending sweep finds everything: what has been found above fills the
+  // end.
+  std::vector<ValueId> result(last);
+  ValueId first = last;
   for (ValueId i = last; i-- > 0;) {
     if (seen[i] == 0) continue;
-    ++count;
+    result[--first] = i;
     const Value& value = dag[i];
     for (size_t k = 0; k < value.count; ++k) seen[value.args[k]] = 1;
   }
-  std::vector<ValueId> result;
-  result.reserve(count);
-  for (ValueId i = 0; i < last; ++i) {
-    if (seen[i] != 0) result.push_back(i);
-  }
+  result.erase(result.begin(), result.begin() + first);
   return result;
 }
 

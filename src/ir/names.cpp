@@ -96,24 +96,27 @@ bool capital(char c) { return c >= 'A' && c <= 'Z'; }
 
 /// Types by rule: "float4x4", "uint2", "dmat3", "isampler2DArray"; functions: "textureLod", "imageStore".
 bool typed(std::string_view name) {
-  constexpr std::array kNumbered = {"bool",     "int",       "uint",       "dword",      "half",
-                                    "float",    "double",    "min16float", "min10float", "min16int",
-                                    "min12int", "min16uint", "vec",        "ivec",       "uvec",
-                                    "bvec",     "dvec",      "mat",        "dmat"};
-  constexpr std::array kFamilies = {"texture", "sampler", "isampler", "usampler", "image",
-                                    "iimage",  "uimage",  "subpass",  "atomic"};
+  using namespace std::string_view_literals;
+  constexpr std::array kNumbered = {"bool"sv,     "int"sv,       "uint"sv,       "dword"sv,      "half"sv,
+                                    "float"sv,    "double"sv,    "min16float"sv, "min10float"sv, "min16int"sv,
+                                    "min12int"sv, "min16uint"sv, "vec"sv,        "ivec"sv,       "uvec"sv,
+                                    "bvec"sv,     "dvec"sv,      "mat"sv,        "dmat"sv};
+  constexpr std::array kFamilies = {"texture"sv, "sampler"sv, "isampler"sv, "usampler"sv, "image"sv,
+                                    "iimage"sv,  "uimage"sv,  "subpass"sv,  "atomic"sv};
+  // Each is lower case up to its number or its capital: one comparison with the longest head that there can
+  // be.
+  const auto end = std::find_if(name.begin(), name.end(), [](char c) { return capital(c) || digit(c); });
+  if (end == name.end()) return false;
+  const std::string_view head = name.substr(0, static_cast<size_t>(end - name.begin()));
+  const auto family = [&](std::string_view one) { return one == head; };
+  if (std::any_of(kFamilies.begin(), kFamilies.end(), family)) return true;
   const auto numbered = [&](std::string_view type) {
     if (!name.starts_with(type)) return false;
     const std::string_view rest = name.substr(type.size());
     return (rest.size() == 1 && digit(rest[0])) ||
            (rest.size() == 3 && digit(rest[0]) && rest[1] == 'x' && digit(rest[2]));
   };
-  const auto family = [&](std::string_view head) {
-    return name.starts_with(head) && name.size() > head.size() &&
-           (capital(name[head.size()]) || digit(name[head.size()]));
-  };
-  return std::any_of(kNumbered.begin(), kNumbered.end(), numbered) ||
-         std::any_of(kFamilies.begin(), kFamilies.end(), family);
+  return digit(name.back()) && std::any_of(kNumbered.begin(), kNumbered.end(), numbered);
 }
 
 /// The name with only characters that every target takes, and none of the printers' prefixes.
