@@ -213,8 +213,12 @@ ValueId Dag::construct(Type type, std::span<const ValueId> parts) {
 }
 
 ValueId Dag::swizzle(ValueId value, std::span<const int> components) {
-  if (const ValueId simpler = Simplifier(*this).swizzle(value, components); simpler != kNoValue)
+  if (const ValueId simpler = Simplifier(*this).swizzle(value, components); simpler != kNoValue) {
+    // Taken from what the value is made of, its components are still those of which something is known.
+    if (const std::optional<Interval> known = assumed(value); known && !isConstant(simpler))
+      assume(simpler, *known);
     return simpler;
+  }
   return makeRaw(Op::Swizzle, floatType(static_cast<int>(components.size())), {{value}},
                  packSwizzle(components));
 }
@@ -314,6 +318,9 @@ void Dag::inherit(ValueId id, ValueId from) {
 }
 
 void Dag::assume(ValueId id, Interval range) {
+  // What is said of a splat holds for its Float, which operations on splats are made of.
+  const Value& value = values_[id];
+  if (value.op == Op::Construct && value.count == 1 && !isConstant(value.args[0])) assume(value.args[0], range);
   if (fact_of_[id] == 0) {
     facts_.push_back(range);
     fact_of_[id] = static_cast<uint32_t>(facts_.size());

@@ -1,4 +1,4 @@
-// forward-dispersion-0c7b8186acbb0ff1
+// forward-dispersion-c60051e8aca8e230
 // Lacquer 0.2.0, template forward
 
 struct Frame {

@@ -1,8 +1,8 @@
 #version 450
-// forward-dispersion-0c7b8186acbb0ff1
+// forward-dispersion-c60051e8aca8e230
 // Lacquer 0.2.0, template forward
 
-layout(std140, set = 0, binding = 0) uniform Frame {
+layout(std140, binding = 0) uniform Frame {
     mat4 view_projection;
     vec3 camera_position;
     float environment_intensity;
@@ -20,18 +20,18 @@ struct Light {
     float spot_offset;
 };
 
-layout(std140, set = 0, binding = 1) uniform Lights {
+layout(std140, binding = 1) uniform Lights {
     Light lights[16];
 };
 
-layout(std140, set = 0, binding = 7) uniform SeeThrough {
+layout(std140, binding = 4) uniform SeeThrough {
     vec4 scene_u;
     vec4 scene_v;
     vec4 scene_w;
     float scene_max_lod;
 } see_through;
 
-layout(std140, set = 1, binding = 0) uniform Material {
+layout(std140, binding = 2) uniform Material {
     vec3 base_color_factor;
     float roughness_factor;
     vec3 front;
@@ -65,10 +65,10 @@ layout(std140, set = 1, binding = 0) uniform Material {
     float metal_first;
 } material;
 
-layout(set = 0, binding = 2) uniform samplerCube environment_specular;
-layout(set = 0, binding = 3) uniform samplerCube environment_irradiance;
-layout(set = 0, binding = 4) uniform sampler2D environment_dfg;
-layout(set = 0, binding = 8) uniform sampler2D scene_behind;
+layout(binding = 0) uniform samplerCube environment_specular;
+layout(binding = 1) uniform samplerCube environment_irradiance;
+layout(binding = 2) uniform sampler2D environment_dfg;
+layout(binding = 3) uniform sampler2D scene_behind;
 
 layout(location = 0) in vec3 v_position;
 layout(location = 1) in vec3 v_normal;

@@ -1,37 +1,33 @@
-// forward-dispersion-0c7b8186acbb0ff1
+#version 300 es
+// forward-dispersion-c60051e8aca8e230
 // Lacquer 0.2.0, template forward
 
-struct FrameBlock {
-    column_major float4x4 view_projection;
-    float3 camera_position;
+precision highp float;
+precision highp int;
+
+layout(std140) uniform Frame {
+    mat4 view_projection;
+    vec3 camera_position;
     float environment_intensity;
     float environment_max_lod;
     int light_count;
-};
+} frame;
 
-cbuffer Frame : register(b0) {
-    FrameBlock frame;
-};
+layout(std140) uniform Object {
+    mat4 model;
+    mat4 normal_matrix;
+} object;
 
-struct ObjectBlock {
-    column_major float4x4 model;
-    column_major float4x4 normal_matrix;
-};
-
-cbuffer Object : register(b3) {
-    ObjectBlock object;
-};
-
-struct MaterialBlock {
-    float3 base_color_factor;
+layout(std140) uniform Material {
+    vec3 base_color_factor;
     float roughness_factor;
-    float3 front;
+    vec3 front;
     float f0;
-    float3 F0;
+    vec3 F0;
     float roughness;
-    float3 tint;
+    vec3 tint;
     float thickness_factor;
-    float3 metal_repeated;
+    vec3 metal_repeated;
     float alpha2;
     float alpha2_ratio;
     float weight_times_ggx_peak;
@@ -54,35 +50,32 @@ struct MaterialBlock {
     float most_mean_times_inverse_dielectric;
     float first;
     float metal_first;
-};
+} material;
 
-cbuffer Material : register(b2) {
-    MaterialBlock material;
-};
+layout(location = 0) in vec3 in_position;
+layout(location = 1) in vec3 in_normal;
 
-void main(
-    float3 in_position : POSITION,
-    float3 in_normal : NORMAL,
-    out float3 v_position : TEXCOORD0,
-    out float3 v_normal : TEXCOORD1,
-    out float v_volume_length : TEXCOORD2,
-    out float4 out_position : SV_Position) {
+out vec3 v_position;
+out vec3 v_normal;
+out float v_volume_length;
+
+void main() {
     // world
-    float4 world = mul(object.model, float4(in_position, 1.0));
+    vec4 world = object.model * vec4(in_position, 1.0);
 
     // normal
-    float4 normal_part = mul(object.normal_matrix, float4(in_normal, 0.0));
+    vec4 normal_part = object.normal_matrix * vec4(in_normal, 0.0);
     float normal_part_2 = normal_part.y * normal_part.y + (normal_part.z * normal_part.z + 1e-32);
-    float3 N = normal_part.xyz * rsqrt(normal_part.x * normal_part.x + normal_part_2);
+    vec3 N = normal_part.xyz * inversesqrt(normal_part.x * normal_part.x + normal_part_2);
 
     // thickness_scale
-    float4 thickness_scale_part = mul(object.model, float4(1.0, 0.0, 0.0, 0.0));
-    float4 thickness_scale_part_2 = mul(object.model, float4(0.0, 1.0, 0.0, 0.0));
-    float4 thickness_scale_part_3 = mul(object.model, float4(0.0, 0.0, 1.0, 0.0));
+    vec4 thickness_scale_part = object.model * vec4(1.0, 0.0, 0.0, 0.0);
+    vec4 thickness_scale_part_2 = object.model * vec4(0.0, 1.0, 0.0, 0.0);
+    vec4 thickness_scale_part_3 = object.model * vec4(0.0, 0.0, 1.0, 0.0);
     float thickness_scale_part_4 = length(thickness_scale_part.xyz) + length(thickness_scale_part_2.xyz) + length(thickness_scale_part_3.xyz);
 
     // output
-    out_position = mul(frame.view_projection, world);
+    gl_Position = frame.view_projection * world;
 
     // position
     v_position = world.xyz;

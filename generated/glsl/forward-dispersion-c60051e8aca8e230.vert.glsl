@@ -1,8 +1,8 @@
 #version 450
-// forward-dispersion-0c7b8186acbb0ff1
+// forward-dispersion-c60051e8aca8e230
 // Lacquer 0.2.0, template forward
 
-layout(std140, binding = 0) uniform Frame {
+layout(std140, set = 0, binding = 0) uniform Frame {
     mat4 view_projection;
     vec3 camera_position;
     float environment_intensity;
@@ -10,12 +10,12 @@ layout(std140, binding = 0) uniform Frame {
     int light_count;
 } frame;
 
-layout(std140, binding = 3) uniform Object {
+layout(std140, set = 2, binding = 0) uniform Object {
     mat4 model;
     mat4 normal_matrix;
 } object;
 
-layout(std140, binding = 2) uniform Material {
+layout(std140, set = 1, binding = 0) uniform Material {
     vec3 base_color_factor;
     float roughness_factor;
     vec3 front;

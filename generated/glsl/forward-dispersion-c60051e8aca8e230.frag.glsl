@@ -1,13 +1,8 @@
-#version 300 es
-// forward-dispersion-0c7b8186acbb0ff1
+#version 450
+// forward-dispersion-c60051e8aca8e230
 // Lacquer 0.2.0, template forward
 
-precision highp float;
-precision highp int;
-precision highp sampler2D;
-precision highp samplerCube;
-
-layout(std140) uniform Frame {
+layout(std140, set = 0, binding = 0) uniform Frame {
     mat4 view_projection;
     vec3 camera_position;
     float environment_intensity;
@@ -25,18 +20,18 @@ struct Light {
     float spot_offset;
 };
 
-layout(std140) uniform Lights {
+layout(std140, set = 0, binding = 1) uniform Lights {
     Light lights[16];
 };
 
-layout(std140) uniform SeeThrough {
+layout(std140, set = 0, binding = 7) uniform SeeThrough {
     vec4 scene_u;
     vec4 scene_v;
     vec4 scene_w;
     float scene_max_lod;
 } see_through;
 
-layout(std140) uniform Material {
+layout(std140, set = 1, binding = 0) uniform Material {
     vec3 base_color_factor;
     float roughness_factor;
     vec3 front;
@@ -70,14 +65,14 @@ layout(std140) uniform Material {
     float metal_first;
 } material;
 
-uniform samplerCube environment_specular;
-uniform samplerCube environment_irradiance;
-uniform sampler2D environment_dfg;
-uniform sampler2D scene_behind;
+layout(set = 0, binding = 2) uniform samplerCube environment_specular;
+layout(set = 0, binding = 3) uniform samplerCube environment_irradiance;
+layout(set = 0, binding = 4) uniform sampler2D environment_dfg;
+layout(set = 0, binding = 8) uniform sampler2D scene_behind;
 
-in vec3 v_position;
-in vec3 v_normal;
-in float v_volume_length;
+layout(location = 0) in vec3 v_position;
+layout(location = 1) in vec3 v_normal;
+layout(location = 2) in float v_volume_length;
 
 layout(location = 0) out vec4 out_color;
 
