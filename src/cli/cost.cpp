@@ -4,19 +4,19 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "cli/table.h"
+#include "json/json.h"
 
 namespace lacquer::cli {
 namespace {
 
 void printJson(const std::vector<ShaderCost>& costs) {
-  nlohmann::ordered_json shaders = nlohmann::ordered_json::array();
+  json::Json shaders = json::Json::array();
   for (const ShaderCost& shader : costs) {
-    nlohmann::ordered_json gpus = nlohmann::ordered_json::object();
+    json::Json gpus = json::Json::object();
     for (const GpuCost& gpu : shader.gpus) {
-      nlohmann::ordered_json& row = gpus[gpu.gpu];
+      json::Json& row = gpus[gpu.gpu];
       if (!gpu.problem.empty()) {
         row = {{"problem", gpu.problem}};
         continue;
@@ -34,9 +34,7 @@ void printJson(const std::vector<ShaderCost>& costs) {
     shaders.push_back(
         {{"shader", shader.name}, {"spirv_instructions", shader.spirv_instructions}, {"gpus", gpus}});
   }
-  // A file's name may hold bytes that are no UTF-8.
-  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  fmt::print("{}\n", nlohmann::ordered_json{{"shaders", shaders}}.dump(2, ' ', false, replace));
+  fmt::print("{}\n", json::Json{{"shaders", shaders}}.dump(2));
 }
 
 std::string cells(const GpuCost& gpu) {

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/build.h"
 #include "cli/streams.h"
 #include "cli/table.h"
+#include "json/json.h"
 
 namespace lacquer::cli {
 
@@ -38,7 +37,7 @@ void addLod(CLI::App& verb, LodFlags& flags) {
 namespace {
 
 void printChains(const std::string& text) {
-  const nlohmann::ordered_json answer = nlohmann::ordered_json::parse(text);
+  const json::Json answer = json::reread(text);
   for (const auto& chain : answer["materials"]) {
     fmt::print("\n{}: {}\n", printable(chain["source"].get<std::string>()),
                printable(chain["name"].get<std::string>()));

@@ -17,6 +17,7 @@
 #include "cli/lod.h"
 #include "cli/preview.h"
 #include "cli/prove.h"
+#include "cli/reserve.h"
 #include "cli/streams.h"
 #include "cli/stress.h"
 #include "cli/table.h"
@@ -359,6 +360,7 @@ int cost(const Flags& flags) {
 }
 
 int run(int argc, char** argv) {
+  std::optional<lacquer::cli::Reserve> reserve(std::in_place);  // while CLI11 is at work
   CLI::App app{"Lacquer turns glTF materials into GLSL, HLSL and SPIR-V.", "lacquer"};
   app.set_version_flag("--version", std::string(lacquer::version()));
   app.set_help_all_flag("--help-all", "the help of every verb");
@@ -452,6 +454,7 @@ int run(int argc, char** argv) {
   }
   try {
     app.parse(argc, argv);
+    reserve.reset();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kGood : kUsage;
   }

@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/build.h"
 #include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
+#include "json/json.h"
 
 namespace lacquer::cli {
 
@@ -63,7 +62,7 @@ CLI::App* addPreview(CLI::App& app, PreviewFlags& flags) {
 namespace {
 
 void printMeasured(const std::string& text) {
-  const nlohmann::json answer = nlohmann::json::parse(text);
+  const json::Json answer = json::reread(text);
   if (answer.contains("differences")) {
     fmt::print("{:>12} {:>12} {:>12}  material\n", "max", "mean", "rms");
     for (const auto& row : answer["differences"]) {

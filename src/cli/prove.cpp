@@ -3,16 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "cli/streams.h"
 #include "cli/table.h"
+#include "json/json.h"
 
 namespace lacquer::cli {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using json::Json;
 
 /// A member that is a text, as a terminal may show it: names come from the file.
 std::string textOf(const Json& json, const char* key) { return printable(json[key].get<std::string>()); }
@@ -60,7 +60,7 @@ void printShader(const Json& json) {
 bool proveNodes(const ProveFlags& flags, const Options& options, Messages& messages) {
   const std::string text = proveNodesJson(options, messages, flags.precision);
   if (text.empty()) return false;
-  const Json json = Json::parse(text);
+  const Json json = json::reread(text);
   size_t good = 0;
   size_t all = 0;
   for (const Json& node : json["nodes"]) {
@@ -91,7 +91,7 @@ bool proveMaterial(const Scene& scene, size_t material, const ProveFlags& flags,
     if (flags.json)
       fmt::print("{}\n", text);
     else
-      printShader(Json::parse(text));
+      printShader(json::reread(text));
   }
   return good;
 }

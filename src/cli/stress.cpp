@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/build.h"
 #include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
+#include "json/json.h"
 
 namespace lacquer::cli {
 
@@ -49,9 +48,9 @@ CLI::App* addStress(CLI::App& app, StressFlags& flags) {
 
 namespace {
 
-using nlohmann::ordered_json;
+using json::Json;
 
-std::string titleOf(const ordered_json& subject) {
+std::string titleOf(const Json& subject) {
   if (subject.contains("case")) return subject["case"].get<std::string>();
   if (subject.contains("node")) {
     const std::string name = subject["node"].get<std::string>();
@@ -61,7 +60,7 @@ std::string titleOf(const ordered_json& subject) {
 }
 
 void printFound(const std::string& text, bool quiet) {
-  const ordered_json answer = ordered_json::parse(text);
+  const Json answer = json::reread(text);
   for (const auto& subject : answer["subjects"]) {
     const bool bare = subject["findings"].empty() && !subject.contains("energy");
     if (bare || (quiet && subject["findings"].empty())) continue;
@@ -103,7 +102,7 @@ int runStress(StressFlags& flags) {
   if (!answer.empty() && !flags.json) printFound(answer, flags.quiet);
   if (answer.empty() || hasError(messages)) return 1;
   // At half precision something always comes of it: that is a report, not a verdict.
-  return flags.stress.mediump || ordered_json::parse(answer)["faults"] == 0 ? 0 : 1;
+  return flags.stress.mediump || json::reread(answer)["faults"] == 0 ? 0 : 1;
 }
 
 }  // namespace lacquer::cli

@@ -6,7 +6,8 @@
 
 #include <cstdio>
 #include <map>
-#include <nlohmann/json.hpp>
+
+#include "json/json.h"
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <sys/ioctl.h>
@@ -88,16 +89,16 @@ std::vector<std::string> grouped(const std::vector<std::string>& terms) {
   return result;
 }
 
-std::string range(const nlohmann::json& item) {
+std::string range(const json::Json& item) {
   if (!item.contains("range")) return {};
-  const auto end = [](const nlohmann::json& x, const char* infinite) {
+  const auto end = [](const json::Json& x, const char* infinite) {
     return x.is_null() ? std::string(infinite) : fmt::format("{}", x.get<double>());
   };
   return fmt::format(" in [{}, {}]{}", end(item["range"][0], "-inf"), end(item["range"][1], "inf"),
                      item.contains("or_zero") ? " or 0" : "");
 }
 
-void printNode(const nlohmann::json& node) {
+void printNode(const json::Json& node) {
   fmt::print("{}\n", node["name"].get<std::string>());
   fmt::print("    {}\n    source: {}\n", node["doc"].get<std::string>(), node["source"].get<std::string>());
   for (const auto& input : node["inputs"]) {
@@ -162,7 +163,7 @@ void printReport(const Report& report, const Options& options) {
 }
 
 bool printNodes(const std::string& text, const std::string& name, bool as_json) {
-  const nlohmann::ordered_json all = nlohmann::ordered_json::parse(text);
+  const json::Json all = json::reread(text);
   bool found = name.empty();
   for (const auto& node : all["nodes"]) {
     if (!name.empty() && node["name"] != name) continue;

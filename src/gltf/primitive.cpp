@@ -63,7 +63,7 @@ public:
   bool read(const Json& primitive, const Path& path) {
     if (isStandIn(primitive)) return false;
     bool usable = member(primitive, "attributes") != nullptr;
-    for (const auto& [name, value] : primitive.get_ref<const Json::object_t&>()) {
+    for (const auto& [name, value] : primitive.items()) {
       const Path here(path, name);
       if (name == "attributes") {
         attributes(value, here);
@@ -95,7 +95,7 @@ private:
                  if (!known(name)) unread(name, here);
                  AttributeFormat format;
                  format.semantic = printable(name);
-                 if (accessor >= 0) stored(root_.at("accessors")[static_cast<size_t>(accessor)], format);
+                 if (accessor >= 0) stored(root_["accessors"][static_cast<size_t>(accessor)], format);
                  checkFormat(format, here);
                  out_.formats.push_back(std::move(format));
                });
@@ -124,7 +124,7 @@ private:
 
   static void stored(const Json& accessor, AttributeFormat& out) {
     if (const Json* type = member(accessor, "type"); type != nullptr && type->is_string())
-      out.type = printable(type->get_ref<const std::string&>(), 16);
+      out.type = printable(type->text(), 16);
     const Json* component = member(accessor, "componentType");
     for (const ComponentType& row : kComponentTypes) {
       if (component != nullptr && *component == row.number) out.componentType = row.name;
@@ -216,7 +216,7 @@ void readVariants(Reading& reading, const Json& extension, const Path& path) {
                  std::string& name = reading.scene.variants.emplace_back();
                  const Json* given = member(one, "name");
                  if (given != nullptr && given->is_string())
-                   name = given->get_ref<const std::string&>();
+                   name = given->text();
                  else if (!isStandIn(one))
                    report.warning("missing-property", p, "the variant has no \"name\"", "it must have one");
                });

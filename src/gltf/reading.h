@@ -51,7 +51,7 @@ void eachElement(Report& report, const Json& array, const Path& path, std::strin
 template <class Check>
 void eachMember(Report& report, const Json& object, const Path& path, std::string_view name, Check check) {
   if (!object.is_object()) return report.wrongType(path, name, object, "an object");
-  for (const auto& [key, value] : object.get_ref<const Json::object_t&>()) check(key, value, Path(path, key));
+  for (const auto& [key, value] : object.items()) check(key, value, Path(path, key));
 }
 
 /// The object of an extension, nullptr when the owner has none.

@@ -52,7 +52,7 @@ void collectLights(const Json& checked, Scene& scene) {
   for (const Json& node : elements(checked, "nodes")) {
     const int light = indexOf(extensionOf(node, "KHR_lights_punctual"), "light");
     if (light < 0) continue;
-    const std::string_view type = lights.at(static_cast<size_t>(light))["type"].get_ref<const std::string&>();
+    const std::string_view type = lights[static_cast<size_t>(light)]["type"].text();
     if (type == "directional") ++scene.lights[LightType::Directional];
     if (type == "point") ++scene.lights[LightType::Point];
     if (type == "spot") ++scene.lights[LightType::Spot];

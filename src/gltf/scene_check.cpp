@@ -38,7 +38,7 @@ public:
 
   Json check() {
     out_ = {{"asset", {{"version", "2.0"}}}};
-    for (const auto& [name, value] : root_.get_ref<const Json::object_t&>()) section(name, value);
+    for (const auto& [name, value] : root_.items()) section(name, value);
     return std::move(out_);
   }
 
@@ -135,7 +135,7 @@ Json SceneChecker::light(const Json& light, const Path& path) {
     report_.wrongType(here, "type", *type, "a string");
     return unusable;
   }
-  const auto& name = type->get_ref<const std::string&>();
+  const auto& name = type->text();
   if (std::find(std::begin(kTypes), std::end(kTypes), name) == std::end(kTypes)) {
     report_.error("unknown-value", here, fmt::format("the light's type is {}", quote(name)),
                   fmt::format("it must be {}", listOf(kTypes, "or")));
@@ -158,7 +158,7 @@ void SceneChecker::image(const Json& image, const Path& path) {
   if (const Json* uri = member(image, "uri")) {
     if (!uri->is_string()) {
       report_.wrongType(Path(path, "uri"), "uri", *uri, "a string");
-    } else if (const auto& text = uri->get_ref<const std::string&>(); !isDataUri(text)) {
+    } else if (const auto& text = uri->text(); !isDataUri(text)) {
       out.uri = text;
     } else {
       const std::string_view head = std::string_view(text).substr(kData.size());
@@ -167,7 +167,7 @@ void SceneChecker::image(const Json& image, const Path& path) {
   }
   if (const Json* type = member(image, "mimeType")) {
     if (type->is_string())
-      out.mimeType = printable(type->get_ref<const std::string&>());
+      out.mimeType = printable(type->text());
     else
       report_.wrongType(Path(path, "mimeType"), "mimeType", *type, "a string");
   }
@@ -180,7 +180,7 @@ void SceneChecker::image(const Json& image, const Path& path) {
 
 Json SceneChecker::node(const Json& node, const Path& path) {
   Json out = Json::object();
-  for (const auto& [name, value] : node.get_ref<const Json::object_t&>()) {
+  for (const auto& [name, value] : node.items()) {
     const Path here(path, name);
     int index = -1;
     if (name == "mesh") report_.index(here, "mesh", value, arraySize(root_, "meshes"), "mesh", index);

@@ -216,7 +216,7 @@ std::vector<std::string> TextureFile::fileUris() const {
       const Json* object = element(root_, array, i);
       const Json* uri = object == nullptr ? nullptr : member(*object, "uri");
       if (uri == nullptr || !uri->is_string()) continue;
-      const std::string& text = uri->get_ref<const std::string&>();
+      const std::string& text = uri->text();
       const bool data = text.starts_with("data:");
       if (!data && std::find(uris.begin(), uris.end(), text) == uris.end()) uris.push_back(text);
     }

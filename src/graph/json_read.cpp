@@ -80,7 +80,7 @@ bool Reader::object(const Json& json, const Path& path, std::string_view what, K
     report_.wrongType(path, what, json, "an object");
     return false;
   }
-  for (const auto& [key, value] : json.get_ref<const Json::object_t&>()) {
+  for (const auto& [key, value] : json.items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     const std::string_view close = closest(key, known);
     report_.error(
@@ -96,7 +96,7 @@ void Reader::eachMember(const Json& root, const Path& path, std::string_view nam
   if (json == nullptr) return;
   const Path here(path, name);
   if (!json->is_object()) return report_.wrongType(here, name, *json, "an object");
-  for (const auto& [key, value] : json->get_ref<const Json::object_t&>()) body(key, value, Path(here, key));
+  for (const auto& [key, value] : json->items()) body(key, value, Path(here, key));
 }
 
 const Json* Reader::required(const Json& json, const Path& path, std::string_view what,
@@ -218,10 +218,9 @@ std::optional<ir::Type> Reader::typeOf(const Json& json, const Path& path, std::
     report_.wrongType(here, "type", *name, "a string");
     return std::nullopt;
   }
-  const std::optional<ir::Type> type = find(name->get_ref<const std::string&>());
+  const std::optional<ir::Type> type = find(name->text());
   if (!type) {
-    report_.error("unknown-type", here,
-                  fmt::format("no {} has the type {}", entry, quote(name->get_ref<const std::string&>())),
+    report_.error("unknown-type", here, fmt::format("no {} has the type {}", entry, quote(name->text())),
                   std::string(help));
   }
   return type;

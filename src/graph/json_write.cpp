@@ -2,20 +2,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "graph/graph.h"
+#include "json/value.h"
 
 namespace lacquer::graph {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// Bytes that are not UTF-8 become U+FFFD: JSON has no place for them.
-std::string jsonText(std::string_view text) {
-  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 /// The shortest text that reads back as the same double; whole numbers without a fraction. There is no text
 /// for NaN and infinity: they become null, which only a range may hold.
@@ -23,7 +16,7 @@ std::string number(double x) {
   constexpr double kExact = 1e15;
   if (std::trunc(x) == x && std::abs(x) < kExact && !(x == 0 && std::signbit(x)))
     return fmt::format("{:.0f}", x);
-  return Json(x).dump();
+  return json::numberText(x);
 }
 
 std::string value(ir::Type type, const ir::Components& components) {
@@ -41,12 +34,16 @@ std::string source(const Source& source) {
     std::string operator()(const Literal& literal) const {
       return "\"value\": " + value(literal.type, literal.value);
     }
-    std::string operator()(const ParameterRef& ref) const { return "\"parameter\": " + jsonText(ref.name); }
-    std::string operator()(const TextureRef& ref) const { return "\"texture\": " + jsonText(ref.name); }
-    std::string operator()(const GivenRef& ref) const { return "\"given\": " + jsonText(ref.name); }
+    std::string operator()(const ParameterRef& ref) const {
+      return "\"parameter\": " + json::quotedText(ref.name);
+    }
+    std::string operator()(const TextureRef& ref) const {
+      return "\"texture\": " + json::quotedText(ref.name);
+    }
+    std::string operator()(const GivenRef& ref) const { return "\"given\": " + json::quotedText(ref.name); }
     std::string operator()(const NodeRef& ref) const {
-      const std::string node = "\"node\": " + jsonText(ref.node);
-      return ref.output.empty() ? node : node + ", \"output\": " + jsonText(ref.output);
+      const std::string node = "\"node\": " + json::quotedText(ref.node);
+      return ref.output.empty() ? node : node + ", \"output\": " + json::quotedText(ref.output);
     }
   };
   if (const auto* literal = std::get_if<Literal>(&source.from);
@@ -54,7 +51,7 @@ std::string source(const Source& source) {
     return value(literal->type, literal->value);
   }
   std::string text = "{" + std::visit(Members{}, source.from);
-  if (!source.swizzle.empty()) text += ", \"swizzle\": " + jsonText(source.swizzle);
+  if (!source.swizzle.empty()) text += ", \"swizzle\": " + json::quotedText(source.swizzle);
   return text + "}";
 }
 
@@ -67,7 +64,9 @@ std::string block(std::string_view brackets, size_t indent, const std::vector<st
   return text + brackets[1];
 }
 
-std::string member(std::string_view name, const std::string& text) { return jsonText(name) + ": " + text; }
+std::string member(std::string_view name, const std::string& text) {
+  return json::quotedText(name) + ": " + text;
+}
 
 std::string sources(size_t indent, const std::vector<std::pair<std::string, Source>>& named) {
   std::vector<std::string> items;
@@ -85,7 +84,7 @@ std::string parameter(const ir::Parameter& parameter) {
         fmt::format(", \"range\": [{}, {}]", number(range.gap > 0 ? range.gap : range.lo), number(range.hi));
   }
   if (range.gap > 0) text += ", \"or_zero\": true";
-  if (!parameter.pointer.empty()) text += ", " + member("pointer", jsonText(parameter.pointer));
+  if (!parameter.pointer.empty()) text += ", " + member("pointer", json::quotedText(parameter.pointer));
   if (parameter.neutral != ir::Components{})
     text += fmt::format(", \"default\": {}", value(parameter.type, parameter.neutral));
   if (parameter.animated) text += ", \"animated\": true";
@@ -95,13 +94,14 @@ std::string parameter(const ir::Parameter& parameter) {
 std::string texture(const ir::TextureSlot& slot) {
   std::string text = fmt::format("{{\"type\": \"{}\", \"srgb\": {}", ir::typeName(slot.type), slot.srgb);
   if (slot.texture != -1) text += fmt::format(", \"texture\": {}", slot.texture);
-  if (!slot.pointer.empty()) text += ", " + member("pointer", jsonText(slot.pointer));
+  if (!slot.pointer.empty()) text += ", " + member("pointer", json::quotedText(slot.pointer));
   return text + "}";
 }
 
 std::string node(const Node& node) {
-  std::vector<std::string> items = {member("id", jsonText(node.id)), member("node", jsonText(node.type))};
-  if (!node.variant.empty()) items.push_back(member("variant", jsonText(node.variant)));
+  std::vector<std::string> items = {member("id", json::quotedText(node.id)),
+                                    member("node", json::quotedText(node.type))};
+  if (!node.variant.empty()) items.push_back(member("variant", json::quotedText(node.variant)));
   items.push_back(member("inputs", sources(6, node.inputs)));
   return block("{}", 4, items);
 }
@@ -113,11 +113,11 @@ std::string toJson(const Graph& graph) {
   for (const ir::Parameter& p : graph.parameters) parameters.push_back(member(p.name, parameter(p)));
   for (const ir::TextureSlot& t : graph.textures) textures.push_back(member(t.name, texture(t)));
   for (const Node& n : graph.nodes) nodes.push_back(node(n));
-  for (const Skipped& s : graph.skipped) skipped.push_back(member(s.term, jsonText(s.reason)));
+  for (const Skipped& s : graph.skipped) skipped.push_back(member(s.term, json::quotedText(s.reason)));
   const std::vector<std::string> items = {
       member("lacquer_graph", "1"),
-      member("name", jsonText(graph.name)),
-      member("template", jsonText(graph.template_name)),
+      member("name", json::quotedText(graph.name)),
+      member("template", json::quotedText(graph.template_name)),
       member("parameters", block("{}", 2, parameters)),
       member("textures", block("{}", 2, textures)),
       member("nodes", block("[]", 2, nodes)),

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -42,7 +45,7 @@ constexpr size_t kMostNoted = 1U << 16U;
 
 /// Builds the tree from the parser's events. The library's own builder looks for each new member among those
 /// before it, which takes quadratic time in a large object; here doubles are dropped once, at the end.
-class TreeBuilder : public nlohmann::json_sax<Json> {
+class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
 public:
   explicit TreeBuilder(uint64_t most) : most_(most) {}
 
@@ -55,7 +58,7 @@ public:
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
   bool number_float(number_float_t value, const string_t&) override { return add(value); }
   bool string(string_t& value) override { return add(std::move(value)); }
-  bool binary(binary_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t&) override { return false; }  // no text holds it
   bool start_object(std::size_t) override { return open(Json::object()); }
   bool start_array(std::size_t) override { return open(Json::array()); }
   bool key(string_t& value) override {
@@ -63,7 +66,7 @@ public:
     return true;
   }
   bool end_object() override {
-    dropDoubles(open_.back()->get_ref<Json::object_t&>());
+    dropDoubles(open_.back()->items());
     open_.pop_back();
     return true;
   }
@@ -113,11 +116,10 @@ private:
       return &root;
     }
     if (open_.back()->is_array()) {
-      auto& elements = open_.back()->get_ref<Json::array_t&>();
-      elements.push_back(std::move(value));
-      return &elements.back();
+      open_.back()->push_back(std::move(value));
+      return open_.back()->end() - 1;
     }
-    auto& members = open_.back()->get_ref<Json::object_t&>();
+    Json::Members& members = open_.back()->items();
     members.emplace_back(std::move(key_), std::move(value));
     return &members.back().second;
   }
@@ -128,12 +130,11 @@ private:
     if (depth <= 1) return {};
     const Json& parent = *open_[depth - 2];
     if (parent.is_array()) return fmt::format("{}/{}", pointer(depth - 1), parent.size() - 1);
-    const std::string& name = parent.get_ref<const Json::object_t&>().back().first;
+    const std::string& name = parent.items().back().first;
     return pointer(depth - 1) + Path(Path(), name).text();
   }
 
-  void dropDoubles(Json::object_t& object) {
-    Json::object_t::Container& members = object;  // the library's operator[] is for names only
+  void dropDoubles(Json::Members& members) {
     std::vector<size_t> order(members.size());
     std::iota(order.begin(), order.end(), size_t{0});
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
@@ -152,11 +153,11 @@ private:
       doubles.emplace_back(pointer(), members[i].first);
       noted_ += 1 + doubles.back().first.size() + doubles.back().second.size();
     }
-    Json::object_t kept;
+    Json::Members kept;
     for (size_t i = 0; i < members.size(); ++i) {
       if (!dropped[i]) kept.emplace_back(members[i].first, std::move(members[i].second));
     }
-    object = std::move(kept);
+    members = std::move(kept);
   }
 
   std::vector<Json*> open_;
@@ -257,7 +258,7 @@ Result<Json> build(std::string_view text, const std::string& file, const Limits&
     return tl::make_unexpected(Diagnostics{diagnostic});
   }
   TreeBuilder builder(limits.values);
-  if (Json::sax_parse(text.begin(), text.end(), &builder)) {
+  if (nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) {
     doubles = std::move(builder.doubles);
     return std::move(builder.root);
   }
@@ -300,26 +301,27 @@ Result<Json> parseTelling(std::string_view text, const std::string& file, const 
   return json;
 }
 
-const Json* member(const Json& object, std::string_view key) {
-  if (!object.is_object()) return nullptr;
-  for (const auto& [name, value] : object.get_ref<const Json::object_t&>()) {
-    if (name == key) return &value;
-  }
-  return nullptr;
+Json reread(std::string_view text) {
+  Limits none;
+  none.json = none.values = std::numeric_limits<uint64_t>::max();
+  DoubledNames names;
+  Result<Json> json = build(text, {}, none, names);
+  if (!json) throw std::logic_error("what was written does not read back");
+  return std::move(*json);
 }
 
+const Json* member(const Json& object, std::string_view key) { return object.find(key); }
+
 std::string_view describe(const Json& value) {
-  switch (value.type()) {
-    case Json::value_t::null: return "null";
-    case Json::value_t::object: return "an object";
-    case Json::value_t::array: return "an array";
-    case Json::value_t::string: return "a string";
-    case Json::value_t::boolean: return "a boolean";
-    case Json::value_t::number_integer:
-    case Json::value_t::number_unsigned:
-    case Json::value_t::number_float: return "a number";
-    case Json::value_t::binary:
-    case Json::value_t::discarded: return "not JSON";
+  switch (value.kind()) {
+    case Json::Kind::Null: return "null";
+    case Json::Kind::Object: return "an object";
+    case Json::Kind::Array: return "an array";
+    case Json::Kind::String: return "a string";
+    case Json::Kind::Boolean: return "a boolean";
+    case Json::Kind::Integer:
+    case Json::Kind::Unsigned:
+    case Json::Kind::Float: return "a number";
   }
   return "";
 }

@@ -1,17 +1,15 @@
-// The one reader of JSON: a tree that keeps the order of its members (diagnostics come in document order),
-// with limits, and the little that readers ask of it.
+// The one reader of JSON, with limits, and the little that readers ask of what it makes (diagnostics come in
+// document order).
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
+#include "json/value.h"
 #include "support/diagnostic.h"
 #include "support/limits.h"
 
 namespace lacquer::json {
-
-using Json = nlohmann::ordered_json;
 
 /// What becomes of members with the same name in one object.
 enum class Doubles : uint8_t {
@@ -25,6 +23,9 @@ enum class Doubles : uint8_t {
 /// "json-too-large", "json-too-many", "json-too-deep".
 Result<Json> parse(std::string_view text, const std::string& file, const Limits& limits = {},
                    Doubles doubles = Doubles::LastCounts);
+
+/// Reads back what this program has written, of any size. Throws std::logic_error where that is not JSON.
+Json reread(std::string_view text);
 
 /// The member of an object; nullptr when there is none or when it is not an object.
 const Json* member(const Json& object, std::string_view key);

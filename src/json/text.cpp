@@ -80,7 +80,7 @@ void JsonText::quoted(std::string_view text) {
                                  [](char c) { return c >= 0x20 && c < 0x7F && c != '"' && c != '\\'; });
   if (!plain) {
     // A name that is not UTF-8 must not cost the whole text.
-    out_ += Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+    out_ += json::quotedText(text);
     return;
   }
   out_ += '"';
@@ -129,23 +129,21 @@ JsonText& JsonText::raw(std::string_view text) {
 }
 
 JsonText& JsonText::json(const Json& value) {
-  switch (value.type()) {
-    case Json::value_t::object:
+  switch (value.kind()) {
+    case Json::Kind::Object:
       beginObject();
-      for (const auto& [name, member] : value.get_ref<const Json::object_t&>()) key(name).json(member);
+      for (const auto& [name, member] : value.items()) key(name).json(member);
       return endObject();
-    case Json::value_t::array:
+    case Json::Kind::Array:
       beginArray();
       for (const Json& element : value) json(element);
       return endArray();
-    case Json::value_t::string: return string(value.get_ref<const std::string&>());
-    case Json::value_t::boolean: return boolean(value.get<bool>());
-    case Json::value_t::number_integer:
-    case Json::value_t::number_unsigned: return integer(value.get<int64_t>());
-    case Json::value_t::number_float: return number(value.get<double>());
-    case Json::value_t::null:
-    case Json::value_t::binary:
-    case Json::value_t::discarded: break;
+    case Json::Kind::String: return string(value.text());
+    case Json::Kind::Boolean: return boolean(value.get<bool>());
+    case Json::Kind::Integer: return integer(value.get<int64_t>());
+    case Json::Kind::Unsigned: return raw(std::to_string(value.get<uint64_t>()));
+    case Json::Kind::Float: return number(value.get<double>());
+    case Json::Kind::Null: break;
   }
   return raw("null");
 }

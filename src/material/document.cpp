@@ -43,7 +43,7 @@ std::optional<std::pair<int, int>> versionOf(const std::string& text) {
 /// Checks one of the asset's two versions. `newest` is the newest minor version that can be read.
 void checkVersion(const Json& version, std::string_view name, int newest, const Path& path, Report& report) {
   if (!version.is_string()) return report.wrongType(path, name, version, "a string such as \"2.0\"");
-  const auto& text = version.get_ref<const std::string&>();
+  const auto& text = version.text();
   const std::optional<std::pair<int, int>> number = versionOf(text);
   if (number && number->first == 2 && number->second <= newest) return;
   report.error("unsupported-version", path, fmt::format("{} is {}", name, quote(text)),
@@ -84,7 +84,7 @@ void checkExtensions(const Json& root, const Schema& schema, Report& report) {
   const Json* required = json::member(root, "extensionsRequired");
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i) {
     if (!(*required)[i].is_string()) continue;
-    const auto& name = (*required)[i].get_ref<const std::string&>();
+    const auto& name = (*required)[i].text();
     if (schema.find(name) || !besideMaterials(name).empty()) continue;
     // What nobody here knows may change materials, whatever its name is.
     const bool of_materials = name.find("_materials_") != std::string::npos;

@@ -100,7 +100,7 @@ void MaterialReader::object(const Json& json, const Path& path, std::string_view
   constexpr size_t kMostUnknown = 16;  // beyond that the file is something else, and a list helps nobody
   if (!json.is_object()) return report_.wrongType(path, what, json, "an object");
   size_t unknown = 0;
-  for (const auto& [name, element] : json.get_ref<const Json::object_t&>()) {
+  for (const auto& [name, element] : json.items()) {
     const Path at(path, name);
     const auto row = std::find_if(rows.begin(), rows.end(),
                                   [&, &key = name](const PropertyDecl& r) { return r.name == key; });
@@ -122,7 +122,7 @@ bool MaterialReader::structure(std::string_view name, const Json& json, const Pa
     extensions(json, path, here);
   } else if (here.named && name == "name") {
     if (json.is_string())
-      material_.name = json.get_ref<const std::string&>();
+      material_.name = json.text();
     else
       report_.wrongType(path, name, json, "a string");
   } else if (here.texture && name == "index") {
@@ -177,7 +177,7 @@ void MaterialReader::number(const PropertyDecl& decl, std::string_view name, con
 bool MaterialReader::choice(const PropertyDecl& decl, const Json& json, const Path& path,
                             ir::Components& out) {
   if (!json.is_string()) return report_.wrongType(path, decl.name, json, "a string"), false;
-  const auto& name = json.get_ref<const std::string&>();
+  const auto& name = json.text();
   const auto found = std::find(decl.choices.begin(), decl.choices.end(), name);
   if (found != decl.choices.end()) {
     out[0] = static_cast<double>(found - decl.choices.begin());
@@ -282,7 +282,7 @@ void MaterialReader::transform(const Json& json, const Path& path) {
 
 void MaterialReader::extensions(const Json& all, const Path& path, const Here& here) {
   if (!all.is_object()) return report_.wrongType(path, "extensions", all, "an object");
-  for (const auto& [name, json] : all.get_ref<const Json::object_t&>()) {
+  for (const auto& [name, json] : all.items()) {
     const Path at(path, name);
     const std::optional<uint16_t> index = schema_.find(name);
     if (here.texture && name == kTransform) {

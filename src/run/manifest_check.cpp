@@ -38,8 +38,8 @@ bool isObjects(const Json& json) {
   return json.is_array() && std::all_of(json.begin(), json.end(), isObject);
 }
 bool isFlags(const Json& json) {
-  return json.is_object() &&
-         std::all_of(json.begin(), json.end(), [](const Json& flag) { return flag.is_boolean(); });
+  return json.is_object() && std::all_of(json.items().begin(), json.items().end(),
+                                         [](const auto& flag) { return flag.second.is_boolean(); });
 }
 
 constexpr std::string_view kObject = "an object", kText = "a string", kTexts = "an array of strings",
@@ -77,8 +77,7 @@ public:
     const Path files(root, "files");
     for (size_t i = 0; i < json["files"].size(); ++i) file(json["files"][i], Path(files, i));
     const Path shaders(root, "shaders");
-    for (const auto& [id, entry] : json["shaders"].get_ref<const Json::object_t&>())
-      shader(id, entry, Path(shaders, id));
+    for (const auto& [id, entry] : json["shaders"].items()) shader(id, entry, Path(shaders, id));
   }
 
   Diagnostics take() {
@@ -133,8 +132,7 @@ private:
     }
     if (!fits(json, path, "the shader's entry", kShader)) return;
     const Path files(path, "files");
-    for (const auto& [name, entry] : json["files"].get_ref<const Json::object_t&>())
-      target(id, name, entry, Path(files, name));
+    for (const auto& [name, entry] : json["files"].items()) target(id, name, entry, Path(files, name));
   }
 
   /// The paths follow from the id: a manifest that says otherwise leads elsewhere.
@@ -143,7 +141,7 @@ private:
     if (!findTarget(name, target))
       return report_.error("unknown-target", path, fmt::format("there is no target {}", quote(name)));
     if (!json.is_object()) return report_.wrongType(path, "the target's entry", json, kObject);
-    for (const auto& [stage, file] : json.get_ref<const Json::object_t&>()) {
+    for (const auto& [stage, file] : json.items()) {
       const bool known = stage == fileKind(target, 0) || stage == fileKind(target, 1);
       if (!known) {
         report_.error("wrong-path", Path(path, stage),
@@ -151,7 +149,7 @@ private:
         continue;
       }
       const std::string expected = shaderPath(target, id, stage == fileKind(target, 0) ? 0 : 1);
-      if (file.is_string() && file.get_ref<const std::string&>() == expected) continue;
+      if (file.is_string() && file.text() == expected) continue;
       report_.error("wrong-path", Path(path, stage), "this is not where the shader lies",
                     fmt::format("it must be \"{}\"", expected));
     }
@@ -170,15 +168,15 @@ tl::unexpected<Diagnostics> noManifest(const std::string& path, std::string poin
 }  // namespace
 
 Result<void> checkManifestHead(const Json& manifest, const std::string& path) {
-  const auto is = [&](const char* name, Json::value_t type) {
+  const auto is = [&](const char* name, Json::Kind kind) {
     const Json* found = json::member(manifest, name);
-    return found != nullptr && found->type() == type;
+    return found != nullptr && found->kind() == kind;
   };
-  if (!is("lacquer", Json::value_t::string) || !is("files", Json::value_t::array) ||
-      !is("shaders", Json::value_t::object)) {
+  if (!is("lacquer", Json::Kind::String) || !is("files", Json::Kind::Array) ||
+      !is("shaders", Json::Kind::Object)) {
     return noManifest(path, {}, "this is no manifest of Lacquer's");
   }
-  const auto& written_by = json::member(manifest, "lacquer")->get_ref<const std::string&>();
+  const auto& written_by = json::member(manifest, "lacquer")->text();
   if (written_by != version()) {
     return noManifest(path, "/lacquer", "it was written by version " + printable(written_by));
   }

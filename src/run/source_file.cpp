@@ -329,7 +329,7 @@ FileResult SceneFile::run(const material::Document& document) {
   const StageTimer timer(setting_.times, StageOfRun::Manifest);
   json.endArray();
   // It lies one level higher than those in the list.
-  if (!default_text.empty()) json.key("default_material").json(Json::parse(default_text));
+  if (!default_text.empty()) json.key("default_material").json(json::reread(default_text));
   lacquer::writeScene(document, uses, json);
   json.key("diagnostics").beginArray();
   for (const Diagnostic& d : document.diagnostics) json.json(diagnosticJson(d));

@@ -21,7 +21,7 @@ std::vector<std::string> listedShaders(const std::string& path) {
   const json::Json* shaders = json::member(*manifest, "shaders");
   if (shaders == nullptr || !shaders->is_object()) return listed;
   // What the paths are follows from the ids: a manifest that says otherwise has no say.
-  for (const auto& [id, shader] : shaders->get_ref<const json::Json::object_t&>()) {
+  for (const auto& [id, shader] : shaders->items()) {
     const json::Json* files = json::member(shader, "files");
     if (!isShaderId(id) || files == nullptr) continue;
     for (size_t t = 0; t < kTargetCount; ++t) {

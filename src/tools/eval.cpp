@@ -133,12 +133,9 @@ FragmentRoute routeOf(Engine engine) {
 
 std::string answerOf(const Colors& colors, const std::string& material, const std::string& profile,
                      Engine engine) {
-  const auto quoted = [](const std::string& text) {
-    return json::Json(text).dump(-1, ' ', false, json::Json::error_handler_t::replace);
-  };
-  std::string text =
-      fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n", quoted(material), nameOf(engine));
-  if (!colors.device.empty()) text += fmt::format("  \"device\": {},\n", quoted(colors.device));
+  std::string text = fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n",
+                                 json::quotedText(material), nameOf(engine));
+  if (!colors.device.empty()) text += fmt::format("  \"device\": {},\n", json::quotedText(colors.device));
   text += fmt::format("  \"profile\": \"{}\",\n  \"rgba\": [", profile);
   for (size_t i = 0; 4 * i < colors.rgba.size(); ++i) {
     text += i == 0 ? "\n    [" : ",\n    [";

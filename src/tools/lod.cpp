@@ -111,7 +111,7 @@ public:
     if (chains_.empty()) return fail("nothing-to-show", {}, "there is no material with levels");
     if (Result<void> written = write(); !written) return tl::make_unexpected(std::move(written.error()));
     json::Json answer = {{"output", lod_.output}, {"driver", driver_}, {"materials", chainsJson(chains_)}};
-    return answer.dump(2, ' ', false, json::Json::error_handler_t::replace) + "\n";
+    return answer.dump(2) + "\n";
   }
 
 private:
@@ -323,7 +323,7 @@ private:
     for (const auto& [id, one] : printed_) shaders[id] = one.entry;
     json["shaders"] = std::move(shaders);
     json["levels"] = chainsJson(chains_);
-    return json.dump(2, ' ', false, json::Json::error_handler_t::replace) + "\n";
+    return json.dump(2) + "\n";
   }
 
   Result<void> write() const {

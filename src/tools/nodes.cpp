@@ -127,7 +127,7 @@ std::string nodesJson(const Options& options, Messages& messages) {
       {"templates", listOf(all, lang::DeclKind::Template, &lang::Library::template_, documented)},
       {"live", liveTerms(options)},
       {"nodes", listOf(all, lang::DeclKind::Node, &lang::Library::node, nodeJson)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);  // a node file may hold any bytes
+  return json.dump(2);  // a node file may hold any bytes
 }
 
 }  // namespace lacquer

@@ -61,7 +61,7 @@ public:
     eval::Point point;
     Vec3 environment{};
     if (!json.is_object()) return report_.wrongType(path, "the point", json, "an object");
-    for (const auto& [key, value] : json.get_ref<const Json::object_t&>()) {
+    for (const auto& [key, value] : json.items()) {
       const Path here(path, key);
       if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys)) continue;
       const std::string_view close = closest(key, kKeys);
@@ -206,7 +206,7 @@ void readUniforms(const Json& root, json::Report& report, EvalPoints& to) {
   const Path top;
   const Path path(top, "uniforms");
   if (!uniforms->is_object()) return report.wrongType(path, "uniforms", *uniforms, "an object");
-  for (const auto& [name, value] : uniforms->get_ref<const Json::object_t&>()) {
+  for (const auto& [name, value] : uniforms->items()) {
     const Json list = value.is_array() ? value : Json::array({value});
     for (const Json& x : list) {
       if (x.is_number() && std::isfinite(x.get<double>())) {

@@ -225,7 +225,7 @@ private:
                                        {"rms", m.difference.root_mean_square}});
       }
     }
-    return json.dump(2, ' ', false, json::Json::error_handler_t::replace) + "\n";
+    return json.dump(2) + "\n";
   }
 
   const Preview& preview_;

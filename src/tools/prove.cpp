@@ -75,7 +75,7 @@ Result<std::string> proveGraph(const graph::Graph& graph, const ir::Module& modu
               {"operations", std::move(operations)},
               {"outputs", std::move(outputs)},
               {"contracts", claimsJson(*claims)}}
-      .dump(2, ' ', false, Json::error_handler_t::replace);
+      .dump(2);
 }
 
 std::string proveNodesJson(const Options& options, Messages& messages, Precision precision) {
@@ -97,8 +97,7 @@ std::string proveNodesJson(const Options& options, Messages& messages, Precision
     row["calls"] = claimsJson(proof.calls);
     nodes.push_back(std::move(row));
   }
-  return Json{{"nodes", std::move(nodes)}}.dump(
-      2, ' ', false, Json::error_handler_t::replace);  // a node file may hold any bytes
+  return Json{{"nodes", std::move(nodes)}}.dump(2);  // a node file may hold any bytes
 }
 
 }  // namespace lacquer

@@ -80,7 +80,7 @@ public:
                          {"mediump", plan_.half},
                          {"subjects", subjects},
                          {"faults", faults}};
-    return answer.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return answer.dump(2) + "\n";
   }
 
 private:

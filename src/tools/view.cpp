@@ -37,7 +37,7 @@ std::string toBase64(std::string_view bytes) {
 /// JSON for an HTML script element: no name in it ends the element.
 std::string scriptText(const json::Json& json) {
   std::string text;
-  for (const char c : json.dump(-1, ' ', false, json::Json::error_handler_t::replace)) {
+  for (const char c : json.dump()) {
     if (c == '<')
       text += "\\u003c";
     else

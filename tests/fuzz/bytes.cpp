@@ -14,7 +14,8 @@ namespace lacquer::fuzz {
 
 namespace {
 
-constexpr uint64_t kMostPixels = uint64_t{1} << 20;
+/// Few, since an image of as many takes a hundredth of a second.
+constexpr uint64_t kMostPixels = uint64_t{1} << 16;
 
 bool isUnit(const std::array<double, 3>& a) {
   return std::abs(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) - 1) < 1e-9;
