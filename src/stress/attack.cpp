@@ -113,9 +113,24 @@ std::vector<double> sides(const Subject& subject, const Crossing& c) {
   return samples;
 }
 
+/// Whether all directions of these samples have a length: between opposite ones lies none.
+bool directed(const Subject& subject, std::span<const double> samples) {
+  constexpr double kShort =
+      1e-9;  // far above what the halvings leave of the way, far below any that is drawn
+  for (size_t first = 0; first < samples.size(); first += subject.space.width()) {
+    for (const Variable& variable : subject.space.variables()) {
+      if (variable.nature != Nature::Direction) continue;
+      const double* x = samples.data() + first + variable.first;
+      if (std::hypot(x[0], x[1], x[2]) < kShort) return false;
+    }
+  }
+  return true;
+}
+
 /// Goes on between the two sides that were found: the way's parts are the finest near its own ends.
 void recentre(const Subject& subject, Crossing& c) {
   const std::vector<double> found = sides(subject, c);
+  if (!directed(subject, found)) return;
   const auto middle = found.begin() + static_cast<ptrdiff_t>(found.size() / 2);
   c.a.assign(found.begin(), middle);
   c.b.assign(middle, found.end());
@@ -194,6 +209,7 @@ void probe(const Subject& subject, std::span<const double> samples, size_t count
   if (crossings.empty()) return;
   bisect(subject, crossings);
   std::vector<double> both;
+  std::erase_if(crossings, [&](const Crossing& c) { return !directed(subject, sides(subject, c)); });
   for (const Crossing& c : crossings) {
     const std::vector<double> own = sides(subject, c);
     both.insert(both.end(), own.begin(), own.end());
