@@ -320,7 +320,8 @@ void Dag::inherit(ValueId id, ValueId from) {
 void Dag::assume(ValueId id, Interval range) {
   // What is said of a splat holds for its Float, which operations on splats are made of.
   const Value& value = values_[id];
-  if (value.op == Op::Construct && value.count == 1 && !isConstant(value.args[0])) assume(value.args[0], range);
+  if (value.op == Op::Construct && value.count == 1 && !isConstant(value.args[0]))
+    assume(value.args[0], range);
   if (fact_of_[id] == 0) {
     facts_.push_back(range);
     fact_of_[id] = static_cast<uint32_t>(facts_.size());
