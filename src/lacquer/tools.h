@@ -84,6 +84,9 @@ struct Stress {
   uint64_t total = 0;    ///< instead, inputs for all of them together, at most 2^40; 0 for `samples` of each
   uint64_t seed = 1;     ///< another one draws other inputs
   bool mediump = false;  ///< every operation rounded to half precision
+  /// What is looked at: the CPU's floats, or a Vulkan device's beside them; not Double. Half precision and
+  /// JSON cases of jumps are the CPU's.
+  Engine engine = Engine::Float;
 };
 /// Attacks nodes (names; "nodes" for every one, as when there are no subjects), the materials of .gltf and
 /// .glb files, and .json cases: what was found, as JSON; empty on an error. Uses threads.

@@ -45,6 +45,8 @@ struct Texture {
   std::shared_ptr<const std::vector<Texel>> texels;  ///< row by row from the top
   Wrap s = Wrap::Repeat, t = Wrap::Repeat;
   bool nearest = false;  ///< else bilinear
+  /// A plane of one texel, which each point has for itself: `texels` holds one for each.
+  bool per_point = false;
 };
 
 /// One input of the fragment stage, 1 to 4 floats for each point.
