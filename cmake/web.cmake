@@ -31,8 +31,12 @@ foreach(name fmt::fmt tl::expected nlohmann_json::nlohmann_json SPIRV-Headers::S
   target_link_libraries(${name} INTERFACE web_libraries)
 endforeach()
 
-add_compile_options(-fwasm-exceptions)
-add_link_options(-fwasm-exceptions)
+# The module is linked whole, so nothing in it needs a table of addresses. What the flags name, every engine has that has
+# WebAssembly's exceptions.
+set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
+set(web_features -fwasm-exceptions -mbulk-memory -msign-ext -mnontrapping-fptoint)
+add_compile_options(${web_features})
+add_link_options(${web_features})
 
 # lacquer_module(): lacquer.wasm, which exports the functions of lacquer_c.h and memory, and needs no script of
 # emscripten's: web/src/module.ts gives it the few functions that it imports.
