@@ -365,9 +365,9 @@ export class Viewport {
 
   // ---- single colours
 
-  /** What a look's shader gives for a point seen from +z, under one light or none, in a constant environment or none: the
-   * linear colour as `lacquer eval` has it. */
-  probe(look: Look, at: { n: Vec3; t: number[]; l: Vec3; light: Vec3; env: Vec3; uv: number[] }): number[] {
+  /** What a look's shader gives for a point seen from +z under one light, in a constant environment or one of that name:
+   * the linear colour as `lacquer eval` has it. */
+  probe(look: Look, at: { n: Vec3; t: number[]; l: Vec3; light: Vec3; env?: Vec3; uv: number[] }, around = ''): number[] {
     const { gl } = this;
     const corners = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
     const four = (x: number[]) => [...x, ...x, ...x, ...x];
@@ -381,7 +381,7 @@ export class Viewport {
     gl.viewport(0, 0, 1, 1);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
-    const environment = constantEnvironment(at.env);
+    const environment = around === '' ? constantEnvironment(at.env ?? [0, 0, 0]) : environmentOf(around);
     const maps = this.mapsOf(environment);
     const flat = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.01, 0, 0, 0, 0, 1]);
     this.frame([0, 0, 1], flat, environment, [directional(at.l, at.light)]);
@@ -391,8 +391,7 @@ export class Viewport {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.deleteFramebuffer(frame);
     gl.deleteTexture(texture);
-    gl.deleteTexture(maps.specular);
-    gl.deleteTexture(maps.irradiance);
+    if (around === '') for (const map of [maps.specular, maps.irradiance]) gl.deleteTexture(map);
     gl.deleteVertexArray(mesh.arrays);
     this.redraw();
     return [...rgba];

@@ -15,18 +15,13 @@ const data = await (await fetch(new URL(gltf.buffers[0].uri, url))).arrayBuffer(
 const lacquer = await load();
 const scene = lacquer.scene(bytes, 'file.gltf');
 const kOptions = { targets: ['wgsl'], ibl: false, lights: { directional: 1 } };
-const kFormats = { 5121: 'unorm8', 5123: 'unorm16', 5126: 'float32' };
+const kFormats = { 5121: { name: 'unorm8', bytes: 1 }, 5123: { name: 'unorm16', bytes: 2 }, 5126: { name: 'float32', bytes: 4 } };
 const kIndices = { 5121: Uint8Array, 5123: Uint16Array, 5125: Uint32Array };
 const kIdentity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+const kView = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.1, 0, 0, 0, 0.5, 1]; // seen from +z, [-1, 1] in x and y
 const kValues = {
-  view_projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.1, 0, 0, 0, 0.5, 1], // seen from +z, [-1, 1] in x and y
-  camera_position: [0, 0, 5],
-  position: [0.4, 0.5, 0.77], // of a directional light: to it
-  radiance: [3, 3, 3],
-  direction: [-0.4, -0.5, -0.77],
-  spot_offset: [1],
-  model: kIdentity,
-  normal_matrix: kIdentity,
+  view_projection: kView, camera_position: [0, 0, 5], model: kIdentity, normal_matrix: kIdentity,
+  position: [0.4, 0.5, 0.77], direction: [-0.4, -0.5, -0.77], radiance: [3, 3, 3], spot_offset: [1], // a directional light
 };
 
 function buffer(bytes, usage) {
@@ -47,7 +42,8 @@ async function texture(of, srgb) {
   const blob = uri ? await (await fetch(new URL(uri, url))).blob() : new Blob([viewed({ bufferView })], { type: mimeType });
   const image = await createImageBitmap(blob, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
   const size = [image.width, image.height];
-  const made = device.createTexture({ size, format: srgb ? 'rgba8unorm-srgb' : 'rgba8unorm', usage: 0x16 });
+  const usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST | GPUTextureUsage.RENDER_ATTACHMENT;
+  const made = device.createTexture({ size, format: srgb ? 'rgba8unorm-srgb' : 'rgba8unorm', usage });
   device.queue.copyExternalImageToTexture({ source: image }, { texture: made }, size);
   return made.createView();
 }
@@ -58,18 +54,17 @@ async function prepare(primitive) {
   const graph = scene.graph(primitive.material, kOptions, attributes);
   const shader = graph.generate(kOptions);
   const { inputs, uniforms, webgpu } = shader.interface;
+  const slots = graph.toJson().textures ?? {};
   const accessors = inputs.map(({ name }) => gltf.accessors[primitive.attributes[name]]);
   const module = (stage) => device.createShaderModule({ code: shader.text('wgsl', stage) });
-  const slots = graph.toJson().textures ?? {};
-  const layouts = [[], [], []];
-  const entries = [[], [], []];
+  const [layouts, entries] = [[[], [], []], [[], [], []]];
   for (const { name, group, visibility, ...entry } of webgpu.bindings) {
     const stages = visibility.reduce((bits, stage) => bits | GPUShaderStage[stage.toUpperCase()], 0);
     layouts[group].push({ ...entry, visibility: stages });
     entries[group].push({ binding: entry.binding, resource: await resource(name, entry) });
   }
   async function resource(name, entry) {
-    if (entry.sampler) return device.createSampler({ magFilter: 'linear', minFilter: 'linear', addressModeU: 'repeat', addressModeV: 'repeat' });
+    if (entry.sampler) return device.createSampler({ magFilter: 'linear', addressModeU: 'repeat', addressModeV: 'repeat' });
     if (entry.texture) return texture(slots[name].texture, slots[name].srgb);
     const { role, size, fields } = uniforms.find(({ block }) => block === name);
     const block = role === 'material' ? shader.pack() : new Uint8Array(size);
@@ -81,9 +76,9 @@ async function prepare(primitive) {
     layout: device.createPipelineLayout({ bindGroupLayouts: groups }),
     vertex: { module: module('vertex'), buffers: inputs.map(({ location }, i) => {
       const { componentType, type, bufferView } = accessors[i];
-      const size = Number(type.slice(3));
-      const arrayStride = gltf.bufferViews[bufferView].byteStride ?? size * (componentType === 5126 ? 4 : componentType === 5123 ? 2 : 1);
-      return { arrayStride, attributes: [{ shaderLocation: location, offset: 0, format: `${kFormats[componentType]}x${size}` }] };
+      const { name, bytes } = kFormats[componentType];
+      const arrayStride = gltf.bufferViews[bufferView].byteStride ?? bytes * type.slice(3);
+      return { arrayStride, attributes: [{ shaderLocation: location, offset: 0, format: `${name}x${type.slice(3)}` }] };
     }) },
     fragment: { module: module('fragment'), targets: [{ format }] },
     depthStencil: { format: 'depth24plus', depthWriteEnabled: true, depthCompare: 'less' },
@@ -91,9 +86,11 @@ async function prepare(primitive) {
   return { pipeline, binds: groups.map((layout, i) => device.createBindGroup({ layout, entries: entries[i] })), accessors };
 }
 
-const prepared = await Promise.all(gltf.meshes.flatMap(({ primitives }) => primitives.map(async (of) => ({ of, ...(await prepare(of)) }))));
+const primitives = gltf.meshes.flatMap((mesh) => mesh.primitives);
+const prepared = await Promise.all(primitives.map(async (of) => ({ of, ...(await prepare(of)) })));
 const encoder = device.createCommandEncoder();
-const depth = device.createTexture({ size: [canvas.width, canvas.height], format: 'depth24plus', usage: GPUTextureUsage.RENDER_ATTACHMENT });
+const size = [canvas.width, canvas.height];
+const depth = device.createTexture({ size, format: 'depth24plus', usage: GPUTextureUsage.RENDER_ATTACHMENT });
 const pass = encoder.beginRenderPass({
   colorAttachments: [{ view: context.getCurrentTexture().createView(), clearValue: [0.1, 0.1, 0.12, 1], loadOp: 'clear', storeOp: 'store' }],
   depthStencilAttachment: { view: depth.createView(), depthClearValue: 1, depthLoadOp: 'clear', depthStoreOp: 'discard' },
@@ -103,11 +100,10 @@ for (const { of, pipeline, binds, accessors } of prepared) {
   binds.forEach((bind, i) => pass.setBindGroup(i, bind));
   accessors.forEach((accessor, i) => pass.setVertexBuffer(i, buffer(viewed(accessor), GPUBufferUsage.VERTEX)));
   const indices = gltf.accessors[of.indices];
-  if (!indices) { pass.draw(gltf.accessors[of.attributes.POSITION].count); continue; }
-  const bytes = viewed(indices);
-  const list = new kIndices[indices.componentType](bytes.buffer, bytes.byteOffset, indices.count);
+  const list = indices ? new kIndices[indices.componentType](data, viewed(indices).byteOffset, indices.count)
+    : Array.from({ length: gltf.accessors[of.attributes.POSITION].count }, (_, i) => i);
   pass.setIndexBuffer(buffer(Uint32Array.from(list), GPUBufferUsage.INDEX), 'uint32');
-  pass.drawIndexed(indices.count);
+  pass.drawIndexed(list.length);
 }
 pass.end();
 device.queue.submit([encoder.finish()]);
