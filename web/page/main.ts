@@ -38,6 +38,7 @@ class Page {
   private messages: Message[] = [];
   private ownLights: Light[] = [];
   private otherId = '';
+  private othersOf = ''; // the structure whose words `compare` offers
   private painter: GpuPainter | null = null;
   /** Milliseconds that the last compilation took, from the edited file to the block. */
   took = 0;
@@ -74,6 +75,7 @@ class Page {
     byId<HTMLSelectElement>('shape').value = viewport.useBall ? 'ball' : 'own';
     byId<HTMLSelectElement>('shape').disabled = of.drawables.length === 0;
     viewport.setScene(of.drawables);
+    this.othersOf = '';
     this.ownLights = fileLights(of.file);
     const lamps = byId<HTMLSelectElement>('lamps');
     lamps.options[1].disabled = this.ownLights.length === 0;
@@ -144,7 +146,9 @@ class Page {
       const pointers = new Set(Object.values(made.graph.parameters).map(({ pointer }) => pointer ?? ''));
       this.properties.mark({ pointers });
       byId('id').textContent = made.look.id;
-      fillOthers(byId<HTMLSelectElement>('compare'), this.of, made.graph, this.nodes);
+      const key = `${this.of.material} ${made.look.id} ${this.of.names.length}`;
+      if (key !== this.othersOf) fillOthers(byId<HTMLSelectElement>('compare'), this.of, made.graph, this.nodes);
+      this.othersOf = key;
     }
     byId('took').textContent = `${this.took.toFixed(1)} ms`;
     this.compare();
