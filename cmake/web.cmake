@@ -1,10 +1,11 @@
 # The library for WebAssembly, by Debian's emscripten: what there is in place of cmake/dependencies.cmake, and what is
 # left out. docs/web.md says what the module is.
 
-# Native only: compilers and validators, GPUs, runs over folders with their cache, attacks. Callers of the first two are
-# linked with web/absent/.
-set(LACQUER_ABSENT check vulkan cost stress cache run)
-set(LACQUER_ABSENT_FILES tools/cost.cpp tools/gpu.cpp tools/stress.cpp tools/view.cpp)
+# Native only: compilers and validators, GPUs, runs over folders with their cache, attacks, the search for levels. Callers
+# of the first two are linked with web/absent/.
+set(LACQUER_ABSENT check vulkan cost stress cache run lod)
+set(LACQUER_ABSENT_FILES tools/cost.cpp tools/gpu.cpp tools/lod.cpp tools/lod_material.cpp tools/lod_report.cpp
+    tools/stress.cpp tools/view.cpp)
 
 # The header-only parts of the same libraries. They are linked into a folder of their own, because the folder that they
 # lie in has the native system's headers as well.

@@ -5,8 +5,9 @@ import type { Drawable } from './gltf';
 import { multiply } from './math';
 import { board, frameBlocks, kBlocks, kBoardSize, kLocations, neutral, type Look, type Viewport } from './viewport';
 
-declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST', number>;
-declare const GPUTextureUsage: Record<'TEXTURE_BINDING' | 'RENDER_ATTACHMENT' | 'COPY_DST', number>;
+declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST' | 'MAP_READ', number>;
+declare const GPUMapMode: Record<'READ', number>;
+declare const GPUTextureUsage: Record<'TEXTURE_BINDING' | 'RENDER_ATTACHMENT' | 'COPY_DST' | 'COPY_SRC', number>;
 declare const GPUShaderStage: Record<'VERTEX' | 'FRAGMENT', number>;
 
 interface Binding {
@@ -72,11 +73,6 @@ export class GpuPainter {
   private show: GPURenderPipeline;
   private shrink = new Map<GPUTextureFormat, GPURenderPipeline>();
   private shown: GPUBuffer;
-  /** Settles when all that was painted is on the canvas. */
-  get done(): Promise<unknown> {
-    return this.device.queue.onSubmittedWorkDone();
-  }
-
   private constructor(readonly canvas: HTMLCanvasElement, readonly device: GPUDevice, dfg: Float32Array, sheen: Float32Array) {
     this.context = canvas.getContext('webgpu') as unknown as GPUCanvasContext;
     this.format = navigator.gpu.getPreferredCanvasFormat();
@@ -125,7 +121,8 @@ export class GpuPainter {
     this.textures.clear();
   }
 
-  paint(view: Viewport, { width, height }: { width: number; height: number }): void {
+  /** On the canvas, or on a texture of the canvas's format. */
+  paint(view: Viewport, { width, height }: { width: number; height: number }, onto?: GPUTexture): void {
     const target = this.targetOf(width, height);
     const environment = environmentOf(view.environment);
     const projection = multiply(kDepths, view.viewProjection(width / height));
@@ -147,8 +144,29 @@ export class GpuPainter {
       this.drawAll(pass, view, environment, view.other.look);
     }
     pass.end();
-    this.present(encoder, view, target, cut);
+    this.present(encoder, view, target, cut, onto ?? this.context.getCurrentTexture());
     this.device.queue.submit([encoder.finish()]);
+  }
+
+  /** What paint() shows, rows from the top, RGBA. */
+  async pixels(view: Viewport, width: number, height: number): Promise<Uint8Array> {
+    const { device } = this;
+    const onto = device.createTexture({ size: [width, height], format: this.format, usage: GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC });
+    this.paint(view, { width, height }, onto);
+    const bytesPerRow = Math.ceil(width / 64) * 256;
+    const buffer = device.createBuffer({ size: bytesPerRow * height, usage: GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ });
+    const encoder = device.createCommandEncoder();
+    encoder.copyTextureToBuffer({ texture: onto }, { buffer, bytesPerRow }, [width, height]);
+    device.queue.submit([encoder.finish()]);
+    await buffer.mapAsync(GPUMapMode.READ);
+    const rows = new Uint8Array(buffer.getMappedRange());
+    const order = this.format === 'bgra8unorm' ? [2, 1, 0, 3] : [0, 1, 2, 3];
+    const pixels = Uint8Array.from({ length: 4 * width * height }, (_, i) => {
+      const [pixel, channel] = [i >> 2, i & 3];
+      return rows[bytesPerRow * Math.floor(pixel / width) + 4 * (pixel % width) + order[channel]];
+    });
+    for (const each of [buffer, onto]) each.destroy();
+    return pixels;
   }
 
   // ---- drawing
@@ -218,10 +236,10 @@ export class GpuPainter {
     return this.tables[of] ?? this.imageOf(view, key, slot?.srgb === true) ?? this.plain(neutral(of));
   }
 
-  private present(encoder: GPUCommandEncoder, view: Viewport, target: Target, cut: number): void {
+  private present(encoder: GPUCommandEncoder, view: Viewport, target: Target, cut: number, onto: GPUTexture): void {
     this.device.queue.writeBuffer(this.shown, 0, new Float32Array([...view.back(), view.exposure, view.other ? cut : -10, 0, 0, 0]));
     const pass = encoder.beginRenderPass({
-      colorAttachments: [{ view: this.context.getCurrentTexture().createView(), loadOp: 'clear', storeOp: 'store' }],
+      colorAttachments: [{ view: onto.createView(), loadOp: 'clear', storeOp: 'store' }],
     });
     pass.setPipeline(this.show);
     const entries = [{ binding: 0, resource: { buffer: this.shown } }, { binding: 1, resource: target.resolved.createView() }];

@@ -239,6 +239,18 @@ export class Viewport {
     this.present(target, cut, target);
   }
 
+  /** What draw() shows with as many pixels as there are now, rows from the top, RGBA. */
+  pixels(): Uint8Array {
+    const { gl } = this;
+    this.draw();
+    const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+    const rows = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
+    const pixels = new Uint8Array(rows.length);
+    for (let y = 0; y < height; ++y) pixels.set(rows.subarray(4 * width * y, 4 * width * (y + 1)), 4 * width * (height - 1 - y));
+    return pixels;
+  }
+
   private drawDifference(target: Target, environment: Environment, look: Look): void {
     const { gl } = this;
     this.drawAll(environment, null);
@@ -549,6 +561,7 @@ export class Viewport {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, kBoardSize, kBoardSize, 0, gl.RGBA, gl.UNSIGNED_BYTE, board());
     gl.generateMipmap(gl.TEXTURE_2D);
     for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
     return texture;
   }
 
