@@ -49,6 +49,8 @@ interface Target {
 interface Maps {
   specular: WebGLTexture;
   irradiance: WebGLTexture;
+  /** In place of the board. */
+  behind?: WebGLTexture;
 }
 
 /** What stands for an absent image. */
@@ -318,7 +320,7 @@ export class Viewport {
     if (name === 'environment_specular' || name === 'environment_charlie') return maps.specular;
     if (name === 'environment_dfg') return this.tables.dfg;
     if (name === 'environment_sheen') return this.tables.sheen;
-    if (name === 'scene_behind') return this.behind;
+    if (name === 'scene_behind') return maps.behind ?? this.behind;
     const slot = look.slots.get(name);
     return (slot && this.textures.get(`${slot.texture}:${slot.srgb}`)) ?? this.colorTexture(neutral(name));
   }
@@ -394,7 +396,7 @@ export class Viewport {
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
     const environment = around === '' ? constantEnvironment(at.env ?? [0, 0, 0]) : environmentOf(around);
-    const maps = this.mapsOf(environment);
+    const maps = { ...this.mapsOf(environment), behind: this.grey() };
     const flat = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.01, 0, 0, 0, 0, 1]);
     this.frame([0, 0, 1], flat, environment, [directional(at.l, at.light)]);
     this.drawMesh(mesh, { ...look, blended: false, doubleSided: true }, maps);
@@ -403,6 +405,7 @@ export class Viewport {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.deleteFramebuffer(frame);
     gl.deleteTexture(texture);
+    gl.deleteTexture(maps.behind);
     if (around === '') for (const map of [maps.specular, maps.irradiance]) gl.deleteTexture(map);
     gl.deleteVertexArray(mesh.arrays);
     this.redraw();
@@ -550,6 +553,15 @@ export class Viewport {
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, sampler.wrapT ?? gl.REPEAT);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, sampler.magFilter ?? gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    return texture;
+  }
+
+  /** What `lacquer eval` sees through what transmits. */
+  private grey(): WebGLTexture {
+    const { gl } = this;
+    const texture = gl.createTexture()!;
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, 1, 1, 0, gl.RGBA, gl.FLOAT, new Float32Array([0.5, 0.5, 0.5, 1]));
     return texture;
   }
 
