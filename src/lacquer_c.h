@@ -183,8 +183,9 @@ enum { LACQUER_VERTEX = 0, LACQUER_FRAGMENT = 1 };
 LACQUER_C void lacquer_shader_free(lacquer_shader* shader);
 LACQUER_C const char* lacquer_shader_id(const lacquer_shader* shader);
 LACQUER_C int lacquer_shader_has_vertex_stage(const lacquer_shader* shader);
-/* `target` is one of the command line's: "glsl", "glsl-gl", "essl", "hlsl"; "cpp" has its header as the
- * LACQUER_FRAGMENT. Empty for a target that was not asked for, that has no text or that does not exist. */
+/* `target` is one of the command line's: "glsl", "glsl-gl", "essl", "hlsl", "wgsl", "msl"; "cpp" has its
+ * header as the LACQUER_FRAGMENT, "js" its module, and the types of that as the LACQUER_VERTEX. Empty for a
+ * target that was not asked for, that has no text or that does not exist. */
 LACQUER_C const char* lacquer_shader_text(const lacquer_shader* shader, const char* target, int stage,
                                           size_t* size);
 /* Words in the machine's byte order, `count` of them; NULL and 0 when "spirv" was not asked for. */

@@ -68,16 +68,6 @@ struct Lod {
 std::string makeLevels(const Lod& lod, const Strings& files, const Strings& materials, const Options& options,
                        Messages& messages, const Progress& progress = {});
 
-/// A page to look at files with (docs/web.md).
-struct View {
-  std::string output;  ///< the HTML file to write
-  std::string page;    ///< the page without files, which `./dev web` makes
-};
-/// Puts the files, with the buffers and images that they name, into the page, which is then one file that
-/// needs no other. What a file names and is not there is left out, with a warning. False on an error:
-/// "no-page", "file-unreadable" and the like.
-bool writeView(const View& view, const Strings& files, const Options& options, Messages& messages);
-
 /// How an attack is made (docs/stress.md).
 struct Stress {
   uint64_t samples = 100000;  ///< inputs for each node and material, from 1 to 2^40
@@ -110,6 +100,17 @@ struct ShaderCost {
 /// `paths`: SPIR-V files (X.frag.spv with X.vert.spv beside it), folders of such, or folders that generate()
 /// wrote. What cannot be read is left out, with a message. Starts processes.
 std::vector<ShaderCost> measureCost(const Strings& paths, bool disassembly, Messages& messages);
+
+/// A page to look at files with (docs/web.md).
+struct View {
+  std::string output;             ///< the HTML file to write
+  std::string page;               ///< the page without files, which `./dev web` makes
+  std::vector<ShaderCost> costs;  ///< what the page shows for the shaders of these ids; may be empty
+};
+/// Puts the files, with the buffers and images that they name, into the page, which is then one file that
+/// needs no other. What a file names and is not there is left out, with a warning. False on an error:
+/// "no-page", "file-unreadable" and the like.
+bool writeView(const View& view, const Strings& files, const Options& options, Messages& messages);
 
 /// The table behind environment_dfg (docs/bindings.md): `size` rows of roughness with `size` columns of N.V
 /// at texel centres, scale and bias of F0 in each, all in [0, 1]. `size` is from 2 to 1024; else empty, and

@@ -29,7 +29,7 @@ export class LacquerError extends Error {
 }
 
 /** Names of targets; a library may know more of them. */
-export type Target = 'glsl' | 'glsl-gl' | 'essl' | 'hlsl' | 'spirv' | 'cpp' | (string & {});
+export type Target = 'glsl' | 'glsl-gl' | 'essl' | 'hlsl' | 'wgsl' | 'spirv' | 'cpp' | 'js' | (string & {});
 export type Stage = 'vertex' | 'fragment';
 
 /** How shaders are made; what is absent is as on the command line. */
@@ -134,5 +134,7 @@ export interface Interface {
   parameters: { name: string; type: string; fields: string[] }[];
   textures: { name: string; type: string; role: string; color_space?: string }[];
   inputs?: { name: string; location: number; type: string }[];
+  /** Of the target "wgsl": what createBindGroupLayout wants (docs/bindings.md). */
+  webgpu?: { bindings: { name: string; group: number; binding: number; visibility: string[]; [kind: string]: unknown }[] };
   [key: string]: unknown;
 }
