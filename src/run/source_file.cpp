@@ -13,6 +13,7 @@
 #include "json/text.h"
 #include "run/manifest.h"
 #include "run/manifest_scene.h"
+#include "run/programs.h"
 #include "run/report_blob.h"
 #include "shader/language.h"
 #include "shader/module.h"
@@ -87,6 +88,7 @@ private:
   }
   std::shared_ptr<const MaterialTerms> terms() const;
   void writeUnfilled(const graph::Graph& graph);
+  void writeStandInAttributes(const Structure& structure, const gltf::VertexAttributes& attributes);
 
   const std::string& file_;
   const material::Material& material_;
@@ -128,8 +130,25 @@ void MaterialText::writeUnfilled(const graph::Graph& graph) {
   uses_.endArray();
 }
 
-void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
+/// Of a shader that materials share: what it reads of the vertices and this primitive does not have.
+void MaterialText::writeStandInAttributes(const Structure& structure,
+                                          const gltf::VertexAttributes& attributes) {
+  const std::vector<std::string> own = attributes.names();
+  uses_.key("stand_in_attributes").beginArray();
+  for (const std::string& name : structure.inputs) {
+    if (name != "POSITION" && std::find(own.begin(), own.end(), name) == own.end()) uses_.string(name);
+  }
+  uses_.endArray();
+}
+
+void MaterialText::use(graph::Graph& own, const passes::LightFacts& lights,
                        const gltf::VertexAttributes& attributes, const Diagnostics& said) {
+  const Programs::Member* shared =
+      setting_.programs == nullptr ? nullptr : setting_.programs->of(structureKey(own, lights, setting_));
+  graph::Graph merged;
+  if (shared != nullptr) merged = programs::instance(*shared->united, shared->place, own);
+  graph::Graph& graph = shared != nullptr ? merged : own;
+  const programs::Fill* fill = shared != nullptr ? &shared->united->fills[shared->place] : nullptr;
   const Structure& structure = structures_.of(graph, lights);
   met_.push_back(&structure);
   add(said);
@@ -145,7 +164,8 @@ void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
   uses_.beginObject().key("attributes");
   writeList(attributes.names(), uses_);
   uses_.key("shader").string(structure.shader);
-  writeBindings(structure, graph, material_, uses_);
+  writeBindings(structure, graph, material_, fill, uses_);
+  if (shared != nullptr) writeStandInAttributes(structure, attributes);
   uses_.key("absent_parameters").raw(structure.absent);
   writeUnfilled(graph);
   uses_.endObject();
@@ -360,6 +380,7 @@ Key fileKey(const std::string& path, const std::string& bytes, const Setting& se
   KeyBuilder key;
   key.text("file").key(setting.base).text(path).text(relativeTo(setting.folder, path)).key(keyOf(bytes));
   addOptions(setting.options, {Decides::Graph, Decides::Module}, key);
+  if (setting.programs != nullptr) key.key(setting.programs->digest());
   return key.finish();
 }
 
