@@ -30,30 +30,31 @@ ModelError fitModel(const std::vector<double>& model, const std::vector<double>&
 }
 
 std::vector<Point> pointsOf(const std::vector<Item>& items, const Merging& merging,
-                            const std::vector<double>& costs) {
+                            const std::vector<Division>& divisions) {
   double weight = 0;
   for (const Item& item : items) weight += item.weight;
   const auto name = [&](uint32_t group) {
     return group < items.size() ? items[group].name : fmt::format("merged-{}", group - items.size() + 1);
   };
-  std::vector<double> now(costs.begin(), costs.begin() + static_cast<ptrdiff_t>(items.size()));
   std::vector<Point> points;
-  for (size_t step = 0; step <= merging.steps.size(); ++step) {
+  for (size_t step = 0; step < divisions.size(); ++step) {
+    const Division& division = divisions[step];
     Point point;
-    point.programs = items.size() - step;
+    point.programs = items.size() - step;  // it may take fewer
     if (step > 0) {
-      const auto made = static_cast<uint32_t>(items.size() + step - 1);
-      for (const uint32_t item : merging.members(made, items.size())) now[item] = costs[made];
-      point.made = name(made);
+      point.made = name(static_cast<uint32_t>(items.size() + step - 1));
       point.first = name(merging.steps[step - 1].first);
       point.second = name(merging.steps[step - 1].second);
     }
-    for (size_t i = 0; i < items.size(); ++i) {
-      point.cost += weight > 0 ? items[i].weight / weight * now[i] : 0;
-      const double rise = costs[i] > 0 ? now[i] / costs[i] - 1 : 0;
-      if (rise <= point.largest_rise) continue;
-      point.largest_rise = rise;
-      point.worst = items[i].name;
+    point.cost = weight > 0 ? weightedCost(items, division) / weight : 0;
+    for (size_t g = 0; g < division.groups.size(); ++g) {
+      for (const uint32_t item : division.groups[g]) {
+        const double own = items[item].program.cost;
+        const double rise = own > 0 ? division.costs[g] / own - 1 : 0;
+        if (rise <= point.largest_rise) continue;
+        point.largest_rise = rise;
+        point.worst = items[item].name;
+      }
     }
     points.push_back(std::move(point));
   }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "programs/merging.h"
+#include "programs/division.h"
 
 namespace lacquer::programs {
 
@@ -35,9 +35,9 @@ struct Curve {
   std::vector<Point> points;
 };
 
-/// The points of a merging. `costs`: of each numbered group.
+/// The points of a merging, of which each step has a division, the first that without a merge.
 std::vector<Point> pointsOf(const std::vector<Item>& items, const Merging& merging,
-                            const std::vector<double>& costs);
+                            const std::vector<Division>& divisions);
 
 std::string toJson(const Curve& curve);
 std::string toMarkdown(const Curve& curve);

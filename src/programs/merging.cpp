@@ -189,13 +189,4 @@ std::vector<uint32_t> Merging::left(size_t programs, size_t items) const {
   return groups;
 }
 
-double weightedCost(const std::vector<Item>& items, const std::vector<Places>& groups,
-                    const std::vector<double>& costs) {
-  double sum = 0;
-  for (size_t i = 0; i < groups.size(); ++i) {
-    for (const uint32_t item : groups[i]) sum += items[item].weight * costs[i];
-  }
-  return sum;
-}
-
 }  // namespace lacquer::programs

@@ -62,8 +62,4 @@ double estimate(const Program& a, const Program& b);
 /// result depends on the items and their order alone.
 Merging merge(const std::vector<Item>& items, size_t least, const Measure& measure);
 
-/// The cost over all items with these groups' programs, by weight.
-double weightedCost(const std::vector<Item>& items, const std::vector<Places>& groups,
-                    const std::vector<double>& costs);
-
 }  // namespace lacquer::programs

@@ -29,7 +29,8 @@ Share readShare(const Json& row, const Path& path, json::Report& report) {
       if (!value.is_string()) report.wrongType(here, "file", value, "a string");
       if (value.is_string()) share.file = value.get<std::string>();
     } else if (key == "material") {
-      const bool index = value.is_number_integer() && value >= -1 && value <= 1 << 30;
+      const bool index =
+          value.is_number_integer() && value.get<int64_t>() >= -1 && value.get<int64_t>() <= 1 << 30;
       if (!value.is_string() && !index) report.wrongType(here, "material", value, "a name or an index");
       if (value.is_string()) share.material = value.get<std::string>();
       if (index) share.material = value.get<int>();

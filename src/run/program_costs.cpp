@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <future>
-#include <numeric>
+#include <set>
 
 #include "cost/cost.h"
 #include "lod/estimate.h"
@@ -64,18 +64,36 @@ ProgramCosts::ProgramCosts(const Setting& setting, const std::vector<OwnProgram>
   by_driver_ = !no_driver_ && all.size() <= kDriverPrograms;
 }
 
-Result<programs::United> ProgramCosts::unite(const Places& group) const {
-  std::vector<const graph::Graph*> graphs;
+Lift ProgramCosts::liftOf(const Places& group) const {
+  Lift lift;
   for (const uint32_t item : group) {
-    for (const graph::Graph& graph : all_[item].graphs) graphs.push_back(&graph);
+    for (size_t i = 0; i < all_[item].graphs.size(); ++i)
+      addTo(lift, *all_[item].examples[i], all_[item].graphs[i], setting_);
   }
-  return programs::unite(graphs, setting_.library);
+  return lift;
 }
 
 Result<ir::Module> ProgramCosts::moduleOfGroup(const Places& group) const {
   const Structure& first = *all_[group[0]].structures[0];
   if (group.size() == 1) return moduleOf(first, setting_);
-  const Result<programs::United> united = unite(group);
+  const Lift lift = liftOf(group);
+  std::vector<graph::Graph> graphs;
+  std::set<Key> seen;
+  for (const uint32_t item : group) {
+    const OwnProgram& program = all_[item];
+    for (size_t i = 0; i < program.graphs.size(); ++i) {
+      const Example& example = *program.examples[i];
+      Diagnostics unsaid;
+      const Result<graph::Graph> own =
+          buildGraph(example.material, example.attributes, setting_.library, setting_.options, unsaid);
+      if (!own) return tl::make_unexpected(own.error());
+      graph::Graph more = lifted(example.material, example.attributes, *own, lift, setting_);
+      if (seen.insert(structureKey(more, first.lights, setting_)).second) graphs.push_back(std::move(more));
+    }
+  }
+  std::vector<const graph::Graph*> members;
+  for (const graph::Graph& graph : graphs) members.push_back(&graph);
+  const Result<programs::United> united = programs::unite(members, setting_.library);
   if (!united) return tl::make_unexpected(united.error());
   return toModule(united->graph, setting_.library, setting_.options, first.lights);
 }

@@ -6,6 +6,7 @@
 #include "programs/curve.h"
 #include "programs/merging.h"
 #include "programs/unite.h"
+#include "run/lift.h"
 #include "run/structure.h"
 
 namespace lacquer {
@@ -14,7 +15,8 @@ namespace lacquer {
 struct OwnProgram {
   std::string shader;
   std::vector<const Structure*> structures;
-  std::vector<graph::Graph> graphs;  ///< of the structures, in the order of their texts
+  std::vector<graph::Graph> graphs;      ///< of the structures, in the order of their texts
+  std::vector<const Example*> examples;  ///< a material of each
 };
 
 class ProgramCosts {
@@ -22,8 +24,8 @@ public:
   /// `all` must outlive it. With `by_model` no driver is asked even if there is one.
   ProgramCosts(const Setting& setting, const std::vector<OwnProgram>& all, bool by_model);
 
-  /// One graph for the structures of these programs.
-  Result<programs::United> unite(const programs::Places& group) const;
+  /// What the structures of these programs have together.
+  Lift liftOf(const programs::Places& group) const;
   /// Measures groups for the search: by the driver where there are few programs in all. Of groups of many
   /// structures, terms and choices are added up in place of a shader. Items alone come first. Uses threads.
   std::vector<std::optional<programs::Program>> measure(const std::vector<programs::Places>& groups);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "run/program_costs.h"
 
@@ -17,7 +18,8 @@ constexpr size_t kMostMeasured = 160;
 
 /// By shader. Everything is sorted by content, so that neither the order of the files nor that of the threads
 /// shows; keys would bring in the versions of the tools.
-std::vector<OwnProgram> ownPrograms(const std::vector<const Structure*>& structures, const Setting& setting) {
+std::vector<OwnProgram> ownPrograms(const std::vector<const Structure*>& structures, const Examples& examples,
+                                    const Setting& setting) {
   std::map<std::string, std::vector<const Structure*>> by_shader;
   for (const Structure* structure : structures) {
     if (!structure->shader.empty()) by_shader[structure->shader].push_back(structure);
@@ -26,10 +28,12 @@ std::vector<OwnProgram> ownPrograms(const std::vector<const Structure*>& structu
   for (auto& [shader, list] : by_shader) {
     std::sort(list.begin(), list.end(),
               [](const Structure* a, const Structure* b) { return a->graph < b->graph; });
-    OwnProgram one{shader, {}, {}};
+    OwnProgram one{shader, {}, {}, {}};
     for (const Structure* structure : list) {
       Result<graph::Graph> graph = graph::fromJson(structure->graph, shader, setting.limits);
-      if (!graph || hasError(graph::check(*graph, setting.library))) continue;
+      const Example* example = examples.of(structure->key);
+      if (!graph || hasError(graph::check(*graph, setting.library)) || example == nullptr) continue;
+      one.examples.push_back(example);
       one.structures.push_back(structure);
       one.graphs.push_back(std::move(*graph));
     }
@@ -67,23 +71,33 @@ std::vector<Item> itemsOf(const std::vector<OwnProgram>& all, const std::vector<
   return items;
 }
 
-/// The costs of the numbered groups, as the search had them.
-std::vector<double> costsOf(const std::vector<Item>& items, const programs::Merging& merging) {
-  std::vector<double> costs;
-  for (const Item& item : items) costs.push_back(item.program.cost);
-  for (const programs::Step& step : merging.steps) costs.push_back(step.cost);
-  return costs;
+/// Up to so many programs each point of the curve is made better by itself.
+constexpr size_t kImproved = 64;
+
+/// One for each step, the first without a merge.
+std::vector<programs::Division> divisionsOf(const std::vector<Item>& items, const programs::Merging& merging,
+                                            size_t wanted, bool all, const programs::Measure& measure) {
+  std::vector<programs::Division> divisions;
+  for (size_t step = 0; step <= merging.steps.size(); ++step) {
+    const size_t programs = items.size() - step;
+    if (!all && programs != wanted && step != merging.steps.size()) continue;
+    programs::Division division = divisionOf(items, merging, programs);
+    const bool better = programs == wanted || (!all && programs > wanted) || items.size() <= kImproved;
+    divisions.push_back(better ? improved(items, division, measure) : std::move(division));
+  }
+  return divisions;
 }
 
-/// How far the model is off, over groups spread evenly.
+/// How far the model is off, over programs spread evenly.
 programs::ModelError errorOf(const std::vector<Item>& items, const programs::Merging& merging,
-                             const std::vector<double>& costs, ProgramCosts& measure) {
-  const size_t step = (costs.size() + kMostMeasured - 1) / kMostMeasured;
+                             ProgramCosts& measure) {
+  const size_t count = items.size() + merging.steps.size();
+  const size_t step = (count + kMostMeasured - 1) / kMostMeasured;
   std::vector<Places> groups;
   std::vector<double> model;
-  for (size_t i = 0; i < costs.size(); i += step) {
+  for (size_t i = 0; i < count; i += step) {
     groups.push_back(merging.members(static_cast<uint32_t>(i), items.size()));
-    model.push_back(costs[i]);
+    model.push_back(i < items.size() ? items[i].program.cost : merging.steps[i - items.size()].cost);
   }
   const std::vector<std::optional<double>> said = measure.byDriver(groups);
   std::vector<double> compared;
@@ -98,52 +112,96 @@ programs::ModelError errorOf(const std::vector<Item>& items, const programs::Mer
 
 }  // namespace
 
-Programs::Programs(const std::vector<const Structure*>& structures, const std::vector<ProgramUse>& uses,
-                   size_t materials, const Setting& setting) {
+Programs::Programs(const std::vector<const Structure*>& structures, const Examples& examples,
+                   const std::vector<ProgramUse>& uses, size_t materials, const Setting& setting)
+    : setting_(setting) {
   const Options& options = setting.options;
-  const std::vector<OwnProgram> all = ownPrograms(structures, setting);
+  const std::vector<OwnProgram> all = ownPrograms(structures, examples, setting);
   ProgramCosts costs(setting, all, options.programs_model);
   const std::vector<Item> items = itemsOf(all, uses, costs);
   const bool report = !options.programs_report.empty();
   const size_t wanted = options.programs == 0 ? items.size() : options.programs;
-  const programs::Merging merging = programs::merge(
-      items, report ? 1 : wanted, [&](const std::vector<Places>& groups) { return costs.measure(groups); });
-  KeyBuilder digest;
-  const std::vector<uint32_t> left = merging.left(wanted, items.size());
-  for (const uint32_t group : left) {
-    const Places places = merging.members(group, items.size());
+  const programs::Measure measure = [&](const std::vector<Places>& groups) { return costs.measure(groups); };
+  const programs::Merging merging = programs::merge(items, report ? 1 : wanted, measure);
+  const std::vector<programs::Division> divisions = divisionsOf(items, merging, wanted, report, measure);
+  const auto made = std::find_if(divisions.begin(), divisions.end(),
+                                 [&](const programs::Division& one) { return one.groups.size() <= wanted; });
+  const programs::Division& division = made == divisions.end() ? divisions.back() : *made;
+  for (const Places& places : division.groups) {
     if (places.size() == 1) continue;
-    Result<programs::United> united = costs.unite(places);
-    if (!united) continue;  // it was made before
-    const auto shared = std::make_shared<const programs::United>(std::move(*united));
-    size_t place = 0;
+    const auto group = std::make_shared<Group>();
+    group->lift = costs.liftOf(places);
     for (const uint32_t item : places) {
-      for (const Structure* structure : all[item].structures) {
-        members_[structure->key] = {shared, place++};
-        digest.key(structure->key);
-      }
+      for (const Structure* structure : all[item].structures) groups_[structure->key] = group;
     }
-    digest.text(graph::toJson(shared->graph));
   }
-  digest_ = digest.finish();
   curve_.materials = materials;
   curve_.structures = items.size();
-  curve_.made = left.size();
+  curve_.made = division.groups.size();
   curve_.measured = merging.measured;
   if (!report) return;
-  std::vector<double> by_group = costsOf(items, merging);
+  curve_.points = programs::pointsOf(items, merging, divisions);
   if (costs.measured()) {
     curve_.driver = costs.driver();
-  } else {
-    curve_.error = errorOf(items, merging, by_group, costs);
-    for (double& cost : by_group) cost *= curve_.error.scale;
+    return;
   }
-  curve_.points = programs::pointsOf(items, merging, by_group);
+  curve_.error = errorOf(items, merging, costs);
+  for (programs::Point& point : curve_.points) point.cost *= curve_.error.scale;
 }
 
-const Programs::Member* Programs::of(const Key& structure) const {
-  const auto it = members_.find(structure);
-  return it == members_.end() ? nullptr : &it->second;
+/// Of the graphs of one structure the one with the smallest text: others may be looked at first next time.
+void Programs::look(Group& group, const Key& key, const graph::Graph& graph) const {
+  graph::Graph plain = graph;
+  plain.name.clear();
+  for (ir::Parameter& p : plain.parameters) p.pointer.clear();
+  for (ir::TextureSlot& slot : plain.textures) {
+    slot.texture = -1;
+    slot.pointer.clear();
+  }
+  const std::lock_guard lock(group.mutex);
+  const auto [it, fresh] = group.graphs.try_emplace(key);
+  if (fresh || graph::toJson(plain) < graph::toJson(it->second)) it->second = std::move(plain);
+}
+
+const programs::Fill* Programs::bring(graph::Graph& graph, const material::Material& material,
+                                      const gltf::VertexAttributes& attributes,
+                                      const passes::LightFacts& lights) const {
+  const auto found = groups_.find(structureKey(graph, lights, setting_));
+  if (found == groups_.end()) return nullptr;
+  Group& group = *found->second;
+  const graph::Graph own = lifted(material, attributes, graph, group.lift, setting_);
+  const Key key = structureKey(own, lights, setting_);
+  if (!closed_) {
+    look(group, key, own);
+    return nullptr;
+  }
+  const auto place = group.places.find(key);
+  if (place == group.places.end()) return nullptr;
+  graph = programs::instance(group.united, place->second, own);
+  return &group.united.fills[place->second];
+}
+
+void Programs::close() {
+  KeyBuilder digest;
+  std::set<Group*> done;
+  for (const auto& [structure, group] : groups_) {
+    digest.key(structure);
+    if (!done.insert(group.get()).second) continue;
+    // In the order of the texts: keys would bring in the versions of the tools.
+    std::vector<std::pair<std::string, Key>> order;
+    for (const auto& [key, graph] : group->graphs) order.emplace_back(graph::toJson(graph), key);
+    std::sort(order.begin(), order.end());
+    std::vector<const graph::Graph*> members;
+    for (const auto& [text, key] : order) members.push_back(&group->graphs.at(key));
+    if (members.empty()) continue;
+    Result<programs::United> united = programs::unite(members, setting_.library);
+    if (!united) continue;  // they keep their programs
+    group->united = std::move(*united);
+    for (size_t i = 0; i < order.size(); ++i) group->places.emplace(order[i].second, i);
+    digest.text(graph::toJson(group->united.graph));
+  }
+  digest_ = digest.finish();
+  closed_ = true;
 }
 
 void writeStandIn(const programs::TextureFill& fill, bool srgb, JsonText& json) {

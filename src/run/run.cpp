@@ -122,33 +122,45 @@ bool Run::checkPrograms() {
   return true;
 }
 
-/// A first look at all inputs, which says nothing: it finds the structures and how much each is used.
-void Run::mergePrograms(const std::vector<std::string>& files, const std::vector<std::string>& only) {
-  std::vector<ProgramUse> uses;
-  std::set<Key> keys;
-  size_t materials = 0;
+/// A look at all inputs that says nothing.
+void Run::look(const std::vector<std::string>& files, const std::vector<std::string>& only,
+               const std::function<void(const FileResult&)>& each) {
   for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
     std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
     tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) {
       results[i] = readScene(files[first + i], only, *setting_, *structures_);
     });
-    for (const FileResult& result : results) {
-      keys.insert(result.structures.begin(), result.structures.end());
-      materials += result.materials.size();
-      for (const MaterialReport& material : result.materials) {
-        const double share = weights_.of(material.file, material.name, material.index);
-        for (const std::string& shader : material.shaders)
-          uses.push_back({shader, share / static_cast<double>(material.shaders.size())});
-      }
-    }
+    for (const FileResult& result : results) each(result);
   }
+}
+
+/// The first look finds the structures and how much each is used, the second what every material brings to
+/// the program that it shares.
+void Run::mergePrograms(const std::vector<std::string>& files, const std::vector<std::string>& only) {
+  std::vector<ProgramUse> uses;
+  std::set<Key> keys;
+  size_t materials = 0;
+  Examples examples;
+  setting_->examples = &examples;
+  look(files, only, [&](const FileResult& result) {
+    keys.insert(result.structures.begin(), result.structures.end());
+    materials += result.materials.size();
+    for (const MaterialReport& material : result.materials) {
+      const double share = weights_.of(material.file, material.name, material.index);
+      for (const std::string& shader : material.shaders)
+        uses.push_back({shader, share / static_cast<double>(material.shaders.size())});
+    }
+  });
+  setting_->examples = nullptr;
   report(weights_.unused(options_.weights), {});
   std::vector<const Structure*> structures;
   for (const Key& key : keys) {
     if (const Structure* structure = structures_->known(key)) structures.push_back(structure);
   }
-  programs_ = std::make_unique<Programs>(structures, uses, materials, *setting_);
+  programs_ = std::make_unique<Programs>(structures, examples, uses, materials, *setting_);
   setting_->programs = programs_.get();
+  if (options_.programs > 0) look(files, only, [](const FileResult&) {});
+  programs_->close();
   structures_->lookAgain();
 }
 

@@ -63,6 +63,8 @@ private:
                const std::function<FileResult(const std::string&)>& read,
                const std::function<void(FileResult&)>& each);
   bool checkPrograms();
+  void look(const std::vector<std::string>& files, const std::vector<std::string>& only,
+            const std::function<void(const FileResult&)>& each);
   void mergePrograms(const std::vector<std::string>& files, const std::vector<std::string>& only);
   void checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen);
   void progress(size_t done, bool last);

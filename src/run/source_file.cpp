@@ -141,14 +141,12 @@ void MaterialText::writeStandInAttributes(const Structure& structure,
   uses_.endArray();
 }
 
-void MaterialText::use(graph::Graph& own, const passes::LightFacts& lights,
+void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
                        const gltf::VertexAttributes& attributes, const Diagnostics& said) {
-  const Programs::Member* shared =
-      setting_.programs == nullptr ? nullptr : setting_.programs->of(structureKey(own, lights, setting_));
-  graph::Graph merged;
-  if (shared != nullptr) merged = programs::instance(*shared->united, shared->place, own);
-  graph::Graph& graph = shared != nullptr ? merged : own;
-  const programs::Fill* fill = shared != nullptr ? &shared->united->fills[shared->place] : nullptr;
+  if (setting_.examples != nullptr)
+    setting_.examples->note(structureKey(graph, lights, setting_), material_, attributes);
+  const programs::Fill* fill =
+      setting_.programs == nullptr ? nullptr : setting_.programs->bring(graph, material_, attributes, lights);
   const Structure& structure = structures_.of(graph, lights);
   met_.push_back(&structure);
   add(said);
@@ -165,7 +163,7 @@ void MaterialText::use(graph::Graph& own, const passes::LightFacts& lights,
   writeList(attributes.names(), uses_);
   uses_.key("shader").string(structure.shader);
   writeBindings(structure, graph, material_, fill, uses_);
-  if (shared != nullptr) writeStandInAttributes(structure, attributes);
+  if (fill != nullptr) writeStandInAttributes(structure, attributes);
   uses_.key("absent_parameters").raw(structure.absent);
   writeUnfilled(graph);
   uses_.endObject();
@@ -424,7 +422,10 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
     bytes = readFile(path, setting.limits.file);
   }
   if (!bytes) return unreadable(path, setting, bytes.error());
-  const bool keep = setting.cache != nullptr && only.empty();
+  // While programs are looked for, results are of no use to another run.
+  const bool looking =
+      setting.examples != nullptr || (setting.programs != nullptr && !setting.programs->closed());
+  const bool keep = setting.cache != nullptr && only.empty() && !looking;
   const Key key = keep ? fileKey(path, *bytes, setting) : Key{};
   if (keep) {
     if (std::optional<FileResult> cached = cachedFile(path, key, setting, structures))

@@ -43,6 +43,7 @@ struct Structure {
 };
 
 class Programs;
+class Examples;
 
 /// Everything that the code depends on beside the graph: this build, the node library, options.
 struct Setting {
@@ -54,6 +55,7 @@ struct Setting {
   Limits limits = {};
   std::string folder = {};             ///< that the manifest lies in: sources are relative to it
   const Programs* programs = nullptr;  ///< that materials share, once it is known
+  Examples* examples = nullptr;        ///< takes note of the materials, before that
 };
 
 /// The address of a graph without what belongs to one material: names, JSON pointers, texture indices and,

@@ -128,7 +128,7 @@ TEST_F(Farm, ActionsAreHermetic) {
   words.insert(words.end(), inner.begin(), inner.end());
   const Words command = wordsOf(poor["command"]);
   words.insert(words.end(), command.begin(), command.end());
-  EXPECT_NE(runProgram(words, folder_), 0);
+  EXPECT_NE(runProgram(words, folder_, &output), 0);
 }
 
 TEST_F(Farm, OtherFoldersLanguagesAndOrdersGiveTheSameBytes) {

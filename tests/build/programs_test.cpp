@@ -259,7 +259,8 @@ TEST_F(ProgramsRun, PipelinesHaveTheirConstants) {
   ASSERT_EQ(gen("one", {"--pipelines", "one.json", "--params", "spec", "--programs", "1", "--model-costs"}),
             0);
   bool flags = false;
-  for (const Json& pipeline : Json::parse(readText(folder_ / "one.json"))["pipelines"]) {
+  const Json one = Json::parse(readText(folder_ / "one.json"));
+  for (const Json& pipeline : one["pipelines"]) {
     for (const Json& constant : pipeline["specialization"]) flags |= constant["value"].is_boolean();
   }
   EXPECT_TRUE(flags);

@@ -7,6 +7,12 @@
 
 #include "parity/subject.h"
 #include "programs/unite.h"
+#include "run/lift.h"
+#include "shader/language.h"
+#include "shader/module.h"
+#include "shader/options.h"
+#include "support/cases.h"
+#include "support/materials.h"
 
 namespace lacquer::parity {
 namespace {
@@ -23,7 +29,7 @@ void shareTextures(const Subject& own, const graph::Graph& united, const program
       if (own.sizes.contains(slot.name)) merged.sizes[slot.name] = own.sizes.at(slot.name);
       continue;
     }
-    for (size_t i = 0; i < united.textures.size(); ++i) {
+    for (size_t i = 0; i < fill.textures.size(); ++i) {
       if (united.textures[i].name != slot.name) continue;
       const ir::Components texel = fill.textures[i].texel;
       vulkan::Texel stands{};
@@ -107,6 +113,41 @@ TEST(ParityPrograms, OtherAttributes) {
   std::vector<NamedGraph> graphs = exampleGraphs({});
   std::vector<NamedGraph> others = exampleGraphs(bare);
   for (size_t i = 0; i < graphs.size(); i += 4) tryGroup({&graphs[i], &others[i]}, {}, 64, 1, false);
+}
+
+/// Layers and terms that others have are kept though a material needs none of them.
+TEST(ParityPrograms, WhatIsNeutralDoesNotShow) {
+  Options options;
+  const auto language = *libraryFor(options);
+  ASSERT_TRUE(resolveNames(*language, options));
+  const material::Schema& schema = **language->models.schema();
+  const Setting setting{options, *language, {}};
+  Lift all;
+  for (uint16_t i = 1; i < schema.extensions.size(); ++i) all.extensions.insert(i);
+  for (const std::string_view term : (*language->models.of(options.profile))->liveTerms())
+    all.live.emplace(term);
+  size_t added = 0;
+  for (const char* file : {"coat", "core", "clearcoat_color", "glass", "cloth"}) {
+    const auto document =
+        test::readMaterials((test::sourceFolder() / "examples" / (std::string(file) + ".gltf")).string());
+    ASSERT_TRUE(document);
+    for (const material::Material& material : document->materials) {
+      const gltf::VertexAttributes attributes{true, true, true, {true, true, true, true}};
+      Diagnostics unsaid;
+      NamedGraph own{material.name, *buildGraph(material, attributes, *language, options, unsaid)};
+      NamedGraph more{material.name + ", lifted", lifted(material, attributes, own.graph, all, setting)};
+      ASSERT_FALSE(hasError(graph::check(own.graph, library()))) << material.name;
+      ASSERT_FALSE(hasError(graph::check(more.graph, library()))) << material.name;
+      added += more.graph.nodes.size() - own.graph.nodes.size();
+      const Subject alone = materialSubject(own, {}, 64, kSeed);
+      Subject merged = materialSubject(more, {}, 64, kSeed);
+      shareTextures(alone, more.graph, {}, merged);
+      Comparison comparison;
+      compare(merged, boundsOf(alone, true), onCpu(merged), "with all that is neutral", comparison);
+      EXPECT_EQ(comparison.outside, 0U) << file << ": " << comparison.first;
+    }
+  }
+  EXPECT_GT(added, 100U);
 }
 
 TEST(ParityPrograms, OnADevice) {

@@ -20,7 +20,7 @@ TEST(Merging, IsNearTheBestDivision) {
     const Measure measure = measureOf(items);
     const Merging merging = merge(items, 1, measure);
     for (size_t programs = 1; programs <= items.size(); ++programs) {
-      const double ratio = costOf(items, merging, programs) / leastCost(items, programs, measure);
+      const double ratio = costOf(items, merging, programs, measure) / leastCost(items, programs, measure);
       EXPECT_GE(ratio, 1 - 1e-12);
       EXPECT_LE(ratio, 1.05) << "seed " << seed << ", " << programs << " programs";
       worst = std::max(worst, ratio);
@@ -32,6 +32,19 @@ TEST(Merging, IsNearTheBestDivision) {
             << " at most\n";
 }
 
+/// More items than all divisions of are looked at by the program.
+TEST(Merging, IsNearTheBestDivisionOfMore) {
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
+    const std::vector<Item> items = randomItems(11, seed);
+    const Measure measure = measureOf(items);
+    const Merging merging = merge(items, 1, measure);
+    for (const size_t programs : {2U, 3U}) {
+      const double ratio = costOf(items, merging, programs, measure) / leastCost(items, programs, measure);
+      EXPECT_LE(ratio, 1.05) << "seed " << seed << ", " << programs << " programs";
+    }
+  }
+}
+
 TEST(Merging, BeginsWithAllAndEndsWithOne) {
   const std::vector<Item> items = randomItems(9, 3);
   const Measure measure = measureOf(items);
@@ -39,13 +52,13 @@ TEST(Merging, BeginsWithAllAndEndsWithOne) {
   ASSERT_EQ(merging.steps.size(), items.size() - 1);
   double own = 0;
   for (const Item& item : items) own += item.weight * item.program.cost;
-  EXPECT_DOUBLE_EQ(costOf(items, merging, items.size()), own);
+  EXPECT_DOUBLE_EQ(costOf(items, merging, items.size(), measure), own);
   EXPECT_DOUBLE_EQ(merging.total, own);
   Places all;
   for (uint32_t i = 0; i < items.size(); ++i) all.push_back(i);
   const double one = measure({all})[0]->cost;
   EXPECT_DOUBLE_EQ(merging.steps.back().cost, one);
-  EXPECT_NEAR(merging.steps.back().total, costOf(items, merging, 1), 1e-6);
+  EXPECT_NEAR(merging.steps.back().total, costOf(items, merging, 1, measure), 1e-6);
   double before = own;
   for (const Step& step : merging.steps) {
     EXPECT_GE(step.total, before);
@@ -74,9 +87,9 @@ TEST(Merging, IsBetterThanChance) {
       }
       std::vector<double> costs;
       for (const auto& program : measure(groups)) costs.push_back(program->cost);
-      mean += weightedCost(items, groups, costs) / kTries;
+      mean += weightedCost(items, Division{groups, costs}) / kTries;
     }
-    EXPECT_LT(costOf(items, merging, programs), mean) << programs;
+    EXPECT_LT(costOf(items, merging, programs, measure), mean) << programs;
   }
 }
 

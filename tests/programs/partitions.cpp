@@ -42,20 +42,14 @@ double leastCost(const std::vector<Item>& items, size_t most, const Measure& mea
       }
       costs.push_back(it->second);
     }
-    least = std::min(least, weightedCost(items, groups, costs));
+    least = std::min(least, weightedCost(items, Division{groups, costs}));
   });
   return least;
 }
 
-double costOf(const std::vector<Item>& items, const Merging& merging, size_t programs) {
-  Groups groups;
-  std::vector<double> costs;
-  for (const uint32_t group : merging.left(programs, items.size())) {
-    groups.push_back(merging.members(group, items.size()));
-    costs.push_back(group < items.size() ? items[group].program.cost
-                                         : merging.steps[group - items.size()].cost);
-  }
-  return weightedCost(items, groups, costs);
+double costOf(const std::vector<Item>& items, const Merging& merging, size_t programs,
+              const Measure& measure) {
+  return weightedCost(items, improved(items, divisionOf(items, merging, programs), measure));
 }
 
 std::vector<Item> randomItems(uint32_t count, uint64_t seed) {

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "programs/merging.h"
+#include "programs/division.h"
 
 namespace lacquer::programs::test {
 
@@ -17,8 +17,9 @@ void eachPartition(uint32_t count, size_t most, const std::function<void(const G
 /// The least cost of any division into at most `most` groups, by weight: what a search is held to.
 double leastCost(const std::vector<Item>& items, size_t most, const Measure& measure);
 
-/// The cost of the groups that a merging leaves, by weight.
-double costOf(const std::vector<Item>& items, const Merging& merging, size_t programs);
+/// The cost of what a search comes to, by weight.
+double costOf(const std::vector<Item>& items, const Merging& merging, size_t programs,
+              const Measure& measure);
 
 /// Items with random features, some in common, and a measure for them: a merged program has the dearest of
 /// each feature and pays a little for every item.

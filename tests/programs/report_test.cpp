@@ -17,7 +17,9 @@ Curve curve() {
   curve.materials = 4;
   curve.structures = 3;
   curve.made = 2;
-  curve.points = pointsOf(items(), merging, {100, 200, 50, 110, 220});
+  curve.points =
+      pointsOf(items(), merging,
+               {{{{0}, {1}, {2}}, {100, 200, 50}}, {{{1}, {0, 2}}, {200, 110}}, {{{0, 1, 2}}, {220}}});
   return curve;
 }
 

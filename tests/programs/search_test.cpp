@@ -22,8 +22,9 @@ public:
     options_.targets = {Target::Spirv};
     language_ = *libraryFor(options_);
     EXPECT_TRUE(resolveNames(*language_, options_));
-    setting_.emplace(Setting{options_, *language_, {}});
+    setting_.emplace(Setting{options_, *language_, {}, nullptr, nullptr, {}, "."});
     structures_.emplace(*setting_);
+    setting_->examples = &examples_;
     const FileResult result = readScene(path, {}, *setting_, *structures_);
     std::map<std::string, OwnProgram> own;
     for (const Key& key : result.structures) {
@@ -32,6 +33,7 @@ public:
       OwnProgram& one = own[structure.shader];
       one.shader = structure.shader;
       one.structures.push_back(&structure);
+      one.examples.push_back(examples_.of(key));
       one.graphs.push_back(*graph::fromJson(structure.graph, structure.shader));
       EXPECT_FALSE(lacquer::hasError(graph::check(one.graphs.back(), *language_)));
     }
@@ -56,6 +58,7 @@ private:
   Options options_;
   std::shared_ptr<const Language> language_;
   std::optional<Setting> setting_;
+  Examples examples_;
   std::optional<Structures> structures_;
   std::vector<OwnProgram> own_;
   std::optional<ProgramCosts> costs_;
@@ -70,7 +73,7 @@ void expectNearTheBest(Materials& materials, size_t most, uint64_t seed, const s
   const Merging merging = merge(items, 1, measure);
   EXPECT_EQ(merging.steps.size(), items.size() - 1) << name << ": some cannot be merged";
   for (size_t programs = 1; programs < items.size(); ++programs) {
-    const double ratio = costOf(items, merging, programs) / leastCost(items, programs, measure);
+    const double ratio = costOf(items, merging, programs, measure) / leastCost(items, programs, measure);
     EXPECT_LE(ratio, 1.05) << name << ", " << programs << " of " << items.size();
   }
 }
