@@ -4,7 +4,7 @@
 # Native only: compilers and validators, GPUs, runs over folders with their cache, attacks. Callers of the first two are
 # linked with web/absent/.
 set(LACQUER_ABSENT check vulkan cost stress cache run)
-set(LACQUER_ABSENT_FILES tools/cost.cpp tools/gpu.cpp tools/stress.cpp tools/view.cpp)
+set(LACQUER_ABSENT_FILES tools/cost.cpp tools/environment.cpp tools/gpu.cpp tools/stress.cpp tools/view.cpp)
 
 # The header-only parts of the same libraries. They are linked into a folder of their own, because the folder that they
 # lie in has the native system's headers as well.
