@@ -4,7 +4,7 @@
 # Native only: compilers and validators, GPUs, runs over folders with their cache, attacks, the search for levels. Callers
 # of the first two are linked with web/absent/.
 set(LACQUER_ABSENT check vulkan cost stress cache run lod)
-set(LACQUER_ABSENT_FILES tools/cost.cpp tools/gpu.cpp tools/lod.cpp tools/lod_material.cpp tools/lod_report.cpp
+set(LACQUER_ABSENT_FILES tools/cost.cpp tools/environment.cpp tools/gpu.cpp tools/lod.cpp tools/lod_material.cpp tools/lod_report.cpp
     tools/stress.cpp tools/view.cpp)
 
 # The header-only parts of the same libraries. They are linked into a folder of their own, because the folder that they

@@ -104,6 +104,11 @@ enum {
   LACQUER_TEXCOORD_1 = 16,
   LACQUER_TEXCOORD_2 = 32,
   LACQUER_TEXCOORD_3 = 64,
+  LACQUER_JOINTS_0 = 128, /* with WEIGHTS_0 */
+  LACQUER_JOINTS_1 = 256, /* with WEIGHTS_1 */
+  LACQUER_MORPH_TARGETS = 512,
+  LACQUER_INSTANCES = 1024,      /* EXT_mesh_gpu_instancing */
+  LACQUER_QUANTIZED = 2048,      /* POSITION or a TEXCOORD_n as integers that stand for themselves */
   LACQUER_UNUSED_ATTRIBUTES = 27 /* what a material that no primitive uses is read with */
 };
 /* Reads a .gltf or .glb file; buffers and images need not exist. */

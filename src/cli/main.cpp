@@ -13,6 +13,7 @@
 #include "cli/checks.h"
 #include "cli/cost.h"
 #include "cli/dfg.h"
+#include "cli/environment.h"
 #include "cli/eval.h"
 #include "cli/lod.h"
 #include "cli/preview.h"
@@ -451,6 +452,8 @@ int run(int argc, char** argv) {
   CLI::App* eval_verb = lacquer::cli::addEval(app, eval_flags);
   lacquer::cli::DfgFlags dfg_flags;
   CLI::App* dfg_verb = lacquer::cli::addDfg(app, dfg_flags);
+  lacquer::cli::EnvironmentFlags environment_flags;
+  CLI::App* environment_verb = lacquer::cli::addEnvironment(app, environment_flags);
   lacquer::cli::PreviewFlags preview_flags;
   CLI::App* preview_verb = lacquer::cli::addPreview(app, preview_flags);
   lacquer::cli::LodFlags lod_flags;
@@ -489,6 +492,7 @@ int run(int argc, char** argv) {
   }
   if (*eval_verb) return lacquer::cli::runEval(eval_flags);
   if (*dfg_verb) return lacquer::cli::runDfg(dfg_flags);
+  if (*environment_verb) return lacquer::cli::runEnvironment(environment_flags);
   if (*preview_verb) return lacquer::cli::runPreview(preview_flags);
   if (*lod_verb) return lacquer::cli::runLod(lod_flags, flags.files, flags.materials, flags.options);
   if (*stress_verb) return lacquer::cli::runStress(stress_flags);

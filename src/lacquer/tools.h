@@ -43,6 +43,8 @@ struct Preview {
   uint32_t size = 160;   ///< pixels of a ball, from 16 to 2048
   uint32_t columns = 0;  ///< balls in a row, at most 100; 0 for a good number
   bool in_float = true;  ///< the arithmetic; else double
+  /// A picture of the surroundings, as for writeEnvironment(): the only light then. Empty for the studio.
+  std::string environment;
 };
 /// Draws a ball for each material of the files, or for those of the names in `materials` where that is not
 /// empty. Writes the sheet and returns what was measured as JSON; empty on an error. A material that fails is
@@ -125,6 +127,21 @@ bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messa
 std::vector<float> environmentSheen(uint32_t size, Messages& messages);
 /// The same as a file, as writeEnvironmentDfg() has it.
 bool writeEnvironmentSheen(const std::string& path, uint32_t size, Messages& messages);
+
+/// What is made of a picture of the surroundings (docs/environments.md).
+struct Environment {
+  std::string output;       ///< the folder to write to
+  uint32_t size = 256;      ///< of environment_specular's faces: a power of two from 32 to 1024
+  uint32_t samples = 1024;  ///< about how many parts of the picture each texel is made of, from 64 to 65536
+  bool dds = false;         ///< files are .dds; else .ktx2
+  bool shared_exponents = false;  ///< texels of cubes are RGB9E5; else half floats
+};
+/// Reads an equirectangular picture, Radiance HDR or OpenEXR, and writes the cube maps and tables that
+/// templates read (environment_specular, environment_charlie, environment_irradiance, environment_dfg,
+/// environment_sheen) and environment.json, which names them. Returns that JSON; empty on an error:
+/// "environment-unreadable", "image-too-large" and the like. Uses threads.
+std::string writeEnvironment(const Environment& environment, const std::string& picture,
+                             const Options& options, Messages& messages, const Progress& progress = {});
 
 /// The node library as JSON: contracts, ranges, sources, variants. Of the options, `node_directories`. Empty
 /// on an error.

@@ -51,7 +51,9 @@ public:
   }
 
   void graph(const graph::Graph& graph) {
-    key_.text(graph.template_name).number(graph.parameters.size());
+    key_.text(graph.template_name).number(graph.attributes.size());
+    for (const std::string& name : graph.attributes) key_.text(name);
+    key_.number(graph.parameters.size());
     for (const ir::Parameter& p : graph.parameters) {
       key_.text(p.name).number(p.type).number(p.range.lo).number(p.range.hi).number(p.range.gap);
       key_.number(p.animated);

@@ -144,8 +144,11 @@ void Running::prepare() {
       varied_.push_back(&texture);
       continue;
     }
+    const size_t layer = size_t{texture.width} * texture.height;
+    const auto layers =
+        static_cast<uint32_t>(texture.shape == Shape::Array ? texture.texels->size() / layer : 1);
     const Image image = objects_.image(
-        texture.width, texture.height, 1, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        texture.width, texture.height, layers, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
         texture.compares ? kDepthFormat : kFormat, texture.shape == Shape::Volume);
     if (texture.compares) {
       std::vector<float> depths;

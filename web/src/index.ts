@@ -20,7 +20,10 @@ export * from './types.js';
 export type { Source };
 
 const kLevels: Level[] = ['note', 'warning', 'error'];
-const kAttributes: Attribute[] = ['NORMAL', 'TANGENT', 'COLOR_0', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3'];
+const kAttributes: Attribute[] = [
+  'NORMAL', 'TANGENT', 'COLOR_0', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3', 'JOINTS_0', 'JOINTS_1',
+  'MORPH_TARGETS', 'INSTANCES', 'QUANTIZED',
+];
 /** What a material that no primitive uses is read with. */
 export const kUnusedAttributes: Attribute[] = ['NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1'];
 const kStages: Record<Stage, number> = { vertex: 0, fragment: 1 };

@@ -53,8 +53,11 @@ export interface Options {
   texels?: string[];
 }
 
-/** Vertex attributes of a primitive beside POSITION. */
-export type Attribute = 'NORMAL' | 'TANGENT' | 'COLOR_0' | 'TEXCOORD_0' | 'TEXCOORD_1' | 'TEXCOORD_2' | 'TEXCOORD_3';
+/** Vertex attributes of a primitive beside POSITION. JOINTS_n come with WEIGHTS_n; the last three are morph targets,
+ *  instances, and positions or texture coordinates that are stored as integers. */
+export type Attribute =
+  | 'NORMAL' | 'TANGENT' | 'COLOR_0' | 'TEXCOORD_0' | 'TEXCOORD_1' | 'TEXCOORD_2' | 'TEXCOORD_3'
+  | 'JOINTS_0' | 'JOINTS_1' | 'MORPH_TARGETS' | 'INSTANCES' | 'QUANTIZED';
 
 /** An editable number of a material. */
 export interface Parameter {
