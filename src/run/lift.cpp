@@ -35,22 +35,31 @@ Key contentOf(const material::Material& material, const gltf::VertexAttributes& 
   return key.finish();
 }
 
-/// The graph alone, not what is said of absent terms.
-Key graphKey(graph::Graph graph, const Setting& setting) {
-  graph.skipped.clear();
-  return structureKey(graph, {}, setting);
+/// Whether two graphs are one, numbers and their places in the file included: an extension may give a number
+/// from another property, and then the shader is the same and the colours are not.
+bool same(const graph::Graph& a, const graph::Graph& b) {
+  const auto parameter = [](const ir::Parameter& p, const ir::Parameter& q) {
+    return p.name == q.name && p.value == q.value && p.pointer == q.pointer && p.animated == q.animated;
+  };
+  const auto texture = [](const ir::TextureSlot& s, const ir::TextureSlot& t) {
+    return s.name == t.name && s.texture == t.texture && s.pointer == t.pointer;
+  };
+  return a.nodes == b.nodes && a.outputs == b.outputs &&
+         std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(), b.parameters.end(),
+                    parameter) &&
+         std::equal(a.textures.begin(), a.textures.end(), b.textures.begin(), b.textures.end(), texture);
 }
 
 /// With an extension more; false where that is not neutral.
-bool add(uint16_t extension, const gltf::VertexAttributes& attributes, const Key& own, const Setting& setting,
-         material::Material& material) {
+bool add(uint16_t extension, const gltf::VertexAttributes& attributes, const graph::Graph& own,
+         const Setting& setting, material::Material& material) {
   if (material.has(extension)) return true;
   material::Material more = material;
   more.extensions.insert(std::upper_bound(more.extensions.begin(), more.extensions.end(), extension),
                          extension);
   Diagnostics unsaid;
   const Result<graph::Graph> graph = buildGraph(more, attributes, setting.library, setting.options, unsaid);
-  if (!graph || graphKey(*graph, setting) != own) return false;
+  if (!graph || !same(*graph, own)) return false;
   material = std::move(more);
   return true;
 }
@@ -85,8 +94,7 @@ void addTo(Lift& lift, const Example& example, const graph::Graph& graph, const 
 graph::Graph lifted(const material::Material& material, const gltf::VertexAttributes& attributes,
                     const graph::Graph& own, const Lift& lift, const Setting& setting) {
   material::Material more = material;
-  const Key key = graphKey(own, setting);
-  for (const uint16_t extension : lift.extensions) add(extension, attributes, key, setting, more);
+  for (const uint16_t extension : lift.extensions) add(extension, attributes, own, setting, more);
   Options options = setting.options;
   options.live.insert(options.live.end(), lift.live.begin(), lift.live.end());
   Diagnostics unsaid;
