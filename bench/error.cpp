@@ -3,16 +3,21 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <future>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 
 #include "bench/error_colors.h"
 #include "bench/error_physics.h"
 #include "bench/error_plot.h"
 #include "bench/error_subjects.h"
 #include "bench/error_times.h"
+#include "bench/error_wholes.h"
 #include "cost/cost.h"
 #include "lacquer.h"
 #include "support/file.h"
@@ -72,6 +77,27 @@ Measured errorsOf(const lang::Library& library, const Subject& subject, const st
   return m;
 }
 
+/// Of every body, in their order; nodes side by side.
+std::vector<Measured> allErrors(const lang::Library& library, const std::vector<Subject>& all) {
+  std::vector<std::vector<Measured>> of(all.size());
+  std::vector<std::future<void>> workers;
+  std::atomic<size_t> next = 0;
+  for (unsigned i = 0; i < std::max(std::thread::hardware_concurrency(), 1U); ++i) {
+    workers.push_back(std::async(std::launch::async, [&] {
+      for (size_t k = next++; k < all.size(); k = next++) {
+        for (const std::string& body : all[k].bodies) {
+          fmt::print(stderr, "{} {}\n", all[k].node, body);
+          of[k].push_back(errorsOf(library, all[k], body));
+        }
+      }
+    }));
+  }
+  for (std::future<void>& worker : workers) worker.get();
+  std::vector<Measured> measured;
+  for (std::vector<Measured>& one : of) measured.insert(measured.end(), one.begin(), one.end());
+  return measured;
+}
+
 // -- costs --
 
 cost::Statistics statistics(const cost::Outcome& outcome, const std::string& what) {
@@ -114,6 +140,23 @@ std::optional<cost::Subject> materialWith(const Work& work, const std::string& n
       Graph::fromJson(json.dump(), work.file, messages).generate(options, messages);
   if (!shader) throw std::runtime_error(node + "::" + variant + ": " + messages.at(0).text);
   return cost::Subject{node + " " + variant, shader.vertexSpirv(), shader.fragmentSpirv()};
+}
+
+/// What W3 costs under each profile, by profile.
+std::map<std::string, cost::Statistics> profileCosts(const lang::Library& library) {
+  std::vector<cost::Subject> whole;
+  std::vector<std::string> names;
+  for (const std::string_view profile : library.names(lang::DeclKind::Profile)) {
+    names.emplace_back(profile);
+    std::optional<cost::Subject> material =
+        materialWith({"w3.gltf", names.back().c_str(), false, true}, "half_vector", "");
+    if (!material) throw std::runtime_error("W3 has no half vector");
+    whole.push_back(std::move(*material));
+  }
+  const cost::Measurement measurement = cost::measure(whole, kFamily, false);
+  std::map<std::string, cost::Statistics> costs;
+  for (size_t i = 0; i < names.size(); ++i) costs[names[i]] = statistics(measurement.outcomes[i], names[i]);
+  return costs;
 }
 
 /// How long each body runs on this machine's processor; the driver's name.
@@ -197,12 +240,17 @@ std::string timeText(const std::optional<double>& nanoseconds) {
   return nanoseconds ? fmt::format("{:.{}f}", *nanoseconds, *nanoseconds < 10 ? 1 : 0) : "";
 }
 
-Json toJson(const std::vector<Measured>& measured, const std::string& driver, const std::string& device) {
+Json toJson(const std::vector<Measured>& measured, const std::vector<Whole>& whole, const std::string& driver,
+            const std::string& device) {
   Json json;
   json["driver"] = driver;
   json["device"] = device;
   json["gpu"] = kFamily;
   json["points"] = kPoints;
+  for (const Whole& one : whole) {
+    json["profiles"][one.profile][one.environment ? "environment" : "light"] = {{"e1", toJson(one.rounding)},
+                                                                                {"e3", toJson(one.physics)}};
+  }
   for (const Measured& m : measured) {
     Json& row = json["nodes"][m.node][m.variant.empty() ? "reference" : m.variant];
     row["e1"] = toJson(m.e1, m.e1_at);
@@ -229,10 +277,24 @@ std::string triple(const Spread& s) {
   return fmt::format("{} / {} / {}", number(s.max), number(s.p999), number(s.rms));
 }
 
-std::string markdown(const std::vector<Measured>& measured, const std::string& driver,
-                     const std::string& device) {
+/// What whole shaders are wrong by.
+std::string wholeTable(const std::vector<Whole>& whole) {
+  std::string text =
+      "\n### Whole shaders\n\n"
+      "| profile | under | E1 of the colour | E3 of the coat's transmission |\n|---|---|---|---|\n";
+  for (const Whole& one : whole) {
+    text += fmt::format("| `{}` | {} | {} | {} |\n", one.profile,
+                        one.environment ? "a white environment" : "one light", triple(one.rounding),
+                        triple(one.physics));
+  }
+  return text;
+}
+
+std::string markdown(const std::vector<Measured>& measured, const std::vector<Whole>& whole,
+                     const std::string& driver, const std::string& device) {
   std::string text = fmt::format("{}, {}; {} points; times: {}.\n", driver, kFamily, kPoints,
                                  device.empty() ? "not measured" : device);
+  text += wholeTable(whole);
   std::string node;
   for (const Measured& m : measured) {
     if (m.node != node) {
@@ -263,20 +325,27 @@ std::string markdown(const std::vector<Measured>& measured, const std::string& d
   return text;
 }
 
+/// Rounding in double is no error of a body.
+double shown(double error) { return error < 1e-9 ? 0 : rounded(error); }
+
 std::string svg(const std::vector<Measured>& measured) {
   std::vector<Panel> panels;
   for (const Measured& m : measured) {
     if (panels.empty() || panels.back().title != m.node) panels.push_back({m.node, {}});
-    const double error = m.e3 ? m.e3->absolute.rms : m.e2 ? m.e2->absolute.rms : 0;
     panels.back().points.push_back({m.variant.empty() ? "reference" : m.variant,
-                                    static_cast<double>(m.alone.inverse_throughput), rounded(error)});
+                                    static_cast<double>(m.alone.inverse_throughput),
+                                    shown(m.e2 ? m.e2->absolute.rms : 0)});
   }
-  for (Panel& panel : panels) {
-    for (const Measured& m : measured) {
-      if (m.node == panel.title && m.e3 && panel.title.find(' ') == std::string::npos) panel.title += " (E3)";
-    }
+  return plot(panels, "cycles of inverse throughput", "E2, RMS");
+}
+
+std::string wholeSvg(const std::vector<Whole>& whole, const std::map<std::string, cost::Statistics>& costs) {
+  std::vector<Panel> panels = {{"W3 under one light", {}}, {"W3 under an environment", {}}};
+  for (const Whole& one : whole) {
+    panels[one.environment ? 1 : 0].points.push_back(
+        {one.profile, static_cast<double>(costs.at(one.profile).inverse_throughput), shown(one.physics.rms)});
   }
-  return plot(panels, "cycles of inverse throughput", "RMS error");
+  return plot(panels, "cycles of inverse throughput", "E3, RMS");
 }
 
 /// Replaces what stands between the marks of the page.
@@ -304,20 +373,18 @@ int runError() {
     for (const Diagnostic& d : added.error()) fmt::print(stderr, "{}\n", format(d));
     return 1;
   }
-  std::vector<Measured> measured;
-  for (const Subject& subject : all) {
-    for (const std::string& body : subject.bodies) {
-      fmt::print(stderr, "{} {}\n", subject.node, body);
-      measured.push_back(errorsOf(library, subject, body));
-    }
-  }
+  std::vector<Measured> measured = allErrors(library, all);
   const std::string driver = measureCosts(library, all, measured);
   const std::string device = measureTimes(library, all, measured);
-  const std::string page = markdown(measured, driver, device);
+  fmt::print(stderr, "whole shaders\n");
+  const std::vector<Whole> whole = wholes(library, kPoints);
+  const std::string page = markdown(measured, whole, driver, device);
   fmt::print("{}", page);
   const bool written =
-      writeFile(kRoot + "/bench/error.json", toJson(measured, driver, device).dump(2) + "\n") &&
-      writeFile(kRoot + "/docs/images/error.svg", svg(measured)) && renewPage(kRoot + "/docs/error.md", page);
+      writeFile(kRoot + "/bench/error.json", toJson(measured, whole, driver, device).dump(2) + "\n") &&
+      writeFile(kRoot + "/docs/images/error.svg", svg(measured)) &&
+      writeFile(kRoot + "/docs/images/error-coats.svg", wholeSvg(whole, profileCosts(library))) &&
+      renewPage(kRoot + "/docs/error.md", page);
   if (written) return 0;
   fmt::print(stderr, "bench error: the files could not be renewed\n");
   return 1;

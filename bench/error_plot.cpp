@@ -9,11 +9,11 @@ namespace lacquer::bench {
 
 namespace {
 
-constexpr int kColumns = 3;
-constexpr double kWidth = 300, kHeight = 220;  ///< of a panel
-constexpr double kLeft = 46, kRight = 12, kTop = 26, kBottom = 34;
-/// Errors below a double's are none.
-constexpr double kLeast = 1e-16;
+constexpr int kColumns = 2;
+constexpr double kWidth = 430, kHeight = 250;  ///< of a panel
+constexpr double kLeft = 58, kRight = 14, kTop = 32, kBottom = 44;
+/// Where 0 lies, below the decades: this much of a panel's height.
+constexpr double kNone = 0.12;
 
 struct Axes {
   double x0, y0, cost_min, cost_max;
@@ -23,20 +23,23 @@ struct Axes {
     return x0 + kLeft + (kWidth - kLeft - kRight) * (cost - cost_min) / (cost_max - cost_min);
   }
   double y(double error) const {
-    const double t = (std::log10(std::max(error, kLeast)) - low) / (high - low);
-    return y0 + kHeight - kBottom - (kHeight - kTop - kBottom) * std::clamp(t, 0.0, 1.0);
+    const double t = error > 0 ? (std::log10(error) - low) / (high - low) : 0;
+    const double up = error > 0 ? kNone + (1 - kNone) * std::clamp(t, 0.0, 1.0) : 0;
+    return y0 + kHeight - kBottom - (kHeight - kTop - kBottom) * up;
   }
 };
 
 Axes axesOf(const Panel& panel, double x0, double y0) {
-  Axes axes{x0, y0, panel.points[0].cost, panel.points[0].cost, 0, -16};
+  Axes axes{x0, y0, panel.points[0].cost, panel.points[0].cost, 99, -99};
   for (const PlotPoint& p : panel.points) {
     axes.cost_min = std::min(axes.cost_min, p.cost);
     axes.cost_max = std::max(axes.cost_max, p.cost);
-    const double decade = std::log10(std::max(p.error, kLeast));
+    if (p.error <= 0) continue;
+    const double decade = std::log10(p.error);
     axes.low = std::min(axes.low, static_cast<int>(std::floor(decade)));
     axes.high = std::max(axes.high, static_cast<int>(std::ceil(decade)));
   }
+  if (axes.high < axes.low) axes.low = axes.high = -3;  // no body has an error
   if (axes.high <= axes.low) axes.high = axes.low + 1;
   // Names stand beside the points.
   const double margin = std::max(2.0, 0.45 * (axes.cost_max - axes.cost_min));
@@ -48,6 +51,8 @@ Axes axesOf(const Panel& panel, double x0, double y0) {
 std::string grid(const Axes& a, const std::string& cost_label, const std::string& error_label) {
   std::string svg;
   const double bottom = a.y0 + kHeight - kBottom;
+  svg += fmt::format("<text class='tick' x='{:.1f}' y='{:.1f}' text-anchor='end'>0</text>\n",
+                     a.x(a.cost_min) - 4, a.y(0) + 4);
   const int step = (a.high - a.low + 3) / 4;
   for (int decade = a.low; decade <= a.high; decade += step) {
     const double y = a.y(std::pow(10, decade));
@@ -59,19 +64,19 @@ std::string grid(const Axes& a, const std::string& cost_label, const std::string
   for (int i = 0; i <= 2; ++i) {
     const double cost = a.cost_min + (a.cost_max - a.cost_min) * i / 2;
     svg += fmt::format("<text class='tick' x='{:.1f}' y='{:.1f}' text-anchor='middle'>{:.0f}</text>\n",
-                       a.x(cost), bottom + 12, cost);
+                       a.x(cost), bottom + 15, cost);
   }
   svg += fmt::format("<line class='axis' x1='{0:.1f}' y1='{1:.1f}' x2='{0:.1f}' y2='{2:.1f}'/>\n",
                      a.x(a.cost_min), a.y0 + kTop, bottom);
   svg += fmt::format("<line class='axis' x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}'/>\n",
                      a.x(a.cost_min), bottom, a.x(a.cost_max), bottom);
   svg += fmt::format("<text class='tick' x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n",
-                     a.x((a.cost_min + a.cost_max) / 2), bottom + 26, cost_label);
+                     a.x((a.cost_min + a.cost_max) / 2), bottom + 33, cost_label);
   const double middle = a.y0 + kHeight / 2;
   svg += fmt::format(
       "<text class='tick' x='{0:.1f}' y='{1:.1f}' text-anchor='middle' "
       "transform='rotate(-90 {0:.1f} {1:.1f})'>{2}</text>\n",
-      a.x0 + 10, middle, error_label);
+      a.x0 + 14, middle, error_label);
   return svg;
 }
 
@@ -79,10 +84,10 @@ std::string grid(const Axes& a, const std::string& cost_label, const std::string
 class Names {
 public:
   std::string place(const std::string& name, double x, double y) {
-    const double width = 5.6 * static_cast<double>(name.size());
+    const double width = 6.8 * static_cast<double>(name.size());
     for (int i = 0; i < 12; ++i) {
       const bool left = i % 2 == 1;
-      const double up = (i / 2 % 2 == 0 ? -1 : 1) * (4 + 11.0 * (i / 4)) + (i / 2 % 2 == 0 ? 0 : 8);
+      const double up = (i / 2 % 2 == 0 ? -1 : 1) * (4 + 13.0 * (i / 4)) + (i / 2 % 2 == 0 ? 0 : 8);
       const Box box{left ? x - 6 - width : x + 6, y + up, width};
       if (i < 11 && std::any_of(taken_.begin(), taken_.end(), [&](const Box& b) { return meet(b, box); })) {
         continue;
@@ -98,7 +103,7 @@ private:
     double x, y, width;
   };
   static bool meet(const Box& a, const Box& b) {
-    return std::abs(a.y - b.y) < 10 && a.x < b.x + b.width && b.x < a.x + a.width;
+    return std::abs(a.y - b.y) < 12 && a.x < b.x + b.width && b.x < a.x + a.width;
   }
   std::vector<Box> taken_;
 };
@@ -143,7 +148,8 @@ std::string plot(const std::vector<Panel>& panels, const std::string& cost_label
   std::string svg = fmt::format(
       "<svg xmlns='http://www.w3.org/2000/svg' width='{0:.0f}' height='{1:.0f}' "
       "viewBox='0 0 {0:.0f} {1:.0f}' font-family='sans-serif'>\n"
-      "<style>.title{{font-size:12px;font-weight:bold}}.tick{{font-size:9px;fill:#666}}.name{{font-size:10px}"
+      "<style>.title{{font-size:14px;font-weight:bold}}.tick{{font-size:11px;fill:#444}}.name{{font-size:"
+      "12px}"
       "}"
       ".grid{{stroke:#ddd}}.axis{{stroke:#666}}.front{{fill:none;stroke:#06c}}.best{{fill:#06c}}"
       ".beaten{{fill:#aaa}}</style>\n<rect width='100%' height='100%' fill='white'/>\n",

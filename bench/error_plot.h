@@ -19,7 +19,7 @@ struct Panel {
 /// True for the points that no other one beats: none is as cheap and as exact, and one of both better.
 std::vector<bool> paretoFront(const std::vector<PlotPoint>& points);
 
-/// An SVG. Costs are linear, errors logarithmic with the smallest at the bottom.
+/// An SVG. Costs are linear, errors logarithmic, 0 at the bottom.
 std::string plot(const std::vector<Panel>& panels, const std::string& cost_label,
                  const std::string& error_label);
 

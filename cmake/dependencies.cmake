@@ -17,5 +17,6 @@ add_library(xxhash ALIAS PkgConfig::xxhash_pc)
 pkg_check_modules(stb_pc REQUIRED IMPORTED_TARGET stb)
 add_library(stb ALIAS PkgConfig::stb_pc)
 pkg_check_modules(spirv_cross_pc IMPORTED_TARGET spirv-cross-c-shared)  # without it there is no MSL
+pkg_check_modules(openexr_pc IMPORTED_TARGET OpenEXR)  # without it `lacquer environment` reads Radiance HDR alone
 pkg_check_modules(sodium_pc REQUIRED IMPORTED_TARGET libsodium)
 add_library(sodium ALIAS PkgConfig::sodium_pc)

@@ -1,10 +1,11 @@
 # The library for WebAssembly, by Debian's emscripten: what there is in place of cmake/dependencies.cmake, and what is
 # left out. docs/web.md says what the module is.
 
-# Native only: compilers and validators, GPUs, runs over folders with their cache, attacks. Callers of the first two are
-# linked with web/absent/.
-set(LACQUER_ABSENT check vulkan cost stress cache run)
-set(LACQUER_ABSENT_FILES tools/cost.cpp tools/gpu.cpp tools/stress.cpp tools/view.cpp)
+# Native only: compilers and validators, GPUs, runs over folders with their cache, attacks, the search for levels. Callers
+# of the first two are linked with web/absent/.
+set(LACQUER_ABSENT check vulkan cost stress cache run lod)
+set(LACQUER_ABSENT_FILES tools/cost.cpp tools/environment.cpp tools/gpu.cpp tools/lod.cpp tools/lod_material.cpp tools/lod_report.cpp
+    tools/stress.cpp tools/view.cpp)
 
 # The header-only parts of the same libraries. They are linked into a folder of their own, because the folder that they
 # lie in has the native system's headers as well.
@@ -31,8 +32,12 @@ foreach(name fmt::fmt tl::expected nlohmann_json::nlohmann_json SPIRV-Headers::S
   target_link_libraries(${name} INTERFACE web_libraries)
 endforeach()
 
-add_compile_options(-fwasm-exceptions)
-add_link_options(-fwasm-exceptions)
+# The module is linked whole, so nothing in it needs a table of addresses. What the flags name, every engine has that has
+# WebAssembly's exceptions.
+set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
+set(web_features -fwasm-exceptions -mbulk-memory -msign-ext -mnontrapping-fptoint)
+add_compile_options(${web_features})
+add_link_options(${web_features})
 
 # lacquer_module(): lacquer.wasm, which exports the functions of lacquer_c.h and memory, and needs no script of
 # emscripten's: web/src/module.ts gives it the few functions that it imports.

@@ -104,6 +104,11 @@ enum {
   LACQUER_TEXCOORD_1 = 16,
   LACQUER_TEXCOORD_2 = 32,
   LACQUER_TEXCOORD_3 = 64,
+  LACQUER_JOINTS_0 = 128, /* with WEIGHTS_0 */
+  LACQUER_JOINTS_1 = 256, /* with WEIGHTS_1 */
+  LACQUER_MORPH_TARGETS = 512,
+  LACQUER_INSTANCES = 1024,      /* EXT_mesh_gpu_instancing */
+  LACQUER_QUANTIZED = 2048,      /* POSITION or a TEXCOORD_n as integers that stand for themselves */
   LACQUER_UNUSED_ATTRIBUTES = 27 /* what a material that no primitive uses is read with */
 };
 /* Reads a .gltf or .glb file; buffers and images need not exist. */
@@ -183,8 +188,9 @@ enum { LACQUER_VERTEX = 0, LACQUER_FRAGMENT = 1 };
 LACQUER_C void lacquer_shader_free(lacquer_shader* shader);
 LACQUER_C const char* lacquer_shader_id(const lacquer_shader* shader);
 LACQUER_C int lacquer_shader_has_vertex_stage(const lacquer_shader* shader);
-/* `target` is one of the command line's: "glsl", "glsl-gl", "essl", "hlsl"; "cpp" has its header as the
- * LACQUER_FRAGMENT. Empty for a target that was not asked for, that has no text or that does not exist. */
+/* `target` is one of the command line's: "glsl", "glsl-gl", "essl", "hlsl", "wgsl", "msl"; "cpp" has its
+ * header as the LACQUER_FRAGMENT, "js" its module, and the types of that as the LACQUER_VERTEX. Empty for a
+ * target that was not asked for, that has no text or that does not exist. */
 LACQUER_C const char* lacquer_shader_text(const lacquer_shader* shader, const char* target, int stage,
                                           size_t* size);
 /* Words in the machine's byte order, `count` of them; NULL and 0 when "spirv" was not asked for. */

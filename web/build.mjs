@@ -11,6 +11,8 @@ const [wasm, output, examples] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url));
 const tsc = (...args) => execFileSync(process.execPath, [join(here, 'node_modules/typescript/bin/tsc'), ...args], { cwd: here, stdio: 'inherit' });
 
+const packed = gzipSync(readFileSync(wasm), { level: 9 }).toString('base64');
+
 /** A file with what it names, as `lacquer view` puts it into the page. */
 function embedded(file) {
   const json = JSON.parse(readFileSync(file, 'utf8'));
@@ -24,25 +26,40 @@ async function makePackage() {
   mkdirSync(folder, { recursive: true });
   await build({
     entryPoints: [join(here, 'src/index.ts')], outfile: join(folder, 'index.js'), bundle: true, format: 'esm', target: 'es2022',
+    external: ['./packed.js'],
   });
   tsc('-p', '.', '--noEmit');
   tsc('-p', 'tsconfig.types.json', '--outDir', folder);
   copyFileSync(wasm, join(folder, 'lacquer.wasm'));
+  writeFileSync(join(folder, 'packed.js'), `export default '${packed}';\n`);
   for (const file of ['package.json', 'README.md']) copyFileSync(join(here, 'package', file), join(folder, file));
   copyFileSync(join(here, '../LICENSE'), join(folder, 'LICENSE'));
+}
+
+/** What the page shows of bench/error.json: three numbers of each error, as texts. */
+function errors() {
+  const { gpu, nodes } = JSON.parse(readFileSync(join(here, '../bench/error.json'), 'utf8'));
+  const spread = (of) => of && [of.max, of.p999, of.rms];
+  const body = ({ e1, e2, e3, alone }) => ({
+    e1: spread(e1?.ulp), e2: spread(e2?.absolute), e3: spread(e3?.absolute), against: e3?.against,
+    alone: alone && [alone.instructions, alone.inverse_throughput],
+  });
+  const bodies = (of) => Object.fromEntries(Object.entries(of).map(([name, each]) => [name, body(each)]));
+  return { gpu, nodes: Object.fromEntries(Object.entries(nodes).map(([name, of]) => [name, bodies(of)])) };
 }
 
 async function makePage() {
   const bundle = await build({
     entryPoints: [join(here, 'page/main.ts')], bundle: true, format: 'esm', target: 'es2022', minify: true, write: false,
-    define: { 'import.meta.url': 'location.href' }, legalComments: 'inline',
+    define: { 'import.meta.url': 'location.href' }, legalComments: 'inline', external: ['./packed.js'],
   });
   const inScript = (text) => text.replace(/<\/script/gi, '<\\/script');
   const samples = readdirSync(examples).filter((name) => name.endsWith('.gltf')).sort().map((name) => embedded(join(examples, name)));
   const parts = {
     '/*style*/': readFileSync(join(here, 'page/style.css'), 'utf8'),
     '<!--samples-->': JSON.stringify(samples).replace(/</g, '\\u003c'),
-    '<!--wasm-->': gzipSync(readFileSync(wasm), { level: 9 }).toString('base64'),
+    '<!--errors-->': JSON.stringify(errors()).replace(/</g, '\\u003c'),
+    '<!--wasm-->': packed,
     '<!--script-->': inScript(bundle.outputFiles[0].text),
   };
   let page = readFileSync(join(here, 'page/index.html'), 'utf8');

@@ -25,7 +25,10 @@ __all__ = [
 
 _lib = load()
 
-ATTRIBUTES = ("NORMAL", "TANGENT", "COLOR_0", "TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3")
+# By bit. JOINTS_n come with WEIGHTS_n; the last three are morph targets, instances, and positions or texture coordinates
+# that are stored as integers.
+ATTRIBUTES = ("NORMAL", "TANGENT", "COLOR_0", "TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3", "JOINTS_0",
+              "JOINTS_1", "MORPH_TARGETS", "INSTANCES", "QUANTIZED")
 _UNUSED = ("NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1")
 _LEVELS = ("note", "warning", "error")
 _STAGES = {"vertex": 0, "fragment": 1}

@@ -214,10 +214,10 @@ std::string Graph::dump(const Options& options, std::string_view pass, Messages&
   }
   std::string text;
   const auto keep = [&](std::string_view name, const ir::Module& module) {
-    if (pass.empty() || name == pass) text = ir::dump(module);
+    if (name == pass) text = ir::dump(module);
   };
   const Result<ir::Module> module = impl_->module(options, checkReading, keep);
-  if (module) return text;
+  if (module) return pass.empty() ? ir::dump(*module) : text;
   report(module.error(), impl_->file, messages);
   return {};
 }

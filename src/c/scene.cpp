@@ -20,14 +20,23 @@ uint32_t bitsOf(const Attributes& attributes) {
   add(attributes.color0, LACQUER_COLOR_0);
   for (size_t i = 0; i < attributes.texCoord.size(); ++i)
     add(attributes.texCoord[i], LACQUER_TEXCOORD_0 << static_cast<int>(i));
+  add(attributes.skin[0], LACQUER_JOINTS_0);
+  add(attributes.skin[1], LACQUER_JOINTS_1);
+  add(attributes.morph, LACQUER_MORPH_TARGETS);
+  add(attributes.instances, LACQUER_INSTANCES);
+  add(attributes.quantized, LACQUER_QUANTIZED);
   return bits;
 }
 
 Attributes attributesOf(uint32_t bits) {
-  Attributes attributes{
-      (bits & LACQUER_NORMAL) != 0, (bits & LACQUER_TANGENT) != 0, (bits & LACQUER_COLOR_0) != 0, {}};
+  const auto has = [bits](int bit) { return (bits & static_cast<uint32_t>(bit)) != 0; };
+  Attributes attributes{has(LACQUER_NORMAL), has(LACQUER_TANGENT), has(LACQUER_COLOR_0), {}};
   for (size_t i = 0; i < attributes.texCoord.size(); ++i)
-    attributes.texCoord[i] = (bits & static_cast<uint32_t>(LACQUER_TEXCOORD_0) << i) != 0;
+    attributes.texCoord[i] = has(LACQUER_TEXCOORD_0 << static_cast<int>(i));
+  attributes.skin = {has(LACQUER_JOINTS_0), has(LACQUER_JOINTS_1)};
+  attributes.morph = has(LACQUER_MORPH_TARGETS);
+  attributes.instances = has(LACQUER_INSTANCES);
+  attributes.quantized = has(LACQUER_QUANTIZED);
   return attributes;
 }
 

@@ -30,8 +30,10 @@ const char* lacquer_shader_text(const lacquer_shader* shader, const char* target
   const bool known = target != nullptr && lacquer::findTarget(target, found);
   const Shader& of = shaderOf(shader);
   if (!known || (stage != LACQUER_VERTEX && stage != LACQUER_FRAGMENT)) return give(kNone, size);
-  if (stage == LACQUER_VERTEX) return give(of.vertexText(found), size);
-  return give(found == lacquer::Target::Cpp ? of.headerText() : of.fragmentText(found), size);
+  const bool vertex = stage == LACQUER_VERTEX;
+  if (found == lacquer::Target::Js) return give(vertex ? of.moduleTypes() : of.moduleText(), size);
+  if (found == lacquer::Target::Cpp && !vertex) return give(of.headerText(), size);
+  return give(vertex ? of.vertexText(found) : of.fragmentText(found), size);
 }
 
 const uint32_t* lacquer_shader_spirv(const lacquer_shader* shader, int stage, size_t* count) {

@@ -26,7 +26,8 @@ void eachOption(const Options& options, Each each) {
   const auto& [profile, simplify, template_name, targets, parameters, lights, switches, ibl,
                multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, spirv_route, debug,
                live, node_directories, jobs, cache, cache_size, depfile, shard, limits, allow, cache_key,
-               argument_buffers, sync] = options;
+               argument_buffers, sync, programs, weights, programs_report, programs_model, pipelines] =
+      options;
   each(Decides::Graph, profile);
   each(Decides::Graph, simplify);
   each(Decides::Graph, template_name);
@@ -56,6 +57,12 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Nothing, cache_key);
   each(Decides::MslCode, argument_buffers);
   each(Decides::Nothing, sync);
+  // What comes of them depends on all the inputs together: it goes into the keys by itself.
+  each(Decides::Run, programs);
+  each(Decides::Run, weights);
+  each(Decides::Run, programs_report);
+  each(Decides::Run, programs_model);
+  each(Decides::Run, pipelines);
 }
 
 /// Puts the options in that decide one of these.

@@ -59,12 +59,12 @@ void ProgressLine::operator()(size_t done, size_t known) {
   open_ = true;
 }
 
-Report makePlan(const std::string& ninja, const std::vector<std::string>& arguments, bool replan,
-                const std::vector<std::string>& files, const std::vector<std::string>& materials,
+Report makePlan(const std::string& ninja, const std::string& json, const std::vector<std::string>& arguments,
+                bool replan, const std::vector<std::string>& files, const std::vector<std::string>& materials,
                 const std::string& folder, const Options& options, Messages& messages) {
   const std::string& program = arguments[0];
-  return plan({ninja, program, graphCommand(program, folder, options), replan ? arguments : Strings()}, files,
-              materials, folder, options, messages);
+  return plan({ninja, program, graphCommand(program, folder, options), replan ? arguments : Strings(), json},
+              files, materials, folder, options, messages);
 }
 
 }  // namespace lacquer::cli

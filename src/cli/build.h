@@ -31,8 +31,8 @@ private:
 
 /// `lacquer plan`: `arguments` are the program's own, from its name on; with `replan` the plan keeps
 /// itself up to date.
-Report makePlan(const std::string& ninja, const std::vector<std::string>& arguments, bool replan,
-                const std::vector<std::string>& files, const std::vector<std::string>& materials,
+Report makePlan(const std::string& ninja, const std::string& json, const std::vector<std::string>& arguments,
+                bool replan, const std::vector<std::string>& files, const std::vector<std::string>& materials,
                 const std::string& folder, const Options& options, Messages& messages);
 
 }  // namespace lacquer::cli

@@ -13,6 +13,7 @@
 #include "cli/checks.h"
 #include "cli/cost.h"
 #include "cli/dfg.h"
+#include "cli/environment.h"
 #include "cli/eval.h"
 #include "cli/lod.h"
 #include "cli/preview.h"
@@ -40,6 +41,7 @@ constexpr int kUsage = 2;
 constexpr const char kNoOutput[] =
     "lacquer: error: the standard output cannot be written [output-unwritable]\n";
 constexpr int kMostJobs = 1024;  ///< more threads than that are a mistyped number
+constexpr unsigned kMostPrograms = 1000000;
 
 struct Flags {
   Options options;
@@ -49,7 +51,7 @@ struct Flags {
   bool json = false, no_validate = false, no_ibl = false, no_multiple_scattering = false, quiet = false;
   bool disassembly = false, time = false, replan = false, no_sync = false;
   std::string arithmetic = "vulkan";  ///< of `prove`
-  std::string ninja;
+  std::string ninja, plan_json;
   std::optional<std::string> material;
   std::vector<std::string> arguments;  ///< the program's own, as given
 };
@@ -195,6 +197,16 @@ void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_flag("--debug", flags.options.debug,
                 "SPIR-V has the names of values and the lines of the nodes (with --spirv-from direct)");
   verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");
+  verb.add_option(
+          "--programs", flags.options.programs,
+          "at most so many programs: materials share them, each with its own numbers (docs/builds.md)")
+      ->check(CLI::Range(1U, kMostPrograms))
+      ->check(kWhole);
+  verb.add_option("--weights", flags.options.weights,
+                  "a JSON file: how much of the picture each material takes, for --programs")
+      ->check(kNotEmpty);
+  verb.add_flag("--model-costs", flags.options.programs_model,
+                "what programs cost by the model, not by a driver: the same on every machine");
   verb.add_flag("--unused", flags.options.unused, "also materials that no primitive uses");
   verb.add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
       ->check(CLI::Range(0, kMostJobs))
@@ -225,8 +237,16 @@ void addGen(CLI::App& verb, Flags& flags) {
       ->check(kNotEmpty);
   verb.add_option("--shard", flags.options.shard, "in place of manifest.json: a file for `merge`")
       ->check(kNotEmpty);
+  auto* report = verb.add_option("--programs-report", flags.options.programs_report,
+                                 "a .json, .md or .svg file: what the materials cost with fewer programs")
+                     ->check(kNotEmpty);
+  verb.add_option("--pipelines", flags.options.pipelines,
+                  "a JSON file: the pipelines that an engine can make ahead of time")
+      ->check(kNotEmpty);
   addGeneration(verb, flags);
   graphs->excludes(verb.get_option("--material"));
+  graphs->excludes(verb.get_option("--programs"));
+  graphs->excludes(report);
   // A graph is what it is.
   graphs->excludes(verb.get_option("--simplify"));
 }
@@ -235,6 +255,8 @@ void addPlan(CLI::App& verb, Flags& flags) {
   verb.add_option("files", flags.files, ".gltf or .glb files")->required();
   verb.add_option("--ninja", flags.ninja, "the Ninja file; what its commands read is put beside it")
       ->required()
+      ->check(kNotEmpty);
+  verb.add_option("--json", flags.plan_json, "the same commands as JSON, for a farm of any kind")
       ->check(kNotEmpty);
   verb.add_flag("--replan", flags.replan, "the Ninja file makes itself anew when an input has changed");
   addGeneration(verb, flags);
@@ -285,8 +307,8 @@ int plan(const Flags& flags) {
   Messages messages;
   const auto begin = std::chrono::steady_clock::now();
   const lacquer::Report report =
-      lacquer::cli::makePlan(flags.ninja, flags.arguments, flags.replan, flags.files, flags.materials,
-                             flags.output, flags.options, messages);
+      lacquer::cli::makePlan(flags.ninja, flags.plan_json, flags.arguments, flags.replan, flags.files,
+                             flags.materials, flags.output, flags.options, messages);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   print(messages);
   const bool good = report.ok && !hasError(messages);
@@ -430,6 +452,8 @@ int run(int argc, char** argv) {
   CLI::App* eval_verb = lacquer::cli::addEval(app, eval_flags);
   lacquer::cli::DfgFlags dfg_flags;
   CLI::App* dfg_verb = lacquer::cli::addDfg(app, dfg_flags);
+  lacquer::cli::EnvironmentFlags environment_flags;
+  CLI::App* environment_verb = lacquer::cli::addEnvironment(app, environment_flags);
   lacquer::cli::PreviewFlags preview_flags;
   CLI::App* preview_verb = lacquer::cli::addPreview(app, preview_flags);
   lacquer::cli::LodFlags lod_flags;
@@ -468,6 +492,7 @@ int run(int argc, char** argv) {
   }
   if (*eval_verb) return lacquer::cli::runEval(eval_flags);
   if (*dfg_verb) return lacquer::cli::runDfg(dfg_flags);
+  if (*environment_verb) return lacquer::cli::runEnvironment(environment_flags);
   if (*preview_verb) return lacquer::cli::runPreview(preview_flags);
   if (*lod_verb) return lacquer::cli::runLod(lod_flags, flags.files, flags.materials, flags.options);
   if (*stress_verb) return lacquer::cli::runStress(stress_flags);

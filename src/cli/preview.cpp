@@ -38,6 +38,9 @@ CLI::App* addPreview(CLI::App& app, PreviewFlags& flags) {
   verb->add_option("--texel", flags.preview.texels,
                    "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
       ->allow_extra_args(false);
+  verb->add_option("--environment", flags.preview.environment,
+                   "a picture of the surroundings, .hdr or .exr: the light in place of the studio's")
+      ->check(kNotEmpty);
   verb->add_flag("--no-ibl", flags.no_ibl, "no image-based light");
   verb->add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
                  "do not compensate image-based light for multiple scattering");

@@ -34,6 +34,15 @@ CLI::App* addStress(CLI::App& app, StressFlags& flags) {
       ->capture_default_str();
   verb->add_flag("--mediump", flags.stress.mediump,
                  "round every operation to half precision and only report what comes of it");
+  verb->add_option("--engine", flags.engine,
+                   "float: on the CPU; vulkan: on the first Vulkan device too, and what differs from the CPU")
+      ->check(CLI::IsMember({"float", "vulkan"}))
+      ->capture_default_str();
+  verb->add_option(
+          "--spirv-from", flags.spirv_from,
+          "what --engine vulkan runs: direct, or through glslang: its GLSL (glslang), its HLSL (hlsl)")
+      ->check(CLI::IsMember({"direct", "glslang", "hlsl"}))
+      ->capture_default_str();
   verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files")
       ->check(kNotEmpty)
       ->allow_extra_args(false);
@@ -56,15 +65,19 @@ std::string titleOf(const Json& subject) {
     const std::string name = subject["node"].get<std::string>();
     return subject.contains("variant") ? name + "." + subject["variant"].get<std::string>() : name;
   }
-  return fmt::format("{}: {}", subject["file"].get<std::string>(), subject["name"].get<std::string>());
+  return fmt::format("{}: {}{}", subject["file"].get<std::string>(), subject["name"].get<std::string>(),
+                     subject.contains("tangents") ? ", without tangents" : "");
 }
 
 void printFound(const std::string& text, bool quiet) {
   const Json answer = json::reread(text);
   for (const auto& subject : answer["subjects"]) {
-    const bool bare = subject["findings"].empty() && !subject.contains("energy");
+    const bool bare =
+        subject["findings"].empty() && !subject.contains("energy") && !subject.contains("skipped");
     if (bare || (quiet && subject["findings"].empty())) continue;
     fmt::print("{}\n", printable(titleOf(subject)));
+    if (subject.contains("skipped"))
+      fmt::print("  not on the device: {}\n", printable(subject["skipped"].get<std::string>()));
     if (subject.contains("energy") && !quiet) {
       const auto& energy = subject["energy"];
       fmt::print(
@@ -90,6 +103,10 @@ void printFound(const std::string& text, bool quiet) {
 }  // namespace
 
 int runStress(StressFlags& flags) {
+  if (flags.engine == "vulkan")
+    flags.stress.engine = flags.spirv_from == "hlsl"      ? Engine::VulkanHlsl
+                          : flags.spirv_from == "glslang" ? Engine::VulkanGlsl
+                                                          : Engine::Vulkan;
   Messages messages;
   std::string answer;
   {

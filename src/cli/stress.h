@@ -13,6 +13,7 @@ struct StressFlags {
   Options options;
   Stress stress;
   std::vector<std::string> subjects;
+  std::string engine = "float", spirv_from = "direct";
   bool json = false, quiet = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "cli/build.h"
@@ -28,6 +29,37 @@ std::string pageOf(const std::string& program) {
       .string();
 }
 
+/// A folder of nobody else's, which goes with its contents.
+class Scratch {
+public:
+  Scratch() {
+    std::error_code error;
+    std::string pattern = (fs::temp_directory_path(error) / "lacquer-view-XXXXXX").string();
+    if (!error && mkdtemp(pattern.data()) != nullptr) path = pattern;
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch() {
+    std::error_code ignored;
+    if (!path.empty()) fs::remove_all(path, ignored);
+  }
+  std::string path;  ///< empty where there is none
+};
+
+/// What the files' shaders cost by the driver's compiler; nothing where there is none. What is wrong with a
+/// material the page says itself.
+std::vector<ShaderCost> costsOf(const ViewFlags& flags) {
+  const Scratch scratch;
+  if (flags.files.empty() || scratch.path.empty()) return {};
+  Options options = flags.options;
+  options.targets = {Target::Spirv};
+  options.validate = false;
+  options.sync = false;
+  Messages ignored;
+  if (generate(flags.files, {}, scratch.path, options, ignored).shaders.empty()) return {};
+  return measureCost({scratch.path}, false, ignored);
+}
+
 }  // namespace
 
 CLI::App* addView(CLI::App& app, ViewFlags& flags) {
@@ -39,6 +71,8 @@ CLI::App* addView(CLI::App& app, ViewFlags& flags) {
   verb->add_option("-o,--output", flags.view.output, "the HTML file to write")->required()->check(not_empty);
   verb->add_option("--page", flags.view.page,
                    "the page without files, in place of the one that is installed");
+  verb->add_flag("--no-cost", flags.no_cost,
+                 "do not measure what the shaders cost, where Mesa's compiler is there");
   addLimit(*verb, flags.options);
   verb->add_option("--allow", flags.options.allow,
                    "a folder in which buffers and images may lie, beside the file's own (may be repeated)")
@@ -48,6 +82,7 @@ CLI::App* addView(CLI::App& app, ViewFlags& flags) {
 
 int runView(ViewFlags& flags) {
   if (flags.view.page.empty()) flags.view.page = pageOf(flags.program);
+  if (!flags.no_cost) flags.view.costs = costsOf(flags);
   Messages messages;
   const bool written = writeView(flags.view, flags.files, flags.options, messages);
   print(messages);

@@ -13,7 +13,8 @@ struct ViewFlags {
   View view;
   Strings files;
   Options options;
-  std::string program;  ///< the command line's first word
+  std::string program;   ///< the command line's first word
+  bool no_cost = false;  ///< measure nothing
 };
 
 CLI::App* addView(CLI::App& app, ViewFlags& flags);

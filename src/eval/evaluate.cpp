@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "eval/rough.h"
+
 namespace lacquer::eval {
 
 namespace {
@@ -22,18 +24,29 @@ float roundedToHalf(float x) {
   return std::bit_cast<float>(bits & ~0x1FFFU);
 }
 
+/// What becomes of a number from outside, and of an operation's result.
+struct Exactly {
+  template <class T>
+  T input(T x) const {
+    return x;
+  }
+  template <class T>
+  T operator()(Op, T, T, T x) const {
+    return x;
+  }
+};
+
 /// Float operations rounded to half are the half operations: float has more than twice the bits (Figueroa
 /// 1995).
-template <bool kHalf, class T>
-T rounded(T x) {
-  if constexpr (kHalf) return roundedToHalf(x);
-  return x;
-}
+struct ToHalf {
+  float input(float x) const { return roundedToHalf(x); }
+  float operator()(Op, float, float, float x) const { return roundedToHalf(x); }
+};
 
 /// One component-wise op over the lanes. `b` and `c` are any readable array where the op has fewer operands.
 /// `out` may be one of the operands.
-template <class T, bool kHalf>
-void mapLanes(Op op, const T* pa, const T* pb, const T* pc, T* out, size_t lanes) {
+template <class T, class Rounding>
+void mapLanes(Op op, const T* pa, const T* pb, const T* pc, T* out, size_t lanes, Rounding& rounding) {
   switch (op) {
 #define OP(e, name, arity, signature, glsl, hlsl, set, inst, fold, prose) \
   case Op::e:                                                             \
@@ -41,7 +54,7 @@ void mapLanes(Op op, const T* pa, const T* pb, const T* pc, T* out, size_t lanes
       [[maybe_unused]] const T a = pa[i];                                 \
       [[maybe_unused]] const T b = pb[i];                                 \
       [[maybe_unused]] const T c = pc[i];                                 \
-      out[i] = rounded<kHalf>(static_cast<T>(fold));                      \
+      out[i] = rounding(Op::e, a, b, static_cast<T>(fold));               \
     }                                                                     \
     return;
 #include "ir/ops.def"
@@ -49,11 +62,15 @@ void mapLanes(Op op, const T* pa, const T* pb, const T* pc, T* out, size_t lanes
   }
 }
 
-template <class T, bool kHalf = false>
+template <class T, class Rounding = Exactly>
 class Machine {
 public:
-  Machine(const Program& program, const Bindings& bindings, size_t points)
-      : program_(program), bindings_(bindings), points_(points), registers_(program.registers * kBatch) {
+  Machine(const Program& program, const Bindings& bindings, size_t points, Rounding rounding = Rounding())
+      : program_(program),
+        bindings_(bindings),
+        points_(points),
+        rounding_(rounding),
+        registers_(program.registers * kBatch) {
     for (const std::string& name : program.columns) columns_.push_back(column(name));
     for (const std::string& name : program.textures)
       samplers_.push_back(&bindings.textures.find(name)->second);
@@ -125,9 +142,9 @@ private:
     const double* source = from.values.data() + instruction.component;
     if (from.per_point) {
       for (size_t i = 0; i < lanes_; ++i)
-        out[i] = rounded<kHalf>(static_cast<T>(source[(first_ + i) * stride]));
+        out[i] = rounding_.input(static_cast<T>(source[(first_ + i) * stride]));
     } else {
-      std::fill(out, out + lanes_, rounded<kHalf>(static_cast<T>(*source)));
+      std::fill(out, out + lanes_, rounding_.input(static_cast<T>(*source)));
     }
   }
 
@@ -142,7 +159,7 @@ private:
       const double lod =
           instruction.args[3] == kNoRegister ? 0 : static_cast<double>(at(instruction.args[3])[i]);
       const std::array<double, 4> texel = sampler(first_ + i, coordinate, lod);
-      for (size_t c = 0; c < 4; ++c) at(instruction.outs[c])[i] = rounded<kHalf>(static_cast<T>(texel[c]));
+      for (size_t c = 0; c < 4; ++c) at(instruction.outs[c])[i] = rounding_.input(static_cast<T>(texel[c]));
     }
   }
 
@@ -154,7 +171,7 @@ private:
       std::array<T, 4> in{};
       for (size_t k = 0; k < 4; ++k) in[k] = a[std::min(quad + k, lanes_ - 1)];
       for (size_t k = 0; k < 4 && quad + k < lanes_; ++k)
-        out[quad + k] = rounded<kHalf>(in[k | step] - in[k & ~step]);
+        out[quad + k] = rounding_(Op::Sub, in[k | step], in[k & ~step], in[k | step] - in[k & ~step]);
     }
   }
 
@@ -165,10 +182,10 @@ private:
     };
     const Register out = instruction.outs[0];
     switch (instruction.step) {
-      case Step::Map: return mapLanes<T, kHalf>(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_);
+      case Step::Map: return mapLanes(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_, rounding_);
       case Step::Literal:
         return static_cast<void>(std::fill_n(
-            at(out), lanes_, rounded<kHalf>(static_cast<T>(program_.literals[instruction.payload]))));
+            at(out), lanes_, rounding_.input(static_cast<T>(program_.literals[instruction.payload]))));
       case Step::Load: return load(*columns_[instruction.payload], instruction);
       case Step::Light: {
         const size_t light = instruction.element >= 0 ? static_cast<size_t>(instruction.element) : light_;
@@ -186,6 +203,7 @@ private:
   const Program& program_;
   const Bindings& bindings_;
   size_t points_;
+  Rounding rounding_;
   std::vector<T> registers_;
   std::vector<const Column*> columns_, light_columns_;
   std::vector<const Sampler*> samplers_;
@@ -200,7 +218,12 @@ std::vector<std::vector<T>> run(const Program& program, const Bindings& bindings
 }
 
 std::vector<std::vector<float>> runHalf(const Program& program, const Bindings& bindings, size_t points) {
-  return Machine<float, true>(program, bindings, points).run();
+  return Machine<float, ToHalf>(program, bindings, points).run();
+}
+
+std::vector<std::vector<double>> runRough(const Program& program, const Bindings& bindings, size_t points,
+                                          uint64_t seed) {
+  return Machine<double, Rough>(program, bindings, points, Rough(seed)).run();
 }
 
 template <class T>

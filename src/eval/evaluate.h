@@ -19,6 +19,11 @@ std::vector<std::vector<T>> run(const Program& program, const Bindings& bindings
 /// may do with `mediump` at its worst.
 std::vector<std::vector<float>> runHalf(const Program& program, const Bindings& bindings, size_t points);
 
+/// run<float>() as a device may do it: each operation gives one of the results that Vulkan allows it, chosen
+/// by `seed`, which is not 0 (eval/rough.h).
+std::vector<std::vector<double>> runRough(const Program& program, const Bindings& bindings, size_t points,
+                                          uint64_t seed);
+
 /// compile() and run().
 template <class T>
 Result<std::vector<std::vector<T>>> evaluate(const ir::Module& module, std::span<const ir::ValueId> roots,

@@ -44,8 +44,15 @@ struct VertexAttributes {
   bool tangent = false;
   bool color0 = false;
   std::array<bool, 4> texCoord{};
+  std::array<bool, 2> skin{};  ///< JOINTS_0 with WEIGHTS_0, JOINTS_1 with WEIGHTS_1
+  bool morph = false;          ///< the primitive has targets
+  bool instances = false;      ///< a node has instances of its mesh (EXT_mesh_gpu_instancing)
+  /// POSITION or a TEXCOORD_n is stored as integers that stand for themselves (KHR_mesh_quantization).
+  bool quantized = false;
   auto operator<=>(const VertexAttributes&) const = default;
-  /// Semantic names without POSITION, in the order NORMAL, TANGENT, TEXCOORD_0…3, COLOR_0.
+  /// Semantic names without POSITION, in the order NORMAL, TANGENT, TEXCOORD_0…3, COLOR_0, JOINTS_0,
+  /// WEIGHTS_0, JOINTS_1, WEIGHTS_1, MORPH_VERTEX (the vertex's number, which targets are looked up by),
+  /// TRANSLATION, ROTATION, SCALE, QUANTIZED (no attribute: how others are stored).
   std::vector<std::string> names() const;
 };
 
@@ -70,6 +77,7 @@ struct Primitive {
   VertexAttributes attributes;
   std::vector<AttributeFormat> formats;  ///< of all its attributes, in the file's order
   std::vector<VariantMapping> mappings;
+  std::vector<std::vector<std::string>> targets;  ///< semantics of each morph target, in the file's order
 };
 
 /// A texture's images and its sampler, in OpenGL's numbers as glTF has them.

@@ -71,6 +71,8 @@ public:
       } else if (name == "material") {
         out_.material = materialIndex(value, here);
         usable = usable && out_.material >= 0;
+      } else if (name == "targets") {
+        targets(value, here);
       } else if (name == "extensions") {
         eachMember(report_, value, here, "extensions",
                    [&](std::string_view key, const Json& extension, const Path& p) {
@@ -97,10 +99,34 @@ private:
                  format.semantic = printable(name);
                  if (accessor >= 0) stored(root_["accessors"][static_cast<size_t>(accessor)], format);
                  checkFormat(format, here);
+                 if (standsForItself(format)) out_.attributes.quantized = true;
                  out_.formats.push_back(std::move(format));
                });
+    influences(path);
     // Tangents of a primitive without normals must be ignored (glTF 2.0, section 3.7.2.1).
     out_.attributes.tangent &= out_.attributes.normal;
+  }
+
+  /// Integers that a vertex format may not make floats of, of an attribute that may be other than an integer.
+  static bool standsForItself(const AttributeFormat& format) {
+    constexpr std::array<std::string_view, 5> kNumbers = {"POSITION", "TEXCOORD_0", "TEXCOORD_1",
+                                                          "TEXCOORD_2", "TEXCOORD_3"};
+    return !format.normalized && !format.componentType.empty() && format.componentType != "FLOAT" &&
+           std::find(kNumbers.begin(), kNumbers.end(), format.semantic) != kNumbers.end();
+  }
+
+  /// Joints count with their weights alone, and the second four behind the first.
+  void influences(const Path& path) {
+    std::array<bool, 2>& skin = out_.attributes.skin;
+    for (size_t i = 0; i < skin.size(); ++i) {
+      skin[i] = joints_[i] && weights_[i] && (i == 0 || skin[0]);
+      if (skin[i]) continue;
+      for (const auto& [there, what] :
+           {std::pair(joints_[i], "JOINTS_"), std::pair(weights_[i], "WEIGHTS_")}) {
+        const std::string name = fmt::format("{}{}", what, i);
+        if (there) unread(name, Path(path, name));
+      }
+    }
   }
 
   /// Notes an attribute of those that shaders may read: it is there, whatever its data.
@@ -112,7 +138,26 @@ private:
     for (size_t i = 0; i < a.texCoord.size(); ++i) {
       if (name == fmt::format("TEXCOORD_{}", i)) return a.texCoord[i] = true;
     }
+    for (size_t i = 0; i < joints_.size(); ++i) {
+      if (name == fmt::format("JOINTS_{}", i)) return joints_[i] = true;
+      if (name == fmt::format("WEIGHTS_{}", i)) return weights_[i] = true;
+    }
     return name == "POSITION";
+  }
+
+  void targets(const Json& targets, const Path& path) {
+    eachElement(report_, targets, path, "morph target", [&](const Json& target, const Path& p, size_t) {
+      std::vector<std::string>& semantics = out_.targets.emplace_back();
+      for (const auto& [name, value] : target.items()) {
+        int accessor = -1;
+        report_.index(Path(p, name), printable(name), value, arraySize(root_, "accessors"), "accessor",
+                      accessor);
+        semantics.push_back(printable(name));
+        if (name != "POSITION" && name != "NORMAL" && name != "TANGENT")
+          unread(fmt::format("{} of a morph target", printable(name)), Path(p, name));
+      }
+    });
+    out_.attributes.morph = !out_.targets.empty();
   }
 
   /// Said once in a file for each of glTF's semantics; the application's own begin with an underscore.
@@ -202,6 +247,7 @@ private:
   const Json& root_;
   Report& report_;
   Primitive& out_;
+  std::array<bool, 2> joints_{}, weights_{};
   std::set<int> chosen_;  ///< variants that have a material
 };
 

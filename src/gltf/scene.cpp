@@ -1,6 +1,7 @@
 #include "gltf/scene.h"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -34,6 +35,17 @@ void sortDistinct(std::vector<VertexAttributes>& sets) {
   sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
 }
 
+/// A mesh that one node has instances of is drawn in instances wherever it is.
+void collectInstances(const Json& checked, Scene& scene) {
+  std::set<size_t> meshes;
+  for (const Json& node : elements(checked, "nodes")) {
+    const int mesh = indexOf(extensionOf(node, "EXT_mesh_gpu_instancing"), "mesh");
+    if (mesh >= 0) meshes.insert(static_cast<size_t>(mesh));
+  }
+  for (Primitive& primitive : scene.primitives)
+    primitive.attributes.instances = meshes.contains(primitive.mesh);
+}
+
 void collectUses(Scene& scene) {
   for (const Primitive& primitive : scene.primitives) {
     const auto use = [&](int material) {
@@ -64,6 +76,7 @@ void collectLights(const Json& checked, Scene& scene) {
 void readScene(const Json& root, Scene& scene) {
   const Json checked = checkScene(root, scene);
   scene.uses.resize(arraySize(root, "materials"));
+  collectInstances(checked, scene);
   collectUses(scene);
   collectLights(checked, scene);
 }

@@ -15,6 +15,7 @@ namespace lacquer::gltf {
 namespace {
 
 constexpr std::string_view kLights = "KHR_lights_punctual";
+constexpr std::string_view kInstances = "EXT_mesh_gpu_instancing";
 constexpr std::string_view kQuantization = "KHR_mesh_quantization";
 constexpr std::string_view kData = "data:";
 
@@ -180,14 +181,19 @@ void SceneChecker::image(const Json& image, const Path& path) {
 
 Json SceneChecker::node(const Json& node, const Path& path) {
   Json out = Json::object();
+  int mesh = -1;
   for (const auto& [name, value] : node.items()) {
     const Path here(path, name);
     int index = -1;
-    if (name == "mesh") report_.index(here, "mesh", value, arraySize(root_, "meshes"), "mesh", index);
+    if (name == "mesh") report_.index(here, "mesh", value, arraySize(root_, "meshes"), "mesh", mesh);
     if (name != "extensions") continue;
     members(value, here, "extensions", [&](std::string_view key, const Json& extension, const Path& p) {
-      if (key != kLights) return;
+      if (key != kLights && key != kInstances) return;
       if (!extension.is_object()) return report_.wrongType(p, key, extension, "an object");
+      if (key == kInstances) {
+        out["extensions"][std::string(kInstances)] = Json::object();
+        return;
+      }
       const Json* light = member(extension, "light");
       if (light == nullptr) {
         report_.error("missing-property", p, fmt::format("{} has no \"light\"", key), "it must name a light");
@@ -196,6 +202,8 @@ Json SceneChecker::node(const Json& node, const Path& path) {
       }
     });
   }
+  if (out.contains("extensions") && out["extensions"].contains(kInstances))
+    out["extensions"][std::string(kInstances)]["mesh"] = mesh;
   return out;
 }
 

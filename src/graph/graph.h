@@ -78,6 +78,8 @@ struct Skipped {
 struct Graph {
   std::string name;           ///< the material's name
   std::string template_name;  ///< "forward"
+  /// Of the template's optional attributes, those that the primitive has.
+  std::vector<std::string> attributes;
   std::vector<ir::Parameter> parameters;
   std::vector<ir::TextureSlot> textures;
   std::vector<Node> nodes;  ///< in an order in which a node's sources stand before it

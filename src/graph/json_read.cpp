@@ -371,13 +371,20 @@ bool Reader::version(const Json& json, const Path& path) {
 }
 
 Graph Reader::graph(const Json& json) {
-  constexpr std::array<std::string_view, 8> kKeys = {"lacquer_graph", "name",  "template", "parameters",
-                                                     "textures",      "nodes", "outputs",  "skipped"};
+  constexpr std::array<std::string_view, 9> kKeys = {"lacquer_graph", "name",       "template",
+                                                     "attributes",    "parameters", "textures",
+                                                     "nodes",         "outputs",    "skipped"};
   const Path root;
   if (!version(json, root)) return {};
   object(json, root, "the graph", kKeys);
   graph_.name = optionalText(json, root, "name");
   graph_.template_name = requiredText(json, root, "the graph", "template");
+  if (const Json* names = json::member(json, "attributes")) {
+    const Path here(root, "attributes");
+    if (!names->is_array()) report_.wrongType(here, "attributes", *names, "an array of names");
+    for (size_t i = 0; names->is_array() && i < names->size(); ++i)
+      graph_.attributes.push_back(textOf((*names)[i], Path(here, i), "the attribute"));
+  }
   eachMember(json, root, "parameters", [&](const std::string& name, const Json& value, const Path& here) {
     parameter(name, value, here);
   });

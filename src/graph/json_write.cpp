@@ -114,7 +114,7 @@ std::string toJson(const Graph& graph) {
   for (const ir::TextureSlot& t : graph.textures) textures.push_back(member(t.name, texture(t)));
   for (const Node& n : graph.nodes) nodes.push_back(node(n));
   for (const Skipped& s : graph.skipped) skipped.push_back(member(s.term, json::quotedText(s.reason)));
-  const std::vector<std::string> items = {
+  std::vector<std::string> items = {
       member("lacquer_graph", "1"),
       member("name", json::quotedText(graph.name)),
       member("template", json::quotedText(graph.template_name)),
@@ -124,6 +124,11 @@ std::string toJson(const Graph& graph) {
       member("outputs", sources(2, graph.outputs)),
       member("skipped", block("{}", 2, skipped)),
   };
+  if (!graph.attributes.empty()) {
+    std::string list;
+    for (const std::string& name : graph.attributes) list += (list.empty() ? "" : ", ") + json::quotedText(name);
+    items.insert(items.begin() + 3, member("attributes", "[" + list + "]"));
+  }
   return block("{}", 0, items) + "\n";
 }
 

@@ -35,7 +35,9 @@ struct Binding {
   uint32_t flat = 0;
 };
 
-/// The material's own block and textures in that contract.
+/// What is filled for each object in that contract.
+inline constexpr uint32_t kObjectSet = 2;
+/// The material's own block and textures in it.
 inline constexpr Binding kMaterialBinding = {1, 0, 2};
 inline constexpr uint32_t kLeastMaterialTexture = 3;  ///< flat; more where the template has more textures
 

@@ -18,9 +18,15 @@ enum class Engine : uint8_t;
 struct Attributes {
   bool normal = true, tangent = false, color0 = false;
   std::array<bool, 4> texCoord{};
+  /// JOINTS_0 with WEIGHTS_0, JOINTS_1 with WEIGHTS_1; morph targets; instances (EXT_mesh_gpu_instancing).
+  std::array<bool, 2> skin{};
+  bool morph = false, instances = false;
+  /// POSITION or a TEXCOORD_n is stored as integers that stand for themselves (KHR_mesh_quantization).
+  bool quantized = false;
 };
 /// What a material that no primitive uses is read with.
-inline constexpr Attributes kUnusedAttributes{true, true, false, {true, true, false, false}};
+inline constexpr Attributes kUnusedAttributes{true, true,  false, {true, true, false, false},
+                                              {},   false, false, false};
 
 /// The materials of a glTF file.
 class Scene {
@@ -140,6 +146,7 @@ struct Plan {
   std::string program;  ///< the command line program, as a command names it
   Strings command;      ///< the words of its call for one graph, to which the graph and the shard are added
   Strings replan;       ///< the words of the plan's renewal; none for a plan that does not renew itself
+  std::string json;     ///< the same commands for any farm, as JSON; empty for none
 };
 /// Writes the plan and, beside it, the graph of every distinct shader; makes no shader. `folder` is the one
 /// that the commands write to. Uses threads.

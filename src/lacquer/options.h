@@ -141,6 +141,13 @@ struct Options {
   std::string cache_key;  ///< a file: what was not written to the cache with its bytes is not there
   bool argument_buffers = false;  ///< Target::Msl: one for each descriptor set, not plain bindings
   bool sync = true;               ///< what is written is on the disk before it gets its name
+  /// At most so many programs for all materials of generate() and plan(), as far as they can share them
+  /// (docs/builds.md); 0 for one for each structure. Not for Parameters::Baked.
+  uint32_t programs = 0;
+  std::string weights;          ///< a file: how much of the picture each material takes, for `programs`
+  std::string programs_report;  ///< of generate(): a .json, .md or .svg file with what programs cost
+  bool programs_model = false;  ///< their costs by the model, which is the same on every machine
+  std::string pipelines;        ///< of generate(): a JSON file with the pipelines to make ahead of time
 };
 
 /// The terms that Options::live can keep, of the options' library and profile: "coat.darkening", in

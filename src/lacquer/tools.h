@@ -43,6 +43,8 @@ struct Preview {
   uint32_t size = 160;   ///< pixels of a ball, from 16 to 2048
   uint32_t columns = 0;  ///< balls in a row, at most 100; 0 for a good number
   bool in_float = true;  ///< the arithmetic; else double
+  /// A picture of the surroundings, as for writeEnvironment(): the only light then. Empty for the studio.
+  std::string environment;
 };
 /// Draws a ball for each material of the files, or for those of the names in `materials` where that is not
 /// empty. Writes the sheet and returns what was measured as JSON; empty on an error. A material that fails is
@@ -68,22 +70,15 @@ struct Lod {
 std::string makeLevels(const Lod& lod, const Strings& files, const Strings& materials, const Options& options,
                        Messages& messages, const Progress& progress = {});
 
-/// A page to look at files with (docs/web.md).
-struct View {
-  std::string output;  ///< the HTML file to write
-  std::string page;    ///< the page without files, which `./dev web` makes
-};
-/// Puts the files, with the buffers and images that they name, into the page, which is then one file that
-/// needs no other. What a file names and is not there is left out, with a warning. False on an error:
-/// "no-page", "file-unreadable" and the like.
-bool writeView(const View& view, const Strings& files, const Options& options, Messages& messages);
-
 /// How an attack is made (docs/stress.md).
 struct Stress {
   uint64_t samples = 100000;  ///< inputs for each node and material, from 1 to 2^40
   uint64_t total = 0;    ///< instead, inputs for all of them together, at most 2^40; 0 for `samples` of each
   uint64_t seed = 1;     ///< another one draws other inputs
   bool mediump = false;  ///< every operation rounded to half precision
+  /// What is looked at: the CPU's floats, or a Vulkan device's beside them; not Double. Half precision and
+  /// JSON cases of jumps are the CPU's.
+  Engine engine = Engine::Float;
 };
 /// Attacks nodes (names; "nodes" for every one, as when there are no subjects), the materials of .gltf and
 /// .glb files, and .json cases: what was found, as JSON; empty on an error. Uses threads.
@@ -108,6 +103,17 @@ struct ShaderCost {
 /// wrote. What cannot be read is left out, with a message. Starts processes.
 std::vector<ShaderCost> measureCost(const Strings& paths, bool disassembly, Messages& messages);
 
+/// A page to look at files with (docs/web.md).
+struct View {
+  std::string output;             ///< the HTML file to write
+  std::string page;               ///< the page without files, which `./dev web` makes
+  std::vector<ShaderCost> costs;  ///< what the page shows for the shaders of these ids; may be empty
+};
+/// Puts the files, with the buffers and images that they name, into the page, which is then one file that
+/// needs no other. What a file names and is not there is left out, with a warning. False on an error:
+/// "no-page", "file-unreadable" and the like.
+bool writeView(const View& view, const Strings& files, const Options& options, Messages& messages);
+
 /// The table behind environment_dfg (docs/bindings.md): `size` rows of roughness with `size` columns of N.V
 /// at texel centres, scale and bias of F0 in each, all in [0, 1]. `size` is from 2 to 1024; else empty, and
 /// "out-of-range".
@@ -121,6 +127,21 @@ bool writeEnvironmentDfg(const std::string& path, uint32_t size, Messages& messa
 std::vector<float> environmentSheen(uint32_t size, Messages& messages);
 /// The same as a file, as writeEnvironmentDfg() has it.
 bool writeEnvironmentSheen(const std::string& path, uint32_t size, Messages& messages);
+
+/// What is made of a picture of the surroundings (docs/environments.md).
+struct Environment {
+  std::string output;       ///< the folder to write to
+  uint32_t size = 256;      ///< of environment_specular's faces: a power of two from 32 to 1024
+  uint32_t samples = 1024;  ///< about how many parts of the picture each texel is made of, from 64 to 65536
+  bool dds = false;         ///< files are .dds; else .ktx2
+  bool shared_exponents = false;  ///< texels of cubes are RGB9E5; else half floats
+};
+/// Reads an equirectangular picture, Radiance HDR or OpenEXR, and writes the cube maps and tables that
+/// templates read (environment_specular, environment_charlie, environment_irradiance, environment_dfg,
+/// environment_sheen) and environment.json, which names them. Returns that JSON; empty on an error:
+/// "environment-unreadable", "image-too-large" and the like. Uses threads.
+std::string writeEnvironment(const Environment& environment, const std::string& picture,
+                             const Options& options, Messages& messages, const Progress& progress = {});
 
 /// The node library as JSON: contracts, ranges, sources, variants. Of the options, `node_directories`. Empty
 /// on an error.

@@ -205,6 +205,14 @@ struct AttributeDecl {
   std::string_view name;
   uint32_t location = 0;
   uint32_t slot = 0;
+  /// A primitive may lack it: its location lies behind all others, and the Bool `has_NAME` says whether it is
+  /// there.
+  bool optional = false;
+  bool fact = false;  ///< optional, and nothing but `has_NAME`: it has no location, no type and no slot
+  /// Switches that say so in place of the file where they are set: it is there only if none of them is off,
+  /// and in any case if the last one is on.
+  std::vector<std::string_view> by;
+  uint32_t has_slot = 0;  ///< of `has_NAME`
   std::string_view prose;
   Span span;
 };
@@ -234,9 +242,10 @@ struct LightProperty {
 };
 std::span<const LightProperty> lightProperties();
 
-/// A texture that the application gives once per frame.
+/// A texture that the application gives once per frame, or for each object.
 struct EnvironmentDecl {
   ir::Type type = ir::Type::TextureCube;
+  bool object = false;    ///< for each object: in its set
   bool optional = false;  ///< it takes a unit only where it is used, behind the material's
   std::string_view name;
   uint32_t slot = 0;

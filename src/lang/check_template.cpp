@@ -65,17 +65,20 @@ public:
       if (!block.extension && !block.optional) number(block);
     }
     for (EnvironmentDecl& environment : decl.environments) {
-      if (!environment.optional) environment.binding = {0, frame_++, unit_++};
+      if (environment.optional) continue;
+      environment.binding = {environment.object ? ir::kObjectSet : 0U,
+                             environment.object ? object_++ : frame_++, unit_++};
     }
   }
-  /// What is optional lies behind all else in set 0, so that no number depends on it; its unit is bind's to
-  /// give.
-  void takeOptional(TemplateDecl& decl) {
+  /// What is optional lies behind all else in its set, so that no number depends on it; its unit is bind's to
+  /// give. The objects' after all that is the frame's.
+  void takeOptional(TemplateDecl& decl, bool object) {
     for (BlockDecl& block : decl.blocks) {
-      if (block.optional) number(block);
+      if (block.optional && (block.role == BlockRole::Object) == object) number(block);
     }
     for (EnvironmentDecl& environment : decl.environments) {
-      if (environment.optional) environment.binding = {0, frame_++, 0};
+      if (environment.optional && environment.object == object)
+        environment.binding = {object ? ir::kObjectSet : 0U, object ? object_++ : frame_++, 0};
     }
   }
   /// Behind the environment's units, of which there are never fewer than the first contract had.
@@ -84,7 +87,7 @@ public:
 private:
   void number(BlockDecl& block) {
     const bool object = block.role == BlockRole::Object;
-    block.binding = {object ? 2U : 0U, object ? object_++ : frame_++, buffer_++};
+    block.binding = {object ? ir::kObjectSet : 0U, object ? object_++ : frame_++, buffer_++};
     if (buffer_ == ir::kMaterialBinding.flat) ++buffer_;
   }
 
@@ -124,19 +127,28 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
   names_.push_back({"gl_FrontFacing", Name::Kind::Builtin, Type::Bool, slots++, decl.span, true, false, {}});
   auto locations = uint32_t{0};
   Places places;
+  const auto locate = [&](TemplateDecl& of, bool optional) {
+    for (AttributeDecl& attribute : of.attributes) {
+      if (attribute.optional == optional && !attribute.fact) attribute.location = locations++;
+    }
+  };
   for (TemplateDecl& base : bases) {
     parts(base, slots);
     places.take(base);
-    for (AttributeDecl& attribute : base.attributes) attribute.location = locations++;
+    locate(base, false);
     // At once: the next one on the way extends these blocks.
     for (Name& name : names_) name.inherited = true;
   }
   parts(decl, slots);
   places.take(decl);
-  for (TemplateDecl& base : bases) places.takeOptional(base);
-  places.takeOptional(decl);
+  for (const bool object : {false, true}) {
+    for (TemplateDecl& base : bases) places.takeOptional(base, object);
+    places.takeOptional(decl, object);
+  }
   decl.material_textures = places.materialTextures();
-  for (AttributeDecl& attribute : decl.attributes) attribute.location = locations++;
+  locate(decl, false);
+  for (TemplateDecl& base : bases) locate(base, true);
+  locate(decl, true);
   // Where the properties of a light stand in every template: behind its own slots.
   for (TemplateDecl& base : bases) {
     for (LightKindDecl& kind : base.light_kinds) lightKind(kind, slots);
@@ -218,13 +230,29 @@ void Checker::parts(TemplateDecl& decl, uint32_t& slots) {
 }
 
 void Checker::attribute(AttributeDecl& decl, uint32_t& slots) {
-  if (!ir::isFloating(decl.type)) {
-    reporter_.error("wrong-type", decl.span, fmt::format("an attribute cannot be {}", aType(decl.type)),
-                    "attributes are floats and vectors");
+  if (!decl.fact) {
+    if (!ir::isFloating(decl.type)) {
+      reporter_.error("wrong-type", decl.span, fmt::format("an attribute cannot be {}", aType(decl.type)),
+                      "attributes are floats and vectors");
+    }
+    if (find(decl.name) == nullptr) templateNames(decl);
+    decl.slot = slots++;
+    declare({decl.name, Name::Kind::Attribute, decl.type, decl.slot, decl.span, true, false, {}});
   }
-  if (find(decl.name) == nullptr) templateNames(decl);
-  decl.slot = slots++;
-  declare({decl.name, Name::Kind::Attribute, decl.type, decl.slot, decl.span, true, false, {}});
+  if (!decl.optional) {
+    if (!decl.by.empty()) {
+      reporter_.error("wrong-attribute", decl.span, "a switch decides of an optional attribute alone",
+                      fmt::format("write `optional attribute ... {} by {};`", decl.name, decl.by.front()));
+    }
+    return;
+  }
+  for (const std::string_view name : decl.by) {
+    const std::vector<std::string_view> known = around_.names(DeclKind::Switch);
+    if (std::find(known.begin(), known.end(), name) == known.end()) unknown(name, "switch", known, {});
+  }
+  decl.has_slot = slots++;
+  const std::string& has = made_names_.emplace_back(fmt::format("has_{}", decl.name));
+  declare({has, Name::Kind::Attribute, Type::Bool, decl.has_slot, decl.span, true, false, {}});
 }
 
 void Checker::environment(EnvironmentDecl& decl, uint32_t& slots) {

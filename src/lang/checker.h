@@ -1,6 +1,7 @@
 // Names, types and the other static rules; resolves what the parser left open.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -181,6 +182,7 @@ private:
   const Surroundings& around_;
   std::optional<ir::Dag> scratch_;  ///< for constants; made when the first is met
   std::vector<Name> names_;
+  std::deque<std::string> made_names_;                     ///< that no source holds
   std::vector<std::pair<std::string_view, Span>> unused_;  ///< locals of the body
   NodeDecl* node_ = nullptr;                               ///< whose body is checked
   TemplateDecl* template_ = nullptr;                       ///< whose parts are checked

@@ -337,28 +337,24 @@ bool Parser::templateItem(TemplateDecl& decl) {
     decl.outputs.back().replaces = true;
     return true;
   }
-  if (accept("attribute")) {
-    AttributeDecl item;
-    item.location = static_cast<uint32_t>(decl.attributes.size());
-    if (!type(item.type, "the attribute's type") || !name(item.name, item.span, "the attribute's name"))
-      return false;
-    if (!expect(";", "the attribute's name")) return false;
-    item.prose = proseBehind();
-    decl.attributes.push_back(item);
-    return true;
-  }
-  if (is("optional") && (token(1).is("block") || token(1).is("environment") || token(1).is("output"))) {
-    const std::string_view what = token(1).text;
+  if (is("attribute") || is("fact")) return attribute(decl);
+  constexpr std::array<std::string_view, 5> kOptional = {"block", "environment", "object", "output",
+                                                         "attribute"};
+  const std::string_view what = token(1).text;
+  if (is("optional") && std::find(kOptional.begin(), kOptional.end(), what) != kOptional.end()) {
     ++at_;
     if (!templateItem(decl)) return false;
-    bool& optional = what == "block"         ? decl.blocks.back().optional
-                     : what == "environment" ? decl.environments.back().optional
-                                             : decl.outputs.back().optional;
+    bool& optional = what == "block"       ? decl.blocks.back().optional
+                     : what == "output"    ? decl.outputs.back().optional
+                     : what == "attribute" ? decl.attributes.back().optional
+                                           : decl.environments.back().optional;
     optional = true;
     return true;
   }
-  if (accept("environment")) {
+  if (is("environment") || is("object")) {
     EnvironmentDecl item;
+    item.object = is("object");
+    ++at_;
     if (!type(item.type, "the texture's type") || !name(item.name, item.span, "the texture's name"))
       return false;
     if (accept("=")) {
@@ -372,8 +368,28 @@ bool Parser::templateItem(TemplateDecl& decl) {
   }
   return syntax(
       "expected a part of a template",
-      "its parts are default, block, extend block, light kind, attribute, environment, given, port, "
-      "output, optional block, optional environment, optional output and replace output");
+      "its parts are default, block, extend block, light kind, attribute, fact, environment, object, given, "
+      "port, output, optional block, optional attribute, optional environment, optional object, optional "
+      "output and replace output");
+}
+
+/// `attribute TYPE NAME by SWITCH, ...;` or `fact NAME by SWITCH, ...;`
+bool Parser::attribute(TemplateDecl& decl) {
+  AttributeDecl item;
+  item.fact = item.optional = is("fact");
+  ++at_;
+  if (!item.fact && !type(item.type, "the attribute's type")) return false;
+  if (!name(item.name, item.span, item.fact ? "the fact's name" : "the attribute's name")) return false;
+  if (accept("by")) {
+    do {
+      Span ignored;
+      if (!name(item.by.emplace_back(), ignored, "the name of the switch")) return false;
+    } while (accept(","));
+  }
+  if (!expect(";", item.fact ? "the fact" : "the attribute")) return false;
+  item.prose = proseBehind();
+  decl.attributes.push_back(std::move(item));
+  return true;
 }
 
 bool Parser::block(TemplateDecl& decl) {

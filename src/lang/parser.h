@@ -48,6 +48,7 @@ private:
   void results(NodeDecl& node);
   std::string_view proseBehind() const;
   bool templateItem(TemplateDecl& decl);
+  bool attribute(TemplateDecl& decl);
   bool block(TemplateDecl& decl);
   bool blockFields(BlockDecl& block);
   bool blockField(BlockDecl& block);

@@ -71,8 +71,9 @@ private:
         std::fill_n(ties_.begin() + field.slot, field.elements(), ties);
     }
     // Without a vertex stage the attributes come to the fragment as they are.
-    for (const AttributeDecl& attribute : decl_.attributes)
-      ties_[attribute.slot] = vertex_stage_ ? kVertex : kFragment;
+    for (const AttributeDecl& attribute : decl_.attributes) {
+      if (!attribute.fact) ties_[attribute.slot] = vertex_stage_ ? kVertex : kFragment;
+    }
     if (decl_.front_facing) ties_[*decl_.front_facing] = kFragment;
   }
 

@@ -44,35 +44,52 @@ Work workOf(const ir::Dag& dag, ir::ValueId id) {
   }
 }
 
-}  // namespace
+// Fitted by least squares to RADV's statistics of the levels of this tree's works; a product that is added
+// to takes nothing beside the sum, which is why less than one instruction stands for an operation.
+constexpr double kPlain = 0.80;
+constexpr double kSlow = 1.0;
+constexpr double kAlways = 8;
+constexpr double kScalar = 1.2;  // instructions, with loads and waits, for one of vectors
+constexpr double kRounds = 8;
+constexpr double kCycles = 2;
+constexpr double kQuarter = 6;
 
-Estimate estimate(const ir::Module& module) {
-  // Fitted by least squares to RADV's statistics of the levels of this tree's works; a product that is added
-  // to takes nothing beside the sum, which is why less than one instruction stands for an operation.
-  constexpr double kPlain = 0.80;
-  constexpr double kSlow = 1.0;
-  constexpr double kAlways = 8;
-  constexpr double kScalar = 1.2;  // instructions, with loads and waits, for one of vectors
-  constexpr double kRounds = 8;
-  constexpr double kCycles = 2;
-  constexpr double kQuarter = 6;
-  double plain = 0;
-  double slow = 0;
+/// Calls `each(id, work)` for what the fragment stage computes; what is in a loop counts for all its rounds.
+template <class Each>
+void eachWork(const ir::Module& module, Each each) {
   for (const ir::ValueId id : ir::reachable(module, ir::Stage::Fragment)) {
     const ir::Value& value = module.dag[id];
     if (value.rate <= ir::Rate::Material) continue;
     bool looped = value.rate == ir::Rate::Light;
     for (const ir::LightGroup& group : module.light_groups) looped = looped && group.count < 0;
     const Work work = workOf(module.dag, id);
-    plain += work.plain * (looped ? kRounds : 1);
-    slow += work.slow * (looped ? kRounds : 1);
+    each(id, Work{work.plain * (looped ? kRounds : 1), work.slow * (looped ? kRounds : 1)});
   }
+}
+
+}  // namespace
+
+Estimate estimate(const ir::Module& module) {
+  double plain = 0;
+  double slow = 0;
+  eachWork(module, [&](ir::ValueId, const Work& work) {
+    plain += work.plain;
+    slow += work.slow;
+  });
   const double vector = kAlways + kPlain * plain + kSlow * slow;
   Estimate result;
   result.cycles = static_cast<uint64_t>(std::lround(kCycles * vector));
   result.quarter_cycles = static_cast<uint64_t>(std::lround(kCycles * vector + kQuarter * slow));
   result.instructions = static_cast<uint64_t>(std::lround(kScalar * vector));
   return result;
+}
+
+std::vector<double> cyclesByTerm(const ir::Module& module) {
+  std::vector<double> cycles(module.dag.terms().size());
+  eachWork(module, [&](ir::ValueId id, const Work& work) {
+    cycles[module.dag.termOf(id)] += kCycles * (kPlain * work.plain + kSlow * work.slow);
+  });
+  return cycles;
 }
 
 }  // namespace lacquer::lod

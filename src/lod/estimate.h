@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "ir/module.h"
 
@@ -14,5 +15,8 @@ struct Estimate {
 
 /// Of a placed module's fragment stage.
 Estimate estimate(const ir::Module& module);
+
+/// Of its cycles, what each term of the DAG takes: by TermId. What every shader has is in none.
+std::vector<double> cyclesByTerm(const ir::Module& module);
 
 }  // namespace lacquer::lod

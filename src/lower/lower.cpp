@@ -96,6 +96,12 @@ private:
                                           [](const auto& o) { return o.role == lang::OutputRole::Position; });
     for (const lang::AttributeDecl& attribute : template_->attributes) {
       const std::string name(attribute.name);
+      if (attribute.optional) {
+        const bool there =
+            std::find(graph_.attributes.begin(), graph_.attributes.end(), name) != graph_.attributes.end();
+        slots_[attribute.has_slot] = dag().boolean(there);
+      }
+      if (attribute.fact) continue;
       if (vertex_stage) {
         slots_[attribute.slot] = dag().input({ir::InputKind::Attribute,
                                               name,

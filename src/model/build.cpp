@@ -272,6 +272,78 @@ void Writer::run(const lang::TemplateDecl& template_decl) {
   notTaken();
 }
 
+/// Whether a run takes what not every primitive has: by the file, or by its switches where they are set.
+struct Choice {
+  bool taken = false;
+  std::string_view off;  ///< the switch that keeps it out
+};
+
+Choice chosen(const lang::AttributeDecl& attribute, bool there, const BuildOptions& options) {
+  Choice choice{there, {}};
+  for (const std::string_view name : attribute.by) {
+    const auto set = options.switches.find(name);
+    if (set == options.switches.end()) continue;
+    if (!set->second) return {false, name};
+    if (name == attribute.by.back()) choice.taken = true;
+  }
+  return choice;
+}
+
+/// What primitives have and the shader does not read, by the reason.
+class LeftOut {
+public:
+  explicit LeftOut(Graph& graph) : graph_(graph) {}
+
+  void add(std::string_view name, const std::string& why) {
+    graph_.skip(name, why);
+    if (reasons_.empty() || reasons_.back().first != why) reasons_.emplace_back(why, "");
+    std::string& names = reasons_.back().second;
+    names += (names.empty() ? "" : ", ") + std::string(name);
+  }
+
+  void report(int material, Diagnostics& warnings) const {
+    for (const auto& [why, names] : reasons_) {
+      warnings.push_back(
+          {"attribute-left-out",
+           Severity::Note,
+           {{}, 0, 0, material < 0 ? std::string() : fmt::format("/materials/{}", material)},
+           fmt::format("a primitive with this material has {}, which its shader does not read: {}", names,
+                       why),
+           "the vertices are the application's to place",
+           {}});
+    }
+  }
+
+private:
+  Graph& graph_;
+  std::vector<std::pair<std::string, std::string>> reasons_;  ///< why, and the names in order
+};
+
+/// Of the attributes that not every primitive has.
+LeftOut chooseAttributes(const lang::TemplateDecl& template_decl, const gltf::VertexAttributes& attributes,
+                         const BuildOptions& options, Graph& graph) {
+  LeftOut left_out(graph);
+  gltf::VertexAttributes common = attributes;
+  common.skin = {};
+  common.morph = common.instances = common.quantized = false;
+  for (const lang::AttributeDecl& attribute : template_decl.attributes) {
+    if (!attribute.optional) continue;
+    const bool there = hasAttribute(attributes, attribute.name);
+    const Choice choice = chosen(attribute, there, options);
+    if (choice.taken)
+      graph.attributes.emplace_back(attribute.name);
+    else if (there)
+      left_out.add(attribute.name, fmt::format("it is left out (--switch {}=off)", choice.off));
+  }
+  for (const std::string& name : attributes.names()) {
+    const bool taken = hasAttribute(common, name) ||
+                       std::any_of(template_decl.attributes.begin(), template_decl.attributes.end(),
+                                   [&](const lang::AttributeDecl& one) { return one.name == name; });
+    if (!taken) left_out.add(name, fmt::format("the template '{}' does not take it", template_decl.name));
+  }
+  return left_out;
+}
+
 }  // namespace
 
 Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
@@ -283,6 +355,7 @@ Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
   // Room for a coat with all of its terms.
   graph.nodes.reserve(64);
   graph.parameters.reserve(48);
+  chooseAttributes(template_decl, attributes, options, graph).report(material.index, warnings);
   Resolver resolver(model, template_decl, material, attributes, options, warnings);
   Writer(model, resolver, material, attributes, options, graph, warnings).run(template_decl);
   if (!resolver.wrong().empty()) return tl::make_unexpected(resolver.wrong());

@@ -13,24 +13,15 @@ using material::Kind;
 
 namespace {
 
-/// Whether a primitive has what a template's attribute of that name stands for; what glTF does not know is
-/// the application's, and there.
-bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name) {
-  if (name == "NORMAL") return attributes.normal;
-  if (name == "TANGENT") return attributes.tangent;
-  if (name == "COLOR_0") return attributes.color0;
-  constexpr std::string_view kTexCoord = "TEXCOORD_";
-  if (!name.starts_with(kTexCoord) || name.size() != kTexCoord.size() + 1) return true;
-  const auto set = static_cast<size_t>(name.back() - '0');
-  return set < attributes.texCoord.size() && attributes.texCoord[set];
-}
-
 /// Whether an expression of the template reads an attribute that the primitive lacks.
 bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr,
                  const gltf::VertexAttributes& attributes) {
   if (expr.kind == lang::Expr::Kind::Slot) {
     for (const lang::AttributeDecl& attribute : decl.attributes) {
-      if (attribute.slot == expr.slot) return !hasAttribute(attributes, attribute.name);
+      // What is optional is asked for before it is read.
+      if (attribute.optional && attribute.has_slot == expr.slot) return false;
+      if (!attribute.fact && attribute.slot == expr.slot)
+        return !attribute.optional && !hasAttribute(attributes, attribute.name);
     }
     for (const lang::GivenDecl& given : decl.givens) {
       const bool this_one = expr.slot >= given.slot && expr.slot < given.slot + given.results.size();
@@ -45,6 +36,26 @@ bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr,
 const Line kNoLine{};
 
 }  // namespace
+
+bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name) {
+  const auto numbered = [&](std::string_view what, const auto& sets, bool& has) {
+    if (!name.starts_with(what) || name.size() != what.size() + 1) return false;
+    const auto set = static_cast<size_t>(name.back() - '0');
+    has = set < sets.size() && sets[set];
+    return true;
+  };
+  if (name == "NORMAL") return attributes.normal;
+  if (name == "TANGENT") return attributes.tangent;
+  if (name == "COLOR_0") return attributes.color0;
+  if (name == "MORPH_VERTEX") return attributes.morph;
+  if (name == "TRANSLATION" || name == "ROTATION" || name == "SCALE") return attributes.instances;
+  if (name == "QUANTIZED") return attributes.quantized;
+  bool has = true;
+  if (numbered("TEXCOORD_", attributes.texCoord, has) || numbered("JOINTS_", attributes.skin, has) ||
+      numbered("WEIGHTS_", attributes.skin, has))
+    return has;
+  return true;
+}
 
 Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
                    const material::Material& material, const gltf::VertexAttributes& attributes,

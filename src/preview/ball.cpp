@@ -121,6 +121,12 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
       return {c[0], c[1], c[2], 1};
     };
   }
+  for (const std::string& name : of.fibres) {
+    shading.base_.textures[name] = [&studio](size_t, const Vec3& direction, double lod) -> Rgba {
+      const Vec3 c = studio.fibreRadiance(direction, lod);
+      return {c[0], c[1], c[2], 1};
+    };
+  }
   for (const std::string& name : of.irradiance) {
     shading.base_.textures[name] = [&studio](size_t, const Vec3& direction, double) -> Rgba {
       const Vec3 c = studio.irradiance(direction);

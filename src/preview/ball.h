@@ -19,7 +19,8 @@ namespace lacquer::preview {
 struct Look {
   ir::Module module;
   eval::Bindings textures;
-  std::vector<std::string> specular, irradiance;  ///< the environment maps that it reads, by slot name
+  std::vector<std::string> specular, irradiance,
+      fibres;  ///< the environment maps that it reads, by slot name
   bool in_float = true;
 };
 

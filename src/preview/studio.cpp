@@ -105,7 +105,21 @@ std::array<double, 9> basis(const Vec3& d) {
 
 }  // namespace
 
+namespace {
+
+Vec3 toVec3(const environment::Rgb& color) { return {color[0], color[1], color[2]}; }
+
+}  // namespace
+
+Studio::Studio(environment::Maps maps) : maps_(std::make_shared<const environment::Maps>(std::move(maps))) {}
+
+Vec3 Studio::fibreRadiance(const Vec3& direction, double roughness) const {
+  if (!maps_) return radiance(direction, roughness);
+  return toVec3(environment::lookUp(maps_->charlie, direction, roughness * maps_->lastLevel()));
+}
+
 Vec3 Studio::radiance(const Vec3& direction, double roughness) const {
+  if (maps_) return toVec3(environment::lookUp(maps_->specular, direction, roughness * maps_->lastLevel()));
   const double deviation = kSharpest + kSpread * roughness * roughness;
   const double above = edge(direction[1], 0.02 + 0.5 * deviation);
   const double height = std::sqrt(std::clamp(direction[1], 0.0, 1.0));
@@ -148,6 +162,7 @@ Studio::Studio(Surroundings around, double turn) : around_(std::move(around)) {
 }
 
 Vec3 Studio::irradiance(const Vec3& normal) const {
+  if (maps_) return toVec3(environment::lookUp({&maps_->irradiance, 1}, normal, 0));
   const std::array<double, 9> weights = basis(normal);
   Vec3 result{};
   for (size_t k = 0; k < 9; ++k) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "environment/maps.h"
 #include "eval/bindings.h"
 #include "ir/module.h"
 
@@ -42,6 +44,8 @@ public:
   Studio();
   /// Turned about the ball by so many radians: the same as another view.
   explicit Studio(Surroundings around, double turn = 0);
+  /// The maps of a picture, and no lamps.
+  explicit Studio(environment::Maps maps);
 
   /// Radiance from a unit direction (y is up, z to the camera), blurred as the lobe of a roughness in [0, 1]
   /// blurs it.
@@ -49,15 +53,20 @@ public:
   /// The cosine-weighted mean radiance about a unit normal, to the second order of spherical harmonics, which
   /// leaves 3 % of the irradiance at most (Ramamoorthi and Hanrahan 2001).
   Vec3 irradiance(const Vec3& normal) const;
+  /// Radiance blurred by the lobe of a sheen of that roughness; a studio of formulas has that of
+  /// `radiance()`.
+  Vec3 fibreRadiance(const Vec3& direction, double roughness) const;
 
   /// The elements of the module's light array. Lamps of kinds that the template does not have are not there.
   std::vector<eval::Columns> lights(const ir::Module& module) const;
+  bool hasLamps() const { return !around_.lamps.empty(); }
   /// Lamps of the contact sheets' studio, which are directional.
   static constexpr uint32_t kLights = 2;
 
 private:
   Surroundings around_;
   std::array<Vec3, 9> harmonics_{};
+  std::shared_ptr<const environment::Maps> maps_;  ///< in place of `around_` and `harmonics_`
 };
 
 /// The studios that materials are compared in, each from its own side: the contact sheets', a clear day with

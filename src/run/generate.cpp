@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "run/manifest.h"
+#include "run/pipelines.h"
 #include "run/run.h"
 #include "run/stale.h"
 #include "shader/messages.h"
@@ -61,6 +64,18 @@ struct Inputs {
   }
 };
 
+/// What materials share depends on all inputs together, and costs on the machine: such a run looks at them.
+bool merges(const Options& options) {
+  return options.programs > 0 || !options.programs_report.empty() || !options.pipelines.empty();
+}
+
+/// From the manifest that the run has written.
+void writePipelines(const std::string& manifest, const Options& options, Run& run) {
+  const Result<std::string> text = readFile(manifest, std::numeric_limits<uint64_t>::max());
+  if (!text) return run.wrote(tl::make_unexpected(text.error()));
+  run.wrote(writeFile(options.pipelines, pipelinesText(json::reread(*text)), {nullptr, options.sync}));
+}
+
 /// Below the output folder.
 Strings shaderFiles(const Report& report) {
   Strings paths;
@@ -89,13 +104,18 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     depfile = depfileText(path, run.inputs());
     if (!depfile) run.wrote(tl::make_unexpected(depfile.error()));
   }
+  for (const std::string& one : {options.programs_report, options.pipelines}) {
+    if (!one.empty()) outputs.push_back(one);
+  }
   Strings named;
-  for (const std::string& one : {options.shard, options.depfile}) {
+  for (const std::string& one :
+       {options.shard, options.depfile, options.programs_report, options.pipelines}) {
     if (!one.empty()) named.push_back(one);
   }
   if (!run.mayWrite(outputs) || !run.mayName(named, folder) || !depfile) return run.finish();
-  std::optional<Receipt> receipt =
-      inputs.scenes && !shard ? run.receipt(inputs.files, inputs.materials, folder) : std::nullopt;
+  std::optional<Receipt> receipt = inputs.scenes && !shard && !merges(options)
+                                       ? run.receipt(inputs.files, inputs.materials, folder)
+                                       : std::nullopt;
   if (receipt && run.find(*receipt)) {
     const Scratch left_by_killed_runs(folder);
     return run.finish();
@@ -123,6 +143,8 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     run.wrote(written);
     if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
   }
+  run.writeProgramsReport();
+  if (!options.pipelines.empty() && !shard) writePipelines(path, options, run);
   if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, *depfile, {nullptr, options.sync}));
   if (receipt) run.keep(*receipt);
   return run.finish();

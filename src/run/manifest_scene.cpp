@@ -48,6 +48,15 @@ void writePrimitive(const gltf::Primitive& primitive, const UsesOf& uses, JsonTe
     json.endObject();
   }
   json.endObject();
+  if (!primitive.targets.empty()) {
+    json.key("targets").beginArray();
+    for (const std::vector<std::string>& target : primitive.targets) {
+      json.beginArray();
+      for (const std::string& semantic : target) json.string(semantic);
+      json.endArray();
+    }
+    json.endArray();
+  }
   if (!primitive.mappings.empty()) {
     json.key("variants").beginArray();
     for (const gltf::VariantMapping& mapping : primitive.mappings) {

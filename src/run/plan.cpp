@@ -40,12 +40,12 @@ std::string shellWord(const std::string& text) {
   return word + "'";
 }
 
-std::string lightsFlag(const passes::LightFacts& lights) {
-  if (lights.any) return {};
-  std::string flag;
+/// Of known lights, what --lights is given.
+std::string lightsWord(const passes::LightFacts& lights) {
+  std::string word;
   for (const auto& [kind, count] : lights.counts)
-    flag += fmt::format("{}{}:{}", flag.empty() ? " --lights " : ",", kind, count);
-  return flag.empty() ? " --lights none" : flag;
+    word += fmt::format("{}{}:{}", word.empty() ? "" : ",", kind, count);
+  return word.empty() ? "none" : word;
 }
 
 /// Errors about names that Ninja's format cannot hold: it has an escape for a space, but for neither a line's
@@ -69,6 +69,29 @@ Diagnostics unfit(const Strings& paths, const Strings& words) {
   for (const std::string& word : words) look(word, false);
   return wrong;
 }
+
+/// The commands for any farm: what each runs, reads and writes, and nothing else.
+class ActionsFile {
+public:
+  ActionsFile() { json_.beginObject().key("lacquer").string(version()).key("actions").beginArray(); }
+
+  void action(const std::string& name, const Strings& command, const Strings& inputs,
+              const Strings& outputs) {
+    json_.beginObject().key("name").string(name);
+    list("command", command);
+    list("inputs", inputs);
+    list("outputs", outputs);
+    json_.key("environment").beginObject().endObject().endObject();
+  }
+  std::string finish() { return json_.endArray().endObject().take() + "\n"; }
+
+private:
+  void list(std::string_view name, const Strings& words) {
+    json_.key(name);
+    writeList(words, json_);
+  }
+  JsonText json_;
+};
 
 class NinjaFile {
 public:
@@ -109,8 +132,33 @@ public:
     text_ += fmt::format("\n  id = {}\n  graph = {}\n  shard = {}\n", id,
                          shellText({stem(id) + ".graph.json"}), shellText({stem(id) + ".shard.json"}));
     if (!structure.lights.any)
-      text_ += "  lights =" + std::string("$ ") + lightsFlag(structure.lights).substr(1) + "\n";
+      text_ += "  lights =" + std::string("$ ") + "--lights " + lightsWord(structure.lights) + "\n";
     shards_.push_back(stem(id) + ".shard.json");
+  }
+
+  /// The same commands.
+  void shaderAction(const std::string& id, const Structure& structure, ActionsFile& actions) const {
+    Strings command = plan_.command;
+    command.insert(command.end(), {"--graph", stem(id) + ".graph.json", "--shard", stem(id) + ".shard.json"});
+    if (!structure.lights.any) command.insert(command.end(), {"--lights", lightsWord(structure.lights)});
+    Strings inputs = toolInputs();
+    inputs.push_back(stem(id) + ".graph.json");
+    Strings outputs{stem(id) + ".shard.json"};
+    for (const Target target : options_.targets) {
+      for (int stage = firstStage(target, structure.has_vertex); stage < 2; ++stage)
+        outputs.push_back(folder_ + "/" + shaderPath(target, id, stage));
+    }
+    actions.action(id, command, inputs, outputs);
+  }
+
+  void mergeAction(ActionsFile& actions) const {
+    Strings command{plan_.program, "merge", "-o", folder_, materials()};
+    command.insert(command.end(), shards_.begin(), shards_.end());
+    Strings inputs;
+    if (!program().empty()) inputs.push_back(program());
+    inputs.push_back(materials());
+    inputs.insert(inputs.end(), shards_.begin(), shards_.end());
+    actions.action("manifest", command, inputs, {folder_ + "/manifest.json"});
   }
 
   std::string finish() {
@@ -149,10 +197,15 @@ private:
 
   /// What every command reads beside its graph.
   void tools(std::string& text) const {
-    std::vector<std::string> all = nodeInputs();
-    if (!program().empty()) all.insert(all.begin(), program());
+    const Strings all = toolInputs();
     if (!all.empty()) text += " |";
     for (const std::string& one : all) text += " " + escaped(one);
+  }
+
+  Strings toolInputs() const {
+    Strings all = nodeInputs();
+    if (!program().empty()) all.insert(all.begin(), program());
+    return all;
   }
 
   std::vector<std::string> nodeInputs() const {
@@ -193,7 +246,8 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
     run.wrote(tl::make_unexpected(wrong));
     return run.finish();
   }
-  const Strings outputs = {plan.ninja, all_materials};
+  Strings outputs = {plan.ninja, all_materials};
+  if (!plan.json.empty()) outputs.push_back(plan.json);
   if (!run.mayWrite(outputs) || !run.mayName(outputs, folder)) return run.finish();
   const Writing how{nullptr, options.sync};
   ManifestFile manifest(all_materials, how);
@@ -204,12 +258,16 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
     graphs.push_back(ninja.stem(id) + ".graph.json");
   if (!run.mayWrite(graphs)) return run.finish();
   ninja.head();
+  ActionsFile actions;
   for (const auto& [id, shader] : run.structures().shaders()) {
     run.wrote(writeFile(ninja.stem(id) + ".graph.json", shader.structure->graph, how));
     run.result().shaders.push_back({id, {}, false});
     ninja.shader(id, *shader.structure);
+    ninja.shaderAction(id, *shader.structure, actions);
   }
+  ninja.mergeAction(actions);
   run.wrote(manifest.finish());
+  if (!plan.json.empty()) run.wrote(writeFile(plan.json, actions.finish(), how));
   run.wrote(writeFile(plan.ninja, ninja.finish(), how));
   return run.finish();
 }

@@ -4,12 +4,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <set>
 
 #include "cache/fingerprint.h"
 #include "check/check.h"
 #include "shader/options.h"
 #include "shader/print.h"
 #include "support/outputs.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -29,7 +31,9 @@ Run::Run(const Options& options, const Strings& inputs, Messages& messages,
       progress_(std::move(progress)),
       shown_(std::chrono::steady_clock::now()),
       said_before_(messages.size()),
-      inputs_(inputs) {}
+      inputs_(inputs) {
+  if (!options.weights.empty()) inputs_.push_back(options.weights);
+}
 
 bool Run::prepare() {
   prepared_ = true;
@@ -38,6 +42,7 @@ bool Run::prepare() {
     report_.ok = false;
     return false;
   }
+  if (!checkPrograms()) return false;
   KeyBuilder base;
   base.text(fingerprint()).text(check::toolVersions());
   for (const std::string& folder : options_.node_directories) {
@@ -88,6 +93,87 @@ bool Run::open(const std::string& folder) {
   return true;
 }
 
+bool Run::checkPrograms() {
+  const bool asked = options_.programs > 0 || !options_.programs_report.empty();
+  if (asked && options_.parameters == Parameters::Baked) {
+    return allGood({{"programs-baked",
+                     Severity::Error,
+                     {},
+                     "materials whose numbers are constants in the code cannot share it",
+                     "leave `baked` out, or --programs and --programs-report",
+                     {}}});
+  }
+  const std::string& report = options_.programs_report;
+  const auto ends = [&](const char* suffix) { return report.ends_with(suffix); };
+  if (!report.empty() && !ends(".json") && !ends(".md") && !ends(".svg")) {
+    return allGood({{"report-format",
+                     Severity::Error,
+                     {printable(report), 0, 0, {}},
+                     "the report's name says no format",
+                     "let it end with .json, .md or .svg",
+                     {}}});
+  }
+  if (options_.weights.empty()) return true;
+  const Result<std::string> text = readFile(options_.weights);
+  if (!text) return allGood(text.error());
+  Result<programs::Weights> weights = programs::Weights::read(*text, options_.weights, *limitsOf(options_));
+  if (!weights) return allGood(weights.error());
+  weights_ = std::move(*weights);
+  return true;
+}
+
+/// A look at all inputs that says nothing.
+void Run::look(const std::vector<std::string>& files, const std::vector<std::string>& only,
+               const std::function<void(const FileResult&)>& each) {
+  for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
+    std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
+    tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) {
+      results[i] = readScene(files[first + i], only, *setting_, *structures_);
+    });
+    for (const FileResult& result : results) each(result);
+  }
+}
+
+/// The first look finds the structures and how much each is used, the second what every material brings to
+/// the program that it shares.
+void Run::mergePrograms(const std::vector<std::string>& files, const std::vector<std::string>& only) {
+  std::vector<ProgramUse> uses;
+  std::set<Key> keys;
+  size_t materials = 0;
+  Examples examples;
+  setting_->examples = &examples;
+  look(files, only, [&](const FileResult& result) {
+    keys.insert(result.structures.begin(), result.structures.end());
+    materials += result.materials.size();
+    for (const MaterialReport& material : result.materials) {
+      const double share = weights_.of(material.file, material.name, material.index);
+      for (const std::string& shader : material.shaders)
+        uses.push_back({shader, share / static_cast<double>(material.shaders.size())});
+    }
+  });
+  setting_->examples = nullptr;
+  report(weights_.unused(options_.weights), {});
+  std::vector<const Structure*> structures;
+  for (const Key& key : keys) {
+    if (const Structure* structure = structures_->known(key)) structures.push_back(structure);
+  }
+  programs_ = std::make_unique<Programs>(structures, examples, uses, materials, *setting_);
+  setting_->programs = programs_.get();
+  if (options_.programs > 0) look(files, only, [](const FileResult&) {});
+  programs_->close();
+  structures_->lookAgain();
+}
+
+void Run::writeProgramsReport() {
+  const std::string& path = options_.programs_report;
+  if (path.empty() || !programs_) return;
+  const programs::Curve& curve = programs_->curve();
+  const std::string text = path.ends_with(".json") ? programs::toJson(curve)
+                           : path.ends_with(".md") ? programs::toMarkdown(curve)
+                                                   : programs::toSvg(curve);
+  wrote(writeFile(path, text, {nullptr, options_.sync}));
+}
+
 std::optional<Receipt> Run::receipt(const Strings& files, const Strings& materials,
                                     const std::string& folder) {
   if (cache_ == nullptr || !nodes_known_) return std::nullopt;
@@ -135,6 +221,7 @@ void Run::readAll(const std::vector<std::string>& files,
 
 void Run::readScenes(const std::vector<std::string>& files, const std::vector<std::string>& only,
                      const std::function<void(FileResult&)>& each) {
+  if (options_.programs > 0 || !options_.programs_report.empty()) mergePrograms(files, only);
   std::vector<std::string> seen;
   readAll(
       files, [&](const std::string& path) { return readScene(path, only, *setting_, *structures_); },

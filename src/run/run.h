@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "run/programs.h"
 #include "run/receipt.h"
 #include "run/shaders.h"
 #include "run/source_file.h"
@@ -47,6 +48,8 @@ public:
   /// Reports what went wrong with a file that was to be written.
   void wrote(const Result<bool>& written);
   Structures& structures() { return *structures_; }
+  /// Writes what programs cost, where the options ask for it.
+  void writeProgramsReport();
   Report& result() { return report_; }
   Report finish();
   /// Every file that the run reads: the inputs, then the node files.
@@ -59,6 +62,10 @@ private:
   void readAll(const std::vector<std::string>& files,
                const std::function<FileResult(const std::string&)>& read,
                const std::function<void(FileResult&)>& each);
+  bool checkPrograms();
+  void look(const std::vector<std::string>& files, const std::vector<std::string>& only,
+            const std::function<void(const FileResult&)>& each);
+  void mergePrograms(const std::vector<std::string>& files, const std::vector<std::string>& only);
   void checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen);
   void progress(size_t done, bool last);
 
@@ -75,6 +82,8 @@ private:
   std::unique_ptr<Cache> cache_;
   std::optional<Setting> setting_;
   std::optional<Structures> structures_;
+  programs::Weights weights_;
+  std::unique_ptr<Programs> programs_;
   std::vector<std::string> node_files_, inputs_;
   Report report_;
 };

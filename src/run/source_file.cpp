@@ -13,6 +13,7 @@
 #include "json/text.h"
 #include "run/manifest.h"
 #include "run/manifest_scene.h"
+#include "run/programs.h"
 #include "run/report_blob.h"
 #include "shader/language.h"
 #include "shader/module.h"
@@ -87,6 +88,7 @@ private:
   }
   std::shared_ptr<const MaterialTerms> terms() const;
   void writeUnfilled(const graph::Graph& graph);
+  void writeStandInAttributes(const Structure& structure, const gltf::VertexAttributes& attributes);
 
   const std::string& file_;
   const material::Material& material_;
@@ -128,8 +130,23 @@ void MaterialText::writeUnfilled(const graph::Graph& graph) {
   uses_.endArray();
 }
 
+/// Of a shader that materials share: what it reads of the vertices and this primitive does not have.
+void MaterialText::writeStandInAttributes(const Structure& structure,
+                                          const gltf::VertexAttributes& attributes) {
+  const std::vector<std::string> own = attributes.names();
+  uses_.key("stand_in_attributes").beginArray();
+  for (const std::string& name : structure.inputs) {
+    if (name != "POSITION" && std::find(own.begin(), own.end(), name) == own.end()) uses_.string(name);
+  }
+  uses_.endArray();
+}
+
 void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
                        const gltf::VertexAttributes& attributes, const Diagnostics& said) {
+  if (setting_.examples != nullptr)
+    setting_.examples->note(structureKey(graph, lights, setting_), material_, attributes);
+  const programs::Fill* fill =
+      setting_.programs == nullptr ? nullptr : setting_.programs->bring(graph, material_, attributes, lights);
   const Structure& structure = structures_.of(graph, lights);
   met_.push_back(&structure);
   add(said);
@@ -145,7 +162,8 @@ void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
   uses_.beginObject().key("attributes");
   writeList(attributes.names(), uses_);
   uses_.key("shader").string(structure.shader);
-  writeBindings(structure, graph, material_, uses_);
+  writeBindings(structure, graph, material_, fill, uses_);
+  if (fill != nullptr) writeStandInAttributes(structure, attributes);
   uses_.key("absent_parameters").raw(structure.absent);
   writeUnfilled(graph);
   uses_.endObject();
@@ -360,6 +378,7 @@ Key fileKey(const std::string& path, const std::string& bytes, const Setting& se
   KeyBuilder key;
   key.text("file").key(setting.base).text(path).text(relativeTo(setting.folder, path)).key(keyOf(bytes));
   addOptions(setting.options, {Decides::Graph, Decides::Module}, key);
+  if (setting.programs != nullptr) key.key(setting.programs->digest());
   return key.finish();
 }
 
@@ -403,7 +422,10 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
     bytes = readFile(path, setting.limits.file);
   }
   if (!bytes) return unreadable(path, setting, bytes.error());
-  const bool keep = setting.cache != nullptr && only.empty();
+  // While programs are looked for, results are of no use to another run.
+  const bool looking =
+      setting.examples != nullptr || (setting.programs != nullptr && !setting.programs->closed());
+  const bool keep = setting.cache != nullptr && only.empty() && !looking;
   const Key key = keep ? fileKey(path, *bytes, setting) : Key{};
   if (keep) {
     if (std::optional<FileResult> cached = cachedFile(path, key, setting, structures))

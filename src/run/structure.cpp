@@ -9,6 +9,7 @@
 #include "lower/lower.h"
 #include "run/manifest.h"
 #include "run/manifest_scene.h"
+#include "run/programs.h"
 #include "run/report_blob.h"
 #include "shader/interface.h"
 #include "shader/limits.h"
@@ -50,7 +51,9 @@ public:
   }
 
   void graph(const graph::Graph& graph) {
-    key_.text(graph.template_name).number(graph.parameters.size());
+    key_.text(graph.template_name).number(graph.attributes.size());
+    for (const std::string& name : graph.attributes) key_.text(name);
+    key_.number(graph.parameters.size());
     for (const ir::Parameter& p : graph.parameters) {
       key_.text(p.name).number(p.type).number(p.range.lo).number(p.range.hi).number(p.range.gap);
       key_.number(p.animated);
@@ -177,6 +180,9 @@ void describe(const ir::Module& module, const graph::Graph& graph, const Languag
     structure.interface.emplace_back(
         name, textAt(kInterfaceDepth, [&, &v = value](JsonText& json) { json.json(v); }));
   }
+  if (const Json* inputs = json::member(interface, "inputs")) {
+    for (const Json& input : *inputs) structure.inputs.push_back(input["name"].get<std::string>());
+  }
   structure.preshader = Preshader(module);
   const auto place = [](const auto& list, const std::string& name) {
     const auto it =
@@ -293,14 +299,16 @@ bool withinLimits(const Structure& structure, const graph::Graph& graph) {
 }
 
 void writeBindings(const Structure& structure, const graph::Graph& graph, const material::Material& material,
-                   JsonText& json) {
+                   const programs::Fill* fill, JsonText& json) {
   json.key("parameters").beginObject();
   for (const uint32_t i : structure.parameters) {
     const ir::Parameter& p = graph.parameters[i];
+    const bool own = fill == nullptr || fill->numbers[i].own;
     json.key(p.name).beginObject().key("value").numbers(
         {p.value.data(), static_cast<size_t>(ir::componentCount(p.type))});
     json.key("pointer").string(p.pointer);
-    if (p.animated) json.key("animated").boolean(true);
+    if (p.animated && own) json.key("animated").boolean(true);
+    if (!own) json.key("stand_in").boolean(true);
     json.endObject();
   }
   json.endObject().key("uniforms").beginObject();
@@ -314,7 +322,10 @@ void writeBindings(const Structure& structure, const graph::Graph& graph, const 
   for (const auto& [name, i] : structure.textures) {
     json.key(name).beginObject().key("texture").integer(graph.textures[i].texture);
     json.key("pointer").string(graph.textures[i].pointer);
-    writeTextureInfo(material, graph.textures[i].pointer, json);
+    if (fill == nullptr || fill->textures[i].own)
+      writeTextureInfo(material, graph.textures[i].pointer, json);
+    else
+      writeStandIn(fill->textures[i], graph.textures[i].srgb, json);
     json.endObject();
   }
   json.endObject();
@@ -337,7 +348,7 @@ static void fields(Archive& archive, LightFacts& lights) {
 template <class Archive>
 static void fields(Archive& archive, Structure& s) {
   archive(s.diagnostics, s.shader, s.has_vertex, s.absent, s.interface, s.terms, s.preshader, s.parameters,
-          s.textures, s.limits, s.graph, s.lights);
+          s.textures, s.inputs, s.limits, s.graph, s.lights);
 }
 
 std::string toBlob(const Structure& structure) {

@@ -11,6 +11,7 @@
 #include "cache/cache.h"
 #include "json/text.h"
 #include "lacquer.h"
+#include "programs/unite.h"
 #include "shader/module.h"
 #include "shader/preshader.h"
 #include "shader/times.h"
@@ -34,11 +35,15 @@ struct Structure {
   Preshader preshader;
   std::vector<uint32_t> parameters;                        ///< of the module, as places in the graph's list
   std::vector<std::pair<std::string, uint32_t>> textures;  ///< the module's material textures, the same way
+  std::vector<std::string> inputs;                         ///< vertex attributes that the shader reads
   std::vector<ir::Range>
       limits;         ///< for each of the graph's parameters: values for which the check has no complaint
   std::string graph;  ///< JSON form of the graph without what belongs to one material
   passes::LightFacts lights;
 };
+
+class Programs;
+class Examples;
 
 /// Everything that the code depends on beside the graph: this build, the node library, options.
 struct Setting {
@@ -48,7 +53,9 @@ struct Setting {
   Cache* cache = nullptr;
   StageTimes* times = nullptr;
   Limits limits = {};
-  std::string folder = {};  ///< that the manifest lies in: sources are relative to it
+  std::string folder = {};             ///< that the manifest lies in: sources are relative to it
+  const Programs* programs = nullptr;  ///< that materials share, once it is known
+  Examples* examples = nullptr;        ///< takes note of the materials, before that
 };
 
 /// The address of a graph without what belongs to one material: names, JSON pointers, texture indices and,
@@ -72,8 +79,9 @@ bool fits(const Structure& structure, const graph::Graph& graph);
 
 /// The members "parameters", "uniforms" and "textures" of a use of a material, whose textureInfos are looked
 /// up by the graph's pointers.
+/// `fill`: of a graph that several structures share, what this one has not itself; null for its own graph.
 void writeBindings(const Structure& structure, const graph::Graph& graph, const material::Material& material,
-                   JsonText& json);
+                   const programs::Fill* fill, JsonText& json);
 
 /// True when the values of the graph's parameters are such that the structure's check holds for it.
 bool withinLimits(const Structure& structure, const graph::Graph& graph);

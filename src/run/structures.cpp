@@ -35,7 +35,7 @@ const Structure& Structures::of(const graph::Graph& graph, const passes::LightFa
   const Key key = structureKey(graph, lights, setting_);
   Entry& entry = entryOf(key);
   const std::lock_guard lock(entry.mutex);
-  if ((entry.ready || load(key, entry)) && fits(entry.structure, graph)) return entry.structure;
+  if ((entry.ready || load(key, entry)) && fits(entry.structure, graph)) return met(entry.structure);
   entry.structure = {};
   entry.structure.key = key;
   std::optional<ir::Module> module = makeStructure(graph, lights, setting_, entry.structure);
@@ -45,13 +45,27 @@ const Structure& Structures::of(const graph::Graph& graph, const passes::LightFa
     setting_.cache->put(key, toBlob(entry.structure));
   }
   need(entry.structure, std::move(module));
-  return entry.structure;
+  return met(entry.structure);
+}
+
+const Structure& Structures::met(const Structure& structure) {
+  if (!looks_again_) return structure;
+  const std::lock_guard lock(mutex_);
+  met_again_.insert(structure.shader);
+  return structure;
+}
+
+void Structures::lookAgain() { looks_again_ = true; }
+
+std::map<std::string, Distinct>& Structures::shaders() {
+  if (looks_again_) std::erase_if(shaders_, [&](const auto& one) { return !met_again_.contains(one.first); });
+  return shaders_;
 }
 
 const Structure* Structures::known(const Key& key) {
   Entry& entry = entryOf(key);
   const std::lock_guard lock(entry.mutex);
-  return entry.ready || load(key, entry) ? &entry.structure : nullptr;
+  return entry.ready || load(key, entry) ? &met(entry.structure) : nullptr;
 }
 
 size_t Structures::shaderCount() const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 
@@ -27,9 +28,12 @@ public:
   const Structure& of(const graph::Graph& graph, const passes::LightFacts& lights);
   /// A structure that this run has met or that the cache holds; null when there is none.
   const Structure* known(const Key& key);
+  /// What was met so far was to look at: its shaders need not be made unless they are met again. Not beside
+  /// of() and known().
+  void lookAgain();
 
-  /// By id. Not beside of() and known().
-  std::map<std::string, Distinct>& shaders() { return shaders_; }
+  /// By id, those that are needed. Not beside of() and known().
+  std::map<std::string, Distinct>& shaders();
   size_t shaderCount() const;
 
 private:
@@ -41,11 +45,14 @@ private:
   Entry& entryOf(const Key& key);
   bool load(const Key& key, Entry& entry);
   void need(const Structure& structure, std::optional<ir::Module> module);
+  const Structure& met(const Structure& structure);
 
   const Setting& setting_;
   mutable std::mutex mutex_;
   std::unordered_map<Key, std::unique_ptr<Entry>, KeyHash> entries_;
   std::map<std::string, Distinct> shaders_;
+  std::set<std::string> met_again_;
+  bool looks_again_ = false;
 };
 
 }  // namespace lacquer

@@ -86,11 +86,14 @@ private:
       const targets::WgslBinding at = targets::wgslBinding(slot.binding);
       const auto reads = [&](const Used& used) { return used.textures[i]; };
       const bool compares = slot.type == ir::Type::Texture2DShadow;
+      // An object's textures hold numbers in 32-bit floats, which WebGPU does not filter.
+      const bool numbers = slot.environment && slot.binding.set == ir::kObjectSet;
+      const char* type = compares ? "depth" : numbers ? "unfilterable-float" : "float";
       add(list, row(slot.name, at.group, at.binding), reads,
-          {{"texture",
-            {{"sampleType", compares ? "depth" : "float"}, {"viewDimension", dimension(slot.type)}}}});
+          {{"texture", {{"sampleType", type}, {"viewDimension", dimension(slot.type)}}}});
+      const char* sampler = compares ? "comparison" : numbers ? "non-filtering" : "filtering";
       add(list, row(targets::samplerName(slot), at.group, at.sampler), reads,
-          {{"sampler", {{"type", compares ? "comparison" : "filtering"}}}});
+          {{"sampler", {{"type", sampler}}}});
     }
     return list;
   }

@@ -181,7 +181,8 @@ Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Sche
     Json row = {{"name", slot.name}, {"type", ir::typeName(slot.type)}};
     row["sampler"] = targets::samplerName(slot);
     row.update(bindingJson(slot.binding));
-    row["role"] = slot.environment ? "environment" : "material";
+    const bool object = slot.environment && slot.binding.set == ir::kObjectSet;
+    row["role"] = object ? "object" : slot.environment ? "environment" : "material";
     if (!slot.environment) row["color_space"] = slot.srgb ? "srgb" : "linear";
     textures.push_back(std::move(row));
   }

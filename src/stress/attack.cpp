@@ -48,32 +48,6 @@ void cutOpenEnds(const Subject& subject, std::span<double> samples) {
   }
 }
 
-/// The worst of what a root's value at a sample is.
-bool wrong(const Root& root, const std::vector<double>& values, size_t sample, Fault& fault, double& value) {
-  for (int c = 0; c < root.components; ++c) {
-    const double x = values[sample * static_cast<size_t>(root.components) + static_cast<size_t>(c)];
-    value = x;
-    if (std::isnan(x)) return fault = Fault::NaN, true;
-    if (root.kind == Root::Kind::Condition) continue;
-    if (std::isinf(x)) return fault = Fault::Infinity, true;
-    if (root.allowed.contains(x)) continue;
-    fault = root.kind == Root::Kind::Fact   ? Fault::Assume
-            : root.allowed.lo == 0 && x < 0 ? Fault::Negative
-                                            : Fault::Range;
-    return true;
-  }
-  return false;
-}
-
-void drawChunk(const Subject& subject, uint64_t seed, uint64_t chunk, size_t count,
-               std::vector<double>& samples) {
-  const size_t width = subject.space.width();
-  samples.resize(count * width);
-  const uint64_t own = mixed(mixed(seed, subject.name), chunk);
-  for (size_t i = 0; i < count; ++i)
-    subject.space.draw(mixed(own, i), std::span(samples).subspan(i * width, width));
-}
-
 void checkValues(const Subject& subject, const Values& values, std::span<const double> samples, size_t count,
                  Finds& finds) {
   const size_t width = subject.space.width();
@@ -81,7 +55,7 @@ void checkValues(const Subject& subject, const Values& values, std::span<const d
     for (size_t i = 0; i < count; ++i) {
       Fault fault{};
       double value = 0;
-      if (!wrong(subject.roots[r], values[r], i, fault, value)) continue;
+      if (!faultAt(subject.roots[r], values[r], i, fault, value)) continue;
       Found& found = finds[{fault, subject.roots[r].name}];
       if (found.count++ > 0) continue;
       const size_t first = i / subject.group * subject.group;
@@ -228,28 +202,13 @@ Finds attackChunk(const Subject& subject, const Plan& plan, uint64_t chunk) {
   const uint64_t left = plan.samples - chunk * kChunk;
   const size_t count = (static_cast<size_t>(std::min<uint64_t>(left, kChunk)) + 3) / 4 * 4;
   std::vector<double> samples;
-  drawChunk(subject, plan.seed, chunk, count, samples);
+  drawSamples(subject, plan.seed, chunk * kChunk, count, samples);
   if (plan.half) cutOpenEnds(subject, samples);
   Finds finds;
   checkValues(subject, subject.evaluate(plan.half ? Arithmetic::Half : Arithmetic::Float, samples, count),
               samples, count, finds);
   if (!plan.half && chunk % kProbed == 0) probe(subject, samples, count, finds);
   return finds;
-}
-
-/// Values to try for a component, the plainest first.
-std::vector<double> plain(const Variable& variable, double x) {
-  std::vector<double> tries = {0, 1, 0.5, variable.range.lo, variable.range.hi};
-  for (const double scale : {1.0, 10.0, 100.0, 1000.0, 1e5}) tries.push_back(std::round(x * scale) / scale);
-  std::erase_if(tries, [&](double y) {
-    return !(y >= variable.range.lo && y <= variable.range.hi) || !std::isfinite(y) ||
-           (variable.nature == Nature::Flag && y != 0 && y != 1) ||
-           (variable.nature == Nature::Index && y > 0 && y < 1);
-  });
-  // Only what is plainer than `x` itself comes into question, so that this ends.
-  const auto own = std::find(tries.begin(), tries.end(), x);
-  tries.erase(own, tries.end());
-  return tries;
 }
 
 /// Replaces component by component by plainer numbers as long as the fault stays. The samples of a group, and
@@ -259,7 +218,7 @@ void minimise(const Subject& subject, Finding& finding) {
   for (int round = 0; round < 2; ++round) {
     for (const Variable& variable : subject.space.variables()) {
       for (size_t c = variable.first; c < variable.first + static_cast<size_t>(variable.components); ++c) {
-        for (const double x : plain(variable, finding.input[c])) {
+        for (const double x : plainer(variable, finding.input[c])) {
           std::vector<double> candidate = finding.input;
           for (size_t i = c; i < candidate.size(); i += width) candidate[i] = x;
           double value = 0;
@@ -280,7 +239,7 @@ void valueAtHalf(const Subject& subject, Finding& finding) {
     for (size_t i = 0; i < subject.group; ++i) {
       Fault fault{};
       double value = 0;
-      if (wrong(subject.roots[r], values[r], i, fault, value) && fault == finding.fault &&
+      if (faultAt(subject.roots[r], values[r], i, fault, value) && fault == finding.fault &&
           subject.roots[r].name == finding.what) {
         finding.value = value;
         return;
@@ -301,8 +260,52 @@ std::string_view faultName(Fault fault) {
     case Fault::Jump: return "jump";
     case Fault::Reciprocity: return "reciprocity";
     case Fault::Energy: return "energy";
+    case Fault::Device: return "device";
   }
   return {};
+}
+
+bool faultAt(const Root& root, const std::vector<double>& values, size_t sample, Fault& fault,
+             double& value) {
+  for (int c = 0; c < root.components; ++c) {
+    const double x = values[sample * static_cast<size_t>(root.components) + static_cast<size_t>(c)];
+    value = x;
+    if (std::isnan(x)) return fault = Fault::NaN, true;
+    if (root.kind == Root::Kind::Condition) continue;
+    if (std::isinf(x)) return fault = Fault::Infinity, true;
+    if (root.allowed.contains(x)) continue;
+    fault = root.kind == Root::Kind::Fact   ? Fault::Assume
+            : root.allowed.lo == 0 && x < 0 ? Fault::Negative
+                                            : Fault::Range;
+    return true;
+  }
+  return false;
+}
+
+void drawSamples(const Subject& subject, uint64_t seed, uint64_t first, size_t count,
+                 std::vector<double>& samples) {
+  const size_t width = subject.space.width();
+  samples.resize(count * width);
+  const uint64_t own = mixed(seed, subject.name);
+  for (size_t i = 0; i < count; ++i) {
+    const uint64_t at = first + i;
+    subject.space.draw(mixed(mixed(own, at / kChunk), at % kChunk),
+                       std::span(samples).subspan(i * width, width));
+  }
+}
+
+std::vector<double> plainer(const Variable& variable, double x) {
+  std::vector<double> tries = {0, 1, 0.5, variable.range.lo, variable.range.hi};
+  for (const double scale : {1.0, 10.0, 100.0, 1000.0, 1e5}) tries.push_back(std::round(x * scale) / scale);
+  std::erase_if(tries, [&](double y) {
+    return !(y >= variable.range.lo && y <= variable.range.hi) || !std::isfinite(y) ||
+           (variable.nature == Nature::Flag && y != 0 && y != 1) ||
+           (variable.nature == Nature::Index && y > 0 && y < 1);
+  });
+  // Only what is plainer than `x` itself comes into question, so that this ends.
+  const auto own = std::find(tries.begin(), tries.end(), x);
+  tries.erase(own, tries.end());
+  return tries;
 }
 
 bool shows(const Subject& subject, Fault fault, const std::string& what, std::span<const double> input,
@@ -323,7 +326,7 @@ bool shows(const Subject& subject, Fault fault, const std::string& what, std::sp
     if (subject.roots[r].name != what) continue;
     for (size_t i = 0; i < count; ++i) {
       Fault own{};
-      if (wrong(subject.roots[r], values[r], i, own, value) && own == fault) return true;
+      if (faultAt(subject.roots[r], values[r], i, own, value) && own == fault) return true;
     }
   }
   return false;
@@ -379,7 +382,8 @@ Report attack(const Subject& subject, const Plan& plan) {
     if (finding.fault == Fault::Jump) finding.known = knownJump(subject.name, finding.what);
     report.findings.push_back(std::move(finding));
   }
-  if (!subject.is_node && !plan.half) measureLight(subject, plan, report);
+  // Without tangents it is the same light, four times as dear.
+  if (!subject.is_node && !plan.half && subject.lanes == 1) measureLight(subject, plan, report);
   return report;
 }
 

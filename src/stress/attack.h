@@ -18,8 +18,9 @@ enum class Fault : uint8_t {
   Jump,         ///< a result that jumps where a comparison turns
   Reciprocity,  ///< a material without its layers that is not the same with light and eye exchanged
   Energy,       ///< more light than came, beyond what the texts' formulas do
+  Device,       ///< a device's result that no rounding explains
 };
-/// "nan", "infinity", "negative", "range", "assume", "jump", "reciprocity", "energy".
+/// "nan", "infinity", "negative", "range", "assume", "jump", "reciprocity", "energy", "device".
 std::string_view faultName(Fault fault);
 
 struct Finding {
@@ -63,6 +64,14 @@ bool shows(const Subject& subject, Fault fault, const std::string& what, std::sp
 
 /// Everything that is wrong at these samples: a group, or the two sides of a jump.
 Report replay(const Subject& subject, std::span<const double> input);
+
+/// Samples `first`, `first` + 1, … of an attack with that seed, side by side.
+void drawSamples(const Subject& subject, uint64_t seed, uint64_t first, size_t count,
+                 std::vector<double>& samples);
+/// The worst of what a root's value, one of `values`, is at a sample: false where nothing is wrong.
+bool faultAt(const Root& root, const std::vector<double>& values, size_t sample, Fault& fault, double& value);
+/// Values to try for a component in the place of `x`, the plainest first.
+std::vector<double> plainer(const Variable& variable, double x);
 
 /// Reciprocity and energy of a material; adds to the report. docs/stress.md says how.
 void measureLight(const Subject& subject, const Plan& plan, Report& report);

@@ -38,6 +38,7 @@ public:
     material->is_node = false;
     material->module_ = std::move(module);
     material->layers = std::move(layers);
+    material->lanes = takesDerivatives(material->module_) ? 4 : 1;
     material->makeSpace();
     material->makeRoots();
     std::vector<double> sample(material->space.width());
@@ -48,23 +49,100 @@ public:
   }
 
   Values evaluate(Arithmetic arithmetic, std::span<const double> samples, size_t count) const override {
-    eval::Bindings bindings = bind(samples, count);
-    preshade(bindings, count);
+    const size_t points = count * lanes;
     if (arithmetic == Arithmetic::Double) {
-      vary<double>(samples, count, bindings);
-      return taken(eval::run<double>(fragment_, bindings, count));
+      eval::Bindings bindings = bind(samples, points);
+      preshade(bindings, points);
+      vary<double>(samples, points, bindings);
+      return taken(eval::run<double>(fragment_, bindings, points));
     }
-    vary<float>(samples, count, bindings);
-    return taken(arithmetic == Arithmetic::Half ? eval::runHalf(fragment_, bindings, count)
-                                                : eval::run<float>(fragment_, bindings, count));
+    const eval::Bindings bindings = inputs(samples, count);
+    return taken(arithmetic == Arithmetic::Half ? eval::runHalf(fragment_, bindings, points)
+                                                : eval::run<float>(fragment_, bindings, points));
+  }
+
+  Values evaluateRough(std::span<const double> samples, size_t count, uint64_t seed) const override {
+    eval::Bindings bindings = inputs(samples, count);
+    const uint64_t own = mixed(seed, name);
+    for (const ir::TextureSlot& slot : module_.textures) {
+      if (isTable(slot)) bindings.textures[slot.name] = blurred(slot.name, own);
+    }
+    return taken(eval::runRough(fragment_, bindings, count * lanes, own));
+  }
+
+  const ir::Module& module() const override { return module_; }
+
+  eval::Bindings inputs(std::span<const double> samples, size_t count) const override {
+    eval::Bindings bindings = bind(samples, count * lanes);
+    preshade(bindings, count * lanes);
+    vary<float>(samples, count * lanes, bindings);
+    return bindings;
+  }
+
+  std::vector<bool> defined(std::span<const double> samples, size_t count) const override {
+    std::vector<bool> answer(count, true);
+    if (lanes == 1) return answer;
+    const eval::Bindings bindings = inputs(samples, count);
+    for (const ir::Varying& varying : module_.varyings) {
+      const auto column = bindings.columns.find(varying.name);
+      if (column == bindings.columns.end() || (varying.type != ir::Type::Vec2 && varying.name != "position"))
+        continue;
+      const auto n = static_cast<size_t>(column->second.components);
+      for (size_t i = 0; i < count; ++i)
+        answer[i] = answer[i] && spansArea({column->second.values.data() + lanes * n * i, 3 * n});
+    }
+    return answer;
   }
 
 private:
+  /// Three neighbours' places, one after the other: not on a line, by more than a thousandth of their
+  /// distances.
+  static bool spansArea(std::span<const double> places) {
+    const size_t n = places.size() / 3;
+    double xx = 0;
+    double xy = 0;
+    double yy = 0;
+    for (size_t c = 0; c < n; ++c) {
+      const double x = places[n + c] - places[c];
+      const double y = places[2 * n + c] - places[c];
+      xx += x * x;
+      xy += x * y;
+      yy += y * y;
+    }
+    return xx * yy - xy * xy > 1e-6 * xx * yy;
+  }
+
+  /// Of each sample's points the first.
   template <class T>
-  static Values taken(const std::vector<std::vector<T>>& results) {
+  Values taken(const std::vector<std::vector<T>>& results) const {
     Values values;
-    for (const auto& column : results) values.emplace_back(column.begin(), column.end());
+    for (size_t r = 0; r < results.size(); ++r) {
+      const auto n = static_cast<size_t>(roots[r].components);
+      std::vector<double>& column = values.emplace_back();
+      for (size_t i = 0; i < results[r].size(); i += n * lanes)
+        column.insert(column.end(), results[r].begin() + static_cast<ptrdiff_t>(i),
+                      results[r].begin() + static_cast<ptrdiff_t>(i + n));
+    }
     return values;
+  }
+
+  /// A table as a device looks into it, whose filter has 8 bits of a texel's width.
+  static eval::Sampler blurred(const std::string& table, uint64_t seed) {
+    const std::shared_ptr<const eval::Image> image = eval::environmentTable(table);
+    return
+        [image, seed, sampler = eval::environmentSampler(table)](size_t point, const Vec3& at, double lod) {
+          Random random(mixed(seed, point));
+          const double x = (2 * random.unit() - 1) / (256.0 * image->width);
+          const double y = (2 * random.unit() - 1) / (256.0 * image->height);
+          return sampler(point, {at[0] + x, at[1] + y, at[2]}, lod);
+        };
+  }
+
+  static bool takesDerivatives(const ir::Module& module) {
+    const std::vector<ir::ValueId> live = ir::reachable(module, ir::Stage::Fragment);
+    return std::any_of(live.begin(), live.end(), [&](ir::ValueId id) {
+      return module.dag[id].op == ir::Op::DFdx || module.dag[id].op == ir::Op::DFdy;
+    });
   }
 
   /// The environment's factors are what they are.
@@ -83,6 +161,10 @@ private:
     space.add("front_facing", 1, {}, Nature::Flag, 1);
     space.add("color0", 4, {0, 1}, Nature::Number, 1);
     space.add("light", 3, {0, kBrightest}, Nature::Number, kBrightest);
+    if (lanes > 1) {
+      for (const char* step : {"position_dx", "position_dy"}) space.add(step, 3, {}, Nature::Step, 1);
+      for (const char* step : {"uv_dx", "uv_dy"}) space.add(step, 2, {}, Nature::Step, 1);
+    }
     for (const uint32_t index : ir::usedParameters(module_)) {
       const ir::Parameter& parameter = module_.parameters[index];
       space.add(parameter.name, ir::componentCount(parameter.type), parameter.range,
@@ -124,9 +206,21 @@ private:
   }
 
   const double* at(std::span<const double> samples, size_t point, const char* name) const {
-    return samples.data() + point * space.width() + space.find(name)->first;
+    return samples.data() + point / lanes * space.width() + space.find(name)->first;
   }
 
+  /// Where a neighbour lies, and its texture coordinates.
+  void step(std::span<const double> samples, size_t i, eval::Point& point) const {
+    const double x = static_cast<double>(i % 2);
+    const double y = static_cast<double>(i / 2 % 2);
+    for (size_t c = 0; c < 3; ++c)
+      point.position[c] = x * at(samples, i, "position_dx")[c] + y * at(samples, i, "position_dy")[c];
+    for (std::array<double, 2>& uv : point.uv) {
+      for (size_t c = 0; c < 2; ++c) uv[c] = x * at(samples, i, "uv_dx")[c] + y * at(samples, i, "uv_dy")[c];
+    }
+  }
+
+  /// `count` points, `lanes` of which are of one sample.
   eval::Bindings bind(std::span<const double> samples, size_t count) const {
     std::vector<eval::Point> points(count);
     for (size_t i = 0; i < count; ++i) {
@@ -145,8 +239,10 @@ private:
       std::copy_n(at(samples, i, "color0"), 4, point.color0.begin());
       std::copy_n(at(samples, i, "light"), 3, point.light.begin());
       point.front_facing = *at(samples, i, "front_facing") != 0;
+      if (lanes > 1) step(samples, i, point);
     }
     eval::Bindings bindings;
+    bindings.quads = lanes > 1;
     eval::bindPoints(module_, points, bindings);
     const size_t width = space.width();
     for (const Variable& variable : space.variables()) {
@@ -154,7 +250,7 @@ private:
       std::vector<double> values;
       values.reserve(count * static_cast<size_t>(variable.components));
       for (size_t i = 0; i < count; ++i) {
-        const double* from = samples.data() + i * width + variable.first;
+        const double* from = samples.data() + i / lanes * width + variable.first;
         values.insert(values.end(), from, from + variable.components);
       }
       bindings.columns[variable.name] = Column::perPoint(variable.components, std::move(values));
@@ -165,8 +261,8 @@ private:
         continue;
       }
       const Variable& texel = *space.find(slot.name);
-      bindings.textures[slot.name] = [samples, width, &texel](size_t point, const Vec3&, double) {
-        const double* from = samples.data() + point * width + texel.first;
+      bindings.textures[slot.name] = [samples, width, &texel, this](size_t point, const Vec3&, double) {
+        const double* from = samples.data() + point / lanes * width + texel.first;
         return std::array<double, 4>{from[0], from[1], from[2], texel.components > 3 ? from[3] : 1.0};
       };
     }
@@ -204,24 +300,25 @@ private:
   }
 
   Result<void> compile(std::span<const double> sample) {
-    eval::Bindings bindings = bind(sample, 1);
+    const size_t count = lanes;
+    eval::Bindings bindings = bind(sample, count);
     std::vector<ir::ValueId> fields;
     for (const ir::PreshaderField& field : module_.preshader) fields.push_back(field.value);
-    Result<eval::Program> preshader = eval::compile(module_, fields, bindings, 1);
+    Result<eval::Program> preshader = eval::compile(module_, fields, bindings, count);
     if (!preshader) return tl::make_unexpected(std::move(preshader.error()));
     preshader_ = std::move(*preshader);
-    preshade(bindings, 1);
+    preshade(bindings, count);
     std::vector<ir::ValueId> sources;
     for (const ir::Varying& varying : module_.varyings) {
       if (varying.source == ir::kNoValue) continue;
       sources.push_back(varying.source);
       varyings_.push_back(&varying);
     }
-    Result<eval::Program> vertex = eval::compile(module_, sources, bindings, 1);
+    Result<eval::Program> vertex = eval::compile(module_, sources, bindings, count);
     if (!vertex) return tl::make_unexpected(std::move(vertex.error()));
     vertex_ = std::move(*vertex);
-    vary<double>(sample, 1, bindings);
-    Result<eval::Program> fragment = eval::compile(module_, ids_, bindings, 1);
+    vary<double>(sample, count, bindings);
+    Result<eval::Program> fragment = eval::compile(module_, ids_, bindings, count);
     if (!fragment) return tl::make_unexpected(std::move(fragment.error()));
     fragment_ = std::move(*fragment);
     return {};

@@ -119,6 +119,20 @@ public:
     return values;
   }
 
+  Values evaluateRough(std::span<const double> samples, size_t count, uint64_t seed) const override {
+    return eval::runRough(program_, bind<float>(samples, count), count, mixed(seed, name));
+  }
+
+  const ir::Module& module() const override { return module_; }
+
+  eval::Bindings inputs(std::span<const double> samples, size_t count) const override {
+    return bind<float>(samples, count);
+  }
+
+  std::vector<bool> defined(std::span<const double>, size_t count) const override {
+    return std::vector<bool>(count, true);
+  }
+
 private:
   void makeSpace() {
     if (std::any_of(module_.parameters.begin(), module_.parameters.end(), isGeometry)) {

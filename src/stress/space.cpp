@@ -37,6 +37,13 @@ Vec3 anyDirection(Random& random) {
     axis[random.below(3)] = random.below(2) == 0 ? 1 : -1;
     return axis;
   }
+  // Diagonals of a cube and of its faces: where components are equal, differences of theirs vanish.
+  if (random.below(8) == 0) {
+    Vec3 diagonal{1, 1, 1};
+    for (double& x : diagonal) x = random.below(2) == 0 ? x : -x;
+    if (random.below(2) == 0) diagonal[random.below(3)] = 0;
+    return unit(diagonal);
+  }
   const double z = 2 * random.unit() - 1;
   const double angle = 2 * kPi * random.unit();
   const double ring = std::sqrt(1 - z * z);
@@ -58,6 +65,26 @@ Vec3 relatedTo(const Vec3& a, Random& random) {
     case 5: return unit(combined(across, 1, a, little));
     default: return any;
   }
+}
+
+/// A texel: of eight bits mostly, or what a filter makes of two neighbouring ones; 127 and 128 often, whose
+/// middle decodes to no direction.
+double drawTexel(Random& random) {
+  const uint32_t byte = random.below(256);
+  if (random.below(4) != 0) return byte / 255.0;
+  const uint32_t first = random.below(2) == 0 ? 127 : std::min(byte, 254U);
+  return (first + random.below(257) / 256.0) / 255.0;
+}
+
+/// Sixty-fourths, so that a device's interpolation meets them.
+void drawStep(Random& random, std::span<double> to, std::vector<double>& last) {
+  for (double& x : to) x = random.below(3) == 0 ? 0 : (static_cast<double>(random.below(129)) - 64) / 64;
+  const uint32_t kind = random.below(6);
+  if (kind == 0) std::fill(to.begin(), to.end(), 0.0);
+  // Along the one before: together they span no area.
+  for (size_t c = 0; c < to.size() && kind < 3 && kind > 0 && last.size() == to.size(); ++c)
+    to[c] = kind == 1 ? last[c] : -0.5 * last[c];
+  last.assign(to.begin(), to.end());
 }
 
 /// To float32, without leaving the range.
@@ -115,7 +142,7 @@ Nature natureOf(std::string_view name, const ir::Interval& range) {
 
 size_t Space::add(std::string name, int components, ir::Interval range, Nature nature, double limit) {
   const size_t first = width_;
-  if (nature == Nature::Direction) range = {-1, 1};
+  if (nature == Nature::Direction || nature == Nature::Step) range = {-1, 1};
   if (nature == Nature::Flag || nature == Nature::Texel) range = {0, 1};
   if (std::isinf(range.lo)) range.lo = std::min(-limit, range.hi);
   if (std::isinf(range.hi)) range.hi = std::max(limit, range.lo);
@@ -133,6 +160,7 @@ const Variable* Space::find(std::string_view name) const {
 void Space::draw(uint64_t seed, std::span<double> sample) const {
   Random random(seed);
   std::vector<Vec3> directions;
+  std::vector<double> step;
   for (const Variable& variable : variables_) {
     const std::span<double> to = sample.subspan(variable.first, static_cast<size_t>(variable.components));
     if (variable.nature == Nature::Direction) {
@@ -144,6 +172,10 @@ void Space::draw(uint64_t seed, std::span<double> sample) const {
       directions.push_back({to[0], to[1], to[2]});
       continue;
     }
+    if (variable.nature == Nature::Step) {
+      drawStep(random, to, step);
+      continue;
+    }
     // A texel that decodes to no direction at all: what filtering makes of 127 and 128.
     const bool middle = variable.nature == Nature::Texel && random.below(16) == 0;
     for (double& x : to) {
@@ -152,7 +184,7 @@ void Space::draw(uint64_t seed, std::span<double> sample) const {
       else if (variable.nature == Nature::Index)
         x = random.below(8) == 0 ? 0 : drawNumber(random, {1, variable.range.hi});
       else if (variable.nature == Nature::Texel && random.below(4) != 0)
-        x = exact(random.below(256) / 255.0, variable.range);
+        x = exact(drawTexel(random), variable.range);
       else
         x = drawNumber(random, variable.range);
       if (middle) x = 0.5;

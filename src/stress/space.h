@@ -34,6 +34,7 @@ enum class Nature : uint8_t {
   Flag,       ///< 0 or 1
   Texel,      ///< in [0, 1], mostly eight bits
   Index,      ///< of refraction: 0, which stands for an infinite one, or 1 and more
+  Step,  ///< from a pixel to its neighbour, of few bits; often 0, along an axis, or along the step before it
 };
 
 struct Variable {

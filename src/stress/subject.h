@@ -44,11 +44,24 @@ public:
   std::vector<Root> roots;
   /// Samples stand in groups of so many: 4 where derivatives are taken between neighbours, else 1.
   size_t group = 1;
+  /// Points that stand for one sample: 4 for a material that takes derivatives, since its neighbours belong
+  /// to it.
+  size_t lanes = 1;
   /// Of a material: the parameters by which its layers vanish, and at which numbers they do.
   Layers layers;
 
   /// `samples` are those of `count` points, side by side. Thread-safe.
   virtual Values evaluate(Arithmetic arithmetic, std::span<const double> samples, size_t count) const = 0;
+  /// The same in one of the arithmetics that Vulkan allows float32 (eval/rough.h); another seed draws
+  /// another.
+  virtual Values evaluateRough(std::span<const double> samples, size_t count, uint64_t seed) const = 0;
+
+  /// What a device runs, and what its inputs are, in float: `lanes` points for each sample.
+  virtual const ir::Module& module() const = 0;
+  virtual eval::Bindings inputs(std::span<const double> samples, size_t count) const = 0;
+  /// By sample: whether the numbers mean one result. Not where steps to the neighbours span no area: which
+  /// way a tangent lies that comes of them is rounding's to say, and it must only be finite.
+  virtual std::vector<bool> defined(std::span<const double> samples, size_t count) const = 0;
 };
 
 /// A node's own module: inputs are its parameters, outputs its results, in order, `results` with their

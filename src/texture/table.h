@@ -22,7 +22,4 @@ std::optional<Container> containerOf(std::string_view path);
 /// row is the first in the file.
 std::string tableFile(Container container, uint32_t size, std::span<const float> values);
 
-/// The half nearest to a number in [0, 1], the even one of two: its bits.
-uint16_t halfBits(float x);
-
 }  // namespace lacquer::texture

@@ -164,7 +164,7 @@ Result<void> EvalMaterial::lower(material::Material material, const Language& li
   options.decode_srgb = false;
   Diagnostics warnings;
   Result<graph::Graph> built =
-      buildGraph(material, {true, true, true, {true, true, true, true}}, library, options, warnings);
+      buildGraph(material, {true, tangents_, true, {true, true, true, true}}, library, options, warnings);
   report(warnings, images_.file(), messages);
   if (!built) return tl::make_unexpected(std::move(built.error()));
   graph::Graph graph = std::move(*built);

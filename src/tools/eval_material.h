@@ -78,9 +78,12 @@ public:
   /// "baseColorTexture=0.5,0.5,0.5,1", each. Errors: "bad-texel".
   Result<void> setTexels(const std::vector<std::string>& texts);
 
-  /// The module of the options' template as lowered, for a primitive with every attribute: points are given
-  /// all of them. Nodes that have the variant of that name use it. Errors: "unknown-texture", those of a
-  /// graph.
+  /// The primitive has no tangents: frames come of derivatives.
+  void leaveOutTangents() { tangents_ = false; }
+
+  /// The module of the options' template as lowered, for a primitive with every attribute but what was left
+  /// out: points are given all of them. Nodes that have the variant of that name use it. Errors:
+  /// "unknown-texture", those of a graph.
   Result<void> lower(material::Material material, const Language& library, bool environment,
                      const std::string& variant, Messages& messages);
 
@@ -117,6 +120,7 @@ private:
   FileImages& images_;
   Options options_;
   std::vector<Texel> texels_;
+  bool tangents_ = true;
   std::vector<int> originals_;  ///< by the slot's texture: the file's
   ir::Module module_;
   std::string profile_;

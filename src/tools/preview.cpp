@@ -14,6 +14,7 @@
 #include "support/text.h"
 #include "tools/eval_material.h"
 #include "tools/of_scene.h"
+#include "tools/panorama.h"
 #include "tools/preview_setting.h"
 
 namespace lacquer {
@@ -34,12 +35,18 @@ Result<preview::Shading> shadingOf(const material::Material& material, const Lan
     return tl::make_unexpected(std::move(set.error()));
   if (Result<void> lowered = evaluated.lower(material, library, true, of.variant, messages); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
-  if (of.in_float) evaluated.place({false, {{"directional", preview::Studio::kLights}}});
+  if (of.in_float && studio.hasLamps())
+    evaluated.place({false, {{"directional", preview::Studio::kLights}}});
+  else if (of.in_float)
+    evaluated.place({false, {}});
   preview::Look look;
   look.in_float = of.in_float;
   for (const ir::TextureSlot* slot : evaluated.environments()) {
-    const bool specular = slot->name.find("irradiance") == std::string::npos;
-    (specular ? look.specular : look.irradiance).push_back(slot->name);
+    const auto holds = [&](const char* word) { return slot->name.find(word) != std::string::npos; };
+    (holds("irradiance") ? look.irradiance
+     : holds("charlie")  ? look.fibres
+                         : look.specular)
+        .push_back(slot->name);
   }
   const auto neutral = [&](const ir::TextureSlot& slot, const Diagnostics& why) {
     ++substituted;
@@ -82,10 +89,12 @@ public:
   Result<std::string> make(const std::vector<std::string>& files, const std::vector<std::string>& materials) {
     if (const Result<Limits> limits = limitsOf(options_); !limits) return tl::make_unexpected(limits.error());
     if (Result<void> set = readSettings(); !set) return tl::make_unexpected(std::move(set.error()));
+    if (Result<void> lit = readEnvironment(); !lit) return tl::make_unexpected(std::move(lit.error()));
     std::vector<material::Document> documents;
     if (Result<void> read = readFiles(files, materials, documents); !read)
       return tl::make_unexpected(std::move(read.error()));
     Strings inputs = files;
+    if (!preview_.environment.empty()) inputs.push_back(preview_.environment);
     for (const std::string& folder : options_.node_directories) {
       const auto nodes = nodeFiles(folder);
       for (size_t i = 0; nodes && i < nodes->size(); ++i) inputs.push_back((*nodes)[i].name);
@@ -130,6 +139,17 @@ private:
       if (!library) return tl::make_unexpected(std::move(library.error()));
       libraries_.push_back(std::move(*library));
     }
+    return {};
+  }
+
+  Result<void> readEnvironment() {
+    // Fine enough for a ball: the finest level has a texel for two degrees and a half.
+    constexpr environment::MapOptions kFine{128, 512};
+    if (preview_.environment.empty()) return {};
+    const Result<environment::Panorama> panorama = panoramaOf(preview_.environment, options_, messages_);
+    if (!panorama) return tl::make_unexpected(panorama.error());
+    const environment::LightTree tree(*panorama, environment::treeSizeOf(*panorama, kFine));
+    studio_ = preview::Studio(environment::makeMaps(tree, kFine));
     return {};
   }
 
@@ -232,7 +252,7 @@ private:
   const Options& options_;
   Messages& messages_;
   const std::function<void(size_t, size_t)>& progress_;
-  preview::Studio studio_;
+  preview::Studio studio_;                ///< or what the environment's picture makes of it
   std::vector<PreviewSetting> settings_;  ///< one, or the two to compare
   std::vector<std::shared_ptr<const Language>> libraries_;
   std::vector<Measured> measured_;

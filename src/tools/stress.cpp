@@ -13,6 +13,7 @@
 #include "support/text.h"
 #include "tools/eval_material.h"
 #include "tools/node_proofs.h"
+#include "tools/stress_device.h"
 
 namespace lacquer {
 
@@ -51,6 +52,7 @@ public:
       : options_(options), messages_(messages), progress_(progress) {
     plan_ = {stress.samples, stress.seed, stress.mediump};
     total_ = stress.total;
+    engine_ = stress.engine;
   }
 
   Result<std::string> make(const std::vector<std::string>& names) {
@@ -60,6 +62,7 @@ public:
       return tl::make_unexpected(std::move(samples.error()));
     if (Result<void> total = inRange("the number of all samples", total_, 0, kMostSamples, {}); !total)
       return tl::make_unexpected(std::move(total.error()));
+    if (Result<void> opened = openDevice(); !opened) return tl::make_unexpected(std::move(opened.error()));
     auto library = libraryFor(options_);
     if (!library) return tl::make_unexpected(std::move(library.error()));
     library_ = std::move(*library);
@@ -75,15 +78,37 @@ public:
       subjects.push_back(std::move(*one));
       if (progress_) progress_(i + 1, work_.size());
     }
-    const Json answer = {{"seed", plan_.seed},
-                         {"samples", plan_.samples},
-                         {"mediump", plan_.half},
-                         {"subjects", subjects},
-                         {"faults", faults}};
+    Json answer = {{"seed", plan_.seed}, {"samples", plan_.samples}, {"mediump", plan_.half}};
+    if (device_) answer["device"] = device_->name();
+    answer["subjects"] = std::move(subjects);
+    answer["faults"] = faults;
     return answer.dump(2) + "\n";
   }
 
 private:
+  Result<void> openDevice() {
+    if (engine_ == Engine::Float) return {};
+    if (engine_ != Engine::Vulkan && engine_ != Engine::VulkanGlsl && engine_ != Engine::VulkanHlsl) {
+      return fail("unknown-enumerator", {},
+                  fmt::format("the engine is {}, which nothing is attacked with", static_cast<int>(engine_)),
+                  "floats on the CPU (1), or a Vulkan device (2 to 4)");
+    }
+    if (plan_.half) {
+      return fail("contradicting-options", {}, "half precision is rounded on the CPU, not on a device",
+                  "leave out one of them");
+    }
+    Result<vulkan::Device> device = vulkan::Device::open();
+    if (!device) return tl::make_unexpected(std::move(device.error()));
+    device_ = std::move(*device);
+    return {};
+  }
+
+  FragmentRoute route() const {
+    return engine_ == Engine::VulkanHlsl   ? FragmentRoute::Hlsl
+           : engine_ == Engine::VulkanGlsl ? FragmentRoute::Glsl
+                                           : FragmentRoute::Direct;
+  }
+
   Result<void> addAll(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       Result<void> added;
@@ -141,14 +166,20 @@ private:
   void add(std::unique_ptr<Subject> subject, Json about) {
     const std::shared_ptr<const Subject> kept = std::move(subject);
     work_.emplace_back([this, kept, about = std::move(about)](size_t& faults) -> Result<Json> {
-      return reported(*kept, about, stress::attack(*kept, plan_), faults);
+      if (!device_) return reported(*kept, about, stress::attack(*kept, plan_), faults);
+      const DeviceSubject shown = deviceSubject(*kept, *device_, route());
+      if (!shown.skipped.empty()) return skipped(about, shown.skipped);
+      const Result<stress::Report> report = stress::attackOnDevice(*kept, plan_, shown.show);
+      if (!report) return tl::make_unexpected(report.error());
+      return reported(*kept, about, *report, faults);
     });
   }
 
   Result<std::unique_ptr<Subject>> materialSubject(const std::string& file,
-                                                   const material::Material& material) {
+                                                   const material::Material& material, bool tangents = true) {
     FileImages images(file, options_);
     EvalMaterial evaluated(images, options_);
+    if (!tangents) evaluated.leaveOutTangents();
     if (Result<void> lowered = evaluated.lower(material, *library_, true, {}, messages_); !lowered)
       return tl::make_unexpected(std::move(lowered.error()));
     evaluated.place({false, {{"directional", 1}}});
@@ -171,9 +202,24 @@ private:
       if (lacquer::hasError(material.diagnostics)) continue;
       Result<std::unique_ptr<Subject>> subject = materialSubject(file, material);
       if (!subject) return tl::make_unexpected(std::move(subject.error()));
-      add(std::move(*subject), {{"file", file}, {"material", material.index}, {"name", material.name}});
+      Json about = {{"file", file}, {"material", material.index}, {"name", material.name}};
+      add(std::move(*subject), about);
+      // Where frames come of derivatives it is another function.
+      subject = materialSubject(file, material, false);
+      if (!subject) return tl::make_unexpected(std::move(subject.error()));
+      if ((*subject)->lanes == 1) continue;
+      about["tangents"] = false;
+      (*subject)->name += " without tangents";
+      add(std::move(*subject), std::move(about));
     }
     return {};
+  }
+
+  static Json skipped(const Json& about, const std::string& why) {
+    Json json = about;
+    json["skipped"] = why;
+    json["findings"] = Json::array();
+    return json;
   }
 
   Json reported(const Subject& subject, const Json& about, const stress::Report& report,
@@ -224,7 +270,8 @@ private:
     if (!document) return tl::make_unexpected(document.error());
     const auto index = test["material"].get<size_t>();
     if (index >= document->materials.size()) return wrong("the file has no material of that index");
-    return materialSubject(file, document->materials[index]);
+    const bool tangents = !test.contains("tangents") || test["tangents"] != false;
+    return materialSubject(file, document->materials[index], tangents);
   }
 
   Result<std::vector<double>> inputOf(const Subject& subject, const Json& test,
@@ -269,7 +316,14 @@ private:
     if (!subject) return tl::make_unexpected(std::move(subject.error()));
     const Result<std::vector<double>> input = inputOf(**subject, *test, path);
     if (!input) return tl::make_unexpected(input.error());
-    Json json = reported(**subject, {{"case", path}}, stress::replay(**subject, *input), faults);
+    Result<stress::Report> report = stress::replay(**subject, *input);
+    if (device_) {
+      const DeviceSubject shown = deviceSubject(**subject, *device_, route());
+      if (!shown.skipped.empty()) return skipped({{"case", path}}, shown.skipped);
+      report = stress::replayOnDevice(**subject, *input, shown.show);
+      if (!report) return tl::make_unexpected(std::move(report.error()));
+    }
+    Json json = reported(**subject, {{"case", path}}, *report, faults);
     for (Json& finding : json["findings"]) finding.erase("case");
     return json;
   }
@@ -279,6 +333,8 @@ private:
   const std::function<void(size_t, size_t)>& progress_;
   stress::Plan plan_;
   uint64_t total_ = 0;
+  Engine engine_ = Engine::Float;
+  std::optional<vulkan::Device> device_;
   std::shared_ptr<const Language> library_;
   std::vector<std::function<Result<Json>(size_t& faults)>> work_;
 };

@@ -17,6 +17,8 @@ namespace {
 /// Where the page has its files: JSON stands between this and the end of the element.
 constexpr std::string_view kPlace = "<script type=\"application/json\" id=\"files\">";
 constexpr std::string_view kEmpty = "[]</script>";
+/// And what shaders cost, by their ids. A page may do without.
+constexpr std::string_view kCosts = "<script type=\"application/json\" id=\"costs\">{}";
 
 std::string toBase64(std::string_view bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -46,6 +48,23 @@ std::string scriptText(const json::Json& json) {
   return text;
 }
 
+/// {ID: {"spirv": instructions, "gpus": {NAME: {"instructions", …}}}}, without what could not be measured.
+json::Json costsJson(const std::vector<ShaderCost>& costs) {
+  json::Json all = json::Json::object();
+  for (const ShaderCost& shader : costs) {
+    json::Json gpus = json::Json::object();
+    for (const GpuCost& gpu : shader.gpus) {
+      if (!gpu.problem.empty()) continue;
+      gpus[gpu.gpu] = {{"instructions", gpu.instructions},
+                       {"vgprs", gpu.vgprs},
+                       {"latency", gpu.latency},
+                       {"inverse_throughput", gpu.inverse_throughput}};
+    }
+    all[shader.name] = {{"spirv", shader.spirv_instructions}, {"gpus", std::move(gpus)}};
+  }
+  return all;
+}
+
 class Viewing {
 public:
   Viewing(const Options& options, Messages& messages)
@@ -68,6 +87,9 @@ public:
       all.push_back(std::move(*entry));
     }
     page->replace(place + kPlace.size(), 2, scriptText(all));
+    // Behind the files, which may hold any text but no end of an element.
+    if (const size_t costs = page->find(kCosts, place); costs != std::string::npos)
+      page->replace(costs + kCosts.size() - 2, 2, scriptText(costsJson(view.costs)));
     if (Diagnostics wrong = clashes(inputs_, {view.output}); !wrong.empty())
       return tl::make_unexpected(std::move(wrong));
     const Result<bool> written = writeFile(view.output, *page, {nullptr, options_.sync});

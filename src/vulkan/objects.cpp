@@ -71,7 +71,7 @@ Image Objects::image(uint32_t width, uint32_t height, uint32_t layers, VkImageUs
   if (format == kDepthFormat) image.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-  info.flags = layers >= 6 ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
+  info.flags = layers >= 6 && width == height ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
   info.imageType = volume ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
   info.format = format;
   info.extent = {width, height, 1};
@@ -109,7 +109,8 @@ VkImageView Objects::view(const Image& image, uint32_t first_layer, Shape shape)
   info.image = image.handle;
   info.viewType = viewTypeOf(shape);
   info.format = image.format;
-  info.subresourceRange = {image.aspect, 0, 1, first_layer, shape == Shape::Cube ? 6U : 1U};
+  const uint32_t layers = shape == Shape::Cube ? 6 : shape == Shape::Array ? image.layers : 1;
+  info.subresourceRange = {image.aspect, 0, 1, first_layer, layers};
   if (good() &&
       check(device_.vk.CreateImageView(device_.handle, &info, nullptr, &view), "vkCreateImageView")) {
     atEnd([this, view] { device_.vk.DestroyImageView(device_.handle, view, nullptr); });

@@ -18,27 +18,33 @@ namespace lacquer::vulkan {
 namespace {
 
 constexpr size_t kChunk = size_t{kSide} * kSide;  ///< points of a submission
-/// Sets of cube map colours in a submission: six layers each, of the 2048 that a device has at the least.
-constexpr size_t kCubes = 256;
+/// Sets of varied textures' colours in a submission: six layers each for a cube, of the 2048 that a device
+/// has at the least.
+constexpr size_t kColors = 256;
 /// What a pixel holds that no fragment has written: four times the least float, which no shader means.
 constexpr float kUntouched = -FLT_MAX;
 
 /// Points that one draw takes: everything that is no input is the same for them.
 struct Draw {
   size_t first = 0, count = 0;  ///< points, from the chunk's first
-  size_t cubes = 0;             ///< which set of cube map colours
+  size_t colors = 0;            ///< which set of the varied textures' colours
 };
 
 /// The points of one submission.
 struct Chunk {
   size_t first = 0, count = 0;
   std::vector<Draw> draws;
-  std::vector<std::vector<Texel>> cubes;  ///< the distinct sets of colours, one colour for each cube texture
+  std::vector<std::vector<Texel>> colors;  ///< the distinct sets, one colour for each varied texture
 };
 
 struct Pixel {
   uint32_t x = 0, y = 0;
 };
+
+/// Whether points may have different texels.
+bool varies(const Texture& texture) { return texture.shape == Shape::Cube || texture.per_point; }
+
+uint32_t layersOf(const Texture& texture) { return texture.shape == Shape::Cube ? 6 : 1; }
 
 size_t blockSize(const UniformBlock& block, size_t points) {
   return block.per_point ? block.bytes.size() / points : block.bytes.size();
@@ -60,18 +66,18 @@ private:
 
   Chunk split(size_t first) const;
   bool together(size_t a, size_t b) const;
-  std::vector<Texel> cubesAt(size_t point) const;
+  std::vector<Texel> colorsAt(size_t point) const;
   template <class T>
   void upload(const std::vector<T>& texels, const Image& image, Objects& objects) const;
   Pixel pixelOf(size_t i) const;
   void corner(size_t point, const Pixel& pixel, const std::array<float, 2>& reach, unsigned char* to) const;
   Buffer vertices(Objects& objects, const Chunk& chunk) const;
   Buffer uniforms(Objects& objects, const Chunk& chunk, std::vector<BlockData>& data) const;
-  std::vector<std::vector<VkImageView>> cubeViews(Objects& objects, const Chunk& chunk) const;
+  std::vector<std::vector<VkImageView>> variedViews(Objects& objects, const Chunk& chunk) const;
   std::vector<std::vector<VkDescriptorSet>> sets(Objects& objects, const Chunk& chunk, const Buffer& uniform,
                                                  const std::vector<BlockData>& data) const;
   void write(VkDescriptorSet set, uint32_t number, const Buffer& uniform, const std::vector<BlockData>& data,
-             const std::vector<VkImageView>& cubes) const;
+             const std::vector<VkImageView>& varied) const;
   void record(VkCommandBuffer commands, const Chunk& chunk, const Buffer& vertex,
               const std::vector<BlockData>& data, const std::vector<std::vector<VkDescriptorSet>>& sets,
               const Buffer& result) const;
@@ -83,9 +89,9 @@ private:
   const Pipeline& pipeline_;
   Objects& objects_;
   size_t next_ = 0;
-  std::vector<VkImageView> views_;     ///< by texture; none for cube maps
-  std::vector<VkSampler> samplers_;    ///< by texture
-  std::vector<const Texture*> cubes_;  ///< the cube maps among the textures
+  std::vector<VkImageView> views_;      ///< by texture; none for varied ones
+  std::vector<VkSampler> samplers_;     ///< by texture
+  std::vector<const Texture*> varied_;  ///< those whose texels points may have for themselves
   std::vector<Image> targets_;
   VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
 };
@@ -134,12 +140,15 @@ void Running::prepare() {
   for (const Texture& texture : work_.textures) {
     samplers_.push_back(objects_.sampler(texture));
     views_.push_back(VK_NULL_HANDLE);
-    if (texture.shape == Shape::Cube) {
-      cubes_.push_back(&texture);
+    if (varies(texture)) {
+      varied_.push_back(&texture);
       continue;
     }
+    const size_t layer = size_t{texture.width} * texture.height;
+    const auto layers =
+        static_cast<uint32_t>(texture.shape == Shape::Array ? texture.texels->size() / layer : 1);
     const Image image = objects_.image(
-        texture.width, texture.height, 1, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        texture.width, texture.height, layers, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
         texture.compares ? kDepthFormat : kFormat, texture.shape == Shape::Volume);
     if (texture.compares) {
       std::vector<float> depths;
@@ -152,9 +161,10 @@ void Running::prepare() {
   }
 }
 
-std::vector<Texel> Running::cubesAt(size_t point) const {
+std::vector<Texel> Running::colorsAt(size_t point) const {
   std::vector<Texel> colors;
-  for (const Texture* cube : cubes_) colors.push_back((*cube->texels)[cube->texels->size() == 1 ? 0 : point]);
+  for (const Texture* varied : varied_)
+    colors.push_back((*varied->texels)[varied->texels->size() == 1 ? 0 : point]);
   return colors;
 }
 
@@ -174,7 +184,7 @@ bool Running::together(size_t a, size_t b) const {
     if (block.per_point && std::memcmp(&block.bytes[a * size], &block.bytes[b * size], size) != 0)
       return false;
   }
-  return cubesAt(a) == cubesAt(b);
+  return colorsAt(a) == colorsAt(b);
 }
 
 Chunk Running::split(size_t first) const {
@@ -184,14 +194,14 @@ Chunk Running::split(size_t first) const {
     if (i > first && together(i - 1, i)) {
       ++chunk.draws.back().count;
     } else {
-      const std::vector<Texel> colors = cubesAt(i);
-      const auto found = std::find(chunk.cubes.begin(), chunk.cubes.end(), colors);
-      const auto cubes = static_cast<size_t>(found - chunk.cubes.begin());
-      if (found == chunk.cubes.end()) {
-        if (chunk.cubes.size() == kCubes) break;
-        chunk.cubes.push_back(colors);
+      const std::vector<Texel> colors = colorsAt(i);
+      const auto found = std::find(chunk.colors.begin(), chunk.colors.end(), colors);
+      const auto set = static_cast<size_t>(found - chunk.colors.begin());
+      if (found == chunk.colors.end()) {
+        if (chunk.colors.size() == kColors) break;
+        chunk.colors.push_back(colors);
       }
-      chunk.draws.push_back({i - first, 1, cubes});
+      chunk.draws.push_back({i - first, 1, set});
     }
     ++chunk.count;
   }
@@ -268,23 +278,24 @@ Buffer Running::uniforms(Objects& objects, const Chunk& chunk, std::vector<Block
   return buffer;
 }
 
-/// By set of colours, by cube map.
-std::vector<std::vector<VkImageView>> Running::cubeViews(Objects& objects, const Chunk& chunk) const {
-  std::vector<std::vector<VkImageView>> views(chunk.cubes.size());
-  for (size_t c = 0; c < cubes_.size() && objects.good(); ++c) {
+/// By set of colours, by varied texture.
+std::vector<std::vector<VkImageView>> Running::variedViews(Objects& objects, const Chunk& chunk) const {
+  std::vector<std::vector<VkImageView>> views(chunk.colors.size());
+  for (size_t c = 0; c < varied_.size() && objects.good(); ++c) {
+    const uint32_t layers = layersOf(*varied_[c]);
     std::vector<Texel> texels;
-    for (const std::vector<Texel>& colors : chunk.cubes) texels.insert(texels.end(), 6, colors[c]);
+    for (const std::vector<Texel>& colors : chunk.colors) texels.insert(texels.end(), layers, colors[c]);
     const Image image = objects.image(1, 1, static_cast<uint32_t>(texels.size()),
                                       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     upload(texels, image, objects);
     for (size_t v = 0; v < views.size(); ++v)
-      views[v].push_back(objects.view(image, static_cast<uint32_t>(6 * v), Shape::Cube));
+      views[v].push_back(objects.view(image, static_cast<uint32_t>(layers * v), varied_[c]->shape));
   }
   return views;
 }
 
 void Running::write(VkDescriptorSet set, uint32_t number, const Buffer& uniform,
-                    const std::vector<BlockData>& data, const std::vector<VkImageView>& cubes) const {
+                    const std::vector<BlockData>& data, const std::vector<VkImageView>& varied) const {
   std::vector<VkDescriptorBufferInfo> buffers(work_.blocks.size());
   std::vector<VkDescriptorImageInfo> images(work_.textures.size());
   std::vector<VkWriteDescriptorSet> writes;
@@ -304,10 +315,10 @@ void Running::write(VkDescriptorSet set, uint32_t number, const Buffer& uniform,
     buffers[b] = {uniform.handle, data[b].offset, data[b].range};
     if (VkWriteDescriptorSet* row = add(work_.blocks[b].place)) row->pBufferInfo = &buffers[b];
   }
-  size_t cube = 0;
+  size_t next = 0;
   for (size_t t = 0; t < images.size(); ++t) {
     const Texture& texture = work_.textures[t];
-    const VkImageView view = texture.shape == Shape::Cube ? cubes[cube++] : views_[t];
+    const VkImageView view = varies(texture) ? varied[next++] : views_[t];
     images[t] = {samplers_[t], view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     if (VkWriteDescriptorSet* row = add(texture.image)) row->pImageInfo = &images[t];
     if (texture.sampler == texture.image) continue;
@@ -321,16 +332,16 @@ std::vector<std::vector<VkDescriptorSet>> Running::sets(Objects& objects, const 
                                                         const Buffer& uniform,
                                                         const std::vector<BlockData>& data) const {
   const std::vector<VkDescriptorSetLayout>& layouts = pipeline_.setLayouts();
-  std::vector<std::vector<VkDescriptorSet>> result(chunk.cubes.size());
-  const std::vector<std::vector<VkImageView>> cubes = cubeViews(objects, chunk);
+  std::vector<std::vector<VkDescriptorSet>> result(chunk.colors.size());
+  const std::vector<std::vector<VkImageView>> varied = variedViews(objects, chunk);
   if (!objects.good() || layouts.empty()) return result;
   std::vector<VkDescriptorPoolSize> sizes;
   for (const auto& [place, binding] : pipeline_.interface().bindings) {
-    sizes.push_back({descriptorType(binding.resource, true), static_cast<uint32_t>(chunk.cubes.size())});
+    sizes.push_back({descriptorType(binding.resource, true), static_cast<uint32_t>(chunk.colors.size())});
   }
   VkDescriptorPoolCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  info.maxSets = static_cast<uint32_t>(layouts.size() * chunk.cubes.size());
+  info.maxSets = static_cast<uint32_t>(layouts.size() * chunk.colors.size());
   info.poolSizeCount = static_cast<uint32_t>(sizes.size());
   info.pPoolSizes = sizes.data();
   VkDescriptorPool pool = VK_NULL_HANDLE;
@@ -349,7 +360,7 @@ std::vector<std::vector<VkDescriptorSet>> Running::sets(Objects& objects, const 
                        "vkAllocateDescriptorSets")) {
       break;
     }
-    for (uint32_t s = 0; s < layouts.size(); ++s) write(result[v][s], s, uniform, data, cubes[v]);
+    for (uint32_t s = 0; s < layouts.size(); ++s) write(result[v][s], s, uniform, data, varied[v]);
   }
   return result;
 }
@@ -381,7 +392,7 @@ void Running::record(VkCommandBuffer commands, const Chunk& chunk, const Buffer&
         if (work_.blocks[b].place == place) offsets.push_back(static_cast<uint32_t>(d * data[b].stride));
       }
     }
-    const std::vector<VkDescriptorSet>& bound = sets[draw.cubes];
+    const std::vector<VkDescriptorSet>& bound = sets[draw.colors];
     if (!bound.empty()) {
       vk_.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.layout(), 0,
                                 static_cast<uint32_t>(bound.size()), bound.data(),
@@ -494,8 +505,7 @@ std::optional<Diagnostic> problemOf(const Device::State& device, const Work& wor
                                "height; one has {} by {}",
                                device.name, most, texture.width, texture.height));
     }
-    if (texture.shape != Shape::Cube && !texture.nearest && texture.texels->size() > 1 &&
-        !device.filters_floats) {
+    if (!varies(texture) && !texture.nearest && texture.texels->size() > 1 && !device.filters_floats) {
       return wrong("vulkan-unsupported",
                    fmt::format("{} does not filter 32-bit float textures", device.name));
     }

@@ -31,7 +31,7 @@ enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
 enum class Shape : uint8_t {
   Plane,
   Cube,    ///< one colour on all sides: `texels` holds one for all points, or one for each
-  Array,   ///< of one layer
+  Array,   ///< of as many layers as there are texels for
   Volume,  ///< of one slice
 };
 
@@ -42,9 +42,11 @@ struct Texture {
   bool compares = false;  ///< a depth map: red is the depth, and a lookup says whether what it is given does
                           ///< not exceed it
   uint32_t width = 1, height = 1;
-  std::shared_ptr<const std::vector<Texel>> texels;  ///< row by row from the top
+  std::shared_ptr<const std::vector<Texel>> texels;  ///< row by row from the top, layer by layer
   Wrap s = Wrap::Repeat, t = Wrap::Repeat;
   bool nearest = false;  ///< else bilinear
+  /// A plane of one texel, which each point has for itself: `texels` holds one for each.
+  bool per_point = false;
 };
 
 /// One input of the fragment stage, 1 to 4 floats for each point.

@@ -1,6 +1,8 @@
 // The yardsticks agree with each other, and the profiles keep what they promise of physics.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -125,6 +127,84 @@ TEST(OpenPbr, AbsorbsAlongViewAndLight) {
       const Query query{{1, 0.5, 0.3, 0}, view, light};
       EXPECT_NEAR(one("openpbr", Light::Direct, query), smoothDirect(query.coating, view, light), 1e-9);
     }
+  }
+}
+
+constexpr double kTints[] = {1, 0.98, 0.7, 0.3, 0.02, 1e-4};
+
+/// Every tint, albedo, view and light: by quadrature in the preshader against quadrature here.
+TEST(Physical, IsExactForASmoothCoat) {
+  for (const double ior : kIors) {
+    for (const double tint : kTints) {
+      std::vector<Query> queries;
+      for (const double albedo : {0.0, 0.5, 0.9, 1.0}) {
+        for (const double view : {1.0, 0.6, 0.2, 0.02}) {
+          for (const double light : {1.0, 0.4, 0.05})
+            queries.push_back({{ior, albedo, tint, 0}, view, light});
+        }
+      }
+      const std::vector<double> direct = transmissions("physical", Light::Direct, queries);
+      const std::vector<double> around = transmissions("physical", Light::Environment, queries);
+      const std::vector<double> emitted = transmissions("physical", Light::Emission, queries);
+      for (size_t i = 0; i < queries.size(); ++i) {
+        const auto& [coating, view, light] = queries[i];
+        const auto where = [&] {
+          return fmt::format("{} {} {} {} {}", ior, tint, coating.albedo, view, light);
+        };
+        EXPECT_NEAR(direct[i], smoothDirect(coating, view, light), 5e-4) << where();
+        EXPECT_NEAR(around[i], smoothEnvironment(coating, view), 5e-4) << where();
+        EXPECT_NEAR(emitted[i], smoothEmission(coating, view), 8e-4) << where();
+      }
+    }
+  }
+}
+
+/// Light and eye exchanged, for any coat.
+TEST(Physical, IsReciprocal) {
+  for (const double ior : {1.1, 1.5, 2.4}) {
+    for (const double roughness : {0.0, 0.3, 1.0}) {
+      for (const double tint : {1.0, 0.2}) {
+        const Coating coating{ior, 0.7, tint, roughness};
+        const std::vector<double> both = transmissions(
+            "physical", Light::Direct, {{Query{coating, 0.9, 0.15}, Query{coating, 0.15, 0.9}}});
+        EXPECT_NEAR(both[0], both[1], 1e-14 + 1e-12 * both[0]) << ior << " " << roughness << " " << tint;
+      }
+    }
+  }
+}
+
+/// The softened cosine is a fit to the walk over white bases; here are others, and tints.
+TEST(Physical, FollowsTheWalkOfRoughCoats) {
+  double squares = 0;
+  std::vector<Query> queries;
+  for (const double ior : {1.2, 1.5, 2.0}) {
+    for (const double roughness : {0.1, 0.3, 0.5}) {
+      for (const double albedo : {0.2, 0.9}) {
+        for (const double tint : {1.0, 0.5}) {
+          for (const double view : {1.0, 0.5, 0.2})
+            queries.push_back({{ior, albedo, tint, roughness}, view, 1});
+        }
+      }
+    }
+  }
+  const std::vector<double> model = transmissions("physical", Light::Environment, queries);
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Estimate walk = roughEnvironment(queries[i].coating, queries[i].cosine_view, 10000, 11 + i);
+    squares += (model[i] - walk.mean) * (model[i] - walk.mean) / static_cast<double>(queries.size());
+    EXPECT_NEAR(model[i], walk.mean, 0.05) << queries[i].coating.ior << " " << queries[i].coating.roughness;
+  }
+  EXPECT_LT(std::sqrt(squares), 0.015);
+}
+
+/// What a Lambertian source sends out leaves through a clear coat over white, all of it.
+TEST(Physical, LetsThePowerOfEmissionOut) {
+  for (const double ior : {1.1, 1.5, 3.0}) {
+    constexpr int kSteps = 200;
+    std::vector<Query> queries;
+    for (int i = 0; i < kSteps; ++i) queries.push_back({{ior, 1, 1, 0}, std::sqrt((i + 0.5) / kSteps), 1});
+    double mean = 0;
+    for (const double x : transmissions("physical", Light::Emission, queries)) mean += x / kSteps;
+    EXPECT_NEAR(mean, 1, 2e-3) << ior;
   }
 }
 

@@ -71,6 +71,10 @@ double smoothDirect(const Coating& c, double cosine_view, double cosine_light) {
   return crossing(c, cosine_light) * crossing(c, cosine_view) * series / (c.ior * c.ior);
 }
 
+double smoothEmission(const Coating& c, double cosine_view) {
+  return crossing(c, cosine_view) / (1 - c.albedo * returned(c)) / (c.ior * c.ior);
+}
+
 double smoothEnvironment(const Coating& c, double cosine_view) {
   const double in = 2 * integral(0, 1, [&](double mu) { return crossing(c, mu) * mu; });
   const double series = 1 / (1 - c.albedo * returned(c));

@@ -24,6 +24,8 @@ double fresnel(double ior, double cosine);
 double smoothDirect(const Coating& coating, double cosine_view, double cosine_light);
 /// Under light that is the same from everywhere.
 double smoothEnvironment(const Coating& coating, double cosine_view);
+/// Of the radiance of a Lambertian source under the coat, whose power is the same with and without it.
+double smoothEmission(const Coating& coating, double cosine_view);
 
 struct Estimate {
   double mean = 0, deviation = 0;  ///< of the mean

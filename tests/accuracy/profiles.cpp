@@ -14,7 +14,7 @@ namespace lacquer::accuracy {
 namespace {
 
 constexpr const char* kMaterial = R"({"asset": {"version": "2.0"}, "materials": [{
-  "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1},
+  "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1}, "emissiveFactor": [1, 1, 1],
   "extensions": {
     "KHR_materials_ior": {"ior": 1},
     "KHR_materials_coat": {"coatFactor": 1, "coatIor": 1.4, "coatColorFactor": [0.5, 0.5, 0.5]}}}]})";
@@ -30,7 +30,9 @@ ir::Module moduleOf(const std::string& profile, Light light, const Body& body) {
   graph::Graph graph =
       test::buildGraph(document->materials.at(0), {true, true, false, {}}, options, warnings);
   const bool direct = light == Light::Direct;
-  const std::string node = direct ? "coat.transmission_direct" : "coat.transmission_ibl";
+  const std::string node = direct                        ? "coat.transmission_direct"
+                           : light == Light::Environment ? "coat.transmission_ibl"
+                                                         : "emission.transmission";
   graph.outputs = {{direct ? "direct" : "emission", {graph::NodeRef{node, {}}, {}}}};
   for (graph::Node& one : graph.nodes) {
     if (one.type == body.node) one.variant = body.variant;
@@ -44,6 +46,8 @@ ir::Module moduleOf(const std::string& profile, Light light, const Body& body) {
 std::array<double, 3> tilted(double cosine) { return {std::sqrt(1 - cosine * cosine), 0, cosine}; }
 
 }  // namespace
+
+bool isImmersed(const std::string& profile) { return profile == "physical"; }
 
 std::vector<double> transmissions(const std::string& profile, Light light, std::span<const Query> queries,
                                   const Body& body) {
@@ -68,6 +72,7 @@ std::vector<double> transmissions(const std::string& profile, Light light, std::
   bindings.columns["base_color_factor"] = eval::Column::perPoint(4, albedo);
   bindings.columns["coat_color_factor"] = eval::Column::perPoint(3, tint);
   bindings.columns["coat_ior"] = eval::Column::perPoint(1, ior);
+  if (isImmersed(profile)) bindings.columns["ior"] = bindings.columns["coat_ior"];
   bindings.columns["coat_roughness_factor"] = eval::Column::perPoint(1, roughness);
   std::vector<double> result(queries.size(), std::nan(""));
   for (const ir::Output& output : module.outputs) {

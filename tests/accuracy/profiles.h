@@ -9,7 +9,7 @@
 
 namespace lacquer::accuracy {
 
-enum class Light { Direct, Environment };
+enum class Light { Direct, Environment, Emission };
 
 struct Query {
   Coating coating;
@@ -17,13 +17,17 @@ struct Query {
   double cosine_light = 1;  ///< of direct light
 };
 
+/// Profiles in which the base lies in the coat's medium: a base without a boundary has the coat's IOR there,
+/// 1 elsewhere.
+bool isImmersed(const std::string& profile);
+
 /// Another body for every use of a node; none where `node` is empty.
 struct Body {
   std::string node, variant;
 };
 
 /// By query, in double: what the profile multiplies the base's light with. The base is as nearly Lambertian
-/// as glTF has one: a dielectric of roughness 1 with an IOR of 1.
+/// as glTF has one: a dielectric of roughness 1 without a boundary. Emission is what `physical` alone has.
 std::vector<double> transmissions(const std::string& profile, Light light, std::span<const Query> queries,
                                   const Body& body = {});
 

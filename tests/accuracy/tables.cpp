@@ -13,7 +13,7 @@ namespace lacquer::accuracy {
 namespace {
 
 constexpr double kIors[] = {1, 1.2, 1.5, 2, 3};
-constexpr const char* kProfiles[] = {"khr", "openpbr"};
+constexpr const char* kProfiles[] = {"khr", "openpbr", "physical"};
 constexpr size_t kPaths = 40000;  ///< the walk's mean is within a few thousandths then
 constexpr uint64_t kSeed = 20230713;
 
@@ -55,8 +55,10 @@ std::vector<Query> grid(Light light, double ior, double tint) {
 
 std::string smoothTable(Light light, double tint) {
   std::string text =
-      "| IOR | exact | khr | openpbr | khr: RMS | largest | openpbr: RMS | largest |\n"
-      "|---|---|---|---|---|---|---|---|\n";
+      "| IOR | exact | khr | openpbr | physical | khr: RMS | largest | openpbr: RMS | largest | physical: "
+      "RMS | "
+      "largest |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const double ior : kIors) {
     const std::vector<Query> queries = grid(light, ior, tint);
     std::vector<double> exact;
@@ -70,7 +72,7 @@ std::string smoothTable(Light light, double tint) {
       std::string where = fmt::format("albedo {}, view {}", e.at.coating.albedo, e.at.cosine_view);
       if (light == Light::Direct) where += fmt::format(", light {}", e.at.cosine_light);
       if (e.largest < 5e-4) where.clear();
-      errors += fmt::format(" {:.3f} | {:.3f}{} |", std::sqrt(e.square_mean), e.largest,
+      errors += fmt::format(" {:.4f} | {:.4f}{} |", std::sqrt(e.square_mean), e.largest,
                             where.empty() ? "" : " (" + where + ")");
     }
     text += fmt::format("| {} | {:.3f} |{}{}\n", ior, exact[0], shown, errors);
@@ -80,8 +82,8 @@ std::string smoothTable(Light light, double tint) {
 
 std::string roughTable() {
   std::string text =
-      "| IOR | roughness | view | walk | khr | openpbr |\n"
-      "|---|---|---|---|---|---|\n";
+      "| IOR | roughness | view | walk | khr | openpbr | physical |\n"
+      "|---|---|---|---|---|---|---|\n";
   for (const double ior : {1.2, 1.5, 2.0}) {
     for (const double roughness : {0.0, 0.3, 0.6, 1.0}) {
       for (const double view : {1.0, 0.3}) {

@@ -45,6 +45,11 @@ const std::vector<Row>& rows() {
       {"cache_key", Decides::Nothing, [](Options& o) { o.cache_key = "key"; }},
       {"argument_buffers", Decides::MslCode, [](Options& o) { o.argument_buffers = true; }},
       {"sync", Decides::Nothing, [](Options& o) { o.sync = false; }},
+      {"programs", Decides::Run, [](Options& o) { o.programs = 2; }},
+      {"weights", Decides::Run, [](Options& o) { o.weights = "weights.json"; }},
+      {"programs_report", Decides::Run, [](Options& o) { o.programs_report = "programs.md"; }},
+      {"pipelines", Decides::Run, [](Options& o) { o.pipelines = "pipelines.json"; }},
+      {"programs_model", Decides::Run, [](Options& o) { o.programs_model = true; }},
   };
   return kRows;
 }

@@ -67,6 +67,24 @@ TEST_F(View, noFileOutsideOfTheFoldersIsPutIn) {
   EXPECT_EQ(files()[0]["resources"][0]["bytes"], "c2VjcmV0");
 }
 
+TEST_F(View, whatShadersCostIsPutInByTheirIds) {
+  const std::string costs = R"(<script type="application/json" id="costs">)";
+  place_.write("page.html", kHead + "[]</script>" + costs + "{}" + kTail);
+  place_.write("file.gltf", R"({"asset": {"version": "2.0"}, "materials": [{"name": "plain"}]})");
+  const auto put_in = [&] {
+    const std::string page = place_.read("out.html");
+    const size_t from = page.find(costs) + costs.size();
+    return json::parse(page.substr(from, page.find("</script>", from) - from), nullptr, false);
+  };
+  ASSERT_EQ(view({"file.gltf", "--no-cost"}).status, 0);
+  EXPECT_EQ(put_in(), json::object());
+  ASSERT_EQ(view({"file.gltf"}).status, 0);
+  const json measured = put_in();
+  ASSERT_EQ(measured.size(), 1U) << measured;
+  EXPECT_TRUE(measured.begin().key().starts_with("forward-base-")) << measured;
+  EXPECT_GT((*measured.begin())["spirv"], 50);
+}
+
 TEST_F(View, namesDoNotBecomeMarkup) {
   const std::string name = "<script>x.gltf";
   place_.write(name, naming("<!--.bin"));

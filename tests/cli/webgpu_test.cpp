@@ -88,6 +88,8 @@ TEST_F(Apis, WgslIsBoundAsTheManifestSays) {
   const Words kSettings[] = {{},
                              {"--template", "surface"},
                              {"--template", "bsdf"},
+                             {"--switch", "skinning=on", "--switch", "skinning_8=on", "--switch",
+                              "morphing=on", "--switch", "instancing=on", "--switch", "dequantizing=on"},
                              {"--lights", "directional:1", "--no-ibl"},
                              {"--nodes", example("engine"), "--template", "engine"}};
   for (const Words& setting : kSettings) {
@@ -170,6 +172,8 @@ TEST_F(Apis, PipelinesAreMade) {
                              {"--params", "baked", "--lights", "point:2,spot:1"},
                              {"--template", "surface"},
                              {"--template", "bsdf"},
+                             {"--switch", "skinning=on", "--switch", "skinning_8=on", "--switch",
+                              "morphing=on", "--switch", "instancing=on", "--switch", "dequantizing=on"},
                              {"--nodes", example("engine"), "--template", "engine"}};
   for (const Words& setting : kSettings) {
     const json manifest = generate(with(setting, {"--target", "wgsl"}));

@@ -5,6 +5,7 @@
 #include "check/check.h"
 #include "check/reflect.h"
 #include "cost/cost.h"
+#include "environment/panorama.h"
 #include "eval/image.h"
 #include "feeds.h"
 #include "tools/points.h"
@@ -34,6 +35,21 @@ std::string feedImage(std::string_view bytes) {
       for (const double x : sampler(0, {at, -at, 0}, 0)) {
         if (!(x >= 0 && x <= 1)) return "a texel is not in [0, 1]";
       }
+    }
+  }
+  return {};
+}
+
+std::string feedPanorama(std::string_view bytes) {
+  Diagnostics warnings;
+  const Result<environment::Panorama> panorama =
+      environment::readPanorama(bytes, kMostPixels, {"fuzz.hdr", 0, 0, {}}, warnings);
+  if (!panorama) return panorama.error().empty() ? "a picture is refused without an error" : "";
+  if (panorama->texels.size() > kMostPixels) return "a picture is larger than it may be";
+  if (panorama->texels.size() != size_t{panorama->width} * panorama->height) return "pixels are missing";
+  for (const environment::Rgb& color : panorama->texels) {
+    for (const float x : color) {
+      if (!(x >= 0 && x <= 65408)) return "radiance is not finite, or negative";
     }
   }
   return {};

@@ -17,6 +17,7 @@ constexpr Target kTargets[] = {
     {"node", "node", Form::Bytes, feedNode},
     {"declaration", "declaration", Form::Bytes, feedDeclaration},
     {"image", "image", Form::Bytes, feedImage},
+    {"panorama", "panorama", Form::Bytes, feedPanorama},
     {"texture", "texture", Form::Json, feedTexture},
     {"points", "points", Form::Json, feedPoints},
     {"case", "case", Form::Json, feedCase},

@@ -164,7 +164,7 @@ void expectOneTermEach(const Json& stack, const char* template_name, const char*
 TEST(Neutral, EveryExtensionOfAStackAtItsDefaultsIsGone) {
   for (const char* const stack : kStacks) {
     for (const char* const name : kTemplates) expectOneTermEach(Json::parse(stack), name, "khr");
-    for (const char* const profile : {"khr_2025_10_13", "openpbr"})
+    for (const char* const profile : {"khr_2025_10_13", "openpbr", "physical"})
       expectOneTermEach(Json::parse(stack), "forward", profile);
   }
 }

@@ -105,7 +105,7 @@ void expectSaneEverywhere(const std::string& text, size_t material, const std::s
     Configuration setup;
     setup.ibl = k % 2 == 0;
     setup.placed = k % 3 == 0;
-    setup.profile = k < 3 ? "khr" : "openpbr";
+    setup.profile = k < 2 ? "khr" : k < 4 ? "openpbr" : "physical";
     const Subject subject(text, material, edgyTexels(random), setup);
     ASSERT_TRUE(subject) << what;
     std::vector<Sample> samples;

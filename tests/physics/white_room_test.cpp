@@ -59,7 +59,8 @@ void expectWhiteRooms(const std::filesystem::path& path) {
   for (size_t i = 0; i < document->materials.size(); ++i) {
     const std::string& name = document->materials[i].name;
     SCOPED_TRACE(path.filename().string() + ": " + name);
-    for (const char* const profile : {"khr", "openpbr"}) expectWhiteAtMost(file, i, profile, true, 1);
+    for (const char* const profile : {"khr", "openpbr", "physical"})
+      expectWhiteAtMost(file, i, profile, true, 1);
     for (const double texel : {0.0, 0.5}) expectWhiteAtMost(file, i, "khr", true, texel);
     expectWhiteAtMost(file, i, "khr", false, 0.75);
   }

@@ -12,9 +12,25 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+/// What the CPU alone evaluates.
+class Shown : public Subject {
+public:
+  Values evaluateRough(std::span<const double> samples, size_t count, uint64_t) const override {
+    return evaluate(Arithmetic::Float, samples, count);
+  }
+  const ir::Module& module() const override { return module_; }
+  eval::Bindings inputs(std::span<const double>, size_t) const override { return {}; }
+  std::vector<bool> defined(std::span<const double>, size_t count) const override {
+    return std::vector<bool>(count, true);
+  }
+
+private:
+  ir::Module module_;
+};
+
 /// A Lambertian base of albedo `base`, a factor `coat` for what its coat makes of it, and a weight for the
 /// view.
-class Painted final : public Subject {
+class Painted final : public Shown {
 public:
   Painted(double base, double coat, double view) : base_(base), coat_(coat), view_(view) {
     is_node = false;
@@ -104,7 +120,7 @@ TEST(Directions, ResolveWhatIsSmoothAndNarrowLobes) {
 }
 
 /// A Lambertian base under a coat that is a perfect mirror of any roughness and takes `taken` of the base.
-class Polished final : public Subject {
+class Polished final : public Shown {
 public:
   explicit Polished(double taken) : taken_(taken) {
     is_node = false;

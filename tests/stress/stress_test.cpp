@@ -152,7 +152,8 @@ TEST(Stress, TheExamplesHold) {
       EXPECT_TRUE(finding.contains("known")) << subject["name"] << finding.dump();
       if (finding["fault"] == "energy") surplus.insert(subject["name"].get<std::string>());
     }
-    base = std::max(base, subject["energy"]["base"].get<double>());
+    // Without tangents no light is measured.
+    if (subject.contains("energy")) base = std::max(base, subject["energy"]["base"].get<double>());
   }
   EXPECT_EQ(surplus.size(), 1U) << "src/stress/known.cpp lists a surplus that no longer occurs";
   // The text's Lambert under 1 - F(V.H) gives back more than it got at grazing: nearly all of it where the

@@ -120,41 +120,51 @@ export function irradianceOf(radiance: Radiance): (normal: Vec3) => Vec3 {
   };
 }
 
-export interface Environment {
-  specular: WebGLTexture;
-  irradiance: WebGLTexture;
-  lastLevel: number;
-}
-
-function cube(gl: WebGL2RenderingContext, size: number, levels: number, value: (d: Vec3, level: number) => Vec3): WebGLTexture {
-  const texture = gl.createTexture()!;
-  gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
-  gl.texStorage2D(gl.TEXTURE_CUBE_MAP, levels, gl.RGBA16F, size, size);
-  for (let level = 0; level < levels; ++level) {
-    const width = Math.max(1, size >> level);
-    for (let f = 0; f < 6; ++f) {
-      const texels = face(f, width, (d) => value(d, level));
-      gl.texSubImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + f, level, 0, 0, width, width, gl.RGBA, gl.FLOAT, texels);
-    }
-  }
-  gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
-  return texture;
+/** A cube's levels, of each the six faces: RGBA, in the order of OpenGL and WebGPU. */
+export interface Cube {
+  size: number;
+  levels: Float32Array[][];
 }
 
 /** The two maps that shaders are given (docs/bindings.md). */
-export function makeEnvironment(gl: WebGL2RenderingContext, radiance: Radiance, size = 64): Environment {
+export interface Environment {
+  specular: Cube;
+  irradiance: Cube;
+  lastLevel: number;
+}
+
+function cube(size: number, levels: number, value: (d: Vec3, level: number) => Vec3): Cube {
+  const of = (level: number) => [0, 1, 2, 3, 4, 5].map((i) => face(i, Math.max(1, size >> level), (d) => value(d, level)));
+  return { size, levels: Array.from({ length: levels }, (_, level) => of(level)) };
+}
+
+export function makeEnvironment(radiance: Radiance, size: number): Environment {
   const levels = Math.max(1, Math.log2(size) - 1);
   const lastLevel = levels - 1;
   const irradiance = irradianceOf(radiance);
   return {
-    specular: cube(gl, size, levels, (d, level) => radiance(d, lastLevel > 0 ? level / lastLevel : 0)),
-    irradiance: cube(gl, Math.min(size, 16), 1, (d) => irradiance(d)),
+    specular: cube(size, levels, (d, level) => radiance(d, lastLevel > 0 ? level / lastLevel : 0)),
+    irradiance: cube(Math.min(size, 16), 1, (d) => irradiance(d)),
     lastLevel,
   };
 }
 
 /** One that is the same from all sides. */
-export function constantEnvironment(gl: WebGL2RenderingContext, radiance: Vec3): Environment {
-  const map = () => cube(gl, 1, 1, () => radiance);
+export function constantEnvironment(radiance: Vec3): Environment {
+  const map = () => cube(1, 1, () => radiance);
   return { specular: map(), irradiance: map(), lastLevel: 0 };
+}
+
+const made = new Map<string, Environment>();
+
+/** Of that name, made when it is first asked for. */
+export function environmentOf(name: string): Environment {
+  let found = made.get(name);
+  if (!found) made.set(name, (found = makeEnvironment(kEnvironments[name] ?? studio, 64)));
+  return found;
+}
+
+/** One of the user's own, in place of what had that name. */
+export function addEnvironment(name: string, radiance: Radiance, size: number): void {
+  made.set(name, makeEnvironment(radiance, size));
 }

@@ -13,6 +13,8 @@ export interface Drawable {
   material: number;
   model: Mat4;
   normal: Mat4;
+  /** The model swaps front and back faces. */
+  mirrored?: boolean;
   /** Float arrays by attribute, with their number of components. */
   attributes: Map<string, { data: Float32Array; size: number }>;
   indices: Uint32Array;
@@ -146,10 +148,9 @@ function facetNormals(positions: Float32Array, indices: Uint32Array): Float32Arr
   return normals;
 }
 
-/** Every triangle mesh of the default scene, in world space. */
-export function geometry(file: GltfFile): Drawable[] {
-  const { nodes = [], scenes = [], scene = 0, meshes = [] } = file.json;
-  const found: Drawable[] = [];
+/** Calls with every node of the default scene and where it is in the world. */
+export function eachNode(file: GltfFile, use: (node: any, world: Mat4) => void): void {
+  const { nodes = [], scenes = [], scene = 0 } = file.json;
   const walk = (index: number, parent: Mat4, depth: number) => {
     const node = nodes[index];
     if (!node || depth > 64) return;
@@ -157,13 +158,21 @@ export function geometry(file: GltfFile): Drawable[] {
       ? new Float32Array(node.matrix)
       : compose(node.translation ?? [0, 0, 0], node.rotation ?? [0, 0, 0, 1], node.scale ?? [1, 1, 1]);
     const world = multiply(parent, local);
-    for (const of of meshes[node.mesh]?.primitives ?? []) {
-      const made = primitive(file, of, world);
-      if (made) found.push(made);
-    }
+    use(node, world);
     for (const child of node.children ?? []) walk(child, world, depth + 1);
   };
   for (const root of scenes[scene]?.nodes ?? nodes.map((_: unknown, i: number) => i)) walk(root, identity(), 0);
+}
+
+/** Every triangle mesh of the default scene, in world space. */
+export function geometry(file: GltfFile): Drawable[] {
+  const found: Drawable[] = [];
+  eachNode(file, (node, world) => {
+    for (const of of file.json.meshes?.[node.mesh]?.primitives ?? []) {
+      const made = primitive(file, of, world);
+      if (made) found.push(made);
+    }
+  });
   return found;
 }
 

@@ -2,16 +2,30 @@
 // is edited in place.
 import { LacquerError, type GraphJson, type Lacquer, type Message, type Options } from '../src/index';
 import { hexOf, selectTerm, showCode } from './code';
+import { fillOthers, optionsOf, parseOther } from './compare';
 import { compiler, graphOf, lookOf, withShader } from './compile';
+import { connectPointer, connectTabs } from './controls';
+import { costTable, errorTable, type Costs, type Errors } from './costs';
 import { Document, type Input } from './document';
 import { byId, download, h } from './dom';
-import { kEnvironments } from './environment';
+import { addEnvironment, kEnvironments } from './environment';
 import { fromBase64 } from './gltf';
+import { GpuPainter } from './gpu';
+import { radianceOf, readHdr } from './hdr';
+import { fileLights, kStudioLights, type Light } from './lights';
 import { kRates, NodeGraph, nodeEditor, ratesOf } from './nodegraph';
 import { Properties } from './properties';
 import { Viewport, type Look } from './viewport';
 
-const kTargets = ['essl', 'glsl', 'glsl-gl', 'hlsl', 'spirv', 'cpp'];
+const kTargets = ['essl', 'wgsl', 'glsl', 'glsl-gl', 'hlsl', 'spirv', 'cpp', 'js'];
+/** Texels of a side of the cube that an environment of one's own is filtered into. */
+const kOwnEnvironment = 128;
+
+/** What the page has in it beside the compiler. */
+interface Figures {
+  costs: Costs;
+  errors: Errors;
+}
 
 class Page {
   private of: Document | null = null;
@@ -22,10 +36,14 @@ class Page {
   private selected = '';
   private panelsPending = 0;
   private messages: Message[] = [];
+  private ownLights: Light[] = [];
+  private otherId = '';
+  private othersOf = ''; // the structure whose words `compare` offers
+  private painter: GpuPainter | null = null;
   /** Milliseconds that the last compilation took, from the edited file to the block. */
   took = 0;
 
-  constructor(readonly lacquer: Lacquer, readonly viewport: Viewport) {
+  constructor(readonly lacquer: Lacquer, readonly viewport: Viewport, private readonly figures: Figures) {
     this.nodes = lacquer.nodes();
     const order = (name: string) => (name === 'gltf' ? '' : name);
     const extensions = [...this.nodes.extensions].sort((a, b) => (order(a.name) < order(b.name) ? -1 : 1));
@@ -37,7 +55,7 @@ class Page {
     byId('version').textContent = lacquer.version;
     this.fillSelects();
     this.connectControls();
-    this.connectPointer();
+    connectPointer(viewport);
     this.connectFiles();
   }
 
@@ -57,16 +75,29 @@ class Page {
     byId<HTMLSelectElement>('shape').value = viewport.useBall ? 'ball' : 'own';
     byId<HTMLSelectElement>('shape').disabled = of.drawables.length === 0;
     viewport.setScene(of.drawables);
+    this.othersOf = '';
+    this.ownLights = fileLights(of.file);
+    const lamps = byId<HTMLSelectElement>('lamps');
+    lamps.options[1].disabled = this.ownLights.length === 0;
+    if (lamps.value === 'own' && this.ownLights.length === 0) lamps.value = 'studio';
+    this.light();
     byId('file').textContent = input.name;
     const materials = byId<HTMLSelectElement>('material');
     materials.replaceChildren(...of.names.map((name, i) => h('option', { value: i }, name || `(material ${i})`)));
-    // Each material has its look before one of them is chosen: they may all be seen.
+    this.compileAll();
+    this.choose(0);
+    return true;
+  }
+
+  /** Each material has its look before one of them is chosen: they may all be seen. */
+  private compileAll(): void {
+    const of = this.of!;
+    const chosen = of.material;
     for (let i = of.names.length - 1; i >= 0; --i) {
       of.material = i;
       this.compileLook([]);
     }
-    this.choose(0);
-    return true;
+    of.material = chosen;
   }
 
   choose(material: number): void {
@@ -83,7 +114,7 @@ class Page {
 
   options(): Options {
     const profile = byId<HTMLSelectElement>('profile').value;
-    return { profile, targets: ['essl'] };
+    return { profile, targets: this.viewport.gpu ? ['essl', 'wgsl'] : ['essl'] };
   }
 
   /** The look of the current material; null, and what is wrong in `messages`, when it has an error. */
@@ -115,6 +146,9 @@ class Page {
       const pointers = new Set(Object.values(made.graph.parameters).map(({ pointer }) => pointer ?? ''));
       this.properties.mark({ pointers });
       byId('id').textContent = made.look.id;
+      const key = `${this.of.material} ${made.look.id} ${this.of.names.length}`;
+      if (key !== this.othersOf) fillOthers(byId<HTMLSelectElement>('compare'), this.of, made.graph, this.nodes);
+      this.othersOf = key;
     }
     byId('took').textContent = `${this.took.toFixed(1)} ms`;
     this.compare();
@@ -126,20 +160,32 @@ class Page {
     this.panelsPending = window.setTimeout(() => this.showPanels(), 120);
   }
 
-  /** The same material under another profile, right of the middle. */
+  /** Another look of the material, right of the cut, and how far it is from the first. */
   private compare(): void {
-    const other = byId<HTMLSelectElement>('compare').value;
-    const figures = byId('figures');
-    const mine = this.of && this.viewport.looks.get(this.of.material);
-    this.viewport.other = null;
-    figures.textContent = '';
+    const other = parseOther(byId<HTMLSelectElement>('compare').value);
+    const { viewport } = this;
+    const mine = this.of && viewport.looks.get(this.of.material);
+    viewport.other = null;
+    this.otherId = '';
+    byId('comparing').hidden = !other;
     if (!other || !mine) return;
-    const theirs = this.compileLook([], { ...this.options(), profile: other });
-    this.viewport.looks.set(this.of!.material, mine);
-    if (!theirs) return;
-    this.viewport.other = { look: theirs.look, split: 0.5 };
-    const { max, mean } = this.viewport.difference(mine, theirs.look);
-    figures.textContent = `${byId<HTMLSelectElement>('profile').value} | ${other}: differ by at most ${max.toPrecision(3)}, ${mean.toPrecision(3)} in the mean`;
+    const figures = byId('figures');
+    const messages: Message[] = [];
+    const theirs = other.kind === 'material' ? viewport.looks.get(other.index) : this.compileLook(messages, optionsOf(other, this.options()))?.look;
+    viewport.looks.set(this.of!.material, mine);
+    figures.className = theirs ? '' : 'error';
+    if (!theirs) {
+      figures.textContent = messages.find(({ level }) => level === 'error')?.message ?? 'there is nothing to compare with';
+      return;
+    }
+    const shown = byId<HTMLSelectElement>('compared');
+    shown.disabled = viewport.gpu !== null; // it is WebGL that draws the difference
+    if (shown.disabled) shown.value = 'split';
+    viewport.other = { look: theirs, split: Number(byId<HTMLInputElement>('split').value), difference: shown.value === 'difference' };
+    this.otherId = theirs.id;
+    const { max, mean } = viewport.difference(mine, theirs);
+    const same = mine.id === theirs.id ? ', one shader' : '';
+    figures.textContent = `differ by at most ${max.toPrecision(3)}, ${mean.toPrecision(3)} in the mean${same}`;
   }
 
   // ---- panels
@@ -149,6 +195,7 @@ class Page {
     const tab = document.querySelector<HTMLElement>('[role=tab][aria-selected=true]')!.dataset.tab;
     if (tab === 'code') this.showText();
     if (tab === 'graph') this.showGraph();
+    if (tab === 'cost') this.showCost();
     this.showSkipped();
   }
 
@@ -193,12 +240,36 @@ class Page {
     this.showEditor();
   }
 
-  private showSkipped(): void {
+  private showCost(): void {
     const { operations } = ratesOf(this.dump());
     byId('operations').textContent = kRates
       .filter((rate) => operations.has(rate))
       .map((rate) => `${operations.get(rate)} ${rate}`)
       .join(', ');
+    const shaders: [string, string][] = [['left', byId('id').textContent ?? '']];
+    if (this.otherId) shaders.push(['right', this.otherId]);
+    byId('measured').replaceChildren(costTable(this.figures.costs, shaders));
+    byId('sizes').textContent = this.sizes();
+    const choose = (word: string) => {
+      byId<HTMLSelectElement>('compare').value = `simplify:${word}`;
+      this.compile();
+    };
+    byId('errors-of-terms').replaceChildren(errorTable(this.graphJson!, this.figures.errors, choose));
+  }
+  /** Of the fragment stage, target by target. */
+  private sizes(): string {
+    try {
+      return withShader(this.lacquer, this.of!, { ...this.options(), targets: kTargets }, [], (shader) => {
+        const sizeOf = (target: string) => (target === 'spirv' ? 4 * shader.spirv('fragment').length : shader.text(target, 'fragment').length);
+        return kTargets.map((target) => `${target} ${sizeOf(target)}`).join(', ');
+      });
+    } catch (error) {
+      if (!(error instanceof LacquerError)) throw error;
+      return '';
+    }
+  }
+
+  private showSkipped(): void {
     byId('skipped').replaceChildren(
       ...Object.entries(this.graphJson!.skipped ?? {}).map(([term, reason]) => h('li', {}, h('b', {}, term), ` ${reason}`)),
     );
@@ -265,10 +336,31 @@ class Page {
     const profiles: { name: string; doc: string }[] = this.nodes.profiles;
     const option = ({ name, doc }: { name: string; doc: string }) => h('option', { value: name, title: doc }, name);
     byId('profile').replaceChildren(...profiles.map(option));
-    byId('compare').replaceChildren(h('option', { value: '' }, 'nothing'), ...profiles.map(option));
     byId('environment').replaceChildren(...Object.keys(kEnvironments).map((name) => h('option', {}, name)));
     byId('target').replaceChildren(...kTargets.map((name) => h('option', {}, name)));
     byId('new-type').replaceChildren(...this.nodes.nodes.map(({ name, doc }: any) => h('option', { value: name, title: doc }, name)));
+  }
+
+  private light(): void {
+    const { viewport } = this;
+    const lamps = byId<HTMLSelectElement>('lamps').value;
+    viewport.lights = lamps === 'own' ? this.ownLights : lamps === 'none' ? [] : kStudioLights;
+    viewport.redraw();
+  }
+
+  /** Exchanges WebGL 2 for WebGPU, or the other way; where there is no WebGPU it says so. */
+  async paintWith(name: string): Promise<void> {
+    const { viewport, lacquer } = this;
+    const canvas = byId<HTMLCanvasElement>('viewport-gpu');
+    const choice = byId<HTMLSelectElement>('painter');
+    this.painter ??= name === 'webgpu' ? await GpuPainter.make(canvas, lacquer.environmentDfg(128), lacquer.environmentSheen(64)) : null;
+    viewport.gpu = name === 'webgpu' ? this.painter : null;
+    choice.value = viewport.gpu ? 'webgpu' : 'webgl';
+    canvas.hidden = !viewport.gpu;
+    viewport.canvas.hidden = !canvas.hidden;
+    if (viewport.gpu && this.of) this.compileAll();
+    this.compile();
+    if (name === 'webgpu' && !viewport.gpu) this.fail(new Error('this browser has no WebGPU'));
   }
 
   private on(id: string, event: string, act: () => void): void {
@@ -290,7 +382,21 @@ class Page {
       step((of) => (event.key.toLowerCase() === 'y' || event.shiftKey ? of.redo() : of.undo()))();
     });
     this.on('material', 'change', () => this.choose(Number(byId<HTMLSelectElement>('material').value)));
-    for (const id of ['profile', 'compare']) this.on(id, 'change', () => this.compile());
+    this.on('profile', 'change', () => {
+      if (this.of) this.compileAll();
+      this.compile();
+    });
+    for (const id of ['compare', 'compared']) this.on(id, 'change', () => this.compile());
+    this.on('split', 'input', () => {
+      if (!this.viewport.other) return;
+      this.viewport.other.split = Number(byId<HTMLInputElement>('split').value);
+      this.viewport.redraw();
+    });
+    this.on('lamps', 'change', () => {
+      this.light();
+      this.compare();
+    });
+    this.on('painter', 'change', () => void this.paintWith(byId<HTMLSelectElement>('painter').value));
     for (const id of ['target', 'stage']) this.on(id, 'change', () => this.showText());
     this.on('export', 'click', () => {
       if (!this.of) return;
@@ -335,56 +441,7 @@ class Page {
       this.viewport.redraw();
     });
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.viewport.redraw());
-    const tabs = [...document.querySelectorAll<HTMLElement>('[role=tab]')];
-    const show = (tab: HTMLElement) => {
-      for (const each of tabs) {
-        each.setAttribute('aria-selected', String(each === tab));
-        each.tabIndex = each === tab ? 0 : -1;
-        byId(`panel-${each.dataset.tab}`).hidden = each !== tab;
-      }
-      this.showPanels();
-    };
-    tabs.forEach((tab, i) => {
-      tab.addEventListener('click', () => show(tab));
-      tab.addEventListener('keydown', (event) => {
-        const step = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
-        if (step === 0) return;
-        const next = tabs[(i + step + tabs.length) % tabs.length];
-        next.focus();
-        show(next);
-      });
-    });
-  }
-
-  private connectPointer(): void {
-    const { canvas, orbit } = this.viewport;
-    const turn = (x: number, y: number) => {
-      orbit.yaw -= x;
-      orbit.pitch = Math.min(Math.max(orbit.pitch + y, -1.5), 1.5);
-      this.viewport.redraw();
-    };
-    const near = (by: number) => {
-      orbit.distance = Math.min(Math.max(orbit.distance * by, 1.2), 20);
-      this.viewport.redraw();
-    };
-    canvas.addEventListener('pointerdown', (event) => canvas.setPointerCapture(event.pointerId));
-    canvas.addEventListener('pointermove', (event) => {
-      if (event.buttons & 1) turn(event.movementX / 150, event.movementY / 150);
-    });
-    canvas.addEventListener('wheel', (event) => {
-      event.preventDefault();
-      near(Math.exp(event.deltaY / 900));
-    }, { passive: false });
-    canvas.addEventListener('keydown', (event) => {
-      const steps: Record<string, () => void> = {
-        ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
-        '+': () => near(0.9), '-': () => near(1.1),
-      };
-      if (!steps[event.key]) return;
-      event.preventDefault();
-      steps[event.key]();
-    });
-    new ResizeObserver(() => this.viewport.redraw()).observe(canvas);
+    connectTabs(() => this.showPanels());
   }
 
   private connectFiles(): void {
@@ -408,7 +465,7 @@ class Page {
     });
   }
 
-  /** Files that were dropped or picked: a .gltf with its buffers and images, a .glb, or a graph in JSON. */
+  /** Files that were dropped or picked: a .gltf with its buffers and images, a .glb, a graph in JSON, or an environment. */
   async take(files: File[]): Promise<void> {
     const bytesOf = async (file: File) => new Uint8Array(await file.arrayBuffer());
     const graph = files.find(({ name }) => name.endsWith('.json'));
@@ -423,11 +480,26 @@ class Page {
       this.of.settle();
       return this.compile();
     }
+    const around = files.find(({ name }) => /\.hdr$/i.test(name));
+    if (around) return this.surround(around.name, await bytesOf(around));
     const main = files.find(({ name }) => /\.(gltf|glb)$/i.test(name)) ?? files[0];
     if (!main) return;
     const resources = new Map<string, Uint8Array>();
     for (const file of files) if (file !== main) resources.set(file.name, await bytesOf(file));
     this.open({ name: main.name, bytes: await bytesOf(main), resources });
+  }
+
+  /** An environment of the user's own. */
+  private surround(name: string, bytes: Uint8Array): void {
+    try {
+      addEnvironment(name, radianceOf(readHdr(bytes)), kOwnEnvironment);
+    } catch (error) {
+      return this.fail(error);
+    }
+    const choice = byId<HTMLSelectElement>('environment');
+    if (![...choice.options].some(({ value }) => value === name)) choice.append(h('option', {}, name));
+    choice.value = name;
+    choice.dispatchEvent(new Event('change'));
   }
 
   /** What a test asks. */
@@ -458,7 +530,8 @@ async function start(): Promise<void> {
   const embedded = (id: string): Embedded[] => JSON.parse(byId(id).textContent ?? '[]');
   const lacquer = await compiler(byId('wasm').textContent!.trim());
   const viewport = new Viewport(byId<HTMLCanvasElement>('viewport'), lacquer.environmentDfg(128), lacquer.environmentSheen(64));
-  const page = new Page(lacquer, viewport);
+  const json = (id: string) => JSON.parse(byId(id).textContent || '{}');
+  const page = new Page(lacquer, viewport, { costs: json('costs'), errors: json('errors') });
   (window as any).lacquerPage = page;
   const own = embedded('files');
   const samples = embedded('samples');

@@ -71,3 +71,9 @@ export function normalMatrix(m: Mat4): Mat4 {
   rows.forEach((row, i) => row.forEach((x, k) => (n[4 * i + k] = x * by)));
   return n;
 }
+
+/** True when it turns what is right-handed into what is left-handed: front faces are then seen from behind. */
+export function mirrors(m: Mat4): boolean {
+  const column = (i: number): Vec3 => [m[4 * i], m[4 * i + 1], m[4 * i + 2]];
+  return dot(column(0), cross(column(1), column(2))) < 0;
+}

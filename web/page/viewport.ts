@@ -1,13 +1,10 @@
 // Draws materials with their own shaders: the Essl texts, blocks by the offsets that the shader's interface tells.
 import type { Interface, Shader } from '../src/index';
-import { constantEnvironment, kEnvironments, makeEnvironment, type Environment } from './environment';
+import { constantEnvironment, environmentOf, type Cube, type Environment } from './environment';
 import { ball, bounds, flatDrawable, image, type Drawable, type GltfFile } from './gltf';
-import { add, lookAt, multiply, normalMatrix, perspective, scale, unit, type Mat4, type Vec3 } from './math';
-
-export interface Light {
-  direction: Vec3; // to the light
-  radiance: Vec3;
-}
+import type { GpuPainter } from './gpu';
+import { directional, element, kMostLights, kStudioLights, type Light } from './lights';
+import { add, lookAt, mirrors, multiply, normalMatrix, perspective, scale, type Mat4, type Vec3 } from './math';
 
 /** A material to draw with: its program, and its textures by slot. */
 export interface Look {
@@ -32,18 +29,69 @@ interface Mesh {
   count: number;
 }
 
-const kBlocks = ['Frame', 'Lights', 'Object', 'Material', 'SeeThrough'];
+export const kBlocks = ['Frame', 'Lights', 'Object', 'Material', 'SeeThrough'];
 const kInputs: Record<string, string> = {
   in_position: 'POSITION', in_normal: 'NORMAL', in_tangent: 'TANGENT', in_color_0: 'COLOR_0',
   in_texcoord_0: 'TEXCOORD_0', in_texcoord_1: 'TEXCOORD_1', in_texcoord_2: 'TEXCOORD_2', in_texcoord_3: 'TEXCOORD_3',
 };
 /** Where the vertex shaders have their attributes (docs/bindings.md). */
-const kLocations = ['POSITION', 'NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3', 'COLOR_0'];
+export const kLocations = ['POSITION', 'NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3', 'COLOR_0'];
+/** Linear colours with several samples for each pixel, and without. */
+interface Target {
+  frame: WebGLFramebuffer;
+  resolved: WebGLFramebuffer;
+  color: WebGLTexture;
+  width: number;
+  height: number;
+}
+
+/** The maps of an environment, uploaded. */
+interface Maps {
+  specular: WebGLTexture;
+  irradiance: WebGLTexture;
+  /** In place of the board. */
+  behind?: WebGLTexture;
+}
+
 /** What stands for an absent image. */
-function neutral(slot: string): [number, number, number, number] {
+export function neutral(slot: string): [number, number, number, number] {
   if (slot.endsWith('normal_texture')) return [128, 128, 255, 255];
   if (slot.endsWith('anisotropy_texture')) return [255, 128, 255, 255];
   return [255, 255, 255, 255];
+}
+
+/** The blocks of a frame, by the fields' places in templates/mesh.node (docs/bindings.md). */
+export function frameBlocks(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[]): Record<string, Uint8Array> {
+  const frame = new DataView(new ArrayBuffer(96));
+  viewProjection.forEach((x, i) => frame.setFloat32(4 * i, x, true));
+  eye.forEach((x, i) => frame.setFloat32(64 + 4 * i, x, true));
+  frame.setFloat32(76, 1, true);
+  frame.setFloat32(80, environment.lastLevel, true);
+  frame.setInt32(84, lights.length, true);
+  const all = new Float32Array(16 * kMostLights);
+  lights.forEach((light, i) => all.set(element(light), 16 * i));
+  const through = new Float32Array(16);
+  const m = viewProjection;
+  for (let k = 0; k < 4; ++k) {
+    through[k] = 0.5 * (m[4 * k] + m[4 * k + 3]);
+    through[4 + k] = 0.5 * (m[4 * k + 1] + m[4 * k + 3]);
+    through[8 + k] = m[4 * k + 3];
+  }
+  through[12] = Math.log2(kBoardSize);
+  const bytes = ({ buffer }: Float32Array) => new Uint8Array(buffer);
+  return { Frame: new Uint8Array(frame.buffer), Lights: bytes(all), SeeThrough: bytes(through) };
+}
+
+export const kBoardSize = 64;
+
+/** What is seen through what transmits: a chequered board, RGBA. */
+export function board(): Uint8Array<ArrayBuffer> {
+  const texels = new Uint8Array(4 * kBoardSize * kBoardSize);
+  for (let i = 0; i < kBoardSize * kBoardSize; ++i) {
+    const light = ((i % kBoardSize >> 3) + (Math.floor(i / kBoardSize) >> 3)) % 2 ? 150 : 90;
+    texels.set([light, light, light, 255], 4 * i);
+  }
+  return texels;
 }
 
 export class Viewport {
@@ -51,11 +99,13 @@ export class Viewport {
   private programs = new Map<string, Program>();
   private meshes: Mesh[] = [];
   private ballMesh: Mesh;
-  private environments = new Map<string, Environment>();
+  private maps = new WeakMap<Environment, Maps>();
   private textures = new Map<string, WebGLTexture>();
+  /** The images of the textures above, for another painter. */
+  readonly bitmaps = new Map<string, { bitmap: ImageBitmap; sampler: any }>();
   private blocks: WebGLBuffer[] = [];
   private show: WebGLProgram;
-  private target: { frame: WebGLFramebuffer; resolved: WebGLFramebuffer; color: WebGLTexture; width: number; height: number } | null = null;
+  private target: Target | null = null;
   private tables: { dfg: WebGLTexture; sheen: WebGLTexture };
   private behind: WebGLTexture;
   private pending = 0;
@@ -66,16 +116,15 @@ export class Viewport {
   environment = 'Studio';
   exposure = 1;
   useBall = true;
-  lights: Light[] = [
-    { direction: unit([-0.62, 0.62, 0.62]), radiance: [1, 0.97, 0.93] },
-    { direction: unit([0.95, 0.22, 0.3]), radiance: [0.2, 0.22, 0.25] },
-  ];
+  lights: Light[] = kStudioLights;
+  /** Draws in place of this, on a canvas of its own. */
+  gpu: GpuPainter | null = null;
   /** What to draw of each material; -1 stands for the default one. */
   looks = new Map<number, Look>();
   /** The material that the ball shows. */
   shown = 0;
-  /** Another look of the shown material, right of the place (0 to 1 of the width). */
-  other: { look: Look; split: number } | null = null;
+  /** Another look of the shown material, right of the place (0 to 1 of the width), or by how much it differs. */
+  other: { look: Look; split: number; difference?: boolean } | null = null;
 
   constructor(readonly canvas: HTMLCanvasElement, dfg: Float32Array, sheen: Float32Array) {
     const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, preserveDrawingBuffer: true });
@@ -112,18 +161,23 @@ export class Viewport {
       const of = file.json.textures?.[texture];
       const bitmap = of ? await image(file, of.source ?? -1) : null;
       if (!bitmap || this.textures.has(key)) continue;
-      this.textures.set(key, this.imageTexture(bitmap, srgb, file.json.samplers?.[of.sampler] ?? {}));
+      const sampler = file.json.samplers?.[of.sampler] ?? {};
+      this.bitmaps.set(key, { bitmap, sampler });
+      this.textures.set(key, this.imageTexture(bitmap, srgb, sampler));
     }
     this.redraw();
   }
   forgetTextures(): void {
     for (const texture of this.textures.values()) this.gl.deleteTexture(texture);
     this.textures.clear();
+    this.bitmaps.clear();
+    this.gpu?.forgetTextures();
   }
 
   /** Makes the program of a shader where there is none yet. Throws what the driver says. */
   prepare(shader: Shader): void {
     const id = shader.id;
+    this.gpu?.prepare(shader);
     if (this.programs.has(id)) return;
     const { gl } = this;
     const program = this.link(shader.text('essl', 'vertex'), shader.text('essl', 'fragment'));
@@ -153,22 +207,30 @@ export class Viewport {
     if (this.pending === 0) this.pending = requestAnimationFrame(() => this.draw());
   }
 
-  draw(): void {
-    this.pending = 0;
-    const { gl, canvas } = this;
+  /** The canvas that is seen, with as many pixels as its place on the page has. */
+  private sized(canvas: HTMLCanvasElement): { width: number; height: number } {
     const ratio = Math.min(devicePixelRatio, 2);
     const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    return { width, height };
+  }
+
+  draw(): void {
+    this.pending = 0;
+    if (this.gpu) return this.gpu.paint(this, this.sized(this.gpu.canvas));
+    const { gl } = this;
+    const { width, height } = this.sized(this.canvas);
     const target = this.targetOf(width, height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const environment = this.environmentOf(this.environment);
+    const environment = environmentOf(this.environment);
     this.frame(this.eye(), this.viewProjection(width / height), environment, this.lights);
+    if (this.other?.difference) return this.drawDifference(target, environment, this.other.look);
     gl.enable(gl.SCISSOR_TEST);
-    const cut = this.other ? Math.round(width * this.other.split) : width;
+    const cut = this.cut(width);
     gl.scissor(0, 0, cut, height);
     this.drawAll(environment, null);
     if (this.other) {
@@ -176,31 +238,67 @@ export class Viewport {
       this.drawAll(environment, this.other.look);
     }
     gl.disable(gl.SCISSOR_TEST);
-    this.present(target, cut);
+    this.present(target, cut, target);
   }
 
-  private drawAll(environment: Environment, instead: Look | null): void {
+  /** What draw() shows with as many pixels as there are now, rows from the top, RGBA. */
+  pixels(): Uint8Array {
+    const { gl } = this;
+    this.draw();
+    const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+    const rows = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
+    const pixels = new Uint8Array(rows.length);
+    for (let y = 0; y < height; ++y) pixels.set(rows.subarray(4 * width * y, 4 * width * (y + 1)), 4 * width * (height - 1 - y));
+    return pixels;
+  }
+
+  private drawDifference(target: Target, environment: Environment, look: Look): void {
+    const { gl } = this;
+    this.drawAll(environment, null);
+    const second = this.makeTarget(target.width, target.height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, second.frame);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    this.drawAll(environment, look);
+    this.resolve(second);
+    this.present(target, -10, second);
+    this.dropTarget(second);
+  }
+
+  /** The column from which on the other look is seen. */
+  cut(width: number): number {
+    return this.other ? Math.round(width * this.other.split) : width;
+  }
+  /** The page's colour behind the material. */
+  back(): number[] {
+    return getComputedStyle(this.canvas).getPropertyValue('--viewport').trim().split(' ').map((x) => Number(x) / 255);
+  }
+
+  /** What is drawn, and how it looks, in order; `instead` is another look of the shown material. */
+  *drawn(instead: Look | null): Generator<{ mesh: Mesh; look: Look }> {
     const own = !this.useBall && this.meshes.length > 0;
-    const meshes = own ? this.meshes : [this.ballMesh];
-    const lookOf = (mesh: Mesh) => {
-      const material = own ? mesh.drawable.material : this.shown;
-      return instead && material === this.shown ? instead : this.looks.get(material);
-    };
     for (const blended of [false, true]) {
-      for (const mesh of meshes) {
-        const look = lookOf(mesh);
-        if (look && look.blended === blended) this.drawMesh(mesh, look, environment);
+      for (const mesh of own ? this.meshes : [this.ballMesh]) {
+        const material = own ? mesh.drawable.material : this.shown;
+        const look = instead && material === this.shown ? instead : this.looks.get(material);
+        if (look && look.blended === blended) yield { mesh, look };
       }
     }
   }
 
-  private drawMesh(mesh: Mesh, look: Look, environment: Environment): void {
+  private drawAll(environment: Environment, instead: Look | null): void {
+    const maps = this.mapsOf(environment);
+    for (const { mesh, look } of this.drawn(instead)) this.drawMesh(mesh, look, maps);
+  }
+
+  private drawMesh(mesh: Mesh, look: Look, maps: Maps): void {
     const { gl } = this;
     const made = this.programs.get(look.id);
     if (!made) return;
     gl.useProgram(made.program);
     gl.enable(gl.DEPTH_TEST);
     gl[look.doubleSided ? 'disable' : 'enable'](gl.CULL_FACE);
+    gl.frontFace(mesh.drawable.mirrored ? gl.CW : gl.CCW);
     gl[look.blended ? 'enable' : 'disable'](gl.BLEND);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     this.fill('Material', look.block);
@@ -210,47 +308,25 @@ export class Viewport {
     this.fill('Object', new Uint8Array(object.buffer));
     for (const { name, type, unit } of made.samplers) {
       gl.activeTexture(gl.TEXTURE0 + unit);
-      gl.bindTexture(type === 'samplerCube' ? gl.TEXTURE_CUBE_MAP : gl.TEXTURE_2D, this.textureOf(name, look, environment));
+      gl.bindTexture(type === 'samplerCube' ? gl.TEXTURE_CUBE_MAP : gl.TEXTURE_2D, this.textureOf(name, look, maps));
     }
     gl.bindVertexArray(mesh.arrays);
     gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
     gl.bindVertexArray(null);
   }
 
-  private textureOf(name: string, look: Look, environment: Environment): WebGLTexture {
-    if (name === 'environment_irradiance') return environment.irradiance;
-    if (name === 'environment_specular' || name === 'environment_charlie') return environment.specular;
+  private textureOf(name: string, look: Look, maps: Maps): WebGLTexture {
+    if (name === 'environment_irradiance') return maps.irradiance;
+    if (name === 'environment_specular' || name === 'environment_charlie') return maps.specular;
     if (name === 'environment_dfg') return this.tables.dfg;
     if (name === 'environment_sheen') return this.tables.sheen;
-    if (name === 'scene_behind') return this.behind;
+    if (name === 'scene_behind') return maps.behind ?? this.behind;
     const slot = look.slots.get(name);
     return (slot && this.textures.get(`${slot.texture}:${slot.srgb}`)) ?? this.colorTexture(neutral(name));
   }
 
-  /** The blocks of a frame, by the fields' places in templates/mesh.node (docs/bindings.md). */
   private frame(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[]): void {
-    const frame = new DataView(new ArrayBuffer(96));
-    viewProjection.forEach((x, i) => frame.setFloat32(4 * i, x, true));
-    eye.forEach((x, i) => frame.setFloat32(64 + 4 * i, x, true));
-    frame.setFloat32(76, 1, true);
-    frame.setFloat32(80, environment.lastLevel, true);
-    frame.setInt32(84, lights.length, true);
-    this.fill('Frame', new Uint8Array(frame.buffer));
-    const all = new Float32Array(16 * 16);
-    lights.forEach(({ direction, radiance }, i) => {
-      // position, positional, radiance, inverse_range_4, direction, spot_scale, spot_offset
-      all.set([...direction, 0, ...radiance, 0, ...scale(direction, -1), 0, 1], 16 * i);
-    });
-    this.fill('Lights', new Uint8Array(all.buffer));
-    const through = new Float32Array(16);
-    const m = viewProjection;
-    for (let k = 0; k < 4; ++k) {
-      through[k] = 0.5 * (m[4 * k] + m[4 * k + 3]);
-      through[4 + k] = 0.5 * (m[4 * k + 1] + m[4 * k + 3]);
-      through[8 + k] = m[4 * k + 3];
-    }
-    through[12] = 6; // the board's last level
-    this.fill('SeeThrough', new Uint8Array(through.buffer));
+    for (const [name, bytes] of Object.entries(frameBlocks(eye, viewProjection, environment, lights))) this.fill(name, bytes);
   }
 
   private fill(block: string, bytes: Uint8Array): void {
@@ -266,19 +342,24 @@ export class Viewport {
     const to: Vec3 = [Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw) * Math.cos(pitch)];
     return add(this.middle, scale(to, distance * this.radius));
   }
-  private viewProjection(aspect: number): Mat4 {
+  viewProjection(aspect: number): Mat4 {
     const { distance } = this.orbit;
     const fov = aspect < 1 ? 2 * Math.atan(Math.tan(0.36) / aspect) : 0.72;
     const near = Math.max(distance - 1.5, 0.02) * this.radius;
     return multiply(perspective(fov, aspect, near, (distance + 3) * this.radius), lookAt(this.eye(), this.middle));
   }
 
-  private present(target: NonNullable<Viewport['target']>, cut: number): void {
+  private resolve({ frame, resolved, width, height }: Target): void {
     const { gl } = this;
-    const { width, height } = target;
-    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target.frame);
-    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, target.resolved);
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, frame);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, resolved);
     gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+  }
+
+  /** The picture on the canvas; where the second is another, by how much they differ. */
+  private present(target: Target, cut: number, second: Target): void {
+    const { gl } = this;
+    this.resolve(target);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.BLEND);
@@ -286,18 +367,21 @@ export class Viewport {
     gl.useProgram(this.show);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, target.color);
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, second.color);
+    gl.uniform1i(gl.getUniformLocation(this.show, 'second'), 1);
+    gl.uniform1i(gl.getUniformLocation(this.show, 'difference'), second === target ? 0 : 1);
     gl.uniform1f(gl.getUniformLocation(this.show, 'exposure'), this.exposure);
     gl.uniform1f(gl.getUniformLocation(this.show, 'cut'), this.other ? cut : -10);
-    const back = getComputedStyle(this.canvas).getPropertyValue('--viewport').trim().split(' ').map(Number);
-    gl.uniform3f(gl.getUniformLocation(this.show, 'back'), back[0] / 255, back[1] / 255, back[2] / 255);
+    gl.uniform3fv(gl.getUniformLocation(this.show, 'back'), this.back());
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
   // ---- single colours
 
-  /** What a look's shader gives for a point seen from +z, under one light or none, in a constant environment or none: the
-   * linear colour as `lacquer eval` has it. */
-  probe(look: Look, at: { n: Vec3; t: number[]; l: Vec3; light: Vec3; env: Vec3; uv: number[] }): number[] {
+  /** What a look's shader gives for a point seen from +z under one light, in a constant environment or one of that name:
+   * the linear colour as `lacquer eval` has it. */
+  probe(look: Look, at: { n: Vec3; t: number[]; l: Vec3; light: Vec3; env?: Vec3; uv: number[] }, around = ''): number[] {
     const { gl } = this;
     const corners = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
     const four = (x: number[]) => [...x, ...x, ...x, ...x];
@@ -311,17 +395,18 @@ export class Viewport {
     gl.viewport(0, 0, 1, 1);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
-    const environment = constantEnvironment(gl, at.env);
+    const environment = around === '' ? constantEnvironment(at.env ?? [0, 0, 0]) : environmentOf(around);
+    const maps = { ...this.mapsOf(environment), behind: this.grey() };
     const flat = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.01, 0, 0, 0, 0, 1]);
-    this.frame([0, 0, 1], flat, environment, [{ direction: at.l, radiance: at.light }]);
-    this.drawMesh(mesh, { ...look, blended: false, doubleSided: true }, environment);
+    this.frame([0, 0, 1], flat, environment, [directional(at.l, at.light)]);
+    this.drawMesh(mesh, { ...look, blended: false, doubleSided: true }, maps);
     const rgba = new Float32Array(4);
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, rgba);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.deleteFramebuffer(frame);
     gl.deleteTexture(texture);
-    gl.deleteTexture(environment.specular);
-    gl.deleteTexture(environment.irradiance);
+    gl.deleteTexture(maps.behind);
+    if (around === '') for (const map of [maps.specular, maps.irradiance]) gl.deleteTexture(map);
     gl.deleteVertexArray(mesh.arrays);
     this.redraw();
     return [...rgba];
@@ -337,12 +422,10 @@ export class Viewport {
       gl.viewport(0, 0, size, size);
       gl.clearColor(0, 0, 0, 0);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-      const environment = this.environmentOf(this.environment);
+      const environment = environmentOf(this.environment);
       this.frame(this.eye(), this.viewProjection(1), environment, this.lights);
       this.drawAll(environment, look);
-      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target.frame);
-      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, target.resolved);
-      gl.blitFramebuffer(0, 0, size, size, 0, 0, size, size, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+      this.resolve(target);
       gl.bindFramebuffer(gl.FRAMEBUFFER, target.resolved);
       const pixels = new Float32Array(4 * size * size);
       gl.readPixels(0, 0, size, size, gl.RGBA, gl.FLOAT, pixels);
@@ -366,10 +449,27 @@ export class Viewport {
 
   // ---- objects of WebGL
 
-  private environmentOf(name: string): Environment {
-    let made = this.environments.get(name);
-    if (!made) this.environments.set(name, (made = makeEnvironment(this.gl, kEnvironments[name] ?? kEnvironments.Studio)));
+  private mapsOf(environment: Environment): Maps {
+    let made = this.maps.get(environment);
+    if (!made) {
+      made = { specular: this.cubeTexture(environment.specular), irradiance: this.cubeTexture(environment.irradiance) };
+      this.maps.set(environment, made);
+    }
     return made;
+  }
+  private cubeTexture({ size, levels }: Cube): WebGLTexture {
+    const { gl } = this;
+    const texture = gl.createTexture()!;
+    gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
+    gl.texStorage2D(gl.TEXTURE_CUBE_MAP, levels.length, gl.RGBA16F, size, size);
+    levels.forEach((faces, level) => {
+      const width = Math.max(1, size >> level);
+      faces.forEach((texels, i) =>
+        gl.texSubImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + i, level, 0, 0, width, width, gl.RGBA, gl.FLOAT, texels),
+      );
+    });
+    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    return texture;
   }
 
   private upload(drawable: Drawable): Mesh {
@@ -392,6 +492,7 @@ export class Viewport {
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, drawable.indices, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
     drawable.normal = normalMatrix(drawable.model);
+    drawable.mirrored = mirrors(drawable.model);
     return { drawable, arrays, count: drawable.indices.length };
   }
 
@@ -455,29 +556,33 @@ export class Viewport {
     return texture;
   }
 
-  /** What is seen through what transmits: a board, blurred from level to level. */
-  private board(): WebGLTexture {
+  /** What `lacquer eval` sees through what transmits. */
+  private grey(): WebGLTexture {
     const { gl } = this;
-    const size = 64;
-    const texels = new Uint8Array(4 * size * size);
-    for (let i = 0; i < size * size; ++i) {
-      const light = ((i % size >> 3) + (Math.floor(i / size) >> 3)) % 2 ? 150 : 90;
-      texels.set([light, light, light, 255], 4 * i);
-    }
     const texture = gl.createTexture()!;
     gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, texels);
-    gl.generateMipmap(gl.TEXTURE_2D);
-    for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, 1, 1, 0, gl.RGBA, gl.FLOAT, new Float32Array([0.5, 0.5, 0.5, 1]));
     return texture;
   }
 
-  private targetOf(width: number, height: number): NonNullable<Viewport['target']> {
+  /** What is seen through what transmits, blurred from level to level. */
+  private board(): WebGLTexture {
+    const { gl } = this;
+    const texture = gl.createTexture()!;
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, kBoardSize, kBoardSize, 0, gl.RGBA, gl.UNSIGNED_BYTE, board());
+    gl.generateMipmap(gl.TEXTURE_2D);
+    for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    return texture;
+  }
+
+  private targetOf(width: number, height: number): Target {
     if (this.target?.width === width && this.target.height === height) return this.target;
     if (this.target) this.dropTarget(this.target);
     return (this.target = this.makeTarget(width, height));
   }
-  private makeTarget(width: number, height: number): NonNullable<Viewport['target']> {
+  private makeTarget(width: number, height: number): Target {
     const { gl } = this;
     const samples = Math.min(4, gl.getParameter(gl.MAX_SAMPLES));
     const frame = gl.createFramebuffer()!;
@@ -499,7 +604,7 @@ export class Viewport {
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, color, 0);
     return { frame, resolved, color, width, height };
   }
-  private dropTarget(target: NonNullable<Viewport['target']>): void {
+  private dropTarget(target: Target): void {
     const { gl } = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
     for (const attachment of [gl.COLOR_ATTACHMENT0, gl.DEPTH_ATTACHMENT]) {
@@ -521,7 +626,8 @@ void main() {
 /** Exposure, the Khronos PBR neutral tone mapper, and sRGB, before the page's colour. */
 const kShowFragment = `#version 300 es
 precision highp float;
-uniform sampler2D picture;
+uniform sampler2D picture, second;
+uniform bool difference;
 uniform float exposure, cut;
 uniform vec3 back;
 out vec4 shown;
@@ -542,6 +648,11 @@ vec3 encode(vec3 c) {
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 c = texelFetch(picture, at, 0);
+  if (difference) {
+    vec3 by = abs(c.rgb - texelFetch(second, at, 0).rgb) * exposure * 8.0;
+    shown = vec4(mix(back, encode(clamp(by, 0.0, 1.0)), step(1e-4, c.a)), 1.0);
+    return;
+  }
   float a = clamp(c.a, 0.0, 1.0);
   vec3 lit = encode(clamp(neutral(max(c.rgb / max(a, 1e-4), 0.0) * exposure), 0.0, 1.0));
   shown = vec4(mix(back, lit, a), 1.0);

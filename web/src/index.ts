@@ -1,5 +1,5 @@
 // Lacquer in JavaScript: glTF materials to shaders. The way is Scene -> Graph -> Shader.
-import { Instance, type Source } from './module.js';
+import { compile, Instance, type Source } from './module.js';
 import {
   LacquerError,
   type Attribute,
@@ -20,7 +20,10 @@ export * from './types.js';
 export type { Source };
 
 const kLevels: Level[] = ['note', 'warning', 'error'];
-const kAttributes: Attribute[] = ['NORMAL', 'TANGENT', 'COLOR_0', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3'];
+const kAttributes: Attribute[] = [
+  'NORMAL', 'TANGENT', 'COLOR_0', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3', 'JOINTS_0', 'JOINTS_1',
+  'MORPH_TARGETS', 'INSTANCES', 'QUANTIZED',
+];
 /** What a material that no primitive uses is read with. */
 export const kUnusedAttributes: Attribute[] = ['NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1'];
 const kStages: Record<Stage, number> = { vertex: 0, fragment: 1 };
@@ -338,7 +341,19 @@ export class Lacquer {
   }
 }
 
-/** Makes the library; without a source from lacquer.wasm beside this file. */
-export async function load(source: Source = new URL('./lacquer.wasm', import.meta.url)): Promise<Lacquer> {
-  return new Lacquer(await Instance.make(source));
+/** Makes the library; without a source from lacquer.wasm beside this file. Where a server or a bundler does not give that
+ * file away, from a copy of it that is a script. */
+export async function load(source?: Source): Promise<Lacquer> {
+  return new Lacquer(await Instance.make(source ?? (await ownModule())));
+}
+
+async function ownModule(): Promise<WebAssembly.Module> {
+  try {
+    return await compile(new URL('./lacquer.wasm', import.meta.url));
+  } catch {
+    const { default: packed } = await import('./packed.js');
+    const bytes = Uint8Array.from(atob(packed), (c) => c.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+    return compile(new Response(stream));
+  }
 }

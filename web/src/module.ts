@@ -48,7 +48,8 @@ function importsOf(module: WebAssembly.Module, memory: () => WebAssembly.Memory)
   return imports;
 }
 
-async function compile(source: Source): Promise<WebAssembly.Module> {
+/** Whatever it is made from. */
+export async function compile(source: Source): Promise<WebAssembly.Module> {
   if (source instanceof WebAssembly.Module) return source;
   if (typeof source === 'string' || source instanceof URL) {
     const url = new URL(source, import.meta.url);

@@ -29,7 +29,7 @@ export class LacquerError extends Error {
 }
 
 /** Names of targets; a library may know more of them. */
-export type Target = 'glsl' | 'glsl-gl' | 'essl' | 'hlsl' | 'spirv' | 'cpp' | (string & {});
+export type Target = 'glsl' | 'glsl-gl' | 'essl' | 'hlsl' | 'wgsl' | 'spirv' | 'cpp' | 'js' | (string & {});
 export type Stage = 'vertex' | 'fragment';
 
 /** How shaders are made; what is absent is as on the command line. */
@@ -53,8 +53,11 @@ export interface Options {
   texels?: string[];
 }
 
-/** Vertex attributes of a primitive beside POSITION. */
-export type Attribute = 'NORMAL' | 'TANGENT' | 'COLOR_0' | 'TEXCOORD_0' | 'TEXCOORD_1' | 'TEXCOORD_2' | 'TEXCOORD_3';
+/** Vertex attributes of a primitive beside POSITION. JOINTS_n come with WEIGHTS_n; the last three are morph targets,
+ *  instances, and positions or texture coordinates that are stored as integers. */
+export type Attribute =
+  | 'NORMAL' | 'TANGENT' | 'COLOR_0' | 'TEXCOORD_0' | 'TEXCOORD_1' | 'TEXCOORD_2' | 'TEXCOORD_3'
+  | 'JOINTS_0' | 'JOINTS_1' | 'MORPH_TARGETS' | 'INSTANCES' | 'QUANTIZED';
 
 /** An editable number of a material. */
 export interface Parameter {
@@ -134,5 +137,7 @@ export interface Interface {
   parameters: { name: string; type: string; fields: string[] }[];
   textures: { name: string; type: string; role: string; color_space?: string }[];
   inputs?: { name: string; location: number; type: string }[];
+  /** Of the target "wgsl": what createBindGroupLayout wants (docs/bindings.md). */
+  webgpu?: { bindings: { name: string; group: number; binding: number; visibility: string[]; [kind: string]: unknown }[] };
   [key: string]: unknown;
 }

@@ -6,7 +6,7 @@ import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 export const root = resolve(fileURLToPath(import.meta.url), '../../..');
-export const output = join(root, 'build/web');
+export const output = process.env.LACQUER_WEB ?? join(root, 'build/web');
 export const program = process.env.LACQUER_PROGRAM ?? join(root, 'build/release/lacquer');
 
 export function lacquer(...args) {

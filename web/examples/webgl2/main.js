@@ -8,6 +8,12 @@ const bytes = new Uint8Array(await (await fetch(url)).arrayBuffer());
 const gltf = JSON.parse(new TextDecoder().decode(bytes));
 const buffer = await (await fetch(new URL(gltf.buffers[0].uri, url))).arrayBuffer();
 
+const images = await Promise.all((gltf.images ?? []).map(async ({ uri, bufferView, mimeType }) => {
+  const { byteOffset = 0, byteLength = 0 } = gltf.bufferViews[bufferView] ?? {};
+  const blob = uri ? await (await fetch(new URL(uri, url))).blob() : new Blob([new Uint8Array(buffer, byteOffset, byteLength)], { type: mimeType });
+  return createImageBitmap(blob, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+}));
+
 const lacquer = await load();
 const scene = lacquer.scene(bytes, 'file.gltf');
 const kOptions = { targets: ['essl'], ibl: false, lights: { directional: 1 } };
@@ -17,7 +23,8 @@ const kNames = { POSITION: 'in_position', NORMAL: 'in_normal', TANGENT: 'in_tang
 /** A program, and the bytes of its blocks by the fields that the shader's interface tells. */
 function prepare(primitive) {
   const attributes = Object.keys(primitive.attributes).filter((name) => name !== 'POSITION');
-  const shader = scene.graph(primitive.material, kOptions, attributes).generate(kOptions);
+  const graph = scene.graph(primitive.material, kOptions, attributes);
+  const shader = graph.generate(kOptions);
   const program = gl.createProgram();
   for (const [stage, kind] of [['vertex', gl.VERTEX_SHADER], ['fragment', gl.FRAGMENT_SHADER]]) {
     const part = gl.createShader(kind);
@@ -45,7 +52,15 @@ function prepare(primitive) {
     }
     return { block, data };
   });
-  return { program, blocks };
+  return { program, blocks, slots: Object.entries(graph.toJson().textures ?? {}) };
+}
+
+function texture(program, name, { texture: index, srgb }, unit) {
+  gl.activeTexture(gl.TEXTURE0 + unit);
+  gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+  gl.texImage2D(gl.TEXTURE_2D, 0, srgb ? gl.SRGB8_ALPHA8 : gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, images[gltf.textures[index].source]);
+  gl.generateMipmap(gl.TEXTURE_2D);
+  gl.uniform1i(gl.getUniformLocation(program, name), unit);
 }
 
 /** An accessor as an attribute of the current vertex array. */
@@ -61,10 +76,11 @@ function attribute(program, name, index) {
 }
 
 function draw(primitive) {
-  const { program, blocks } = prepare(primitive);
+  const { program, blocks, slots } = prepare(primitive);
   gl.bindVertexArray(gl.createVertexArray());
   for (const [name, index] of Object.entries(primitive.attributes)) attribute(program, name, index);
   gl.useProgram(program);
+  slots.forEach(([name, slot], unit) => texture(program, name, slot, unit));
   for (const { block, data } of blocks) {
     const binding = kBlocks.indexOf(block);
     const at = gl.getUniformBlockIndex(program, block);

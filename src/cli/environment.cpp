@@ -1,0 +1,78 @@
+#include "cli/environment.h"
+
+#include <fmt/format.h>
+
+#include "cli/build.h"
+#include "cli/checks.h"
+#include "cli/streams.h"
+#include "cli/table.h"
+#include "json/json.h"
+
+namespace lacquer::cli {
+
+CLI::App* addEnvironment(CLI::App& app, EnvironmentFlags& flags) {
+  CLI::App* verb = app.add_subcommand(
+      "environment", "the cube maps and tables of image-based light, from a picture of the surroundings");
+  verb->add_option("picture", flags.picture, "equirectangular: Radiance HDR (.hdr) or OpenEXR (.exr)")
+      ->required();
+  verb->add_option("-o,--output", flags.environment.output, "the folder to write to")
+      ->required()
+      ->check(kNotEmpty);
+  verb->add_option("--size", flags.environment.size, "texels in a row of environment_specular's faces")
+      ->check(CLI::IsMember({32, 64, 128, 256, 512, 1024}))
+      ->capture_default_str();
+  verb->add_option("--samples", flags.environment.samples,
+                   "about how many parts of the picture each texel is made of")
+      ->check(CLI::Range(64, 65536))
+      ->check(kWhole)
+      ->capture_default_str();
+  verb->add_option("--container", flags.container, "ktx2 or dds")
+      ->check(CLI::IsMember({"ktx2", "dds"}))
+      ->capture_default_str();
+  verb->add_option("--texels", flags.texels,
+                   "of the cubes: half (floats) or rgb9e5, which has half the bytes")
+      ->check(CLI::IsMember({"half", "rgb9e5"}))
+      ->capture_default_str();
+  verb->add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
+      ->check(CLI::Range(0, 1024))
+      ->check(kWhole);
+  verb->add_flag("--json", flags.json, "what was written, as environment.json has it");
+  verb->add_flag("-q,--quiet", flags.quiet, "no table, no progress");
+  addLimit(*verb, flags.options);
+  return verb;
+}
+
+namespace {
+
+void printWritten(const std::string& text, const std::string& folder) {
+  const json::Json answer = json::reread(text);
+  for (const auto& [slot, row] : answer["textures"].items()) {
+    fmt::print("{:<24} {:>4} x {:<4} {} level{}, {}\n", slot, row["size"].get<int>(), row["size"].get<int>(),
+               row["levels"].get<int>(), row["levels"].get<int>() == 1 ? "" : "s",
+               row["format"].get<std::string>());
+  }
+  fmt::print("environment_max_lod is {}; in {}\n", answer["environment_max_lod"].get<int>(),
+             printable(folder));
+}
+
+}  // namespace
+
+int runEnvironment(EnvironmentFlags& flags) {
+  flags.environment.dds = flags.container == "dds";
+  flags.environment.shared_exponents = flags.texels == "rgb9e5";
+  Messages messages;
+  std::string answer;
+  {
+    ProgressLine line(terminalWidth() > 0 && !flags.quiet, "rows of texels");
+    const auto progress = [&](size_t done, size_t known) {
+      if (done % 64 == 0 || done == known) line(done, known);
+    };
+    answer = writeEnvironment(flags.environment, flags.picture, flags.options, messages, progress);
+  }
+  print(messages);
+  if (flags.json) fmt::print("{}", answer);
+  if (!answer.empty() && !flags.json && !flags.quiet) printWritten(answer, flags.environment.output);
+  return answer.empty() || hasError(messages) ? 1 : 0;
+}
+
+}  // namespace lacquer::cli

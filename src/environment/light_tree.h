@@ -1,0 +1,62 @@
+// Radiance over the sphere as a tree of cells: the texels of a cube map, and the squares that they make up.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "environment/faces.h"
+
+namespace lacquer::environment {
+
+/// What a cell sends and whence.
+struct Cell {
+  std::array<float, 3> flux{};    ///< radiance times solid angle
+  float angle = 0;                ///< the solid angle, steradians
+  std::array<float, 3> middle{};  ///< unit: the mean direction of the cell
+  std::array<float, 3> light{};   ///< unit: the mean direction of its light, by its luminance; dark: `middle`
+};
+
+/// Levels of cells from one for each face to `size` by `size` for each.
+class LightTree {
+public:
+  /// Each pixel of the panorama counts as a patch of one colour, cut so fine that no cell is without some of
+  /// them: nothing of its light is lost, whatever `size` is. A power of two.
+  LightTree(const Panorama& panorama, uint32_t size);
+
+  uint32_t size() const { return uint32_t{1} << (static_cast<uint32_t>(levels_.size()) - 1); }
+  uint32_t levels() const { return static_cast<uint32_t>(levels_.size()); }
+  /// Of a level with 2^level cells in a row: face by face, row by row.
+  const std::vector<Cell>& level(uint32_t level) const { return levels_[level]; }
+
+private:
+  std::vector<std::vector<Cell>> levels_;
+};
+
+/// A lobe about a direction, as a function of the cosine to it; only what is in front counts.
+class Lobe {
+public:
+  /// GGX seen along its normal (N = V = R): D(h) N.L, with alpha = roughness squared.
+  static Lobe ggx(double roughness);
+  /// The fibres' lobe of KHR_materials_sheen in the same way.
+  static Lobe charlie(double roughness);
+  /// N.L: irradiance.
+  static Lobe cosine();
+
+  /// Up to a factor, of a cosine in (0, 1].
+  double operator()(double cosine) const;
+  /// The squared distance over which the lobe hardly changes, of a chord on the unit sphere, about a cosine.
+  double scale2(double cosine) const;
+
+private:
+  enum class Kind : uint8_t { Ggx, Charlie, Cosine };
+  Lobe(Kind kind, double alpha) : kind_(kind), alpha_(alpha) {}
+  Kind kind_;
+  double alpha_;
+};
+
+/// The mean of the radiance about a unit direction, weighted by a lobe: the integral of both over that of the
+/// lobe. Cells are cut until they are `fineness` of the distance over which the lobe changes, which makes
+/// about 64 / fineness^2 of them.
+Rgb filtered(const LightTree& tree, const Lobe& lobe, const Vec3& direction, double fineness);
+
+}  // namespace lacquer::environment

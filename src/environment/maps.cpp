@@ -1,0 +1,179 @@
+#include "environment/maps.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <mutex>
+
+namespace lacquer::environment {
+
+namespace {
+
+constexpr uint32_t kSmallestLevel = 8;   ///< of the specular cube
+constexpr uint32_t kCharliePart = 4;     ///< its size is this part of the specular cube's
+constexpr uint32_t kFinestTree = 512;    ///< where the cube is not larger itself
+constexpr double kCosineFineness = 0.1;  ///< of the irradiance: an error of 1e-4
+
+/// What one row of texels is: of a cube, its face and its number in it.
+struct Row {
+  texture::CubeLevel* level;
+  const Lobe* lobe;  ///< null: the mirror
+  double fineness;
+  uint32_t row;  ///< of all faces
+};
+
+/// The mean of the tree's cells that a texel of a mirror's level covers.
+Rgb mirrored(const LightTree& tree, size_t texel, uint32_t size) {
+  const Cell& cell = tree.level(static_cast<uint32_t>(std::countr_zero(size)))[texel];
+  Rgb mean{};
+  for (size_t i = 0; i < 3; ++i) mean[i] = cell.flux[i] / cell.angle;
+  return mean;
+}
+
+void fill(const LightTree& tree, const Row& row) {
+  const uint32_t size = row.level->size;
+  const uint32_t face = row.row / size, y = row.row % size;
+  for (uint32_t x = 0; x < size; ++x) {
+    const size_t texel = size_t{row.row} * size + x;
+    row.level->texels[texel] =
+        row.lobe == nullptr ? mirrored(tree, texel, size)
+                            : filtered(tree, *row.lobe, texelDirection(face, x, y, size), row.fineness);
+  }
+}
+
+class Making {
+public:
+  Making(const LightTree& tree, const MapOptions& options, Maps& maps) : tree_(tree), maps_(maps) {
+    const double fineness = 8 / std::sqrt(static_cast<double>(options.samples));
+    const auto last = static_cast<uint32_t>(std::countr_zero(options.size / kSmallestLevel));
+    lobes_.reserve(2 * last + 3);
+    maps.specular.resize(last + 1);
+    maps.charlie.resize(last + 1);
+    for (uint32_t i = 0; i <= last; ++i) {
+      const double roughness = static_cast<double>(i) / last;
+      add(maps.specular[i], options.size >> i, i == 0 ? nullptr : &lobes_.emplace_back(Lobe::ggx(roughness)),
+          fineness);
+      add(maps.charlie[i], options.size / kCharliePart >> i, &lobes_.emplace_back(Lobe::charlie(roughness)),
+          fineness);
+    }
+    add(maps.irradiance, kIrradianceSize, &lobes_.emplace_back(Lobe::cosine()), kCosineFineness);
+  }
+
+  void run(const MapProgress& progress) {
+    std::mutex mutex;
+    size_t done = 0;
+    tbb::parallel_for(size_t{0}, rows_.size(), [&](size_t i) {
+      fill(tree_, rows_[i]);
+      if (!progress) return;
+      const std::lock_guard lock(mutex);
+      progress(++done, rows_.size());
+    });
+    harmonics();
+  }
+
+private:
+  void add(texture::CubeLevel& level, uint32_t size, const Lobe* lobe, double fineness) {
+    level.size = size;
+    level.texels.resize(size_t{kFaces} * size * size);
+    for (uint32_t row = 0; row < kFaces * size; ++row) rows_.push_back({&level, lobe, fineness, row});
+  }
+
+  void harmonics() {
+    // The convolution with the cosine over pi, by order.
+    constexpr double kCosine[] = {1.0, 2.0 / 3.0, 0.25};
+    constexpr size_t kOrder[] = {0, 1, 1, 1, 2, 2, 2, 2, 2};
+    for (const Cell& cell : tree_.level(tree_.levels() - 1)) {
+      const std::array<double, 9> basis = harmonicsAt({cell.light[0], cell.light[1], cell.light[2]});
+      for (size_t k = 0; k < 9; ++k) {
+        for (size_t i = 0; i < 3; ++i) maps_.harmonics[k][i] += basis[k] * kCosine[kOrder[k]] * cell.flux[i];
+      }
+    }
+  }
+
+  const LightTree& tree_;
+  Maps& maps_;
+  std::vector<Lobe> lobes_;
+  std::vector<Row> rows_;
+};
+
+/// The texel of a place that may lie beside its face by one.
+const Rgb& texelAt(const texture::CubeLevel& level, uint32_t face, int x, int y) {
+  const auto size = static_cast<int>(level.size);
+  if (x < 0 || y < 0 || x >= size || y >= size) {
+    const OnFace there = faceOf(directionOf({face, (2.0 * x + 1) / size - 1, (2.0 * y + 1) / size - 1}));
+    const auto place = [&](double a) {
+      return std::clamp(static_cast<int>((a + 1) / 2 * size), 0, size - 1);
+    };
+    face = there.face;
+    x = place(there.s);
+    y = place(there.t);
+  }
+  return level
+      .texels[(size_t{face} * level.size + static_cast<size_t>(y)) * level.size + static_cast<size_t>(x)];
+}
+
+Rgb bilinear(const texture::CubeLevel& level, const Vec3& direction) {
+  const OnFace at = faceOf(direction);
+  const double x = (at.s + 1) / 2 * level.size - 0.5;
+  const double y = (at.t + 1) / 2 * level.size - 0.5;
+  const auto left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
+  const double right = x - left, down = y - top;
+  Rgb color{};
+  for (size_t i = 0; i < 3; ++i) {
+    const double above = texelAt(level, at.face, left, top)[i] * (1 - right) +
+                         texelAt(level, at.face, left + 1, top)[i] * right;
+    const double below = texelAt(level, at.face, left, top + 1)[i] * (1 - right) +
+                         texelAt(level, at.face, left + 1, top + 1)[i] * right;
+    color[i] = static_cast<float>(above * (1 - down) + below * down);
+  }
+  return color;
+}
+
+}  // namespace
+
+std::array<double, 9> harmonicsAt(const Vec3& direction) {
+  const auto [x, y, z] = direction;
+  return {0.28209479177387814,
+          0.48860251190291992 * y,
+          0.48860251190291992 * z,
+          0.48860251190291992 * x,
+          1.0925484305920792 * x * y,
+          1.0925484305920792 * y * z,
+          0.31539156525252005 * (3 * z * z - 1),
+          1.0925484305920792 * x * z,
+          0.54627421529603959 * (x * x - y * y)};
+}
+
+uint32_t treeSizeOf(const Panorama& panorama, const MapOptions& options) {
+  const uint32_t finest = std::min(kFinestTree, std::bit_ceil(std::max(panorama.width / 4, 1U)));
+  return std::max(finest, options.size);
+}
+
+Maps makeMaps(const LightTree& tree, const MapOptions& options, const MapProgress& progress) {
+  assert(std::has_single_bit(options.size) && options.size >= 4 * kSmallestLevel);
+  assert(options.size <= tree.size());
+  Maps maps;
+  Making(tree, options, maps).run(progress);
+  return maps;
+}
+
+Vec3 texelDirection(uint32_t face, uint32_t x, uint32_t y, uint32_t size) {
+  return unit(directionOf({face, (2.0 * x + 1) / size - 1, (2.0 * y + 1) / size - 1}));
+}
+
+Rgb lookUp(std::span<const texture::CubeLevel> levels, const Vec3& direction, double level) {
+  const double last = static_cast<double>(levels.size()) - 1;
+  const double at = std::clamp(level, 0.0, last);
+  const auto below = static_cast<size_t>(at);
+  const double part = at - static_cast<double>(below);
+  Rgb color = bilinear(levels[below], direction);
+  if (part == 0) return color;
+  const Rgb next = bilinear(levels[below + 1], direction);
+  for (size_t i = 0; i < 3; ++i) color[i] = static_cast<float>(color[i] * (1 - part) + next[i] * part);
+  return color;
+}
+
+}  // namespace lacquer::environment

@@ -1,0 +1,87 @@
+#include "environment/panorama.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/limits.h"
+
+namespace lacquer::environment {
+
+namespace {
+
+constexpr float kMost = 65408;
+constexpr int64_t kLongest = 32768;
+
+/// How often a number was replaced.
+struct Replaced {
+  size_t wrong = 0, large = 0;
+};
+
+Replaced clean(Panorama& panorama) {
+  Replaced replaced;
+  for (Rgb& color : panorama.texels) {
+    for (float& x : color) {
+      if (std::isnan(x) || x < 0) {
+        ++replaced.wrong;
+        x = 0;
+      } else if (x > kMost) {
+        ++replaced.large;
+        x = kMost;
+      }
+      x += 0.0F;  // no -0
+    }
+  }
+  return replaced;
+}
+
+}  // namespace
+
+tl::unexpected<Diagnostics> unreadable(const Place& place, std::string message) {
+  return fail("environment-unreadable", place, std::move(message),
+              "Radiance HDR (.hdr) and OpenEXR (.exr) are read");
+}
+
+Result<void> checkSize(int64_t width, int64_t height, uint64_t most, const Place& place) {
+  if (width < 1 || height < 1 || width > kLongest || height > kLongest)
+    return unreadable(place, fmt::format("the picture claims {} x {} pixels", width, height));
+  const auto pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
+  if (pixels <= most) return {};
+  return fail("image-too-large", place,
+              fmt::format("the picture has {} x {} pixels, more than {}", width, height, most),
+              raising("image"));
+}
+
+Result<Panorama> readPanorama(std::string_view bytes, uint64_t most, const Place& place,
+                              Diagnostics& warnings) {
+  const auto read = [&]() -> Result<Panorama> {
+    if (bytes.starts_with("#?RADIANCE\n") || bytes.starts_with("#?RGBE\n"))
+      return readRadiance(bytes, most, place);
+    if (bytes.starts_with(std::string_view("\x76\x2f\x31\x01", 4))) return readOpenExr(bytes, most, place);
+    return unreadable(place, "this is neither Radiance HDR nor OpenEXR");
+  };
+  Result<Panorama> panorama = read();
+  if (!panorama) return panorama;
+  const Replaced replaced = clean(*panorama);
+  const auto warn = [&](std::string code, std::string message, std::string help) {
+    warnings.push_back({std::move(code), Severity::Warning, place, std::move(message), std::move(help), {}});
+  };
+  if (replaced.wrong > 0) {
+    warn("environment-numbers", fmt::format("{} numbers are negative or none", replaced.wrong),
+         "radiance is finite and not negative; 0 takes their place");
+  }
+  if (replaced.large > 0) {
+    warn("environment-numbers", fmt::format("{} numbers are larger than {}", replaced.large, kMost),
+         "scale the picture down, and environment_intensity up; what the cubes' formats hold takes their "
+         "place");
+  }
+  if (panorama->width != 2 * panorama->height) {
+    warn("environment-shape",
+         fmt::format("the picture has {} x {} pixels", panorama->width, panorama->height),
+         "an equirectangular one is twice as wide as high; it is stretched to the whole sphere");
+  }
+  return panorama;
+}
+
+}  // namespace lacquer::environment

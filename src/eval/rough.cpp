@@ -1,0 +1,71 @@
+#include "eval/rough.h"
+
+#include <cfloat>
+#include <cmath>
+
+namespace lacquer::eval {
+
+namespace {
+
+using ir::Op;
+
+constexpr double kUlp = 0x1p-23;
+constexpr double kPi = 3.14159265358979323846;
+
+/// What Vulkan's "Precision and Operation of SPIR-V Instructions" allows: parts of the result, and beside
+/// them a number.
+struct Allowed {
+  double ulps = 0, absolute = 0;
+  bool exact = false;  ///< a result that is a float is met
+};
+
+Allowed allowedOf(Op op, double a, double b, double x) {
+  switch (op) {
+    case Op::Add:
+    case Op::Sub:
+    case Op::Mul: return {1, 0, true};
+    case Op::Div: return {2.5, 0};
+    case Op::InverseSqrt: return {2, 0};
+    case Op::Sqrt: return {3, 0};
+    case Op::Exp:
+    case Op::Exp2: return {3 + 2 * std::abs(a), 0};
+    case Op::Log:
+    case Op::Log2: return {3, a > 0.5 && a < 2 ? 0x1p-21 : 0};
+    // exp2(y log2(x)): the logarithm's error times y counts whole.
+    case Op::Pow: return {3 + 2 * std::abs(b * std::log2(a)) + 8 * std::abs(b), 0};
+    case Op::Sin:
+    case Op::Cos: return {0, std::abs(a) > kPi ? 2 : 0x1p-11};  // beyond it nothing is promised
+    case Op::Acos:
+    case Op::Atan2: return {4096, 0x1p-11};
+    // x (1 - t) + y t, or x + (y - x) t: the sizes of both ends count.
+    case Op::Mix: return {2, 2 * kUlp * (std::abs(a) + std::abs(b))};
+    default: return {0, 0, x == static_cast<double>(static_cast<float>(x))};
+  }
+}
+
+}  // namespace
+
+double Rough::symmetric() {
+  state_ ^= state_ << 13;
+  state_ ^= state_ >> 7;
+  state_ ^= state_ << 17;
+  const double u = static_cast<double>(state_ >> 11) * 0x1p-53;
+  // A third at either end.
+  return u < 1.0 / 3 ? -1 : u > 2.0 / 3 ? 1 : 6 * u - 3;
+}
+
+double Rough::input(double x) {
+  const auto f = static_cast<double>(static_cast<float>(x));
+  return std::abs(f) < static_cast<double>(FLT_MIN) && symmetric() > 0 ? std::copysign(0.0, f) : f;
+}
+
+double Rough::operator()(Op op, double a, double b, double x) {
+  if (!std::isfinite(x)) return x;
+  const Allowed allowed = allowedOf(op, a, b, x);
+  const auto f = static_cast<double>(static_cast<float>(x));
+  if (allowed.exact && f == x) return input(f);
+  const double error = 2 * (std::abs(x) * kUlp * allowed.ulps + allowed.absolute);
+  return input(error == 0 ? f : x + symmetric() * error);
+}
+
+}  // namespace lacquer::eval

@@ -1,0 +1,27 @@
+// One of the results that Vulkan allows an operation in float32, drawn at random.
+#pragma once
+
+#include <cstdint>
+
+#include "ir/dag.h"
+
+namespace lacquer::eval {
+
+class Rough {
+public:
+  explicit Rough(uint64_t seed) : state_(seed) {}
+
+  /// `x` is the operation's result on the operands `a` and `b` in double, which are floats. The answer is a
+  /// float (in a double) within twice the error that Vulkan allows; a sum or a product that is a float stays
+  /// as it is, since every device rounds that right. Subnormal numbers may become 0.
+  double operator()(ir::Op op, double a, double b, double x);
+  /// What a device makes of a number from outside.
+  double input(double x);
+
+private:
+  double symmetric();  ///< in [-1, 1], the ends often
+
+  uint64_t state_;
+};
+
+}  // namespace lacquer::eval

@@ -1,0 +1,49 @@
+// Graphs of a material with what other materials of its program have: layers and terms that are there though
+// they change nothing for this one, so that one set of nodes does for all.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <set>
+
+#include "run/structure.h"
+
+namespace lacquer {
+
+/// What the materials of a program have together.
+struct Lift {
+  std::set<uint16_t> extensions;  ///< of the schema
+  std::set<std::string> live;     ///< terms
+};
+
+/// A material that needs a structure.
+struct Example {
+  Key content;  ///< of everything in the material that a graph depends on
+  material::Material material;
+  gltf::VertexAttributes attributes;
+};
+
+/// For every structure of a run the example with the smallest content, whatever the order in which the
+/// materials come. May be used from several threads at once.
+class Examples {
+public:
+  void note(const Key& structure, const material::Material& material,
+            const gltf::VertexAttributes& attributes);
+  /// Null for a structure of which no material came. Not beside note().
+  const Example* of(const Key& structure) const;
+
+private:
+  std::mutex mutex_;
+  std::map<Key, Example> examples_;
+};
+
+/// Adds what a structure has: its example's extensions, and the live terms that are nodes of its graph.
+void addTo(Lift& lift, const Example& example, const graph::Graph& graph, const Setting& setting);
+
+/// The material's graph with all of a lift that is neutral for it: an extension that it has not is added
+/// where its defaults leave the graph as it is. `own`: the graph without, which comes back where there is no
+/// other.
+graph::Graph lifted(const material::Material& material, const gltf::VertexAttributes& attributes,
+                    const graph::Graph& own, const Lift& lift, const Setting& setting);
+
+}  // namespace lacquer

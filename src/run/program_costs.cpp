@@ -1,0 +1,208 @@
+#include "run/program_costs.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <future>
+#include <set>
+
+#include "cost/cost.h"
+#include "lod/estimate.h"
+#include "shader/module.h"
+#include "shader/print.h"
+
+namespace lacquer {
+
+using programs::Places;
+using programs::Program;
+
+namespace {
+
+/// Up to so many programs a driver compiles every candidate, which takes some hundredths of a second each.
+constexpr size_t kDriverPrograms = 64;
+/// A graph of more structures takes too long to be made for a search.
+constexpr size_t kMostUnited = 24;
+
+Result<cost::Subject> subjectOf(const ir::Module& module, const Options& options) {
+  ShaderData data;
+  data.id = "program";
+  data.has_vertex = hasVertexStage(module);
+  data.module = module;
+  Options spirv = options;
+  spirv.targets = {Target::Spirv};
+  spirv.validate = false;
+  spirv.debug = false;
+  Wrong wrong;
+  print(data, spirv, wrong);
+  for (Diagnostics& of_target : wrong) {
+    if (hasError(of_target)) return tl::make_unexpected(std::move(of_target));
+  }
+  return cost::Subject{"program", std::move(data.spirv[0]), std::move(data.spirv[1])};
+}
+
+/// Two processes at a time: the subjects in two halves.
+std::vector<cost::Outcome> measureSubjects(const std::vector<cost::Subject>& subjects, std::string& driver) {
+  const auto middle = subjects.begin() + static_cast<ptrdiff_t>(subjects.size() / 2);
+  const std::vector<cost::Subject> first(subjects.begin(), middle);
+  const std::vector<cost::Subject> second(middle, subjects.end());
+  const auto measure = [](const std::vector<cost::Subject>& some) {
+    return some.empty() ? cost::Measurement() : cost::measure(some, cost::kFamilies[0], false);
+  };
+  std::future<cost::Measurement> running = std::async(std::launch::async, measure, std::cref(first));
+  cost::Measurement rest = measure(second);
+  cost::Measurement begun = running.get();
+  driver = rest.driver.empty() ? begun.driver : rest.driver;
+  std::vector<cost::Outcome> all = std::move(begun.outcomes);
+  std::move(rest.outcomes.begin(), rest.outcomes.end(), std::back_inserter(all));
+  return all;
+}
+
+}  // namespace
+
+ProgramCosts::ProgramCosts(const Setting& setting, const std::vector<OwnProgram>& all, bool by_model)
+    : setting_(setting), all_(all), no_driver_(by_model || !cost::unavailable().empty()) {
+  by_driver_ = !no_driver_ && all.size() <= kDriverPrograms;
+}
+
+Lift ProgramCosts::liftOf(const Places& group) const {
+  Lift lift;
+  for (const uint32_t item : group) {
+    for (size_t i = 0; i < all_[item].graphs.size(); ++i)
+      addTo(lift, *all_[item].examples[i], all_[item].graphs[i], setting_);
+  }
+  return lift;
+}
+
+Result<ir::Module> ProgramCosts::moduleOfGroup(const Places& group) const {
+  const Structure& first = *all_[group[0]].structures[0];
+  if (group.size() == 1) return moduleOf(first, setting_);
+  const Lift lift = liftOf(group);
+  std::vector<graph::Graph> graphs;
+  std::set<Key> seen;
+  for (const uint32_t item : group) {
+    const OwnProgram& program = all_[item];
+    for (size_t i = 0; i < program.graphs.size(); ++i) {
+      const Example& example = *program.examples[i];
+      Diagnostics unsaid;
+      const Result<graph::Graph> own =
+          buildGraph(example.material, example.attributes, setting_.library, setting_.options, unsaid);
+      if (!own) return tl::make_unexpected(own.error());
+      graph::Graph more = lifted(example.material, example.attributes, *own, lift, setting_);
+      if (seen.insert(structureKey(more, first.lights, setting_)).second) graphs.push_back(std::move(more));
+    }
+  }
+  std::vector<const graph::Graph*> members;
+  for (const graph::Graph& graph : graphs) members.push_back(&graph);
+  const Result<programs::United> united = programs::unite(members, setting_.library);
+  if (!united) return tl::make_unexpected(united.error());
+  return toModule(united->graph, setting_.library, setting_.options, first.lights);
+}
+
+Program ProgramCosts::byModel(const ir::Module& module) {
+  Program program;
+  program.cost = static_cast<double>(lod::estimate(module).cycles);
+  const std::vector<double> cycles = lod::cyclesByTerm(module);
+  std::map<uint32_t, double> features;
+  for (size_t term = 0; term < cycles.size(); ++term) {
+    if (cycles[term] == 0) continue;
+    const std::string& name = module.dag.terms()[term].name;
+    const auto id = features_.emplace(name, static_cast<uint32_t>(features_.size())).first->second;
+    features[id] += cycles[term];
+  }
+  for (const auto& [id, cost] : features) program.features.push_back({id, cost});
+  return program;
+}
+
+size_t ProgramCosts::structuresOf(const Places& group) const {
+  size_t count = 0;
+  for (const uint32_t item : group) count += all_[item].graphs.size();
+  return count;
+}
+
+/// Without a shader: the dearest of each term, and for each structure what choices took in the groups of
+/// which there were shaders.
+Program ProgramCosts::byTerms(const Places& group) const {
+  std::map<uint32_t, double> features;
+  double always = 0;  // what is in no term
+  for (const uint32_t item : group) {
+    const Program& program = alone_.at(item);
+    double rest = program.cost;
+    for (const programs::Feature& feature : program.features) {
+      features[feature.id] = std::max(features[feature.id], feature.cost);
+      rest -= feature.cost;
+    }
+    always = std::max(always, rest);
+  }
+  Program program;
+  program.cost = always;
+  for (const auto& [id, cost] : features) {
+    program.features.push_back({id, cost});
+    program.cost += cost;
+  }
+  if (chosen_ > 0) program.cost += choices_ / chosen_ * static_cast<double>(structuresOf(group));
+  return program;
+}
+
+std::vector<std::optional<Program>> ProgramCosts::measure(const std::vector<Places>& groups) {
+  const auto made = [&](const Places& group) {
+    return group.size() == 1 || structuresOf(group) <= kMostUnited;
+  };
+  std::vector<Result<ir::Module>> modules(groups.size());
+  tbb::parallel_for(size_t{0}, groups.size(), [&](size_t i) {
+    if (by_driver_ || made(groups[i])) modules[i] = moduleOfGroup(groups[i]);
+  });
+  std::vector<std::optional<Program>> all(groups.size());
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const Places& group = groups[i];
+    if (!by_driver_ && !made(group)) {
+      all[i] = byTerms(group);
+      continue;
+    }
+    if (!modules[i]) continue;
+    all[i] = byModel(*modules[i]);
+    if (group.size() == 1) {
+      alone_[group[0]] = *all[i];
+    } else {
+      const double before = chosen_ > 0 ? choices_ / chosen_ * static_cast<double>(structuresOf(group)) : 0;
+      choices_ += std::max(0.0, all[i]->cost - (byTerms(group).cost - before));
+      chosen_ += static_cast<double>(structuresOf(group));
+    }
+  }
+  if (!by_driver_) return all;
+  const std::vector<std::optional<double>> costs = byDriver(groups);
+  for (size_t i = 0; i < groups.size(); ++i) {
+    if (!all[i]) continue;
+    if (!costs[i]) {
+      all[i].reset();  // what the driver does not compile is no program
+      continue;
+    }
+    for (programs::Feature& feature : all[i]->features) feature.cost *= *costs[i] / all[i]->cost;
+    all[i]->cost = *costs[i];
+  }
+  return all;
+}
+
+std::vector<std::optional<double>> ProgramCosts::byDriver(const std::vector<Places>& groups) {
+  std::vector<std::optional<double>> all(groups.size());
+  if (no_driver_) return all;
+  std::vector<Result<cost::Subject>> made(groups.size());
+  tbb::parallel_for(size_t{0}, groups.size(), [&](size_t i) {
+    const Result<ir::Module> module = moduleOfGroup(groups[i]);
+    made[i] = module ? subjectOf(*module, setting_.options) : tl::make_unexpected(module.error());
+  });
+  std::vector<cost::Subject> subjects;
+  std::vector<size_t> places;
+  for (size_t i = 0; i < groups.size(); ++i) {
+    if (!made[i]) continue;
+    subjects.push_back(std::move(*made[i]));
+    places.push_back(i);
+  }
+  const std::vector<cost::Outcome> outcomes = measureSubjects(subjects, driver_);
+  for (size_t i = 0; i < outcomes.size(); ++i) {
+    if (outcomes[i].statistics)
+      all[places[i]] = static_cast<double>(outcomes[i].statistics->inverse_throughput);
+  }
+  return all;
+}
+
+}  // namespace lacquer

@@ -1,0 +1,212 @@
+#include "run/programs.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "run/program_costs.h"
+
+namespace lacquer {
+
+using programs::Item;
+using programs::Places;
+
+namespace {
+
+/// So many programs a driver compiles for a report, or to say how far the model is off.
+constexpr size_t kMostMeasured = 160;
+
+/// By shader. Everything is sorted by content, so that neither the order of the files nor that of the threads
+/// shows; keys would bring in the versions of the tools.
+std::vector<OwnProgram> ownPrograms(const std::vector<const Structure*>& structures, const Examples& examples,
+                                    const Setting& setting) {
+  std::map<std::string, std::vector<const Structure*>> by_shader;
+  for (const Structure* structure : structures) {
+    if (!structure->shader.empty()) by_shader[structure->shader].push_back(structure);
+  }
+  std::vector<OwnProgram> all;
+  for (auto& [shader, list] : by_shader) {
+    std::sort(list.begin(), list.end(),
+              [](const Structure* a, const Structure* b) { return a->graph < b->graph; });
+    OwnProgram one{shader, {}, {}, {}};
+    for (const Structure* structure : list) {
+      Result<graph::Graph> graph = graph::fromJson(structure->graph, shader, setting.limits);
+      const Example* example = examples.of(structure->key);
+      if (!graph || hasError(graph::check(*graph, setting.library)) || example == nullptr) continue;
+      one.examples.push_back(example);
+      one.structures.push_back(structure);
+      one.graphs.push_back(std::move(*graph));
+    }
+    if (!one.structures.empty()) all.push_back(std::move(one));
+  }
+  return all;
+}
+
+std::vector<Item> itemsOf(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses,
+                          ProgramCosts& costs) {
+  std::map<std::string_view, std::vector<double>> weights;
+  for (const ProgramUse& use : uses) weights[use.shader].push_back(use.weight);
+  std::map<std::map<std::string, int>, uint32_t> domains;
+  std::vector<Item> items;
+  std::vector<Places> alone;
+  for (uint32_t i = 0; i < all.size(); ++i) {
+    Item item{all[i].shader, 0, {}, 0};
+    std::vector<double>& shares = weights[all[i].shader];
+    std::sort(shares.begin(), shares.end());  // a sum in the order of the files would be rounded by it
+    for (const double share : shares) item.weight += share;
+    const passes::LightFacts& lights = all[i].structures[0]->lights;
+    std::map<std::string, int> domain(lights.counts.begin(), lights.counts.end());
+    domain[""] = lights.any ? 1 : 0;
+    item.domain = domains.emplace(std::move(domain), static_cast<uint32_t>(domains.size())).first->second;
+    items.push_back(std::move(item));
+    alone.push_back({i});
+  }
+  const std::vector<std::optional<programs::Program>> measured = costs.measure(alone);
+  for (size_t i = 0; i < items.size(); ++i) {
+    if (measured[i])
+      items[i].program = *measured[i];
+    else
+      items[i].domain = static_cast<uint32_t>(domains.size() + i);  // it stays alone
+  }
+  return items;
+}
+
+/// Up to so many programs each point of the curve is made better by itself.
+constexpr size_t kImproved = 64;
+
+/// One for each step, the first without a merge.
+std::vector<programs::Division> divisionsOf(const std::vector<Item>& items, const programs::Merging& merging,
+                                            size_t wanted, bool all, const programs::Measure& measure) {
+  std::vector<programs::Division> divisions;
+  for (size_t step = 0; step <= merging.steps.size(); ++step) {
+    const size_t programs = items.size() - step;
+    if (!all && programs != wanted && step != merging.steps.size()) continue;
+    programs::Division division = divisionOf(items, merging, programs);
+    const bool better = programs == wanted || (!all && programs > wanted) || items.size() <= kImproved;
+    divisions.push_back(better ? improved(items, division, measure) : std::move(division));
+  }
+  return divisions;
+}
+
+/// How far the model is off, over programs spread evenly.
+programs::ModelError errorOf(const std::vector<Item>& items, const programs::Merging& merging,
+                             ProgramCosts& measure) {
+  const size_t count = items.size() + merging.steps.size();
+  const size_t step = (count + kMostMeasured - 1) / kMostMeasured;
+  std::vector<Places> groups;
+  std::vector<double> model;
+  for (size_t i = 0; i < count; i += step) {
+    groups.push_back(merging.members(static_cast<uint32_t>(i), items.size()));
+    model.push_back(i < items.size() ? items[i].program.cost : merging.steps[i - items.size()].cost);
+  }
+  const std::vector<std::optional<double>> said = measure.byDriver(groups);
+  std::vector<double> compared;
+  std::vector<double> driver;
+  for (size_t i = 0; i < said.size(); ++i) {
+    if (!said[i]) continue;
+    compared.push_back(model[i]);
+    driver.push_back(*said[i]);
+  }
+  return programs::fitModel(compared, driver);
+}
+
+}  // namespace
+
+Programs::Programs(const std::vector<const Structure*>& structures, const Examples& examples,
+                   const std::vector<ProgramUse>& uses, size_t materials, const Setting& setting)
+    : setting_(setting) {
+  const Options& options = setting.options;
+  const std::vector<OwnProgram> all = ownPrograms(structures, examples, setting);
+  ProgramCosts costs(setting, all, options.programs_model);
+  const std::vector<Item> items = itemsOf(all, uses, costs);
+  const bool report = !options.programs_report.empty();
+  const size_t wanted = options.programs == 0 ? items.size() : options.programs;
+  const programs::Measure measure = [&](const std::vector<Places>& groups) { return costs.measure(groups); };
+  const programs::Merging merging = programs::merge(items, report ? 1 : wanted, measure);
+  const std::vector<programs::Division> divisions = divisionsOf(items, merging, wanted, report, measure);
+  const auto made = std::find_if(divisions.begin(), divisions.end(),
+                                 [&](const programs::Division& one) { return one.groups.size() <= wanted; });
+  const programs::Division& division = made == divisions.end() ? divisions.back() : *made;
+  for (const Places& places : division.groups) {
+    if (places.size() == 1) continue;
+    const auto group = std::make_shared<Group>();
+    group->lift = costs.liftOf(places);
+    for (const uint32_t item : places) {
+      for (const Structure* structure : all[item].structures) groups_[structure->key] = group;
+    }
+  }
+  curve_.materials = materials;
+  curve_.structures = items.size();
+  curve_.made = division.groups.size();
+  curve_.measured = merging.measured;
+  if (!report) return;
+  curve_.points = programs::pointsOf(items, merging, divisions);
+  if (costs.measured()) {
+    curve_.driver = costs.driver();
+    return;
+  }
+  curve_.error = errorOf(items, merging, costs);
+  for (programs::Point& point : curve_.points) point.cost *= curve_.error.scale;
+}
+
+/// Of the graphs of one structure the one with the smallest text: others may be looked at first next time.
+void Programs::look(Group& group, const Key& key, const graph::Graph& graph) const {
+  graph::Graph plain = graph;
+  plain.name.clear();
+  for (ir::Parameter& p : plain.parameters) p.pointer.clear();
+  for (ir::TextureSlot& slot : plain.textures) {
+    slot.texture = -1;
+    slot.pointer.clear();
+  }
+  const std::lock_guard lock(group.mutex);
+  const auto [it, fresh] = group.graphs.try_emplace(key);
+  if (fresh || graph::toJson(plain) < graph::toJson(it->second)) it->second = std::move(plain);
+}
+
+const programs::Fill* Programs::bring(graph::Graph& graph, const material::Material& material,
+                                      const gltf::VertexAttributes& attributes,
+                                      const passes::LightFacts& lights) const {
+  const auto found = groups_.find(structureKey(graph, lights, setting_));
+  if (found == groups_.end()) return nullptr;
+  Group& group = *found->second;
+  const graph::Graph own = lifted(material, attributes, graph, group.lift, setting_);
+  const Key key = structureKey(own, lights, setting_);
+  if (!closed_) {
+    look(group, key, own);
+    return nullptr;
+  }
+  const auto place = group.places.find(key);
+  if (place == group.places.end()) return nullptr;
+  graph = programs::instance(group.united, place->second, own);
+  return &group.united.fills[place->second];
+}
+
+void Programs::close() {
+  KeyBuilder digest;
+  std::set<Group*> done;
+  for (const auto& [structure, group] : groups_) {
+    digest.key(structure);
+    if (!done.insert(group.get()).second) continue;
+    // In the order of the texts: keys would bring in the versions of the tools.
+    std::vector<std::pair<std::string, Key>> order;
+    for (const auto& [key, graph] : group->graphs) order.emplace_back(graph::toJson(graph), key);
+    std::sort(order.begin(), order.end());
+    std::vector<const graph::Graph*> members;
+    for (const auto& [text, key] : order) members.push_back(&group->graphs.at(key));
+    if (members.empty()) continue;
+    Result<programs::United> united = programs::unite(members, setting_.library);
+    if (!united) continue;  // they keep their programs
+    group->united = std::move(*united);
+    for (size_t i = 0; i < order.size(); ++i) group->places.emplace(order[i].second, i);
+    digest.text(graph::toJson(group->united.graph));
+  }
+  digest_ = digest.finish();
+  closed_ = true;
+}
+
+void writeStandIn(const programs::TextureFill& fill, bool srgb, JsonText& json) {
+  json.key("stand_in").beginObject().key("texel").numbers({fill.texel.data(), fill.texel.size()});
+  json.key("color_space").string(srgb ? "srgb" : "linear").endObject();
+}
+
+}  // namespace lacquer

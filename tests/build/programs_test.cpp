@@ -1,0 +1,270 @@
+// Fewer programs than structures, by the program itself: how many there are, what each material is given, and
+// that neither orders nor threads show.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "processes.h"
+#include "random_gltf.h"
+
+namespace lacquer::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+class ProgramsRun : public testing::Test {
+protected:
+  void SetUp() override {
+    folder_ = freshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
+    for (uint64_t seed = 0; seed < 3; ++seed) {
+      const std::string name = "file" + std::to_string(seed) + ".gltf";
+      writeText(folder_ / name, RandomGltf(seed).text(4));
+      files_.push_back(name);
+    }
+  }
+  void TearDown() override { fs::remove_all(folder_.parent_path()); }
+
+  int gen(const std::string& out, const Words& more, std::string* output = nullptr,
+          bool backwards = false) const {
+    Words words{LACQUER_PROGRAM, "gen", "-q", "--no-validate", "--no-sync", "--target", "glsl", "-o", out};
+    Words files = files_;
+    if (backwards) std::reverse(files.begin(), files.end());
+    words.insert(words.end(), files.begin(), files.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return runProgram(words, folder_, output);
+  }
+  Json manifest(const std::string& out) const {
+    return Json::parse(readText(folder_ / out / "manifest.json"));
+  }
+
+  fs::path folder_;
+  Words files_;
+};
+
+/// Calls `each(material, use)` for all uses.
+template <class Each>
+void eachUse(const Json& manifest, Each each) {
+  for (const Json& file : manifest["files"]) {
+    for (const Json& material : file["materials"]) {
+      for (const Json& use : material["uses"]) each(material, use);
+    }
+  }
+}
+
+TEST_F(ProgramsRun, ThereAreAsFewAsAskedFor) {
+  ASSERT_EQ(gen("all", {}), 0);
+  const size_t all = manifest("all")["shaders"].size();
+  ASSERT_GT(all, 6U);
+  for (const size_t wanted : {size_t{1}, size_t{4}, all}) {
+    const std::string out = "out" + std::to_string(wanted);
+    ASSERT_EQ(gen(out, {"--programs", std::to_string(wanted), "--model-costs"}), 0);
+    EXPECT_EQ(manifest(out)["shaders"].size(), wanted);
+  }
+  // Nothing is merged that need not be.
+  EXPECT_EQ(differences(folder_ / "all", folder_ / ("out" + std::to_string(all))), "");
+}
+
+/// Its own numbers and textures are as they were; what it has not stands in.
+TEST_F(ProgramsRun, EachMaterialKeepsWhatItHas) {
+  ASSERT_EQ(gen("all", {}), 0);
+  ASSERT_EQ(gen("few", {"--programs", "2", "--model-costs"}), 0);
+  const Json before = manifest("all");
+  const Json after = manifest("few");
+  std::vector<Json> own;
+  eachUse(before, [&](const Json&, const Json& use) { own.push_back(use); });
+  size_t place = 0;
+  size_t numbers = 0;
+  size_t texels = 0;
+  eachUse(after, [&](const Json& material, const Json& use) {
+    const Json& was = own.at(place++);
+    const Json& shader = after["shaders"][use["shader"].get<std::string>()];
+    for (const auto& [name, parameter] : use["parameters"].items()) {
+      if (parameter.contains("stand_in")) {
+        EXPECT_EQ(parameter["pointer"], "");
+        ++numbers;
+      } else if (was["parameters"].contains(name)) {
+        EXPECT_EQ(parameter, was["parameters"][name]) << material["name"] << " " << name;
+      }
+    }
+    // All of its own that the colour depends on are still there.
+    for (const auto& [name, parameter] : was["parameters"].items())
+      EXPECT_TRUE(use["parameters"].contains(name)) << material["name"] << " " << name;
+    for (const auto& [slot, texture] : use["textures"].items()) {
+      if (!texture.contains("stand_in")) {
+        EXPECT_EQ(texture, was["textures"][slot]);
+        continue;
+      }
+      ++texels;
+      EXPECT_EQ(texture["texture"], -1);
+      EXPECT_FALSE(was["textures"].contains(slot));
+      const auto listed = std::find_if(shader["textures"].begin(), shader["textures"].end(),
+                                       [&, &name = slot](const Json& one) { return one["name"] == name; });
+      ASSERT_NE(listed, shader["textures"].end());
+      EXPECT_EQ((*listed)["color_space"], texture["stand_in"]["color_space"]);
+    }
+    // Every field of the block has a value.
+    for (const Json& block : shader["uniforms"]) {
+      if (block["role"] != "material") continue;
+      for (const Json& field : block["fields"]) EXPECT_TRUE(use["uniforms"].contains(field["name"])) << field;
+    }
+  });
+  EXPECT_EQ(place, own.size());
+  EXPECT_GT(numbers, 10U);
+  EXPECT_GT(texels, 10U);
+}
+
+TEST_F(ProgramsRun, NeitherThreadsNorOrdersNorTheCacheShow) {
+  const Words few{"--programs", "3", "--model-costs"};
+  const auto with = [&](const Words& more) {
+    Words words = few;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  ASSERT_EQ(gen("one", with({"--jobs", "1"})), 0);
+  ASSERT_EQ(gen("many", with({"--jobs", "7"})), 0);
+  EXPECT_EQ(differences(folder_ / "one", folder_ / "many"), "");
+  ASSERT_EQ(gen("first", with({"--cache", "cache"})), 0);
+  ASSERT_EQ(gen("second", with({"--cache", "cache"})), 0);
+  EXPECT_EQ(differences(folder_ / "one", folder_ / "first"), "");
+  EXPECT_EQ(differences(folder_ / "one", folder_ / "second"), "");
+  // The same shaders from the files in another order; the manifest lists those as they were given.
+  ASSERT_EQ(gen("turned", few, nullptr, true), 0);
+  Json one = manifest("one");
+  Json turned = manifest("turned");
+  EXPECT_EQ(one["shaders"], turned["shaders"]);
+  std::reverse(turned["files"].begin(), turned["files"].end());
+  EXPECT_EQ(one, turned);
+}
+
+TEST_F(ProgramsRun, WeightsSayWhatMayCostMore) {
+  // All but the first material of each file are hardly seen.
+  writeText(folder_ / "weights.json",
+            R"({"weights": [{"material": 0, "share": 1}, {"material": "material 1", "share": 0.001}]})");
+  ASSERT_EQ(gen("all", {}), 0);
+  std::string output;
+  ASSERT_EQ(gen("few", {"--programs", "4", "--weights", "weights.json", "--model-costs"}, &output), 0)
+      << output;
+  std::map<std::string, std::set<bool>> seen;  // shader -> whether first materials use it
+  size_t alone = 0;
+  std::map<std::string, size_t> uses;
+  eachUse(manifest("few"), [&](const Json&, const Json& use) { ++uses[use["shader"]]; });
+  eachUse(manifest("few"), [&](const Json& material, const Json& use) {
+    if (material["index"] == 0 && uses[use["shader"]] == 1) ++alone;
+  });
+  // Three that count, each with a program of its own, and one for all the rest.
+  EXPECT_EQ(alone, 3U);
+  writeText(folder_ / "weights.json", R"({"weights": 3})");
+  EXPECT_EQ(gen("no", {"--programs", "4", "--weights", "weights.json"}, &output), 1);
+  EXPECT_NE(output.find("weights.json"), std::string::npos);
+  EXPECT_EQ(gen("no", {"--programs", "4", "--weights", "nowhere.json"}, &output), 1);
+}
+
+TEST_F(ProgramsRun, ReportsTheWholeCurve) {
+  ASSERT_EQ(gen("all", {}), 0);
+  const size_t all = manifest("all")["shaders"].size();
+  for (const char* name : {"curve.json", "curve.md", "curve.svg"})
+    ASSERT_EQ(gen("out", {"--programs", "5", "--programs-report", name, "--model-costs"}), 0);
+  const Json report = Json::parse(readText(folder_ / "curve.json"));
+  ASSERT_EQ(report["curve"].size(), all);
+  EXPECT_EQ(report["structures"], all);
+  EXPECT_EQ(report["programs"], 5);
+  EXPECT_EQ(report["materials"], 12);
+  double before = 0;
+  for (size_t i = 0; i < all; ++i) {
+    const Json& point = report["curve"][i];
+    EXPECT_EQ(point["programs"], all - i);
+    EXPECT_GE(point["cost"].get<double>(), before - 1e-9);
+    before = point["cost"];
+  }
+  EXPECT_EQ(report["curve"][0]["largest_rise"], 0);
+  EXPECT_NE(readText(folder_ / "curve.md").find("| 1 |"), std::string::npos);
+  EXPECT_TRUE(readText(folder_ / "curve.svg").starts_with("<svg"));
+  // Without --programs nothing is merged, whatever is reported.
+  ASSERT_EQ(gen("told", {"--programs-report", "curve.json", "--model-costs"}), 0);
+  EXPECT_EQ(differences(folder_ / "all", folder_ / "told"), "");
+  std::string output;
+  EXPECT_EQ(gen("no", {"--programs-report", "curve.txt"}, &output), 1);
+  EXPECT_NE(output.find("report-format"), std::string::npos) << output;
+  EXPECT_EQ(gen("no", {"--programs", "2", "--params", "baked"}, &output), 1);
+  EXPECT_NE(output.find("programs-baked"), std::string::npos) << output;
+}
+
+TEST_F(ProgramsRun, ManifestsFitTheSchema) {
+  ASSERT_EQ(gen("few", {"--programs", "2", "--model-costs", "--pipelines", "pipelines.json"}), 0);
+  const fs::path source = fs::path(LACQUER_SOURCE);
+  for (const auto& [schema, file] : {std::pair<const char*, const char*>{"manifest", "few/manifest.json"},
+                                     {"pipelines", "pipelines.json"}}) {
+    std::string output;
+    const int status =
+        runProgram({"/usr/bin/env", "python3", (source / "tests/cli/validate_manifest.py").string(),
+                    (source / "docs" / (std::string(schema) + ".schema.json")).string(), file},
+                   folder_, &output);
+    if (status == 77) GTEST_SKIP() << "NOT TESTED: " << output;
+    EXPECT_EQ(status, 0) << output;
+  }
+}
+
+// -- pipelines --
+
+constexpr const char* kScene = R"({"asset": {"version": "2.0"},
+"accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+  {"componentType": 5123, "normalized": true, "count": 3, "type": "VEC2"}, {"componentType": 5126, "count": 3, "type": "VEC2"}],
+"images": [{"uri": "a.png"}], "textures": [{"source": 0}],
+"materials": [
+  {"name": "a", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
+  {"name": "b", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "roughnessFactor": 0.5}},
+  {"name": "c", "alphaMode": "BLEND"},
+  {"name": "d", "doubleSided": true}],
+"extensionsUsed": ["KHR_mesh_quantization"],
+"meshes": [{"primitives": [
+  {"material": 2, "attributes": {"POSITION": 0, "NORMAL": 0}},
+  {"material": 0, "attributes": {"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 2}},
+  {"material": 1, "attributes": {"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 2}},
+  {"material": 0, "attributes": {"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 1}},
+  {"material": 3, "attributes": {"POSITION": 0, "NORMAL": 0}}]}]})";
+
+TEST_F(ProgramsRun, PipelinesAreDistinctAndInTheOrderOfUse) {
+  writeText(folder_ / "scene.gltf", kScene);
+  files_ = {"scene.gltf"};
+  ASSERT_EQ(gen("out", {"--pipelines", "pipelines.json"}), 0);
+  const Json list = Json::parse(readText(folder_ / "pipelines.json"))["pipelines"];
+  ASSERT_EQ(list.size(), 4U);  // the second and the third primitive need the same
+  EXPECT_EQ(list[0]["blend"]["color"][0], "src-alpha");
+  EXPECT_EQ(list[0]["depth_write"], false);
+  EXPECT_EQ(list[1]["uses"], 2);
+  EXPECT_EQ(list[1]["first"]["primitive"], 1);
+  EXPECT_EQ(list[1]["cull"], "back");
+  EXPECT_EQ(list[1]["vertex"].back()["vulkan"], "VK_FORMAT_R32G32_SFLOAT");
+  EXPECT_EQ(list[2]["vertex"].back()["vulkan"], "VK_FORMAT_R16G16_UNORM");
+  EXPECT_EQ(list[2]["vertex"].back()["d3d12"], "DXGI_FORMAT_R16G16_UNORM");
+  EXPECT_EQ(list[2]["vertex"].back()["webgpu"], "unorm16x2");
+  EXPECT_EQ(list[3]["cull"], "none");
+  EXPECT_EQ(list[3]["stages"], Json({"vertex", "fragment"}));
+}
+
+TEST_F(ProgramsRun, PipelinesHaveTheirConstants) {
+  writeText(folder_ / "scene.gltf", kScene);
+  files_ = {"scene.gltf"};
+  ASSERT_EQ(gen("out", {"--pipelines", "pipelines.json", "--params", "spec"}), 0);
+  const Json list = Json::parse(readText(folder_ / "pipelines.json"))["pipelines"];
+  // The roughness of the third primitive's material is another constant: another pipeline.
+  ASSERT_EQ(list.size(), 5U);
+  EXPECT_EQ(list[1]["shader"], list[2]["shader"]);
+  EXPECT_NE(list[1]["specialization"], list[2]["specialization"]);
+  // A program for all: choices are constants, too.
+  ASSERT_EQ(gen("one", {"--pipelines", "one.json", "--params", "spec", "--programs", "1", "--model-costs"}),
+            0);
+  bool flags = false;
+  const Json one = Json::parse(readText(folder_ / "one.json"));
+  for (const Json& pipeline : one["pipelines"]) {
+    for (const Json& constant : pipeline["specialization"]) flags |= constant["value"].is_boolean();
+  }
+  EXPECT_TRUE(flags);
+}
+
+}  // namespace
+}  // namespace lacquer::test

@@ -1,0 +1,99 @@
+// The search over real materials: the costs of shaders that are really made.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "golden/random_material.h"
+#include "programs/partitions.h"
+#include "run/program_costs.h"
+#include "run/source_file.h"
+#include "shader/language.h"
+#include "shader/options.h"
+#include "support/cases.h"
+
+namespace lacquer::programs::test {
+namespace {
+
+/// The programs of a file's materials, and what they cost by the model.
+class Materials {
+public:
+  explicit Materials(const std::string& path) {
+    options_.targets = {Target::Spirv};
+    language_ = *libraryFor(options_);
+    EXPECT_TRUE(resolveNames(*language_, options_));
+    setting_.emplace(Setting{options_, *language_, {}, nullptr, nullptr, {}, "."});
+    structures_.emplace(*setting_);
+    setting_->examples = &examples_;
+    const FileResult result = readScene(path, {}, *setting_, *structures_);
+    std::map<std::string, OwnProgram> own;
+    for (const Key& key : result.structures) {
+      const Structure& structure = *structures_->known(key);
+      if (structure.shader.empty()) continue;
+      OwnProgram& one = own[structure.shader];
+      one.shader = structure.shader;
+      one.structures.push_back(&structure);
+      one.examples.push_back(examples_.of(key));
+      one.graphs.push_back(*graph::fromJson(structure.graph, structure.shader));
+      EXPECT_FALSE(lacquer::hasError(graph::check(one.graphs.back(), *language_)));
+    }
+    for (auto& [id, one] : own) own_.push_back(std::move(one));
+  }
+
+  /// At most so many of them.
+  std::vector<Item> items(size_t most, uint64_t seed) {
+    own_.resize(std::min(own_.size(), most));
+    costs_.emplace(*setting_, own_, true);
+    std::vector<Places> alone;
+    for (uint32_t i = 0; i < own_.size(); ++i) alone.push_back({i});
+    const auto measured = costs_->measure(alone);
+    std::vector<Item> items;
+    for (size_t i = 0; i < own_.size(); ++i)
+      items.push_back({own_[i].shader, static_cast<double>(1 + (seed + i * i) % 7), *measured[i], 0});
+    return items;
+  }
+  ProgramCosts& costs() { return *costs_; }
+
+private:
+  Options options_;
+  std::shared_ptr<const Language> language_;
+  std::optional<Setting> setting_;
+  Examples examples_;
+  std::optional<Structures> structures_;
+  std::vector<OwnProgram> own_;
+  std::optional<ProgramCosts> costs_;
+};
+
+void expectNearTheBest(Materials& materials, size_t most, uint64_t seed, const std::string& name) {
+  const std::vector<Item> items = materials.items(most, seed);
+  ASSERT_GT(items.size(), 2U) << name;
+  const Measure measure = [&](const std::vector<Places>& groups) {
+    return materials.costs().measure(groups);
+  };
+  const Merging merging = merge(items, 1, measure);
+  EXPECT_EQ(merging.steps.size(), items.size() - 1) << name << ": some cannot be merged";
+  for (size_t programs = 1; programs < items.size(); ++programs) {
+    const double ratio = costOf(items, merging, programs, measure) / leastCost(items, programs, measure);
+    EXPECT_LE(ratio, 1.05) << name << ", " << programs << " of " << items.size();
+  }
+}
+
+TEST(ProgramSearch, IsNearTheBestOfTheExamples) {
+  for (const char* name : {"coat", "clearcoat", "core", "glass", "cloth"}) {
+    Materials materials(
+        (lacquer::test::sourceFolder() / "examples" / (std::string(name) + ".gltf")).string());
+    expectNearTheBest(materials, 6, 3, name);
+  }
+}
+
+TEST(ProgramSearch, IsNearTheBestOfRandomMaterials) {
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    const std::string path = ::testing::TempDir() + "programs_search.gltf";
+    std::ofstream(path) << lacquer::test::RandomMaterial(seed).valid(6).dump();
+    Materials materials(path);
+    expectNearTheBest(materials, 6, seed, "seed " + std::to_string(seed));
+  }
+}
+
+}  // namespace
+}  // namespace lacquer::programs::test

@@ -1,0 +1,418 @@
+// Draws what the viewport shows with WebGPU: the Wgsl texts, and bind groups as the shader's interface tells.
+import type { Interface, Shader } from '../src/index';
+import { environmentOf, type Cube, type Environment } from './environment';
+import type { Drawable } from './gltf';
+import { multiply } from './math';
+import { board, frameBlocks, kBlocks, kBoardSize, kLocations, neutral, type Look, type Viewport } from './viewport';
+
+declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST' | 'MAP_READ', number>;
+declare const GPUMapMode: Record<'READ', number>;
+declare const GPUTextureUsage: Record<'TEXTURE_BINDING' | 'RENDER_ATTACHMENT' | 'COPY_DST' | 'COPY_SRC', number>;
+declare const GPUShaderStage: Record<'VERTEX' | 'FRAGMENT', number>;
+
+interface Binding {
+  name: string;
+  group: number;
+  binding: number;
+  visibility: string[];
+  buffer?: GPUBufferBindingLayout;
+  texture?: GPUTextureBindingLayout;
+  sampler?: GPUSamplerBindingLayout;
+}
+interface Program {
+  bindings: Binding[];
+  layouts: GPUBindGroupLayout[];
+  inputs: { name: string; location: number; type: string }[];
+  stages: { vertex: GPUShaderModule; fragment: GPUShaderModule };
+  pipelines: Map<string, GPURenderPipeline>;
+}
+interface Geometry {
+  attributes: Map<string, { buffer: GPUBuffer; size: number }>;
+  indices: GPUBuffer;
+  count: number;
+  object: GPUBuffer;
+}
+interface Target {
+  width: number;
+  height: number;
+  color: GPUTexture;
+  depth: GPUTexture;
+  resolved: GPUTexture;
+}
+
+const kSamples = 4;
+const kColor: GPUTextureFormat = 'rgba16float';
+/** OpenGL's depths, -1 to 1, as WebGPU has them. */
+const kDepths = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0.5, 0, 0, 0, 0.5, 1]);
+
+const kFloat = new Float32Array(1);
+const kBits = new Uint32Array(kFloat.buffer);
+/** The nearest half float; what is larger than the largest is the largest. */
+function half(x: number): number {
+  kFloat[0] = Math.min(Math.max(x, -65504), 65504);
+  const sign = (kBits[0] >>> 16) & 0x8000;
+  const magnitude = kBits[0] & 0x7fffffff;
+  if (magnitude < 0x38800000) return sign | Math.round(Math.abs(kFloat[0]) * 2 ** 24);
+  return sign | ((magnitude - 0x38000000 + 0x1000) >>> 13);
+}
+export const halves = (numbers: Float32Array) => Uint16Array.from(numbers, half);
+
+export class GpuPainter {
+  private readonly context: GPUCanvasContext;
+  private readonly format: GPUTextureFormat;
+  private programs = new Map<string, Program>();
+  private geometries = new WeakMap<Drawable, Geometry>();
+  private materials = new WeakMap<Look, GPUBuffer>();
+  private cubes = new WeakMap<Cube, GPUTextureView>();
+  private textures = new Map<string, GPUTextureView>();
+  private samplers = new Map<string, GPUSampler>();
+  private blocks = new Map<string, GPUBuffer>();
+  private tables: Record<string, GPUTextureView>;
+  private constant: GPUBuffer;
+  private target: Target | null = null;
+  private show: GPURenderPipeline;
+  private shrink = new Map<GPUTextureFormat, GPURenderPipeline>();
+  private shown: GPUBuffer;
+  private constructor(readonly canvas: HTMLCanvasElement, readonly device: GPUDevice, dfg: Float32Array, sheen: Float32Array) {
+    this.context = canvas.getContext('webgpu') as unknown as GPUCanvasContext;
+    this.format = navigator.gpu.getPreferredCanvasFormat();
+    this.context.configure({ device, format: this.format, alphaMode: 'opaque' });
+    const table = (data: Float32Array) => {
+      const size = Math.sqrt(data.length / 2);
+      return this.image([size, size], 'rg16float', halves(data), 4 * size);
+    };
+    this.tables = {
+      environment_dfg: table(dfg),
+      environment_sheen: table(sheen),
+      scene_behind: this.withLevels([kBoardSize, kBoardSize], 'rgba8unorm', (texture) => this.write(texture, board(), 4 * kBoardSize)),
+    };
+    this.constant = this.buffer(new Float32Array([1, 1, 1, 1, 1, 0, 0, 1]), GPUBufferUsage.VERTEX);
+    this.shown = device.createBuffer({ size: 32, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
+    this.show = this.fullscreen(kShow, this.format);
+  }
+
+  /** null where there is no WebGPU. */
+  static async make(canvas: HTMLCanvasElement, dfg: Float32Array, sheen: Float32Array): Promise<GpuPainter | null> {
+    const adapter = await navigator.gpu?.requestAdapter();
+    const device = await adapter?.requestDevice();
+    return device ? new GpuPainter(canvas, device, dfg, sheen) : null;
+  }
+
+  /** Makes what a shader's pipelines are made of, where there is none yet. */
+  prepare(shader: Shader): void {
+    const { device } = this;
+    if (this.programs.has(shader.id)) return;
+    const described = shader.interface as Interface & { webgpu: { bindings: Binding[] } };
+    const layouts: GPUBindGroupLayoutEntry[][] = [[], [], []];
+    for (const { name: _name, group, visibility, ...entry } of described.webgpu.bindings) {
+      const stages = visibility.map((stage) => (stage === 'vertex' ? GPUShaderStage.VERTEX : GPUShaderStage.FRAGMENT));
+      layouts[group].push({ ...entry, visibility: stages.reduce((bits, bit) => bits | bit, 0) });
+    }
+    const stage = (name: 'vertex' | 'fragment') => device.createShaderModule({ label: `${shader.id} ${name}`, code: shader.text('wgsl', name) });
+    this.programs.set(shader.id, {
+      bindings: described.webgpu.bindings,
+      layouts: layouts.map((entries) => device.createBindGroupLayout({ entries })),
+      inputs: described.inputs ?? [],
+      stages: { vertex: stage('vertex'), fragment: stage('fragment') },
+      pipelines: new Map(),
+    });
+  }
+  forgetTextures(): void {
+    this.textures.clear();
+  }
+
+  /** On the canvas, or on a texture of the canvas's format. */
+  paint(view: Viewport, { width, height }: { width: number; height: number }, onto?: GPUTexture): void {
+    const target = this.targetOf(width, height);
+    const environment = environmentOf(view.environment);
+    const projection = multiply(kDepths, view.viewProjection(width / height));
+    for (const [name, bytes] of Object.entries(frameBlocks(view.eye(), projection, environment, view.lights))) this.fill(name, bytes);
+    const encoder = this.device.createCommandEncoder();
+    const pass = encoder.beginRenderPass({
+      colorAttachments: [{
+        view: target.color.createView(), resolveTarget: target.resolved.createView(), loadOp: 'clear', storeOp: 'discard', clearValue: [0, 0, 0, 0],
+      }],
+      depthStencilAttachment: { view: target.depth.createView(), depthClearValue: 1, depthLoadOp: 'clear', depthStoreOp: 'discard' },
+    });
+    const cut = view.cut(width);
+    if (cut > 0) {
+      pass.setScissorRect(0, 0, cut, height);
+      this.drawAll(pass, view, environment, null);
+    }
+    if (view.other && cut < width) {
+      pass.setScissorRect(cut, 0, width - cut, height);
+      this.drawAll(pass, view, environment, view.other.look);
+    }
+    pass.end();
+    this.present(encoder, view, target, cut, onto ?? this.context.getCurrentTexture());
+    this.device.queue.submit([encoder.finish()]);
+  }
+
+  /** What paint() shows, rows from the top, RGBA. */
+  async pixels(view: Viewport, width: number, height: number): Promise<Uint8Array> {
+    const { device } = this;
+    const onto = device.createTexture({ size: [width, height], format: this.format, usage: GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC });
+    this.paint(view, { width, height }, onto);
+    const bytesPerRow = Math.ceil(width / 64) * 256;
+    const buffer = device.createBuffer({ size: bytesPerRow * height, usage: GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ });
+    const encoder = device.createCommandEncoder();
+    encoder.copyTextureToBuffer({ texture: onto }, { buffer, bytesPerRow }, [width, height]);
+    device.queue.submit([encoder.finish()]);
+    await buffer.mapAsync(GPUMapMode.READ);
+    const rows = new Uint8Array(buffer.getMappedRange());
+    const order = this.format === 'bgra8unorm' ? [2, 1, 0, 3] : [0, 1, 2, 3];
+    const pixels = Uint8Array.from({ length: 4 * width * height }, (_, i) => {
+      const [pixel, channel] = [i >> 2, i & 3];
+      return rows[bytesPerRow * Math.floor(pixel / width) + 4 * (pixel % width) + order[channel]];
+    });
+    for (const each of [buffer, onto]) each.destroy();
+    return pixels;
+  }
+
+  // ---- drawing
+
+  private drawAll(pass: GPURenderPassEncoder, view: Viewport, environment: Environment, instead: Look | null): void {
+    for (const { mesh, look } of view.drawn(instead)) {
+      const program = this.programs.get(look.id);
+      if (!program) continue;
+      const { drawable } = mesh;
+      const geometry = this.geometryOf(drawable);
+      pass.setPipeline(this.pipelineOf(program, geometry, look, drawable.mirrored === true));
+      program.layouts.forEach((layout, group) => {
+        const entries = program.bindings.filter((each) => each.group === group);
+        const resource = (entry: Binding) => this.resource(entry, view, look, environment, geometry);
+        pass.setBindGroup(group, this.device.createBindGroup({ layout, entries: entries.map((entry) => ({ binding: entry.binding, resource: resource(entry) })) }));
+      });
+      program.inputs.forEach(({ name }, i) => {
+        const attribute = geometry.attributes.get(name);
+        pass.setVertexBuffer(i, attribute?.buffer ?? this.constant, attribute || name === 'COLOR_0' ? 0 : 16);
+      });
+      pass.setIndexBuffer(geometry.indices, 'uint32');
+      pass.drawIndexed(geometry.count);
+    }
+  }
+
+  private pipelineOf(program: Program, geometry: Geometry, look: Look, mirrored: boolean): GPURenderPipeline {
+    const sizes = program.inputs.map(({ name }) => geometry.attributes.get(name)?.size ?? 0);
+    const key = [look.blended, look.doubleSided, mirrored, sizes].join();
+    let made = program.pipelines.get(key);
+    if (made) return made;
+    const blend: GPUBlendState = {
+      color: { srcFactor: 'src-alpha', dstFactor: 'one-minus-src-alpha' }, alpha: { srcFactor: 'one', dstFactor: 'one-minus-src-alpha' },
+    };
+    const full = (type: string) => Number(/\d/.exec(type)?.[0] ?? 1);
+    made = this.device.createRenderPipeline({
+      layout: this.device.createPipelineLayout({ bindGroupLayouts: program.layouts }),
+      vertex: {
+        module: program.stages.vertex,
+        buffers: program.inputs.map(({ location, type }, i) => ({
+          arrayStride: 4 * sizes[i],
+          attributes: [{ shaderLocation: location, offset: 0, format: `float32x${sizes[i] || full(type)}` as GPUVertexFormat }],
+        })),
+      },
+      fragment: { module: program.stages.fragment, targets: [{ format: kColor, blend: look.blended ? blend : undefined }] },
+      primitive: { cullMode: look.doubleSided ? 'none' : 'back', frontFace: mirrored ? 'cw' : 'ccw' },
+      depthStencil: { format: 'depth24plus', depthWriteEnabled: true, depthCompare: 'less' },
+      multisample: { count: kSamples },
+    });
+    program.pipelines.set(key, made);
+    return made;
+  }
+
+  private resource({ name, buffer, sampler }: Binding, view: Viewport, look: Look, environment: Environment, geometry: Geometry): GPUBindingResource {
+    if (buffer) {
+      if (name === 'Object') return { buffer: geometry.object };
+      if (name !== 'Material') return { buffer: this.blocks.get(name)! };
+      let block = this.materials.get(look);
+      if (!block) this.materials.set(look, (block = this.buffer(look.block, GPUBufferUsage.UNIFORM)));
+      return { buffer: block };
+    }
+    const of = sampler ? name.replace(/_sampler$/, '') : name;
+    const slot = look.slots.get(of);
+    const key = slot ? `${slot.texture}:${slot.srgb}` : '';
+    if (sampler) return this.samplerOf(slot ? view.bitmaps.get(key)?.sampler : null);
+    if (of === 'environment_irradiance') return this.cubeOf(environment.irradiance);
+    if (of === 'environment_specular' || of === 'environment_charlie') return this.cubeOf(environment.specular);
+    return this.tables[of] ?? this.imageOf(view, key, slot?.srgb === true) ?? this.plain(neutral(of));
+  }
+
+  private present(encoder: GPUCommandEncoder, view: Viewport, target: Target, cut: number, onto: GPUTexture): void {
+    this.device.queue.writeBuffer(this.shown, 0, new Float32Array([...view.back(), view.exposure, view.other ? cut : -10, 0, 0, 0]));
+    const pass = encoder.beginRenderPass({
+      colorAttachments: [{ view: onto.createView(), loadOp: 'clear', storeOp: 'store' }],
+    });
+    pass.setPipeline(this.show);
+    const entries = [{ binding: 0, resource: { buffer: this.shown } }, { binding: 1, resource: target.resolved.createView() }];
+    pass.setBindGroup(0, this.device.createBindGroup({ layout: this.show.getBindGroupLayout(0), entries }));
+    pass.draw(3);
+    pass.end();
+  }
+
+  // ---- objects of WebGPU
+
+  private buffer(data: ArrayBufferView, usage: GPUBufferUsageFlags): GPUBuffer {
+    const made = this.device.createBuffer({ size: Math.max(16, Math.ceil(data.byteLength / 4) * 4), usage, mappedAtCreation: true });
+    new Uint8Array(made.getMappedRange()).set(new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
+    made.unmap();
+    return made;
+  }
+  private fill(name: string, bytes: Uint8Array): void {
+    if (!kBlocks.includes(name)) throw new Error(`there is no block ${name}`);
+    let made = this.blocks.get(name);
+    if (!made) {
+      made = this.device.createBuffer({ size: bytes.length, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
+      this.blocks.set(name, made);
+    }
+    this.device.queue.writeBuffer(made, 0, bytes as Uint8Array<ArrayBuffer>);
+  }
+
+  private geometryOf(drawable: Drawable): Geometry {
+    let made = this.geometries.get(drawable);
+    if (made) return made;
+    const object = new Float32Array(32);
+    object.set(drawable.model);
+    object.set(drawable.normal, 16);
+    const attributes: Geometry['attributes'] = new Map();
+    for (const [name, { data, size }] of drawable.attributes) {
+      if (kLocations.includes(name)) attributes.set(name, { buffer: this.buffer(data, GPUBufferUsage.VERTEX), size });
+    }
+    made = {
+      attributes, object: this.buffer(object, GPUBufferUsage.UNIFORM), count: drawable.indices.length,
+      indices: this.buffer(drawable.indices, GPUBufferUsage.INDEX),
+    };
+    this.geometries.set(drawable, made);
+    return made;
+  }
+
+  private write(texture: GPUTexture, data: ArrayBufferView, bytesPerRow: number, level = 0, layer = 0): void {
+    const size = [Math.max(1, texture.width >> level), Math.max(1, texture.height >> level)];
+    this.device.queue.writeTexture({ texture, mipLevel: level, origin: [0, 0, layer] }, data as Uint8Array<ArrayBuffer>, { bytesPerRow }, size);
+  }
+  private image(size: [number, number], format: GPUTextureFormat, data: ArrayBufferView, bytesPerRow: number): GPUTextureView {
+    const texture = this.device.createTexture({ size, format, usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST });
+    this.write(texture, data, bytesPerRow);
+    return texture.createView();
+  }
+  private plain(rgba: number[]): GPUTextureView {
+    const key = `color:${rgba}`;
+    let made = this.textures.get(key);
+    if (!made) this.textures.set(key, (made = this.image([1, 1], 'rgba8unorm', new Uint8Array(rgba), 4)));
+    return made;
+  }
+  private imageOf(view: Viewport, key: string, srgb: boolean): GPUTextureView | null {
+    const found = this.textures.get(key);
+    const of = view.bitmaps.get(key);
+    if (found || !of) return found ?? null;
+    const size: [number, number] = [of.bitmap.width, of.bitmap.height];
+    const made = this.withLevels(size, srgb ? 'rgba8unorm-srgb' : 'rgba8unorm', (texture) =>
+      this.device.queue.copyExternalImageToTexture({ source: of.bitmap }, { texture }, size),
+    );
+    this.textures.set(key, made);
+    return made;
+  }
+
+  /** A texture whose first level `fill` writes, and the others are drawn from the one before. */
+  private withLevels(size: [number, number], format: GPUTextureFormat, fill: (texture: GPUTexture) => void): GPUTextureView {
+    const { device } = this;
+    const mipLevelCount = 1 + Math.floor(Math.log2(Math.max(...size)));
+    const usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST | GPUTextureUsage.RENDER_ATTACHMENT;
+    const texture = device.createTexture({ size, format, mipLevelCount, usage });
+    fill(texture);
+    let pipeline = this.shrink.get(format);
+    if (!pipeline) this.shrink.set(format, (pipeline = this.fullscreen(kShrink, format)));
+    const encoder = device.createCommandEncoder();
+    for (let level = 1; level < mipLevelCount; ++level) {
+      const of = (baseMipLevel: number) => texture.createView({ baseMipLevel, mipLevelCount: 1 });
+      const pass = encoder.beginRenderPass({ colorAttachments: [{ view: of(level), loadOp: 'clear', storeOp: 'store' }] });
+      pass.setPipeline(pipeline);
+      const entries = [{ binding: 0, resource: this.samplerOf({ wrapS: 33071, wrapT: 33071 }) }, { binding: 1, resource: of(level - 1) }];
+      pass.setBindGroup(0, device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries }));
+      pass.draw(3);
+      pass.end();
+    }
+    device.queue.submit([encoder.finish()]);
+    return texture.createView();
+  }
+
+  private cubeOf(cube: Cube): GPUTextureView {
+    let made = this.cubes.get(cube);
+    if (made) return made;
+    const { size, levels } = cube;
+    const texture = this.device.createTexture({
+      size: [size, size, 6], format: 'rgba16float', mipLevelCount: levels.length, usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
+    });
+    levels.forEach((faces, level) => faces.forEach((texels, i) => this.write(texture, halves(texels), 8 * Math.max(1, size >> level), level, i)));
+    made = texture.createView({ dimension: 'cube' });
+    this.cubes.set(cube, made);
+    return made;
+  }
+
+  /** By the numbers of a glTF sampler; without one, as maps and tables are read. */
+  private samplerOf(of: any): GPUSampler {
+    const modes: Record<number, GPUAddressMode> = { 33071: 'clamp-to-edge', 33648: 'mirror-repeat', 10497: 'repeat' };
+    const mode = (wrap: number | undefined) => (of === null ? 'clamp-to-edge' : modes[wrap ?? 10497] ?? 'repeat');
+    const key = `${mode(of?.wrapS)} ${mode(of?.wrapT)} ${of?.magFilter}`;
+    let made = this.samplers.get(key);
+    if (!made) {
+      made = this.device.createSampler({
+        addressModeU: mode(of?.wrapS), addressModeV: mode(of?.wrapT), magFilter: of?.magFilter === 9728 ? 'nearest' : 'linear',
+        minFilter: 'linear', mipmapFilter: 'linear',
+      });
+      this.samplers.set(key, made);
+    }
+    return made;
+  }
+
+  private fullscreen(code: string, format: GPUTextureFormat): GPURenderPipeline {
+    const module = this.device.createShaderModule({ code: kTriangle + code });
+    return this.device.createRenderPipeline({ layout: 'auto', vertex: { module }, fragment: { module, targets: [{ format }] } });
+  }
+
+  private targetOf(width: number, height: number): Target {
+    if (this.target?.width === width && this.target.height === height) return this.target;
+    for (const each of this.target ? [this.target.color, this.target.depth, this.target.resolved] : []) each.destroy();
+    const make = (format: GPUTextureFormat, sampleCount: number, usage: number) =>
+      this.device.createTexture({ size: [width, height], format, sampleCount, usage: usage | GPUTextureUsage.RENDER_ATTACHMENT });
+    this.target = {
+      width, height, color: make(kColor, kSamples, 0), depth: make('depth24plus', kSamples, 0), resolved: make(kColor, 1, GPUTextureUsage.TEXTURE_BINDING),
+    };
+    return this.target;
+  }
+}
+
+const kTriangle = `
+struct Corner { @builtin(position) place: vec4f, @location(0) uv: vec2f }
+@vertex fn corner(@builtin(vertex_index) i: u32) -> Corner {
+  let xy = vec2f(select(-1.0, 3.0, i == 1u), select(-1.0, 3.0, i == 2u));
+  return Corner(vec4f(xy, 0.0, 1.0), vec2f(0.5 + 0.5 * xy.x, 0.5 - 0.5 * xy.y));
+}`;
+
+const kShrink = `
+@group(0) @binding(0) var taken: sampler;
+@group(0) @binding(1) var larger: texture_2d<f32>;
+@fragment fn pixel(at: Corner) -> @location(0) vec4f { return textureSample(larger, taken, at.uv); }`;
+
+/** The same as the viewport's in WebGL. */
+const kShow = `
+struct Shown { back: vec3f, exposure: f32, cut: f32 }
+@group(0) @binding(0) var<uniform> shown: Shown;
+@group(0) @binding(1) var picture: texture_2d<f32>;
+fn neutral(linear: vec3f) -> vec3f {
+  let start = 0.8 - 0.04;
+  let least = min(linear.r, min(linear.g, linear.b));
+  let c = linear - select(0.04, least - 6.25 * least * least, least < 0.08);
+  let peak = max(c.r, max(c.g, c.b));
+  if (peak < start) { return c; }
+  let d = 1.0 - start;
+  let new_peak = 1.0 - d * d / (peak + d - start);
+  return mix(c * (new_peak / peak), vec3f(new_peak), 1.0 - 1.0 / (0.15 * (peak - new_peak) + 1.0));
+}
+fn encode(c: vec3f) -> vec3f {
+  return mix(c * 12.92, 1.055 * pow(c, vec3f(1.0 / 2.4)) - 0.055, step(vec3f(0.0031308), c));
+}
+@fragment fn pixel(at: Corner) -> @location(0) vec4f {
+  let c = textureLoad(picture, vec2i(at.place.xy), 0);
+  let a = clamp(c.a, 0.0, 1.0);
+  let lit = encode(clamp(neutral(max(c.rgb / max(a, 1e-4), vec3f(0.0)) * shown.exposure), vec3f(0.0), vec3f(1.0)));
+  return vec4f(select(mix(shown.back, lit, a), vec3f(0.85), abs(at.place.x - shown.cut) < 1.0), 1.0);
+}`;

@@ -1,0 +1,53 @@
+// Lamps: two of the page's own, and those of a file (KHR_lights_punctual), as elements of the block Lights.
+import { eachNode, type GltfFile } from './gltf';
+import { scale, unit, type Vec3 } from './math';
+
+/** The fields of an element, as docs/bindings.md has them. */
+export interface Light {
+  position: Vec3; // of a directional light the unit direction to it
+  positional: boolean;
+  radiance: Vec3;
+  range: number; // 0 without one
+  direction: Vec3; // unit, from a spot outwards
+  spot: { inner: number; outer: number } | null; // angles
+}
+
+/** As many as the shaders' block has room for. */
+export const kMostLights = 16;
+
+export function directional(to: Vec3, radiance: Vec3): Light {
+  const towards = unit(to);
+  return { position: towards, positional: false, radiance, range: 0, direction: scale(towards, -1), spot: null };
+}
+
+/** What the contact sheets of `lacquer preview` have, too. */
+export const kStudioLights: Light[] = [
+  directional([-0.62, 0.62, 0.62], [1, 0.97, 0.93]),
+  directional([0.95, 0.22, 0.3], [0.2, 0.22, 0.25]),
+];
+
+/** The sixteen numbers of an element. */
+export function element({ position, positional, radiance, range, direction, spot }: Light): number[] {
+  const scaled = spot ? 1 / Math.max(0.001, Math.cos(spot.inner) - Math.cos(spot.outer)) : 0;
+  return [
+    ...position, positional ? 1 : 0, ...radiance, range > 0 ? range ** -4 : 0, ...direction, scaled,
+    spot ? -Math.cos(spot.outer) * scaled : 1, 0, 0, 0,
+  ];
+}
+
+/** Those that nodes of the default scene refer to, the first sixteen. */
+export function fileLights(file: GltfFile): Light[] {
+  const declared = file.json.extensions?.KHR_lights_punctual?.lights ?? [];
+  const found: Light[] = [];
+  eachNode(file, (node, world) => {
+    const of = declared[node.extensions?.KHR_lights_punctual?.light];
+    if (!of || found.length === kMostLights) return;
+    const direction = unit([-world[8], -world[9], -world[10]]);
+    const radiance = [0, 1, 2].map((i) => (of.color?.[i] ?? 1) * (of.intensity ?? 1)) as Vec3;
+    if (of.type === 'directional') return void found.push({ ...directional(scale(direction, -1), radiance), direction });
+    const { innerConeAngle: inner = 0, outerConeAngle: outer = Math.PI / 4 } = of.spot ?? {};
+    const position: Vec3 = [world[12], world[13], world[14]];
+    found.push({ position, positional: true, radiance, range: of.range ?? 0, direction, spot: of.type === 'spot' ? { inner, outer } : null });
+  });
+  return found;
+}

@@ -1,0 +1,139 @@
+// Parts of the page that need no browser: pictures of environments, lamps, half floats.
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, test } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { build } from 'esbuild';
+import { root } from './native.mjs';
+
+const folder = mkdtempSync(join(tmpdir(), 'lacquer-parts-'));
+after(() => rmSync(folder, { recursive: true }));
+const part = async (name) => {
+  const outfile = join(folder, `${name}.mjs`);
+  await build({ entryPoints: [join(root, 'web/page', `${name}.ts`)], outfile, bundle: true, format: 'esm', target: 'es2022' });
+  return import(pathToFileURL(outfile));
+};
+const { readHdr, radianceOf } = await part('hdr');
+const { makeEnvironment } = await part('environment');
+const { element, fileLights } = await part('lights');
+const { halves } = await part('gpu');
+const { openFile } = await part('gltf');
+
+/** A .hdr file of colours that RGBE holds exactly; rows are run-length coded where `runs`. */
+function hdr(width, height, color, runs) {
+  const bytes = [...Buffer.from(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`)];
+  const rgbe = ([r, g, b]) => {
+    const exponent = Math.ceil(Math.log2(Math.max(r, g, b, 1e-9))) + 1;
+    return [...[r, g, b].map((x) => Math.round((x * 256) / 2 ** exponent)), exponent + 128];
+  };
+  for (let y = 0; y < height; ++y) {
+    const row = Array.from({ length: width }, (_, x) => rgbe(color(x, y)));
+    if (!runs) {
+      bytes.push(...row.flat());
+      continue;
+    }
+    bytes.push(2, 2, width >> 8, width & 255);
+    for (let plane = 0; plane < 4; ++plane) {
+      for (let x = 0; x < width; ) {
+        let same = 1;
+        while (x + same < width && same < 127 && row[x + same][plane] === row[x][plane]) ++same;
+        if (same > 2) bytes.push(128 + same, row[x][plane]);
+        else bytes.push(same, ...Array.from({ length: same }, (_, i) => row[x + i][plane]));
+        x += same;
+      }
+    }
+  }
+  return new Uint8Array(bytes);
+}
+
+const close = (a, b, tolerance) => a.forEach((x, i) => assert.ok(Math.abs(x - b[i]) <= tolerance * Math.max(1, Math.abs(b[i])), `${a} is not ${b}`));
+
+test('a Radiance picture is read, with runs and without', () => {
+  const color = (x, y) => [x < 20 ? 0.5 : 8, y / 16, 0.25 * (x % 2)];
+  for (const runs of [false, true]) {
+    const { width, height, pixels } = readHdr(hdr(40, 16, color, runs));
+    assert.deepEqual([width, height], [40, 16]);
+    for (let y = 0; y < 16; ++y) {
+      for (let x = 0; x < 40; ++x) close([...pixels.slice(3 * (40 * y + x), 3 * (40 * y + x) + 3)], color(x, y), 0.008);
+    }
+  }
+});
+
+test('what is no such picture, or ends too early, is refused', () => {
+  const good = hdr(40, 16, () => [1, 1, 1], true);
+  assert.throws(() => readHdr(new Uint8Array([1, 2, 3, 10])), /no Radiance picture/);
+  assert.throws(() => readHdr(new Uint8Array()), /ends too early/);
+  for (const at of [5, 50, good.length - 1]) assert.throws(() => readHdr(good.slice(0, at)), /ends too early|no Radiance/);
+  const text = (head) => new Uint8Array(Buffer.from(`#?RADIANCE\n${head}`));
+  assert.throws(() => readHdr(text('FORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234')), /is not read/);
+  assert.throws(() => readHdr(text('\n+X 1 -Y 1\n1234')), /no size/);
+  assert.throws(() => readHdr(text('\n-Y 99999 +X 99999\n')), /is not read/);
+  const long = text('\n-Y 1 +X 8\n________');
+  long.set([2, 2, 0, 8, 137, 1], long.length - 8);
+  assert.throws(() => readHdr(long), /longer/);
+});
+
+test('an environment of one colour has it at every roughness, and its irradiance', () => {
+  const { specular, irradiance } = makeEnvironment(radianceOf(readHdr(hdr(32, 16, () => [0.5, 2, 1], true))), 16);
+  assert.equal(specular.levels.length, 3);
+  for (const faces of specular.levels) for (const face of faces) close([...face.slice(0, 3)], [0.5, 2, 1], 0.01);
+  for (const face of irradiance.levels[0]) close([...face.slice(0, 3)], [0.5, 2, 1], 0.01);
+});
+
+test('directions are those of an equirectangular picture, and roughness blurs and loses no light', () => {
+  // Bright is what lies right of the middle, half way up: +x.
+  const lamp = (x, y) => (Math.abs(x - 47.5) < 3 && Math.abs(y - 15.5) < 3 ? [64, 64, 64] : [0, 0, 0]);
+  const radiance = radianceOf(readHdr(hdr(64, 32, lamp, true)));
+  assert.ok(radiance([1, 0, 0], 0)[0] > 60);
+  assert.ok(radiance([-1, 0, 0], 0)[0] === 0);
+  assert.ok(radiance([0, 1, 0], 0)[0] === 0);
+  const mean = (roughness) => {
+    let sum = 0;
+    const count = 4000;
+    for (let i = 0; i < count; ++i) {
+      const y = 1 - (2 * i + 1) / count;
+      const angle = i * Math.PI * (3 - Math.sqrt(5));
+      const ring = Math.sqrt(1 - y * y);
+      sum += radiance([ring * Math.cos(angle), y, ring * Math.sin(angle)], roughness)[0] / count;
+    }
+    return sum;
+  };
+  const sharp = mean(0);
+  for (const roughness of [0.2, 0.5, 0.8]) assert.ok(Math.abs(mean(roughness) / sharp - 1) < 0.15, `${roughness}: ${mean(roughness)} of ${sharp}`);
+  assert.ok(radiance([1, 0, 0], 0.7)[0] < 0.5 * radiance([1, 0, 0], 0.2)[0]);
+});
+
+test("a file's own lamps are the elements that docs/bindings.md describes", () => {
+  const half = Math.SQRT1_2;
+  const json = {
+    asset: { version: '2.0' },
+    extensions: { KHR_lights_punctual: { lights: [
+      { type: 'directional', intensity: 2, color: [1, 0.5, 0.25] },
+      { type: 'point', intensity: 30, range: 2 },
+      { type: 'spot', spot: { innerConeAngle: 0.2, outerConeAngle: 0.6 } },
+    ] } },
+    nodes: [
+      { rotation: [-half, 0, 0, half], extensions: { KHR_lights_punctual: { light: 0 } } }, // it shines down
+      { translation: [1, 2, 3], children: [2] },
+      { translation: [0, 0, 1], extensions: { KHR_lights_punctual: { light: 1 } } },
+      { scale: [2, 2, 2], extensions: { KHR_lights_punctual: { light: 2 } } },
+      { extensions: { KHR_lights_punctual: { light: 9 } } },
+    ],
+    scenes: [{ nodes: [0, 1, 3, 4] }],
+    scene: 0,
+  };
+  const file = openFile('a.gltf', Buffer.from(JSON.stringify(json)), new Map());
+  const [sun, bulb, spot, ...more] = fileLights(file).map(element);
+  assert.deepEqual(more, []);
+  close(sun, [0, 1, 0, 0, 2, 1, 0.5, 0, 0, -1, 0, 0, 1, 0, 0, 0], 1e-6);
+  close(bulb, [1, 2, 4, 1, 30, 30, 30, 1 / 16, 0, 0, -1, 0, 1, 0, 0, 0], 1e-6);
+  const scale = 1 / (Math.cos(0.2) - Math.cos(0.6));
+  close(spot, [0, 0, 0, 1, 1, 1, 1, 0, 0, 0, -1, scale, -Math.cos(0.6) * scale, 0, 0, 0], 1e-6);
+});
+
+test('half floats are rounded to the nearest', () => {
+  const words = halves(new Float32Array([0, 1, -2, 0.5, 65504, 1e9, 2 ** -24, 2 ** -14, 1 + 2 ** -11 + 2 ** -12]));
+  assert.deepEqual([...words], [0, 0x3c00, 0xc000, 0x3800, 0x7bff, 0x7bff, 1, 0x0400, 0x3c01]);
+});
