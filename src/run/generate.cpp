@@ -73,9 +73,12 @@ bool merges(const Options& options) {
 void writePipelines(const std::string& manifest, const Options& options, Run& run) {
   const Result<std::string> text = readFile(manifest, std::numeric_limits<uint64_t>::max());
   if (!text) return run.wrote(tl::make_unexpected(text.error()));
-  const Json json = Json::parse(*text, nullptr, false);
-  if (json.is_discarded()) return;  // another process has written it meanwhile
-  run.wrote(writeFile(options.pipelines, pipelinesText(json), {nullptr, options.sync}));
+  constexpr uint64_t kAny = std::numeric_limits<uint64_t>::max();
+  Limits limits;
+  limits.json = limits.values = limits.depth = kAny;  // it is ours
+  const Result<Json> json = json::parse(*text, manifest, limits);
+  if (!json) return;  // another process has written it meanwhile
+  run.wrote(writeFile(options.pipelines, pipelinesText(*json), {nullptr, options.sync}));
 }
 
 /// Below the output folder.

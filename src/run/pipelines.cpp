@@ -199,7 +199,7 @@ private:
       row["first"] = std::move(first);
       all_.push_back(std::move(row));
     }
-    Json& uses = all_[it->second]["uses"];
+    Json& uses = all_.begin()[it->second]["uses"];
     uses = uses.get<int64_t>() + 1;
   }
 
