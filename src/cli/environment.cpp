@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-
 #include "cli/build.h"
 #include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
+#include "json/json.h"
 
 namespace lacquer::cli {
 
