@@ -73,7 +73,12 @@ bool merges(const Options& options) {
 void writePipelines(const std::string& manifest, const Options& options, Run& run) {
   const Result<std::string> text = readFile(manifest, std::numeric_limits<uint64_t>::max());
   if (!text) return run.wrote(tl::make_unexpected(text.error()));
-  run.wrote(writeFile(options.pipelines, pipelinesText(json::reread(*text)), {nullptr, options.sync}));
+  constexpr uint64_t kAny = std::numeric_limits<uint64_t>::max();
+  Limits limits;
+  limits.json = limits.values = kAny;  // it is ours, however many materials there are
+  const Result<Json> json = json::parse(*text, manifest, limits);
+  if (!json) return;  // another process has written it meanwhile
+  run.wrote(writeFile(options.pipelines, pipelinesText(*json), {nullptr, options.sync}));
 }
 
 /// Below the output folder.
