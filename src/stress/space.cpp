@@ -195,9 +195,14 @@ void Space::draw(uint64_t seed, std::span<double> sample) const {
 void Space::between(std::span<const double> a, std::span<const double> b, double t,
                     std::span<double> sample) const {
   for (const Variable& variable : variables_) {
-    for (size_t i = variable.first; i < variable.first + static_cast<size_t>(variable.components); ++i) {
+    const size_t end = variable.first + static_cast<size_t>(variable.components);
+    double along = 0;
+    for (size_t i = variable.first; i < end; ++i) along += a[i] * b[i];
+    // Between opposite directions lies none.
+    const bool opposite = variable.nature == Nature::Direction && along < -0.999;
+    for (size_t i = variable.first; i < end; ++i) {
       const bool apart = variable.nature == Nature::Index && (a[i] == 0 || b[i] == 0);
-      sample[i] = variable.nature == Nature::Flag || apart ? a[i] : a[i] * (1 - t) + b[i] * t;
+      sample[i] = variable.nature == Nature::Flag || apart || opposite ? a[i] : a[i] * (1 - t) + b[i] * t;
     }
   }
 }
