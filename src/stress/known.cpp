@@ -23,7 +23,7 @@ constexpr Known kKnown[] = {
     {"flat_normal", "dot < 0", "a triangle seen from its edge turns its other side"},
     {"tangent_frame_from_derivatives", "mul < mul", "texture coordinates without an area have no tangent"},
     // In a material its term is the frame's.
-    {".frame: ", "mul < mul", "texture coordinates without an area have no tangent"},
+    {"frame: ", "mul < mul", "texture coordinates without an area have no tangent"},
     {"boundary", "around <= body", "a boundary of equal indices bends nothing, which no lobe can say"},
     {"total_reflection", "ratio < 1", "a boundary of equal indices bends nothing, which no lobe can say"},
     {"refracting_facets", "1 < ratio", "a boundary of equal indices bends nothing, which no lobe can say"},

@@ -13,6 +13,7 @@ using Vec3 = std::array<double, 3>;
 constexpr double kPi = 3.14159265358979323846;
 /// Ranges wider than this are open ends that were cut: numbers as they occur are drawn by their magnitude.
 constexpr double kWide = 1e4;
+constexpr uint64_t kRare = 0x7261726573;  ///< any number
 
 /// Where numbers end, or where float32 changes its ways: the smallest subnormal and normal number, half a
 /// unit in the last place of 1 and its neighbour, texels of eight bits around the middle.
@@ -37,17 +38,18 @@ Vec3 anyDirection(Random& random) {
     axis[random.below(3)] = random.below(2) == 0 ? 1 : -1;
     return axis;
   }
-  // Diagonals of a cube and of its faces: where components are equal, differences of theirs vanish.
-  if (random.below(8) == 0) {
-    Vec3 diagonal{1, 1, 1};
-    for (double& x : diagonal) x = random.below(2) == 0 ? x : -x;
-    if (random.below(2) == 0) diagonal[random.below(3)] = 0;
-    return unit(diagonal);
-  }
   const double z = 2 * random.unit() - 1;
   const double angle = 2 * kPi * random.unit();
   const double ring = std::sqrt(1 - z * z);
   return {ring * std::cos(angle), ring * std::sin(angle), z};
+}
+
+/// A diagonal of a cube, or of its faces: where components are equal, differences of theirs vanish.
+Vec3 diagonal(Random& random) {
+  Vec3 direction{1, 1, 1};
+  for (double& x : direction) x = random.below(2) == 0 ? x : -x;
+  if (random.below(2) == 0) direction[random.below(3)] = 0;
+  return unit(direction);
 }
 
 /// Equal, opposite, almost so, at right angles, almost so (grazing, above and below), or anything.
@@ -67,12 +69,10 @@ Vec3 relatedTo(const Vec3& a, Random& random) {
   }
 }
 
-/// A texel: of eight bits mostly, or what a filter makes of two neighbouring ones; 127 and 128 often, whose
-/// middle decodes to no direction.
-double drawTexel(Random& random) {
-  const uint32_t byte = random.below(256);
-  if (random.below(4) != 0) return byte / 255.0;
-  const uint32_t first = random.below(2) == 0 ? 127 : std::min(byte, 254U);
+/// What a filter makes of two neighbouring texels of eight bits; 127 and 128 often, whose middle decodes to
+/// no direction.
+double filteredTexel(Random& random) {
+  const uint32_t first = random.below(2) == 0 ? 127 : random.below(255);
   return (first + random.below(257) / 256.0) / 255.0;
 }
 
@@ -159,21 +159,23 @@ const Variable* Space::find(std::string_view name) const {
 
 void Space::draw(uint64_t seed, std::span<double> sample) const {
   Random random(seed);
+  // What is rare has numbers of its own, so that all others are the same with it and without.
+  Random rare(mixed(seed, kRare));
   std::vector<Vec3> directions;
   std::vector<double> step;
   for (const Variable& variable : variables_) {
     const std::span<double> to = sample.subspan(variable.first, static_cast<size_t>(variable.components));
     if (variable.nature == Nature::Direction) {
-      const Vec3 d =
-          directions.empty()
-              ? anyDirection(random)
-              : relatedTo(directions[random.below(static_cast<uint32_t>(directions.size()))], random);
+      Vec3 d = directions.empty()
+                   ? anyDirection(random)
+                   : relatedTo(directions[random.below(static_cast<uint32_t>(directions.size()))], random);
+      if (rare.below(10) == 0) d = diagonal(rare);
       for (size_t c = 0; c < 3; ++c) to[c] = exact(d[c], variable.range);
       directions.push_back({to[0], to[1], to[2]});
       continue;
     }
     if (variable.nature == Nature::Step) {
-      drawStep(random, to, step);
+      drawStep(rare, to, step);
       continue;
     }
     // A texel that decodes to no direction at all: what filtering makes of 127 and 128.
@@ -184,9 +186,11 @@ void Space::draw(uint64_t seed, std::span<double> sample) const {
       else if (variable.nature == Nature::Index)
         x = random.below(8) == 0 ? 0 : drawNumber(random, {1, variable.range.hi});
       else if (variable.nature == Nature::Texel && random.below(4) != 0)
-        x = exact(drawTexel(random), variable.range);
+        x = exact(random.below(256) / 255.0, variable.range);
       else
         x = drawNumber(random, variable.range);
+      if (variable.nature == Nature::Texel && rare.below(4) == 0)
+        x = exact(filteredTexel(rare), variable.range);
       if (middle) x = 0.5;
     }
   }
@@ -195,9 +199,14 @@ void Space::draw(uint64_t seed, std::span<double> sample) const {
 void Space::between(std::span<const double> a, std::span<const double> b, double t,
                     std::span<double> sample) const {
   for (const Variable& variable : variables_) {
-    for (size_t i = variable.first; i < variable.first + static_cast<size_t>(variable.components); ++i) {
+    const size_t end = variable.first + static_cast<size_t>(variable.components);
+    double along = 0;
+    for (size_t i = variable.first; i < end; ++i) along += a[i] * b[i];
+    // Between opposite directions lies none.
+    const bool opposite = variable.nature == Nature::Direction && along < -0.999;
+    for (size_t i = variable.first; i < end; ++i) {
       const bool apart = variable.nature == Nature::Index && (a[i] == 0 || b[i] == 0);
-      sample[i] = variable.nature == Nature::Flag || apart ? a[i] : a[i] * (1 - t) + b[i] * t;
+      sample[i] = variable.nature == Nature::Flag || apart || opposite ? a[i] : a[i] * (1 - t) + b[i] * t;
     }
   }
 }

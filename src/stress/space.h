@@ -56,7 +56,8 @@ public:
 
   /// One sample, every number exact in float32, edges over-represented. A function of `seed`.
   void draw(uint64_t seed, std::span<double> sample) const;
-  /// From `a` at 0 to `b` at 1, in double. Flags, and an index where one of both is 0, are those of `a`.
+  /// From `a` at 0 to `b` at 1, in double. Flags, opposite directions, and an index where one of both is 0,
+  /// are those of `a`.
   void between(std::span<const double> a, std::span<const double> b, double t,
                std::span<double> sample) const;
 
