@@ -126,7 +126,8 @@ std::string toJson(const Graph& graph) {
   };
   if (!graph.attributes.empty()) {
     std::string list;
-    for (const std::string& name : graph.attributes) list += (list.empty() ? "" : ", ") + json::quotedText(name);
+    for (const std::string& name : graph.attributes)
+      list += (list.empty() ? "" : ", ") + json::quotedText(name);
     items.insert(items.begin() + 3, member("attributes", "[" + list + "]"));
   }
   return block("{}", 0, items) + "\n";
