@@ -65,12 +65,12 @@ TEST_F(Contract, PrimitivesNameTheirUsesAndThoseOfVariants) {
     EXPECT_EQ(primitives[i]["material"], 0);
     const json& use = material(0)["uses"][primitives[i]["use"].get<size_t>()];
     const bool textured = i == 0;
-    EXPECT_EQ(use["attributes"], textured ? (json{"NORMAL", "TEXCOORD_0"}) : (json{"NORMAL"}));
+    EXPECT_EQ(use["attributes"], textured ? (json{"NORMAL", "TEXCOORD_0", "QUANTIZED"}) : (json{"NORMAL", "QUANTIZED"}));
   }
   const json night = {{{"variants", {1}}, {"material", 1}, {"use", 0}}};
   EXPECT_EQ(primitives[0]["variants"], night);
   EXPECT_FALSE(primitives[1].contains("variants"));
-  EXPECT_EQ(material(1)["uses"][0]["attributes"], (json{"NORMAL", "TEXCOORD_0"}));
+  EXPECT_EQ(material(1)["uses"][0]["attributes"], (json{"NORMAL", "TEXCOORD_0", "QUANTIZED"}));
   EXPECT_EQ(primitives[2]["material"], -1);
   EXPECT_EQ(file()["default_material"]["uses"].size(), 1U);
   EXPECT_EQ(primitives[2]["use"], 0);
