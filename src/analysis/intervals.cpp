@@ -247,6 +247,14 @@ Range Intervals::component(ValueId id, int c) const {
     case Op::DFdy: return derivative(id, c);
     case Op::Interpolate: return interpolated(at(value.args[0], c));
     case Op::SumOverLights: return lights(id, c);
+    case Op::Element: {
+      const auto [block, field] = ir::ListField::of(value);
+      return open(module_.blocks[block].fields[field].range);
+    }
+    case Op::ToInt: {
+      const Range& a = at(value.args[0], 0);
+      return {std::trunc(a.lo), std::trunc(a.hi), a.nan};
+    }
     case Op::Input:
     case Op::MatMul:
     case Op::Cross:
@@ -381,6 +389,12 @@ Range Intervals::interpolated(const Range& a) const {
 Range Intervals::lights(ValueId id, int c) const {
   const ir::Value& value = dag_[id];
   const Range& a = at(value.args[0], c);
+  const double inf = std::numeric_limits<double>::infinity();
+  if (value.payload < module_.light_groups.size() &&
+      module_.light_groups[value.payload].count == ir::LightGroup::kListed) {
+    // However many there are: only the sign is left.
+    return {a.lo >= 0 ? 0 : -inf, a.hi <= 0 ? 0 : inf, a.nan || (a.lo < 0 && a.hi > 0)};
+  }
   double most = 0;
   for (const ir::Block& block : module_.blocks) {
     if (block.role == ir::BlockRole::Lights) most = block.array;
@@ -398,7 +412,6 @@ Range Intervals::lights(ValueId id, int c) const {
   total.lo = a.lo >= 0 ? std::max(wider.lo, 0.0) : wider.lo;
   total.hi = a.hi <= 0 ? std::min(wider.hi, 0.0) : wider.hi;
   // An infinite term beside one of the other sign.
-  const double inf = std::numeric_limits<double>::infinity();
   total.nan = a.nan || (total.lo == -inf && total.hi == inf && options_.arithmetic != Arithmetic::Real);
   return total;
 }

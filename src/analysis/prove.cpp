@@ -10,7 +10,7 @@ using ir::Op;
 using ir::ValueId;
 
 /// How an operation may fail.
-enum class Domain : uint8_t { None, NonNegative, Positive, NonZero, Unit, Power, Direction, Angle };
+enum class Domain : uint8_t { None, NonNegative, Positive, NonZero, Unit, Power, Direction, Angle, Whole };
 
 Domain domainOf(Op op) {
   switch (op) {
@@ -23,6 +23,7 @@ Domain domainOf(Op op) {
     case Op::Pow: return Domain::Power;
     case Op::Normalize: return Domain::Direction;
     case Op::Atan2: return Domain::Angle;
+    case Op::ToInt: return Domain::Whole;
     default: return Domain::None;
   }
 }
@@ -45,6 +46,10 @@ public:
         return true;
       case Domain::Unit:
         out = each(id, a, "in [-1, 1]", [](const Range& x) { return x.lo >= -1 && x.hi <= 1; });
+        return true;
+      case Domain::Whole:
+        out =
+            each(id, a, "in [-2^31, 2^31)", [](const Range& x) { return x.lo >= -0x1p31 && x.hi < 0x1p31; });
         return true;
       case Domain::Power: out = power(id); return true;
       case Domain::Direction:

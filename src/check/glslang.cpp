@@ -184,6 +184,8 @@ EShMessages setUpHlsl(glslang::TShader& shader, EShLanguage stage) {
   shader.setSourceEntryPoint("main");
   shader.setShiftBinding(glslang::EResUbo, kHlslBufferShift);
   shader.setShiftBinding(glslang::EResTexture, kHlslTextureShift);
+  shader.setShiftBinding(glslang::EResSsbo,
+                         kHlslTextureShift);  // structured buffers are among the t registers
   shader.setShiftBinding(glslang::EResSampler, kHlslSamplerShift);
   // HLSL packs a float3 right behind a float, std140 does not: keep HLSL's offsets, so that the difference
   // shows.

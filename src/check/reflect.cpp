@@ -208,14 +208,16 @@ void Reader::readResource(uint32_t type_id, spv::StorageClass storage, const Dec
 
 void Reader::readPlace(const Instruction& instruction, spv::StorageClass storage,
                        const Decorations& decorations) {
-  if (storage == spv::StorageClassStorageBuffer) return;
-  const bool uniform = storage == spv::StorageClassUniform;
+  uint32_t id = typeOf(instruction.at(1)).element;
+  // Before SPIR-V 1.3 a storage buffer is a uniform one with another decoration.
+  const bool stored =
+      storage == spv::StorageClassStorageBuffer || decorationsOf(id).contains(spv::DecorationBufferBlock);
+  const bool uniform = storage == spv::StorageClassUniform && !stored;
   if (decorations.contains(spv::DecorationBinding)) {
     places.push_back({names_[instruction.at(2)], get(decorations, spv::DecorationDescriptorSet),
-                      get(decorations, spv::DecorationBinding), uniform});
+                      get(decorations, spv::DecorationBinding), uniform, stored});
   }
   if (!uniform) return;
-  uint32_t id = typeOf(instruction.at(1)).element;
   // An array of blocks.
   for (uint32_t i = 0; i < kMaxNesting && typeOf(id).op == spv::OpTypeArray; ++i) id = typeOf(id).element;
   if (typeOf(id).op == spv::OpTypeStruct && decorationsOf(id).contains(spv::DecorationBlock))

@@ -72,7 +72,8 @@ Result<std::vector<Block>> reflectBlocks(const Spirv& words);
 struct Taken {
   std::string name;  ///< of the variable; empty when the module carries no names
   uint32_t set = 0, binding = 0;
-  bool block = false;
+  bool block = false;    ///< a uniform block
+  bool storage = false;  ///< a storage buffer
 };
 
 /// In the order of the declarations, those with a binding. None for words that are no module.

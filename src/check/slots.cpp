@@ -12,9 +12,11 @@ namespace lacquer::check {
 
 Diagnostics checkSlots(const Spirv& words, bool open_gl, const std::string& name) {
   Diagnostics wrong;
-  std::map<std::tuple<bool, uint32_t, uint32_t>, std::string> taken;  // the variable by its place
+  // The variable by its place; OpenGL counts blocks, storage buffers and textures each for themselves.
+  std::map<std::tuple<bool, bool, uint32_t, uint32_t>, std::string> taken;
   for (const Taken& one : reflectPlaces(words)) {
-    const auto [it, fresh] = taken.try_emplace({open_gl && one.block, one.set, one.binding}, one.name);
+    const auto [it, fresh] =
+        taken.try_emplace({open_gl && one.block, open_gl && one.storage, one.set, one.binding}, one.name);
     if (fresh) continue;
     wrong.push_back({"slot-clash",
                      Severity::Error,

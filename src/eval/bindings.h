@@ -42,6 +42,9 @@ struct Bindings {
   /// The elements of the light array by field, "light.position". A sum over a run-time count of lights runs
   /// over all.
   std::vector<Columns> lights;
+  /// The ints of lists by element, "cluster.first". Of a template whose lights come in lists; without them
+  /// one range has all lights, in their order.
+  std::map<std::string, std::vector<double>, std::less<>> lists;
   /// Points stand in fours, as fragments do: (x, y), (x+1, y), (x, y+1), (x+1, y+1); derivatives are the
   /// differences within. Otherwise every derivative is 0.
   bool quads = false;

@@ -124,7 +124,16 @@ private:
         const ir::LightGroup& group = program_.light_groups[instruction.payload];
         begin = i;
         light_ = static_cast<size_t>(group.first);
-        last = group.count < 0 ? bindings_.lights.size() : light_ + static_cast<size_t>(group.count);
+        first_listed_ = lights_listed_ = nullptr;
+        if (group.count == ir::LightGroup::kListed) {
+          first_listed_ = at(instruction.args[0]);
+          lights_listed_ = at(instruction.args[1]);
+          last =
+              static_cast<size_t>(std::max(T(0), *std::max_element(lights_listed_, lights_listed_ + lanes_)));
+        } else {
+          last = group.count == ir::LightGroup::kCounted ? bindings_.lights.size()
+                                                         : light_ + static_cast<size_t>(group.count);
+        }
         if (light_ >= last) {
           while (program_.body[i].step != Step::LoopEnd) ++i;
         }
@@ -145,6 +154,29 @@ private:
         out[i] = rounding_.input(static_cast<T>(source[(first_ + i) * stride]));
     } else {
       std::fill(out, out + lanes_, rounding_.input(static_cast<T>(*source)));
+    }
+  }
+
+  /// Turns that are not a point's own look at the nearest element, and nobody looks at them.
+  static size_t elementOf(T number, size_t count) {
+    const T last = static_cast<T>(count - 1);
+    return number > 0 ? static_cast<size_t>(std::min(number, last)) : 0;
+  }
+
+  void listedLight(const Instruction& instruction) {
+    T* out = at(instruction.outs[0]);
+    const T* number = at(instruction.args[0]);
+    const size_t lights = bindings_.lights.size();
+    for (size_t i = 0; i < lanes_; ++i) {
+      if (lights == 0) {
+        out[i] = 0;
+        continue;
+      }
+      const size_t light = elementOf(number[i], lights);
+      const Column& from = *light_columns_[light * program_.light_fields.size() + instruction.payload];
+      const size_t row = from.per_point ? first_ + i : 0;
+      const size_t place = row * static_cast<size_t>(from.components) + instruction.component;
+      out[i] = rounding_.input(static_cast<T>(from.values[place]));
     }
   }
 
@@ -191,7 +223,24 @@ private:
         const size_t light = instruction.element >= 0 ? static_cast<size_t>(instruction.element) : light_;
         return load(*light_columns_[light * program_.light_fields.size() + instruction.payload], instruction);
       }
-      case Step::LightIndex: return static_cast<void>(std::fill_n(at(out), lanes_, static_cast<T>(light_)));
+      case Step::LightIndex:
+        for (size_t i = 0; i < lanes_; ++i)
+          at(out)[i] = static_cast<T>(light_) + (first_listed_ == nullptr ? T(0) : first_listed_[i]);
+        return;
+      case Step::ListedLight: return listedLight(instruction);
+      case Step::Listed: {
+        const std::vector<double>& list = program_.lists[instruction.payload];
+        for (size_t i = 0; i < lanes_; ++i)
+          at(out)[i] = list.empty() ? T(0) : static_cast<T>(list[elementOf(arg(0)[i], list.size())]);
+        return;
+      }
+      case Step::AddListed:
+        for (size_t i = 0; i < lanes_; ++i) {
+          if (static_cast<T>(light_) >= lights_listed_[i]) continue;
+          const T sum = arg(0)[i] + arg(1)[i];
+          at(out)[i] = rounding_(Op::Add, arg(0)[i], arg(1)[i], sum);
+        }
+        return;
       case Step::Texture: return texture(instruction);
       case Step::DerivativeX: return derivative(instruction, 1);
       case Step::DerivativeY: return derivative(instruction, 2);
@@ -208,6 +257,8 @@ private:
   std::vector<const Column*> columns_, light_columns_;
   std::vector<const Sampler*> samplers_;
   size_t first_ = 0, lanes_ = 0, light_ = 0;
+  const T* first_listed_ = nullptr;   ///< of a loop over listed lights: the first place of each point
+  const T* lights_listed_ = nullptr;  ///< and how many there are
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 #include "ir/fold.h"
 
@@ -218,12 +219,18 @@ private:
       sums.push_back(emit(
           {Step::Literal, Op::Constant, 0, -1, static_cast<uint32_t>(program_.literals.size() - 1)}, false));
     }
-    program_.body.push_back({Step::LoopBegin, value.op, 0, -1, value.payload});
+    const bool listed = value.count == 3;
+    Instruction begin{Step::LoopBegin, value.op, 0, -1, value.payload};
+    if (listed) {
+      begin.args[0] = of(value.args[1])[0];
+      begin.args[1] = of(value.args[2])[0];
+    }
+    program_.body.push_back(begin);
     for (const ValueId id : ir::reachable(dag_, {{operand}})) {
       if (dag_[id].rate == Rate::Light) this->value(id);
     }
     for (size_t i = 0; i < sums.size(); ++i) {
-      program_.body.push_back({Step::Map,
+      program_.body.push_back({listed ? Step::AddListed : Step::Map,
                                Op::Add,
                                0,
                                -1,
@@ -233,6 +240,43 @@ private:
     }
     program_.body.push_back({Step::LoopEnd, value.op, 0, -1, value.payload});
     return sums;
+  }
+
+  /// Of a list of ints one register, of the lights those of the field.
+  std::vector<Register> element(const ir::Value& value) {
+    const ir::ListField from = ir::ListField::of(value);
+    const ir::Block& block = module_.blocks[from.block];
+    const ir::BlockField& field = block.fields[from.field];
+    const std::string name = block.instance + "." + field.name;
+    const std::array<Register, 4> number = {of(value.args[0])[0], kNoRegister, kNoRegister, kNoRegister};
+    if (block.role != ir::BlockRole::Lights) {
+      program_.lists.push_back(listValues(module_, bindings_, from));
+      const auto index = static_cast<uint32_t>(program_.lists.size() - 1);
+      return {emit({Step::Listed,
+                    Op::Element,
+                    0,
+                    -1,
+                    index,
+                    {kNoRegister, kNoRegister, kNoRegister, kNoRegister},
+                    number},
+                   false)};
+    }
+    const ir::Input input{ir::InputKind::BlockField, name, field.type, ir::Rate::Light, field.range};
+    std::vector<Register> result = loadLight(input);  // checks what is bound
+    if (!wrong_.empty()) return result;
+    program_.body.resize(program_.body.size() - result.size());
+    const auto index = static_cast<uint32_t>(indexOf(program_.light_fields, name));
+    for (size_t i = 0; i < result.size(); ++i) {
+      result[i] = emit({Step::ListedLight,
+                        Op::Element,
+                        static_cast<uint8_t>(i),
+                        -1,
+                        index,
+                        {kNoRegister, kNoRegister, kNoRegister, kNoRegister},
+                        number},
+                       false);
+    }
+    return result;
   }
 
   std::vector<Register> folded(const ir::Value& value) {
@@ -267,6 +311,7 @@ private:
       case Op::DFdx: return derivative(value, Step::DerivativeX);
       case Op::DFdy: return derivative(value, Step::DerivativeY);
       case Op::SumOverLights: return sumOverLights(value);
+      case Op::Element: return element(value);
       default: return folded(value);
     }
   }
@@ -362,6 +407,21 @@ private:
 };
 
 }  // namespace
+
+std::vector<double> listValues(const ir::Module& module, const Bindings& bindings,
+                               const ir::ListField& field) {
+  const ir::Block& block = module.blocks[field.block];
+  const auto bound = bindings.lists.find(block.instance + "." + block.fields[field.field].name);
+  if (bound != bindings.lists.end()) return bound->second;
+  const size_t lights = bindings.lights.size();
+  const auto is = [&](const ir::ListField& other) {
+    return other.block == field.block && other.field == field.field;
+  };
+  if (module.light_lists && is(module.light_lists->count)) return {static_cast<double>(lights)};
+  std::vector<double> values(module.light_lists && is(module.light_lists->number) ? lights : 1, 0);
+  std::iota(values.begin(), values.end(), 0);
+  return values;
+}
 
 Result<Program> compile(const ir::Module& module, std::span<const ir::ValueId> roots,
                         const Bindings& bindings, size_t points) {

@@ -15,15 +15,19 @@
 namespace lacquer::eval {
 
 enum class Step : uint8_t {
-  Map,         ///< out = fold of `op` on the arguments
-  Literal,     ///< out = literals[payload]
-  Load,        ///< out = component `component` of columns[payload]
-  Light,       ///< out = component `component` of light_fields[payload], of `element` or the loop's light
-  LightIndex,  ///< out = the number of the loop's light
+  Map,          ///< out = fold of `op` on the arguments
+  Literal,      ///< out = literals[payload]
+  Load,         ///< out = component `component` of columns[payload]
+  Light,        ///< out = component `component` of light_fields[payload], of `element` or the loop's light
+  LightIndex,   ///< out = the place of the loop's light: its number, or in lists that of its number
+  ListedLight,  ///< out = component `component` of light_fields[payload], of the light whose number is
+                ///< args[0]
+  Listed,       ///< out = lists[payload] at args[0]
+  AddListed,    ///< out += args[1] where the loop's turn is one of the point's
   Texture,  ///< out … out+3 (outs) = textures[payload] at args[0…2], level args[3] (kNoRegister: implicit)
   DerivativeX,  ///< out = difference to the neighbour along x
   DerivativeY,  ///< the same along y
-  LoopBegin,    ///< over the lights of light_groups[payload]
+  LoopBegin,    ///< over the lights of light_groups[payload]; of listed ones args[1] from place args[0] on
   LoopEnd,
 };
 
@@ -49,9 +53,14 @@ struct Program {
   std::vector<std::string> columns, light_fields, textures;  ///< names, looked up in the bindings
   std::vector<std::pair<std::string, Column>> defaults;  ///< today's values of parameters that are not bound
   std::vector<ir::LightGroup> light_groups;
+  std::vector<std::vector<double>> lists;      ///< of each field that is read, by element
   std::vector<std::vector<Register>> results;  ///< by root, the registers of its components
   uint32_t registers = 0;
 };
+
+/// What a list of ints has in a field: what is bound, or the one range that has all lights, in their order.
+std::vector<double> listValues(const ir::Module& module, const Bindings& bindings,
+                               const ir::ListField& field);
 
 /// Compiles what `roots` reach. Works on a module as lowered, as placed, and on anything between: an
 /// Interpolate passes its operand through. Errors: "unbound-input" and "wrong-binding", which name the input.

@@ -42,6 +42,7 @@ std::optional<Type> mapType(std::span<const Type> operands) {
 }
 
 std::optional<Type> specialType(Op op, std::span<const Type> operands) {
+  if (op == Op::ToInt) return operands[0] == Type::Float ? std::optional(Type::Int) : std::nullopt;
   if (op == Op::MatMul && operands[0] == Type::Mat4 && operands[1] == Type::Vec4) return Type::Vec4;
   const bool lookup =
       operands.size() > 1 && isTexture(operands[0]) && operands[1] == coordinateType(operands[0]);
@@ -59,6 +60,9 @@ std::optional<Type> specialType(Op op, std::span<const Type> operands) {
 
 std::optional<Type> resultType(Op op, std::span<const Type> operands) {
   const OpInfo& row = info(op);
+  // A sum over listed lights has the first one's number and how many there are behind what it sums.
+  if (op == Op::SumOverLights && operands.size() == 3 && operands[1] == Type::Int && operands[2] == Type::Int)
+    operands = operands.first(1);
   if (static_cast<int>(operands.size()) != row.arity) return std::nullopt;
   switch (row.signature) {
     case Signature::Special: return specialType(op, operands);
@@ -178,6 +182,7 @@ Rate rateOf(const Dag& dag, Op op, std::span<const ValueId> operands) {
   for (const ValueId id : operands) rate = std::max(rate, dag[id].rate);
   if (op == Op::Interpolate || op == Op::SumOverLights) return Rate::Fragment;
   if (op == Op::DFdx || op == Op::DFdy) return std::max(rate, Rate::Fragment);
+  if (op == Op::Element) return std::max(rate, Rate::Frame);
   return rate;
 }
 
@@ -225,6 +230,11 @@ ValueId Dag::swizzle(ValueId value, std::span<const int> components) {
 
 ValueId Dag::component(ValueId value, int index) { return swizzle(value, {{index}}); }
 
+ValueId Dag::element(ValueId number, Type type, const ListField& field) {
+  assert(values_[number].type == Type::Int);
+  return makeRaw(Op::Element, type, {{number}}, field.payload());
+}
+
 ValueId Dag::remake(ValueId id, std::span<const ValueId> operands) {
   const Value& now = values_[id];
   bool same = true;
@@ -232,6 +242,7 @@ ValueId Dag::remake(ValueId id, std::span<const ValueId> operands) {
   if (same) return id;
   const Value value = now;
   if (value.op == Op::Construct) return construct(value.type, operands);
+  if (value.op == Op::Element) return element(operands[0], value.type, ListField::of(value));
   if (value.op != Op::Swizzle) return make(value.op, operands, value.payload);
   std::array<int, 4> picks{};
   const int n = componentCount(value.type);

@@ -97,12 +97,20 @@ struct Value {
   Rate rate;
   uint8_t count;     ///< number of operands
   uint32_t payload;  ///< Constant: into constants; Input: into inputs; Swizzle: two bits a component, first
-                     ///< lowest; SumOverLights: the light group
+                     ///< lowest; SumOverLights: the light group; Element: ListField::payload()
   std::array<ValueId, 4> args;
   std::span<const ValueId> operands() const { return {args.data(), count}; }
 };
 
 using Components = std::array<double, 4>;
+
+/// A field of a list's elements: which one Op::Element reads.
+struct ListField {
+  uint32_t block = 0, field = 0;  ///< into Module::blocks, and into the block's fields
+
+  uint32_t payload() const { return block << 16 | field; }
+  static ListField of(const Value& element) { return {element.payload >> 16, element.payload & 0xffff}; }
+};
 
 using TermId = uint32_t;
 
@@ -135,6 +143,8 @@ public:
   /// `components` names positions 0 to 3, one to four of them.
   ValueId swizzle(ValueId value, std::span<const int> components);
   ValueId component(ValueId value, int index);
+  /// What a list's element of that number, an Int, has in a field of that type.
+  ValueId element(ValueId number, Type type, const ListField& field);
 
   /// A value like `id` on other operands: `id` itself when they are its own.
   ValueId remake(ValueId id, std::span<const ValueId> operands);

@@ -24,6 +24,23 @@ uint32_t layout(std::vector<BlockField>& fields) {
   return (offset + 15) / 16 * 16;
 }
 
+uint32_t listLayout(std::vector<BlockField>& fields) {
+  const uint32_t size = layout(fields);
+  const bool numbers = std::all_of(fields.begin(), fields.end(),
+                                   [](const BlockField& field) { return componentCount(field.type) == 1; });
+  return numbers ? static_cast<uint32_t>(4 * fields.size()) : size;
+}
+
+std::optional<uint32_t> blockOf(const Module& module, ValueId id) {
+  const Value& value = module.dag[id];
+  if (value.op == Op::Element) return ListField::of(value).block;
+  if (value.op == Op::SumOverLights && module.light_groups[value.payload].count == LightGroup::kCounted)
+    return module.light_count.block;
+  if (value.op != Op::Input) return {};
+  const Input& input = module.dag.inputOf(id);
+  return input.kind == InputKind::BlockField ? std::optional(input.block) : std::nullopt;
+}
+
 std::vector<ValueId> reachable(const Module& module, Stage stage) {
   std::vector<ValueId> roots;
   for (const Output& output : module.outputs) {
@@ -130,6 +147,7 @@ private:
         complain("value {} is built from {} parts", id, width);
       return;
     }
+    if (value.op == Op::Element) return checkElement(id);
     std::array<Type, 4> types{};
     for (size_t i = 0; i < value.count; ++i) types[i] = dag_[value.args[i]].type;
     if (resultType(value.op, {types.data(), value.count}) != value.type) {
@@ -138,6 +156,15 @@ private:
     if (value.op == Op::SumOverLights && value.payload >= module_.light_groups.size()) {
       complain("value {} sums over light group {}, which is not there", id, value.payload);
     }
+  }
+
+  void checkElement(ValueId id) {
+    const auto [block, field] = ListField::of(dag_[id]);
+    const bool there = block < module_.blocks.size() && module_.blocks[block].list &&
+                       field < module_.blocks[block].fields.size() &&
+                       module_.blocks[block].fields[field].type == dag_[id].type;
+    if (!there || dag_[dag_[id].args[0]].type != Type::Int)
+      complain("value {} reads a list's field that is not there", id);
   }
 
   void checkInput(ValueId id) {
@@ -204,6 +231,10 @@ std::string spell(const Module& module, const Numbers& numbers, ValueId id) {
     for (int i = 0; i < componentCount(value.type); ++i) text += "xyzw"[swizzleComponent(value.payload, i)];
   }
   if (value.op == Op::SumOverLights) text += fmt::format("[{}]", value.payload);
+  if (value.op == Op::Element) {
+    const Block& block = module.blocks[ListField::of(value).block];
+    text += fmt::format(" {}.{}", block.instance, block.fields[ListField::of(value).field].name);
+  }
   for (const ValueId operand : value.operands()) {
     const Value& o = dag[operand];
     const bool leaf = o.op == Op::Constant || o.op == Op::Input;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,7 @@ struct BlockField {
 };
 
 /// Who fills a block, and how often.
-enum class BlockRole : uint8_t { Frame, Lights, Material, Object };
+enum class BlockRole : uint8_t { Frame, Lights, Material, Object, List };
 
 struct Block {
   BlockRole role;
@@ -66,8 +67,13 @@ struct Block {
   std::string instance;  ///< "frame"
   std::vector<BlockField> fields;
   uint32_t array = 0;  ///< 0, or the number of elements: the block holds `Light lights[16]`
-  uint32_t size = 0;   ///< bytes of one element, a multiple of 16
+  uint32_t size = 0;   ///< bytes of one element, a multiple of 16; of a list its stride
   Binding binding{};   ///< by the template; the material's by the place pass
+  /// It has elements without end, in a storage buffer (in ESSL a texture), and is read by Op::Element alone.
+  bool list = false;
+
+  /// In the texts an array and a list have an `s` behind the names of their elements.
+  bool plural() const { return array != 0 || list; }
 };
 
 /// An editable number of the material. Only those that the DAG reaches matter.
@@ -118,8 +124,16 @@ struct PreshaderField {
 
 /// A set of lights that one SumOverLights runs over.
 struct LightGroup {
-  int32_t first = 0;   ///< element of the light array
-  int32_t count = -1;  ///< -1: a run-time count (frame.light_count)
+  static constexpr int32_t kCounted = -1;  ///< as many as there are at run time: Module::light_count
+  static constexpr int32_t kListed = -2;   ///< those of a range of a list, which the sum itself knows
+  int32_t first = 0;                       ///< element of the light array
+  int32_t count = kCounted;
+};
+
+/// Of a template whose lights come in lists: a range of the second list says which lights count.
+struct LightLists {
+  ListField first, count;  ///< of the list of ranges
+  ListField number;        ///< of the list of the lights' numbers
 };
 
 struct Module;
@@ -151,8 +165,9 @@ struct Module {
   std::vector<LightGroup> light_groups;
   std::vector<LightKind> light_kinds;  ///< in the order in which they lie in the light array
   LightCount light_count;              ///< of a template with lights
-  uint32_t material_textures = 0;      ///< the flat number of the material's first texture
-  bool sums_lights = false;            ///< an output of the template is a sum over the lights
+  std::optional<LightLists> light_lists;
+  uint32_t material_textures = 0;  ///< the flat number of the material's first texture
+  bool sums_lights = false;        ///< an output of the template is a sum over the lights
   bool spec_constants =
       false;  ///< parameters are specialization constants: only the animated ones are in a material block
 };
@@ -160,6 +175,11 @@ struct Module {
 /// Gives the fields offsets that std140 and HLSL's constant buffer packing agree on, in the order given: a
 /// field never straddles 16 bytes, Vec3 and Vec4 start at 16, Vec2 at 8. Returns the size, a multiple of 16.
 uint32_t layout(std::vector<BlockField>& fields);
+/// The same for the elements of a list, as std430 and WGSL's storage have them; HLSL's structured buffers are
+/// given the holes as members. Returns the stride: of numbers alone that of numbers side by side.
+uint32_t listLayout(std::vector<BlockField>& fields);
+/// The block that a value reads by itself, not by its operands.
+std::optional<uint32_t> blockOf(const Module& module, ValueId id);
 
 /// The values that the outputs of a stage reach (both stages when none is given), ascending.
 std::vector<ValueId> reachable(const Module& module, Stage stage);

@@ -27,7 +27,7 @@ ValueId Simplifier::simplify(Op op, Type type, std::span<const ValueId> operands
   if (info(op).signature == Signature::Map) {
     if (const ValueId scalar = unsplat(op, type, operands); scalar != kNoValue) return scalar;
   }
-  if (operands.size() == 1) return unary(op, operands[0]);
+  if (operands.size() == 1 || op == Op::SumOverLights) return unary(op, operands[0]);
   if (operands.size() == 2) return binary(op, type, operands[0], operands[1]);
   return ternary(op, type, operands[0], operands[1], operands[2]);
 }
@@ -44,6 +44,7 @@ ValueId Simplifier::fold(Op op, Type type, std::span<const ValueId> operands) {
     case Op::Texture:
     case Op::TextureLod:
     case Op::MatMul:
+    case Op::Element:
     case Op::SumOverLights: return kNoValue;
     default: break;
   }

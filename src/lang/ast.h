@@ -172,7 +172,7 @@ struct NodeDecl {
   }
 };
 
-enum class BlockRole : uint8_t { Frame, Lights, Object };
+enum class BlockRole : uint8_t { Frame, Lights, Object, List };
 
 struct BlockFieldDecl : Param {
   uint32_t slot = 0;        ///< of an array, the first element's; the others follow
@@ -190,6 +190,8 @@ struct BlockDecl {
   std::string_view type_name;  ///< "Light"
   std::string_view instance;   ///< "light"
   uint32_t array = 0;          ///< 0: not an array
+  bool endless = false;        ///< `[]`, as it is written
+  bool list = false;           ///< of any length: a block of that role, and lights that come in lists
   std::vector<BlockFieldDecl> fields;
   std::string_view prose;
   Span span;       ///< of the instance
@@ -231,6 +233,15 @@ struct LightKindDecl {
   std::vector<LightFieldDecl> fields;
   std::string_view prose;
   Span span;
+};
+
+/// `lights from RANGES[EXPR] through NUMBERS;`: the lights that count are those whose numbers stand in a
+/// range of one list, and which range that is, an element of another says.
+struct LightListsDecl {
+  std::string_view ranges, numbers;  ///< the lists' own names
+  ExprPtr index;                     ///< the number of the range, a Float
+  Span span, ranges_span, numbers_span;
+  bool inherited = false;  ///< from a template that this one extends
 };
 
 /// What a light kind's values are made of, in the order of their slots: the properties of
@@ -311,8 +322,9 @@ struct TemplateDecl {
   std::vector<PortDecl> ports;
   std::vector<OutputDecl> outputs;
   std::vector<LightKindDecl> light_kinds;  ///< in the order in which lights lie in the array
-  uint32_t material_textures = 0;          ///< the flat number of the material's first texture
-  bool sums_lights = false;                ///< an output is a sum over the lights
+  std::optional<LightListsDecl> light_lists;
+  uint32_t material_textures = 0;  ///< the flat number of the material's first texture
+  bool sums_lights = false;        ///< an output is a sum over the lights
   uint32_t slots = 0;
   std::optional<uint32_t> front_facing;  ///< the slot of gl_FrontFacing, where an expression uses it
   Origin origin;

@@ -44,7 +44,7 @@ void Checker::templateNames(const BlockDecl& decl) {
   const std::string name(decl.type_name);
   const std::string instance(decl.instance);
   const std::string what = fmt::format("the block '{}'", decl.type_name);
-  const bool lights = decl.role == BlockRole::Lights;
+  const bool lights = decl.role == BlockRole::Lights || decl.role == BlockRole::List;
   claim(name, type, what);
   claim(name + (lights ? "s" : "Block"), type, what);
   claim(lights ? instance + "s" : instance, decl.span, what);

@@ -81,18 +81,32 @@ public:
         environment.binding = {object ? ir::kObjectSet : 0U, object ? object_++ : frame_++, 0};
     }
   }
+  /// Lists' units, behind the required environment's: they are textures where there are no storage buffers.
+  void takeLists(TemplateDecl& decl) {
+    for (BlockDecl& block : decl.blocks) {
+      if (block.list) block.binding.flat = unit_++;
+    }
+  }
   /// Behind the environment's units, of which there are never fewer than the first contract had.
   uint32_t materialTextures() const { return std::max(unit_, ir::kLeastMaterialTexture); }
 
 private:
   void number(BlockDecl& block) {
     const bool object = block.role == BlockRole::Object;
-    block.binding = {object ? ir::kObjectSet : 0U, object ? object_++ : frame_++, buffer_++};
+    // Lights that a template puts into a list leave the number of their buffer unused.
+    const uint32_t buffer = block.role == BlockRole::List ? 0 : buffer_++;
+    block.binding = {object ? ir::kObjectSet : 0U, object ? object_++ : frame_++, buffer};
     if (buffer_ == ir::kMaterialBinding.flat) ++buffer_;
   }
 
   uint32_t frame_ = 0, object_ = 0, buffer_ = 0, unit_ = 0;
 };
+
+/// Lists are known before anything is checked: their elements hold less than those of blocks.
+void markLists(TemplateDecl& decl, bool listed) {
+  for (BlockDecl& block : decl.blocks)
+    block.list = block.role == BlockRole::List || (listed && block.role == BlockRole::Lights);
+}
 
 bool sumsLights(const Expr& expr) {
   const bool sum = expr.kind == Expr::Kind::Operation && expr.builtin != nullptr &&
@@ -126,6 +140,11 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
   uint32_t slots = 0;
   names_.push_back({"gl_FrontFacing", Name::Kind::Builtin, Type::Bool, slots++, decl.span, true, false, {}});
   auto locations = uint32_t{0};
+  const bool listed = decl.light_lists || std::any_of(bases.begin(), bases.end(), [](const auto& base) {
+                        return base.light_lists.has_value();
+                      });
+  for (TemplateDecl& base : bases) markLists(base, listed);
+  markLists(decl, listed);
   Places places;
   const auto locate = [&](TemplateDecl& of, bool optional) {
     for (AttributeDecl& attribute : of.attributes) {
@@ -141,6 +160,8 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
   }
   parts(decl, slots);
   places.take(decl);
+  for (TemplateDecl& base : bases) places.takeLists(base);
+  places.takeLists(decl);
   for (const bool object : {false, true}) {
     for (TemplateDecl& base : bases) places.takeOptional(base, object);
     places.takeOptional(decl, object);
@@ -166,6 +187,10 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
     prepend(decl.ports, std::move(base->ports));
     prepend(decl.outputs, std::move(base->outputs));
     prepend(decl.light_kinds, std::move(base->light_kinds));
+    if (!decl.light_lists && base->light_lists) {
+      decl.light_lists = std::move(base->light_lists);
+      decl.light_lists->inherited = true;
+    }
   }
   merge(decl);
   outputRules(decl);
@@ -193,6 +218,12 @@ void Checker::outputRules(TemplateDecl& decl) {
   }
   const bool lit = std::any_of(decl.blocks.begin(), decl.blocks.end(),
                                [](const BlockDecl& block) { return block.role == BlockRole::Lights; });
+  for (const GivenDecl& given : decl.givens) {
+    if (!decl.light_lists || !given.value || !sumsLights(*given.value)) continue;
+    reporter_.error("wrong-lights", given.inherited ? decl.span : given.span,
+                    fmt::format("'{}' sums over lights, which come from lists", given.name),
+                    "sum in the outputs, where the range of the list is known");
+  }
   if (decl.sums_lights && !lit) {
     reporter_.error("no-lights", decl.span,
                     fmt::format("the template '{}' sums over lights and has none", decl.name),
@@ -203,6 +234,7 @@ void Checker::outputRules(TemplateDecl& decl) {
 void Checker::parts(TemplateDecl& decl, uint32_t& slots) {
   // In the order of the text, so that each part sees what stands before it.
   size_t b = 0, a = 0, e = 0, g = 0, p = 0, o = 0;
+  bool lists_left = decl.light_lists.has_value();
   const auto offset = [](const auto& list, size_t i) {
     return i < list.size() ? list[i].span.offset : ~uint32_t{0};
   };
@@ -210,7 +242,8 @@ void Checker::parts(TemplateDecl& decl, uint32_t& slots) {
     const uint32_t next =
         std::min({offset(decl.blocks, b), offset(decl.attributes, a), offset(decl.environments, e),
                   offset(decl.givens, g), offset(decl.outputs, o),
-                  p < decl.ports.size() ? decl.ports[p].param.span.offset : ~uint32_t{0}});
+                  p < decl.ports.size() ? decl.ports[p].param.span.offset : ~uint32_t{0},
+                  lists_left ? decl.light_lists->span.offset : ~uint32_t{0}});
     if (next == ~uint32_t{0}) break;
     if (next == offset(decl.blocks, b)) {
       BlockDecl& item = decl.blocks[b++];
@@ -223,6 +256,9 @@ void Checker::parts(TemplateDecl& decl, uint32_t& slots) {
       given(decl.givens[g++], slots);
     } else if (p < decl.ports.size() && next == decl.ports[p].param.span.offset) {
       port(decl.ports[p++], slots);
+    } else if (lists_left && next == decl.light_lists->span.offset) {
+      lightLists(*decl.light_lists);
+      lists_left = false;
     } else {
       output(decl.outputs[o++]);
     }
@@ -279,6 +315,12 @@ void Checker::blockArray(BlockDecl& decl) {
     decl.array = count ? static_cast<uint32_t>(std::max(*count, 1)) : 1;
   }
   const bool lights = decl.role == BlockRole::Lights;
+  if (decl.endless != (decl.role == BlockRole::List)) {
+    reporter_.error("wrong-block", decl.span,
+                    decl.endless ? "only a list has elements without end" : "a list has elements without end",
+                    fmt::format("a list is `block list Type {}[] {{ ... }}`", decl.instance));
+    return;
+  }
   if (decl.array_syntax && !lights) {
     reporter_.error("wrong-block", decl.span, "only the lights can be an array",
                     "fields can be arrays: `mat4 cascade[4];`");
@@ -324,7 +366,8 @@ void Checker::blockName(const BlockDecl& decl) {
                       fmt::format("add fields to them: `extend block {} {{ ... }}`", other->instance));
     }
     const auto plural = [](const BlockDecl& block, std::string_view name) {
-      return std::string(name) + (block.role == BlockRole::Lights ? "s" : "");
+      const bool many = block.role == BlockRole::Lights || block.role == BlockRole::List;
+      return std::string(name) + (many ? "s" : "");
     };
     if (other->type_name != decl.type_name &&
         plural(*other, other->type_name) != plural(decl, decl.type_name))
@@ -341,7 +384,45 @@ void Checker::block(BlockDecl& decl, uint32_t& slots) {
   blocks_.push_back(&decl);
   Name instance{decl.instance, Name::Kind::Instance, Type::Float, slots, decl.span, true, true, {}};
   fields(decl, instance, slots);
+  // What a list holds, the lights' loop alone reads.
+  if (decl.role == BlockRole::List) instance.members.clear();
   declare(std::move(instance));
+}
+
+/// `lights from cluster[EXPR] through cluster_light;`
+void Checker::lightLists(LightListsDecl& decl) {
+  const auto list = [&](std::string_view name) -> const BlockDecl* {
+    std::vector<std::string_view> known;
+    for (const BlockDecl* block : blocks_) {
+      if (block->role != BlockRole::List) continue;
+      if (block->instance == name) return block;
+      known.push_back(block->instance);
+    }
+    unknown(name, "list", std::move(known));
+    return nullptr;
+  };
+  const auto has = [](const BlockDecl& block, std::string_view name) {
+    return std::any_of(block.fields.begin(), block.fields.end(), [&](const BlockFieldDecl& field) {
+      return field.name == name && field.type == Type::Int && field.array == 0;
+    });
+  };
+  const BlockDecl* ranges = list(decl.ranges);
+  if (ranges != nullptr && (!has(*ranges, "first") || !has(*ranges, "count"))) {
+    reporter_.error("wrong-block", decl.ranges_span,
+                    fmt::format("'{}' has no ints `first` and `count`", decl.ranges),
+                    "they say where the lights' numbers begin, and how many there are");
+  }
+  const BlockDecl* numbers = list(decl.numbers);
+  if (numbers != nullptr && !has(*numbers, "light")) {
+    reporter_.error("wrong-block", decl.numbers_span, fmt::format("'{}' has no int `light`", decl.numbers),
+                    "it is the number of a light");
+  }
+  typed(decl.index, Type::Float, "the number of the range");
+  if (std::none_of(blocks_.begin(), blocks_.end(),
+                   [](const BlockDecl* block) { return block->role == BlockRole::Lights; })) {
+    reporter_.error("no-lights", decl.span, "the template has no lights",
+                    "declare them before: `block lights Light light[16] count frame.light_count { ... }`");
+  }
 }
 
 void Checker::extendedBlock(BlockDecl& decl, uint32_t& slots) {
@@ -363,8 +444,10 @@ void Checker::extendedBlock(BlockDecl& decl, uint32_t& slots) {
     return other->instance == decl.instance;
   });
   decl.role = (*extended)->role;
+  decl.list = (*extended)->list;
   templateNames(decl);
   fields(decl, *base, slots);
+  if (decl.role == BlockRole::List) base->members.clear();
 }
 
 void Checker::fields(BlockDecl& decl, Name& instance, uint32_t& slots) {
@@ -379,6 +462,11 @@ void Checker::fields(BlockDecl& decl, Name& instance, uint32_t& slots) {
       reporter_.error("duplicate-name", field.span, fmt::format("there are two fields '{}'", field.name));
     }
     fieldArray(field);
+    const bool listed = decl.list || decl.role == BlockRole::List;
+    if (listed && (field.array != 0 || field.type == Type::Mat4)) {
+      reporter_.error("wrong-type", field.span, "a list's elements hold numbers and vectors alone",
+                      "write a matrix as its rows");
+    }
     rangeOf(field);
     defaultOf(field);
     field.slot = slots;

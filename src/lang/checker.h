@@ -117,6 +117,7 @@ private:
   void fields(BlockDecl& decl, Name& instance, uint32_t& slots);
   void fieldArray(BlockFieldDecl& field);
   void lightKind(LightKindDecl& decl, uint32_t first_property);
+  void lightLists(LightListsDecl& decl);
   void given(GivenDecl& decl, uint32_t& slots);
   void port(PortDecl& decl, uint32_t& slots);
   void output(OutputDecl& decl);

@@ -331,6 +331,7 @@ bool Parser::templateItem(TemplateDecl& decl) {
   if (accept("output")) return output(decl);
   if (is("extend") && token(1).is("block")) return extendedBlock(decl);
   if (is("light") && token(1).is("kind")) return lightKind(decl);
+  if (is("lights") && token(1).is("from")) return lightLists(decl);
   if (is("replace") && token(1).is("output")) {
     at_ += 2;
     if (!output(decl)) return false;
@@ -368,7 +369,8 @@ bool Parser::templateItem(TemplateDecl& decl) {
   }
   return syntax(
       "expected a part of a template",
-      "its parts are default, block, extend block, light kind, attribute, fact, environment, object, given, "
+      "its parts are default, block, extend block, light kind, lights from, attribute, fact, environment, "
+      "object, given, "
       "port, output, optional block, optional attribute, optional environment, optional object, optional "
       "output and replace output");
 }
@@ -393,16 +395,21 @@ bool Parser::attribute(TemplateDecl& decl) {
 }
 
 bool Parser::block(TemplateDecl& decl) {
-  constexpr std::array<std::pair<std::string_view, BlockRole>, 3> kRoles = {
-      {{"frame", BlockRole::Frame}, {"lights", BlockRole::Lights}, {"object", BlockRole::Object}}};
+  constexpr std::array<std::pair<std::string_view, BlockRole>, 4> kRoles = {{{"frame", BlockRole::Frame},
+                                                                             {"lights", BlockRole::Lights},
+                                                                             {"object", BlockRole::Object},
+                                                                             {"list", BlockRole::List}}};
   BlockDecl item;
   const auto role = std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return is(r.first); });
-  if (role == kRoles.end()) return syntax("expected the block's role", "it is frame, lights or object");
+  if (role == kRoles.end()) return syntax("expected the block's role", "it is frame, lights, object or list");
   ++at_;
   item.role = role->second;
   if (!name(item.type_name, item.type_span, "the block's type name")) return false;
   if (!name(item.instance, item.span, "the block's own name")) return false;
-  if (accept("[")) {
+  if (is("[") && token(1).is("]")) {
+    at_ += 2;
+    item.endless = true;
+  } else if (accept("[")) {
     item.array_syntax = expression();
     if (!item.array_syntax || !expect("]", "the number of elements")) return false;
   }
@@ -480,6 +487,25 @@ bool Parser::lightKind(TemplateDecl& decl) {
   }
   accept("}");
   decl.light_kinds.push_back(std::move(item));
+  return true;
+}
+
+/// `lights from RANGES[EXPR] through NUMBERS;`
+bool Parser::lightLists(TemplateDecl& decl) {
+  LightListsDecl item;
+  item.span = token().span;
+  at_ += 2;
+  if (!name(item.ranges, item.ranges_span, "the list of ranges") || !expect("[", "the list of ranges"))
+    return false;
+  item.index = expression();
+  if (!item.index || !expect("]", "the number of the range")) return false;
+  if (!accept("through"))
+    return syntax("expected 'through'", "write `through` and the list of the lights' numbers");
+  if (!name(item.numbers, item.numbers_span, "the list of the lights' numbers") ||
+      !expect(";", "the list of the lights' numbers"))
+    return false;
+  if (decl.light_lists) return syntax("the lights come from lists already", "a template says so once");
+  decl.light_lists = std::move(item);
   return true;
 }
 

@@ -54,6 +54,7 @@ private:
   bool blockField(BlockDecl& block);
   bool extendedBlock(TemplateDecl& decl);
   bool lightKind(TemplateDecl& decl);
+  bool lightLists(TemplateDecl& decl);
   bool given(TemplateDecl& decl);
   bool port(TemplateDecl& decl);
   bool output(TemplateDecl& decl);

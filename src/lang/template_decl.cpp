@@ -40,6 +40,7 @@ public:
       given.ties = given.value ? tiesOf(*given.value, {given.inherited}) : Ties{0};
       for (size_t i = 0; i < given.results.size(); ++i) ties_[given.slot + i] = given.ties;
     }
+    if (decl_.light_lists) lightLists(*decl_.light_lists);
     for (const PortDecl& port : decl_.ports) port_[port.slot] = true;
     for (const OutputDecl& output : decl_.outputs) {
       if (output.value) this->output(output);
@@ -75,6 +76,16 @@ private:
       if (!attribute.fact) ties_[attribute.slot] = vertex_stage_ ? kVertex : kFragment;
     }
     if (decl_.front_facing) ties_[*decl_.front_facing] = kFragment;
+  }
+
+  void lightLists(const LightListsDecl& lists) {
+    if (!lists.index) return;
+    const Ties ties = tiesOf(*lists.index, {lists.inherited});
+    if ((ties & (kLight | kVertex)) == 0) return;
+    reporter_.error(
+        (ties & kLight) != 0 ? "one-light" : "one-vertex", lists.inherited ? decl_.span : lists.span,
+        "the number of the range is that of a fragment",
+        "write interpolate(...) around what differs from vertex to vertex; it may not rest on a light");
   }
 
   void output(const OutputDecl& output) {

@@ -37,6 +37,12 @@ public:
   /// expression reaches are set. An expression that is a multi-output call gives its first result.
   ir::ValueId evaluate(const lang::Expr& expr, std::span<const ir::ValueId> slots);
 
+  /// Sums over lights are those of a range of a list from now on: the first one's place and their number.
+  void sumOver(ir::ValueId first, ir::ValueId count) {
+    first_ = first;
+    count_ = count;
+  }
+
   /// Evaluates a given and puts its values, named, into its slots.
   void bind(const lang::GivenDecl& given, std::vector<ir::ValueId>& slots);
 
@@ -53,6 +59,7 @@ private:
   Arena arena_;
   ir::Dag& dag_;
   OnCall on_call_;
+  ir::ValueId first_ = ir::kNoValue, count_ = ir::kNoValue;  ///< of a sum over listed lights
   /// Above 0 while what is evaluated counts only under a condition that is not known: what a callee assumes
   /// then rests on arguments that may break its contract, so it is not stated.
   int conditional_ = 0;

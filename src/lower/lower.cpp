@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 
+#include "ir/names.h"
 #include "lower/inline.h"
 
 namespace lacquer::lower {
@@ -17,6 +18,7 @@ ir::BlockRole roleOf(lang::BlockRole role) {
     case lang::BlockRole::Frame: return ir::BlockRole::Frame;
     case lang::BlockRole::Lights: return ir::BlockRole::Lights;
     case lang::BlockRole::Object: return ir::BlockRole::Object;
+    case lang::BlockRole::List: return ir::BlockRole::List;
   }
   return ir::BlockRole::Frame;
 }
@@ -26,6 +28,7 @@ ir::Rate rateOf(lang::BlockRole role) {
     case lang::BlockRole::Frame: return ir::Rate::Frame;
     case lang::BlockRole::Lights: return ir::Rate::Light;
     case lang::BlockRole::Object: return ir::Rate::Vertex;
+    case lang::BlockRole::List: return ir::Rate::Frame;
   }
   return ir::Rate::Frame;
 }
@@ -79,6 +82,7 @@ public:
     slots_.assign(template_->slots, ir::kNoValue);
     declareInterface();
     bindGivens();
+    bindLightRange();
     if (Diagnostics wrong = nodes(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     ports();
     outputs();
@@ -92,6 +96,7 @@ private:
 
   void declareInterface() {
     for (const lang::BlockDecl& block : template_->blocks) declareBlock(block);
+    if (template_->light_lists) listLights(*template_->light_lists);
     const bool vertex_stage = std::any_of(template_->outputs.begin(), template_->outputs.end(),
                                           [](const auto& o) { return o.role == lang::OutputRole::Position; });
     for (const lang::AttributeDecl& attribute : template_->attributes) {
@@ -156,9 +161,11 @@ private:
       block.fields.push_back({std::string(field.name), field.type, 0, field.range, std::string(field.prose),
                               field.array, field.default_value.value_or(ir::Components{})});
     }
-    block.size = ir::layout(block.fields);
+    block.list = decl.list;
+    block.size = decl.list ? ir::listLayout(block.fields) : ir::layout(block.fields);
+    if (decl.list) block.array = 0;
     const auto index = static_cast<uint32_t>(module_.blocks.size());
-    for (uint32_t i = 0; i < decl.fields.size(); ++i) {
+    for (uint32_t i = 0; i < decl.fields.size() && !decl.list; ++i) {
       const lang::BlockFieldDecl& field = decl.fields[i];
       for (uint32_t k = 0; k < field.elements(); ++k) {
         ir::Input input{ir::InputKind::BlockField,
@@ -176,8 +183,52 @@ private:
     module_.blocks.push_back(std::move(block));
   }
 
+  const lang::BlockDecl& blockOf(std::string_view instance, uint32_t& index) const {
+    const auto found = std::find_if(template_->blocks.begin(), template_->blocks.end(),
+                                    [&](const lang::BlockDecl& block) { return block.instance == instance; });
+    assert(found != template_->blocks.end());
+    index = static_cast<uint32_t>(found - template_->blocks.begin());
+    return *found;
+  }
+
+  /// The light at hand is the one whose number stands at the loop's place in the list.
+  void listLights(const lang::LightListsDecl& decl) {
+    ir::LightLists lists;
+    const lang::BlockDecl& ranges = blockOf(decl.ranges, lists.first.block);
+    lists.count.block = lists.first.block;
+    lists.first.field = fieldIndex(ranges, "first");
+    lists.count.field = fieldIndex(ranges, "count");
+    const lang::BlockDecl& numbers = blockOf(decl.numbers, lists.number.block);
+    lists.number.field = fieldIndex(numbers, "light");
+    module_.light_lists = lists;
+    const ir::ValueId place =
+        dag().input({ir::InputKind::LightIndex, ir::kLightIndexName, ir::Type::Int, ir::Rate::Light, {}});
+    const ir::ValueId number = dag().element(place, ir::Type::Int, lists.number);
+    dag().name(number, "light_number");
+    for (uint32_t b = 0; b < template_->blocks.size(); ++b) {
+      const lang::BlockDecl& block = template_->blocks[b];
+      if (block.role != lang::BlockRole::Lights) continue;
+      for (uint32_t f = 0; f < block.fields.size(); ++f)
+        slots_[block.fields[f].slot] = dag().element(number, block.fields[f].type, {b, f});
+    }
+  }
+
+  /// Which lights the sums run over: after the givens, before all that sums.
+  void bindLightRange() {
+    if (!template_->light_lists) return;
+    dag().setTerm(dag().addTerm({"lights", "", std::string(template_->origin.file), template_->origin.line}));
+    const ir::ValueId index = inliner_.evaluate(*template_->light_lists->index, slots_);
+    const ir::ValueId range = dag().make(ir::Op::ToInt, {index});
+    dag().name(range, "light_range");
+    const ir::ValueId first = dag().element(range, ir::Type::Int, module_.light_lists->first);
+    dag().name(first, "first_light");
+    const ir::ValueId count = dag().element(range, ir::Type::Int, module_.light_lists->count);
+    dag().name(count, "lights_here");
+    inliner_.sumOver(first, count);
+  }
+
   void declareLights(const lang::BlockDecl& decl) {
-    module_.light_groups.push_back({0, -1});
+    module_.light_groups.push_back({0, decl.list ? ir::LightGroup::kListed : ir::LightGroup::kCounted});
     const ir::Input& count = dag().inputOf(slots_[decl.count_slot]);
     module_.light_count = {count.block, count.field};
     for (const lang::LightKindDecl& kind : template_->light_kinds) {

@@ -328,7 +328,10 @@ LeftOut chooseAttributes(const lang::TemplateDecl& template_decl, const gltf::Ve
   common.morph = common.instances = common.quantized = false;
   for (const lang::AttributeDecl& attribute : template_decl.attributes) {
     if (!attribute.optional) continue;
-    const bool there = hasAttribute(attributes, attribute.name);
+    // Of the facts that a template speaks of, files know that of stored integers; others are the switches'
+    // alone.
+    const bool known = !attribute.fact || attribute.name == "QUANTIZED";
+    const bool there = known && hasAttribute(attributes, attribute.name);
     const Choice choice = chosen(attribute, there, options);
     if (choice.taken)
       graph.attributes.emplace_back(attribute.name);

@@ -60,7 +60,7 @@ Diagnostics checkPlaces(const ir::Module& module) {
     take(flat, std::pair(texture, at.flat), name,
          fmt::format("{} {}", texture ? "texture unit" : "buffer binding", at.flat));
   };
-  for (const ir::Block& block : module.blocks) add(block.binding, block.instance, false);
+  for (const ir::Block& block : module.blocks) add(block.binding, block.instance, block.list);
   for (const ir::TextureSlot& slot : module.textures) add(slot.binding, slot.name, true);
   return wrong;
 }

@@ -79,6 +79,11 @@ Diagnostics checkLights(const ir::Module& module, const LightFacts& facts) {
     return block.role == ir::BlockRole::Lights;
   });
   if (facts.any || lights == module.blocks.end()) return {};
+  if (module.light_lists) {
+    return wrong("listed-lights",
+                 fmt::format("the lights of the template '{}' come in lists", module.template_name),
+                 "how many there are, the lists say: leave the lights open");
+  }
   uint64_t total = 0;
   for (const auto& [name, count] : facts.counts) {
     total += count;
@@ -98,7 +103,7 @@ Diagnostics checkLights(const ir::Module& module, const LightFacts& facts) {
 }
 
 void specializeLights(ir::Module& module, const LightFacts& facts) {
-  if (facts.any) return;
+  if (facts.any || module.light_lists) return;
   const std::vector<LightsOfKind> kinds = lightsByKind(module, facts);
   std::vector<ir::LightGroup> groups;
   std::vector<int32_t> group_of(kinds.size(), -1);

@@ -77,13 +77,11 @@ private:
   void collectInterface() {
     Indices blocks, textures, varyings, attributes, parameters;
     for (const ir::ValueId id : live_) {
-      if (dag_[id].op == ir::Op::SumOverLights && module_.light_groups[dag_[id].payload].count < 0) {
-        blocks.insert(module_.light_count.block);
-      }
+      if (const std::optional<uint32_t> block = ir::blockOf(module_, id)) blocks.insert(*block);
       if (dag_[id].op != ir::Op::Input) continue;
       const ir::Input& input = dag_.inputOf(id);
       switch (input.kind) {
-        case ir::InputKind::BlockField: blocks.insert(input.block); break;
+        case ir::InputKind::BlockField: break;
         case ir::InputKind::Texture: textures.insert(input.field); break;
         case ir::InputKind::Varying: varyings.insert(input.field); break;
         case ir::InputKind::Attribute: attributes.insert(input.field); break;
@@ -141,9 +139,11 @@ private:
     size_.assign(dag_.size(), 0);
     for (const ir::ValueId id : live_) {
       if (leaf(id)) continue;
-      // What is compared and where are taken apart by some targets.
-      const bool compares = dag_[id].op == ir::Op::TextureCompare || dag_[id].op == ir::Op::TextureCompareLod;
-      if (compares && !leaf(dag_[id].args[1])) makeVariable(dag_[id].args[1]);
+      // What is compared and where, and a layer, are taken apart by some targets.
+      const bool apart =
+          ir::readsTexture(dag_[id].op) && (dag_[dag_[id].args[0]].type == ir::Type::Texture2DShadow ||
+                                            dag_[dag_[id].args[0]].type == ir::Type::Texture2DArray);
+      if (apart && !leaf(dag_[id].args[1])) makeVariable(dag_[id].args[1]);
       int size = 1;
       for (const ir::ValueId operand : dag_[id].operands()) size += variable_[operand] ? 0 : size_[operand];
       size_[id] = size;
@@ -253,7 +253,10 @@ private:
 
   void loop(uint32_t group, const std::vector<ir::ValueId>& sums) {
     std::vector<ir::ValueId> bodies;
-    for (const ir::ValueId sum : sums) bodies.push_back(dag_[sum].args[0]);
+    for (const ir::ValueId sum : sums) {
+      const std::span<const ir::ValueId> operands = dag_[sum].operands();  // of listed lights the range, too
+      bodies.insert(bodies.end(), operands.begin(), operands.end());
+    }
     const std::vector<ir::ValueId> needed = ir::reachable(dag_, bodies);
     for (const ir::ValueId id : needed) {
       if (!inLoop(id)) emit(id);
@@ -305,6 +308,10 @@ private:
     if (const std::string_view name = dag_.nameOf(id); !name.empty()) return names_.pick(name, layer);
     const ir::Value& value = dag_[id];
     if (value.op == ir::Op::SumOverLights) return names_.pick("light_sum");
+    if (value.op == ir::Op::Element) {
+      const auto [block, field] = ir::ListField::of(value);
+      return names_.pick(module_.blocks[block].fields[field].name, layer);
+    }
     if (value.op == ir::Op::Mul && value.args[0] == value.args[1]) {
       std::string_view root = program_.names[value.args[0]];
       if (root.empty()) root = dag_.nameOf(value.args[0]);

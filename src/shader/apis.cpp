@@ -23,11 +23,9 @@ Used usedBy(const ir::Module& module, ir::Stage stage) {
   Used used{std::vector<bool>(module.blocks.size()), std::vector<bool>(module.textures.size())};
   for (const ir::ValueId id : ir::reachable(module, stage)) {
     const ir::Value& value = module.dag[id];
-    if (value.op == ir::Op::SumOverLights && module.light_groups[value.payload].count < 0)
-      used.blocks[module.light_count.block] = true;
+    if (const std::optional<uint32_t> block = ir::blockOf(module, id)) used.blocks[*block] = true;
     if (value.op != ir::Op::Input) continue;
     const ir::Input& input = module.dag.inputOf(id);
-    if (input.kind == ir::InputKind::BlockField) used.blocks[input.block] = true;
     if (input.kind == ir::InputKind::Texture) used.textures[input.field] = true;
   }
   return used;
@@ -42,8 +40,8 @@ public:
 
   Json metal(bool argument_buffers) const {
     Json list = Json::array();
-    const auto row = [&](const std::string& name, const ir::Binding& binding, bool block) {
-      const targets::MslBinding at = targets::mslBinding(binding, argument_buffers);
+    const auto row = [&](const std::string& name, const ir::Binding& binding, bool block, bool list) {
+      const targets::MslBinding at = targets::mslBinding(binding, argument_buffers, list);
       Json json = {{"name", name}};
       if (argument_buffers) {
         json["argument_buffer"] = at.buffer;
@@ -57,12 +55,13 @@ public:
     };
     for (size_t i = 0; i < module_.blocks.size(); ++i) {
       const ir::Block& block = module_.blocks[i];
-      add(list, row(targets::blockName(block), block.binding, true),
+      add(list, row(targets::blockName(block), block.binding, true, block.list),
           [&](const Used& used) { return used.blocks[i]; }, {});
     }
     for (size_t i = 0; i < module_.textures.size(); ++i) {
       const ir::TextureSlot& slot = module_.textures[i];
-      add(list, row(slot.name, slot.binding, false), [&](const Used& used) { return used.textures[i]; }, {});
+      add(list, row(slot.name, slot.binding, false, false),
+          [&](const Used& used) { return used.textures[i]; }, {});
     }
     return {{"entry", "main0"}, {"argument_buffers", argument_buffers}, {"bindings", std::move(list)}};
   }
@@ -79,7 +78,7 @@ private:
       const targets::WgslBinding at = targets::wgslBinding(block.binding);
       add(list, row(targets::blockName(block), at.group, at.binding),
           [&](const Used& used) { return used.blocks[i]; },
-          {{"buffer", {{"type", "uniform"}, {"minBindingSize", size}}}});
+          {{"buffer", {{"type", block.list ? "read-only-storage" : "uniform"}, {"minBindingSize", size}}}});
     }
     for (size_t i = 0; i < module_.textures.size(); ++i) {
       const ir::TextureSlot& slot = module_.textures[i];
@@ -138,7 +137,8 @@ private:
     ask("maxColorAttachmentBytesPerSample", 32, kHalfFloats * colors);
     ask("maxSampledTexturesPerShaderStage", 16, most(&Used::textures));
     ask("maxSamplersPerShaderStage", 16, most(&Used::textures));
-    ask("maxUniformBuffersPerShaderStage", 12, most(&Used::blocks));
+    ask("maxUniformBuffersPerShaderStage", 12, mostBlocks(false));
+    ask("maxStorageBuffersPerShaderStage", 8, mostBlocks(true));
     ask("maxInterStageShaderVariables", 16, module_.varyings.size());
     return asked;
   }
@@ -148,6 +148,18 @@ private:
     for (const Used& used : used_) {
       const std::vector<bool>& flags = used.*list;
       most = std::max(most, static_cast<size_t>(std::count(flags.begin(), flags.end(), true)));
+    }
+    return most;
+  }
+
+  /// Of a stage: blocks that are lists, or those that are none.
+  size_t mostBlocks(bool lists) const {
+    size_t most = 0;
+    for (const Used& used : used_) {
+      size_t count = 0;
+      for (size_t i = 0; i < module_.blocks.size(); ++i)
+        count += used.blocks[i] && module_.blocks[i].list == lists ? 1 : 0;
+      most = std::max(most, count);
     }
     return most;
   }

@@ -1,6 +1,8 @@
 #include "shader/interface.h"
 
 #include <algorithm>
+#include <optional>
+#include <set>
 
 #include "json/text.h"
 #include "shader/apis.h"
@@ -17,6 +19,7 @@ std::string_view roleName(ir::BlockRole role) {
     case ir::BlockRole::Lights: return "lights";
     case ir::BlockRole::Material: return "material";
     case ir::BlockRole::Object: return "object";
+    case ir::BlockRole::List: return "list";
   }
   return "";
 }
@@ -27,13 +30,17 @@ Json bindingJson(const ir::Binding& binding) {
 
 Json blockJson(const ir::Module& module, const ir::Block& block) {
   Json json = {{"block", targets::blockName(block)}, {"role", roleName(block.role)}};
-  if (block.array != 0) json["struct"] = block.name;
+  if (block.plural()) json["struct"] = block.name;
   json.update(bindingJson(block.binding));
+  if (block.list) {
+    json["list"] = block.instance + "s";
+    json["stride"] = block.size;
+  }
   if (block.array != 0) {
     json["array"] = block.array;
     json["stride"] = block.size;
   }
-  json["size"] = block.array == 0 ? block.size : block.array * block.size;
+  if (!block.list) json["size"] = block.array == 0 ? block.size : block.array * block.size;
   const bool computed = block.role == ir::BlockRole::Material;
   const targets::PreshaderText preshader =
       computed ? targets::preshaderText(module) : targets::PreshaderText{};
@@ -134,6 +141,17 @@ Json parametersJson(const ir::Module& module, const material::Schema* schema) {
   return rows;
 }
 
+/// The blocks that the outputs of both stages reach.
+std::set<uint32_t> usedBlocks(const ir::Module& module) {
+  std::vector<ir::ValueId> roots;
+  for (const ir::Output& output : module.outputs) roots.push_back(output.value);
+  std::set<uint32_t> blocks;
+  for (const ir::ValueId id : ir::reachable(module.dag, roots)) {
+    if (const std::optional<uint32_t> block = ir::blockOf(module, id)) blocks.insert(*block);
+  }
+  return blocks;
+}
+
 /// The inputs, of any kind, that the outputs of both stages reach.
 std::vector<ir::Input> usedInputs(const ir::Module& module) {
   std::vector<ir::ValueId> roots;
@@ -157,21 +175,17 @@ Json componentsJson(ir::Type type, const ir::Components& components) {
 
 Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
   const std::vector<ir::Input> inputs = usedInputs(module);
-  const auto uses = [&](ir::InputKind kind, uint32_t index, bool block) {
-    return std::any_of(inputs.begin(), inputs.end(), [&](const ir::Input& input) {
-      return input.kind == kind && (block ? input.block : input.field) == index;
-    });
+  const auto uses = [&](ir::InputKind kind, uint32_t index) {
+    return std::any_of(inputs.begin(), inputs.end(),
+                       [&](const ir::Input& input) { return input.kind == kind && input.field == index; });
   };
-  const bool counted = std::any_of(module.light_groups.begin(), module.light_groups.end(),
-                                   [](const ir::LightGroup& group) { return group.count < 0; });
+  const std::set<uint32_t> blocks = usedBlocks(module);
   Json json;
   json["template"] = module.template_name;
   Json uniforms = Json::array();
   for (uint32_t i = 0; i < module.blocks.size(); ++i) {
     const ir::Block& block = module.blocks[i];
-    const bool count_needed = counted && i == module.light_count.block;
-    if (uses(ir::InputKind::BlockField, i, true) || count_needed)
-      uniforms.push_back(blockJson(module, block));
+    if (blocks.contains(i)) uniforms.push_back(blockJson(module, block));
   }
   json["uniforms"] = std::move(uniforms);
   json["parameters"] = parametersJson(module, schema);
@@ -190,13 +204,13 @@ Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Sche
   Json attributes = Json::array();
   for (uint32_t i = 0; i < module.attributes.size(); ++i) {
     const ir::Attribute& a = module.attributes[i];
-    if (!uses(ir::InputKind::Attribute, i, false)) continue;
+    if (!uses(ir::InputKind::Attribute, i)) continue;
     attributes.push_back({{"name", a.name}, {"type", ir::typeName(a.type)}, {"location", a.location}});
   }
   if (!has_vertex) {
     for (uint32_t i = 0; i < module.varyings.size(); ++i) {
       const ir::Varying& v = module.varyings[i];
-      if (!uses(ir::InputKind::Varying, i, false)) continue;
+      if (!uses(ir::InputKind::Varying, i)) continue;
       attributes.push_back({{"name", v.name}, {"type", ir::typeName(v.type)}, {"location", v.location}});
     }
   }

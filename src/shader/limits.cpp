@@ -83,18 +83,22 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
   // By index: the blocks and textures that a stage reads.
   std::set<uint32_t> blocks, textures;
   for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
+    if (const std::optional<uint32_t> block = ir::blockOf(module, id)) blocks.insert(*block);
     if (module.dag[id].op != ir::Op::Input) continue;
     const ir::Input& input = module.dag.inputOf(id);
-    if (input.kind == ir::InputKind::BlockField) blocks.insert(input.block);
     if (input.kind == ir::InputKind::Texture) textures.insert(input.field);
   }
   for (const uint32_t index : blocks) {
     const ir::Block& block = module.blocks[index];
+    if (block.list) continue;
     const uint32_t bytes = block.size * std::max(block.array, 1U);
     limits.check(fmt::format("the block '{}' has {} bytes", targets::blockName(block), bytes), bytes,
                  &Limit::block_bytes);
   }
-  const auto count = static_cast<uint32_t>(textures.size());
+  // A list is a texture where there are no storage buffers.
+  const auto lists =
+      std::count_if(blocks.begin(), blocks.end(), [&](uint32_t index) { return module.blocks[index].list; });
+  const auto count = static_cast<uint32_t>(textures.size() + static_cast<size_t>(lists));
   limits.check(fmt::format("the shader reads {} textures", count), count, &Limit::textures);
   return limits.take();
 }

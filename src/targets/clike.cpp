@@ -68,6 +68,7 @@ private:
   Expression blockField(const ir::Input& input) const;
   Expression construct(const ir::Value& value) const;
   Expression swizzle(const ir::Value& value) const;
+  Expression element(const ir::Value& value) const;
   /// The argument list of a function of ops.def.
   std::string arguments(const ir::Value& value) const;
   Expression operation(const ir::Value& value) const;
@@ -109,6 +110,7 @@ Expression Printer::compute(ValueId id) const {
   if (value.op == Op::Input) return input(dag_.inputOf(id));
   if (value.op == Op::Construct) return construct(value);
   if (value.op == Op::Swizzle) return swizzle(value);
+  if (value.op == Op::Element) return element(value);
   // Implicit derivatives exist in fragments only, and Direct3D has no lookup without a level elsewhere: a
   // vertex samples the first, as GLSL's texture() does there.
   const bool implicit = program_.stage == ir::Stage::Fragment;
@@ -181,6 +183,11 @@ Expression Printer::blockField(const ir::Input& input) const {
   return {fmt::format("{}[{}].{}", array, ir::kLightIndexName, field)};
 }
 
+Expression Printer::element(const ir::Value& value) const {
+  const auto [block, field] = ir::ListField::of(value);
+  return dialect_.element(module_.blocks[block], module_.blocks[block].fields[field], use(value.args[0]));
+}
+
 Expression Printer::construct(const ir::Value& value) const {
   if (value.count == 1 && dag_[value.args[0]].type == Type::Float) {
     return dialect_.splat(value.type, use(value.args[0]), dag_.isConstant(value.args[0]));
@@ -247,8 +254,16 @@ void Printer::openLoop(Text& text, const Statement& statement) const {
                                 true));
   }
   const ir::LightGroup& group = module_.light_groups[statement.group];
-  const std::string end = group.count < 0 ? lightCount() : fmt::format("{}", group.first + group.count);
-  text.line(dialect_.loop(group.first, end));
+  if (group.count == ir::LightGroup::kListed) {
+    const ir::Value& sum = dag_[statement.sums[0]];
+    const std::string first = parenthesized(use(sum.args[1]), Precedence::Additive);
+    const std::string count = parenthesized(use(sum.args[2]), tighter(Precedence::Additive));
+    text.line(dialect_.loop(first, fmt::format("{} + {}", first, count)));
+  } else {
+    const bool counted = group.count == ir::LightGroup::kCounted;
+    text.line(dialect_.loop(fmt::format("{}", group.first),
+                            counted ? lightCount() : fmt::format("{}", group.first + group.count)));
+  }
   text.indent();
 }
 
@@ -422,7 +437,12 @@ std::string Dialect::variable(Type type, std::string_view name, std::string_view
   return fmt::format("{} {} = {};", this->type(type), name, value);
 }
 
-std::string Dialect::loop(int32_t first, std::string_view end) const {
+Expression Dialect::element(const ir::Block& list, const ir::BlockField& field,
+                            const Expression& number) const {
+  return {fmt::format("{}s[{}].{}", name(list.instance), number.text, name(field.name))};
+}
+
+std::string Dialect::loop(std::string_view first, std::string_view end) const {
   return fmt::format("for (int {0} = {1}; {0} < {2}; ++{0}) {{", ir::kLightIndexName, first, end);
 }
 
@@ -464,13 +484,18 @@ void printMembers(Text& text, const Dialect& dialect, const ir::Block& block, bo
   for (const ir::BlockField& field : block.fields) {
     assert(cursor <= field.offset && std140Offset(field.offset, field.type) == field.offset &&
            hlslOffset(field.offset, field.type) == field.offset);
-    while (std140Offset(cursor, field.type) != field.offset || hlslOffset(cursor, field.type) != field.offset)
-      pad();
+    const auto placed = [&] {
+      const bool packed = hlslOffset(cursor, field.type) == field.offset;
+      // A structured buffer of HLSL's has no holes.
+      return std140Offset(cursor, field.type) == field.offset &&
+             (block.list ? cursor == field.offset : packed);
+    };
+    while (!placed()) pad();
     text.line(dialect.member(field.type, dialect.name(field.name), field.array));
     cursor = field.offset + field.stride() * field.elements();
   }
   // The elements of an array, and blocks as a whole, end at a multiple of 16 of themselves.
-  while ((whole ? cursor : roundUp(cursor, 16)) < block.size) pad();
+  while ((whole || block.list ? cursor : roundUp(cursor, 16)) < block.size) pad();
   text.outdent();
 }
 

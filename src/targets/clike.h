@@ -105,8 +105,11 @@ public:
   /// A variable with its value; `changes`: the sum of a loop.
   virtual std::string variable(ir::Type type, std::string_view name, std::string_view value,
                                bool changes) const;
+  /// A field of the element of that number of a list.
+  virtual Expression element(const ir::Block& list, const ir::BlockField& field,
+                             const Expression& number) const;
   /// The opening line of the loop over lights from `first` to before `end`.
-  virtual std::string loop(int32_t first, std::string_view end) const;
+  virtual std::string loop(std::string_view first, std::string_view end) const;
   /// A member of a block; `array`: 0 or the number of elements.
   virtual std::string member(ir::Type type, std::string_view name, uint32_t array) const;
   /// A fragment output or an interpolant where it is assigned.

@@ -20,11 +20,12 @@ struct GlslRow {
   bool bindings;           ///< `binding =`; without it, names are the contract
   bool varying_locations;  ///< `location =` between the stages
   bool precisions;         ///< precision statements
+  bool storage;            ///< storage buffers; without them lists are textures
 };
 
-constexpr GlslRow kVulkan = {"450", true, true, true, false};
-constexpr GlslRow kOpenGl = {"450", false, true, true, false};
-constexpr GlslRow kEssl300 = {"300 es", false, false, false, true};
+constexpr GlslRow kVulkan = {"450", true, true, true, false, true};
+constexpr GlslRow kOpenGl = {"450", false, true, true, false, true};
+constexpr GlslRow kEssl300 = {"300 es", false, false, false, true, false};
 
 class Glsl final : public Dialect {
 public:
@@ -112,8 +113,60 @@ private:
     return fmt::format("lacquer_{}_{}", p.constant_name, "xyzw"[component]);
   }
 
+  /// `lights[i].position`, or out of the texture: an element of 16 bytes or more begins with a texel.
+  Expression element(const ir::Block& list, const ir::BlockField& field,
+                     const Expression& number) const override {
+    if (row_.storage) return Dialect::element(list, field, number);
+    constexpr uint32_t kTexel = 16, kWord = 4;
+    const std::string from = parenthesized(number, Precedence::Multiplicative);
+    const auto at = [&](uint32_t stride, uint32_t offset) {
+      const std::string product = stride == 1 ? from : fmt::format("{} * {}", from, stride);
+      return offset == 0 ? product : fmt::format("{} + {}", product, offset);
+    };
+    const bool texels = list.size % kTexel == 0;
+    const auto width = static_cast<size_t>(ir::componentCount(field.type));
+    const std::string picks = std::string("xyzw").substr(field.offset % kTexel / kWord, width);
+    const std::string bits =
+        texels ? fmt::format("lacquer_{}s({}).{}", list.instance,
+                             at(list.size / kTexel, field.offset / kTexel), picks)
+               : fmt::format("lacquer_{}s({})", list.instance, at(list.size / kWord, field.offset / kWord));
+    return {field.type == Type::Int ? fmt::format("int({})", bits)
+                                    : fmt::format("uintBitsToFloat({})", bits)};
+  }
+
+  /// A list where there are no storage buffers: its bytes are the texels of an RGBA32UI texture, row by row.
+  void listTexture(Text& text, const ir::Block& block) const {
+    const std::string name = block.instance + "s";
+    text.blank();
+    text.line(fmt::format("uniform highp usampler2D {};", name));
+    text.blank();
+    const bool texels = block.size % 16 == 0;
+    text.line(fmt::format("{} lacquer_{}(int number) {{", texels ? "uvec4" : "uint", name));
+    text.indent();
+    text.line(fmt::format("int width = textureSize({}, 0).x;", name));
+    if (!texels) text.line("int texel = number / 4;");
+    text.line(fmt::format("return texelFetch({0}, ivec2({1} % width, {1} / width), 0){2};", name,
+                          texels ? "number" : "texel", texels ? "" : "[number % 4]"));
+    text.outdent();
+    text.line("}");
+  }
+
   void block(Text& text, const ir::Block& block) const {
+    if (block.list && !row_.storage) return listTexture(text, block);
     const std::string place = this->place(block.binding);
+    if (block.list) {
+      text.blank();
+      text.line(fmt::format("struct {} {{", block.name));
+      printMembers(text, *this, block);
+      text.line("};");
+      text.blank();
+      text.line(fmt::format("layout(std430, {}) readonly buffer {} {{", place, blockName(block)));
+      text.indent();
+      text.line(fmt::format("{} {}s[];", block.name, block.instance));
+      text.outdent();
+      text.line("};");
+      return;
+    }
     const std::string layout = fmt::format("layout(std140{}{}) uniform", place.empty() ? "" : ", ", place);
     text.blank();
     if (block.array == 0) {

@@ -103,11 +103,16 @@ public:
 private:
   void block(Text& text, const ir::Block& block) const {
     const bool array = block.array != 0;
-    const std::string structure = array ? block.name : block.name + "Block";
+    const std::string structure = block.plural() ? block.name : block.name + "Block";
     text.line(fmt::format("struct {} {{", structure));
     printMembers(text, *this, block);
     text.line("};");
     text.blank();
+    if (block.list) {
+      text.line(fmt::format("StructuredBuffer<{}> {}s : register(t{});", structure, block.instance,
+                            block.binding.flat));
+      return;
+    }
     text.line(fmt::format("cbuffer {} : register(b{}) {{", blockName(block), block.binding.flat));
     text.indent();
     text.line(array ? fmt::format("{} {}s[{}];", structure, block.instance, block.array)

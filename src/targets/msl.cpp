@@ -12,9 +12,11 @@
 
 namespace lacquer::targets {
 
-MslBinding mslBinding(const ir::Binding& binding, bool argument_buffers) {
+MslBinding mslBinding(const ir::Binding& binding, bool argument_buffers, bool list) {
   if (argument_buffers) return {binding.set, 2 * binding.binding, 2 * binding.binding + 1};
-  return {0, binding.flat, binding.flat};
+  // A list's flat number is one of the textures', which are another kind in Metal.
+  constexpr uint32_t kListBuffers = 16;
+  return {0, list ? kListBuffers + binding.flat : binding.flat, binding.flat};
 }
 
 #ifdef LACQUER_SPIRV_CROSS
@@ -73,15 +75,18 @@ private:
       at.msl_sampler = sampler;
       return spvc_compiler_msl_add_resource_binding(compiler_, &at) == SPVC_SUCCESS;
     };
-    const auto place = [&](const ir::Binding& binding) {
-      const MslBinding to = mslBinding(binding, argument_buffers_);
+    const auto place = [&](const ir::Binding& binding, bool list) {
+      const MslBinding to = mslBinding(binding, argument_buffers_, list);
       const bool buffer =
           !argument_buffers_ || add(binding.set, SPVC_MSL_ARGUMENT_BUFFER_BINDING, to.buffer, 0);
       return buffer && add(binding.set, binding.binding, to.index, to.sampler);
     };
     bool good = true;
-    for (const uint32_t index : program.blocks) good = good && place(module.blocks[index].binding);
-    for (const uint32_t index : program.textures) good = good && place(module.textures[index].binding);
+    for (const uint32_t index : program.blocks) {
+      const ir::Block& block = module.blocks[index];
+      good = good && place(block.binding, block.list);
+    }
+    for (const uint32_t index : program.textures) good = good && place(module.textures[index].binding, false);
     return good;
   }
 

@@ -29,17 +29,11 @@ const ir::Block* materialBlock(const ir::Module& module) {
 
 bool usesBlock(const ir::Module& module, const ir::Block& block) {
   const auto index = static_cast<uint32_t>(&block - module.blocks.data());
-  const bool counted = std::any_of(module.light_groups.begin(), module.light_groups.end(),
-                                   [](const ir::LightGroup& group) { return group.count < 0; });
-  if (counted && index == module.light_count.block) return true;
   std::vector<ir::ValueId> roots;
   for (const ir::Output& output : module.outputs) roots.push_back(output.value);
   const std::vector<ir::ValueId> live = ir::reachable(module.dag, roots);
-  return std::any_of(live.begin(), live.end(), [&](ir::ValueId id) {
-    if (module.dag[id].op != Op::Input) return false;
-    const ir::Input& input = module.dag.inputOf(id);
-    return input.kind == ir::InputKind::BlockField && input.block == index;
-  });
+  return std::any_of(live.begin(), live.end(),
+                     [&](ir::ValueId id) { return ir::blockOf(module, id) == index; });
 }
 
 }  // namespace lacquer::targets

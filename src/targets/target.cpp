@@ -54,7 +54,7 @@ std::string commentText(std::string_view lines) {
   return text.take();
 }
 
-std::string blockName(const ir::Block& block) { return block.array == 0 ? block.name : block.name + "s"; }
+std::string blockName(const ir::Block& block) { return block.plural() ? block.name + "s" : block.name; }
 
 std::string samplerName(const ir::TextureSlot& slot) { return slot.name + "_sampler"; }
 

@@ -50,12 +50,13 @@ struct WgslBinding {
 WgslBinding wgslBinding(const ir::Binding& binding);
 
 /// Where Metal has it. Plain: a block, a texture or a sampler at `index` of its kind, the flat number of the
-/// contract. In argument buffers: at `index`, a texture's sampler behind it, of the buffer of the set.
+/// contract; a list is a buffer behind all blocks', at 16 more. In argument buffers: at `index`, a texture's
+/// sampler behind it, of the buffer of the set.
 struct MslBinding {
   uint32_t buffer = 0;  ///< the argument buffer
   uint32_t index = 0, sampler = 0;
 };
-MslBinding mslBinding(const ir::Binding& binding, bool argument_buffers);
+MslBinding mslBinding(const ir::Binding& binding, bool argument_buffers, bool list = false);
 
 /// Target::Msl: the text of one stage, whose function is called `main0`. The module must be placed and bound.
 /// `head` as above. Errors: "msl-unavailable" where Lacquer was built without SPIRV-Cross; "spirv-cross",

@@ -112,6 +112,7 @@ public:
   std::string_view spelling(Op op) const override {
     // Not a switch: the other operations are spelled as in GLSL.
     if (op == Op::InverseSqrt) return "inverseSqrt";
+    if (op == Op::ToInt) return "i32";
     if (op == Op::Atan2) return "atan2";
     if (op == Op::DFdx) return "dpdx";
     if (op == Op::DFdy) return "dpdy";
@@ -184,7 +185,12 @@ public:
     return fmt::format("{} {} = {};", changes ? "var" : "let", name, value);
   }
 
-  std::string loop(int32_t first, std::string_view end) const override {
+  Expression element(const ir::Block& list, const ir::BlockField& field,
+                     const Expression& number) const override {
+    return {fmt::format("{}[{}].{}", name(list.instance + "s"), number.text, name(field.name))};
+  }
+
+  std::string loop(std::string_view first, std::string_view end) const override {
     return fmt::format("for (var {0} = {1}; {0} < {2}; {0}++) {{", ir::kLightIndexName, first, end);
   }
 
@@ -301,7 +307,12 @@ private:
     printMembers(text, *this, block, block.array != 0 && narrow);
     text.line("}");
     text.blank();
-    const std::string instance = name(block.array == 0 ? block.instance : block.instance + "s");
+    const std::string instance = name(block.plural() ? block.instance + "s" : block.instance);
+    if (block.list) {
+      text.line(fmt::format("{} var<storage, read> {}: array<{}>;", place(block.binding, false), instance,
+                            structure));
+      return;
+    }
     const std::string of =
         block.array == 0 ? structure : fmt::format("array<{}, {}>", structure, block.array);
     text.line(fmt::format("{} var<uniform> {}: {};", place(block.binding, false), instance, of));

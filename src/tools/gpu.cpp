@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "check/check.h"
+#include "eval/program.h"
 #include "schedule/schedule.h"
 #include "shader/language.h"
 #include "targets/legalize.h"
@@ -34,7 +35,10 @@ public:
 
   Result<vulkan::Work> build(const GpuTextures& textures) {
     const schedule::Program program = schedule::schedule(module_, ir::Stage::Fragment);
-    for (const uint32_t block : program.blocks) addBlock(module_.blocks[block]);
+    for (const uint32_t block : program.blocks) {
+      const ir::Block& declared = module_.blocks[block];
+      declared.role == ir::BlockRole::List ? addList(block) : addBlock(declared);
+    }
     for (const uint32_t texture : program.textures) addTexture(module_.textures[texture], textures);
     for (const uint32_t index : program.varyings) addVarying(module_.varyings[index]);
     for (const uint32_t index : program.parameters) addConstant(module_.parameters[index]);
@@ -85,10 +89,11 @@ private:
 
   void addBlock(const ir::Block& block) {
     const bool lights = block.role == ir::BlockRole::Lights;
-    const size_t elements = lights ? std::min<size_t>(bindings_.lights.size(), block.array) : 1;
+    const size_t most = block.list ? bindings_.lights.size() : block.array;
+    const size_t elements = lights ? std::min(bindings_.lights.size(), most) : 1;
     std::vector<Filled> filled;
     vulkan::UniformBlock made;
-    made.place = placeOf(block.binding, check::kHlslBufferShift);
+    made.place = placeOf(block.binding, block.list ? check::kHlslTextureShift : check::kHlslBufferShift);
     for (size_t element = 0; element < elements; ++element) {
       const eval::Columns& columns = lights ? bindings_.lights[element] : bindings_.columns;
       for (const ir::BlockField& field : block.fields) {
@@ -101,7 +106,7 @@ private:
         }
       }
     }
-    const size_t size = size_t{block.size} * (lights ? block.array : 1);
+    const size_t size = size_t{block.size} * (lights ? std::max<size_t>(most, 1) : 1);
     made.bytes.assign(size * (made.per_point ? points_ : 1), 0);
     for (size_t point = 0; point * size < made.bytes.size(); ++point) {
       for (const Filled& f : filled) {
@@ -110,6 +115,20 @@ private:
         for (size_t c = 0; c < width; ++c)
           put(from[c], f.field->type, &made.bytes[point * size + f.offset + 4 * c]);
       }
+    }
+    work_.blocks.push_back(std::move(made));
+  }
+
+  /// Ranges, and the numbers of lights.
+  void addList(uint32_t index) {
+    const ir::Block& block = module_.blocks[index];
+    vulkan::UniformBlock made;
+    made.place = placeOf(block.binding, check::kHlslTextureShift);
+    for (uint32_t f = 0; f < block.fields.size(); ++f) {
+      const std::vector<double> values = eval::listValues(module_, bindings_, {index, f});
+      made.bytes.resize(std::max(made.bytes.size(), std::max<size_t>(values.size(), 1) * block.size), 0);
+      for (size_t i = 0; i < values.size(); ++i)
+        put(values[i], block.fields[f].type, &made.bytes[i * block.size + block.fields[f].offset]);
     }
     work_.blocks.push_back(std::move(made));
   }

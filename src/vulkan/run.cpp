@@ -254,7 +254,8 @@ Buffer Running::vertices(Objects& objects, const Chunk& chunk) const {
 
 /// The blocks that all draws share once, the others once for each draw.
 Buffer Running::uniforms(Objects& objects, const Chunk& chunk, std::vector<BlockData>& data) const {
-  const VkDeviceSize alignment = std::max<VkDeviceSize>(device_.limits.minUniformBufferOffsetAlignment, 16);
+  const VkDeviceSize alignment = std::max<VkDeviceSize>(
+      {device_.limits.minUniformBufferOffsetAlignment, device_.limits.minStorageBufferOffsetAlignment, 16});
   VkDeviceSize size = 0;
   for (const UniformBlock& block : work_.blocks) {
     BlockData row;
@@ -265,7 +266,9 @@ Buffer Running::uniforms(Objects& objects, const Chunk& chunk, std::vector<Block
     size += aligned * (block.per_point ? chunk.draws.size() : 1);
     data.push_back(row);
   }
-  const Buffer buffer = objects.buffer(std::max<VkDeviceSize>(size, 16), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  const Buffer buffer =
+      objects.buffer(std::max<VkDeviceSize>(size, 16),
+                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   if (!objects.good()) return buffer;
   for (size_t b = 0; b < data.size(); ++b) {
     const UniformBlock& block = work_.blocks[b];

@@ -19,7 +19,8 @@ namespace lacquer::vulkan {
 using BindingPlace = std::pair<uint32_t, uint32_t>;  ///< descriptor set and binding
 using Texel = std::array<float, 4>;
 
-/// A uniform block's bytes: of one block for all points, or of each point's, one after the other.
+/// A uniform block's bytes, or a storage buffer's: of one for all points, or of each point's, one after the
+/// other.
 struct UniformBlock {
   BindingPlace place;
   bool per_point = false;

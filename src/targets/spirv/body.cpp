@@ -159,6 +159,7 @@ uint32_t Body::special(ValueId id) {
   if (op == Op::Input) return input(id);
   if (op == Op::Construct) return construct(id);
   if (op == Op::Swizzle) return swizzle(id);
+  if (op == Op::Element) return element(id);
   if (ir::readsTexture(op)) return texture(id);
   return operation(id);
 }
@@ -290,6 +291,18 @@ uint32_t Body::blockField(ValueId id, const ir::Input& input, int component) {
   code_.word(variable);
   for (size_t i = 0; i < count; ++i) code_.word(indices[i]);
   code_.end();
+  return instruction(id, {ir::SpirvSet::Core, spv::OpLoad}, &chain, 1);
+}
+
+/// Loads a field of a list's element.
+uint32_t Body::element(ValueId id) {
+  const ir::ListField from = ir::ListField::of(dag_[id]);
+  const uint32_t number = value(dag_[id].args[0]);
+  const uint32_t pointer = globals_.pointer(spv::StorageClassStorageBuffer, kindOf(dag_[id].type));
+  const uint32_t zero = globals_.integer(0);
+  const uint32_t field = globals_.integer(static_cast<int32_t>(from.field));
+  const uint32_t chain = globals_.newId();
+  code_.op(spv::OpAccessChain, pointer, chain, interface_.blocks[from.block], zero, number, field);
   return instruction(id, {ir::SpirvSet::Core, spv::OpLoad}, &chain, 1);
 }
 
@@ -426,8 +439,7 @@ void Body::openLoop(const schedule::Statement& s) {
   assert(!in_loop_);
   hoist(s.sums);
   const ir::LightGroup& group = module_.light_groups[s.group];
-  const uint32_t first = globals_.integer(group.first);
-  const uint32_t end = group.count < 0 ? lightCount() : globals_.integer(group.first + group.count);
+  const auto [first, end] = boundsOf(group, dag_[s.sums[0]]);
   const uint32_t before = block_;
   loop_.head = globals_.newId();
   loop_.next_step = globals_.newId();
@@ -486,6 +498,20 @@ void Body::hoist(const std::vector<ValueId>& sums) {
       if (dag_[v.args[k]].rate != Rate::Light) operand(v, k);
     }
   }
+}
+
+/// The first place of the loop and that behind its last one.
+std::pair<uint32_t, uint32_t> Body::boundsOf(const ir::LightGroup& group, const ir::Value& sum) {
+  if (group.count != ir::LightGroup::kListed) {
+    const bool counted = group.count == ir::LightGroup::kCounted;
+    const uint32_t first = globals_.integer(group.first);
+    return {first, counted ? lightCount() : globals_.integer(group.first + group.count)};
+  }
+  const uint32_t first = value(sum.args[1]);
+  const uint32_t count = value(sum.args[2]);
+  const uint32_t end = globals_.newId();
+  code_.op(spv::OpIAdd, globals_.type(Kind::Int), end, first, count);
+  return {first, end};
 }
 
 uint32_t Body::lightCount() {

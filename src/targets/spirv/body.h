@@ -49,10 +49,12 @@ private:
   uint32_t input(ir::ValueId id);
   uint32_t load(ir::ValueId id, uint32_t variable);
   uint32_t blockField(ir::ValueId id, const ir::Input& input, int component);
+  uint32_t element(ir::ValueId id);
   uint32_t construct(ir::ValueId id);
   uint32_t swizzle(ir::ValueId id);
   uint32_t texture(ir::ValueId id);
   uint32_t component(uint32_t vector, uint32_t index);
+  std::pair<uint32_t, uint32_t> boundsOf(const ir::LightGroup& group, const ir::Value& sum);
   uint32_t lightCount();
   uint32_t instruction(ir::ValueId id, const Instruction& what, const uint32_t* operands, size_t count);
   uint32_t result(ir::ValueId id);

@@ -89,7 +89,9 @@ uint32_t Globals::type(Kind kind) {
 }
 
 uint32_t Globals::pointer(spv::StorageClass storage, Kind kind) {
-  uint32_t& known = pointers_.at(storage)[static_cast<size_t>(kind)];
+  const auto own = static_cast<size_t>(storage);
+  const size_t row = storage == spv::StorageClassStorageBuffer ? pointers_.size() - 1 : own;
+  uint32_t& known = pointers_.at(row)[static_cast<size_t>(kind)];
   if (known != 0) return known;
   const uint32_t to = type(kind);
   declarations.op(spv::OpTypePointer, known = newId(), storage, to);

@@ -92,7 +92,8 @@ private:
   uint32_t next_id_ = 1;
   uint32_t glsl_set_ = 0;
   std::array<uint32_t, kKinds> types_{};
-  std::array<std::array<uint32_t, kKinds>, 4> pointers_{};  ///< the four storage classes in use are 0 to 3
+  /// The storage classes in use are 0 to 3, and that of storage buffers, which is put at 4.
+  std::array<std::array<uint32_t, kKinds>, 5> pointers_{};
   std::array<uint32_t, 2> booleans_{};
   std::vector<Constant> constants_;  ///< open addressing; a power of two
   size_t constants_used_ = 0;

@@ -90,23 +90,28 @@ private:
   }
 
   uint32_t block(const ir::Block& block) {
-    const bool array = block.array != 0;
+    const bool array = block.plural();
+    const auto storage = block.list ? spv::StorageClassStorageBuffer : spv::StorageClassUniform;
     const uint32_t element = structure(block);
     const uint32_t type = array ? arrayBlock(block, element) : element;
     globals_.decorations.op(spv::OpDecorate, type, spv::DecorationBlock);
+    if (block.list) globals_.decorations.op(spv::OpMemberDecorate, type, 0, spv::DecorationNonWritable);
     const uint32_t pointer = globals_.newId();
-    globals_.declarations.op(spv::OpTypePointer, pointer, spv::StorageClassUniform, type);
+    globals_.declarations.op(spv::OpTypePointer, pointer, storage, type);
     // Like the GLSL's: the block of an array has no instance name, its one member is found by its own.
-    const uint32_t id = variable(spv::StorageClassUniform, pointer, array ? "" : block.instance);
+    const uint32_t id = variable(storage, pointer, array ? "" : block.instance);
     bindAt(id, block.binding);
     return id;
   }
 
-  /// `Lights { Light lights[16]; }`
+  /// `Lights { Light lights[16]; }`, of a list `Lights { Light lights[]; }`
   uint32_t arrayBlock(const ir::Block& block, uint32_t element) {
-    const uint32_t length = globals_.integer(static_cast<int32_t>(block.array));
+    const uint32_t length = block.list ? 0 : globals_.integer(static_cast<int32_t>(block.array));
     const uint32_t elements = globals_.newId();
-    globals_.declarations.op(spv::OpTypeArray, elements, element, length);
+    if (block.list)
+      globals_.declarations.op(spv::OpTypeRuntimeArray, elements, element);
+    else
+      globals_.declarations.op(spv::OpTypeArray, elements, element, length);
     globals_.decorations.op(spv::OpDecorate, elements, spv::DecorationArrayStride, block.size);
     const uint32_t id = globals_.newId();
     globals_.declarations.op(spv::OpTypeStruct, id, elements);
