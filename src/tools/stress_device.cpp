@@ -124,7 +124,9 @@ vulkan::Texture textureOf(const Subject& subject, const ir::TextureSlot& slot,
   texture.nearest = true;
   texture.per_point = true;
   texture.s = texture.t = vulkan::Wrap::Clamp;  // coordinates may be anything
-  texture.shape = slot.type == ir::Type::TextureCube ? vulkan::Shape::Cube : vulkan::Shape::Plane;
+  texture.shape = slot.type == ir::Type::TextureCube      ? vulkan::Shape::Cube
+                  : slot.type == ir::Type::Texture2DArray ? vulkan::Shape::Array
+                                                          : vulkan::Shape::Plane;
   texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(std::move(texels));
   return texture;
 }
@@ -170,7 +172,8 @@ std::string whyNot(const Subject& subject) {
       return fmt::format("'{}' is a {}", parameter.name, ir::typeName(parameter.type));
   }
   for (const ir::TextureSlot& slot : subject.module().textures) {
-    if (slot.type != ir::Type::Texture2D && slot.type != ir::Type::TextureCube)
+    if (slot.type != ir::Type::Texture2D && slot.type != ir::Type::TextureCube &&
+        slot.type != ir::Type::Texture2DArray)
       return fmt::format("'{}' is a {}", slot.name, ir::typeName(slot.type));
   }
   return {};

@@ -83,7 +83,7 @@ public:
   /// One level; six layers or more make cubes of every six. `volume`: of three dimensions, one deep.
   Image image(uint32_t width, uint32_t height, uint32_t layers, VkImageUsageFlags usage,
               VkFormat format = kFormat, bool volume = false);
-  VkImageView view(const Image& image, uint32_t first_layer, Shape shape);
+  VkImageView view(const Image& image, uint32_t first_layer, Shape shape, uint32_t layers);
   VkSampler sampler(const Texture& texture);
   VkShaderModule module(const std::vector<uint32_t>& words);
 

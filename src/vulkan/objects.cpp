@@ -102,14 +102,13 @@ static VkImageViewType viewTypeOf(Shape shape) {
   return VK_IMAGE_VIEW_TYPE_2D;
 }
 
-VkImageView Objects::view(const Image& image, uint32_t first_layer, Shape shape) {
+VkImageView Objects::view(const Image& image, uint32_t first_layer, Shape shape, uint32_t layers) {
   VkImageView view = VK_NULL_HANDLE;
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   info.image = image.handle;
   info.viewType = viewTypeOf(shape);
   info.format = image.format;
-  const uint32_t layers = shape == Shape::Cube ? 6 : shape == Shape::Array ? image.layers : 1;
   info.subresourceRange = {image.aspect, 0, 1, first_layer, layers};
   if (good() &&
       check(device_.vk.CreateImageView(device_.handle, &info, nullptr, &view), "vkCreateImageView")) {

@@ -122,7 +122,7 @@ void Running::prepare() {
   for (uint32_t i = 0; i < pipeline_.outputs(); ++i) {
     targets_.push_back(objects_.image(kSide, kSide, 1,
                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
-    views.push_back(objects_.view(targets_.back(), 0, Shape::Plane));
+    views.push_back(objects_.view(targets_.back(), 0, Shape::Plane, 1));
   }
   VkFramebufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
@@ -157,7 +157,7 @@ void Running::prepare() {
     } else {
       upload(*texture.texels, image, objects_);
     }
-    views_.back() = objects_.view(image, 0, texture.shape);
+    views_.back() = objects_.view(image, 0, texture.shape, layers);
   }
 }
 
@@ -292,7 +292,7 @@ std::vector<std::vector<VkImageView>> Running::variedViews(Objects& objects, con
                                       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     upload(texels, image, objects);
     for (size_t v = 0; v < views.size(); ++v)
-      views[v].push_back(objects.view(image, static_cast<uint32_t>(layers * v), varied_[c]->shape));
+      views[v].push_back(objects.view(image, static_cast<uint32_t>(layers * v), varied_[c]->shape, layers));
   }
   return views;
 }

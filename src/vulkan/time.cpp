@@ -143,7 +143,7 @@ Result<std::vector<double>> Device::time(const std::vector<Sweep>& sweeps, int r
   }
   Objects objects(*state_);
   const Image target = objects.image(kSweepSide, kSweepSide, 1, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
-  const VkImageView view = objects.view(target, 0, Shape::Plane);
+  const VkImageView view = objects.view(target, 0, Shape::Plane, 1);
   std::vector<std::unique_ptr<Timed>> timed;
   for (const Sweep& sweep : sweeps) {
     const Result<check::Interface> interface = check::reflect(sweep.fragment, check::Stage::Fragment);
