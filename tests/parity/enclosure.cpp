@@ -4,6 +4,9 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "eval/program.h"
 
 namespace lacquer::parity {
 
@@ -100,6 +103,10 @@ void Enclosure::value(ValueId id) {
     case Op::DFdx: return derivative(id, 1);
     case Op::DFdy: return derivative(id, 2);
     case Op::SumOverLights: return sumOverLights(id);
+    case Op::ToInt:
+      return out.fill(
+          {std::trunc(get(v.args[0], 0).lo), std::trunc(get(v.args[0], 0).hi), get(v.args[0], 0).nan});
+    case Op::Element: return element(id);
     default: return componentWise(id);
   }
 }
@@ -147,9 +154,17 @@ void Enclosure::input(ValueId id) {
 void Enclosure::sumOverLights(ValueId id) {
   const ir::Value& v = dag_[id];
   const ir::LightGroup& group = module_.light_groups[v.payload];
-  const auto first = static_cast<size_t>(group.first);
-  const size_t last = group.count < 0 ? bindings_.lights.size() : first + static_cast<size_t>(group.count);
+  auto first = static_cast<size_t>(group.first);
+  size_t last = group.count < 0 ? bindings_.lights.size() : first + static_cast<size_t>(group.count);
   Ranges sum{};
+  if (group.count == ir::LightGroup::kListed) {
+    // A range that is not known has a sum that is not known.
+    const Range& from = get(v.args[1], 0);
+    const Range& count = get(v.args[2], 0);
+    if (from.lo != from.hi || count.lo != count.hi) return values_[id].fill(math_.whole(true));
+    first = static_cast<size_t>(from.lo);
+    last = first + static_cast<size_t>(count.lo);
+  }
   for (light_ = first; light_ < last; ++light_) {
     for (const ValueId part : bodies_[id]) {
       if (varies(part)) value(part);
@@ -157,6 +172,34 @@ void Enclosure::sumOverLights(ValueId id) {
     for (size_t c = 0; c < 4; ++c) sum[c] = math_.add(sum[c], get(v.args[0], c));
   }
   values_[id] = sum;
+}
+
+/// All that elements of those numbers have.
+void Enclosure::element(ValueId id) {
+  const ir::ListField from = ir::ListField::of(dag_[id]);
+  const ir::Block& block = module_.blocks[from.block];
+  const Range& number = get(dag_[id].args[0], 0);
+  const bool lights = block.role == ir::BlockRole::Lights;
+  const std::vector<double> list =
+      lights ? std::vector<double>() : eval::listValues(module_, bindings_, from);
+  const auto most = static_cast<double>(lights ? bindings_.lights.size() : list.size()) - 1;
+  const auto begin = static_cast<size_t>(std::clamp(number.lo, 0.0, most));
+  const auto end = static_cast<size_t>(std::clamp(number.hi, 0.0, most));
+  for (int c = 0; c < width(id); ++c) {
+    std::optional<Range> all;
+    for (size_t i = begin; i <= end; ++i) {
+      double x = lights ? 0 : list[i];
+      if (lights) {
+        const eval::Column& column =
+            bindings_.lights[i].at(block.instance + "." + block.fields[from.field].name);
+        const auto n = static_cast<size_t>(column.components);
+        x = column.values[(column.per_point ? point_ * n : 0) + static_cast<size_t>(c)];
+      }
+      all = all ? Range{std::min(all->lo, x), std::max(all->hi, x), false} : Range{x, x, false};
+    }
+    values_[id][static_cast<size_t>(c)] = *all;
+  }
+  for (size_t c = static_cast<size_t>(width(id)); c < 4; ++c) values_[id][c] = values_[id][0];
 }
 
 void Enclosure::texture(ValueId id) {

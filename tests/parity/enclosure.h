@@ -62,6 +62,7 @@ private:
   using Ranges = std::array<analysis::Range, 4>;
   void value(ir::ValueId id);
   void input(ir::ValueId id);
+  void element(ir::ValueId id);
   void sumOverLights(ir::ValueId id);
   void texture(ir::ValueId id);
   void normalize(ir::ValueId id);

@@ -63,6 +63,14 @@ TEST(ParityMaterials, ForwardWithAnyLights) {
   expectAgreement(ofThose(setting, false), setting, 256, kSome, 0.35);
 }
 
+/// All lights in one range of the lists.
+TEST(ParityMaterials, ForwardClustered) {
+  MaterialSetting setting;
+  setting.lights = {};
+  setting.template_name = "forward_clustered";
+  expectAgreement(ofThose(setting, false), setting, 256, kSome, 0.35);
+}
+
 TEST(ParityMaterials, ForwardOfExtensionsWithAnyLights) {
   MaterialSetting setting;
   setting.lights = {};

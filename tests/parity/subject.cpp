@@ -330,6 +330,7 @@ void addGraphs(const material::Document& document, const std::string& name, cons
     test::BuildSetup options;
     options.template_name = setting.template_name;
     options.decode_srgb = setting.decode_srgb;
+    options.switches = setting.switches;
     Diagnostics warnings;
     NamedGraph made{fmt::format("{}, {}, {}", name, material.name, setting.template_name),
                     test::buildGraph(material, {true, setting.tangents, true, {true, true, true, true}},

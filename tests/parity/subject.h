@@ -45,6 +45,7 @@ struct MaterialSetting {
   passes::LightFacts lights{false, {{"directional", 1}}};
   bool decode_srgb = false;
   bool tangents = true;
+  std::map<std::string, bool, std::less<>> switches{};
   bool quads = false;  ///< points stand in fours; positions and texture coordinates are affine in each
 };
 

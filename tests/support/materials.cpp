@@ -47,6 +47,7 @@ graph::Graph buildGraph(const material::Material& material, const gltf::VertexAt
                       {"dfg_table", setup.dfg_table},
                       {"multiple_scattering", setup.multiple_scattering},
                       {"direct_multiple_scattering", setup.direct_multiple_scattering}};
+  options.switches.insert(setup.switches.begin(), setup.switches.end());
   const model::Model& model = *orThrow(builtInModels().of(setup.profile));
   const lang::TemplateDecl& wanted = *orThrow(builtInLibrary().template_(setup.template_name));
   return orThrow(model::build(model, wanted, material, attributes, options, warnings));

@@ -1,6 +1,7 @@
 // Materials and their graphs by the built-in library, as tests and benchmarks want them.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 
@@ -21,6 +22,7 @@ struct BuildSetup {
   bool ibl = true, dfg_table = true, multiple_scattering = true, direct_multiple_scattering = false,
        decode_srgb = false;
   std::set<std::string> live;
+  std::map<std::string, bool, std::less<>> switches{};  ///< others
 };
 
 /// Throws std::runtime_error with the diagnostics where no graph can be built.
