@@ -98,7 +98,8 @@ function makeBinder(work, pipeline) {
     const copies = block.perPoint ? work.points : 1;
     const data = new Uint8Array(stride * copies);
     for (let i = 0; i < copies; ++i) data.set(bytes.subarray(i * size, (i + 1) * size), i * stride);
-    return {...block, size, stride, buffer: bufferOf(data, GPUBufferUsage.UNIFORM)};
+    const usage = block.storage ? GPUBufferUsage.STORAGE : GPUBufferUsage.UNIFORM;
+    return {...block, size, stride, buffer: bufferOf(data, usage)};
   });
   const wraps = {repeat: 'repeat', clamp: 'clamp-to-edge', mirror: 'mirror-repeat'};
   const entriesOf = (group, point) => {
@@ -133,7 +134,8 @@ function makeBinder(work, pipeline) {
 function layoutOf(work) {
   const groups = [];
   const add = (group, entry) => (groups[group] ??= []).push({visibility: GPUShaderStage.FRAGMENT, ...entry});
-  for (const {group, binding} of work.blocks) add(group, {binding, buffer: {}});
+  for (const {group, binding, storage} of work.blocks)
+    add(group, {binding, buffer: {type: storage ? 'read-only-storage' : 'uniform'}});
   for (const t of work.textures) {
     const filtered = device.features.has('float32-filterable');
     const sampleType = t.compares ? 'depth' : filtered ? 'float' : 'unfilterable-float';

@@ -1,187 +1,32 @@
 // A thousand lights in clusters give what a loop over all of them gives; and what dims a light dims it.
+#include "parity/clustered.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
-
-#include "eval/evaluate.h"
-#include "eval/points.h"
-#include "parity/subject.h"
 
 namespace lacquer::parity {
 namespace {
 
-constexpr size_t kLights = 1000;
-constexpr size_t kPoints = 512;
-constexpr std::array<int, 3> kGrid = {5, 4, 6};
-
-/// Numbers that any machine draws alike.
-class Draws {
-public:
-  double between(double lo, double hi) {
-    state_ = state_ * 6364136223846793005U + 1442695040888963407U;
-    return lo + (hi - lo) * static_cast<double>(static_cast<float>(state_ >> 40U) / 16777216.0F);
-  }
-  double number(double lo, double hi) { return static_cast<double>(static_cast<float>(between(lo, hi))); }
-
-private:
-  uint64_t state_ = 20261122;
-};
-
-/// Small point and spot lights all over the place, and two directional ones.
-std::vector<eval::Columns> thousandLights(const eval::Columns& like) {
-  Draws draws;
-  std::vector<eval::Columns> lights;
-  for (size_t i = 0; i < kLights; ++i) {
-    eval::Columns light = like;
-    const auto set = [&](const char* field, std::vector<double> value) {
-      light[std::string("light.") + field] = eval::Column::constant(std::move(value));
-    };
-    const double range = draws.number(0.3, 1.2);
-    const double turn = draws.between(0, 6.28);
-    set("position", {draws.number(-2.5, 2.5), draws.number(-2.5, 2.5), draws.number(-2.5, 2.5)});
-    set("positional", {1});
-    set("radiance", {draws.number(0, 2), draws.number(0, 2), draws.number(0, 2)});
-    set("inverse_range_4", {static_cast<double>(static_cast<float>(std::pow(range, -4)))});
-    set("direction", {static_cast<double>(static_cast<float>(std::cos(turn))), 0,
-                      static_cast<double>(static_cast<float>(std::sin(turn)))});
-    set("spot_scale", {i % 3 == 0 ? 2.5 : 0.0});
-    set("spot_offset", {i % 3 == 0 ? 0.25 : 1.0});
-    if (i % 500 == 7) {
-      set("position", {0, 0.6, 0.8});
-      set("positional", {0});
-      set("inverse_range_4", {0});
-    }
-    lights.push_back(std::move(light));
-  }
-  return lights;
-}
-
-struct Scene {
-  Subject clustered;
-  ir::Module forward;
-  std::vector<size_t> cluster_of;  ///< of each point, as docs say it
-};
-
-const std::vector<double>& valuesOf(const eval::Bindings& bindings, const char* name) {
-  return bindings.columns.at(name).values;
-}
-
-/// The numbers of the lights that reach some point of each cluster, and now and then one that does not.
-std::vector<std::vector<size_t>> lightsOf(const Scene& scene) {
-  const eval::Bindings& bindings = scene.clustered.bindings;
-  const std::vector<double>& at = valuesOf(bindings, "position");
-  std::vector<std::vector<size_t>> lists(static_cast<size_t>(kGrid[0] * kGrid[1] * kGrid[2]));
-  for (size_t c = 0; c < lists.size(); ++c) {
-    for (size_t l = 0; l < kLights; ++l) {
-      const eval::Columns& light = bindings.lights[l];
-      const std::vector<double>& from = light.at("light.position").values;
-      const double inverse_range_4 = light.at("light.inverse_range_4").values[0];
-      bool reaches = (c * 7 + l) % 97 == 0;
-      for (size_t p = 0; p < kPoints && !reaches; ++p) {
-        double distance2 = 0;
-        for (size_t k = 0; k < 3; ++k) distance2 += (from[k] - at[3 * p + k]) * (from[k] - at[3 * p + k]);
-        reaches = scene.cluster_of[p] == c && distance2 * distance2 * inverse_range_4 < 1.001;
-      }
-      if (reaches) lists[c].push_back(l);
-    }
-  }
-  return lists;
-}
-
-/// A camera before the points, which lie in [-2, 2] on all axes.
-void aim(Scene& scene) {
-  eval::Columns& columns = scene.clustered.bindings.columns;
-  // x and y by a factor, w = 6 - z: by columns.
-  const double f = 1.5;
-  columns["frame.view_projection"] =
-      eval::Column::constant({f, 0, 0, 0, 0, f, 0, 0, 0, 0, -1, -1, 0, 0, 5, 6});
-  const double near = 3.5;
-  const double far = 8.5;
-  const double scale = static_cast<double>(static_cast<float>(kGrid[2] / std::log2(far / near)));
-  const double offset = static_cast<double>(static_cast<float>(-std::log2(near) * scale));
-  columns["cluster_grid.size"] = eval::Column::constant({kGrid[0] + 0.0, kGrid[1] + 0.0, kGrid[2] + 0.0});
-  columns["cluster_grid.slice_scale"] = eval::Column::constant({scale});
-  columns["cluster_grid.slice_offset"] = eval::Column::constant({offset});
-  const std::vector<double>& at = valuesOf(scene.clustered.bindings, "position");
-  const auto cell = [](double x, int count) {
-    return std::clamp(static_cast<int>(std::floor(x)), 0, count - 1);
-  };
-  for (size_t p = 0; p < kPoints; ++p) {
-    const double w = 6 - at[3 * p + 2];
-    const int x = cell((f * at[3 * p] / w * 0.5 + 0.5) * kGrid[0], kGrid[0]);
-    const int y = cell((f * at[3 * p + 1] / w * 0.5 + 0.5) * kGrid[1], kGrid[1]);
-    const int z = cell(std::log2(w) * scale + offset, kGrid[2]);
-    scene.cluster_of.push_back(static_cast<size_t>((z * kGrid[1] + y) * kGrid[0] + x));
-  }
-}
-
-Scene sceneOf(size_t graph, std::map<std::string, bool, std::less<>> switches = {}) {
-  MaterialSetting setting;
-  setting.lights = {};
-  Scene scene;
-  const Subject forward = materialSubject(exampleGraphs(setting)[graph], setting, kPoints, 5);
-  scene.forward = forward.module;
-  if (!forward.bindings.columns.contains("position")) return scene;  // nothing in it asks where a light is
-  setting.template_name = "forward_clustered";
-  setting.switches = std::move(switches);
-  scene.clustered = materialSubject(exampleGraphs(setting)[graph], setting, kPoints, 5);
-  eval::Bindings& bindings = scene.clustered.bindings;
-  EXPECT_EQ(valuesOf(bindings, "position"), valuesOf(forward.bindings, "position"));
-  bindings.lights = thousandLights(bindings.lights[0]);
-  bindings.columns["frame.light_count"] = eval::Column::constant({kLights});
-  aim(scene);
-  const std::vector<std::vector<size_t>> lists = lightsOf(scene);
-  std::vector<double>& numbers = bindings.lists["cluster_light.light"];
-  for (const std::vector<size_t>& list : lists) {
-    bindings.lists["cluster.first"].push_back(static_cast<double>(numbers.size()));
-    bindings.lists["cluster.count"].push_back(static_cast<double>(list.size()));
-    for (const size_t light : list) numbers.push_back(static_cast<double>(light));
-  }
-  return scene;
-}
-
-std::vector<double> colorsOf(const ir::Module& module, const eval::Bindings& bindings) {
-  std::vector<ir::ValueId> roots;
-  for (const ir::Output& output : module.outputs) {
-    if (output.kind == ir::OutputKind::Color) roots.push_back(output.value);
-  }
-  const auto values = eval::evaluate<double>(module, roots, bindings, kPoints);
-  EXPECT_TRUE(values) << (values ? "" : format(values.error()[0]));
-  return values ? (*values)[0] : std::vector<double>();
-}
-
-/// Numbers that are further apart than floats in another order make them.
-template <class T>
-size_t apart(const std::vector<T>& a, const std::vector<double>& b, double tolerance) {
-  EXPECT_EQ(a.size(), b.size());
-  size_t wrong = 0;
-  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    const double x = static_cast<double>(a[i]);
-    if (!(std::abs(x - b[i]) <= tolerance * std::max(1.0, std::abs(b[i])))) ++wrong;
-  }
-  return wrong;
-}
-
 TEST(Clustered, AThousandLightsGiveWhatALoopOverAllGives) {
-  const Scene scene = sceneOf(0);
+  const ClusteredScene scene = thousandLightsInClusters(0);
   const eval::Bindings& bindings = scene.clustered.bindings;
-  const std::vector<double> all = colorsOf(scene.forward, bindings);
-  EXPECT_EQ(apart(colorsOf(scene.clustered.module, bindings), all, 1e-12), 0U);
+  const std::vector<double> all = scene.expected();
+  EXPECT_EQ(apart(firstColors(scene.clustered.module, bindings), all, 1e-12), 0U);
   const std::set<size_t> clusters(scene.cluster_of.begin(), scene.cluster_of.end());
   EXPECT_GT(clusters.size(), 40U) << "the points lie in few clusters";
   double looked_at = 0;
   for (const size_t c : scene.cluster_of) looked_at += bindings.lists.at("cluster.count")[c];
-  EXPECT_LT(looked_at, 0.3 * kPoints * kLights) << "the lists leave few lights out";
+  EXPECT_LT(looked_at, 0.3 * kClusteredPoints * kClusteredLights) << "the lists leave few lights out";
 }
 
 TEST(Clustered, ALightThatIsLeftOutIsMissed) {
-  Scene scene = sceneOf(0);
+  ClusteredScene scene = thousandLightsInClusters(0);
   eval::Bindings& bindings = scene.clustered.bindings;
-  const std::vector<double> all = colorsOf(scene.forward, bindings);
+  const std::vector<double> all = scene.expected();
   for (double& count : bindings.lists["cluster.count"]) count = std::max(0.0, count - 1);
-  EXPECT_GT(apart(colorsOf(scene.clustered.module, bindings), all, 1e-4), 0U);
+  EXPECT_GT(apart(firstColors(scene.clustered.module, bindings), all, 1e-4), 0U);
 }
 
 TEST(Clustered, EveryRouteToTheDeviceGivesIt) {
@@ -189,10 +34,10 @@ TEST(Clustered, EveryRouteToTheDeviceGivesIt) {
   const size_t graphs = exampleGraphs({}).size();
   size_t lit = 0;
   for (size_t graph = 0; graph < graphs; graph += 9) {
-    const Scene scene = sceneOf(graph);
+    const ClusteredScene scene = thousandLightsInClusters(graph);
     if (scene.cluster_of.empty()) continue;
     ++lit;
-    const std::vector<double> all = colorsOf(scene.forward, scene.clustered.bindings);
+    const std::vector<double> all = scene.expected();
     for (const FragmentRoute route : {FragmentRoute::Direct, FragmentRoute::Glsl, FragmentRoute::Hlsl}) {
       const auto outputs = onDevice(scene.clustered, route);
       ASSERT_FALSE(outputs.empty());
@@ -205,8 +50,8 @@ TEST(Clustered, EveryRouteToTheDeviceGivesIt) {
 
 /// What each switch brings in multiplies the light that the lists give.
 TEST(Clustered, WhatDimsALightDimsIt) {
-  const Scene plain = sceneOf(0);
-  const std::vector<double> bright = colorsOf(plain.clustered.module, plain.clustered.bindings);
+  const ClusteredScene plain = thousandLightsInClusters(0);
+  const std::vector<double> bright = firstColors(plain.clustered.module, plain.clustered.bindings);
   const auto dark = [&](const char* which, const char* field, double value) {
     eval::Bindings bindings = plain.clustered.bindings;
     for (eval::Columns& light : bindings.lights) light[field] = eval::Column::constant({value});
@@ -219,11 +64,11 @@ TEST(Clustered, WhatDimsALightDimsIt) {
     bindings.textures["light_shadow_map"] = [](size_t, const std::array<double, 3>&, double) {
       return std::array<double, 4>{0, 0, 0, 0};
     };
-    return colorsOf(sceneOf(0, {{which, true}}).clustered.module, bindings);
+    return firstColors(thousandLightsInClusters(0, {{which, true}}).clustered.module, bindings);
   };
   eval::Bindings unlit = plain.clustered.bindings;
   for (double& count : unlit.lists["cluster.count"]) count = 0;
-  const std::vector<double> rest = colorsOf(plain.clustered.module, unlit);
+  const std::vector<double> rest = firstColors(plain.clustered.module, unlit);
   const auto expectPart = [&](const std::vector<double>& colors, double part, const char* what) {
     std::vector<double> expected(bright.size());
     for (size_t i = 0; i < bright.size(); ++i) expected[i] = rest[i] + part * (bright[i] - rest[i]);
