@@ -190,7 +190,8 @@ const Checker::Member* Checker::memberOf(Expr& expr) {
   }
   std::vector<std::string_view> candidates;
   for (const Member& member : found->members) candidates.push_back(member.name);
-  std::string all = fmt::format("it has {}", fmt::join(candidates, ", "));
+  std::string all = candidates.empty() ? "of a list the loop over the lights alone reads"
+                                       : fmt::format("it has {}", fmt::join(candidates, ", "));
   unknown(expr.name, "field", std::move(candidates), std::move(all));
   return nullptr;
 }

@@ -181,7 +181,7 @@ std::string bindingsTable() {
     const std::string role = text(block["role"]);
     const std::string array =
         block.contains("array")
-            ? fmt::format("s` (`{} lights[{}]`)", text(block["block"]), block["array"].get<int>())
+            ? fmt::format("` (`{} lights[{}]`)", text(block["struct"]), block["array"].get<int>())
             : "`";
     rows[{block["set"].get<int>(), block["binding"].get<int>()}] =
         bindingRow("uniform block `" + text(block["block"]) + array, howOften(role), block);
@@ -202,13 +202,36 @@ std::string bindingsTable() {
   return out;
 }
 
-std::string layoutTable(std::string_view of) {
-  const Json block = blockOf(readmeExample().interface, of);
+std::string fieldTable(const Json& block) {
   std::string out = "| offset | type | field | meaning |\n|---|---|---|---|\n";
   for (const Json& field : block["fields"]) {
     out += fmt::format("| {} | `{}` | `{}` | {} |\n", field["offset"].get<int>(), text(field["type"]),
                        text(field["name"]), field.value("meaning", ""));
   }
+  return out;
+}
+
+/// What a template with lights in lists has of blocks and lists beside the others'.
+std::string clusterTables() {
+  Options options;
+  options.template_name = "forward_clustered";
+  std::string out;
+  const Made made = make(readmeGltf(), options);
+  for (const Json& block : made.interface["uniforms"]) {
+    const bool list = block.contains("list");
+    if (!list && block["block"] != "ClusterGrid") continue;
+    out += list ? fmt::format("`{} {}[]`, {} bytes each:\n\n", text(block["struct"]), text(block["list"]),
+                              block["stride"].get<int>())
+                : fmt::format("The uniform block `{}`:\n\n", text(block["block"]));
+    out += fieldTable(block) + "\n";
+  }
+  return out;
+}
+
+std::string layoutTable(std::string_view of) {
+  if (of == "clusters") return clusterTables();
+  const Json block = blockOf(readmeExample().interface, of);
+  const std::string out = fieldTable(block);
   if (!block.contains("array")) return out + fmt::format("\n{} bytes.\n", block["size"].get<int>());
   return out + fmt::format("\n{} bytes each, {} of them: {} bytes.\n", block["stride"].get<int>(),
                            block["array"].get<int>(), block["size"].get<int>());
