@@ -5,20 +5,20 @@
 namespace lacquer::bench {
 
 const std::vector<Work> kWorks = {
-    {"W0L", "w0.gltf", false, "base, no IBL", {148, 260}, {88, 156}},
-    {"W0", "w0.gltf", true, "base", {289, 496}, {173, 297}},
-    {"W1L", "w1.gltf", false, "clearcoat, no IBL", {183, 328}, {109, 196}},
-    {"W1", "w1.gltf", true, "clearcoat", {334, 578}, {200, 346}},
-    {"W1off", "w1off.gltf", true, "clearcoat of factor 0", {289, 496}, {173, 297}},
-    {"W2", "w2.gltf", true, "clearcoat, six textures", {534, 870}, {320, 522}},
-    {"W3L", "w3.gltf", false, "all of coat, no IBL", {521, 915}, {312, 549}},
-    {"W3", "w3.gltf", true, "all of coat", {870, 1682}, {522, 1009}},
-    {"AL", "a.gltf", false, "specular, IOR, sheen, no IBL", {287, 489}, {178, 262}},
-    {"A", "a.gltf", true, "specular, IOR, sheen", {471, 810}, {290, 440}},
-    {"BL", "b.gltf", false, "transmission, volume, clearcoat, no IBL", {471, 828}, {230, 390}},
-    {"B", "b.gltf", true, "transmission, volume, clearcoat", {616, 1078}, {325, 540}},
-    {"CL", "c.gltf", false, "anisotropy, iridescence, specular, no IBL", {631, 893}, {370, 680}},
-    {"C", "c.gltf", true, "anisotropy, iridescence, specular", {797, 1243}, {520, 940}},
+    {"W0L", "w0.gltf", false, "base, no IBL", {88, 156}},
+    {"W0", "w0.gltf", true, "base", {173, 297}},
+    {"W1L", "w1.gltf", false, "clearcoat, no IBL", {109, 196}},
+    {"W1", "w1.gltf", true, "clearcoat", {200, 346}},
+    {"W1off", "w1off.gltf", true, "clearcoat of factor 0", {173, 297}},
+    {"W2", "w2.gltf", true, "clearcoat, six textures", {320, 522}},
+    {"W3L", "w3.gltf", false, "all of coat, no IBL", {312, 549}},
+    {"W3", "w3.gltf", true, "all of coat", {522, 1009}},
+    {"AL", "a.gltf", false, "specular, IOR, sheen, no IBL", {178, 262}},
+    {"A", "a.gltf", true, "specular, IOR, sheen", {290, 440}},
+    {"BL", "b.gltf", false, "transmission, volume, clearcoat, no IBL", {230, 390}},
+    {"B", "b.gltf", true, "transmission, volume, clearcoat", {325, 540}},
+    {"CL", "c.gltf", false, "anisotropy, iridescence, specular, no IBL", {370, 680}},
+    {"C", "c.gltf", true, "anisotropy, iridescence, specular", {520, 940}},
 };
 
 namespace {

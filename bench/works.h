@@ -11,8 +11,8 @@
 
 namespace lacquer::bench {
 
-/// The lowest of each number among the peers; 0 where no peer does this work.
-struct Peer {
+/// What a shader costs on navi21.
+struct Numbers {
   uint64_t instructions = 0, inverse_throughput = 0;
 };
 
@@ -21,8 +21,7 @@ struct Work {
   std::string file;  ///< in bench/works/
   bool ibl = true;
   std::string what;  ///< for the table
-  Peer best;         ///< on navi21, after spirv-opt -O
-  Peer goal;         ///< ours: at most
+  Numbers goal;      ///< ours: at most
 };
 extern const std::vector<Work> kWorks;
 

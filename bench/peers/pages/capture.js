@@ -1,0 +1,86 @@
+// Watches WebGL 2 while another renderer draws: the text of the fragment shader that draws the ball, and its colours as
+// floats, before anything is stored with 8 bits.
+const sources = new WeakMap();
+const fragmentOf = new WeakMap();
+const gl2 = WebGL2RenderingContext.prototype;
+const original = {};
+let wanted = null;
+
+function wrap(name, before) {
+  original[name] = gl2[name];
+  gl2[name] = function (...args) {
+    before(this, ...args);
+    return original[name].apply(this, args);
+  };
+}
+
+wrap('shaderSource', (gl, shader, text) => sources.set(shader, text));
+wrap('attachShader', (gl, program, shader) => {
+  if (gl.getShaderParameter(shader, gl.SHADER_TYPE) === gl.FRAGMENT_SHADER) fragmentOf.set(program, shader);
+});
+
+/** A picture in 32-bit floats with depth, in place of what is bound. */
+function floatTarget(gl, size) {
+  if (!gl.getExtension('EXT_color_buffer_float')) throw new Error('the browser draws no floats');
+  const target = gl.createFramebuffer(), color = gl.createRenderbuffer(), depth = gl.createRenderbuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+  const attach = (buffer, format, place) => {
+    gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+    gl.renderbufferStorage(gl.RENDERBUFFER, format, size, size);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, place, gl.RENDERBUFFER, buffer);
+  };
+  attach(color, gl.RGBA32F, gl.COLOR_ATTACHMENT0);
+  attach(depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT);
+  return target;
+}
+
+/** Draws what was about to be drawn into a target of its own, and puts back what was bound. */
+function drawAside(gl, draw) {
+  const bound = [
+    gl.getParameter(gl.DRAW_FRAMEBUFFER_BINDING), gl.getParameter(gl.READ_FRAMEBUFFER_BINDING),
+    gl.getParameter(gl.RENDERBUFFER_BINDING), gl.getParameter(gl.VIEWPORT), gl.getParameter(gl.PIXEL_PACK_BUFFER_BINDING),
+  ];
+  const { size } = wanted;
+  const target = floatTarget(gl, size);
+  if (bound[4]) gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+  gl.viewport(0, 0, size, size);
+  gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
+  gl.clearBufferfv(gl.DEPTH, 0, [1]);
+  draw();
+  const pixels = new Float32Array(size * size * 4);
+  gl.readPixels(0, 0, size, size, gl.RGBA, gl.FLOAT, pixels);
+  gl.deleteFramebuffer(target);
+  gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, bound[0]);
+  gl.bindFramebuffer(gl.READ_FRAMEBUFFER, bound[1]);
+  gl.bindRenderbuffer(gl.RENDERBUFFER, bound[2]);
+  gl.viewport(...bound[3]);
+  if (bound[4]) gl.bindBuffer(gl.PIXEL_PACK_BUFFER, bound[4]);
+  return pixels;
+}
+
+wrap('drawElements', (gl, ...args) => {
+  if (!wanted || args[1] !== wanted.indices) return;
+  const { found } = wanted;
+  found.source = sources.get(fragmentOf.get(gl.getParameter(gl.CURRENT_PROGRAM)));
+  found.pixels = drawAside(gl, () => original.drawElements.apply(gl, args));
+  found.error = gl.getError();
+});
+
+/** Calls `draw`, which draws one frame; the last draw of the ball in it. */
+export async function capture({ size, indices }, draw) {
+  wanted = { size, indices, found: {} };
+  await draw();
+  const { found } = wanted;
+  wanted = null;
+  if (!found.source) throw new Error('nothing drew the ball');
+  if (found.error) throw new Error(`WebGL error ${found.error}`);
+  return { source: found.source, pixels: [...found.pixels] };
+}
+
+/** A canvas of the picture's size on the page. */
+export function canvasOf({ size }) {
+  const canvas = document.createElement('canvas');
+  canvas.width = canvas.height = size;
+  document.body.replaceChildren(canvas);
+  return canvas;
+}

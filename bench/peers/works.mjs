@@ -1,0 +1,66 @@
+// What is measured: the works of bench/works.cpp, the peers, and what each leaves out of a work.
+
+const named = (file, ...names) => names.map((name) => ({ name, file, ibl: !name.endsWith('L') }));
+
+/** In the order of bench/cost.json. `drawn` says whether the ball is compared: see `kNotDrawn`. */
+export const kWorks = [
+  ...named('w0', 'W0L', 'W0'), ...named('w1', 'W1L', 'W1'), ...named('w1off', 'W1off'), ...named('w2', 'W2'),
+  ...named('w3', 'W3L', 'W3'), ...named('a', 'AL', 'A'), ...named('b', 'BL', 'B'), ...named('c', 'CL', 'C'),
+];
+
+/** What is behind a transmitting ball is another picture in every renderer. */
+export const kNotDrawn = new Set(['BL', 'B']);
+
+const kCoat = 'KHR_materials_coat';
+
+/** The coat as a renderer knows it that has none but KHR_materials_clearcoat: what an exporter writes for it. */
+function withClearcoat(work) {
+  const [material] = work.materials, { [kCoat]: coat, ...others } = material.extensions;
+  const clearcoat = { clearcoatFactor: coat.coatFactor, clearcoatRoughnessFactor: coat.coatRoughnessFactor };
+  return {
+    ...work,
+    extensionsUsed: work.extensionsUsed.map((name) => (name === kCoat ? 'KHR_materials_clearcoat' : name)),
+    materials: [{ ...material, extensions: { ...others, KHR_materials_clearcoat: clearcoat } }],
+  };
+}
+
+const kNoCoat = "the coat's IOR, colour, darkening and anisotropy (it has no `KHR_materials_coat`; measured is a clearcoat)";
+
+/**
+ * `packages` tell the versions; `page` is the script in pages/; `leavesOut` has, for files of works, what the peer does not
+ * draw: such a figure is not for the same work. `differs` is what its text and its pictures show.
+ */
+export const kPeers = [
+  {
+    name: 'khronos', title: 'Khronos glTF Sample Renderer', package: '@khronosgroup/gltf-viewer', page: 'khronos',
+    leavesOut: { w3: kNoCoat }, fallback: { w3: withClearcoat },
+    differs: 'asks every light for its type and range; the dielectric and the metal apart, as we have them, compensated in the ' +
+      'environment alone, with a Fresnel that roughness bounds (the rims of the pictures); the split sum weighs the coat by the ' +
+      "view's Fresnel; one bent tap for an anisotropic environment; lookups in three tables for a " +
+      'sheen, of which the third is never uploaded in this version, so that nothing is dimmed under a sheen',
+  },
+  {
+    name: 'three', title: 'three.js', package: 'three', page: 'three',
+    leavesOut: { w3: kNoCoat }, fallback: { w3: withClearcoat },
+    differs: 'compensates direct light, too; the dielectric and the metal apart in the environment, one mixed reflectance in direct ' +
+      'light; widens roughness by the derivatives of the normal, everywhere, which blunts highlights; a sheen with the visibility of Neubelt; one bent ' +
+      'tap for an anisotropic environment',
+  },
+  {
+    name: 'babylon', title: 'Babylon.js (PBR)', package: '@babylonjs/core', page: 'babylon',
+    leavesOut: { w3: "the coat's darkening and anisotropy" },
+    differs: 'one mixed reflectance of dielectric and metal, and one film over it; compensates direct light, too; diffuse environment ' +
+      'from spherical harmonics in uniforms, without a lookup; fades reflections below the horizon; a coat of another visibility ' +
+      "(Kelemen), under which direct light is weighed by the half vector's Fresnel; a sheen with the visibility of Ashikhmin; one bent tap for an anisotropic environment",
+  },
+  {
+    name: 'babylon_openpbr', title: 'Babylon.js (OpenPBR)', package: '@babylonjs/core', page: 'babylon', openpbr: true, leavesOut: {},
+    differs: "OpenPBR's layers and not glTF's: a clearcoat darkens what is below it and makes it rougher, a sheen is a fuzz; diffuse " +
+      'environment from spherical harmonics in uniforms; 16 taps of the environment for an anisotropic lobe, in a loop that the ' +
+      'estimate counts eightfold, and a lookup of noise for them; in direct light the slope of an anisotropic lobe is squared once ' +
+      'more, which makes highlights narrower and brighter',
+  },
+];
+
+/** The work as a peer gets it. */
+export const asFor = (peer, file, work) => (peer.fallback?.[file] ?? ((same) => same))(work);
