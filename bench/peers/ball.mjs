@@ -160,7 +160,8 @@ function sheenAlbedo(cosine, roughness) {
   const alpha = Math.max(roughness * roughness, 1e-3), kSteps = 24;
   const fit = (x) => {
     const t = (1 - alpha) ** 2, mix = (p, q) => t * p + (1 - t) * q;
-    return mix(25.3245, 21.5473) / (1 + mix(3.32435, 3.82987) * x ** mix(0.16801, 0.19823)) + mix(-1.27393, -1.9776) * x + mix(-4.85967, -4.32054);
+    const steep = mix(25.3245, 21.5473) / (1 + mix(3.32435, 3.82987) * x ** mix(0.16801, 0.19823));
+    return steep + mix(-1.27393, -1.9776) * x + mix(-4.85967, -4.32054);
   };
   const lambda = (x) => Math.exp(x < 0.5 ? fit(x) : 2 * fit(0.5) - fit(1 - x));
   const sine = Math.sqrt(1 - cosine * cosine);

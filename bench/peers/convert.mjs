@@ -2,7 +2,7 @@
 // locations by itself). GLSL 4.50 it becomes, and not ES 3.10: that would forbid functions that are named as built-in ones.
 
 /** Extensions of WebGL 2 that need no directive in GLSL 4.50, which has what they add. */
-const kIncluded = /^\s*#\s*extension\s+GL_(OES_standard_derivatives|EXT_shader_texture_lod|EXT_frag_depth|EXT_draw_buffers|OES_texture_3D)\b.*$/;
+const kIncluded = /^\s*#\s*extension\s+GL_(OES_standard_derivatives|OES_texture_3D|EXT_(shader_texture_lod|frag_depth|draw_buffers))\b/;
 const kVersion = /^\s*#\s*version\s+(.*?)\s*$/;
 const kPrecision = /\bprecision\s+(lowp|mediump|highp)\s+\w+\s*;/g;
 /** Names in GLSL ES 3.00, words of the language in GLSL for Vulkan. */
@@ -22,7 +22,9 @@ export function vulkanGlsl(source) {
   const lines = withoutComments(source.replace(/\r\n?/g, '\n')).split('\n');
   const first = lines.findIndex((line) => line.trim() !== '');
   const version = kVersion.exec(lines[first] ?? '')?.[1];
-  if (version !== '300 es') throw new Error(`the shader is not of "#version 300 es" but of ${version ? `"#version ${version}"` : 'no version'}`);
+  if (version !== '300 es') {
+    throw new Error(`the shader is not of "#version 300 es" but of ${version ? `"#version ${version}"` : 'no version'}`);
+  }
   const body = lines.slice(first + 1).map((line) => {
     if (kIncluded.test(line)) return '';
     // A precision stands in macros, too, in `#ifdef`s or among other code; after the head it has nothing left to say.

@@ -1,6 +1,7 @@
 // `./dev bench peers`: builds other renderers' fragment shaders for the works as an application would, in a browser, measures
 // them as ours are measured, compares the colours, and renews bench/peers.json, docs/cost.md and README.md.
 //   node peers.mjs ROOT LACQUER OUTPUT      OUTPUT has node_modules
+//   node peers.mjs ROOT                     the pages alone, from the records in bench/
 import { copyFileSync, mkdirSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
@@ -8,10 +9,10 @@ import { kIndices, kSize, points, readWork, writeEnvironment, writeScene, writeS
 import { bundle, open, pageOf } from './browser.mjs';
 import { compile, costs, distance, driver, ourColors, versionOf } from './measure.mjs';
 import { writeSheet } from './pictures.mjs';
-import { write } from './report.mjs';
+import { writePages, writeRecord } from './report.mjs';
 import { asFor, kNotDrawn, kPeers, kWorks } from './works.mjs';
 
-const [root, lacquer, output] = process.argv.slice(2).map((path) => resolve(path));
+const [root, lacquer, output = root] = process.argv.slice(2).map((path) => resolve(path));
 const modules = join(output, 'node_modules');
 const require = createRequire(join(output, 'package.json'));
 
@@ -83,6 +84,7 @@ function compare(found, results) {
 }
 
 async function main() {
+  if (!lacquer) return writePages(root);
   prepare();
   await bundle(require('esbuild'), join(root, 'bench/peers/pages'), [...new Set(kPeers.map(({ page }) => page))], join(output, 'pages'));
   const found = await drawEverything();
@@ -93,10 +95,12 @@ async function main() {
   const balls = compare(found, results);
   const versions = Object.fromEntries(kPeers.map((peer) => [peer.package, versionOf(modules, peer.package)]));
   if (process.exitCode) throw new Error('something failed; bench/peers.json and the pages stay as they were');
-  console.log(write(root, { versions, driver: driver(), results }));
+  writeRecord(root, { versions, driver: driver(), results });
+  writePages(root);
   writeSheet(join(root, 'docs/images/peers.png'), balls, 2);
   writeSheet(join(output, 'balls.png'), balls, 1);
-  console.error(`bench peers: ours, theirs and the differences are in ${join(output, 'balls.png')}, their shaders in ${join(output, 'shaders')}`);
+  console.error(`bench peers: docs/cost.md has the tables, ${join(output, 'balls.png')} ours, theirs and the differences, ` +
+    `${join(output, 'shaders')} their shaders`);
 }
 
 main().catch((error) => {

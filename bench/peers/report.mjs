@@ -7,7 +7,8 @@ const pair = (gpu) => `${gpu.instructions} / ${gpu.inverse_throughput}`;
 
 /** The fewest of each number among the peers that draw all of the work, on navi21; null where none does. */
 function best(work, results) {
-  const all = kPeers.filter(({ leavesOut }) => !leavesOut[work.file]).map(({ name }) => results[name]?.navi21).filter(Boolean);
+  const complete = kPeers.filter(({ leavesOut }) => !leavesOut[work.file]);
+  const all = complete.map(({ name }) => results[name]?.navi21).filter(Boolean);
   if (all.length === 0) return null;
   const least = (what) => Math.min(...all.map((gpu) => gpu[what]));
   return { instructions: least('instructions'), inverse_throughput: least('inverse_throughput') };
@@ -54,13 +55,17 @@ function colorTable(record) {
 }
 
 function peerTable(record) {
-  const leftOut = ({ leavesOut }) => Object.entries(leavesOut).map(([file, what]) => `of ${file.toUpperCase()}: ${what}`).join('; ') || 'nothing';
+  const leftOut = ({ leavesOut }) => {
+    const each = Object.entries(leavesOut).map(([file, what]) => `of ${file.toUpperCase()}: ${what}`);
+    return each.join('; ') || 'nothing';
+  };
   return table(['peer', 'version', 'leaves out', 'does differently'],
     kPeers.map((peer) => [peer.title, record.versions[peer.package], leftOut(peer), peer.differs]));
 }
 
-function page(record, ours) {
-  return `${record.driver}, navi21, instructions / inverse throughput, in brackets what is not the whole work:
+function section(record, ours) {
+  return `
+${record.driver}, navi21, instructions / inverse throughput, in brackets what is not the whole work:
 
 ${costTable(record, ours)}
 
@@ -72,30 +77,40 @@ ${colorTable(record)}
 `;
 }
 
-/** Replaces what stands between the marks of a page. */
-function renew(path, text) {
+/** The four works of the README: ours in hundredths of the best peer's instructions. */
+function line(record, ours) {
+  const percents = ['W0', 'W1', 'W2', 'W3'].map((name) => {
+    return Math.round((100 * ours[name].instructions) / record.works[name].best.instructions);
+  });
+  const titled = ({ title, package: name }) => `${title.replace(/ \(.*\)/, '')} ${record.versions[name]}`;
+  const versions = [...new Set(kPeers.map(titled))];
+  return `${percents.slice(0, 3).join(', ')} and ${percents[3]} % of the fewest instructions that the ` +
+    `${versions.slice(0, -1).join(', ')} or ${versions.at(-1)} need for the same work`;
+}
+
+/** What a page holds, with what stands between its marks replaced. */
+function renewed(path, text) {
   const old = readFileSync(path, 'utf8');
   const begin = old.indexOf(kBegin), end = old.indexOf(kEnd);
   if (begin < 0 || end < begin) throw new Error(`${path} has no ${kBegin} and ${kEnd}`);
-  writeFileSync(path, old.slice(0, begin + kBegin.length) + text + old.slice(end));
+  return old.slice(0, begin + kBegin.length) + text + old.slice(end);
 }
 
-/** The four works of the README: ours in hundredths of the best peer's instructions. */
-function line(record, ours) {
-  const percents = ['W0', 'W1', 'W2', 'W3'].map((name) => Math.round((100 * ours[name].instructions) / record.works[name].best.instructions));
-  const versions = [...new Set(kPeers.map((peer) => `${peer.title.replace(/ \((PBR|OpenPBR)\)/, '')} ${record.versions[peer.package]}`))];
-  return `${percents.slice(0, 3).join(', ')} and ${percents[3]} % of the fewest instructions that the ${versions.slice(0, -1).join(', ')} or ` +
-    `${versions.at(-1)} need for the same work`;
-}
-
-/** `root` is the tree, `measured` what peers.mjs found. Ours are those of bench/cost.json. */
-export function write(root, measured) {
-  const made = record(measured);
-  const cost = JSON.parse(readFileSync(`${root}/bench/cost.json`, 'utf8'));
-  if (cost.driver !== made.driver) console.error(`bench peers: ours were measured with ${cost.driver}, theirs with ${made.driver}: \`./dev bench cost\` renews ours`);
+/** The pages as the records in bench/ say, by path; theirs are in peers.json, ours in cost.json. */
+export function pages(root) {
+  const read = (name) => JSON.parse(readFileSync(`${root}/bench/${name}`, 'utf8'));
+  const theirs = read('peers.json'), cost = read('cost.json');
   const ours = Object.fromEntries(kWorks.map(({ name }) => [name, cost.works[name].multiple_scattering.direct.navi21]));
-  writeFileSync(`${root}/bench/peers.json`, `${JSON.stringify(made, null, 2)}\n`);
-  renew(`${root}/docs/cost.md`, `\n${page(made, ours)}`);
-  renew(`${root}/README.md`, line(made, ours));
-  return page(made, ours);
+  return {
+    [`${root}/docs/cost.md`]: renewed(`${root}/docs/cost.md`, section(theirs, ours)),
+    [`${root}/README.md`]: renewed(`${root}/README.md`, line(theirs, ours)),
+  };
+}
+
+export function writeRecord(root, measured) {
+  writeFileSync(`${root}/bench/peers.json`, `${JSON.stringify(record(measured), null, 2)}\n`);
+}
+
+export function writePages(root) {
+  for (const [path, text] of Object.entries(pages(root))) writeFileSync(path, text);
 }

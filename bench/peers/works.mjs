@@ -2,7 +2,7 @@
 
 const named = (file, ...names) => names.map((name) => ({ name, file, ibl: !name.endsWith('L') }));
 
-/** In the order of bench/cost.json. `drawn` says whether the ball is compared: see `kNotDrawn`. */
+/** In the order of bench/cost.json. */
 export const kWorks = [
   ...named('w0', 'W0L', 'W0'), ...named('w1', 'W1L', 'W1'), ...named('w1off', 'W1off'), ...named('w2', 'W2'),
   ...named('w3', 'W3L', 'W3'), ...named('a', 'AL', 'A'), ...named('b', 'BL', 'B'), ...named('c', 'CL', 'C'),
@@ -27,7 +27,7 @@ function withClearcoat(work) {
 const kNoCoat = "the coat's IOR, colour, darkening and anisotropy (it has no `KHR_materials_coat`; measured is a clearcoat)";
 
 /**
- * `packages` tell the versions; `page` is the script in pages/; `leavesOut` has, for files of works, what the peer does not
+ * `package` tells the version; `page` is the script in pages/; `leavesOut` has, for files of works, what the peer does not
  * draw: such a figure is not for the same work. `differs` is what its text and its pictures show.
  */
 export const kPeers = [
@@ -43,15 +43,16 @@ export const kPeers = [
     name: 'three', title: 'three.js', package: 'three', page: 'three',
     leavesOut: { w3: kNoCoat }, fallback: { w3: withClearcoat },
     differs: 'compensates direct light, too; the dielectric and the metal apart in the environment, one mixed reflectance in direct ' +
-      'light; widens roughness by the derivatives of the normal, everywhere, which blunts highlights; a sheen with the visibility of Neubelt; one bent ' +
-      'tap for an anisotropic environment',
+      'light; widens roughness by the derivatives of the normal, everywhere, which blunts highlights; a sheen with the visibility of ' +
+      'Neubelt; one bent tap for an anisotropic environment',
   },
   {
     name: 'babylon', title: 'Babylon.js (PBR)', package: '@babylonjs/core', page: 'babylon',
     leavesOut: { w3: "the coat's darkening and anisotropy" },
     differs: 'one mixed reflectance of dielectric and metal, and one film over it; compensates direct light, too; diffuse environment ' +
       'from spherical harmonics in uniforms, without a lookup; fades reflections below the horizon; a coat of another visibility ' +
-      "(Kelemen), under which direct light is weighed by the half vector's Fresnel; a sheen with the visibility of Ashikhmin; one bent tap for an anisotropic environment",
+      "(Kelemen), under which direct light is weighed by the half vector's Fresnel; a sheen with the visibility of Ashikhmin; one bent " +
+      'tap for an anisotropic environment',
   },
   {
     name: 'babylon_openpbr', title: 'Babylon.js (OpenPBR)', package: '@babylonjs/core', page: 'babylon', openpbr: true, leavesOut: {},

@@ -7,7 +7,8 @@ let engine, environment;
 
 /** A cube of the environment, filtered for roughness when it is loaded. */
 const load = () => new Promise((done, fail) => {
-  const made = new HDRCubeTexture('/environment.hdr', engine, 64, false, true, false, true, () => done(made), (message) => fail(new Error(message)));
+  const loaded = () => done(made), failed = (message) => fail(new Error(message));
+  const made = new HDRCubeTexture('/environment.hdr', engine, 64, false, true, false, true, loaded, failed);
 });
 
 window.draw = async (request) => {
