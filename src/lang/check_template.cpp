@@ -70,16 +70,22 @@ public:
                              environment.object ? object_++ : frame_++, unit_++};
     }
   }
-  /// What is optional lies behind all else in its set, so that no number depends on it; its unit is bind's to
-  /// give. The objects' after all that is the frame's.
+  /// What is optional lies behind all else in its set, so that no number depends on it, in the order of the
+  /// text; its unit is bind's to give. The objects' after all that is the frame's.
   void takeOptional(TemplateDecl& decl, bool object) {
+    auto environment = decl.environments.begin();
+    const auto texturesBefore = [&](uint32_t offset) {
+      for (; environment != decl.environments.end() && environment->span.offset < offset; ++environment) {
+        if (environment->optional && environment->object == object)
+          environment->binding = {object ? ir::kObjectSet : 0U, object ? object_++ : frame_++, 0};
+      }
+    };
     for (BlockDecl& block : decl.blocks) {
-      if (block.optional && (block.role == BlockRole::Object) == object) number(block);
+      if (!block.optional || (block.role == BlockRole::Object) != object) continue;
+      texturesBefore(block.span.offset);
+      number(block);
     }
-    for (EnvironmentDecl& environment : decl.environments) {
-      if (environment.optional && environment.object == object)
-        environment.binding = {object ? ir::kObjectSet : 0U, object ? object_++ : frame_++, 0};
-    }
+    texturesBefore(~uint32_t{0});
   }
   /// Lists' units, behind the required environment's: they are textures where there are no storage buffers.
   void takeLists(TemplateDecl& decl) {

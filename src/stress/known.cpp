@@ -40,6 +40,7 @@ constexpr Known kKnown[] = {
     {"layer_choice", "choice < share", "a choice"},
     {"density", "swizzle < 1e-30", "what is black at any distance is black at all of them"},
     {"extinction", "swizzle < 1e-30", "what is black at any distance is black at all of them"},
+    {"light_", "layer < 0", "a light has a layer of a texture, or none"},
     {"scaled_normal", "mul < 0", "a scale that mirrors turns the surface over"},
     {"film", " < 0", "a film's wave turns over where the base becomes the thinner medium"},
 };

@@ -123,6 +123,7 @@ vulkan::Texture textureOf(const Subject& subject, const ir::TextureSlot& slot,
   vulkan::Texture texture;
   texture.nearest = true;
   texture.per_point = true;
+  texture.compares = slot.type == ir::Type::Texture2DShadow;
   texture.s = texture.t = vulkan::Wrap::Clamp;  // coordinates may be anything
   texture.shape = slot.type == ir::Type::TextureCube      ? vulkan::Shape::Cube
                   : slot.type == ir::Type::Texture2DArray ? vulkan::Shape::Array
@@ -173,7 +174,7 @@ std::string whyNot(const Subject& subject) {
   }
   for (const ir::TextureSlot& slot : subject.module().textures) {
     if (slot.type != ir::Type::Texture2D && slot.type != ir::Type::TextureCube &&
-        slot.type != ir::Type::Texture2DArray)
+        slot.type != ir::Type::Texture2DArray && slot.type != ir::Type::Texture2DShadow)
       return fmt::format("'{}' is a {}", slot.name, ir::typeName(slot.type));
   }
   return {};

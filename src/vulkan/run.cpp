@@ -46,6 +46,13 @@ bool varies(const Texture& texture) { return texture.shape == Shape::Cube || tex
 
 uint32_t layersOf(const Texture& texture) { return texture.shape == Shape::Cube ? 6 : 1; }
 
+/// What a depth map holds: its texels' red.
+std::vector<float> depthsOf(const std::vector<Texel>& texels) {
+  std::vector<float> depths;
+  for (const Texel& texel : texels) depths.push_back(texel[0]);
+  return depths;
+}
+
 size_t blockSize(const UniformBlock& block, size_t points) {
   return block.per_point ? block.bytes.size() / points : block.bytes.size();
 }
@@ -151,9 +158,7 @@ void Running::prepare() {
         texture.width, texture.height, layers, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
         texture.compares ? kDepthFormat : kFormat, texture.shape == Shape::Volume);
     if (texture.compares) {
-      std::vector<float> depths;
-      for (const Texel& texel : *texture.texels) depths.push_back(texel[0]);
-      upload(depths, image, objects_);
+      upload(depthsOf(*texture.texels), image, objects_);
     } else {
       upload(*texture.texels, image, objects_);
     }
@@ -288,9 +293,11 @@ std::vector<std::vector<VkImageView>> Running::variedViews(Objects& objects, con
     const uint32_t layers = layersOf(*varied_[c]);
     std::vector<Texel> texels;
     for (const std::vector<Texel>& colors : chunk.colors) texels.insert(texels.end(), layers, colors[c]);
+    const bool compares = varied_[c]->compares;
     const Image image = objects.image(1, 1, static_cast<uint32_t>(texels.size()),
-                                      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    upload(texels, image, objects);
+                                      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                      compares ? kDepthFormat : kFormat, false);
+    compares ? upload(depthsOf(texels), image, objects) : upload(texels, image, objects);
     for (size_t v = 0; v < views.size(); ++v)
       views[v].push_back(objects.view(image, static_cast<uint32_t>(layers * v), varied_[c]->shape, layers));
   }
