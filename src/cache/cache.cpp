@@ -149,16 +149,16 @@ void Cache::trim() {
   std::vector<Entry> entries;
   uint64_t total = 0;
   // What other processes remove meanwhile is passed over.
-  std::error_code error, ignored;
-  for (fs::directory_iterator shard(folder_, error), end; !error && shard != end; shard.increment(error)) {
-    const std::string name = shard->path().filename().string();
-    if (name.size() != 2 || isLink(shard->path()) || isLink(folder_)) continue;
-    std::error_code inner;
-    for (fs::directory_iterator it(shard->path(), inner); !inner && it != end; it.increment(inner)) {
-      if (!isEntryName(it->path().filename().string(), name)) continue;
-      if (!fs::is_regular_file(it->symlink_status(ignored))) continue;
-      Entry entry{it->last_write_time(ignored), 0, it->path()};
-      entry.size = it->file_size(ignored);
+  std::error_code ignored;
+  for (const std::string& shard : namesIn(folder_)) {
+    if (shard.size() != 2) continue;
+    const std::string folder = folder_ + "/" + shard;
+    for (const std::string& name : namesIn(folder)) {
+      if (!isEntryName(name, shard)) continue;
+      Entry entry{{}, 0, fs::path(folder) / name};
+      if (!fs::is_regular_file(fs::symlink_status(entry.path, ignored))) continue;
+      entry.used = fs::last_write_time(entry.path, ignored);
+      entry.size = fs::file_size(entry.path, ignored);
       if (ignored) continue;
       total += entry.size;
       entries.push_back(std::move(entry));

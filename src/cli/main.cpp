@@ -262,6 +262,46 @@ void addPlan(CLI::App& verb, Flags& flags) {
   addGeneration(verb, flags);
 }
 
+/// The one material that is looked at.
+void addLook(CLI::App& verb, Flags& flags) {
+  verb.add_option("file", flags.files, "a .gltf or .glb file")->required()->expected(1);
+  verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
+  addShared(verb, flags);
+}
+
+void addGraph(CLI::App& verb, Flags& flags) {
+  addLook(verb, flags);
+  verb.add_option("--format", flags.format, "json or dot")
+      ->check(CLI::IsMember({"json", "dot"}))
+      ->capture_default_str();
+}
+
+void addDump(CLI::App& verb, Flags& flags) {
+  addLook(verb, flags);
+  verb.add_option("--after", flags.pass, "the pass after which to look; the last when absent")
+      ->check(CLI::IsMember(lacquer::passNames()));
+}
+
+void addProve(CLI::App& verb, Flags& flags) {
+  verb.add_option("files", flags.files, ".gltf or .glb files");
+  verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
+      ->allow_extra_args(false);
+  verb.add_flag("--json", flags.json, "as JSON, with everything that is proved");
+  verb.add_option("--arithmetic", flags.arithmetic, "what operations are taken to compute")
+      ->check(CLI::IsMember({"vulkan", "ieee", "mediump"}))
+      ->capture_default_str();
+  addShared(verb, flags);
+}
+
+void addNodes(CLI::App& verb, Flags& flags, std::string& name) {
+  verb.add_option("name", name, "one node");
+  verb.add_flag("--json", flags.json, "as JSON");
+  verb.add_option("--nodes", flags.options.node_directories,
+                  "a folder with more node files (may be repeated)")
+      ->check(kNotEmpty)
+      ->allow_extra_args(false);
+}
+
 void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
   verb.add_option("files", flags.files, ".gltf or .glb files")->required();
   verb.add_option("-o,--output", lod.lod.output, "the folder to write to")->required()->check(kNotEmpty);
@@ -409,39 +449,14 @@ int run(int argc, char** argv) {
 
   CLI::App* graph_verb = app.add_subcommand("graph", "the node graph of a material");
   CLI::App* dump_verb = app.add_subcommand("dump", "the DAG of a material, with the rate of every value");
-  for (CLI::App* verb : {graph_verb, dump_verb}) {
-    if (!called(verb)) continue;
-    verb->add_option("file", flags.files, "a .gltf or .glb file")->required()->expected(1);
-    verb->add_option("--material", flags.material, "the material's name; not needed for a file with one");
-    addShared(*verb, flags);
-  }
-  graph_verb->add_option("--format", flags.format, "json or dot")
-      ->check(CLI::IsMember({"json", "dot"}))
-      ->capture_default_str();
-  dump_verb->add_option("--after", flags.pass, "the pass after which to look; the last when absent")
-      ->check(CLI::IsMember(lacquer::passNames()));
-
+  if (called(graph_verb)) addGraph(*graph_verb, flags);
+  if (called(dump_verb)) addDump(*dump_verb, flags);
   CLI::App* prove_verb =
       app.add_subcommand("prove", "which operations are safe for all inputs; of the nodes without FILE");
-  prove_verb->add_option("files", flags.files, ".gltf or .glb files");
-  prove_verb->add_option("--material", flags.materials, "only materials of this name (may be repeated)")
-      ->allow_extra_args(false);
-  prove_verb->add_flag("--json", flags.json, "as JSON, with everything that is proved");
-  prove_verb->add_option("--arithmetic", flags.arithmetic, "what operations are taken to compute")
-      ->check(CLI::IsMember({"vulkan", "ieee", "mediump"}))
-      ->capture_default_str();
-  if (called(prove_verb)) addShared(*prove_verb, flags);
-
+  if (called(prove_verb)) addProve(*prove_verb, flags);
   CLI::App* nodes_verb =
       app.add_subcommand("nodes", "the node library: contracts, ranges, sources, variants");
-  nodes_verb->add_option("name", node_name, "one node");
-  nodes_verb->add_flag("--json", flags.json, "as JSON");
-  nodes_verb
-      ->add_option("--nodes", flags.options.node_directories,
-                   "a folder with more node files (may be repeated)")
-      ->check(kNotEmpty)
-      ->allow_extra_args(false);
-
+  if (called(nodes_verb)) addNodes(*nodes_verb, flags, node_name);
   CLI::App* cost_verb =
       app.add_subcommand("cost", "what SPIR-V fragment shaders cost on AMD GPUs, by Mesa's compiler");
   cost_verb->add_option("paths", flags.files, "folders that gen wrote, or .spv files")->required();

@@ -17,8 +17,12 @@ Vec3 unit(const Vec3& a) {
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 
+/// Half a turn about the z axis, for a lobe that is turned so.
+Vec3 about(const Lobe& lobe, const Vec3& l) { return lobe.back ? Vec3{-l[0], -l[1], l[2]} : l; }
+
 /// Of a lobe's directions, by solid angle: D of the half vector times G1(v) / (4 N.V).
-double density(const Lobe& lobe, const Vec3& v, const Vec3& l) {
+double density(const Lobe& lobe, const Vec3& v, const Vec3& light) {
+  const Vec3 l = about(lobe, light);
   const Vec3 h = unit({v[0] + l[0], v[1] + l[1], v[2] + l[2]});
   const auto stretched = [&](const Vec3& a, double power) {
     return std::pow(lobe.alpha_t, power) * a[0] * a[0] + std::pow(lobe.alpha_b, power) * a[1] * a[1];
@@ -39,7 +43,7 @@ Vec3 mirrored(const Lobe& lobe, const Vec3& v, double a, double b) {
   const Vec3 h = unit({lobe.alpha_t * (ring * std::cos(phi) + w[0]),
                        lobe.alpha_b * (ring * std::sin(phi) + w[1]), std::max(z + w[2], 1e-30)});
   const double twice = 2 * dot(v, h);
-  return {twice * h[0] - v[0], twice * h[1] - v[1], twice * h[2] - v[2]};
+  return about(lobe, {twice * h[0] - v[0], twice * h[1] - v[1], twice * h[2] - v[2]});
 }
 
 /// Even in projected area.

@@ -12,6 +12,7 @@ using Vec3 = std::array<double, 3>;
 /// A GGX lobe about the z axis, stretched along x and y.
 struct Lobe {
   double alpha_t = 1, alpha_b = 1;
+  bool back = false;  ///< of mirrors that send light back: turned by half a turn about the z axis
 };
 
 struct Direction {

@@ -160,7 +160,12 @@ private:
       const double strength = number(material, (layer + "anisotropy_strength").c_str(), 0);
       lobes.push_back({across + (1 - across) * strength * strength, across});
     }
-    return lobes;
+    if (!has("retroreflection_factor")) return lobes;
+    // What is sent back stands about the view as the lobes stand about its mirror direction.
+    std::vector<Lobe> both = lobes;
+    for (Lobe& lobe : lobes) lobe.back = true;
+    both.insert(both.end(), lobes.begin(), lobes.end());
+    return both;
   }
 
   const Subject& subject_;

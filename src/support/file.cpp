@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <random>
 #include <utility>
 
@@ -126,6 +127,17 @@ void removeAbandonedIn(const std::string& path) {
   ::closedir(folder);
 }
 
+void listNames(const std::string& path, std::vector<std::string>& names) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+  if (fd < 0) return;
+  const std::unique_ptr<DIR, int (*)(DIR*)> folder(::fdopendir(fd), ::closedir);
+  if (folder == nullptr) {
+    ::close(fd);
+    return;
+  }
+  while (const dirent* entry = ::readdir(folder.get())) names.emplace_back(entry->d_name);
+}
+
 /// Not a link in its place.
 void removeFolder(const std::string& path) { ::rmdir(path.c_str()); }
 
@@ -145,6 +157,13 @@ std::FILE* createLocked(const std::string& folder, const std::string& name, Link
 }
 
 void removeAbandonedIn(const std::string&) {}
+
+void listNames(const std::string& path, std::vector<std::string>& names) {
+  std::error_code error;
+  if (fs::is_symlink(fs::symlink_status(path, error))) return;
+  for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error))
+    names.push_back(it->path().filename().string());
+}
 
 void removeFolder(const std::string& path) {
   std::error_code error;
@@ -184,6 +203,12 @@ Result<std::string> readRest(std::FILE* file, uint64_t expected, uint64_t larges
 }
 
 }  // namespace
+
+std::vector<std::string> namesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  listNames(folder, names);
+  return names;
+}
 
 Result<std::string> readFile(const std::string& path, uint64_t largest, Links links) {
   const Place place{path, 0, 0, {}};

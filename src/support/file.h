@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "support/diagnostic.h"
 #include "support/limits.h"
@@ -50,6 +51,10 @@ public:
 private:
   std::string path_;
 };
+
+/// The names in a folder, "." and ".." among them, in no order; none where there is no folder, or a link in its
+/// place. Memory that runs out is an exception, where the standard library's own listing would end the process.
+std::vector<std::string> namesIn(const std::string& folder);
 
 struct Writing {
   const Scratch* scratch = nullptr;  ///< where the file is written; without one, beside its place

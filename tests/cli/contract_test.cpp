@@ -65,7 +65,8 @@ TEST_F(Contract, PrimitivesNameTheirUsesAndThoseOfVariants) {
     EXPECT_EQ(primitives[i]["material"], 0);
     const json& use = material(0)["uses"][primitives[i]["use"].get<size_t>()];
     const bool textured = i == 0;
-    EXPECT_EQ(use["attributes"], textured ? (json{"NORMAL", "TEXCOORD_0", "QUANTIZED"}) : (json{"NORMAL", "QUANTIZED"}));
+    EXPECT_EQ(use["attributes"],
+              textured ? (json{"NORMAL", "TEXCOORD_0", "QUANTIZED"}) : (json{"NORMAL", "QUANTIZED"}));
   }
   const json night = {{{"variants", {1}}, {"material", 1}, {"use", 0}}};
   EXPECT_EQ(primitives[0]["variants"], night);

@@ -119,6 +119,23 @@ TEST(Directions, ResolveWhatIsSmoothAndNarrowLobes) {
   }
 }
 
+/// A narrow lobe about the view itself sends all light back that there is for it.
+TEST(Directions, ResolveWhatIsSentBack) {
+  const Vec3 v{0.48, 0.64, 0.6};
+  for (const double alpha : {0.001, 0.02}) {
+    const Lobe plain{alpha, alpha};
+    const Lobe back{alpha, alpha, true};
+    double sent = 0;
+    for (const Direction& d : directions(v, {{plain, back}}, 1600)) {
+      Vec3 h{v[0] - d.l[0], v[1] - d.l[1], v[2] + d.l[2]};
+      const double length = std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+      for (double& x : h) x /= length;
+      sent += d.weight * ggx(plain, h) / (4 * (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]));
+    }
+    EXPECT_NEAR(sent, 1, 0.01) << alpha;
+  }
+}
+
 /// A Lambertian base under a coat that is a perfect mirror of any roughness and takes `taken` of the base.
 class Polished final : public Shown {
 public:
