@@ -9,23 +9,27 @@
 
 namespace lacquer::programs {
 
-ModelError fitModel(const std::vector<double>& model, const std::vector<double>& driver) {
+ModelError fitModel(const std::vector<Compared>& programs) {
   ModelError error;
   double ratios = 0;
   double squares = 0;
-  for (size_t i = 0; i < model.size(); ++i) {
-    const double ratio = model[i] / driver[i];
+  for (size_t i = 0; i < programs.size(); i += 2) {
+    const double ratio = programs[i].model / programs[i].driver;
     ratios += ratio;
     squares += ratio * ratio;
+    ++error.fitted;
   }
-  if (!(squares > 0)) return error;
-  error.compared = model.size();
+  if (!(squares > 0)) return {};
   error.scale = ratios / squares;
-  for (size_t i = 0; i < model.size(); ++i) {
-    const double off = std::abs(error.scale * model[i] / driver[i] - 1);
-    error.mean += off / static_cast<double>(model.size());
-    error.largest = std::max(error.largest, off);
+  for (size_t i = 1; i < programs.size(); i += 2) {
+    const double off = std::abs(error.scale * programs[i].model / programs[i].driver - 1);
+    error.mean += off;
+    ++error.compared;
+    if (off < error.largest) continue;
+    error.largest = off;
+    error.largest_structures = programs[i].structures;
   }
+  if (error.compared > 0) error.mean /= static_cast<double>(error.compared);
   return error;
 }
 
@@ -69,8 +73,11 @@ std::string costsText(const Curve& curve) {
   if (!curve.driver.empty()) return fmt::format("measured with {} for navi21", curve.driver);
   if (curve.error.compared == 0) return "estimated by the model, which was compared with no driver";
   return fmt::format(
-      "estimated by the model, which is off by {:.1f} % in the mean and {:.1f} % at most over {} programs",
-      100 * curve.error.mean, 100 * curve.error.largest, curve.error.compared);
+      "estimated by the model, which was fitted to the driver's for {} programs and is off by {:.1f} % in "
+      "the "
+      "mean over {} others, by {:.1f} % at most, for a program of {} structures",
+      curve.error.fitted, 100 * curve.error.mean, curve.error.compared, 100 * curve.error.largest,
+      curve.error.largest_structures);
 }
 
 }  // namespace
@@ -85,9 +92,12 @@ std::string toJson(const Curve& curve) {
   json.key("by").string(curve.driver.empty() ? "model" : "driver");
   if (!curve.driver.empty()) json.key("driver").string(curve.driver);
   if (curve.error.compared > 0) {
-    json.key("model").beginObject().key("compared").integer(static_cast<int64_t>(curve.error.compared));
+    json.key("model").beginObject().key("fitted").integer(static_cast<int64_t>(curve.error.fitted));
+    json.key("compared").integer(static_cast<int64_t>(curve.error.compared));
     json.key("mean_error").number(rounded(curve.error.mean, 1e4));
-    json.key("largest_error").number(rounded(curve.error.largest, 1e4)).endObject();
+    json.key("largest_error").number(rounded(curve.error.largest, 1e4));
+    json.key("largest_error_structures").integer(static_cast<int64_t>(curve.error.largest_structures));
+    json.endObject();
   }
   json.endObject().key("curve").beginArray();
   for (const Point& point : curve.points) {

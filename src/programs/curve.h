@@ -8,15 +8,24 @@
 
 namespace lacquer::programs {
 
-/// How far the model may be off: its numbers beside those of a driver.
-struct ModelError {
-  size_t compared = 0;           ///< programs
-  double scale = 1;              ///< the model's cycles are multiplied by it
-  double mean = 0, largest = 0;  ///< relative
+/// A program's cycles by the model and by a driver.
+struct Compared {
+  double model = 0, driver = 0;
+  size_t structures = 1;  ///< that share the program
 };
 
-/// The scale with the least squares of relative differences, and what is left of them.
-ModelError fitModel(const std::vector<double>& model, const std::vector<double>& driver);
+/// How far the model may be off: its numbers beside those of a driver, for programs that its fit has not
+/// seen.
+struct ModelError {
+  size_t fitted = 0, compared = 0;  ///< programs: no one is both
+  double scale = 1;                 ///< the model's cycles are multiplied by it
+  double mean = 0, largest = 0;     ///< relative
+  size_t largest_structures = 0;    ///< of the program that the model is off the most
+};
+
+/// The scale with the least squares of relative differences over every second program, from the first, and
+/// the differences that the others have then.
+ModelError fitModel(const std::vector<Compared>& programs);
 
 struct Point {
   size_t programs = 0;
