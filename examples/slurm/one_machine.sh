@@ -85,7 +85,9 @@ echo "Slurm $(sinfo -V | cut -d' ' -f2) has $(sinfo -h -o '%D node with %c cores
 # The plan, and its actions as jobs.
 cd "$work/store"
 "$lacquer" plan "${files[@]}" -o out --ninja build.ninja --json actions.json -q "$@"
-last=$(python3 "$here/farm.py" submit actions.json -- --output="$work/job-%A-%a.txt" | tee /dev/stderr | sed -n '$s/.* job //p')
+jobs=$(python3 "$here/farm.py" submit actions.json -- --output="$work/job-%A-%a.txt")
+echo "$jobs"
+last=${jobs##* job }
 while squeue -h -j "$last" 2>/dev/null | grep -q .; do sleep 0.5; done
 [[ -e out/manifest.json ]] || { echo "no manifest was made:" >&2; cat "$work"/job-*.txt >&2; exit 1; }
 
