@@ -70,12 +70,25 @@ void expectNearTheBest(Materials& materials, size_t most, uint64_t seed, const s
   const Measure measure = [&](const std::vector<Places>& groups) {
     return materials.costs().measure(groups);
   };
+  std::mt19937_64 random(seed);
   const Merging merging = merge(items, 1, measure);
   EXPECT_EQ(merging.steps.size(), items.size() - 1) << name << ": some cannot be merged";
   for (size_t programs = 1; programs < items.size(); ++programs) {
     const double ratio = costOf(items, merging, programs, measure) / leastCost(items, programs, measure);
     EXPECT_LE(ratio, 1.05) << name << ", " << programs << " of " << items.size();
+    if (programs == 1) continue;
+    constexpr int kTries = 6;
+    double mean = 0;
+    for (int i = 0; i < kTries; ++i)
+      mean += costOf(items, anyDivision(items.size(), programs, random), measure) / kTries;
+    EXPECT_LT(costOf(items, merging, programs, measure), mean) << name << ", " << programs;
   }
+  // The ends: nothing merged costs what it cost, and one program what all of them take together.
+  double own = 0;
+  for (const Item& item : items) own += item.weight * item.program.cost;
+  EXPECT_DOUBLE_EQ(costOf(items, merging, items.size(), measure), own) << name;
+  EXPECT_EQ(divisionOf(items, merging, 1).groups.size(), 1U) << name;
+  EXPECT_DOUBLE_EQ(costOf(items, merging, 1, measure), leastCost(items, 1, measure)) << name;
 }
 
 TEST(ProgramSearch, IsNearTheBestOfTheExamples) {
