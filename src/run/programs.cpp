@@ -88,7 +88,7 @@ std::vector<programs::Division> divisionsOf(const std::vector<Item>& items, cons
   return divisions;
 }
 
-/// How far the model is off, over programs spread evenly: it is fitted to every second one.
+/// How far the model is off, over programs spread evenly.
 programs::ModelError errorOf(const std::vector<Item>& items, const programs::Merging& merging,
                              ProgramCosts& measure) {
   const size_t count = items.size() + merging.steps.size();
