@@ -142,11 +142,11 @@ Report generateGraphs(const Strings& files, const std::string& folder, const Opt
 
 /// A build for others to run (docs/builds.md).
 struct Plan {
-  std::string ninja;    ///< the Ninja file to write; what its commands read is put into a folder beside it
-  std::string program;  ///< the command line program, as a command names it
-  Strings command;      ///< the words of its call for one graph, to which the graph and the shard are added
-  Strings replan;       ///< the words of the plan's renewal; none for a plan that does not renew itself
-  std::string json = {};///< the same commands for any farm, as JSON; empty for none
+  std::string ninja;      ///< the Ninja file to write; what its commands read is put into a folder beside it
+  std::string program;    ///< the command line program, as a command names it
+  Strings command;        ///< the words of its call for one graph, to which the graph and the shard are added
+  Strings replan;         ///< the words of the plan's renewal; none for a plan that does not renew itself
+  std::string json = {};  ///< the same commands for any farm, as JSON; empty for none
 };
 /// Writes the plan and, beside it, the graph of every distinct shader; makes no shader. `folder` is the one
 /// that the commands write to. Uses threads.
