@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "check/check.h"
+#include "check/program.h"
 #include "check/reflect.h"
+#include "support/file.h"
 #include "vulkan/passthrough.h"
 #ifdef LACQUER_VULKAN
 #include "cost/loader.h"
@@ -22,6 +24,24 @@ std::string unavailable() {
   if (!vulkan::haveLoader()) return "there is no Vulkan loader (libvulkan.so.1) on this machine";
   if (radvManifest().empty()) return "Mesa's RADV (radeon_icd.*.json) is not installed on this machine";
   return {};
+}
+
+std::string driverIdentity() {
+  std::string identity;
+  const std::string manifests = radvManifest();
+  for (size_t at = 0; at < manifests.size();) {
+    const size_t end = std::min(manifests.find(':', at), manifests.size());
+    const Result<std::string> text = readFile(manifests.substr(at, end - at));
+    at = end + 1;
+    constexpr std::string_view kMember = "\"library_path\"";
+    const size_t member = text ? text->find(kMember) : std::string::npos;
+    if (member == std::string::npos) return {};
+    const size_t first = text->find('"', member + kMember.size());
+    const size_t last = text->find('"', first == std::string::npos ? first : first + 1);
+    if (last == std::string::npos || (*text)[first + 1] != '/') return {};  // wherever the linker finds it
+    identity += *text + check::identityOf(text->substr(first + 1, last - first - 1));
+  }
+  return identity;
 }
 
 namespace {
@@ -82,6 +102,8 @@ Measurement measure(const std::vector<Subject>& subjects, const std::string& fam
 #else
 
 std::string unavailable() { return "this Lacquer was built without Vulkan (or not on Linux)"; }
+
+std::string driverIdentity() { return {}; }
 
 Measurement measure(const std::vector<Subject>& subjects, const std::string&, bool) {
   Outcome outcome;

@@ -49,6 +49,10 @@ struct Measurement {
 /// Why nothing can be measured on this machine: built without Vulkan, no loader, no RADV. Empty when it can.
 std::string unavailable();
 
+/// What tells the driver from another one without asking it: its description and, of the library that this
+/// names, size and time of modification. Empty where there is no driver or the description names no path.
+std::string driverIdentity();
+
 /// Compiles each subject for a family as RADV_FORCE_FAMILY names it. The driver works in a child process with
 /// an environment of its own: the caller's is neither changed nor passed on, and a driver that crashes or
 /// takes more than a minute over one shader costs only that shader's numbers. Safe to call from several

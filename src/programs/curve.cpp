@@ -3,28 +3,42 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "json/text.h"
 
 namespace lacquer::programs {
 
-ModelError fitModel(const std::vector<double>& model, const std::vector<double>& driver) {
-  ModelError error;
+namespace {
+
+/// The scale of every so many programs, from a place on; 0 for none.
+double scaleOf(const std::vector<Compared>& programs, size_t first, size_t step) {
   double ratios = 0;
   double squares = 0;
-  for (size_t i = 0; i < model.size(); ++i) {
-    const double ratio = model[i] / driver[i];
+  for (size_t i = first; i < programs.size(); i += step) {
+    const double ratio = programs[i].model / programs[i].driver;
     ratios += ratio;
     squares += ratio * ratio;
   }
-  if (!(squares > 0)) return error;
-  error.compared = model.size();
-  error.scale = ratios / squares;
-  for (size_t i = 0; i < model.size(); ++i) {
-    const double off = std::abs(error.scale * model[i] / driver[i] - 1);
-    error.mean += off / static_cast<double>(model.size());
-    error.largest = std::max(error.largest, off);
+  return squares > 0 ? ratios / squares : 0;
+}
+
+}  // namespace
+
+ModelError fitModel(const std::vector<Compared>& programs) {
+  ModelError error;
+  const double scale = scaleOf(programs, 0, 1);
+  if (scale > 0) error.scale = scale;
+  const std::array<double, 2> unseen{scaleOf(programs, 1, 2), scaleOf(programs, 0, 2)};
+  if (unseen[0] == 0) return error;
+  for (size_t i = 0; i < programs.size(); ++i) {
+    const double off = std::abs(unseen[i % 2] * programs[i].model / programs[i].driver - 1);
+    error.mean += off / static_cast<double>(programs.size());
+    ++error.compared;
+    if (off < error.largest) continue;
+    error.largest = off;
+    error.largest_structures = programs[i].structures;
   }
   return error;
 }
@@ -69,8 +83,11 @@ std::string costsText(const Curve& curve) {
   if (!curve.driver.empty()) return fmt::format("measured with {} for navi21", curve.driver);
   if (curve.error.compared == 0) return "estimated by the model, which was compared with no driver";
   return fmt::format(
-      "estimated by the model, which is off by {:.1f} % in the mean and {:.1f} % at most over {} programs",
-      100 * curve.error.mean, 100 * curve.error.largest, curve.error.compared);
+      "estimated by the model, which is off the driver's by {:.1f} % in the mean over {} programs that its "
+      "fit "
+      "has not seen, and by {:.1f} % at most, for a program of {} structures",
+      100 * curve.error.mean, curve.error.compared, 100 * curve.error.largest,
+      curve.error.largest_structures);
 }
 
 }  // namespace
@@ -87,7 +104,9 @@ std::string toJson(const Curve& curve) {
   if (curve.error.compared > 0) {
     json.key("model").beginObject().key("compared").integer(static_cast<int64_t>(curve.error.compared));
     json.key("mean_error").number(rounded(curve.error.mean, 1e4));
-    json.key("largest_error").number(rounded(curve.error.largest, 1e4)).endObject();
+    json.key("largest_error").number(rounded(curve.error.largest, 1e4));
+    json.key("largest_error_structures").integer(static_cast<int64_t>(curve.error.largest_structures));
+    json.endObject();
   }
   json.endObject().key("curve").beginArray();
   for (const Point& point : curve.points) {

@@ -8,15 +8,24 @@
 
 namespace lacquer::programs {
 
-/// How far the model may be off: its numbers beside those of a driver.
-struct ModelError {
-  size_t compared = 0;           ///< programs
-  double scale = 1;              ///< the model's cycles are multiplied by it
-  double mean = 0, largest = 0;  ///< relative
+/// A program's cycles by the model and by a driver.
+struct Compared {
+  double model = 0, driver = 0;
+  size_t structures = 1;  ///< that share the program
 };
 
-/// The scale with the least squares of relative differences, and what is left of them.
-ModelError fitModel(const std::vector<double>& model, const std::vector<double>& driver);
+/// How far the model may be off: its numbers beside those of a driver. Half of the programs say by how much
+/// to scale it for the other half, and the other way round: none is compared with a fit that has seen it.
+struct ModelError {
+  size_t compared = 0;            ///< programs
+  double scale = 1;               ///< the model's cycles are multiplied by it: of all programs
+  double mean = 0, largest = 0;   ///< relative
+  size_t largest_structures = 0;  ///< of the program that the model is off the most
+};
+
+/// The scale with the least squares of relative differences, and the differences that are left, every second
+/// program's by the scale of the others. A single program has none.
+ModelError fitModel(const std::vector<Compared>& programs);
 
 struct Point {
   size_t programs = 0;

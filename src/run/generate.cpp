@@ -64,11 +64,6 @@ struct Inputs {
   }
 };
 
-/// What materials share depends on all inputs together, and costs on the machine: such a run looks at them.
-bool merges(const Options& options) {
-  return options.programs > 0 || !options.programs_report.empty() || !options.pipelines.empty();
-}
-
 /// From the manifest that the run has written.
 void writePipelines(const std::string& manifest, const Options& options, Run& run) {
   const Result<std::string> text = readFile(manifest, std::numeric_limits<uint64_t>::max());
@@ -118,7 +113,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     if (!one.empty()) named.push_back(one);
   }
   if (!run.mayWrite(outputs) || !run.mayName(named, folder) || !depfile) return run.finish();
-  std::optional<Receipt> receipt = inputs.scenes && !shard && !merges(options)
+  std::optional<Receipt> receipt = inputs.scenes && !shard && Receipt::covers(options)
                                        ? run.receipt(inputs.files, inputs.materials, folder)
                                        : std::nullopt;
   if (receipt && run.find(*receipt)) {

@@ -33,7 +33,7 @@ Result<Json> readManifest(const std::string& path, std::vector<NamedShader>& nam
 void rebase(Json& file, const std::string& from, const std::string& to) {
   const Json* source = json::member(file, "source");
   if (source == nullptr || !source->is_string()) return;
-  file["source"] = relativeTo(to, fromFolder(from, source->get<std::string>()));
+  file["source"] = moved(source->get<std::string>(), from, to);
 }
 
 std::string entryText(const Json& json) { return JsonText(kEntryDepth).json(json).take(); }

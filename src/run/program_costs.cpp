@@ -119,8 +119,8 @@ size_t ProgramCosts::structuresOf(const Places& group) const {
   return count;
 }
 
-/// Without a shader: the dearest of each term, and for each structure what choices took in the groups of
-/// which there were shaders.
+/// Without a shader: the dearest of each term, and what choices took in the groups of which there were
+/// shaders.
 Program ProgramCosts::byTerms(const Places& group) const {
   std::map<uint32_t, double> features;
   double always = 0;  // what is in no term
@@ -139,8 +139,13 @@ Program ProgramCosts::byTerms(const Places& group) const {
     program.features.push_back({id, cost});
     program.cost += cost;
   }
-  if (chosen_ > 0) program.cost += choices_ / chosen_ * static_cast<double>(structuresOf(group));
+  program.cost += choicesOf(structuresOf(group));
   return program;
+}
+
+/// There are only so many places to choose at: many structures take no more than the most that was seen.
+double ProgramCosts::choicesOf(size_t structures) const {
+  return chosen_ > 0 ? std::min(choices_ / chosen_ * static_cast<double>(structures), most_choices_) : 0;
 }
 
 std::vector<std::optional<Program>> ProgramCosts::measure(const std::vector<Places>& groups) {
@@ -163,9 +168,11 @@ std::vector<std::optional<Program>> ProgramCosts::measure(const std::vector<Plac
     if (group.size() == 1) {
       alone_[group[0]] = *all[i];
     } else {
-      const double before = chosen_ > 0 ? choices_ / chosen_ * static_cast<double>(structuresOf(group)) : 0;
-      choices_ += std::max(0.0, all[i]->cost - (byTerms(group).cost - before));
+      const double terms = byTerms(group).cost - choicesOf(structuresOf(group));
+      const double beyond = std::max(0.0, all[i]->cost - terms);
+      choices_ += beyond;
       chosen_ += static_cast<double>(structuresOf(group));
+      most_choices_ = std::max(most_choices_, beyond);
     }
   }
   if (!by_driver_) return all;

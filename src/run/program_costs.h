@@ -40,6 +40,7 @@ private:
   Result<ir::Module> moduleOfGroup(const programs::Places& group) const;
   programs::Program byModel(const ir::Module& module);
   programs::Program byTerms(const programs::Places& group) const;
+  double choicesOf(size_t structures) const;
   size_t structuresOf(const programs::Places& group) const;
 
   const Setting& setting_;
@@ -49,8 +50,8 @@ private:
   std::string driver_;
   std::map<std::string, uint32_t, std::less<>> features_;
   std::map<uint32_t, programs::Program> alone_;  ///< by item
-  double choices_ = 0,
-         chosen_ = 0;  ///< cycles beyond the terms' of the groups that were made; their structures
+  /// Cycles beyond the terms' of the groups that were made, the most of one of them, and their structures.
+  double choices_ = 0, most_choices_ = 0, chosen_ = 0;
 };
 
 }  // namespace lacquer

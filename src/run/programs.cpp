@@ -100,14 +100,11 @@ programs::ModelError errorOf(const std::vector<Item>& items, const programs::Mer
     model.push_back(i < items.size() ? items[i].program.cost : merging.steps[i - items.size()].cost);
   }
   const std::vector<std::optional<double>> said = measure.byDriver(groups);
-  std::vector<double> compared;
-  std::vector<double> driver;
+  std::vector<programs::Compared> compared;
   for (size_t i = 0; i < said.size(); ++i) {
-    if (!said[i]) continue;
-    compared.push_back(model[i]);
-    driver.push_back(*said[i]);
+    if (said[i]) compared.push_back({model[i], *said[i], groups[i].size()});
   }
-  return programs::fitModel(compared, driver);
+  return programs::fitModel(compared);
 }
 
 }  // namespace
@@ -117,6 +114,12 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
     : setting_(setting) {
   const Options& options = setting.options;
   const std::vector<OwnProgram> all = ownPrograms(structures, examples, setting);
+  std::set<std::map<std::string, int, std::less<>>> lights;
+  for (const OwnProgram& one : all) {
+    const passes::LightFacts& known = one.structures[0]->lights;
+    lights.insert({known.counts.begin(), known.counts.end()});
+  }
+  light_sets_ = lights.size();
   ProgramCosts costs(setting, all, options.programs_model);
   const std::vector<Item> items = itemsOf(all, uses, costs);
   const bool report = !options.programs_report.empty();

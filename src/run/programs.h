@@ -37,6 +37,8 @@ public:
   /// Of everything that it decides.
   const Key& digest() const { return digest_; }
   const programs::Curve& curve() const { return curve_; }
+  /// Different known lights: materials share programs only within one of these.
+  size_t lightSets() const { return light_sets_; }
 
 private:
   /// Structures that share a program.
@@ -54,6 +56,7 @@ private:
   bool closed_ = false;
   Key digest_;
   programs::Curve curve_;
+  size_t light_sets_ = 0;
 };
 
 /// A texture that a material has not: what it binds.

@@ -9,6 +9,7 @@
 
 #include "cache/option_key.h"
 #include "check/check.h"
+#include "cost/cost.h"
 #include "run/report_blob.h"
 #include "shader/language.h"
 #include "shader/module.h"
@@ -71,6 +72,16 @@ std::string compilersOf(const Options& options) {
   return compilers;
 }
 
+/// What decides which structures share a program is a driver's word.
+bool asksDriver(const Options& options) {
+  return (options.programs > 0 || !options.programs_report.empty()) && !options.programs_model;
+}
+
+Strings inputsOf(Strings files, const Options& options) {
+  if (!options.weights.empty()) files.push_back(options.weights);
+  return files;
+}
+
 void writeReport(const Report& report, BlobWriter& blob) {
   const std::span all(report.materials);
   std::vector<std::span<const MaterialReport>> files;
@@ -107,13 +118,13 @@ void readReport(BlobReader& blob, Report& report) {
 
 Receipt::Receipt(const Strings& files, const Strings& materials, const std::string& folder,
                  const Options& options, const Key& base, Cache& cache)
-    : files_(files),
+    : files_(inputsOf(files, options)),
       folder_(folder),
       options_(options),
       cache_(cache),
       begin_(std::chrono::system_clock::now()),
       largest_(limitsOf(options).value_or(Limits{}).file),
-      contents_(contentsOf(files, largest_)) {
+      contents_(contentsOf(files_, largest_)) {
   if (std::find(contents_.begin(), contents_.end(), Key{}) != contents_.end()) return;
   std::error_code ignored;  // the working folder only keeps projects apart that name theirs alike
   KeyBuilder key;
@@ -123,16 +134,23 @@ Receipt::Receipt(const Strings& files, const Strings& materials, const std::stri
       {Decides::Graph, Decides::Module, Decides::Code, Decides::SpirvCode, Decides::MslCode, Decides::Run},
       key);
   key.text(compilersOf(options));
+  if (asksDriver(options)) key.text(cost::unavailable()).text(cost::driverIdentity());
   key.number(materials.size());
   for (const std::string& name : materials) key.text(name);
   for (const std::string& file : files) key.text(file);
   key_ = key.finish();
 }
 
+bool Receipt::covers(const Options& options) {
+  return !asksDriver(options) || !cost::unavailable().empty() || !cost::driverIdentity().empty();
+}
+
 /// First those that belong to no shader.
 std::vector<std::string> Receipt::outputs(const Report& report) const {
   std::vector<std::string> paths{folder_ + "/manifest.json"};
-  if (!options_.depfile.empty()) paths.push_back(options_.depfile);
+  for (const std::string& one : {options_.depfile, options_.programs_report, options_.pipelines}) {
+    if (!one.empty()) paths.push_back(one);
+  }
   for (const ShaderReport& shader : report.shaders) {
     for (const auto& [path, bytes] : shader.files) paths.push_back(folder_ + "/" + path);
   }

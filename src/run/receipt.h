@@ -21,6 +21,10 @@ public:
   Receipt(const Strings& files, const Strings& materials, const std::string& folder, const Options& options,
           const Key& base, Cache& cache);
 
+  /// Whether a run with these options depends on nothing but what a receipt covers: a driver that says what
+  /// programs cost must be one that can be told from others.
+  static bool covers(const Options& options);
+
   /// What the run reports and says, when its inputs are those of an earlier one and all its outputs are as
   /// that left them.
   bool find(Report& report, Messages& messages);
@@ -36,7 +40,7 @@ private:
   std::vector<std::string> outputs(const Report& report) const;
   void note(Report& report, const std::vector<uint8_t>& same);
 
-  const Strings& files_;
+  const Strings files_;  ///< the inputs, and the weights where there are some
   const std::string& folder_;
   const Options& options_;
   Cache& cache_;

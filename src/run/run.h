@@ -63,6 +63,7 @@ private:
                const std::function<FileResult(const std::string&)>& read,
                const std::function<void(FileResult&)>& each);
   bool checkPrograms();
+  void warnOfPrograms();
   void look(const std::vector<std::string>& files, const std::vector<std::string>& only,
             const std::function<void(const FileResult&)>& each);
   void mergePrograms(const std::vector<std::string>& files, const std::vector<std::string>& only);

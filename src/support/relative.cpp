@@ -17,6 +17,18 @@ fs::path plain(const fs::path& path) {
   return real.empty() ? normal : real / path.filename();
 }
 
+fs::path withoutSlash(const fs::path& path) { return path.has_filename() ? path : path.parent_path(); }
+
+/// Below the working folder, and not through links: `..` in a path that begins there means what it says.
+bool isBelow(const fs::path& folder) {
+  const fs::path words = folder.lexically_normal();
+  if (words.is_absolute() || words.empty() || *words.begin() == "..") return false;
+  std::error_code ignored;
+  const fs::path here = fs::weakly_canonical(fs::current_path(ignored), ignored);
+  return !here.empty() &&
+         fs::weakly_canonical(here / folder, ignored) == withoutSlash((here / folder).lexically_normal());
+}
+
 }  // namespace
 
 std::string relativeTo(const std::string& folder, const std::string& path) {
@@ -31,6 +43,13 @@ std::string relativeTo(const std::string& folder, const std::string& path) {
 
 std::string fromFolder(const std::string& folder, const std::string& path) {
   return (fs::path(folder) / path).generic_string();
+}
+
+std::string moved(const std::string& path, const std::string& from, const std::string& to) {
+  const std::string here = fromFolder(from, path);
+  if (fs::path(path).is_absolute() || !isBelow(from) || !isBelow(to)) return relativeTo(to, here);
+  const fs::path words = fs::path(here).lexically_normal();
+  return words.lexically_relative(withoutSlash(fs::path(to).lexically_normal())).generic_string();
 }
 
 std::string folderOf(const std::string& path) {

@@ -7,6 +7,7 @@
 
 #include "processes.h"
 #include "random_gltf.h"
+#include "sandbox.h"
 
 namespace lacquer::test {
 namespace {
@@ -20,10 +21,14 @@ Words wordsOf(const Json& list) { return list.get<Words>(); }
 class Farm : public testing::Test {
 protected:
   void SetUp() override {
-    folder_ = freshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
+    root_ = freshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = root_ / "two" / "below";
+    fs::create_directories(folder_);
     writeText(folder_ / "a b.gltf", RandomGltf(1).text(3));
     writeText(folder_ / "c.gltf", RandomGltf(2).text(3));
-    const Words common{"a b.gltf", "c.gltf", "-q", "--no-sync"};
+    // Further up than a worker's folder need lie deep.
+    writeText(root_ / "far.gltf", RandomGltf(3).text(1));
+    const Words common{"a b.gltf", "c.gltf", "../../far.gltf", "-q", "--no-sync"};
     Words plan{LACQUER_PROGRAM, "plan", "--ninja", "build.ninja", "--json", "actions.json", "-o", "out"};
     Words gen{LACQUER_PROGRAM, "gen", "-o", "local"};
     plan.insert(plan.end(), common.begin(), common.end());
@@ -33,7 +38,7 @@ protected:
     actions_ = Json::parse(readText(folder_ / "actions.json"))["actions"];
     ASSERT_GT(actions_.size(), 3U);
   }
-  void TearDown() override { fs::remove_all(folder_.parent_path()); }
+  void TearDown() override { fs::remove_all(root_.parent_path()); }
 
   /// An empty folder that holds the inputs of an action that are relative, copied from the first store.
   fs::path workplace(const std::string& name, const Json& action) const {
@@ -83,52 +88,75 @@ protected:
     EXPECT_EQ(differences(folder_ / "local", folder_ / "out"), "");
   }
 
-  fs::path folder_;
+  fs::path root_, folder_;
   Json actions_;
 };
 
-/// Nothing but the system's libraries, the program and the declared inputs is there: no home, no network, no
-/// process beside it, no environment. The sandbox's devices are its own.
-Words sandbox(const fs::path& place, const Json& action) {
-  Words words{"bwrap", "--unshare-all", "--clearenv", "--die-with-parent", "--proc", "/proc", "--dev",
-              "/dev",  "--tmpfs",       "/tmp",       "--ro-bind",         "/usr",   "/usr"};
-  for (const char* link : {"/lib", "/lib64", "/bin"}) {
-    if (fs::is_symlink(link)) words.insert(words.end(), {"--symlink", fs::read_symlink(link).string(), link});
-  }
-  for (const std::string& input : wordsOf(action["inputs"])) {
-    if (fs::path(input).is_absolute()) words.insert(words.end(), {"--ro-bind", input, input});
-  }
-  words.insert(words.end(), {"--bind", place.string(), "/place"});
-  for (const std::string& input : wordsOf(action["inputs"])) {
-    if (!fs::path(input).is_absolute())
-      words.insert(words.end(), {"--ro-bind", (place / input).string(), "/place/" + input});
-  }
-  words.insert(words.end(), {"--chdir", "/place", "--"});
-  return words;
-}
-
 TEST_F(Farm, ActionsAreHermetic) {
-  std::string output;
-  if (runProgram({"/usr/bin/env", "bwrap", "--unshare-all", "--ro-bind", "/", "/", "--", "/bin/true"},
-                 folder_, &output) != 0)
-    GTEST_SKIP() << "NOT TESTED: bubblewrap cannot make a sandbox here: " << output;
-  runAll([](const fs::path& place, const Json& action) {
-    Words words{"/usr/bin/env"};
-    const Words inner = sandbox(place, action);
-    words.insert(words.end(), inner.begin(), inner.end());
-    return words;
+  const Sandbox sandbox(folder_ / "sandbox", Clock::Still);
+  if (!sandbox.works())
+    GTEST_SKIP() << "NOT TESTED: bubblewrap cannot make a sandbox here: " << sandbox.why();
+  runAll([&](const fs::path& place, const Json& action) {
+    return sandbox.around(place, wordsOf(action["inputs"]));
   });
   // The sandbox holds: with an input less, the action fails.
-  Json poor = actions_[0];
-  const fs::path place = workplace("poor", poor);
-  poor["inputs"] = Json::array({LACQUER_PROGRAM});
+  const fs::path place = workplace("poor", actions_[0]);
   fs::remove_all(place / "build.ninja.plan");
-  Words words{"/usr/bin/env"};
-  const Words inner = sandbox(place, poor);
-  words.insert(words.end(), inner.begin(), inner.end());
-  const Words command = wordsOf(poor["command"]);
+  Words words = sandbox.around(place, {LACQUER_PROGRAM});
+  const Words command = wordsOf(actions_[0]["command"]);
   words.insert(words.end(), command.begin(), command.end());
+  std::string output;
   EXPECT_NE(runProgram(words, folder_, &output), 0);
+}
+
+/// What was asked of the sandbox is so, as a program in it sees it.
+TEST_F(Farm, TheSandboxHasNoClockHomeNorNetwork) {
+  const Sandbox sandbox(folder_ / "sandbox", Clock::Still);
+  if (!sandbox.works())
+    GTEST_SKIP() << "NOT TESTED: bubblewrap cannot make a sandbox here: " << sandbox.why();
+  const fs::path place = folder_ / "look";
+  fs::create_directories(place);
+  const auto says = [&](const std::string& command) {
+    Words words = sandbox.around(place, {});
+    words.insert(words.end(), {"/bin/sh", "-c", command});
+    std::string output;
+    runProgram(words, folder_, &output);
+    return output;
+  };
+  EXPECT_EQ(says("ls /"), "bin\ndev\netc\nlib\nlib64\nplace\ntmp\nusr\n");
+  EXPECT_EQ(says("/usr/bin/env"), "PWD=/place\n");  // which the shell has set
+  EXPECT_EQ(says("/usr/bin/id -u; /usr/bin/id -g; /bin/uname -n"), "4321\n1234\nelsewhere\n");
+  EXPECT_EQ(says("echo x > /usr/x || echo no"),
+            "/bin/sh: 1: cannot create /usr/x: Read-only file system\nno\n");
+  EXPECT_EQ(says("/bin/date +%s.%N"), "0.000000000\n");
+  if (fs::exists("/usr/bin/python3")) {
+    EXPECT_EQ(says("/usr/bin/python3 -c 'import time; print(time.time(), time.monotonic())'"), "0.0 0.0\n");
+    // Not by the kernel either: 38 is ENOSYS.
+    EXPECT_EQ(
+        says("/usr/bin/python3 -c 'import ctypes, sys; c = ctypes.CDLL(None, use_errno=True); "
+             "print(c.syscall(int(sys.argv[1]), 0, ctypes.create_string_buffer(64)), ctypes.get_errno())' " +
+             std::to_string(Sandbox::clockCall())),
+        "-1 38\n");
+    EXPECT_NE(says("/usr/bin/python3 -c 'import socket; socket.create_connection((\"192.0.2.1\", 80), 1)'")
+                  .find("Network is unreachable"),
+              std::string::npos);
+  }
+}
+
+/// Each look at the clock finds another year.
+TEST_F(Farm, WildClocksGiveTheSameBytes) {
+  const Sandbox sandbox(folder_ / "sandbox", Clock::Wild);
+  if (!sandbox.works())
+    GTEST_SKIP() << "NOT TESTED: bubblewrap cannot make a sandbox here: " << sandbox.why();
+  Words look = sandbox.around(folder_, {});
+  look.insert(look.end(), {"/bin/date", "+%s"});
+  std::string one, two;
+  ASSERT_EQ(runProgram(look, folder_, &one), 0);
+  ASSERT_EQ(runProgram(look, folder_, &two), 0);
+  ASSERT_NE(one, two);
+  runAll([&](const fs::path& place, const Json& action) {
+    return sandbox.around(place, wordsOf(action["inputs"]));
+  });
 }
 
 TEST_F(Farm, OtherFoldersLanguagesAndOrdersGiveTheSameBytes) {
@@ -170,107 +198,82 @@ TEST_F(Farm, ActionsAreThoseOfTheNinjaFile) {
   }
 }
 
-// -- what a change costs, in actions and shaders --
+// -- Slurm, by a stand-in for its sbatch --
 
-/// "N shaders made, M from the cache, K files written" of a run with --time.
-struct Counts {
-  int made = -1, cached = -1, written = -1;
+/// Runs an array job at once, the tasks backwards, and refuses what a real one does.
+constexpr const char* kSbatch = R"py(#!/usr/bin/env python3
+import os, re, subprocess, sys
+options = dict(re.fullmatch(r"--([a-z-]+)(?:=(.*))?", word).groups() for word in sys.argv[1:])
+assert set(options) <= {"parsable", "array", "job-name", "dependency", "kill-on-invalid-dep"}, options
+job = 1 + len([name for name in os.listdir(".") if name.startswith("job-")])
+if "dependency" in options:
+    done = re.fullmatch(r"afterok:([0-9]+)", options["dependency"])[1]
+    assert open(f"job-{done}").read() == "0", "what it depends on has failed"
+first, last = map(int, options["array"].split("-"))
+script = sys.stdin.read()
+assert script.startswith("#!/bin/sh\n")
+failed = 0
+for task in range(last, first - 1, -1):
+    environment = {**os.environ, "SLURM_ARRAY_TASK_ID": str(task), "LC_ALL": "tr_TR.UTF-8", "TZ": "Pacific/Chatham"}
+    failed |= subprocess.run(["/bin/sh", "-c", script], env=environment).returncode != 0
+open(f"job-{job}", "w").write(str(int(failed)))
+print(f"{job};cluster")
+)py";
+
+class Slurm : public Farm {
+protected:
+  int submit(const Words& more, std::string* output) const {
+    writeText(folder_ / "bin" / "sbatch", kSbatch);
+    fs::permissions(folder_ / "bin" / "sbatch", fs::perms::owner_all);
+    const char* path = std::getenv("PATH");
+    Words words{"/usr/bin/env",
+                "PATH=" + (folder_ / "bin").string() + ":" + (path == nullptr ? "/usr/bin:/bin" : path),
+                "python3",
+                std::string(LACQUER_SOURCE) + "/examples/slurm/farm.py",
+                "submit",
+                "actions.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runProgram(words, folder_, output);
+  }
+  void SetUp() override {
+    Farm::SetUp();
+    fs::create_directories(folder_ / "bin");
+  }
+  void writeActions() const { writeText(folder_ / "actions.json", Json{{"actions", actions_}}.dump()); }
 };
 
-Counts counts(const Words& words, const fs::path& folder) {
+TEST_F(Slurm, AnArrayJobMakesTheSameBytes) {
   std::string output;
-  EXPECT_EQ(runProgram(words, folder, &output), 0) << output;
-  Counts counts;
-  const size_t line = output.find(" shaders made");
-  if (line == std::string::npos) return counts;
-  std::sscanf(output.c_str() + output.rfind('\n', line) + 1, "%d shaders made, %d from the cache, %d files",
-              &counts.made, &counts.cached, &counts.written);
-  return counts;
+  ASSERT_EQ(submit({"--tasks", "3"}, &output), 0) << output;
+  const std::string shaders = std::to_string(actions_.size() - 1);
+  EXPECT_EQ(output,
+            "stage 0: " + shaders + " actions in 3 tasks, job 1\nstage 1: 1 actions in 1 tasks, job 2\n");
+  EXPECT_EQ(differences(folder_ / "local", folder_ / "out"), "");
 }
 
-TEST(Increments, OneChangedMaterialAmongMany) {
-  const fs::path folder = freshFolder("increments");
-  RandomGltf random(4);
-  // A hundred files of a thousand materials of thirty kinds.
-  constexpr size_t kFiles = 100, kMaterials = 1000, kKinds = 30;
-  Words words{LACQUER_PROGRAM, "gen"};
-  for (size_t i = 0; i < kFiles; ++i) {
-    const std::string name = "many" + std::to_string(i) + ".gltf";
-    writeText(folder / name, random.text(kMaterials, kKinds));
-    words.push_back(name);
-  }
-  words.insert(words.end(), {"-o", "out", "--cache", "cache", "-q", "--no-validate", "--no-sync", "--target",
-                             "glsl", "--time"});
-  const Counts first = counts(words, folder);
-  EXPECT_GT(first.made, 5);
-  // Another number: no shader, the manifest alone.
-  std::string text = readText(folder / "many50.gltf");
-  const size_t place = text.find("\"metallicFactor\": ");
-  ASSERT_NE(place, std::string::npos);
-  text[text.find('.', place) + 1] = text[text.find('.', place) + 1] == '5' ? '6' : '5';
-  writeText(folder / "many50.gltf", text);
-  const Counts number = counts(words, folder);
-  EXPECT_EQ(number.made, 0);
-  EXPECT_EQ(number.written, 1);
-  // Another structure: one shader.
-  const std::string kind = "\"KHR_materials_sheen\": {\"sheenColorFactor\": [1, 0, 0]}";
-  const size_t first_material = text.find("\"materials\": [{") + std::string("\"materials\": [{").size();
-  text.insert(first_material, "\"name\": \"new\", \"extensions\": {" + kind + "}}, {");
-  writeText(folder / "many50.gltf", text);
-  const Counts structure = counts(words, folder);
-  EXPECT_EQ(structure.made, 1);
-  EXPECT_EQ(structure.written, 3);  // two stages and the manifest
-  fs::remove_all(folder.parent_path());
-}
-
-/// A node that one kind of material has: the shaders that hold it are remade, and no other.
-TEST(Increments, OneChangedNode) {
-  const fs::path folder = freshFolder("node");
-  const auto node = [&](const char* factor) {
-    writeText(folder / "nodes" / "varnish.node", std::string(R"(
-/// Varnish: a layer that tints what is below it.
-/// source: EXAMPLE_materials_varnish
-extension EXAMPLE_materials_varnish {
-    status vendor;
-    vec3 varnishColorFactor in [0, 1] = vec3(1);
-}
-/// A filter.
-/// source: EXAMPLE_materials_varnish
-part varnish of EXAMPLE_materials_varnish over coat unless varnishColorFactor == vec3(1) {
-direct:
-    varnish.direct = varnished(below.direct, varnishColorFactor);
-    out direct = varnish.direct;
-}
-/// Light through a filter.
-/// source: EXAMPLE_materials_varnish
-node varnished(
-    vec3 light in [0, inf],
-    vec3 color in [0, 1]
-) -> vec3 in [0, inf] {
-    return light * color * )") + factor + ";\n}\n");
-  };
-  fs::create_directories(folder / "nodes");
-  node("0.5");
-  writeText(folder / "a.gltf",
-            R"({"asset": {"version": "2.0"}, "extensionsUsed": ["EXAMPLE_materials_varnish"],
-"materials": [{}, {"doubleSided": true}, {"alphaMode": "MASK"},
-  {"extensions": {"EXAMPLE_materials_varnish": {"varnishColorFactor": [1, 0, 0]}}},
-  {"doubleSided": true, "extensions": {"EXAMPLE_materials_varnish": {"varnishColorFactor": [1, 0, 0]}}}]})");
-  const Words words{LACQUER_PROGRAM, "gen",       "a.gltf",   "-o",   "out",   "--nodes", "nodes", "-q",
-                    "--no-validate", "--no-sync", "--target", "glsl", "--time"};
-  EXPECT_EQ(counts(words, folder).made, 5);
-  const auto before = filesBelow(folder / "out");
-  node("0.25");
-  // Files of the others are left alone; those of the two that hold the node are new.
-  EXPECT_EQ(counts(words, folder).written, 2 * 2 + 1);
-  size_t kept = 0;
-  for (const auto& [name, state] : filesBelow(folder / "out")) {
-    if (name == "manifest.json") continue;
-    const auto it = before.find(name);
-    if (it != before.end() && it->second.time == state.time) ++kept;
-  }
-  EXPECT_EQ(kept, before.size() - 1 - 2 * 2);
-  fs::remove_all(folder.parent_path());
+/// What an action declares is what it has, and what it must do.
+TEST_F(Slurm, WhatIsNotDeclaredFails) {
+  const Json all = actions_;
+  std::string output;
+  actions_ = Json::array({all[0]});
+  actions_[0]["inputs"].erase(1);
+  writeActions();
+  EXPECT_NE(submit({}, &output), -1);
+  EXPECT_EQ(readText(folder_ / "job-1"), "1") << output;
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  actions_ = Json::array({all[0]});
+  const std::string last = actions_[0]["outputs"].back();
+  actions_[0]["outputs"].erase(actions_[0]["outputs"].size() - 1);
+  writeActions();
+  submit({}, &output);
+  EXPECT_EQ(readText(folder_ / "job-2"), "1") << output;
+  EXPECT_NE(output.find("writes ['" + last + "'] undeclared"), std::string::npos) << output;
+  // What depends on a job that failed is refused.
+  actions_ = all;
+  actions_[0]["command"][0] = "/bin/false";
+  writeActions();
+  EXPECT_NE(submit({}, &output), 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "manifest.json"));
 }
 
 }  // namespace

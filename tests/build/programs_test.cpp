@@ -208,6 +208,50 @@ TEST_F(ProgramsRun, ManifestsFitTheSchema) {
   }
 }
 
+/// More programs than were asked for are never made in silence.
+TEST_F(ProgramsRun, SaysWhereThereAreMore) {
+  const auto lit = [&](const std::string& name, int lights) {
+    std::string list, nodes;
+    for (int i = 0; i < lights; ++i) {
+      list += std::string(i == 0 ? "" : ", ") + R"({"type": "point"})";
+      nodes += R"(, {"extensions": {"KHR_lights_punctual": {"light": )" + std::to_string(i) + "}}}";
+    }
+    writeText(folder_ / name, R"({"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+"extensions": {"KHR_lights_punctual": {"lights": [)" +
+                                  list + R"(]}}, "nodes": [{})" + nodes + R"(],
+"materials": [{}, {"doubleSided": true}]})");
+  };
+  lit("one.gltf", 1);
+  lit("two.gltf", 2);
+  files_ = {"one.gltf", "two.gltf"};
+  std::string output;
+  ASSERT_EQ(gen("out", {"--lights", "scene", "--programs", "1", "--model-costs"}, &output), 0) << output;
+  EXPECT_EQ(manifest("out")["shaders"].size(), 2U);
+  EXPECT_NE(output.find("there are 2 programs, not at most 1"), std::string::npos) << output;
+  EXPECT_NE(output.find("2 different sets of known lights"), std::string::npos) << output;
+  EXPECT_NE(output.find("--lights any"), std::string::npos) << output;
+  ASSERT_EQ(gen("out", {"--lights", "scene", "--programs", "2", "--model-costs"}, &output), 0);
+  EXPECT_EQ(output.find("not at most"), std::string::npos) << output;
+  ASSERT_EQ(gen("any", {"--programs", "1", "--model-costs"}, &output), 0);
+  EXPECT_EQ(manifest("any")["shaders"].size(), 1U);
+  EXPECT_EQ(output.find("not at most"), std::string::npos) << output;
+}
+
+/// What a plan hands out with shared programs is what one run makes.
+TEST_F(ProgramsRun, APlanSharesThemToo) {
+  const Words few{"--programs", "3", "--model-costs"};
+  ASSERT_EQ(gen("local", few), 0);
+  Words words{LACQUER_PROGRAM, "plan", "--ninja",   "build.ninja", "--json", "actions.json", "-q",
+              "--target",      "glsl", "--no-sync", "-o",          "out",    "--no-validate"};
+  words.insert(words.end(), files_.begin(), files_.end());
+  words.insert(words.end(), few.begin(), few.end());
+  ASSERT_EQ(runProgram(words, folder_), 0);
+  const Json actions = Json::parse(readText(folder_ / "actions.json"))["actions"];
+  EXPECT_EQ(actions.size(), 4U);
+  for (const Json& action : actions) ASSERT_EQ(runProgram(action["command"].get<Words>(), folder_), 0);
+  EXPECT_EQ(differences(folder_ / "local", folder_ / "out"), "");
+}
+
 // -- pipelines --
 
 constexpr const char* kScene = R"({"asset": {"version": "2.0"},

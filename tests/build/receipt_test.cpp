@@ -183,6 +183,60 @@ TEST_F(Receipt, OtherInputsAndOptionsAreOtherRuns) {
   EXPECT_NE(changed.text.find("1 files written"), std::string::npos) << changed.text;
 }
 
+/// Shared programs depend on the weights, too, and their report and pipelines are outputs as others are.
+TEST_F(Receipt, CoversSharedPrograms) {
+  const auto weigh = [&](int share) {
+    writeText(folder_ / "weights.json",
+              R"({"weights": [{"material": 0, "share": )" + std::to_string(share) + "}]}");
+  };
+  weigh(1);
+  const Words shared{"--programs",        "1",          "--weights",   "weights.json",  "--model-costs",
+                     "--programs-report", "curve.json", "--pipelines", "pipelines.json"};
+  const auto quick = [&] { return run("few", shared).quick; };
+  const auto rest = [&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+    EXPECT_FALSE(quick());
+    EXPECT_TRUE(quick());
+  };
+  EXPECT_FALSE(quick());
+  rest();
+  for (const char* output : {"curve.json", "pipelines.json"}) {
+    const std::string before = readText(folder_ / output);
+    forge(folder_ / output);
+    EXPECT_FALSE(quick()) << output;
+    EXPECT_EQ(readText(folder_ / output), before);
+    rest();
+  }
+  weigh(2);
+  EXPECT_FALSE(quick());
+}
+
+/// A driver's word counts as long as it is the same driver.
+TEST_F(Receipt, KnowsTheDriverThatIsAsked) {
+  const fs::path icd = folder_ / "share" / "vulkan" / "icd.d";
+  fs::create_directories(icd);
+  const auto install = [&](const std::string& library) {
+    writeText(icd / "radeon_icd.test.json", R"({"ICD": {"api_version": "1.3.0", "library_path": ")" +
+                                                library + R"("}, "file_format_version": "1.0.0"})");
+  };
+  install((folder_ / "driver.so").string());
+  writeText(folder_ / "driver.so", "no driver, but a file");
+  ASSERT_EQ(setenv("XDG_DATA_DIRS", (folder_ / "share").c_str(), 1), 0);
+  // Of equal cost is every division when nothing can be measured; what is asked for is all the same.
+  const auto quick = [&] { return run("few", {"--programs", "2"}).quick; };
+  quick();
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+  EXPECT_FALSE(quick());
+  EXPECT_TRUE(quick());
+  writeText(folder_ / "driver.so", "another driver");
+  EXPECT_FALSE(quick());
+  EXPECT_TRUE(quick());
+  install("driver.so");  // wherever it is found: nothing tells it from another
+  EXPECT_FALSE(quick());
+  EXPECT_FALSE(quick());
+  unsetenv("XDG_DATA_DIRS");
+}
+
 /// Inputs that differ from the receipt's: what shaders have left is taken only where it is untouched.
 TEST_F(Receipt, OtherInputsLookAtTheFilesOfEachShader) {
   const std::vector<std::pair<std::string, std::function<void(const std::string& out)>>> changes = {

@@ -75,21 +75,12 @@ TEST(Merging, IsBetterThanChance) {
     double mean = 0;
     constexpr int kTries = 50;
     for (int i = 0; i < kTries; ++i) {
-      Groups groups;
-      for (uint32_t item = 0; item < items.size(); ++item) groups.push_back({item});
-      while (groups.size() > programs) {
-        const size_t a = random() % groups.size();
-        Places taken = std::move(groups[a]);
-        groups.erase(groups.begin() + static_cast<ptrdiff_t>(a));
-        Places& to = groups[random() % groups.size()];
-        to.insert(to.end(), taken.begin(), taken.end());
-        std::sort(to.begin(), to.end());
-      }
-      std::vector<double> costs;
-      for (const auto& program : measure(groups)) costs.push_back(program->cost);
-      mean += weightedCost(items, Division{groups, costs}) / kTries;
+      const Groups groups = anyDivision(items.size(), programs, random);
+      mean += costOf(items, groups, measure) / kTries;
     }
     EXPECT_LT(costOf(items, merging, programs, measure), mean) << programs;
+    // So are the steps by themselves, without what is made better afterwards.
+    EXPECT_LT(weightedCost(items, divisionOf(items, merging, programs)), mean) << programs;
   }
 }
 

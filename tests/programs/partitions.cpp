@@ -52,6 +52,27 @@ double costOf(const std::vector<Item>& items, const Merging& merging, size_t pro
   return weightedCost(items, improved(items, divisionOf(items, merging, programs), measure));
 }
 
+Groups anyDivision(size_t items, size_t programs, std::mt19937_64& random) {
+  Groups groups;
+  for (uint32_t item = 0; item < items; ++item) groups.push_back({item});
+  while (groups.size() > programs) {
+    const size_t a = random() % groups.size();
+    const Places taken = std::move(groups[a]);
+    groups.erase(groups.begin() + static_cast<ptrdiff_t>(a));
+    Places& to = groups[random() % groups.size()];
+    to.insert(to.end(), taken.begin(), taken.end());
+    std::sort(to.begin(), to.end());
+  }
+  return groups;
+}
+
+double costOf(const std::vector<Item>& items, const Groups& groups, const Measure& measure) {
+  std::vector<double> costs;
+  for (const Places& group : groups)
+    costs.push_back(group.size() == 1 ? items[group[0]].program.cost : measure({group})[0]->cost);
+  return weightedCost(items, Division{groups, costs});
+}
+
 std::vector<Item> randomItems(uint32_t count, uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<Item> items;

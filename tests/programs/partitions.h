@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <random>
 #include <vector>
 
 #include "programs/division.h"
@@ -20,6 +21,11 @@ double leastCost(const std::vector<Item>& items, size_t most, const Measure& mea
 /// The cost of what a search comes to, by weight.
 double costOf(const std::vector<Item>& items, const Merging& merging, size_t programs,
               const Measure& measure);
+
+/// Merges at random until so many groups are left.
+Groups anyDivision(size_t items, size_t programs, std::mt19937_64& random);
+/// The weighted cost of these groups.
+double costOf(const std::vector<Item>& items, const Groups& groups, const Measure& measure);
 
 /// Items with random features, some in common, and a measure for them: a merged program has the dearest of
 /// each feature and pays a little for every item.

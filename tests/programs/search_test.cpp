@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "cost/cost.h"
 #include "golden/random_material.h"
 #include "programs/partitions.h"
 #include "run/program_costs.h"
@@ -41,9 +42,9 @@ public:
   }
 
   /// At most so many of them.
-  std::vector<Item> items(size_t most, uint64_t seed) {
+  std::vector<Item> items(size_t most, uint64_t seed, bool by_model = true) {
     own_.resize(std::min(own_.size(), most));
-    costs_.emplace(*setting_, own_, true);
+    costs_.emplace(*setting_, own_, by_model);
     std::vector<Places> alone;
     for (uint32_t i = 0; i < own_.size(); ++i) alone.push_back({i});
     const auto measured = costs_->measure(alone);
@@ -70,12 +71,25 @@ void expectNearTheBest(Materials& materials, size_t most, uint64_t seed, const s
   const Measure measure = [&](const std::vector<Places>& groups) {
     return materials.costs().measure(groups);
   };
+  std::mt19937_64 random(seed);
   const Merging merging = merge(items, 1, measure);
   EXPECT_EQ(merging.steps.size(), items.size() - 1) << name << ": some cannot be merged";
   for (size_t programs = 1; programs < items.size(); ++programs) {
     const double ratio = costOf(items, merging, programs, measure) / leastCost(items, programs, measure);
     EXPECT_LE(ratio, 1.05) << name << ", " << programs << " of " << items.size();
+    if (programs == 1) continue;
+    constexpr int kTries = 6;
+    double mean = 0;
+    for (int i = 0; i < kTries; ++i)
+      mean += costOf(items, anyDivision(items.size(), programs, random), measure) / kTries;
+    EXPECT_LT(costOf(items, merging, programs, measure), mean) << name << ", " << programs;
   }
+  // The ends: nothing merged costs what it cost, and one program what all of them take together.
+  double own = 0;
+  for (const Item& item : items) own += item.weight * item.program.cost;
+  EXPECT_DOUBLE_EQ(costOf(items, merging, items.size(), measure), own) << name;
+  EXPECT_EQ(divisionOf(items, merging, 1).groups.size(), 1U) << name;
+  EXPECT_DOUBLE_EQ(costOf(items, merging, 1, measure), leastCost(items, 1, measure)) << name;
 }
 
 TEST(ProgramSearch, IsNearTheBestOfTheExamples) {
@@ -93,6 +107,30 @@ TEST(ProgramSearch, IsNearTheBestOfRandomMaterials) {
     Materials materials(path);
     expectNearTheBest(materials, 6, seed, "seed " + std::to_string(seed));
   }
+}
+
+/// Of programs of many structures the search makes no shader. What it takes in its place is near the driver's
+/// word all the same.
+TEST(ProgramSearch, ManyStructuresCostWhatTheModelSays) {
+  if (const std::string why = cost::unavailable(); !why.empty()) GTEST_SKIP() << "NOT TESTED: " << why;
+  const std::string path = ::testing::TempDir() + "programs_many.gltf";
+  std::ofstream(path) << lacquer::test::RandomMaterial(7).valid(120).dump();
+  Materials materials(path);
+  const std::vector<Item> items = materials.items(120, 1, false);
+  ASSERT_GT(items.size(), 90U);
+  Places some, all;
+  std::vector<Places> groups;
+  for (uint32_t i = 0; i < items.size(); ++i) {
+    all.push_back(i);
+    if (i < 20) some.push_back(i);
+    if (i % 2 == 1 && i < 20) groups.push_back({i - 1, i});
+  }
+  groups.push_back(some);
+  materials.costs().measure(groups);  // what choices take
+  const double model = materials.costs().measure({all})[0]->cost / materials.costs().measure({some})[0]->cost;
+  const std::vector<std::optional<double>> driver = materials.costs().byDriver({all, some});
+  ASSERT_TRUE(driver[0] && driver[1]);
+  EXPECT_NEAR(model / (*driver[0] / *driver[1]), 1, 0.25) << items.size();
 }
 
 }  // namespace
