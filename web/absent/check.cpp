@@ -16,5 +16,8 @@ std::string toolVersions() { return {}; }
 bool haveDxc() { return false; }
 std::string dxcIdentity() { return {}; }
 Diagnostics compileWithDxc(const std::string&, Stage, const std::string&) { return absent().value(); }
+bool haveTint() { return false; }
+std::string tintIdentity() { return {}; }
+Diagnostics compileWithTint(const std::string&, const std::string&) { return absent().value(); }
 
 }  // namespace lacquer::check

@@ -74,6 +74,12 @@ export function bufferView(file: GltfFile, index: number): Uint8Array | null {
   return bytes.subarray(from, from + view.byteLength);
 }
 
+/** The image of a texture: its own, or one in another format that browsers decode. */
+export function sourceOf(texture: any): number {
+  const { EXT_texture_webp: webp, EXT_texture_avif: avif } = texture?.extensions ?? {};
+  return texture?.source ?? webp?.source ?? avif?.source ?? -1;
+}
+
 /** An image as the browser decodes it, its numbers untouched. */
 export async function image(file: GltfFile, index: number): Promise<ImageBitmap | null> {
   const of = file.json.images?.[index];

@@ -3,7 +3,7 @@ import type { Interface, Shader } from '../src/index';
 import { environmentOf, type Cube, type Environment } from './environment';
 import type { Drawable } from './gltf';
 import { multiply } from './math';
-import { board, frameBlocks, kBlocks, kBoardSize, kLocations, neutral, type Look, type Viewport } from './viewport';
+import { board, dropOldest, frameBlocks, kBlocks, kBoardSize, kLocations, neutral, type Look, type Viewport } from './viewport';
 
 declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST' | 'MAP_READ', number>;
 declare const GPUMapMode: Record<'READ', number>;
@@ -99,9 +99,10 @@ export class GpuPainter {
   }
 
   /** Makes what a shader's pipelines are made of, where there is none yet. */
-  prepare(shader: Shader): void {
+  prepare(shader: Shader, used: Set<string>): void {
     const { device } = this;
     if (this.programs.has(shader.id)) return;
+    dropOldest(this.programs, used);
     const described = shader.interface as Interface & { webgpu: { bindings: Binding[] } };
     const layouts: GPUBindGroupLayoutEntry[][] = [[], [], []];
     for (const { name: _name, group, visibility, ...entry } of described.webgpu.bindings) {

@@ -1,6 +1,6 @@
 // The page of `lacquer view`: a material's properties, its picture, its shaders and its node graph, all from one file that
 // is edited in place.
-import { LacquerError, type GraphJson, type Lacquer, type Message, type Options } from '../src/index';
+import { LacquerError, type GraphJson, type Lacquer, type Level, type Message, type Options } from '../src/index';
 import { hexOf, selectTerm, showCode } from './code';
 import { fillOthers, optionsOf, parseOther } from './compare';
 import { compiler, graphOf, lookOf, withShader } from './compile';
@@ -20,6 +20,9 @@ import { Viewport, type Look } from './viewport';
 const kTargets = ['essl', 'wgsl', 'glsl', 'glsl-gl', 'hlsl', 'spirv', 'cpp', 'js'];
 /** Texels of a side of the cube that an environment of one's own is filtered into. */
 const kOwnEnvironment = 128;
+
+/** As the material of geometry that has none. */
+const kDefaultMaterial = -1;
 
 /** What the page has in it beside the compiler. */
 interface Figures {
@@ -85,8 +88,27 @@ class Page {
     const materials = byId<HTMLSelectElement>('material');
     materials.replaceChildren(...of.names.map((name, i) => h('option', { value: i }, name || `(material ${i})`)));
     this.compileAll();
-    this.choose(0);
+    if (of.names.length > 0) this.choose(0);
+    else this.showNoMaterial();
     return true;
+  }
+
+  /** A file without materials is seen as glTF's default one; there is nothing to edit. */
+  private showNoMaterial(): void {
+    this.graphJson = null;
+    this.othersOf = '';
+    this.viewport.shown = kDefaultMaterial;
+    this.viewport.other = null;
+    byId<HTMLSelectElement>('compare').replaceChildren(h('option', { value: '' }, 'nothing'));
+    byId('comparing').hidden = true;
+    this.properties.clear();
+    for (const id of ['code', 'graph', 'editor', 'skipped', 'measured', 'errors-of-terms']) byId(id).replaceChildren();
+    for (const id of ['id', 'took', 'size', 'operations', 'sizes']) byId(id).textContent = '';
+    for (const id of ['undo', 'redo']) byId<HTMLButtonElement>(id).disabled = true;
+    clearTimeout(this.panelsPending);
+    this.messages = [messageOf('this file has no materials: it is seen with the default one', 'note')];
+    this.showMessages();
+    this.viewport.redraw();
   }
 
   /** Each material has its look before one of them is chosen: they may all be seen. */
@@ -98,10 +120,24 @@ class Page {
       this.compileLook([]);
     }
     of.material = chosen;
+    this.compileDefault();
+  }
+
+  /** What is seen of geometry without a material. */
+  private compileDefault(): void {
+    const of = this.of!;
+    const bare = of.drawables.find(({ material }) => material === kDefaultMaterial);
+    if (!bare && of.names.length > 0) return;
+    const scene = this.lacquer.scene('{"asset": {"version": "2.0"}, "materials": [{}]}', 'default.gltf');
+    const graph = scene.graph(0, this.options(), bare?.attributes.has('COLOR_0') ? ['NORMAL', 'COLOR_0'] : ['NORMAL']);
+    const shader = graph.generate(this.options());
+    this.viewport.prepare(shader);
+    this.viewport.looks.set(kDefaultMaterial, { id: shader.id, block: shader.pack(), slots: new Map(), doubleSided: false, blended: false });
+    for (const handle of [shader, graph, scene]) handle.free();
   }
 
   choose(material: number): void {
-    if (!this.of || this.of.names.length === 0) return;
+    if (!this.of?.names.length) return;
     this.of.material = material;
     this.of.settle();
     byId<HTMLSelectElement>('material').value = String(material);
@@ -136,7 +172,7 @@ class Page {
   }
 
   compile(): void {
-    if (!this.of) return;
+    if (!this.of?.names.length) return this.viewport.redraw();
     const begin = performance.now();
     this.messages = [];
     const made = this.compileLook(this.messages);
@@ -210,6 +246,7 @@ class Page {
     const target = byId<HTMLSelectElement>('target').value;
     const stage = byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment';
     const code = byId('code');
+    if (!this.of?.names.length) return;
     try {
       const text = this.text(target, stage);
       showCode(code, text, (term) => this.select(term, 'code'));
@@ -298,7 +335,7 @@ class Page {
 
   /** Edits the graph itself: from then on the material's numbers are its parameters, and its terms stay. */
   editGraph(edit: (graph: ReturnType<typeof graphOf>) => void): void {
-    if (!this.of) return;
+    if (!this.of?.names.length) return;
     const graph = graphOf(this.lacquer, this.of, this.options(), []);
     try {
       edit(graph);
@@ -404,14 +441,15 @@ class Page {
       download(name, bytes, name.endsWith('.glb') ? 'model/gltf-binary' : 'model/gltf+json');
     });
     this.on('export-graph', 'click', () => {
-      if (!this.of) return;
+      if (!this.of?.names.length) return;
       const graph = graphOf(this.lacquer, this.of, this.options(), []);
       download(`${this.of.names[this.of.material] || 'material'}.json`, graph.toText(), 'application/json');
       graph.free();
     });
     this.on('forget-graph', 'click', () => {
-      this.of?.setGraph(null, `graph ${performance.now()}`);
-      this.of?.settle();
+      if (!this.of?.names.length) return;
+      this.of.setGraph(null, `graph ${performance.now()}`);
+      this.of.settle();
       this.compile();
     });
     this.on('add-node', 'click', () => {
@@ -469,7 +507,7 @@ class Page {
   async take(files: File[]): Promise<void> {
     const bytesOf = async (file: File) => new Uint8Array(await file.arrayBuffer());
     const graph = files.find(({ name }) => name.endsWith('.json'));
-    if (graph && this.of) {
+    if (graph && this.of?.names.length) {
       const text = await graph.text();
       try {
         this.lacquer.graph(text, graph.name).free();
@@ -511,9 +549,9 @@ class Page {
   }
 }
 
-function messageOf(error: unknown): Message {
+function messageOf(error: unknown, level: Level = 'error'): Message {
   const message = error instanceof Error ? error.message : String(error);
-  return { level: 'error', code: 'page', file: '', pointer: '', line: 0, column: 0, message, help: '', text: `error: ${message}` };
+  return { level, code: 'page', file: '', pointer: '', line: 0, column: 0, message, help: '', text: `${level}: ${message}` };
 }
 
 interface Embedded {

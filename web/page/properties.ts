@@ -1,6 +1,7 @@
 // The material's properties as the node library declares them, with sliders.
 import type { Document } from './document';
 import { h } from './dom';
+import { sourceOf } from './gltf';
 
 interface Property {
   name: string;
@@ -37,6 +38,7 @@ const kLetters: Record<string, string[]> = { color: ['red', 'green', 'blue', 'al
 
 export class Properties {
   private rows: Row[] = [];
+  private readonly closed = new Set<string>();
 
   constructor(
     private readonly root: HTMLElement,
@@ -44,7 +46,7 @@ export class Properties {
     private readonly changed: (structure: boolean) => void,
   ) {}
 
-  /** Builds the groups of a material anew. */
+  /** Builds the groups of a material anew; the focus stays, and so do groups that were closed. */
   show(of: Document): void {
     this.rows = [];
     const at = `/materials/${of.material}`;
@@ -54,7 +56,13 @@ export class Properties {
       if (extension.name !== 'gltf' && of.get(pointer) === undefined) continue;
       groups.push(this.group(of, extension, pointer));
     }
+    const focused = this.root.contains(document.activeElement) ? document.activeElement!.id : '';
     this.root.replaceChildren(...groups, this.adder(of, at));
+    if (focused) document.getElementById(focused)?.focus();
+  }
+  clear(): void {
+    this.rows = [];
+    this.root.replaceChildren();
   }
   /** Shows today's values again, after a step back. */
   update(): void {
@@ -82,7 +90,10 @@ export class Properties {
     );
     return h(
       'details',
-      { open: true, class: 'group', 'data-extension': extension.name },
+      {
+        open: !this.closed.has(extension.name), class: 'group', 'data-extension': extension.name,
+        toggle: ({ target }: { target: HTMLDetailsElement }) => this.closed[target.open ? 'delete' : 'add'](extension.name),
+      },
       h('summary', { title: extension.doc }, h('span', {}, title), ...(extension.name === 'gltf' ? [] : [remove])),
       h('p', { class: 'doc' }, extension.doc),
       ...rows,
@@ -104,7 +115,7 @@ export class Properties {
 
   private texture(of: Document, property: Property, pointer: string): HTMLElement {
     const { index } = of.get(pointer);
-    const source = of.json.textures?.[index]?.source;
+    const source = sourceOf(of.json.textures?.[index]);
     const image = of.json.images?.[source];
     const name = image?.name ?? (typeof image?.uri === 'string' && !image.uri.startsWith('data:') ? image.uri : `texture ${index}`);
     const remove = () => {

@@ -1,7 +1,7 @@
 // Draws materials with their own shaders: the Essl texts, blocks by the offsets that the shader's interface tells.
 import type { Interface, Shader } from '../src/index';
 import { constantEnvironment, environmentOf, type Cube, type Environment } from './environment';
-import { ball, bounds, flatDrawable, image, type Drawable, type GltfFile } from './gltf';
+import { ball, bounds, flatDrawable, image, sourceOf, type Drawable, type GltfFile } from './gltf';
 import type { GpuPainter } from './gpu';
 import { directional, element, kMostLights, kStudioLights, type Light } from './lights';
 import { add, lookAt, mirrors, multiply, normalMatrix, perspective, scale, type Mat4, type Vec3 } from './math';
@@ -26,9 +26,12 @@ interface Program {
 interface Mesh {
   drawable: Drawable;
   arrays: WebGLVertexArrayObject;
+  buffers: WebGLBuffer[];
   count: number;
 }
 
+/** Programs that are kept; of more, the oldest that nothing is drawn with goes. */
+export const kMostPrograms = 48;
 export const kBlocks = ['Frame', 'Lights', 'Object', 'Material', 'SeeThrough'];
 const kInputs: Record<string, string> = {
   in_position: 'POSITION', in_normal: 'NORMAL', in_tangent: 'TANGENT', in_color_0: 'COLOR_0',
@@ -51,6 +54,18 @@ interface Maps {
   irradiance: WebGLTexture;
   /** In place of the board. */
   behind?: WebGLTexture;
+}
+
+/** Takes out of a map of programs, oldest first, what is too much of it; what is in use stays. */
+export function dropOldest<T>(programs: Map<string, T>, used: Set<string>): T[] {
+  const dropped: T[] = [];
+  for (const [id, program] of programs) {
+    if (programs.size < kMostPrograms) break;
+    if (used.has(id)) continue;
+    programs.delete(id);
+    dropped.push(program);
+  }
+  return dropped;
 }
 
 /** What stands for an absent image. */
@@ -141,7 +156,7 @@ export class Viewport {
   // ---- what there is to draw
 
   setScene(drawables: Drawable[]): void {
-    for (const mesh of this.meshes) this.gl.deleteVertexArray(mesh.arrays);
+    for (const mesh of this.meshes) this.dropMesh(mesh);
     this.meshes = drawables.map((each) => this.upload(each));
     this.fit();
   }
@@ -159,7 +174,7 @@ export class Viewport {
       const key = `${texture}:${srgb}`;
       if (this.textures.has(key)) continue;
       const of = file.json.textures?.[texture];
-      const bitmap = of ? await image(file, of.source ?? -1) : null;
+      const bitmap = of ? await image(file, sourceOf(of)) : null;
       if (!bitmap || this.textures.has(key)) continue;
       const sampler = file.json.samplers?.[of.sampler] ?? {};
       this.bitmaps.set(key, { bitmap, sampler });
@@ -169,6 +184,7 @@ export class Viewport {
   }
   forgetTextures(): void {
     for (const texture of this.textures.values()) this.gl.deleteTexture(texture);
+    for (const { bitmap } of this.bitmaps.values()) bitmap.close();
     this.textures.clear();
     this.bitmaps.clear();
     this.gpu?.forgetTextures();
@@ -177,7 +193,7 @@ export class Viewport {
   /** Makes the program of a shader where there is none yet. Throws what the driver says. */
   prepare(shader: Shader): void {
     const id = shader.id;
-    this.gpu?.prepare(shader);
+    this.gpu?.prepare(shader, this.idsDrawn());
     if (this.programs.has(id)) return;
     const { gl } = this;
     const program = this.link(shader.text('essl', 'vertex'), shader.text('essl', 'fragment'));
@@ -195,7 +211,14 @@ export class Viewport {
       gl.uniform1i(gl.getUniformLocation(program, name), unit);
       return { name, type, unit };
     });
+    for (const { program } of dropOldest(this.programs, this.idsDrawn())) gl.deleteProgram(program);
     this.programs.set(id, { program, interface: shader.interface, inputs, samplers });
+  }
+  /** Of the shaders that something is drawn with. */
+  idsDrawn(): Set<string> {
+    const ids = new Set([...this.looks.values()].map(({ id }) => id));
+    if (this.other) ids.add(this.other.look.id);
+    return ids;
   }
   get programCount(): number {
     return this.programs.size;
@@ -407,7 +430,7 @@ export class Viewport {
     gl.deleteTexture(texture);
     gl.deleteTexture(maps.behind);
     if (around === '') for (const map of [maps.specular, maps.irradiance]) gl.deleteTexture(map);
-    gl.deleteVertexArray(mesh.arrays);
+    this.dropMesh(mesh);
     this.redraw();
     return [...rgba];
   }
@@ -475,6 +498,12 @@ export class Viewport {
   private upload(drawable: Drawable): Mesh {
     const { gl } = this;
     const arrays = gl.createVertexArray()!;
+    const buffers: WebGLBuffer[] = [];
+    const fill = (kind: number, data: Float32Array | Uint32Array) => {
+      buffers.push(gl.createBuffer()!);
+      gl.bindBuffer(kind, buffers[buffers.length - 1]);
+      gl.bufferData(kind, data as Float32Array<ArrayBuffer>, gl.STATIC_DRAW);
+    };
     gl.bindVertexArray(arrays);
     kLocations.forEach((name, location) => {
       const attribute = drawable.attributes.get(name);
@@ -483,17 +512,19 @@ export class Viewport {
         gl.vertexAttrib4f(location, ...(name === 'COLOR_0' ? [1, 1, 1, 1] : [1, 0, 0, 1]) as [number, number, number, number]);
         return;
       }
-      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, attribute.data, gl.STATIC_DRAW);
+      fill(gl.ARRAY_BUFFER, attribute.data);
       gl.enableVertexAttribArray(location);
       gl.vertexAttribPointer(location, attribute.size, gl.FLOAT, false, 0, 0);
     });
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, drawable.indices, gl.STATIC_DRAW);
+    fill(gl.ELEMENT_ARRAY_BUFFER, drawable.indices);
     gl.bindVertexArray(null);
     drawable.normal = normalMatrix(drawable.model);
     drawable.mirrored = mirrors(drawable.model);
-    return { drawable, arrays, count: drawable.indices.length };
+    return { drawable, arrays, buffers, count: drawable.indices.length };
+  }
+  private dropMesh({ arrays, buffers }: Mesh): void {
+    this.gl.deleteVertexArray(arrays);
+    for (const buffer of buffers) this.gl.deleteBuffer(buffer);
   }
 
   private compile(kind: number, text: string): WebGLShader {

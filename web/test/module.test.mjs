@@ -70,7 +70,7 @@ test('packed bytes are those of the values in the manifest', () => {
   const manifest = JSON.parse(readFileSync(join(root, 'generated/manifest.json'), 'utf8'));
   let compared = 0;
   for (const file of manifest.files) {
-    const scene = library.scene(read(file.source), file.source);
+    const scene = library.scene(read(join('generated', file.source)), file.source); // named as seen from the manifest
     for (const material of file.materials) {
       for (const use of material.uses) {
         const graph = scene.graph(material.index, { targets: ['essl'] }, use.attributes);

@@ -1,120 +1,20 @@
-// The page in a real browser, and the example of the package: Debian's Chromium, driven by playwright-core.
+// The page in a real browser: Debian's Chromium, driven by playwright-core.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { cpSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:http';
-import { tmpdir } from 'node:os';
-import { extname, join, normalize } from 'node:path';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { chromium } from 'playwright-core';
-import { lacquer, output, read, root, withImages } from './native.mjs';
+import { hasWebGpu, kWebGpu, launch, serve } from './browser.mjs';
+import { lacquer, read, root } from './native.mjs';
+import {
+  begin, downloaded, drop, end, evaluated, evaluatedByProgram, folder, glb, library, middle, open, painted, set, settled,
+} from './page.mjs';
 
-const { load } = await import(join(output, 'package/index.js'));
-const kChromium = process.env.LACQUER_CHROMIUM ?? '/usr/bin/chromium';
 const kSamples = readdirSync(join(root, 'examples')).filter((name) => name.endsWith('.gltf')).map((name) => name.slice(0, -5)).sort();
-/** Milliseconds after which a page is given up: a machine may have much other work. */
-const kPatience = 600_000;
 /** How far the browser's colours may be from `lacquer eval --engine float`: a 255th, of what a display can show. */
 const kTolerance = 1 / 255;
 
-const launch = (...more) => chromium.launch({
-  executablePath: kChromium,
-  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', ...more],
-});
-/** What software needs to show WebGPU. WebGL says in that browser how slow its readPixels is. */
-const kWebGpu = [
-  '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--use-vulkan=swiftshader', '--enable-features=Vulkan',
-  '--disable-vulkan-surface',
-];
-const kSlow = /GPU stall due to ReadPixels/;
-
-/** Whether a browser has WebGPU; it is asked where the page lies, for not every place may have it. */
-const hasWebGpu = (page) => page.evaluate(async () => Boolean(await navigator.gpu?.requestAdapter()));
-
-let browser;
-let folder;
-let library;
-before(async () => {
-  library = await load();
-  browser = await launch();
-  folder = mkdtempSync(join(tmpdir(), 'lacquer-page-'));
-  cpSync(join(root, 'examples/textures'), join(folder, 'textures'), { recursive: true });
-});
-after(async () => {
-  await browser?.close();
-  if (folder) rmSync(folder, { recursive: true });
-});
-
-/** A page made by `lacquer view`, from the disk; fails on any message on the console. */
-async function open(files, use, { flags = ['--no-cost'], url = null, size = { width: 1440, height: 900 }, by = browser } = {}) {
-  const html = join(folder, 'page.html');
-  lacquer('view', ...files, '-o', html, '--page', join(output, 'view.html'), ...flags);
-  const context = await by.newContext({ viewport: size, colorScheme: 'light', acceptDownloads: true });
-  context.setDefaultTimeout(kPatience);
-  const page = await context.newPage();
-  const said = [];
-  page.on('console', (message) => kSlow.test(message.text()) || said.push(message.text()));
-  page.on('pageerror', (error) => said.push(String(error)));
-  await page.goto(url ?? pathToFileURL(html).href, { timeout: kPatience });
-  await page.waitForSelector('body.ready');
-  try {
-    await use(page);
-  } finally {
-    await context.close();
-  }
-  assert.deepEqual(said, []);
-}
-
-/** All that was asked for is on the canvas. */
-const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-
-/** The current material's textures are uploaded. */
-const settled = (page) => page.evaluate(async () => {
-  const it = window.lacquerPage;
-  await it.viewport.loadTextures(it.document.file, it.lookNow());
-});
-
-const kPoint = { n: [0.2, 0.3, 0.9327379], t: [0.9777802, 0, -0.2096336, 1], l: [0.36, 0.48, 0.8], light: [1.5, 1.4, 1.3], uv: [0.3, 0.6] };
-
-/** Sets a slider as a person does, and asks for the colour; the edited file stays in the page. */
-async function set(page, id, value) {
-  return page.evaluate(([id, value, point]) => {
-    const it = window.lacquerPage;
-    const slider = document.getElementById(id);
-    slider.value = String(value);
-    slider.dispatchEvent(new Event('input', { bubbles: true }));
-    slider.dispatchEvent(new Event('change', { bubbles: true }));
-    const look = it.lookNow();
-    return {
-      lamp: it.viewport.probe(look, { ...point, env: [0, 0, 0] }),
-      id: look.id,
-      json: JSON.stringify(it.document.json),
-      name: it.document.names[it.document.material],
-      status: document.getElementById('status').textContent,
-    };
-  }, [id, value, kPoint]);
-}
-
-const kEvaluated = { n: kPoint.n, t: kPoint.t, v: [0, 0, 1], l: kPoint.l, light: kPoint.light, uv0: kPoint.uv, uv1: kPoint.uv, env: [0, 0, 0] };
-
-/** `lacquer eval` of an edited file, whose images lie beside the examples. */
-function evaluatedByProgram(json, name) {
-  const file = join(folder, 'edited.gltf');
-  writeFileSync(file, json);
-  writeFileSync(join(folder, 'points.json'), JSON.stringify([kEvaluated]));
-  return JSON.parse(lacquer('eval', file, '--material', name, '--engine', 'float', '--points', join(folder, 'points.json'))).rgba[0];
-}
-
-/** The same by the module in Node, without a process for each: its images are put into the file. */
-function evaluated(json, material) {
-  const scene = library.scene(withImages(json), 'edited.gltf');
-  try {
-    return scene.evaluate(material, [kEvaluated], { engine: 'float' }).rgba[0];
-  } finally {
-    scene.free();
-  }
-}
+before(begin);
+after(end);
 
 for (const sample of kSamples) {
   test(`${sample}: every slider at both ends and the middle gives the colours of \`lacquer eval\``, () =>
@@ -356,15 +256,6 @@ function lit(lights) {
   return Buffer.from(JSON.stringify(gltf));
 }
 
-const middle = (page) => page.evaluate(() => {
-  const { viewport } = window.lacquerPage;
-  const { gl } = viewport;
-  viewport.draw();
-  const rgba = new Uint8Array(4);
-  gl.readPixels(gl.drawingBufferWidth / 2, gl.drawingBufferHeight / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, rgba);
-  return [...rgba];
-});
-
 test("a file's own lamps light it", () =>
   open(['examples/core.gltf'], async (page) => {
     const offered = () => page.evaluate(() => !document.querySelector('#lamps option[value=own]').disabled);
@@ -487,6 +378,153 @@ test('it opens from a static server, and its tabs from the keyboard', async () =
   }
 });
 
+test('a file without materials is seen as the default one, and so is geometry without', () =>
+  open(['examples/coat.gltf'], async (page) => {
+    const gltf = JSON.parse(read('web/examples/webgl2/triangle.gltf'));
+    const bare = structuredClone(gltf);
+    for (const name of ['materials', 'textures', 'images', 'samplers', 'extensionsUsed']) delete bare[name];
+    for (const { primitives } of bare.meshes) for (const each of primitives) delete each.material;
+    await drop(page, [['bare.gltf', Buffer.from(JSON.stringify(bare))]]);
+    assert.equal(await page.textContent('#status'), '1 message');
+    assert.equal(await page.evaluate(() => document.querySelectorAll('#properties input, #code *').length), 0);
+    const background = await page.evaluate(() => {
+      const { viewport } = window.lacquerPage;
+      return viewport.back().map((x) => Math.round(255 * x));
+    });
+    assert.notDeepEqual((await middle(page)).slice(0, 3), background);
+    for (const button of ['#undo', '#redo']) assert.ok(await page.isDisabled(button));
+    for (const tab of ['graph', 'cost', 'notes', 'code']) await page.click(`[data-tab=${tab}]`);
+    assert.match(await page.textContent('#messages'), /no materials/);
+    assert.deepEqual(JSON.parse(await downloaded(page, '#export')), bare);
+    // Among others that have one.
+    gltf.meshes[0].primitives.push({ ...gltf.meshes[0].primitives[0], material: undefined });
+    await drop(page, [['both.gltf', Buffer.from(JSON.stringify(gltf))]]);
+    assert.deepEqual(await page.evaluate(() => [...window.lacquerPage.viewport.looks.keys()].sort()), [-1, 0]);
+    assert.equal(await page.textContent('#status'), '');
+  }));
+
+test('a long session of edits takes no more memory', () =>
+  open(['examples/car_paint.gltf', 'examples/coat.gltf'], async (page) => {
+    const session = (rounds) => page.evaluate(async (rounds) => {
+      const it = window.lacquerPage;
+      const input = (id, value) => {
+        const slider = document.getElementById(id);
+        slider.value = String(value);
+        slider.dispatchEvent(new Event('input', { bubbles: true }));
+        slider.dispatchEvent(new Event('change', { bubbles: true }));
+      };
+      const sample = document.getElementById('sample');
+      for (let round = 0; round < rounds; ++round) {
+        sample.value = String(round % 2);
+        sample.dispatchEvent(new Event('change'));
+        const sliders = [...document.querySelectorAll('#properties input[type=range]')];
+        for (let i = 0; i < 40; ++i) {
+          const { id, min, max } = sliders[(7 * i + round) % sliders.length];
+          for (const x of [Number(min), Number(max), Number(min) + 0.4 * (max - min)]) input(id, x);
+        }
+        for (let i = 0; i < 20; ++i) document.getElementById('undo').click();
+        it.editGraph((graph) => graph.addNode(`mine.${round}`, 'schlick'));
+        document.getElementById('forget-graph').click();
+        document.getElementById('compare').value = 'profile:openpbr';
+        it.compile();
+        document.getElementById('compare').value = '';
+        it.compile();
+        await new Promise((done) => requestAnimationFrame(done));
+      }
+    }, rounds);
+    const devtools = await page.context().newCDPSession(page);
+    const taken = async () => {
+      for (let i = 0; i < 3; ++i) await devtools.send('HeapProfiler.collectGarbage');
+      const { usedSize } = await devtools.send('Runtime.getHeapUsage');
+      const { nodes, jsEventListeners } = await devtools.send('Memory.getDOMCounters');
+      const { module, programs } = await page.evaluate(() => ({ module: window.lacquerPage.lacquer.memory, programs: window.lacquerPage.viewport.programCount }));
+      return { heap: usedSize, nodes, listeners: jsEventListeners, module, programs };
+    };
+    await session(4);
+    const before = await taken();
+    await session(8);
+    const after = await taken();
+    console.log(`# after 4 and 12 rounds: ${JSON.stringify(before)}, ${JSON.stringify(after)}`);
+    assert.equal(after.module, before.module);
+    assert.ok(after.heap < before.heap + 2_000_000, 'the heap');
+    assert.ok(after.nodes < 1.1 * before.nodes && after.listeners < 1.1 * before.listeners, 'what the document has');
+    assert.ok(after.programs <= 48, 'programs');
+  }));
+
+/** How far a colour is from what is behind it, as WCAG 2 has it, of all texts that are seen. */
+const leastContrast = (page) => page.evaluate(() => {
+  const numbers = (color) => color.match(/[\d.]+/g).map(Number);
+  const luminance = ([r, g, b]) => [r, g, b]
+    .map((x) => (x / 255 <= 0.04045 ? x / 255 / 12.92 : ((x / 255 + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, x, i) => sum + [0.2126, 0.7152, 0.0722][i] * x, 0);
+  const behind = (element) => {
+    for (let at = element; at; at = at.parentElement) {
+      const color = numbers(getComputedStyle(at).backgroundColor);
+      if (color[3] !== 0) return color;
+    }
+    return [255, 255, 255];
+  };
+  let least = { ratio: 21, text: '' };
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+    const element = node.parentElement;
+    if (!node.data.trim() || !element.checkVisibility() || element.closest('script, style, svg, :disabled')) continue;
+    const [x, y] = [getComputedStyle(element).color, behind(element)].map((color) => luminance(numbers(String(color))));
+    const ratio = (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05);
+    if (ratio < least.ratio) least = { ratio, text: `${element.tagName}.${element.className}: ${node.data.slice(0, 40)}` };
+  }
+  return least;
+});
+
+for (const scheme of ['light', 'dark']) {
+  test(`every text can be read where it is ${scheme}, and the button changes that`, () =>
+    open(['examples/car_paint.gltf'], async (page) => {
+      const dark = () => page.evaluate(() => getComputedStyle(document.body).colorScheme === 'dark');
+      assert.equal(await dark(), scheme === 'dark');
+      for (const other of [false, true]) {
+        for (const tab of ['graph', 'cost', 'notes', 'code']) {
+          await page.click(`[data-tab=${tab}]`);
+          const { ratio, text } = await leastContrast(page);
+          assert.ok(ratio >= 4.5, `${tab}: ${ratio.toFixed(2)}: ${text}`);
+        }
+        if (!other) await page.click('#theme');
+      }
+      assert.equal(await dark(), scheme !== 'dark');
+    }, { scheme }));
+}
+
+test('it is used without a mouse: every control has a name and is reached, a slider is moved and the edit undone', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    const nameless = await page.evaluate(() =>
+      [...document.querySelectorAll('button, input:not([hidden]), select, canvas, [tabindex="0"]')]
+        .filter((it) => !(it.getAttribute('aria-label') || it.labels?.length || it.textContent.trim() || it.title))
+        .map((it) => it.outerHTML));
+    assert.deepEqual(nameless, []);
+    const wanted = new Set(await page.evaluate(() =>
+      [...document.querySelectorAll('button, input, select, summary, canvas, pre')]
+        .filter((it) => it.checkVisibility() && !it.disabled && it.tabIndex >= 0)
+        .map((it, i) => (it.dataset.reached = String(i)))));
+    const id = 'p:/materials/0/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor';
+    const value = () => page.evaluate(() => window.lacquerPage.document.get('/materials/0/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor') ?? null);
+    const original = await value();
+    const shown = await middle(page);
+    await page.evaluate(() => document.body.focus());
+    for (let i = 0; i < 400 && wanted.size > 0; ++i) {
+      await page.keyboard.press('Tab');
+      const at = await page.evaluate(() => [document.activeElement.dataset.reached, document.activeElement.id]);
+      wanted.delete(at[0]);
+      if (at[1] !== id) continue;
+      for (let k = 0; k < 3; ++k) await page.keyboard.press('PageUp');
+      assert.notEqual(await value(), original);
+      assert.notDeepEqual(await middle(page), shown);
+      while (await page.isEnabled('#undo')) await page.keyboard.press('Control+z');
+      assert.equal(await value(), original);
+      assert.deepEqual(await middle(page), shown);
+      assert.equal(await page.evaluate(() => document.activeElement.id), id, 'the focus stays');
+    }
+    assert.deepEqual([...wanted], []);
+  }));
+
 test('the page is drawn: a picture of the car paint', () =>
   open(['examples/car_paint.gltf'], async (page) => {
     await settled(page);
@@ -503,134 +541,3 @@ test('the page is drawn: a picture of the car paint', () =>
     });
     assert.ok(colors[0] > colors[1] + 20, `a red paint: ${colors}`);
   }));
-
-/** The package and an example, installed as a person does it. */
-function installed(example) {
-  const place = join(folder, example);
-  cpSync(join(root, 'web/examples', example), place, { recursive: true, filter: (name) => !name.includes('node_modules') });
-  const description = JSON.parse(readFileSync(join(place, 'package.json'), 'utf8'));
-  description.dependencies.lacquer = `file:${join(output, 'package')}`;
-  writeFileSync(join(place, 'package.json'), JSON.stringify(description));
-  execFileSync('npm', ['install', '--offline', '--no-audit', '--no-fund', '--install-links'], { cwd: place, stdio: 'pipe' });
-  return place;
-}
-
-/** Gives files of a folder away, but for those that `hidden` matches. */
-async function serve(place, hidden = /^$/) {
-  const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
-  const server = createServer((request, response) => {
-    const path = normalize(new URL(request.url, 'http://localhost').pathname);
-    try {
-      if (hidden.test(path)) throw new Error('hidden');
-      const bytes = readFileSync(join(place, path));
-      response.writeHead(200, { 'content-type': types[extname(path)] ?? 'application/octet-stream' });
-      response.end(bytes);
-    } catch {
-      response.writeHead(404).end();
-    }
-  });
-  await new Promise((done) => server.listen(0, '127.0.0.1', done));
-  return { url: `http://127.0.0.1:${server.address().port}`, close: () => server.close() };
-}
-
-/** Uses the page of an example that has drawn; fails on any message but those that are expected. */
-async function drawn(place, use, { by = browser, hidden = undefined, expected = [], before = () => undefined } = {}) {
-  const server = await serve(place, hidden);
-  const page = await by.newPage();
-  try {
-    const said = [];
-    page.on('console', (message) => said.push(message.text()));
-    page.on('pageerror', (error) => said.push(String(error)));
-    await page.addInitScript(before);
-    await page.goto(`${server.url}/index.html`, { timeout: kPatience });
-    await page.waitForFunction(() => document.title === 'drawn', null, { timeout: kPatience });
-    assert.deepEqual(said, expected);
-    return await use(page);
-  } finally {
-    await page.close();
-    server.close();
-  }
-}
-
-test('the package installs from its folder, and its WebGL 2 example draws', async () => {
-  const place = installed('webgl2');
-  const shot = (page) => page.locator('canvas').screenshot();
-  const picture = await drawn(place, shot);
-  assert.ok(picture.length > 3000, 'there is more than one colour');
-  // Where lacquer.wasm is not given away, the copy of it that is a script serves.
-  const expected = ['Failed to load resource: the server responded with a status of 404 (Not Found)'];
-  const again = await drawn(place, shot, { hidden: /\.wasm$/, expected });
-  assert.ok(again.equals(picture));
-});
-
-/** Where software shows WebGPU, a screenshot does not hold it: the canvas gives a texture that can be read. */
-function keepTexture() {
-  let device;
-  const { configure } = GPUCanvasContext.prototype;
-  GPUCanvasContext.prototype.configure = function (how) {
-    device = how.device;
-    return configure.call(this, how);
-  };
-  GPUCanvasContext.prototype.getCurrentTexture = function () {
-    const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC;
-    const format = navigator.gpu.getPreferredCanvasFormat();
-    window.kept = { device, texture: device.createTexture({ size: [this.canvas.width, this.canvas.height], format, usage }) };
-    return window.kept.texture;
-  };
-}
-
-test('its WebGPU example draws', async (t) => {
-  const by = await launch(...kWebGpu);
-  try {
-    const place = installed('webgpu');
-    const page = await by.newPage();
-    const server = await serve(place);
-    await page.goto(`${server.url}/package.json`);
-    const there = await hasWebGpu(page);
-    await page.close();
-    server.close();
-    if (!there) return t.skip('this browser has no WebGPU');
-    const colors = await drawn(place, (page) => page.evaluate(async () => {
-      const { device, texture } = window.kept;
-      const buffer = device.createBuffer({ size: 4 * 512 * 512, usage: GPUBufferUsage.COPY_DST | GPUBufferUsage.MAP_READ });
-      const encoder = device.createCommandEncoder();
-      encoder.copyTextureToBuffer({ texture }, { buffer, bytesPerRow: 4 * 512 }, [512, 512]);
-      device.queue.submit([encoder.finish()]);
-      await buffer.mapAsync(GPUMapMode.READ);
-      const words = new Uint32Array(buffer.getMappedRange());
-      return { corner: words[0], middle: words[512 * 256 + 256], all: new Set(words).size };
-    }), { by, before: keepTexture });
-    assert.notEqual(colors.corner, colors.middle);
-    assert.ok(colors.all > 20, `${colors.all} colours`);
-  } finally {
-    await by.close();
-  }
-});
-
-async function drop(page, files) {
-  await page.evaluate(async (files) => {
-    await window.lacquerPage.take(files.map(([name, bytes]) => new File([new Uint8Array(bytes)], name)));
-  }, files.map(([name, bytes]) => [name, [...bytes]]));
-}
-
-async function downloaded(page, button) {
-  if (!(await page.isVisible(button))) await page.click('[data-tab=graph]');
-  const [download] = await Promise.all([page.waitForEvent('download'), page.click(button)]);
-  return readFileSync(await download.path());
-}
-
-function glb(json, binary) {
-  const pad = (bytes, with_) => Buffer.concat([bytes, Buffer.alloc((4 - (bytes.length % 4)) % 4, with_)]);
-  const chunk = (kind, bytes) => {
-    const head = Buffer.alloc(8);
-    head.writeUInt32LE(bytes.length, 0);
-    head.writeUInt32LE(kind, 4);
-    return Buffer.concat([head, bytes]);
-  };
-  const chunks = [chunk(0x4e4f534a, pad(Buffer.from(JSON.stringify(json)), ' ')), chunk(0x004e4942, pad(binary, 0))];
-  const head = Buffer.alloc(12);
-  head.write('glTF', 0);
-  head.writeUInt32LE(2, 4);
-  head.writeUInt32LE(12 + chunks[0].length + chunks[1].length, 8);
-  return Buffer.concat([head, ...chunks]);
-}

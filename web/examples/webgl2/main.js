@@ -4,21 +4,22 @@ import { load } from 'lacquer';
 
 const gl = document.querySelector('canvas').getContext('webgl2');
 const url = new URL(location.search.slice(1) || 'triangle.gltf', location.href);
-const bytes = new Uint8Array(await (await fetch(url)).arrayBuffer());
-const gltf = JSON.parse(new TextDecoder().decode(bytes));
-const buffer = await (await fetch(new URL(gltf.buffers[0].uri, url))).arrayBuffer();
-
-const images = await Promise.all((gltf.images ?? []).map(async ({ uri, bufferView, mimeType }) => {
-  const { byteOffset = 0, byteLength = 0 } = gltf.bufferViews[bufferView] ?? {};
-  const blob = uri ? await (await fetch(new URL(uri, url))).blob() : new Blob([new Uint8Array(buffer, byteOffset, byteLength)], { type: mimeType });
-  return createImageBitmap(blob, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
-}));
-
-const lacquer = await load();
-const scene = lacquer.scene(bytes, 'file.gltf');
+let gltf, buffer, images, scene;
 const kOptions = { targets: ['essl'], ibl: false, lights: { directional: 1 } };
 const kBlocks = ['Frame', 'Lights', 'Object', 'Material'];
 const kNames = { POSITION: 'in_position', NORMAL: 'in_normal', TANGENT: 'in_tangent', COLOR_0: 'in_color_0' };
+
+async function open() {
+  const bytes = new Uint8Array(await (await fetch(url)).arrayBuffer());
+  gltf = JSON.parse(new TextDecoder().decode(bytes));
+  buffer = await (await fetch(new URL(gltf.buffers[0].uri, url))).arrayBuffer();
+  images = await Promise.all((gltf.images ?? []).map(async ({ uri, bufferView, mimeType }) => {
+    const { byteOffset = 0, byteLength = 0 } = gltf.bufferViews[bufferView] ?? {};
+    const blob = uri ? await (await fetch(new URL(uri, url))).blob() : new Blob([new Uint8Array(buffer, byteOffset, byteLength)], { type: mimeType });
+    return createImageBitmap(blob, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+  }));
+  scene = (await load()).scene(bytes, 'file.gltf');
+}
 
 /** A program, and the bytes of its blocks by the fields that the shader's interface tells. */
 function prepare(primitive) {
@@ -97,8 +98,10 @@ function draw(primitive) {
   gl.drawElements(gl.TRIANGLES, accessor.count, accessor.componentType, accessor.byteOffset ?? 0);
 }
 
-gl.clearColor(0.1, 0.1, 0.12, 1);
-gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-gl.enable(gl.DEPTH_TEST);
-for (const mesh of gltf.meshes) mesh.primitives.forEach(draw);
-document.title = 'drawn';
+open().then(() => {
+  gl.clearColor(0.1, 0.1, 0.12, 1);
+  gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+  gl.enable(gl.DEPTH_TEST);
+  for (const mesh of gltf.meshes) mesh.primitives.forEach(draw);
+  document.title = 'drawn';
+});

@@ -2,18 +2,11 @@
 // index.html?file.gltf. For files with one buffer; each primitive is drawn with its material, under one lamp.
 import { load } from 'lacquer';
 
-const device = await (await navigator.gpu.requestAdapter()).requestDevice();
 const canvas = document.querySelector('canvas');
 const context = canvas.getContext('webgpu');
 const format = navigator.gpu.getPreferredCanvasFormat();
-context.configure({ device, format });
 const url = new URL(location.search.slice(1) || 'triangle.gltf', location.href);
-const bytes = new Uint8Array(await (await fetch(url)).arrayBuffer());
-const gltf = JSON.parse(new TextDecoder().decode(bytes));
-const data = await (await fetch(new URL(gltf.buffers[0].uri, url))).arrayBuffer();
-
-const lacquer = await load();
-const scene = lacquer.scene(bytes, 'file.gltf');
+let device, gltf, data, scene;
 const kOptions = { targets: ['wgsl'], ibl: false, lights: { directional: 1 } };
 const kFormats = { 5121: { name: 'unorm8', bytes: 1 }, 5123: { name: 'unorm16', bytes: 2 }, 5126: { name: 'float32', bytes: 4 } };
 const kIndices = { 5121: Uint8Array, 5123: Uint16Array, 5125: Uint32Array };
@@ -23,6 +16,15 @@ const kValues = {
   view_projection: kView, camera_position: [0, 0, 5], model: kIdentity, normal_matrix: kIdentity,
   position: [0.4, 0.5, 0.77], direction: [-0.4, -0.5, -0.77], radiance: [3, 3, 3], spot_offset: [1], // a directional light
 };
+
+async function open() {
+  device = await (await navigator.gpu.requestAdapter()).requestDevice();
+  context.configure({ device, format });
+  const bytes = new Uint8Array(await (await fetch(url)).arrayBuffer());
+  gltf = JSON.parse(new TextDecoder().decode(bytes));
+  data = await (await fetch(new URL(gltf.buffers[0].uri, url))).arrayBuffer();
+  scene = (await load()).scene(bytes, 'file.gltf');
+}
 
 function buffer(bytes, usage) {
   const made = device.createBuffer({ size: Math.ceil(bytes.byteLength / 4) * 4, usage, mappedAtCreation: true });
@@ -86,26 +88,30 @@ async function prepare(primitive) {
   return { pipeline, binds: groups.map((layout, i) => device.createBindGroup({ layout, entries: entries[i] })), accessors };
 }
 
-const primitives = gltf.meshes.flatMap((mesh) => mesh.primitives);
-const prepared = await Promise.all(primitives.map(async (of) => ({ of, ...(await prepare(of)) })));
-const encoder = device.createCommandEncoder();
-const size = [canvas.width, canvas.height];
-const depth = device.createTexture({ size, format: 'depth24plus', usage: GPUTextureUsage.RENDER_ATTACHMENT });
-const pass = encoder.beginRenderPass({
-  colorAttachments: [{ view: context.getCurrentTexture().createView(), clearValue: [0.1, 0.1, 0.12, 1], loadOp: 'clear', storeOp: 'store' }],
-  depthStencilAttachment: { view: depth.createView(), depthClearValue: 1, depthLoadOp: 'clear', depthStoreOp: 'discard' },
-});
-for (const { of, pipeline, binds, accessors } of prepared) {
-  pass.setPipeline(pipeline);
-  binds.forEach((bind, i) => pass.setBindGroup(i, bind));
-  accessors.forEach((accessor, i) => pass.setVertexBuffer(i, buffer(viewed(accessor), GPUBufferUsage.VERTEX)));
-  const indices = gltf.accessors[of.indices];
-  const list = indices ? new kIndices[indices.componentType](data, viewed(indices).byteOffset, indices.count)
-    : Array.from({ length: gltf.accessors[of.attributes.POSITION].count }, (_, i) => i);
-  pass.setIndexBuffer(buffer(Uint32Array.from(list), GPUBufferUsage.INDEX), 'uint32');
-  pass.drawIndexed(list.length);
+async function main() {
+  await open();
+  const primitives = gltf.meshes.flatMap((mesh) => mesh.primitives);
+  const prepared = await Promise.all(primitives.map(async (of) => ({ of, ...(await prepare(of)) })));
+  const encoder = device.createCommandEncoder();
+  const size = [canvas.width, canvas.height];
+  const depth = device.createTexture({ size, format: 'depth24plus', usage: GPUTextureUsage.RENDER_ATTACHMENT });
+  const pass = encoder.beginRenderPass({
+    colorAttachments: [{ view: context.getCurrentTexture().createView(), clearValue: [0.1, 0.1, 0.12, 1], loadOp: 'clear', storeOp: 'store' }],
+    depthStencilAttachment: { view: depth.createView(), depthClearValue: 1, depthLoadOp: 'clear', depthStoreOp: 'discard' },
+  });
+  for (const { of, pipeline, binds, accessors } of prepared) {
+    pass.setPipeline(pipeline);
+    binds.forEach((bind, i) => pass.setBindGroup(i, bind));
+    accessors.forEach((accessor, i) => pass.setVertexBuffer(i, buffer(viewed(accessor), GPUBufferUsage.VERTEX)));
+    const indices = gltf.accessors[of.indices];
+    const list = indices ? new kIndices[indices.componentType](data, viewed(indices).byteOffset, indices.count)
+      : Array.from({ length: gltf.accessors[of.attributes.POSITION].count }, (_, i) => i);
+    pass.setIndexBuffer(buffer(Uint32Array.from(list), GPUBufferUsage.INDEX), 'uint32');
+    pass.drawIndexed(list.length);
+  }
+  pass.end();
+  device.queue.submit([encoder.finish()]);
+  await device.queue.onSubmittedWorkDone();
+  document.title = 'drawn';
 }
-pass.end();
-device.queue.submit([encoder.finish()]);
-await device.queue.onSubmittedWorkDone();
-document.title = 'drawn';
+main();

@@ -1,0 +1,138 @@
+// The page of `lacquer view` for tests: opened in a browser, edited as a person edits it, and what `lacquer eval` says of that.
+import assert from 'node:assert/strict';
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { kPatience, kSlow, launch } from './browser.mjs';
+import { lacquer, output, root, withImages } from './native.mjs';
+
+const { load } = await import(join(output, 'package/index.js'));
+
+let browser;
+/** Of this run: pages, and what is edited. */
+export let folder;
+/** The module in Node. */
+export let library;
+
+export async function begin() {
+  library = await load();
+  browser = await launch();
+  folder = mkdtempSync(join(tmpdir(), 'lacquer-page-'));
+  cpSync(join(root, 'examples/textures'), join(folder, 'textures'), { recursive: true });
+}
+export async function end() {
+  await browser?.close();
+  if (folder) rmSync(folder, { recursive: true });
+}
+
+/** A page made by `lacquer view`, from the disk; fails on any message on the console. */
+export async function open(files, use, { flags = ['--no-cost'], url = null, size = { width: 1440, height: 900 }, scheme = 'light', by = browser } = {}) {
+  const html = join(folder, 'page.html');
+  lacquer('view', ...files, '-o', html, '--page', join(output, 'view.html'), ...flags);
+  const context = await by.newContext({ viewport: size, colorScheme: scheme, acceptDownloads: true });
+  context.setDefaultTimeout(kPatience);
+  const page = await context.newPage();
+  const said = [];
+  page.on('console', (message) => kSlow.test(message.text()) || said.push(message.text()));
+  page.on('pageerror', (error) => said.push(String(error)));
+  await page.goto(url ?? pathToFileURL(html).href, { timeout: kPatience });
+  await page.waitForSelector('body.ready');
+  try {
+    await use(page);
+  } finally {
+    await context.close();
+  }
+  assert.deepEqual(said, []);
+}
+
+/** All that was asked for is on the canvas. */
+export const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+/** The current material's textures are uploaded. */
+export const settled = (page) => page.evaluate(async () => {
+  const it = window.lacquerPage;
+  await it.viewport.loadTextures(it.document.file, it.lookNow());
+});
+
+const kPoint = { n: [0.2, 0.3, 0.9327379], t: [0.9777802, 0, -0.2096336, 1], l: [0.36, 0.48, 0.8], light: [1.5, 1.4, 1.3], uv: [0.3, 0.6] };
+
+/** Sets a slider as a person does, and asks for the colour; the edited file stays in the page. */
+export async function set(page, id, value) {
+  return page.evaluate(([id, value, point]) => {
+    const it = window.lacquerPage;
+    const slider = document.getElementById(id);
+    slider.value = String(value);
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+    slider.dispatchEvent(new Event('change', { bubbles: true }));
+    const look = it.lookNow();
+    return {
+      lamp: it.viewport.probe(look, { ...point, env: [0, 0, 0] }),
+      id: look.id,
+      json: JSON.stringify(it.document.json),
+      name: it.document.names[it.document.material],
+      status: document.getElementById('status').textContent,
+    };
+  }, [id, value, kPoint]);
+}
+
+const kEvaluated = { n: kPoint.n, t: kPoint.t, v: [0, 0, 1], l: kPoint.l, light: kPoint.light, uv0: kPoint.uv, uv1: kPoint.uv, env: [0, 0, 0] };
+
+/** `lacquer eval` of an edited file, whose images lie beside the examples. */
+export function evaluatedByProgram(json, name) {
+  const file = join(folder, 'edited.gltf');
+  writeFileSync(file, json);
+  writeFileSync(join(folder, 'points.json'), JSON.stringify([kEvaluated]));
+  return JSON.parse(lacquer('eval', file, '--material', name, '--engine', 'float', '--points', join(folder, 'points.json'))).rgba[0];
+}
+
+/** The same by the module in Node, without a process for each: its images are put into the file. */
+export function evaluated(json, material) {
+  const scene = library.scene(withImages(json), 'edited.gltf');
+  try {
+    return scene.evaluate(material, [kEvaluated], { engine: 'float' }).rgba[0];
+  } finally {
+    scene.free();
+  }
+}
+
+/** The colour in the middle of the picture. */
+export const middle = (page) => page.evaluate(() => {
+  const { viewport } = window.lacquerPage;
+  const { gl } = viewport;
+  viewport.draw();
+  const rgba = new Uint8Array(4);
+  gl.readPixels(gl.drawingBufferWidth / 2, gl.drawingBufferHeight / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, rgba);
+  return [...rgba];
+});
+
+/** Files that fall on the page: names with bytes. */
+export async function drop(page, files) {
+  await page.evaluate(async (files) => {
+    await window.lacquerPage.take(files.map(([name, bytes]) => new File([new Uint8Array(bytes)], name)));
+  }, files.map(([name, bytes]) => [name, [...bytes]]));
+}
+
+/** What a button gives to save. */
+export async function downloaded(page, button) {
+  if (!(await page.isVisible(button))) await page.click('[data-tab=graph]');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click(button)]);
+  return readFileSync(await download.path());
+}
+
+/** A .glb of its JSON and its bytes. */
+export function glb(json, binary) {
+  const pad = (bytes, with_) => Buffer.concat([bytes, Buffer.alloc((4 - (bytes.length % 4)) % 4, with_)]);
+  const chunk = (kind, bytes) => {
+    const head = Buffer.alloc(8);
+    head.writeUInt32LE(bytes.length, 0);
+    head.writeUInt32LE(kind, 4);
+    return Buffer.concat([head, bytes]);
+  };
+  const chunks = [chunk(0x4e4f534a, pad(Buffer.from(JSON.stringify(json)), ' ')), chunk(0x004e4942, pad(binary, 0))];
+  const head = Buffer.alloc(12);
+  head.write('glTF', 0);
+  head.writeUInt32LE(2, 4);
+  head.writeUInt32LE(12 + chunks[0].length + chunks[1].length, 8);
+  return Buffer.concat([head, ...chunks]);
+}
