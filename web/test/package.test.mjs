@@ -1,6 +1,6 @@
 // The npm package as others use it: installed from its folder, in a browser by itself and in a Vite project.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
+import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -104,12 +104,16 @@ const keptColors = (page) => page.evaluate(async () => {
 async function withWebGpu(t, place, use) {
   const by = await launch(...kWebGpu);
   try {
-    const page = await by.newPage();
     const server = await serve(place);
-    await page.goto(`${server.url}/package.json`);
-    const there = await hasWebGpu(page);
-    await page.close();
-    server.close();
+    let there = false;
+    try {
+      const page = await by.newPage();
+      await page.goto(`${server.url}/package.json`);
+      there = await hasWebGpu(page);
+      await page.close();
+    } finally {
+      server.close();
+    }
     if (!there) return t.skip('this browser has no WebGPU');
     await use({ by, before: keepTexture });
   } finally {
@@ -180,6 +184,35 @@ test('in a Vite project its WebGPU example draws, served and built', async (t) =
   if (!vite) return;
   const place = viteProject('webgpu');
   await withWebGpu(t, place, (how) => inVite(vite, place, async (page) => assertPicture(await keptColors(page)), how));
+});
+
+test('its types hold what a program in TypeScript says with them', () => {
+  const place = installed('webgl2', 'typed');
+  const program = (last) => `
+    import { load, LacquerError, type Message, type Shader } from 'lacquer';
+    const said: Message[] = [];
+    export async function paint(bytes: Uint8Array): Promise<Shader> {
+      const lacquer = await load();
+      const scene = lacquer.scene(bytes, 'a.gltf', { profile: 'khr' }, said);
+      const rgba: (number | null)[][] = scene.evaluate(0, [{ l: [0, 0.6, 0.8] }]).rgba;
+      const ball: Uint8ClampedArray = scene.preview(0, 64 + rgba.length);
+      const graph = scene.graph(0, { targets: ['essl'] });
+      for (const { name, value } of graph.parameters()) graph.setParameter(name, value);
+      const shader = graph.generate();
+      const block: Uint8Array = shader.pack({ coat_factor: ball.length });
+      if (block.length === 0) throw new LacquerError(graph.check());
+      ${last}
+      return shader;
+    }`;
+  const check = (last) => {
+    writeFileSync(join(place, 'typed.ts'), program(last));
+    const tsc = join(root, 'web/node_modules/typescript/bin/tsc');
+    const words = ['--noEmit', '--strict', '--target', 'es2022', '--lib', 'es2022,dom', '--module', 'esnext', '--moduleResolution', 'bundler', '--types', '', 'typed.ts'];
+    const { status, stdout } = spawnSync(process.execPath, [tsc, ...words], { cwd: place, encoding: 'utf8' });
+    return { status, stdout };
+  };
+  assert.deepEqual(check(''), { status: 0, stdout: '' });
+  assert.match(check("shader.text('essl', 'middle');").stdout, /'"middle"' is not assignable/);
 });
 
 // ---- the same bytes in every engine
