@@ -66,6 +66,7 @@ Json propertyJson(const lang::PropertyDecl& property) {
     json["type"] = "object";
   } else {
     json = paramJson(property, {});
+    if (property.tested) json["tested_to"] = *property.tested;
   }
   if (property.role != property.name && !property.role.empty()) json["as"] = property.role;
   if (!property.prose.empty()) json["meaning"] = property.prose;

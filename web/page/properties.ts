@@ -8,6 +8,8 @@ interface Property {
   type: string;
   range?: [number | null, number | null];
   or_zero?: boolean;
+  /** Larger values are valid, but no contract of the library speaks of them. */
+  tested_to?: number;
   default?: number | number[] | string;
   meaning?: string;
   values?: string[];
@@ -235,6 +237,7 @@ export function sliderEnds(property: Property): [number, number] {
   const usual = Math.abs(([property.default ?? 0].flat() as number[])[0]) || 1;
   if (property.name.endsWith('Rotation') && low === null) return [-Math.PI, Math.PI];
   const from = low ?? -2 * usual;
+  if (property.tested_to !== undefined) return [from, property.tested_to];
   if (high !== null && high - from <= 1000) return [from, high];
   return [property.or_zero ? Math.max(from, 1) : from, Math.max(from + 2, Math.min(4 * usual, 3000))];
 }

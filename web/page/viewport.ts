@@ -4,7 +4,7 @@ import { constantEnvironment, environmentOf, type Cube, type Environment } from 
 import { ball, bounds, flatDrawable, image, sourceOf, type Drawable, type GltfFile } from './gltf';
 import type { GpuPainter } from './gpu';
 import { directional, element, kMostLights, kStudioLights, type Light } from './lights';
-import { add, lookAt, mirrors, multiply, normalMatrix, perspective, scale, type Mat4, type Vec3 } from './math';
+import { add, cross, lookAt, mirrors, multiply, normalMatrix, perspective, scale, type Mat4, type Vec3 } from './math';
 
 /** A material to draw with: its program, and its textures by slot. */
 export interface Look {
@@ -66,6 +66,18 @@ export function dropOldest<T>(programs: Map<string, T>, used: Set<string>): T[] 
     dropped.push(program);
   }
   return dropped;
+}
+
+/** Texture coordinates of a square from -1 to 1 across z with `uv` in its middle. They change just so much that a shader
+ * without vertex tangents, which asks their derivatives, finds the frame of `n` and `t`. */
+function cornersUv({ n, t, uv }: { n: Vec3; t: number[]; uv: number[] }): number[] {
+  const flat = (x: Vec3) => [x[0] - (n[0] * x[2]) / n[2], x[1] - (n[1] * x[2]) / n[2]];
+  const along: Vec3 = [t[0], t[1], t[2]];
+  const [u, v] = [flat(along), flat(scale(cross(n, along), -t[3]))];
+  const step = 1e-3 / (u[0] * v[1] - u[1] * v[0]);
+  return [[-1, -1], [1, -1], [1, 1], [-1, 1]].flatMap(([x, y]) => [
+    uv[0] + step * (x * v[1] - y * v[0]), uv[1] + step * (y * u[0] - x * u[1]),
+  ]);
 }
 
 /** What stands for an absent image. */
@@ -408,7 +420,7 @@ export class Viewport {
     const { gl } = this;
     const corners = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
     const four = (x: number[]) => [...x, ...x, ...x, ...x];
-    const mesh = this.upload(flatDrawable(corners, four(at.n), four(at.t), four(at.uv), [0, 1, 2, 0, 2, 3]));
+    const mesh = this.upload(flatDrawable(corners, four(at.n), four(at.t), cornersUv(at), [0, 1, 2, 0, 2, 3]));
     const texture = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, 1, 1);

@@ -13,6 +13,9 @@ const kSamples = readdirSync(join(root, 'examples')).filter((name) => name.endsW
 /** How far the browser's colours may be from `lacquer eval --engine float`: a 255th, of what a display can show. */
 const kTolerance = 1 / 255;
 
+/** Of a window in which software draws the picture quickly. */
+const kSmall = { width: 960, height: 360 };
+
 before(begin);
 after(end);
 
@@ -43,7 +46,7 @@ for (const sample of kSamples) {
         }
       }
       assert.ok(compared > 10, `${compared}`);
-    }));
+    }, { size: kSmall }));
 }
 
 test('the texts on the page are those of `lacquer gen`', () =>
