@@ -39,10 +39,16 @@ export function withFolder(use) {
   }
 }
 
-/** A glTF file of examples/ with its images in it: a scene from memory reads no others. */
-export function withImages(json) {
+/** A glTF file of examples/ with its images in it, or with those that one material has: a scene from memory reads no others. */
+export function withImages(json, material) {
   const gltf = JSON.parse(json);
-  for (const each of gltf.images ?? []) {
+  const wanted = new Set();
+  JSON.stringify(material === undefined ? gltf.materials : gltf.materials[material], (name, value) => {
+    if (/texture$/i.test(name) && value) wanted.add(gltf.images[gltf.textures[value.index].source]);
+    return value;
+  });
+  for (const each of wanted) {
+    if (each.uri.startsWith('data:')) continue;
     each.uri = `data:image/png;base64,${readFileSync(join(root, 'examples', each.uri)).toString('base64')}`;
   }
   return JSON.stringify(gltf);

@@ -57,9 +57,9 @@ export const settled = (page) => page.evaluate(async () => {
 
 const kPoint = { n: [0.2, 0.3, 0.9327379], t: [0.9777802, 0, -0.2096336, 1], l: [0.36, 0.48, 0.8], light: [1.5, 1.4, 1.3], uv: [0.3, 0.6] };
 
-/** Sets a slider as a person does, and asks for the colour; the edited file stays in the page. */
-export async function set(page, id, value) {
-  return page.evaluate(([id, value, point]) => {
+/** Sets sliders one after the other as a person does, and asks each time for the colour; the edited file stays in the page. */
+export async function setAll(page, values) {
+  return page.evaluate(([values, point]) => values.map(([id, value]) => {
     const it = window.lacquerPage;
     const slider = document.getElementById(id);
     slider.value = String(value);
@@ -73,8 +73,10 @@ export async function set(page, id, value) {
       name: it.document.names[it.document.material],
       status: document.getElementById('status').textContent,
     };
-  }, [id, value, kPoint]);
+  }), [values, kPoint]);
 }
+
+export const set = async (page, id, value) => (await setAll(page, [[id, value]]))[0];
 
 const kEvaluated = { n: kPoint.n, t: kPoint.t, v: [0, 0, 1], l: kPoint.l, light: kPoint.light, uv0: kPoint.uv, uv1: kPoint.uv, env: [0, 0, 0] };
 
@@ -88,7 +90,7 @@ export function evaluatedByProgram(json, name) {
 
 /** The same by the module in Node, without a process for each: its images are put into the file. */
 export function evaluated(json, material) {
-  const scene = library.scene(withImages(json), 'edited.gltf');
+  const scene = library.scene(withImages(json, material), 'edited.gltf');
   try {
     return scene.evaluate(material, [kEvaluated], { engine: 'float' }).rgba[0];
   } finally {
