@@ -52,8 +52,9 @@ private:
   std::string path_;
 };
 
-/// The names in a folder, "." and ".." among them, in no order; none where there is no folder, or a link in its
-/// place. Memory that runs out is an exception, where the standard library's own listing would end the process.
+/// The names in a folder, "." and ".." among them, in no order; none where there is no folder, or a link in
+/// its place. Memory that runs out is an exception, where the standard library's own listing would end the
+/// process.
 std::vector<std::string> namesIn(const std::string& folder);
 
 struct Writing {
