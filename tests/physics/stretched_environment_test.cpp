@@ -443,6 +443,40 @@ TEST(StretchedEnvironment, IsThereByTheSwitchAloneAndLeavesEvenLightAsItIs) {
   }
 }
 
+Vec3 turned(const Vec3& v, const Vec4& q) {
+  const Vec3 axis = {q[0], q[1], q[2]};
+  return sum(v, cross(axis, sum(cross(axis, v), v, q[3])), 2);
+}
+
+TEST(StretchedEnvironment, TurnsWithItsMaps) {
+  const Vec4 q = {0.5, -0.1, 0.7, 0.5};
+  const auto sky = [](const Vec3& d) {
+    const Vec3 u = normalized(d);
+    return Vec4{4 + u[0], 5 + 2 * u[1] - u[0] * u[2], 6 + 3 * u[2], 1};
+  };
+  const auto under = [&](bool turning, bool back) {
+    Configuration setup = stretched(true);
+    if (turning) setup.switches["turned_environment"] = true;
+    if (turning)
+      setup.columns["environment_turn.rotation"] = eval::Column::constant({q[0], q[1], q[2], q[3]});
+    for (const char* map : {"environment_specular", "environment_irradiance"})
+      setup.textures[map] = [=](size_t, const Vec3& d, double) { return sky(back ? turned(d, q) : d); };
+    Random random(8);
+    std::vector<Sample> samples;
+    for (int i = 0; i < 100; ++i) samples.push_back(randomSample(random, true));
+    return grooved(0.3, 0.8, setup).colors<double>(samples);
+  };
+  const std::vector<Vec4> expected = under(false, true);
+  const std::vector<Vec4> shown = under(true, false);
+  const std::vector<Vec4> unturned = under(false, false);
+  size_t apart = 0;
+  for (size_t i = 0; i < expected.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(shown[i][c], expected[i][c], 1e-9 * (1 + expected[i][c]));
+    apart += std::abs(unturned[i][0] - expected[i][0]) > 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(apart, expected.size() / 2);
+}
+
 TEST(StretchedEnvironment, IsFiniteAndNotNegativeWhateverTheFrame) {
   Random random(4);
   for (const double roughness : {0.0, 0.5, 1.0}) {
