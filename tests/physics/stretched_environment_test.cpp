@@ -78,9 +78,10 @@ private:
     double whole = 0;
     double cosines = 0;
     for (int i = 0; i < kSteps * kTurns; ++i) {
+      const int turn = i / kSteps;
       const double u = (i % kSteps + 0.5) / kSteps;
       const double c = 1 / std::sqrt(1 + alpha * alpha * u / (1 - u));
-      const Vec3 l = mirrored({0, 0, 1}, tilted(c, 2 * kPi * (i / kSteps + 0.5) / kTurns));
+      const Vec3 l = mirrored({0, 0, 1}, tilted(c, 2 * kPi * (turn + 0.5) / kTurns));
       if (l[2] <= 0) continue;
       lights.push_back(l);
       whole += l[2];
@@ -134,8 +135,9 @@ struct Quadrature {
     constexpr int kTurns = 96;
     const Vec3 stretched = normalized({k.alphaT() * k.v[0], k.alphaB() * k.v[1], k.v[2]});
     for (int i = 0; i < kSteps * kTurns; ++i) {
+      const int turn = i / kSteps;
       const double z = 1 - (i % kSteps + 0.5) / kSteps * (1 + stretched[2]);
-      const Vec3 h = sum(tilted(z, 2 * kPi * (i / kSteps + 0.5) / kTurns), stretched, 1);
+      const Vec3 h = sum(tilted(z, 2 * kPi * (turn + 0.5) / kTurns), stretched, 1);
       const Vec3 l = mirrored(k.v, normalized({k.alphaT() * h[0], k.alphaB() * h[1], std::max(h[2], 1e-12)}));
       if (l[2] <= 0) continue;
       lights.push_back(l);
