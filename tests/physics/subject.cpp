@@ -47,6 +47,7 @@ void Subject::make(const std::string& gltf, size_t material, const Configuration
   options.direct_multiple_scattering = setup.direct_multiple_scattering;
   options.dfg_table = setup.dfg_table;
   options.live = setup.live;
+  options.switches = setup.switches;
   Diagnostics warnings;
   graph_ = test::buildGraph(m, {true, setup.tangents, true, {true, true, true, true}}, options, warnings);
   const Diagnostics wrong = graph::check(graph_, library());

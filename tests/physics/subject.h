@@ -24,8 +24,9 @@ struct Configuration {
   bool tangents = true;
   bool quads = false;  ///< samples stand in fours, and derivatives are taken between them
   std::set<std::string> live;
-  std::optional<Vec4> texel;  ///< of material textures without one of their own
-  std::string output;         ///< the colour output's name; empty for the first
+  std::map<std::string, bool, std::less<>> switches;  ///< others
+  std::optional<Vec4> texel;                          ///< of material textures without one of their own
+  std::string output;                                 ///< the colour output's name; empty for the first
   /// What an engine gives, in place of what stands for it here: textures by slot, and fields by their names.
   std::map<std::string, eval::Sampler> textures;
   eval::Columns columns;
