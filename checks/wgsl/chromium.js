@@ -31,7 +31,7 @@ async function withPage(use) {
     '--headless', '--no-sandbox', '--disable-gpu-watchdog', '--enable-unsafe-webgpu',
     '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan', `--user-data-dir=${profile}`,
     '--remote-debugging-pipe', 'about:blank'
-  ], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
+  ], {detached: true, stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});  // a process group of its own
   const waiting = new Map();
   let number = 0;
   let left = '';
@@ -74,9 +74,19 @@ async function withPage(use) {
   } finally {
     browser.removeAllListeners('exit');
     const ended = new Promise((resolve) => browser.once('exit', resolve));
-    if (browser.exitCode === null && browser.kill('SIGKILL')) await ended;
-    // Its own processes end a moment after it.
-    fs.rmSync(profile, {recursive: true, force: true, maxRetries: 50, retryDelay: 100});
+    if (browser.exitCode === null && browser.pid !== undefined) {
+      try {
+        process.kill(-browser.pid, 'SIGKILL');  // and all processes that it has started
+      } catch {
+        browser.kill('SIGKILL');
+      }
+      await ended;
+    }
+    try {
+      fs.rmSync(profile, {recursive: true, force: true, maxRetries: 10, retryDelay: 20});
+    } catch (error) {
+      console.error(`${profile} is left behind: ${error.message}`);  // of no meaning for what was asked
+    }
   }
 }
 
