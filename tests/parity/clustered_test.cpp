@@ -48,6 +48,38 @@ TEST(Clustered, EveryRouteToTheDeviceGivesIt) {
   EXPECT_GT(lit, 3U);
 }
 
+/// With all that dims a light, the device gives what the CPU gives.
+TEST(Clustered, DimmedLightsAreTheSameOnTheDevice) {
+  if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
+  ClusteredScene scene = thousandLightsInClusters(
+      0, {{"light_shadows", true}, {"light_cookies", true}, {"light_profiles", true}, {"light_masks", true}});
+  eval::Bindings& bindings = scene.clustered.bindings;
+  for (size_t i = 0; i < bindings.lights.size(); ++i) {
+    const auto set = [&](const char* field, double value) {
+      bindings.lights[i][std::string("light.") + field] = eval::Column::constant({value});
+    };
+    set("shadow_strength", i % 2 == 0 ? 0.5 : 0);
+    for (const char* layer : {"cookie", "profile", "mask"}) set(layer, i % 3 == 0 ? -1 : 0);
+  }
+  // One texel each: where filters look is what other tests are about.
+  for (const char* map : {"light_shadow_map", "light_cookies", "light_profiles", "light_masks"}) {
+    const vulkan::Texel texel = {map[6] == 's' ? 0.0F : 0.25F, 0.5F, 0.75F, 1};
+    vulkan::Texture& texture = scene.clustered.textures.at(map);
+    texture.width = texture.height = 1;
+    texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(1, texel);
+    bindings.textures[map] = [texel](size_t, const std::array<double, 3>&, double) {
+      return std::array<double, 4>{texel[0], texel[1], texel[2], texel[3]};
+    };
+  }
+  const std::vector<double> expected = firstColors(scene.clustered.module, bindings);
+  EXPECT_GT(apart(expected, scene.expected(), 1e-3), 100U) << "nothing is dimmed";
+  for (const FragmentRoute route : {FragmentRoute::Direct, FragmentRoute::Glsl, FragmentRoute::Hlsl}) {
+    const auto outputs = onDevice(scene.clustered, route);
+    ASSERT_FALSE(outputs.empty());
+    EXPECT_LE(apart(outputs[0], expected, 5e-3), outputs[0].size() / 200);
+  }
+}
+
 /// What each switch brings in multiplies the light that the lists give.
 TEST(Clustered, WhatDimsALightDimsIt) {
   const ClusteredScene plain = thousandLightsInClusters(0);
