@@ -7,36 +7,17 @@ set(LACQUER_ABSENT check vulkan cost stress cache run lod)
 set(LACQUER_ABSENT_FILES tools/cost.cpp tools/environment.cpp tools/gpu.cpp tools/lod.cpp tools/lod_material.cpp tools/lod_report.cpp
     tools/stress.cpp tools/view.cpp)
 
-# The header-only parts of the same libraries. They are linked into a folder of their own, because the folder that they
-# lie in has the native system's headers as well.
-set(web_include "${PROJECT_BINARY_DIR}/include/libraries")
-file(MAKE_DIRECTORY "${web_include}")
-foreach(part fmt tl nlohmann spirv stb xxhash.h xxh3.h)
-  if(NOT EXISTS "/usr/include/${part}")
-    if(NOT part STREQUAL "xxh3.h")
-      message(FATAL_ERROR "/usr/include/${part} is missing; `./dev web` installs what the build needs")
-    endif()
-  elseif(NOT EXISTS "${web_include}/${part}")
-    file(CREATE_LINK "/usr/include/${part}" "${web_include}/${part}" SYMBOLIC)
-  endif()
-endforeach()
-
-add_library(web_libraries INTERFACE)
+include(headers)
 # What emscripten's standard library of 2022 lacks, and loops without threads, come before the rest.
-target_include_directories(web_libraries BEFORE INTERFACE "${PROJECT_SOURCE_DIR}/web/shim")
-target_include_directories(web_libraries SYSTEM INTERFACE "${web_include}")
-target_compile_definitions(web_libraries INTERFACE FMT_HEADER_ONLY)
-foreach(name fmt::fmt tl::expected nlohmann_json::nlohmann_json SPIRV-Headers::SPIRV-Headers TBB::tbb xxhash stb sodium
-             glslang::glslang glslang::SPIRV glslang::glslang-default-resource-limits SPIRV-Tools-static SPIRV-Tools-opt)
-  add_library(${name} INTERFACE IMPORTED GLOBAL)
-  target_link_libraries(${name} INTERFACE web_libraries)
-endforeach()
+lacquer_headers("${PROJECT_SOURCE_DIR}/web/shim" PARTS fmt tl nlohmann spirv stb xxhash.h xxh3.h)
 
 # The module is linked whole, so nothing in it needs a table of addresses. What the flags name, every engine has that has
 # WebAssembly's exceptions.
 set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
 set(web_features -fwasm-exceptions -mbulk-memory -msign-ext -mnontrapping-fptoint)
 add_compile_options(${web_features})
+# Strings are compiled with what uses them: those within the standard library are optimized for size, and take a quarter of the time.
+add_compile_definitions(_LIBCPP_DISABLE_EXTERN_TEMPLATE)
 add_link_options(${web_features})
 
 # lacquer_module(): lacquer.wasm, which exports the functions of lacquer_c.h and memory, and needs no script of
