@@ -24,10 +24,12 @@ function embedded(file) {
 async function makePackage() {
   const folder = join(output, 'package');
   mkdirSync(folder, { recursive: true });
-  await build({
-    entryPoints: [join(here, 'src/index.ts')], outfile: join(folder, 'index.js'), bundle: true, format: 'esm', target: 'es2022',
-    external: ['./packed.js'],
-  });
+  for (const name of ['index', 'gltf']) {
+    await build({
+      entryPoints: [join(here, `src/${name}.ts`)], outfile: join(folder, `${name}.js`), bundle: true, format: 'esm', target: 'es2022',
+      external: ['./packed.js'],
+    });
+  }
   tsc('-p', '.', '--noEmit');
   tsc('-p', 'tsconfig.types.json', '--outDir', folder);
   copyFileSync(wasm, join(folder, 'lacquer.wasm'));

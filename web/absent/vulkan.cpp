@@ -10,6 +10,7 @@ static tl::unexpected<Diagnostics> absent() {
 }
 
 Result<std::vector<uint32_t>> fragmentWords(const ir::Module&, FragmentRoute) { return absent(); }
+vulkan::Texture textureFor(ir::Type) { return {}; }
 Result<vulkan::Work> gpuWork(const ir::Module&, const eval::Bindings&, const GpuTextures&, size_t,
                              FragmentRoute) {
   return absent();

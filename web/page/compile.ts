@@ -1,7 +1,7 @@
 // From the edited document to what the viewport draws and the panels show.
 import { load, type Graph, type GraphJson, type Lacquer, type Message, type Options, type Shader } from '../src/index';
 import type { Document } from './document';
-import { fromBase64 } from './gltf';
+import { fromBase64 } from '../src/gltf';
 import type { Look } from './viewport';
 
 /** The compiler that the page has in it, unpacked. */

@@ -1,6 +1,6 @@
 // The file that is edited: what is read from it, what changes it, and the way back.
 import type { Attribute, Lacquer } from '../src/index';
-import { geometry, openFile, type Drawable, type GltfFile } from './gltf';
+import { geometry, openGltf, type Drawable, type GltfFile } from '../src/gltf';
 
 export interface Input {
   name: string;
@@ -27,6 +27,7 @@ export class Document {
   private past: Snapshot[] = [];
   private future: Snapshot[] = [];
   private last = '';
+  private around: string | null = null; // what slim() begins with
 
   /** Throws a LacquerError for what the library cannot read. */
   constructor(lacquer: Lacquer, input: Input) {
@@ -36,7 +37,7 @@ export class Document {
       this.uses.push(scene.uses(i)[0] ?? ['NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1']);
     }
     scene.free();
-    this.file = openFile(input.name, input.bytes, input.resources);
+    this.file = openGltf(input.name, input.bytes, input.resources);
     this.drawables = geometry(this.file);
   }
 
@@ -45,15 +46,22 @@ export class Document {
   }
   /** What the library is given: the file without what makes it large. Places and names stay. */
   slim(): string {
-    const { asset, extensionsUsed, textures, samplers, images, materials } = this.json;
-    return JSON.stringify({
-      asset,
-      extensionsUsed,
-      textures,
-      samplers,
+    this.around ??= JSON.stringify(this.unedited()).slice(0, -1);
+    const { extensionsUsed, materials } = this.json;
+    const edited = { extensionsUsed, materials: materials.map((each: any, i: number) => (i === this.material ? each : {})) };
+    return `${this.around},${JSON.stringify(edited).slice(1)}`;
+  }
+  /** Of that what no edit changes; an animation of a material's property keeps the property's terms. */
+  private unedited(): object {
+    const { asset, textures, samplers, images, animations } = this.json;
+    const targets = (channels: any) => (Array.isArray(channels) ? channels : [])
+      .filter(({ target }: any) => /^\/materials\//.test(target?.extensions?.KHR_animation_pointer?.pointer))
+      .map(({ target }: any) => ({ target }));
+    return {
+      asset, textures, samplers,
       images: images?.map(({ mimeType, name }: any) => ({ mimeType, name, uri: 'image' })),
-      materials: materials.map((each: any, i: number) => (i === this.material ? each : {})),
-    });
+      animations: animations?.map(({ channels }: any) => ({ channels: targets(channels) })),
+    };
   }
 
   /** The value at a JSON pointer; undefined where there is none. */

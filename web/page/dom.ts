@@ -33,6 +33,13 @@ export function byId<T extends HTMLElement>(id: string): T {
   return element as T;
 }
 
+/** Says it there, where that is not what stands there: nothing is laid out again for what stays. */
+export function tell(id: string, text: string, kind = ''): void {
+  const element = byId(id);
+  if (element.textContent !== text) element.textContent = text;
+  if (element.className !== kind) element.className = kind;
+}
+
 /** Hands a file to the browser's downloads. */
 export function download(name: string, bytes: Uint8Array<ArrayBuffer> | string, type: string): void {
   const url = URL.createObjectURL(new Blob([bytes], { type }));

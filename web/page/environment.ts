@@ -1,5 +1,5 @@
 // What surrounds the material: the studio of `lacquer preview`, given by formulas, as cube maps.
-import { cross, dot, unit, type Vec3 } from './math';
+import { cross, dot, unit, type Vec3 } from '../src/math';
 
 /** Radiance from a unit direction, blurred as the lobe of a roughness blurs it. */
 export type Radiance = (direction: Vec3, roughness: number) => Vec3;

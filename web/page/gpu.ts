@@ -1,8 +1,8 @@
 // Draws what the viewport shows with WebGPU: the Wgsl texts, and bind groups as the shader's interface tells.
 import type { Interface, Shader } from '../src/index';
 import { environmentOf, type Cube, type Environment } from './environment';
-import type { Drawable } from './gltf';
-import { multiply } from './math';
+import type { Drawable } from '../src/gltf';
+import { multiply } from '../src/math';
 import { board, dropOldest, frameBlocks, kBlocks, kBoardSize, kLocations, neutral, type Look, type Viewport } from './viewport';
 
 declare const GPUBufferUsage: Record<'VERTEX' | 'INDEX' | 'UNIFORM' | 'COPY_DST' | 'MAP_READ', number>;

@@ -1,6 +1,6 @@
 // Environments of one's own: Radiance pictures (.hdr), equirectangular, filtered for the roughnesses that shaders ask for.
 import type { Radiance } from './environment';
-import { cross, dot, unit, type Vec3 } from './math';
+import { cross, dot, unit, type Vec3 } from '../src/math';
 
 export interface Picture {
   width: number;

@@ -1,6 +1,6 @@
 // Lamps: two of the page's own, and those of a file (KHR_lights_punctual), as elements of the block Lights.
-import { eachNode, type GltfFile } from './gltf';
-import { scale, unit, type Vec3 } from './math';
+import { eachNode, type GltfFile } from '../src/gltf';
+import { scale, unit, type Vec3 } from '../src/math';
 
 /** The fields of an element, as docs/bindings.md has them. */
 export interface Light {

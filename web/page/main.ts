@@ -7,9 +7,9 @@ import { compiler, graphOf, lookOf, withShader } from './compile';
 import { connectPointer, connectTabs } from './controls';
 import { costTable, errorTable, type Costs, type Errors } from './costs';
 import { Document, type Input } from './document';
-import { byId, download, h } from './dom';
+import { byId, download, h, tell } from './dom';
 import { addEnvironment, kEnvironments } from './environment';
-import { fromBase64 } from './gltf';
+import { fromBase64 } from '../src/gltf';
 import { GpuPainter } from './gpu';
 import { radianceOf, readHdr } from './hdr';
 import { fileLights, kStudioLights, type Light } from './lights';
@@ -20,6 +20,9 @@ import { Viewport, type Look } from './viewport';
 const kTargets = ['essl', 'wgsl', 'glsl', 'glsl-gl', 'hlsl', 'spirv', 'cpp', 'js'];
 /** Texels of a side of the cube that an environment of one's own is filtered into. */
 const kOwnEnvironment = 128;
+
+/** Milliseconds of work on other materials between two frames. */
+const kSlice = 8;
 
 /** As the material of geometry that has none. */
 const kDefaultMaterial = -1;
@@ -43,6 +46,9 @@ class Page {
   private otherId = '';
   private othersOf = ''; // the structure whose words `compare` offers
   private painter: GpuPainter | null = null;
+  private turns = 0;
+  /** Done when all that is seen has its look. */
+  others: Promise<void> = Promise.resolve();
   /** Milliseconds that the last compilation took, from the edited file to the block. */
   took = 0;
 
@@ -87,15 +93,16 @@ class Page {
     byId('file').textContent = input.name;
     const materials = byId<HTMLSelectElement>('material');
     materials.replaceChildren(...of.names.map((name, i) => h('option', { value: i }, name || `(material ${i})`)));
-    this.compileAll();
     if (of.names.length > 0) this.choose(0);
     else this.showNoMaterial();
+    this.compileOthers();
     return true;
   }
 
   /** A file without materials is seen as glTF's default one; there is nothing to edit. */
   private showNoMaterial(): void {
     this.graphJson = null;
+    this.shownOf.clear();
     this.othersOf = '';
     this.viewport.shown = kDefaultMaterial;
     this.viewport.other = null;
@@ -111,23 +118,47 @@ class Page {
     this.viewport.redraw();
   }
 
-  /** Each material has its look before one of them is chosen: they may all be seen. */
-  private compileAll(): void {
+  /** The looks of the other materials that are seen, between frames: a file may have hundreds. */
+  private compileOthers(): void {
     const of = this.of!;
-    const chosen = of.material;
-    for (let i = of.names.length - 1; i >= 0; --i) {
-      of.material = i;
+    const { looks } = this.viewport;
+    const seen = new Set(of.drawables.map(({ material }) => material));
+    for (const material of looks.keys()) if (material !== of.material && !seen.has(material)) looks.delete(material);
+    if (of.names.length === 0) return this.compileDefault();
+    seen.delete(of.material);
+    const turn = ++this.turns;
+    this.others = (async () => {
+      let begin = -Infinity;
+      for (const material of seen) {
+        if (performance.now() - begin > kSlice) {
+          this.viewport.redraw();
+          await new Promise((done) => setTimeout(done));
+          begin = performance.now();
+        }
+        if (turn !== this.turns) return;
+        if (material !== of.material) this.compileOther(material);
+      }
+      this.viewport.redraw();
+    })();
+  }
+
+  /** The look of a material that is not the current one. */
+  private compileOther(material: number): Look | undefined {
+    const of = this.of!;
+    if (material === kDefaultMaterial) this.compileDefault();
+    else if (material < of.names.length) {
+      const chosen = of.material;
+      of.material = material;
       this.compileLook([]);
+      of.material = chosen;
     }
-    of.material = chosen;
-    this.compileDefault();
+    return this.viewport.looks.get(material);
   }
 
   /** What is seen of geometry without a material. */
   private compileDefault(): void {
     const of = this.of!;
     const bare = of.drawables.find(({ material }) => material === kDefaultMaterial);
-    if (!bare && of.names.length > 0) return;
     const scene = this.lacquer.scene('{"asset": {"version": "2.0"}, "materials": [{}]}', 'default.gltf');
     const graph = scene.graph(0, this.options(), bare?.attributes.has('COLOR_0') ? ['NORMAL', 'COLOR_0'] : ['NORMAL']);
     const shader = graph.generate(this.options());
@@ -181,12 +212,12 @@ class Page {
       this.graphJson = made.graph;
       const pointers = new Set(Object.values(made.graph.parameters).map(({ pointer }) => pointer ?? ''));
       this.properties.mark({ pointers });
-      byId('id').textContent = made.look.id;
+      tell('id', made.look.id);
       const key = `${this.of.material} ${made.look.id} ${this.of.names.length}`;
       if (key !== this.othersOf) fillOthers(byId<HTMLSelectElement>('compare'), this.of, made.graph, this.nodes);
       this.othersOf = key;
     }
-    byId('took').textContent = `${this.took.toFixed(1)} ms`;
+    tell('took', `${this.took.toFixed(1)} ms`);
     this.compare();
     this.viewport.redraw();
     this.showMessages();
@@ -207,7 +238,7 @@ class Page {
     if (!other || !mine) return;
     const figures = byId('figures');
     const messages: Message[] = [];
-    const theirs = other.kind === 'material' ? viewport.looks.get(other.index) : this.compileLook(messages, optionsOf(other, this.options()))?.look;
+    const theirs = other.kind === 'material' ? viewport.looks.get(other.index) ?? this.compileOther(other.index) : this.compileLook(messages, optionsOf(other, this.options()))?.look;
     viewport.looks.set(this.of!.material, mine);
     figures.className = theirs ? '' : 'error';
     if (!theirs) {
@@ -226,13 +257,25 @@ class Page {
 
   // ---- panels
 
+  /** Only what changes them makes the panels anew: a slider that keeps the structure leaves them as they are. */
   private showPanels(): void {
     if (!this.of || !this.graphJson) return;
     const tab = document.querySelector<HTMLElement>('[role=tab][aria-selected=true]')!.dataset.tab;
     if (tab === 'code') this.showText();
-    if (tab === 'graph') this.showGraph();
-    if (tab === 'cost') this.showCost();
-    this.showSkipped();
+    if (tab === 'graph' && this.isNew('graph', this.structure())) this.showGraph();
+    if (tab === 'cost' && this.isNew('cost', `${this.structure()} ${this.otherId}`)) this.showCost();
+    if (this.isNew('skipped', JSON.stringify(this.graphJson.skipped))) this.showSkipped();
+  }
+  private shownOf = new Map<string, string>();
+  private isNew(panel: string, of: string): boolean {
+    const before = this.shownOf.get(panel);
+    this.shownOf.set(panel, of);
+    return before !== of;
+  }
+  /** Equal where code and graph are; numbers of the material are in neither. */
+  private structure(): string {
+    const { nodes, outputs, textures } = this.graphJson!;
+    return JSON.stringify([this.of!.file.name, this.of!.material, byId('id').textContent, nodes, outputs, textures]);
   }
 
   /** The text of the chosen target and stage, as `lacquer gen` writes it. */
@@ -246,7 +289,7 @@ class Page {
     const target = byId<HTMLSelectElement>('target').value;
     const stage = byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment';
     const code = byId('code');
-    if (!this.of?.names.length) return;
+    if (!this.of?.names.length || !this.isNew('code', `${this.structure()} ${target} ${stage}`)) return;
     try {
       const text = this.text(target, stage);
       showCode(code, text, (term) => this.select(term, 'code'));
@@ -353,11 +396,11 @@ class Page {
 
   private showMessages(): void {
     const wrong = this.messages.some(({ level }) => level === 'error');
-    const list = byId('messages');
-    list.replaceChildren(...this.messages.map(({ level, text }) => h('li', { class: level }, text)));
+    if (this.isNew('messages', JSON.stringify(this.messages)))
+      byId('messages').replaceChildren(...this.messages.map(({ level, text }) => h('li', { class: level }, text)));
     const count = this.messages.length;
-    byId('status').textContent = wrong ? this.messages.find(({ level }) => level === 'error')!.message : count > 0 ? `${count} message${count > 1 ? 's' : ''}` : '';
-    byId('status').className = wrong ? 'error' : '';
+    const told = count > 0 ? `${count} message${count > 1 ? 's' : ''}` : '';
+    tell('status', this.messages.find(({ level }) => level === 'error')?.message ?? told, wrong ? 'error' : '');
   }
 
   /** Says what is wrong and leaves everything as it is. */
@@ -395,8 +438,9 @@ class Page {
     choice.value = viewport.gpu ? 'webgpu' : 'webgl';
     canvas.hidden = !viewport.gpu;
     viewport.canvas.hidden = !canvas.hidden;
-    if (viewport.gpu && this.of) this.compileAll();
     this.compile();
+    if (viewport.gpu && this.of) this.compileOthers();
+    await this.others;
     if (name === 'webgpu' && !viewport.gpu) this.fail(new Error('this browser has no WebGPU'));
   }
 
@@ -420,8 +464,8 @@ class Page {
     });
     this.on('material', 'change', () => this.choose(Number(byId<HTMLSelectElement>('material').value)));
     this.on('profile', 'change', () => {
-      if (this.of) this.compileAll();
       this.compile();
+      if (this.of) this.compileOthers();
     });
     for (const id of ['compare', 'compared']) this.on(id, 'change', () => this.compile());
     this.on('split', 'input', () => {
@@ -525,6 +569,7 @@ class Page {
     const resources = new Map<string, Uint8Array>();
     for (const file of files) if (file !== main) resources.set(file.name, await bytesOf(file));
     this.open({ name: main.name, bytes: await bytesOf(main), resources });
+    await this.others;
   }
 
   /** An environment of the user's own. */

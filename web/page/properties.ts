@@ -1,7 +1,7 @@
 // The material's properties as the node library declares them, with sliders.
 import type { Document } from './document';
 import { h } from './dom';
-import { sourceOf } from './gltf';
+import { sourceOf } from '../src/gltf';
 
 interface Property {
   name: string;
@@ -196,6 +196,7 @@ export class Properties {
       update,
       mark: ({ pointers }) => {
         const there = pointers.has(pointer);
+        if (tag.hidden === there) return;
         tag.hidden = there;
         row.classList.toggle('absent', !there);
       },

@@ -1,10 +1,11 @@
 // Draws materials with their own shaders: the Essl texts, blocks by the offsets that the shader's interface tells.
 import type { Interface, Shader } from '../src/index';
 import { constantEnvironment, environmentOf, type Cube, type Environment } from './environment';
-import { ball, bounds, flatDrawable, image, sourceOf, type Drawable, type GltfFile } from './gltf';
+import { bounds, image, sourceOf, type Drawable, type GltfFile } from '../src/gltf';
 import type { GpuPainter } from './gpu';
 import { directional, element, kMostLights, kStudioLights, type Light } from './lights';
-import { add, cross, lookAt, mirrors, multiply, normalMatrix, perspective, scale, type Mat4, type Vec3 } from './math';
+import { add, cross, lookAt, mirrors, multiply, perspective, scale, type Mat4, type Vec3 } from '../src/math';
+import { ball, flatDrawable } from './shapes';
 
 /** A material to draw with: its program, and its textures by slot. */
 export interface Look {
@@ -26,6 +27,7 @@ interface Program {
 interface Mesh {
   drawable: Drawable;
   arrays: WebGLVertexArrayObject;
+  /** None where they are another mesh's. */
   buffers: WebGLBuffer[];
   count: number;
 }
@@ -80,6 +82,14 @@ function cornersUv({ n, t, uv }: { n: Vec3; t: number[]; uv: number[] }): number
   ]);
 }
 
+/** Texels that all images of a file may have together: 256 MB. */
+const kMostTexels = 2 ** 26;
+
+/** Pixels of a side that each of so many images may have, a power of two; larger ones are shown smaller. */
+export function mostPixels(images: number): number {
+  return 2 ** Math.floor(Math.log2(Math.sqrt(kMostTexels / Math.max(images, 1))));
+}
+
 /** What stands for an absent image. */
 export function neutral(slot: string): [number, number, number, number] {
   if (slot.endsWith('normal_texture')) return [128, 128, 255, 255];
@@ -128,6 +138,8 @@ export class Viewport {
   private ballMesh: Mesh;
   private maps = new WeakMap<Environment, Maps>();
   private textures = new Map<string, WebGLTexture>();
+  /** Textures that were asked for; another file has another map. */
+  private loading = new Map<string, Promise<void>>();
   /** The images of the textures above, for another painter. */
   readonly bitmaps = new Map<string, { bitmap: ImageBitmap; sampler: any }>();
   private blocks: WebGLBuffer[] = [];
@@ -169,7 +181,15 @@ export class Viewport {
 
   setScene(drawables: Drawable[]): void {
     for (const mesh of this.meshes) this.dropMesh(mesh);
-    this.meshes = drawables.map((each) => this.upload(each));
+    // What is at several places is uploaded once.
+    const shapes = new Map<Drawable['attributes'], Mesh>();
+    this.meshes = drawables.map((drawable) => {
+      const same = shapes.get(drawable.attributes);
+      const mesh = same ? { ...same, drawable, buffers: [] } : this.upload(drawable);
+      shapes.set(drawable.attributes, mesh);
+      drawable.mirrored = mirrors(drawable.model);
+      return mesh;
+    });
     this.fit();
   }
   fit(): void {
@@ -182,19 +202,26 @@ export class Viewport {
 
   /** Loads the file's textures that a look has, then draws again. */
   async loadTextures(file: GltfFile, look: Look): Promise<void> {
-    for (const { texture, srgb } of look.slots.values()) {
+    await Promise.all([...look.slots.values()].map(({ texture, srgb }) => {
       const key = `${texture}:${srgb}`;
-      if (this.textures.has(key)) continue;
-      const of = file.json.textures?.[texture];
-      const bitmap = of ? await image(file, sourceOf(of)) : null;
-      if (!bitmap || this.textures.has(key)) continue;
-      const sampler = file.json.samplers?.[of.sampler] ?? {};
-      this.bitmaps.set(key, { bitmap, sampler });
-      this.textures.set(key, this.imageTexture(bitmap, srgb, sampler));
-    }
+      if (!this.loading.has(key)) this.loading.set(key, this.loadTexture(file, texture, srgb, key));
+      return this.loading.get(key);
+    }));
     this.redraw();
   }
+  private async loadTexture(file: GltfFile, texture: number, srgb: boolean, key: string): Promise<void> {
+    const { loading, gl } = this;
+    const of = file.json.textures?.[texture];
+    const most = Math.min(mostPixels(file.json.images?.length ?? 1), gl.getParameter(gl.MAX_TEXTURE_SIZE));
+    const bitmap = of ? await image(file, sourceOf(of), most) : null;
+    if (!bitmap) return;
+    if (this.loading !== loading) return bitmap.close(); // of a file that has gone
+    const sampler = file.json.samplers?.[of.sampler] ?? {};
+    this.bitmaps.set(key, { bitmap, sampler });
+    this.textures.set(key, this.imageTexture(bitmap, srgb, sampler));
+  }
   forgetTextures(): void {
+    this.loading = new Map();
     for (const texture of this.textures.values()) this.gl.deleteTexture(texture);
     for (const { bitmap } of this.bitmaps.values()) bitmap.close();
     this.textures.clear();
@@ -530,11 +557,10 @@ export class Viewport {
     });
     fill(gl.ELEMENT_ARRAY_BUFFER, drawable.indices);
     gl.bindVertexArray(null);
-    drawable.normal = normalMatrix(drawable.model);
-    drawable.mirrored = mirrors(drawable.model);
     return { drawable, arrays, buffers, count: drawable.indices.length };
   }
   private dropMesh({ arrays, buffers }: Mesh): void {
+    if (buffers.length === 0) return; // it has another's
     this.gl.deleteVertexArray(arrays);
     for (const buffer of buffers) this.gl.deleteBuffer(buffer);
   }

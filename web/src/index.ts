@@ -3,6 +3,7 @@ import { compile, Instance, type Source } from './module.js';
 import {
   LacquerError,
   type Attribute,
+  type BindGroupLayoutEntry,
   type Evaluation,
   type GraphJson,
   type GraphSource,
@@ -14,6 +15,7 @@ import {
   type Point,
   type Stage,
   type Target,
+  type Values,
 } from './types.js';
 
 export * from './types.js';
@@ -27,6 +29,8 @@ const kAttributes: Attribute[] = [
 /** What a material that no primitive uses is read with. */
 export const kUnusedAttributes: Attribute[] = ['NORMAL', 'TANGENT', 'TEXCOORD_0', 'TEXCOORD_1'];
 const kStages: Record<Stage, number> = { vertex: 0, fragment: 1 };
+/** GPUShaderStage, which Node does not have. */
+const kVisibility: Record<string, number> = { vertex: 1, fragment: 2 };
 const kInterfaceVersion = 1;
 
 function readMessages(it: Instance, handle: number): Message[] {
@@ -118,6 +122,33 @@ export class Shader extends Handle {
   /** Its entry in manifest.json: blocks with their fields, textures, inputs. */
   get interface(): Interface {
     return JSON.parse(this.it.sized('lacquer_shader_interface', this.at));
+  }
+  /** The bytes of a uniform block that the application fills, from numbers by the names of its fields: what is not named is 0,
+   * names that the block has no field of are passed over. Of the lights a list, with the numbers of each. The material's
+   * block is what pack() gives. */
+  block(name: string, values: Values | Values[] = {}): Uint8Array {
+    const of = this.interface.uniforms.find(({ block }) => block === name);
+    if (!of) throw new RangeError(`the shader has no block ${name}`);
+    const data = new DataView(new ArrayBuffer(of.size));
+    (Array.isArray(values) ? values : [values]).slice(0, of.array ?? 1).forEach((each, element) => {
+      for (const { name: field, type, offset } of of.fields) {
+        const at = element * (of.stride ?? 0) + offset;
+        const value = each[field] ?? [];
+        const numbers = typeof value === 'number' ? [value] : Array.from(value);
+        numbers.forEach((x, i) => data[type === 'int' ? 'setInt32' : 'setFloat32'](at + 4 * i, x, true));
+      }
+    });
+    return new Uint8Array(data.buffer);
+  }
+  /** Of the target "wgsl": what createBindGroupLayout() wants of each group, from 0 on. Each entry has the `name` of what is
+   * bound there, too: a block, a texture, or a texture's sampler. */
+  bindGroupLayouts(): { entries: BindGroupLayoutEntry[] }[] {
+    const groups: { entries: BindGroupLayoutEntry[] }[] = [];
+    for (const { group, visibility, ...entry } of this.interface.webgpu?.bindings ?? []) {
+      while (groups.length <= group) groups.push({ entries: [] });
+      groups[group].entries.push({ ...entry, visibility: visibility.reduce((bits, stage) => bits | kVisibility[stage], 0) });
+    }
+    return groups;
   }
   /** Bytes of the material's uniform block; 0 when there is none. */
   get uniformSize(): number {

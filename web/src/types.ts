@@ -141,3 +141,15 @@ export interface Interface {
   webgpu?: { bindings: { name: string; group: number; binding: number; visibility: string[]; [kind: string]: unknown }[] };
   [key: string]: unknown;
 }
+
+/** Numbers by the names of a block's fields. */
+export type Values = Record<string, number | ArrayLike<number>>;
+
+/** A GPUBindGroupLayoutEntry, and what is bound there. */
+export interface BindGroupLayoutEntry {
+  name: string;
+  binding: number;
+  /** Bits of GPUShaderStage. */
+  visibility: number;
+  [kind: string]: unknown;
+}

@@ -6,7 +6,7 @@ import { chromium } from 'playwright-core';
 
 const kChromium = process.env.LACQUER_CHROMIUM ?? '/usr/bin/chromium';
 /** Milliseconds after which a page is given up: a machine may have much other work. */
-export const kPatience = 600_000;
+export const kPatience = 120_000;
 
 export const launch = (...more) => chromium.launch({
   executablePath: kChromium,
@@ -18,6 +18,22 @@ export const kWebGpu = [
   '--disable-vulkan-surface',
 ];
 export const kSlow = /GPU stall due to ReadPixels/;
+
+/** What a page says on its console and fails with, but for what `passed` matches. failure() rejects with the first of what
+ * is no console message: what a test waits for would then never come. */
+export function listen(page, passed = /^$/) {
+  const said = [];
+  let fail;
+  const failed = new Promise((_, reject) => (fail = reject));
+  failed.catch(() => undefined); // nobody may be waiting
+  page.on('console', (message) => passed.test(message.text()) || said.push(message.text()));
+  page.on('pageerror', (error) => {
+    said.push(String(error));
+    fail(error);
+  });
+  page.on('crash', () => fail(new Error('the page crashed')));
+  return { said, unlessItFails: (wait) => Promise.race([wait, failed]) };
+}
 
 /** Whether a browser has WebGPU; it is asked where the page lies, for not every place may have it. */
 export const hasWebGpu = (page) => page.evaluate(async () => Boolean(await navigator.gpu?.requestAdapter()));

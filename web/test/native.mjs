@@ -1,6 +1,6 @@
 // What the tests share: the module, the samples, the program.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -13,19 +13,20 @@ export function lacquer(...args) {
   return execFileSync(program, args, { cwd: root, encoding: 'utf8', maxBuffer: 1 << 28, stdio: ['pipe', 'pipe', 'pipe'] });
 }
 
-/** Files with materials: the examples, the benchmarks' works, and what the assets folder has. */
+/** Real files, of the assets folder; none where that is not there. */
+export function realFiles() {
+  const assets = process.env.LACQUER_ASSETS ?? join(root, '../shared/assets');
+  if (!existsSync(assets)) return [];
+  const found = readdirSync(assets).flatMap((folder) => readdirSync(join(assets, folder)).map((name) => join(assets, folder, name)));
+  return found.filter((name) => /\.(gltf|glb)$/.test(name)).sort();
+}
+
+/** Files with materials: the examples, the benchmarks' works, and the real ones. */
 export function inputs() {
-  const found = [];
+  const found = realFiles();
+  if (found.length === 0) console.log('# there is no assets folder: the real files are left out');
   for (const folder of ['examples', 'bench/works']) {
     for (const name of readdirSync(join(root, folder))) if (name.endsWith('.gltf')) found.push(join(folder, name));
-  }
-  const assets = process.env.LACQUER_ASSETS ?? join(root, '../shared/assets');
-  try {
-    for (const folder of readdirSync(assets)) {
-      for (const name of readdirSync(join(assets, folder))) if (/\.(gltf|glb)$/.test(name)) found.push(join(assets, folder, name));
-    }
-  } catch {
-    console.log('# there is no assets folder: the real files are left out');
   }
   return found.sort();
 }
@@ -55,3 +56,20 @@ export function withImages(json, material) {
 }
 
 export const read = (file) => readFileSync(resolve(root, file));
+
+/** A .glb of its JSON and its bytes. */
+export function glb(json, binary) {
+  const pad = (bytes, with_) => Buffer.concat([bytes, Buffer.alloc((4 - (bytes.length % 4)) % 4, with_)]);
+  const chunk = (kind, bytes) => {
+    const head = Buffer.alloc(8);
+    head.writeUInt32LE(bytes.length, 0);
+    head.writeUInt32LE(kind, 4);
+    return Buffer.concat([head, bytes]);
+  };
+  const chunks = [chunk(0x4e4f534a, pad(Buffer.from(JSON.stringify(json)), ' ')), chunk(0x004e4942, pad(binary, 0))];
+  const head = Buffer.alloc(12);
+  head.write('glTF', 0);
+  head.writeUInt32LE(2, 4);
+  head.writeUInt32LE(12 + chunks[0].length + chunks[1].length, 8);
+  return Buffer.concat([head, ...chunks]);
+}

@@ -7,8 +7,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { hasWebGpu, kPatience, kWebGpu, launch, serve } from './browser.mjs';
-import { inputs, output, read, root } from './native.mjs';
+import { hasWebGpu, kPatience, kWebGpu, launch, listen, serve } from './browser.mjs';
+import { glb, inputs, output, read, root } from './native.mjs';
 
 let browser;
 let folder;
@@ -37,12 +37,10 @@ function installed(example, name = example) {
 async function drawnAt(url, use, { by = browser, expected = [], passed = /^$/, before = () => undefined } = {}) {
   const page = await by.newPage();
   try {
-    const said = [];
-    page.on('console', (message) => passed.test(message.text()) || said.push(message.text()));
-    page.on('pageerror', (error) => said.push(String(error)));
+    const { said, unlessItFails } = listen(page, passed);
     await page.addInitScript(before);
     await page.goto(url, { timeout: kPatience });
-    await page.waitForFunction(() => document.title === 'drawn', null, { timeout: kPatience });
+    await unlessItFails(page.waitForFunction(() => document.title === 'drawn', null, { timeout: kPatience }));
     assert.deepEqual(said, expected);
     return await use(page);
   } finally {
@@ -51,10 +49,10 @@ async function drawnAt(url, use, { by = browser, expected = [], passed = /^$/, b
 }
 
 /** The same, of a folder that a static server gives away. */
-async function drawn(place, use, { hidden = undefined, ...how } = {}) {
+async function drawn(place, use, { hidden = undefined, query = '', ...how } = {}) {
   const server = await serve(place, hidden);
   try {
-    return await drawnAt(`${server.url}/index.html`, use, how);
+    return await drawnAt(`${server.url}/index.html${query}`, use, how);
   } finally {
     server.close();
   }
@@ -70,6 +68,55 @@ test('the package installs from its folder, and its WebGL 2 example draws', asyn
   const expected = ['Failed to load resource: the server responded with a status of 404 (Not Found)'];
   const again = await drawn(place, shot, { hidden: /\.wasm$/, expected });
   assert.ok(again.equals(picture));
+});
+
+/** The examples' triangle in a .glb, a node lower, twice as large and elsewhere: the camera sees it as it was. */
+function movedTriangle() {
+  const gltf = JSON.parse(read('web/examples/webgl2/triangle.gltf'));
+  const binary = Buffer.from(gltf.buffers[0].uri.split(',')[1], 'base64');
+  delete gltf.buffers[0].uri;
+  gltf.nodes = [{ children: [1], translation: [4, -2, 8] }, { mesh: 0, scale: [2, 2, 2] }];
+  return glb(gltf, binary);
+}
+
+test('the WebGL 2 example draws a .glb where its nodes are', async () => {
+  const place = installed('webgl2', 'glb');
+  const picture = await drawn(place, shot);
+  writeFileSync(join(place, 'moved.glb'), movedTriangle());
+  const again = await drawn(place, shot, { query: '?moved.glb' });
+  assert.ok(again.equals(picture));
+});
+
+test('the examples have a hundred lines at most', () => {
+  for (const example of ['webgl2', 'webgpu']) {
+    const lines = read(`web/examples/${example}/main.js`).toString().trimEnd().split('\n');
+    assert.ok(lines.length <= 100 && lines.every((line) => line.length <= 150), `${example}: ${lines.length} lines`);
+  }
+});
+
+test('blocks are filled by the names of their fields', async () => {
+  const { load } = await import(join(output, 'package/index.js'));
+  const library = await load();
+  const shader = library.scene(read('examples/coat.gltf'), 'coat.gltf').graph(0).generate({ targets: ['wgsl'] });
+  const of = (name) => shader.interface.uniforms.find(({ block }) => block === name);
+  const lights = shader.block('Lights', [{ radiance: [1, 2, 3] }, { position: [4, 5, 6], positional: 1, nothing: 7 }]);
+  assert.equal(lights.length, of('Lights').size);
+  const floats = new Float32Array(lights.buffer);
+  const stride = of('Lights').stride / 4;
+  assert.deepEqual([...floats.slice(0, 8)], [0, 0, 0, 0, 1, 2, 3, 0]);
+  assert.deepEqual([...floats.slice(stride, stride + 4)], [4, 5, 6, 1]);
+  assert.ok(floats.slice(2 * stride).every((x) => x === 0));
+  const frame = shader.block('Frame', { light_count: 2, environment_intensity: 0.5 });
+  const offset = (name) => of('Frame').fields.find((field) => field.name === name).offset;
+  assert.equal(new DataView(frame.buffer).getInt32(offset('light_count'), true), 2);
+  assert.equal(new DataView(frame.buffer).getFloat32(offset('environment_intensity'), true), 0.5);
+  assert.throws(() => shader.block('Nothing'), /no block Nothing/);
+  // What createBindGroupLayout() wants is what the interface tells, in its order.
+  const groups = shader.bindGroupLayouts();
+  const { bindings } = shader.interface.webgpu;
+  assert.deepEqual(groups.map(({ entries }) => entries.map(({ name }) => name)), groups.map((_, i) => bindings.filter(({ group }) => group === i).map(({ name }) => name)));
+  const found = groups[0].entries.find(({ name }) => name === 'Frame');
+  assert.deepEqual(found, { name: 'Frame', binding: 0, visibility: 3, buffer: { type: 'uniform', minBindingSize: of('Frame').size } });
 });
 
 /** Where software shows WebGPU, a screenshot does not hold it: the canvas gives a texture that can be read. */
@@ -190,6 +237,7 @@ test('its types hold what a program in TypeScript says with them', () => {
   const place = installed('webgl2', 'typed');
   const program = (last) => `
     import { load, LacquerError, type Message, type Shader } from 'lacquer';
+    import { geometry, openGltf, type Drawable } from 'lacquer/gltf';
     const said: Message[] = [];
     export async function paint(bytes: Uint8Array): Promise<Shader> {
       const lacquer = await load();
@@ -200,6 +248,9 @@ test('its types hold what a program in TypeScript says with them', () => {
       for (const { name, value } of graph.parameters()) graph.setParameter(name, value);
       const shader = graph.generate();
       const block: Uint8Array = shader.pack({ coat_factor: ball.length });
+      const { model, normal }: Drawable = geometry(openGltf('a.gltf', bytes))[0];
+      shader.block('Object', { model, normal_matrix: normal });
+      shader.block('Lights', [{ radiance: [1, 1, 1] }]);
       if (block.length === 0) throw new LacquerError(graph.check());
       ${last}
       return shader;

@@ -4,7 +4,7 @@ import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:f
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { kPatience, kSlow, launch } from './browser.mjs';
+import { kPatience, kSlow, launch, listen } from './browser.mjs';
 import { lacquer, output, root, withImages } from './native.mjs';
 
 const { load } = await import(join(output, 'package/index.js'));
@@ -33,13 +33,11 @@ export async function open(files, use, { flags = ['--no-cost'], url = null, size
   const context = await by.newContext({ viewport: size, colorScheme: scheme, acceptDownloads: true });
   context.setDefaultTimeout(kPatience);
   const page = await context.newPage();
-  const said = [];
-  page.on('console', (message) => kSlow.test(message.text()) || said.push(message.text()));
-  page.on('pageerror', (error) => said.push(String(error)));
-  await page.goto(url ?? pathToFileURL(html).href, { timeout: kPatience });
-  await page.waitForSelector('body.ready');
+  const { said, unlessItFails } = listen(page, kSlow);
   try {
-    await use(page);
+    await page.goto(url ?? pathToFileURL(html).href, { timeout: kPatience });
+    await unlessItFails(page.waitForSelector('body.ready'));
+    await unlessItFails(use(page));
   } finally {
     await context.close();
   }
@@ -49,9 +47,10 @@ export async function open(files, use, { flags = ['--no-cost'], url = null, size
 /** All that was asked for is on the canvas. */
 export const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
-/** The current material's textures are uploaded. */
+/** All that is seen has its look, and the current material its textures. */
 export const settled = (page) => page.evaluate(async () => {
   const it = window.lacquerPage;
+  await it.others;
   await it.viewport.loadTextures(it.document.file, it.lookNow());
 });
 
@@ -80,19 +79,22 @@ export const set = async (page, id, value) => (await setAll(page, [[id, value]])
 
 const kEvaluated = { n: kPoint.n, t: kPoint.t, v: [0, 0, 1], l: kPoint.l, light: kPoint.light, uv0: kPoint.uv, uv1: kPoint.uv, env: [0, 0, 0] };
 
+/** A colour as a picture has it: nothing where the material drops the fragment. */
+const seen = ({ rgba: [color], discarded: [dropped] = [false] }) => (dropped ? [0, 0, 0, 0] : color);
+
 /** `lacquer eval` of an edited file, whose images lie beside the examples. */
 export function evaluatedByProgram(json, name) {
   const file = join(folder, 'edited.gltf');
   writeFileSync(file, json);
   writeFileSync(join(folder, 'points.json'), JSON.stringify([kEvaluated]));
-  return JSON.parse(lacquer('eval', file, '--material', name, '--engine', 'float', '--points', join(folder, 'points.json'))).rgba[0];
+  return seen(JSON.parse(lacquer('eval', file, '--material', name, '--engine', 'float', '--points', join(folder, 'points.json'))));
 }
 
 /** The same by the module in Node, without a process for each: its images are put into the file. */
 export function evaluated(json, material) {
   const scene = library.scene(withImages(json, material), 'edited.gltf');
   try {
-    return scene.evaluate(material, [kEvaluated], { engine: 'float' }).rgba[0];
+    return seen(scene.evaluate(material, [kEvaluated], { engine: 'float' }));
   } finally {
     scene.free();
   }
@@ -111,8 +113,9 @@ export const middle = (page) => page.evaluate(() => {
 /** Files that fall on the page: names with bytes. */
 export async function drop(page, files) {
   await page.evaluate(async (files) => {
-    await window.lacquerPage.take(files.map(([name, bytes]) => new File([new Uint8Array(bytes)], name)));
-  }, files.map(([name, bytes]) => [name, [...bytes]]));
+    const bytesOf = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    await window.lacquerPage.take(files.map(([name, base64]) => new File([bytesOf(base64)], name)));
+  }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]));
 }
 
 /** What a button gives to save. */
@@ -120,21 +123,4 @@ export async function downloaded(page, button) {
   if (!(await page.isVisible(button))) await page.click('[data-tab=graph]');
   const [download] = await Promise.all([page.waitForEvent('download'), page.click(button)]);
   return readFileSync(await download.path());
-}
-
-/** A .glb of its JSON and its bytes. */
-export function glb(json, binary) {
-  const pad = (bytes, with_) => Buffer.concat([bytes, Buffer.alloc((4 - (bytes.length % 4)) % 4, with_)]);
-  const chunk = (kind, bytes) => {
-    const head = Buffer.alloc(8);
-    head.writeUInt32LE(bytes.length, 0);
-    head.writeUInt32LE(kind, 4);
-    return Buffer.concat([head, bytes]);
-  };
-  const chunks = [chunk(0x4e4f534a, pad(Buffer.from(JSON.stringify(json)), ' ')), chunk(0x004e4942, pad(binary, 0))];
-  const head = Buffer.alloc(12);
-  head.write('glTF', 0);
-  head.writeUInt32LE(2, 4);
-  head.writeUInt32LE(12 + chunks[0].length + chunks[1].length, 8);
-  return Buffer.concat([head, ...chunks]);
 }

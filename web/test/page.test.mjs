@@ -1,12 +1,12 @@
 // The page in a real browser: Debian's Chromium, driven by playwright-core.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { hasWebGpu, kWebGpu, launch, serve } from './browser.mjs';
-import { lacquer, read, root } from './native.mjs';
+import { glb, lacquer, read, realFiles, root } from './native.mjs';
 import {
-  begin, downloaded, drop, end, evaluated, evaluatedByProgram, folder, glb, library, middle, open, painted, set, setAll, settled,
+  begin, downloaded, drop, end, evaluated, evaluatedByProgram, folder, library, middle, open, painted, set, setAll, settled,
 } from './page.mjs';
 
 const kSamples = readdirSync(join(root, 'examples')).filter((name) => name.endsWith('.gltf')).map((name) => name.slice(0, -5)).sort();
@@ -38,7 +38,6 @@ for (const sample of kSamples) {
           assert.equal(got.status, '', `${id} ${x}`);
           const expected = compared % 40 === 0 ? evaluatedByProgram(got.json, got.name) : evaluated(got.json, material);
           got.lamp.forEach((c, k) => {
-            if (expected[k] === null) return;
             const scale = Math.max(1, Math.abs(expected[k]));
             assert.ok(Math.abs(c - expected[k]) <= kTolerance * scale, `${got.name} ${id} = ${x}: ${got.lamp} is not ${expected}`);
           });
@@ -147,6 +146,65 @@ test('a broken file gives the library\'s message, and the page lives on', () =>
     }
     await set(page, 'p:/materials/0/pbrMetallicRoughness/metallicFactor', 0.3);
     assert.equal(await page.textContent('#status'), '');
+  }));
+
+test('real files fall on the page, which shows each of them with all of its materials', async (t) => {
+  const files = realFiles();
+  if (files.length === 0) return t.skip('there is no assets folder');
+  await open([], async (page) => {
+    for (const file of files) {
+      const bytes = readFileSync(file);
+      const name = basename(file);
+      await drop(page, [[name, bytes]]);
+      assert.equal(await page.textContent('#file'), name);
+      const scene = library.scene(bytes, name);
+      const count = scene.materialCount;
+      const told = await page.textContent('#status');
+      assert.equal(told, count > 0 ? '' : '1 message', name);
+      for (const material of count > 1 ? [0, count - 1] : count > 0 ? [0] : []) {
+        await page.selectOption('#material', String(material));
+        const options = { targets: ['essl'] };
+        assert.equal(await page.textContent('#id'), scene.graph(material, options).generate(options).id, `${name}, material ${material}`);
+      }
+      scene.free();
+      const { without, colors } = await page.evaluate(() => {
+        const { viewport, document: of } = window.lacquerPage;
+        const pixels = new Uint32Array(viewport.pixels().buffer);
+        const seen = [...new Set(of.drawables.map(({ material }) => material))];
+        return { without: seen.filter((material) => !viewport.looks.has(material)), colors: new Set(pixels).size };
+      });
+      assert.deepEqual(without, [], `${name}: materials that are not drawn`);
+      assert.ok(colors > 2, `${name}: ${colors} colours`); // what shines is nearly of one
+    }
+  }, { size: kSmall });
+});
+
+test('images together have no more texels than a page can hold, and those of a file that has gone are not kept', () =>
+  open([], async (page) => {
+    const { wide, after } = await page.evaluate(async () => {
+      const it = window.lacquerPage;
+      const canvas = new OffscreenCanvas(2048, 16);
+      canvas.getContext('2d').fillRect(0, 0, 2048, 16);
+      const wide = new Uint8Array(await (await canvas.convertToBlob()).arrayBuffer());
+      const file = (images) => new File([JSON.stringify({
+        asset: { version: '2.0' }, images: Array.from({ length: images }, () => ({ uri: 'wide.png' })), textures: [{ source: 0 }],
+        materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
+      })], 'wide.gltf');
+      const found = [];
+      for (const images of [1, 20]) {
+        await it.take([file(images), new File([wide], 'wide.png')]);
+        await it.viewport.loadTextures(it.document.file, it.lookNow());
+        found.push([...it.viewport.bitmaps.values()].map(({ bitmap }) => [bitmap.width, bitmap.height]));
+      }
+      const [before, look] = [it.document.file, it.lookNow()];
+      it.viewport.forgetTextures();
+      const loading = it.viewport.loadTextures(before, look);
+      it.open({ name: 'bare.gltf', bytes: new TextEncoder().encode('{"asset": {"version": "2.0"}, "materials": [{}]}'), resources: new Map() });
+      await loading;
+      return { wide: found, after: it.viewport.bitmaps.size };
+    });
+    assert.deepEqual(wide, [[[2048, 16]], [[1024, 8]]]);
+    assert.equal(after, 0);
   }));
 
 test('the graph is shown by its rates, leads to the text and back, and is edited with the library\'s checks', () =>

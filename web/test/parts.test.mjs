@@ -10,16 +10,16 @@ import { root } from './native.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'lacquer-parts-'));
 after(() => rmSync(folder, { recursive: true }));
-const part = async (name) => {
+const part = async (name, place = 'web/page') => {
   const outfile = join(folder, `${name}.mjs`);
-  await build({ entryPoints: [join(root, 'web/page', `${name}.ts`)], outfile, bundle: true, format: 'esm', target: 'es2022' });
+  await build({ entryPoints: [join(root, place, `${name}.ts`)], outfile, bundle: true, format: 'esm', target: 'es2022' });
   return import(pathToFileURL(outfile));
 };
 const { readHdr, radianceOf } = await part('hdr');
 const { makeEnvironment } = await part('environment');
 const { element, fileLights } = await part('lights');
 const { halves } = await part('gpu');
-const { openFile } = await part('gltf');
+const { bounds, eachNode, geometry, openGltf } = await part('gltf', 'web/src');
 
 /** A .hdr file of colours that RGBE holds exactly; rows are run-length coded where `runs`. */
 function hdr(width, height, color, runs) {
@@ -124,13 +124,61 @@ test("a file's own lamps are the elements that docs/bindings.md describes", () =
     scenes: [{ nodes: [0, 1, 3, 4] }],
     scene: 0,
   };
-  const file = openFile('a.gltf', Buffer.from(JSON.stringify(json)), new Map());
+  const file = openGltf('a.gltf', Buffer.from(JSON.stringify(json)), new Map());
   const [sun, bulb, spot, ...more] = fileLights(file).map(element);
   assert.deepEqual(more, []);
   close(sun, [0, 1, 0, 0, 2, 1, 0.5, 0, 0, -1, 0, 0, 1, 0, 0, 0], 1e-6);
   close(bulb, [1, 2, 4, 1, 30, 30, 30, 1 / 16, 0, 0, -1, 0, 1, 0, 0, 0], 1e-6);
   const scale = 1 / (Math.cos(0.2) - Math.cos(0.6));
   close(spot, [0, 0, 0, 1, 1, 1, 1, 0, 0, 0, -1, scale, -Math.cos(0.6) * scale, 0, 0, 0], 1e-6);
+});
+
+/** A glTF file whose one buffer is the arrays, each a buffer view. */
+function withArrays(arrays, more) {
+  const bytes = Buffer.concat(arrays.map((each) => Buffer.from(each.buffer)));
+  let at = 0;
+  const bufferViews = arrays.map(({ byteLength }) => ({ buffer: 0, byteOffset: (at += byteLength) - byteLength, byteLength }));
+  const uri = `data:application/octet-stream;base64,${bytes.toString('base64')}`;
+  const json = { asset: { version: '2.0' }, buffers: [{ byteLength: bytes.length, uri }], bufferViews, ...more };
+  return openGltf('a.gltf', Buffer.from(JSON.stringify(json)));
+}
+
+test('geometry is read as it is stored: strips and fans, bytes, gaps between elements, one mesh in two places', () => {
+  const square = new Float32Array([0, 0, 0, 1, 0, 0, 0, 2, 0, 1, 2, 0]);
+  const uv = new Uint8Array([0, 255, 9, 9, 51, 0, 9, 9, 255, 255, 9, 9, 0, 0, 9, 9]); // two of four bytes
+  const file = withArrays([square, uv, new Uint16Array([0, 1, 2, 3])], {
+    accessors: [
+      { bufferView: 0, componentType: 5126, count: 4, type: 'VEC3' },
+      { bufferView: 1, componentType: 5121, count: 4, type: 'VEC2', normalized: true },
+      { bufferView: 2, componentType: 5123, count: 4, type: 'SCALAR' },
+      { bufferView: 2, componentType: 5123, count: 5, type: 'SCALAR' },
+    ],
+    meshes: [{ primitives: [
+      { attributes: { POSITION: 0, TEXCOORD_0: 1 }, indices: 2, mode: 5 },
+      { attributes: { POSITION: 0 }, mode: 6, material: 3 },
+      { attributes: { POSITION: 0 }, indices: 2, mode: 1 },
+      { attributes: { POSITION: 0 }, indices: 3 },
+    ] }],
+    nodes: [{ mesh: 0 }, { mesh: 0, translation: [9, 0, 0] }],
+  });
+  file.json.bufferViews[1].byteStride = 4;
+  const [strip, fan, again, , ...more] = geometry(file);
+  assert.deepEqual(more, [], 'lines, and indices that end too early, are left out');
+  assert.deepEqual([...strip.indices], [0, 1, 2, 2, 1, 3]);
+  assert.deepEqual([...fan.indices], [0, 1, 2, 0, 2, 3]);
+  assert.deepEqual([strip.material, fan.material], [-1, 3]);
+  close([...strip.attributes.get('TEXCOORD_0').data], [0, 1, 0.2, 0, 1, 1, 0, 0], 1e-6);
+  assert.deepEqual([...strip.attributes.get('NORMAL').data.slice(0, 3)], [0, 0, 2], 'of its triangle: 1 by 2');
+  assert.equal(again.attributes, strip.attributes);
+  const { middle, radius } = bounds([strip, again]);
+  assert.deepEqual([...middle, radius], [5, 1, 0, Math.hypot(10, 2) / 2]);
+});
+
+test('nodes that go in circles are walked once', () => {
+  const json = { asset: { version: '2.0' }, nodes: [{ children: [1, 1] }, { children: [0, 1, 7] }], scenes: [{ nodes: [0, 0] }], scene: 0 };
+  let walked = 0;
+  eachNode(openGltf('a.gltf', Buffer.from(JSON.stringify(json))), () => ++walked);
+  assert.equal(walked, 2);
 });
 
 test('half floats are rounded to the nearest', () => {
