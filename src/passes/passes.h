@@ -53,6 +53,10 @@ void place(ir::Module& module);
 /// Gives the material's textures that are left their places, and drops the others.
 void bind(ir::Module& module);
 
+/// Marks the operations of fragments that may be done at half precision, as long as no colour changes by more
+/// than `error` (analysis/relax.h). 0 marks none.
+void relax(ir::Module& module, double error);
+
 /// Two resources in one place ("slot-clash"): a mistake of Lacquer's, or of whoever made the module.
 Diagnostics checkPlaces(const ir::Module& module);
 

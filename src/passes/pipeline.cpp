@@ -32,6 +32,8 @@ constexpr std::array kPasses{
     Pass{"place", [](ir::Module& m, const PipelineOptions&) { place(m); }},
     // The textures that are left get their slots.
     Pass{"bind", [](ir::Module& m, const PipelineOptions&) { bind(m); }},
+    // What may be done at half precision, where that is asked for. Behind all that changes values.
+    Pass{"relax", [](ir::Module& m, const PipelineOptions& o) { relax(m, o.relaxed); }},
 };
 
 constexpr auto kPassNames = [] {

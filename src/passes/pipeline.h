@@ -14,6 +14,7 @@ struct PipelineOptions {
   LightFacts lights;
   /// Called with each pass's name and what it left.
   std::function<void(std::string_view pass, const ir::Module&)> after;
+  double relaxed = 0;  ///< Options::relaxed
 };
 
 /// Runs every pass on a lowered module; afterwards it is ready for a target's legalize pass and schedule().
