@@ -8,6 +8,7 @@
 
 #include "bench/cost.h"
 #include "bench/error.h"
+#include "bench/estimate.h"
 #include "bench/pipeline_bench.h"
 
 namespace {
@@ -22,6 +23,9 @@ constexpr Verb kVerbs[] = {
      lacquer::bench::runCost},
     {"error", "what variants of nodes are wrong by and save; renews bench/error.json and docs/error.md",
      lacquer::bench::runError},
+    {"estimate",
+     "fits the weights of the costs that `lacquer lod` estimates without Mesa, and prints their error",
+     lacquer::bench::runEstimate},
     {"pipeline", "what making shaders takes, against glslang and spirv-opt; renews bench/pipeline.json",
      lacquer::bench::runPipeline},
 };

@@ -15,13 +15,6 @@ constexpr uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
 constexpr size_t kHeader = 12;
 constexpr size_t kChunkHeader = 8;
 
-uint32_t word(std::string_view bytes, size_t offset) {
-  uint32_t value = 0;
-  for (size_t i = 0; i < 4; ++i)
-    value |= static_cast<uint32_t>(static_cast<unsigned char>(bytes[offset + i])) << (8 * i);
-  return value;
-}
-
 /// The error of a chunk that does not fit into the file.
 std::optional<std::string> badChunk(std::string_view glb) {
   size_t at = kHeader;
@@ -39,6 +32,13 @@ std::optional<std::string> badChunk(std::string_view glb) {
 }
 
 }  // namespace
+
+uint32_t word(std::string_view bytes, size_t offset) {
+  uint32_t value = 0;
+  for (size_t i = 0; i < 4; ++i)
+    value |= static_cast<uint32_t>(static_cast<unsigned char>(bytes[offset + i])) << (8 * i);
+  return value;
+}
 
 Result<std::string_view> jsonText(std::string_view bytes, const std::string& file) {
   const Place place{file, 0, 0, {}};

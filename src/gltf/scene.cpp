@@ -17,7 +17,7 @@ const Json& elements(const Json& owner, std::string_view name) {
 }
 
 /// The object of an extension; an empty one where there is none.
-const Json& extensionOf(const Json& owner, std::string_view name) {
+const Json& extensionIn(const Json& owner, std::string_view name) {
   static const Json kNone = Json::object();
   const Json* all = member(owner, "extensions");
   const Json* found = all == nullptr ? nullptr : member(*all, name);
@@ -39,7 +39,7 @@ void sortDistinct(std::vector<VertexAttributes>& sets) {
 void collectInstances(const Json& checked, Scene& scene) {
   std::set<size_t> meshes;
   for (const Json& node : elements(checked, "nodes")) {
-    const int mesh = indexOf(extensionOf(node, "EXT_mesh_gpu_instancing"), "mesh");
+    const int mesh = indexOf(extensionIn(node, "EXT_mesh_gpu_instancing"), "mesh");
     if (mesh >= 0) meshes.insert(static_cast<size_t>(mesh));
   }
   for (Primitive& primitive : scene.primitives)
@@ -60,9 +60,9 @@ void collectUses(Scene& scene) {
 }
 
 void collectLights(const Json& checked, Scene& scene) {
-  const Json& lights = elements(extensionOf(checked, "KHR_lights_punctual"), "lights");
+  const Json& lights = elements(extensionIn(checked, "KHR_lights_punctual"), "lights");
   for (const Json& node : elements(checked, "nodes")) {
-    const int light = indexOf(extensionOf(node, "KHR_lights_punctual"), "light");
+    const int light = indexOf(extensionIn(node, "KHR_lights_punctual"), "light");
     if (light < 0) continue;
     const std::string_view type = lights[static_cast<size_t>(light)]["type"].text();
     if (type == "directional") ++scene.lights[LightType::Directional];

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "gltf/container.h"
+#include "gltf/members.h"
 #include "gltf/reading.h"
 #include "support/contain.h"
 #include "support/file.h"
@@ -18,14 +19,6 @@ namespace lacquer::gltf {
 namespace {
 
 constexpr uint32_t kBinaryChunk = 0x004E4942;  // "BIN\0"
-
-uint32_t word(std::string_view bytes, size_t offset) {
-  uint32_t value = 0;
-  for (size_t i = 0; i < 4; ++i) {
-    value |= static_cast<uint32_t>(static_cast<unsigned char>(bytes[offset + i])) << (8 * i);
-  }
-  return value;
-}
 
 /// The binary chunk of a GLB that jsonText() has accepted; empty when there is none.
 std::string binaryChunk(std::string_view bytes) {
@@ -83,23 +76,6 @@ std::string percentDecoded(std::string_view uri) {
 bool hasScheme(std::string_view uri) {
   const size_t colon = uri.find(':');
   return colon != std::string_view::npos && uri.find_first_of("/?#") > colon;
-}
-
-/// A whole number in [0, 2^53), or nothing.
-std::optional<size_t> wholeMember(const Json& object, std::string_view key) {
-  const Json* value = member(object, key);
-  if (value == nullptr || !value->is_number()) return std::nullopt;
-  const double x = value->get<double>();
-  if (!(x >= 0 && x < 9007199254740992.0) || x != static_cast<double>(static_cast<size_t>(x)))
-    return std::nullopt;
-  return static_cast<size_t>(x);
-}
-
-const Json* element(const Json& root, std::string_view array, std::optional<size_t> index) {
-  const Json* all = member(root, array);
-  if (all == nullptr || !all->is_array() || !index || *index >= all->size()) return nullptr;
-  const Json& found = (*all)[*index];
-  return found.is_object() ? &found : nullptr;
 }
 
 }  // namespace
@@ -163,20 +139,24 @@ Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& p
   return bytes;
 }
 
+Result<std::string> TextureFile::bufferBytes(size_t index, const Place& place) const {
+  const Json* buffer = element(root_, "buffers", index);
+  if (buffer == nullptr) return fail("image-missing", place, fmt::format("there is no buffer {}", index));
+  const Json* uri = member(*buffer, "uri");
+  if (uri == nullptr) return index == 0 ? binary_ : std::string();
+  if (!uri->is_string()) return fail("image-missing", place, "the buffer's uri is no string");
+  return uriBytes(uri->get<std::string>(), place);
+}
+
 Result<std::string> TextureFile::viewBytes(size_t index, const Place& place) const {
   const auto broken = [&](std::string message) { return fail("image-missing", place, std::move(message)); };
   const Json* view = element(root_, "bufferViews", index);
   if (view == nullptr) return broken(fmt::format("there is no bufferView {}", index));
   const std::optional<size_t> buffer_index = wholeMember(*view, "buffer");
-  const Json* buffer = element(root_, "buffers", buffer_index);
-  if (buffer == nullptr) return broken("the image's bufferView has no buffer");
-  const Json* uri = member(*buffer, "uri");
-  Result<std::string> bytes = binary_;
-  if (uri != nullptr) {
-    if (!uri->is_string()) return broken("the buffer's uri is no string");
-    bytes = uriBytes(uri->get<std::string>(), place);
-    if (!bytes) return bytes;
-  }
+  if (element(root_, "buffers", buffer_index) == nullptr)
+    return broken("the image's bufferView has no buffer");
+  const Result<std::string> bytes = bufferBytes(*buffer_index, place);
+  if (!bytes) return bytes;
   const size_t offset = wholeMember(*view, "byteOffset").value_or(0);
   const size_t length = wholeMember(*view, "byteLength").value_or(0);
   if (length == 0 || offset > bytes->size() || length > bytes->size() - offset) {

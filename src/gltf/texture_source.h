@@ -48,7 +48,13 @@ public:
   /// The bytes behind such a URI. Errors: those of image().
   Result<std::string> fileBytes(const std::string& uri) const { return uriBytes(uri, {path_, 0, 0, {}}); }
 
-  /// Those that image() and fileBytes() have read, as paths.
+  /// A whole buffer: a file, a data URI or the GLB's own chunk, which only the first buffer may be. Errors:
+  /// those of image().
+  Result<std::string> bufferBytes(size_t index, const Place& place) const;
+  /// The file's JSON, which nobody has checked.
+  const Json& root() const { return root_; }
+
+  /// Those that image(), fileBytes() and bufferBytes() have read, as paths.
   const std::vector<std::string>& filesRead() const { return read_; }
 
 private:

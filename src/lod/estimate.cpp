@@ -1,93 +1,124 @@
 #include "lod/estimate.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace lacquer::lod {
 
 namespace {
 
-/// What a value takes of a GPU: sums and the like of one component each, and roots and the like.
-struct Work {
-  double plain = 0, slow = 0;
-};
+// In cycles of inverse throughput, fitted by least squares to RADV's for shaders of this tree's works and
+// examples
+// (`./dev bench estimate`; docs/lod.md has the error). A product that is added to takes nothing beside the
+// sum, which is why a sum is less than the two cycles of an instruction.
+constexpr std::array<double, 7> kCycles{5.89, 1.54, 1.37, 0.729, 0, 3.6, 0};
+constexpr double kInstructions = 0.621;  // for each cycle, with loads and waits
+constexpr double kRounds = 8;
+constexpr double kQuarter = 6;
 
-Work workOf(const ir::Dag& dag, ir::ValueId id) {
+/// What a value takes of a GPU.
+Counts workOf(const ir::Dag& dag, ir::ValueId id) {
   const ir::Value& value = dag[id];
   const double width = ir::componentCount(value.type);
   const double first = value.count > 0 ? ir::componentCount(dag[value.args[0]].type) : 0;
+  Counts work;
+  work.always = 0;
   switch (value.op) {
     case ir::Op::Constant:
     case ir::Op::Construct:
     case ir::Op::Swizzle:
     case ir::Op::Neg:
     case ir::Op::Abs:
-    case ir::Op::SumOverLights: return {};
-    case ir::Op::Input: return dag.inputOf(id).kind == ir::InputKind::Varying ? Work{2 * width, 0} : Work{};
-    case ir::Op::Div: return {width, first};
+    case ir::Op::SumOverLights: break;
+    case ir::Op::Input: {
+      const ir::InputKind kind = dag.inputOf(id).kind;
+      if (kind == ir::InputKind::Varying) work.varyings = width;
+      if (kind == ir::InputKind::BlockField) work.loads = width;
+      break;
+    }
+    case ir::Op::Div:
+      work.sums = width;
+      work.roots = ir::componentCount(dag[value.args[1]].type);
+      break;
     case ir::Op::Sqrt:
     case ir::Op::InverseSqrt:
     case ir::Op::Exp2:
-    case ir::Op::Log2: return {0, width};
-    case ir::Op::Pow: return {width, 2 * width};
+    case ir::Op::Log2: work.roots = width; break;
+    case ir::Op::Pow:
+      work.sums = width;
+      work.roots = 2 * width;
+      break;
     case ir::Op::Sin:
-    case ir::Op::Cos: return {width, width};
-    case ir::Op::Dot: return {first, 0};
-    case ir::Op::Length: return {first, 1};
-    case ir::Op::Normalize: return {2 * first, 1};
-    case ir::Op::Cross: return {6, 0};
+    case ir::Op::Cos: work.sums = work.roots = width; break;
+    case ir::Op::Dot: work.sums = first; break;
+    case ir::Op::Length:
+      work.sums = first;
+      work.roots = 1;
+      break;
+    case ir::Op::Normalize:
+      work.sums = 2 * first;
+      work.roots = 1;
+      break;
+    case ir::Op::Cross: work.sums = 6; break;
+    case ir::Op::MatMul: work.sums = 4 * width; break;
     case ir::Op::Texture:
-    case ir::Op::TextureLod: {
-      const bool cube = dag[value.args[0]].type == ir::Type::TextureCube;
-      return cube ? Work{14, 1} : Work{2, 0};
-    }
-    default: return {width, 0};
+    case ir::Op::TextureLod:
+      (dag[value.args[0]].type == ir::Type::TextureCube ? work.cubes : work.pictures) = 1;
+      break;
+    default: work.sums = width;
   }
+  return work;
 }
 
-// Fitted by least squares to RADV's statistics of the levels of this tree's works; a product that is added
-// to takes nothing beside the sum, which is why less than one instruction stands for an operation.
-constexpr double kPlain = 0.80;
-constexpr double kSlow = 1.0;
-constexpr double kAlways = 8;
-constexpr double kScalar = 1.2;  // instructions, with loads and waits, for one of vectors
-constexpr double kRounds = 8;
-constexpr double kCycles = 2;
-constexpr double kQuarter = 6;
+double cyclesOf(const Counts& counts) {
+  const std::array<double, 7> all = counts.all();
+  return std::inner_product(all.begin(), all.end(), kCycles.begin(), 0.0);
+}
 
-/// Calls `each(id, work)` for what the fragment stage computes; what is in a loop counts for all its rounds.
+/// Calls `each(id, work)` for what a stage computes; what is in a loop counts for all its rounds.
 template <class Each>
-void eachWork(const ir::Module& module, Each each) {
-  for (const ir::ValueId id : ir::reachable(module, ir::Stage::Fragment)) {
+void eachWork(const ir::Module& module, ir::Stage stage, Each each) {
+  for (const ir::ValueId id : ir::reachable(module, stage)) {
     const ir::Value& value = module.dag[id];
     if (value.rate <= ir::Rate::Material) continue;
     bool looped = value.rate == ir::Rate::Light;
     for (const ir::LightGroup& group : module.light_groups) looped = looped && group.count < 0;
-    const Work work = workOf(module.dag, id);
-    each(id, Work{work.plain * (looped ? kRounds : 1), work.slow * (looped ? kRounds : 1)});
+    each(id, workOf(module.dag, id), looped ? kRounds : 1.0);
   }
 }
 
 }  // namespace
 
-Estimate estimate(const ir::Module& module) {
-  double plain = 0;
-  double slow = 0;
-  eachWork(module, [&](ir::ValueId, const Work& work) {
-    plain += work.plain;
-    slow += work.slow;
+Counts countsOf(const ir::Module& module, ir::Stage stage) {
+  Counts counts;
+  eachWork(module, stage, [&](ir::ValueId, const Counts& work, double times) {
+    counts.sums += times * work.sums;
+    counts.roots += times * work.roots;
+    counts.cubes += times * work.cubes;
+    counts.pictures += times * work.pictures;
+    counts.varyings += work.varyings;
+    counts.loads += times * work.loads;
   });
-  const double vector = kAlways + kPlain * plain + kSlow * slow;
+  return counts;
+}
+
+Estimate estimate(const ir::Module& module) {
+  const Counts counts = countsOf(module, ir::Stage::Fragment);
+  const double cycles = cyclesOf(counts);
+  const auto whole = [](double x) { return static_cast<uint64_t>(std::lround(std::max(x, 0.0))); };
   Estimate result;
-  result.cycles = static_cast<uint64_t>(std::lround(kCycles * vector));
-  result.quarter_cycles = static_cast<uint64_t>(std::lround(kCycles * vector + kQuarter * slow));
-  result.instructions = static_cast<uint64_t>(std::lround(kScalar * vector));
+  result.cycles = whole(cycles);
+  result.quarter_cycles = whole(cycles + kQuarter * (counts.roots + counts.cubes));
+  result.instructions = whole(kInstructions * cycles);
+  result.vertex_cycles = whole(cyclesOf(countsOf(module, ir::Stage::Vertex)));
   return result;
 }
 
 std::vector<double> cyclesByTerm(const ir::Module& module) {
   std::vector<double> cycles(module.dag.terms().size());
-  eachWork(module, [&](ir::ValueId id, const Work& work) {
-    cycles[module.dag.termOf(id)] += kCycles * (kPlain * work.plain + kSlow * work.slow);
+  eachWork(module, ir::Stage::Fragment, [&](ir::ValueId id, const Counts& work, double times) {
+    cycles[module.dag.termOf(id)] += times * cyclesOf(work);
   });
   return cycles;
 }

@@ -12,10 +12,14 @@ namespace {
 /// A difference that nobody sees, and below which errors are not compared.
 constexpr double kUnseen = 0.01;
 
+/// Below this difference no numbers are fitted.
+constexpr double kWorthFitting = 0.1;
+
 class Searching {
 public:
-  Searching(const Words& words, const Subject& subject, const Bounds& bounds, const Measure& measure)
-      : words_(words), subject_(subject), bounds_(bounds), measure_(measure) {}
+  Searching(const Words& words, const Subject& subject, const Bounds& bounds, const Measure& measure,
+            const Refit& refit)
+      : words_(words), subject_(subject), bounds_(bounds), measure_(measure), refit_(refit) {}
 
   std::vector<Tried> run(const Tried& exact) {
     all_.push_back(exact);
@@ -26,7 +30,7 @@ public:
     for (size_t step = 0; step < bounds_.steps; ++step) {
       std::optional<Tried> next = grow(from);
       if (!next) break;
-      from = std::move(*next);
+      from = refitted(std::move(*next));
     }
     shrink();
     return std::move(all_);
@@ -60,7 +64,17 @@ private:
     for (const std::string& word : words_) sets.push_back({word});
     for (const std::optional<Tried>& one : measured(std::move(sets))) {
       if (one && one->cost < exact.cost) effects_[one->words[0]] = {exact.cost - one->cost, one->error};
+      if (one && one->cost == exact.cost && one->error == 0) idle_.push_back(one->words[0]);
     }
+  }
+
+  /// The same with numbers fitted to it, where that looks better at no cost.
+  Tried refitted(Tried one) {
+    if (!refit_ || one.error < kWorthFitting) return one;
+    const std::optional<Words> words = refit_(one.words);
+    if (!words) return one;
+    const std::optional<Tried> found = measured({*words})[0];
+    return found && found->cost <= one.cost && found->error < one.error ? *found : one;
   }
 
   bool fits(const Words& words, const std::string& word) const {
@@ -96,6 +110,11 @@ private:
     for (const auto& [ignored, word] : promising) {
       sets.push_back(from.words);
       sets.back().push_back(*word);
+    }
+    for (const std::string& word : idle_) {
+      if (effects_.contains(word) || !fits(from.words, word)) continue;
+      sets.push_back(from.words);
+      sets.back().push_back(word);
     }
     std::optional<Tried> best;
     double most = 0;
@@ -144,6 +163,8 @@ private:
   const Subject& subject_;
   const Bounds& bounds_;
   const Measure& measure_;
+  const Refit& refit_;
+  Words idle_;  ///< words that do nothing alone
   std::vector<Tried> all_;
   std::map<Words, std::optional<Tried>> known_;
   std::map<std::string, Effect> effects_;  ///< of words that save something
@@ -152,8 +173,8 @@ private:
 }  // namespace
 
 std::vector<Tried> search(const Tried& exact, const Words& words, const Subject& subject,
-                          const Bounds& bounds, const Measure& measure) {
-  return Searching(words, subject, bounds, measure).run(exact);
+                          const Bounds& bounds, const Measure& measure, const Refit& refit) {
+  return Searching(words, subject, bounds, measure, refit).run(exact);
 }
 
 std::vector<Tried> front(std::vector<Tried> all) {

@@ -20,6 +20,8 @@ struct Tried {
 
 /// Measures sets of words; nothing for one that makes no shader, or none that may be a level.
 using Measure = std::function<std::vector<std::optional<Tried>>(const std::vector<Words>& sets)>;
+/// A set with numbers fitted again, which are words of it too; nothing where that changes nothing.
+using Refit = std::function<std::optional<Words>(const Words& words)>;
 /// What two words cannot both be in a set for.
 using Subject = std::function<std::string(const std::string& word)>;
 
@@ -31,9 +33,10 @@ struct Bounds {
 
 /// From the exact shader on, `exact`, to simpler ones: all that was tried, in the order in which it was. Each
 /// word is tried alone; then the sets grow by the words that promise the most cycles for the least error,
-/// from what they have done alone, each set measured.
+/// from what they have done alone, each set measured, and go on from where `refit` brings them. Words that do
+/// nothing alone are tried again beside others.
 std::vector<Tried> search(const Tried& exact, const Words& words, const Subject& subject,
-                          const Bounds& bounds, const Measure& measure);
+                          const Bounds& bounds, const Measure& measure, const Refit& refit = {});
 
 /// Of these, by falling cost: the first, which is the exact shader, and those cheaper ones that no other
 /// beats in both, of equal ones the first. Errors rise from one of them to the next.

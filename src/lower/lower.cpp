@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 
 #include "ir/names.h"
+#include "lower/at_vertices.h"
 #include "lower/inline.h"
 
 namespace lacquer::lower {
@@ -274,9 +276,41 @@ private:
       // A single result is called what the node is in the graph.
       const std::string_view id = node.id;
       if (results.size() == 1) dag().name(results[0], id.substr(id.rfind('.') + 1));
+      if (options_.at_vertices.contains(node.id)) moveToVertices(decl, id, results);
       results_.emplace(id, Lowered{&decl, std::move(results)});
     }
     return {};
+  }
+
+  /// What a node gives comes from the vertices, in its range: interpolants reach past the ends of triangles.
+  void moveToVertices(const lang::NodeDecl& decl, std::string_view id, Values& results) {
+    AtVertices at_vertices(dag());
+    std::vector<std::optional<ir::ValueId>> lifted;
+    for (const ir::ValueId id_of : results) {
+      lifted.push_back(ir::isFloating(dag()[id_of].type) ? at_vertices(id_of) : std::nullopt);
+      if (!lifted.back()) return;
+    }
+    const ir::TermId term = dag().addTerm(
+        {fmt::format("{}.at_vertices", id), decl.source, std::string(decl.origin.file), decl.origin.line});
+    std::vector<ir::ValueId> moved(results.begin(), results.end());
+    for (size_t i = 0; i < moved.size(); ++i) {
+      if (dag()[moved[i]].rate <= ir::Rate::Vertex) continue;
+      const ir::Type type = dag()[moved[i]].type;
+      const std::string name =
+          results.size() == 1 ? std::string(id.substr(id.rfind('.') + 1)) : std::string(decl.results[i].name);
+      dag().setTerm(term);
+      moved[i] = dag().make(ir::Op::Interpolate, {*lifted[i]});
+      dag().name(moved[i], name);
+      const ir::Range& range = decl.results[i].range;
+      const auto bound = [&](ir::Op op, double by) {
+        if (!std::isfinite(by)) return;
+        moved[i] = dag().make(op, {moved[i], dag().constant(type, {by, by, by, by})});
+      };
+      if (!decl.results[i].has_range) continue;
+      bound(ir::Op::Max, range.lo);
+      bound(ir::Op::Min, range.hi);
+    }
+    std::copy(moved.begin(), moved.end(), results.begin());
   }
 
   ir::ValueId source(const graph::Source& source) {

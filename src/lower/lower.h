@@ -1,6 +1,9 @@
 // From a checked graph and its template to a module: nodes are inlined, one term each.
 #pragma once
 
+#include <set>
+#include <string>
+
 #include "graph/graph.h"
 #include "ir/module.h"
 #include "lang/library.h"
@@ -18,6 +21,9 @@ struct LowerOptions {
   ParameterMode parameters = ParameterMode::Uniform;
   bool evaluable = false;  ///< the kinds of light come with what fills them: ir::LightKind::fill
   OnCall on_call = {};     ///< when given, told of the graph's nodes and of what they and the template call
+  /// Nodes of the graph, by id, that are computed at the vertices and interpolated; those in which there is
+  /// something that vertices do not know are left where they are.
+  std::set<std::string, std::less<>> at_vertices = {};
 };
 
 /// The graph must have passed graph::check() with the same library (asserted where it shows). The result is

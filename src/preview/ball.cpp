@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "eval/image.h"
+#include "preview/camera.h"
 
 namespace lacquer::preview {
 
@@ -18,18 +19,13 @@ using Rgba = std::array<double, 4>;
 /// Samples of a pixel along each side.
 constexpr uint32_t kGrid = 4;
 constexpr uint32_t kSamples = kGrid * kGrid;
-/// Distance of the eye, in radii: near enough that the rim is not only grazing, far enough not to bulge.
-constexpr double kEye = 6.0;
-/// Half of the picture, where it cuts the ball's middle plane.
-constexpr double kHalf = 1.045;
-constexpr double kSquares = 8;  ///< of the board behind what is transparent, over the picture
 constexpr double kBoard[] = {0.18, 0.36};
 
 /// The point of the ball at a place of the picture, both in [-1, 1]; false beside the ball.
-bool pointAt(double x, double y, eval::Point& point) {
+bool onBall(double x, double y, eval::Point& point) {
   // From the eye at (0, 0, kEye) through (x, y, 0) kHalf.
   const Vec3 way{x * kHalf, y * kHalf, -kEye};
-  const double a = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+  const double a = dot(way, way);
   const double half_b = kEye * way[2];
   const double inside = half_b * half_b - a * (kEye * kEye - 1);
   if (inside <= 0) return false;
@@ -65,7 +61,7 @@ Row rowOf(uint32_t y, uint32_t size) {
     const double dx = (column + (line + 0.5) / kGrid) / kGrid;
     const double dy = (line + (column + 0.5) / kGrid) / kGrid;
     eval::Point point;
-    if (!pointAt((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, point)) continue;
+    if (!onBall((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, point)) continue;
     row.points.push_back(point);
     row.sample.push_back(i);
   }
@@ -171,27 +167,88 @@ void Shading::bind(std::span<const eval::Point> points, eval::Bindings& bindings
   bindings.lights = std::move(lights);
 }
 
-template <class T>
-std::vector<Rgba> Shading::run(std::span<const eval::Point> points) const {
+/// The bindings of points of an object that stands somewhere, seen by one eye.
+eval::Bindings Shading::standing(std::span<const eval::Point> points, const Standing& standing) const {
   eval::Bindings bindings = base_;
   bind(points, bindings);
-  const std::vector<std::vector<T>> varyings = eval::run<T>(vertex_, bindings, points.size());
-  for (size_t i = 0; i < varyings.size(); ++i) {
-    bindings.columns[varyings_[i]->name] = eval::Column::perPoint(ir::componentCount(varyings_[i]->type),
-                                                                  {varyings[i].begin(), varyings[i].end()});
-  }
-  const std::vector<std::vector<T>> values = eval::run<T>(fragment_, bindings, points.size());
-  std::vector<Rgba> result(points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
+  const auto set = [&](const char* name, const double* values, size_t count) {
+    const auto found = bindings.columns.find(name);
+    if (found == bindings.columns.end()) return;
+    eval::Column& column = found->second;
+    column.values.assign(values, values + count);
+    // As it was when the program was compiled: for each point, or for all.
+    for (size_t i = 1; column.per_point && i < points.size(); ++i)
+      column.values.insert(column.values.end(), values, values + count);
+  };
+  set("object.model", standing.model.data(), 16);
+  set("object.normal_matrix", standing.normal_matrix.data(), 16);
+  set("frame.camera_position", standing.eye.data(), 3);
+  return bindings;
+}
+
+template <class T>
+Shading::Vertices Shading::vertexStage(const eval::Bindings& bindings, size_t points) const {
+  Vertices result;
+  for (const std::vector<T>& column : eval::run<T>(vertex_, bindings, points))
+    result.emplace_back(column.begin(), column.end());
+  return result;
+}
+
+template <class T>
+std::vector<Rgba> Shading::fragmentStage(const eval::Bindings& bindings, size_t points) const {
+  const std::vector<std::vector<T>> values = eval::run<T>(fragment_, bindings, points);
+  std::vector<Rgba> result(points);
+  for (size_t i = 0; i < points; ++i) {
     for (size_t c = 0; c < 4; ++c) result[i][c] = static_cast<double>(values[0][4 * i + c]);
     if (values.size() > 1 && values[1][i] != 0) result[i][3] = 0;
   }
   return result;
 }
 
+template <class T>
+std::vector<Rgba> Shading::run(std::span<const eval::Point> points) const {
+  eval::Bindings bindings = base_;
+  bind(points, bindings);
+  Vertices varyings = vertexStage<T>(bindings, points.size());
+  for (size_t i = 0; i < varyings.size(); ++i) {
+    bindings.columns[varyings_[i]->name] =
+        eval::Column::perPoint(ir::componentCount(varyings_[i]->type), std::move(varyings[i]));
+  }
+  return fragmentStage<T>(bindings, points.size());
+}
+
 std::vector<Rgba> Shading::operator()(std::span<const eval::Point> points) const {
   if (points.empty()) return {};
   return look_->in_float ? run<float>(points) : run<double>(points);
+}
+
+Shading::Vertices Shading::vertices(std::span<const eval::Point> points, const Standing& standing) const {
+  if (points.empty() || varyings_.empty()) return Vertices(varyings_.size());
+  const eval::Bindings bindings = this->standing(points, standing);
+  return look_->in_float ? vertexStage<float>(bindings, points.size())
+                         : vertexStage<double>(bindings, points.size());
+}
+
+std::vector<Rgba> Shading::samples(std::span<const Coverage::Sample> samples, const Vertices& vertices,
+                                   const Standing& standing) const {
+  if (samples.empty()) return {};
+  std::vector<eval::Point> points(samples.size());
+  for (size_t i = 0; i < samples.size(); ++i) points[i].front_facing = samples[i].front;
+  eval::Bindings bindings = this->standing(points, standing);
+  for (size_t v = 0; v < varyings_.size(); ++v) {
+    const auto width = static_cast<size_t>(ir::componentCount(varyings_[v]->type));
+    std::vector<double> values(samples.size() * width, 0.0);
+    for (size_t i = 0; i < samples.size(); ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        const double* corner = &vertices[v][samples[i].corners[k] * width];
+        for (size_t c = 0; c < width; ++c)
+          values[i * width + c] += static_cast<double>(samples[i].weights[k]) * corner[c];
+      }
+    }
+    bindings.columns[varyings_[v]->name] = eval::Column::perPoint(static_cast<int>(width), std::move(values));
+  }
+  return look_->in_float ? fragmentStage<float>(bindings, points.size())
+                         : fragmentStage<double>(bindings, points.size());
 }
 
 Picture drawBall(const Shading& shading, uint32_t size, Color background) {

@@ -10,6 +10,7 @@
 #include "eval/points.h"
 #include "ir/module.h"
 #include "preview/canvas.h"
+#include "preview/mesh.h"
 #include "preview/studio.h"
 
 namespace lacquer::preview {
@@ -33,9 +34,21 @@ public:
   /// RGBA of each point; alpha is 0 where the material drops the fragment. Thread-safe.
   std::vector<std::array<double, 4>> operator()(std::span<const eval::Point> points) const;
 
+  /// What the vertex stage hands over, by varying, the components of a vertex side by side.
+  using Vertices = std::vector<std::vector<double>>;
+  Vertices vertices(std::span<const eval::Point> points, const Standing& standing) const;
+  /// RGBA of samples of triangles of these vertices. Thread-safe.
+  std::vector<std::array<double, 4>> samples(std::span<const Coverage::Sample> samples,
+                                             const Vertices& vertices, const Standing& standing) const;
+
 private:
   Shading() = default;
   void bind(std::span<const eval::Point> points, eval::Bindings& bindings) const;
+  eval::Bindings standing(std::span<const eval::Point> points, const Standing& standing) const;
+  template <class T>
+  Vertices vertexStage(const eval::Bindings& bindings, size_t points) const;
+  template <class T>
+  std::vector<std::array<double, 4>> fragmentStage(const eval::Bindings& bindings, size_t points) const;
   template <class T>
   std::vector<std::array<double, 4>> run(std::span<const eval::Point> points) const;
 

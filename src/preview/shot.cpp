@@ -5,25 +5,22 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+
+#include "preview/camera.h"
 
 namespace lacquer::preview {
 
 namespace {
 
-/// Distance of the eye and half of the picture, in radii, as for the balls of a sheet.
-constexpr double kEye = 6.0;
-constexpr double kHalf = 1.045;
 /// The facet's normal, and its distance from the middle.
 constexpr Vec3 kFacet{0.48, -0.28, 0.8314084};
 constexpr double kCut = 0.86;
 /// What lies behind, of a brightness that neither dark nor bright materials vanish before.
 constexpr double kBehind[] = {0.10, 0.22};
-constexpr double kSquares = 8;
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// The point at a place of the picture, both in [-1, 1]; false beside the ball.
-bool pointAt(double x, double y, eval::Point& point) {
+bool onFacetedBall(double x, double y, eval::Point& point) {
   const Vec3 way{x * kHalf, y * kHalf, -kEye};
   const double a = dot(way, way);
   const double half_b = kEye * way[2];
@@ -58,26 +55,12 @@ double behindAt(uint32_t x, uint32_t y, uint32_t size) {
   return kBehind[square % 2];
 }
 
-void shootRow(const Shading& shading, uint32_t y, uint32_t grid, Shot& shot, std::vector<uint8_t>& hit) {
+/// Adds the samples of one row, each with the pixel of the row that it is of.
+void addRow(const std::vector<std::array<double, 4>>& colors, const std::vector<uint32_t>& pixels, uint32_t y,
+            uint32_t samples, Shot& shot, std::vector<uint8_t>& hit) {
   const uint32_t size = shot.pixels.width;
-  const uint32_t samples = grid * grid;
-  std::vector<eval::Point> points;
-  std::vector<uint32_t> pixels;
-  for (uint32_t i = 0; i < size * samples; ++i) {
-    const uint32_t x = i / samples;
-    const uint32_t column = i % samples % grid;
-    const uint32_t line = i % samples / grid;
-    // Each row and each column of the cells has its sample elsewhere.
-    const double dx = (column + (line + 0.5) / grid) / grid;
-    const double dy = (line + (column + 0.5) / grid) / grid;
-    eval::Point point;
-    if (!pointAt((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, point)) continue;
-    points.push_back(point);
-    pixels.push_back(x);
-  }
-  const std::vector<std::array<double, 4>> colors = shading(points);
   std::vector<uint32_t> hits(size, 0);
-  for (size_t i = 0; i < points.size(); ++i) {
+  for (size_t i = 0; i < pixels.size(); ++i) {
     const uint32_t x = pixels[i];
     const std::array<double, 4>& c = colors[i];
     const Vec3 mapped = toneMap({c[0], c[1], c[2]});
@@ -93,6 +76,34 @@ void shootRow(const Shading& shading, uint32_t y, uint32_t grid, Shot& shot, std
     for (double& channel : shot.pixels.colors[size_t{y} * size + x])
       channel += behindAt(x, y, size) * (samples - hits[x]) / samples;
     hit[size_t{y} * size + x] = hits[x] > 0 ? 1 : 0;
+  }
+}
+
+void shootRow(const Shading& shading, uint32_t y, uint32_t grid, Shot& shot, std::vector<uint8_t>& hit) {
+  const uint32_t size = shot.pixels.width;
+  const uint32_t samples = grid * grid;
+  std::vector<eval::Point> points;
+  std::vector<uint32_t> pixels;
+  for (uint32_t i = 0; i < size * samples; ++i) {
+    const uint32_t x = i / samples;
+    const auto [dx, dy] = sampleOf(i % samples, grid);
+    eval::Point point;
+    if (!onFacetedBall((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, point)) continue;
+    points.push_back(point);
+    pixels.push_back(x);
+  }
+  addRow(shading(points), pixels, y, samples, shot, hit);
+}
+
+Shot emptyShot(uint32_t size) {
+  Shot shot;
+  shot.pixels = {size, size, std::vector<picture::Color>(size_t{size} * size, picture::Color{})};
+  return shot;
+}
+
+void noteInside(Shot& shot, const std::vector<uint8_t>& hit) {
+  for (uint32_t i = 0; i < hit.size(); ++i) {
+    if (hit[i] != 0) shot.inside.push_back(i);
   }
 }
 
@@ -119,13 +130,30 @@ Color heat(double x) {
 }  // namespace
 
 Shot shoot(const Shading& shading, uint32_t size, uint32_t grid) {
-  Shot shot;
-  shot.pixels = {size, size, std::vector<picture::Color>(size_t{size} * size, picture::Color{})};
+  Shot shot = emptyShot(size);
   std::vector<uint8_t> hit(size_t{size} * size, 0);
   tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) { shootRow(shading, y, grid, shot, hit); });
-  for (uint32_t i = 0; i < hit.size(); ++i) {
-    if (hit[i] != 0) shot.inside.push_back(i);
-  }
+  noteInside(shot, hit);
+  return shot;
+}
+
+Shot shoot(const Shading& shading, const Coverage& coverage) {
+  const uint32_t size = coverage.size;
+  Shot shot = emptyShot(size);
+  std::vector<uint8_t> hit(size_t{size} * size, 0);
+  const Shading::Vertices vertices = shading.vertices(coverage.vertices, coverage.standing);
+  const std::span<const Coverage::Sample> all = coverage.samples;
+  tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) {
+    const auto before = [&](const Coverage::Sample& sample, uint32_t pixel) { return sample.pixel < pixel; };
+    const auto first = std::lower_bound(all.begin(), all.end(), y * size, before);
+    const auto last = std::lower_bound(first, all.end(), (y + 1) * size, before);
+    const auto row = all.subspan(static_cast<size_t>(first - all.begin()), static_cast<size_t>(last - first));
+    std::vector<uint32_t> pixels;
+    for (const Coverage::Sample& sample : row) pixels.push_back(sample.pixel - y * size);
+    addRow(shading.samples(row, vertices, coverage.standing), pixels, y, coverage.grid * coverage.grid, shot,
+           hit);
+  });
+  noteInside(shot, hit);
   return shot;
 }
 

@@ -6,16 +6,20 @@
 
 #include "picture/flip.h"
 #include "preview/ball.h"
+#include "preview/mesh.h"
 
 namespace lacquer::preview {
 
 struct Shot {
   picture::Pixels pixels;        ///< what a display shows: tone mapped, linear, in [0, 1]
-  std::vector<uint32_t> inside;  ///< the pixels that show the ball, at least in part
+  std::vector<uint32_t> inside;  ///< the pixels that show the ball or the mesh, at least in part
 };
 
 /// The ball, `size` pixels wide, each with `grid` times `grid` samples. Uses threads.
 Shot shoot(const Shading& shading, uint32_t size, uint32_t grid);
+
+/// A mesh: the vertex stage at its vertices, and what that hands over interpolated. Uses threads.
+Shot shoot(const Shading& shading, const Coverage& coverage);
 
 /// Samples of a pixel along each side that measurements at that size take: small pictures have few pixels.
 inline uint32_t gridOf(uint32_t size) { return size < 48 ? 4 : 2; }

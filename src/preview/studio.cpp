@@ -5,14 +5,11 @@
 #include <numbers>
 
 #include "eval/points.h"
+#include "preview/camera.h"
 
 namespace lacquer::preview {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -149,12 +146,12 @@ Studio::Studio(Surroundings around, double turn) : around_(std::move(around)) {
     const double y = 1 - (row + 0.5) * 2 / kRows;
     const double ring = std::sqrt(1 - y * y);
     for (int column = 0; column < kColumns; ++column) {
-      const double angle = (column + 0.5) * 2 * kPi / kColumns;
+      const double angle = (column + 0.5) * 2 * std::numbers::pi / kColumns;
       const Vec3 direction{ring * std::cos(angle), y, ring * std::sin(angle)};
       const Vec3 light = radiance(direction, 0);
       const std::array<double, 9> weights = basis(direction);
       for (size_t k = 0; k < 9; ++k) {
-        const double weight = weights[k] * kCosine[kOrder[k]] * 4 * kPi / (kRows * kColumns);
+        const double weight = weights[k] * kCosine[kOrder[k]] * 4 * std::numbers::pi / (kRows * kColumns);
         for (size_t i = 0; i < 3; ++i) harmonics_[k][i] += weight * light[i];
       }
     }

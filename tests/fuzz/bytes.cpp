@@ -1,4 +1,5 @@
-// Inputs that no file need stand behind: images, points, SPIR-V.
+// Inputs that no file need stand behind: images, geometry, points, SPIR-V.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -8,6 +9,7 @@
 #include "environment/panorama.h"
 #include "eval/image.h"
 #include "feeds.h"
+#include "gltf/geometry.h"
 #include "tools/points.h"
 #include "vulkan/passthrough.h"
 
@@ -20,6 +22,29 @@ constexpr uint64_t kMostPixels = uint64_t{1} << 16;
 
 bool isUnit(const std::array<double, 3>& a) {
   return std::abs(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) - 1) < 1e-9;
+}
+
+template <size_t N>
+bool allFinite(const std::array<float, N>& a) {
+  return std::all_of(a.begin(), a.end(), [](float x) { return std::isfinite(x); });
+}
+
+/// What gltf/geometry.h says of a corner; empty when it is so.
+std::string wrongWith(const gltf::Corner& corner) {
+  for (const float x : corner.position) {
+    if (!(std::abs(static_cast<double>(x)) <= 1e15)) return "a position is no number, or too far away";
+  }
+  const auto lengthOf = [](const auto& a) {
+    return std::hypot(static_cast<double>(a[0]), static_cast<double>(a[1]), static_cast<double>(a[2]));
+  };
+  if (!(std::abs(lengthOf(corner.normal) - 1) < 1e-5)) return "a normal is no unit vector";
+  if (!(std::abs(lengthOf(corner.tangent) - 1) < 1e-5)) return "a tangent is no unit vector";
+  if (std::abs(corner.tangent[3]) != 1) return "a tangent's sign is none";
+  if (!allFinite(corner.color)) return "a colour is not finite";
+  for (const auto& uv : corner.uv) {
+    if (!allFinite(uv)) return "a texture coordinate is not finite";
+  }
+  return {};
 }
 
 }  // namespace
@@ -50,6 +75,25 @@ std::string feedPanorama(std::string_view bytes) {
   for (const environment::Rgb& color : panorama->texels) {
     for (const float x : color) {
       if (!(x >= 0 && x <= 65408)) return "radiance is not finite, or negative";
+    }
+  }
+  return {};
+}
+
+std::string feedGeometry(std::string_view bytes) {
+  const auto file = gltf::TextureFile::fromMemory(bytes, "fuzz.gltf", {});
+  if (!file) return file.error().empty() ? "a file is refused without an error" : "";
+  for (size_t material = 0; material < 3; ++material) {
+    const gltf::Geometry geometry = gltf::geometryOf(*file, material);
+    const std::vector<uint32_t>& indices = geometry.triangles;
+    if (geometry.corners.size() > gltf::kMostCorners || indices.size() > 3 * gltf::kMostTriangles)
+      return "more is read than is read at most";
+    if (indices.size() % 3 != 0) return "a triangle has not got three corners";
+    for (const uint32_t index : indices) {
+      if (index >= geometry.corners.size()) return "a triangle has a corner that is not there";
+    }
+    for (const gltf::Corner& corner : geometry.corners) {
+      if (std::string wrong = wrongWith(corner); !wrong.empty()) return wrong;
     }
   }
   return {};

@@ -23,6 +23,7 @@ std::string feedDeclaration(std::string_view bytes);
 // bytes.cpp
 std::string feedImage(std::string_view bytes);
 std::string feedPanorama(std::string_view bytes);
+std::string feedGeometry(std::string_view bytes);
 std::string feedPoints(std::string_view bytes);
 std::string feedSpirv(std::string_view bytes);
 

@@ -19,6 +19,7 @@ constexpr Target kTargets[] = {
     {"image", "image", Form::Bytes, feedImage},
     {"panorama", "panorama", Form::Bytes, feedPanorama},
     {"texture", "texture", Form::Json, feedTexture},
+    {"geometry", "geometry", Form::Json, feedGeometry},
     {"points", "points", Form::Json, feedPoints},
     {"case", "case", Form::Json, feedCase},
     {"manifest", "manifest", Form::Json, feedManifest},

@@ -1,6 +1,7 @@
 // The search over made-up shaders, and the choice of levels; the cycles that roots and the like add.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -51,6 +52,50 @@ TEST(Search, GrowsByTheWordsThatSaveTheMostForTheLeast) {
   EXPECT_TRUE(best[0].words.empty());
   EXPECT_EQ(best.back().words, (Words{"a:1", "b:1", "c:1", "d:1", "f:1"}));
   EXPECT_EQ(best[1].words, Words{"a:1"});
+}
+
+TEST(Search, AWordThatDoesNothingAloneIsTriedBesideOthers) {
+  const Measure measure = [](const std::vector<Words>& sets) {
+    std::vector<std::optional<Tried>> result;
+    for (const Words& set : sets) {
+      const bool first = std::find(set.begin(), set.end(), "first") != set.end();
+      const bool second = std::find(set.begin(), set.end(), "second") != set.end();
+      result.push_back(Tried{set, 100.0 - (first ? 10 : 0) - (first && second ? 30 : 0), first ? 0.3 : 0.0});
+    }
+    return result;
+  };
+  const std::vector<Tried> best =
+      front(search({{}, 100, 0}, {"first", "second"}, subjectOf, {10, 24, 10}, measure));
+  EXPECT_EQ(best.back().words, (Words{"first", "second"}));
+}
+
+TEST(Search, GoesOnFromWhereNumbersAreFitted) {
+  const Measure measure = [](const std::vector<Words>& sets) {
+    std::vector<std::optional<Tried>> result;
+    for (const Words& set : sets) {
+      Tried tried{set, 100, 0};
+      const bool fit = std::find(set.begin(), set.end(), "scale:x") != set.end();
+      for (const std::string& word : set) {
+        if (word == "scale:x") continue;
+        tried.cost -= 20;
+        tried.error += fit ? 1 : 3;
+      }
+      result.push_back(tried);
+    }
+    return result;
+  };
+  const Refit refit = [](const Words& words) -> std::optional<Words> {
+    Words fitted = words;
+    if (std::find(words.begin(), words.end(), "scale:x") == words.end()) fitted.push_back("scale:x");
+    std::sort(fitted.begin(), fitted.end());
+    return fitted;
+  };
+  const auto all = [](const std::string& word) { return word; };
+  // Two of them are too much without the fit.
+  const std::vector<Tried> found = search({{}, 100, 0}, {"a", "b", "c"}, all, {4, 24, 10}, measure, refit);
+  EXPECT_EQ(front(found).back().words, (Words{"a", "b", "c", "scale:x"}));
+  for (const Tried& one : search({{}, 100, 0}, {"a", "b", "c"}, all, {4, 24, 10}, measure))
+    EXPECT_LT(one.words.size(), 3U);
 }
 
 TEST(Search, NoSetIsMeasuredTwiceAndNoneHasTwoWordsForOneThing) {

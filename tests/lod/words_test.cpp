@@ -71,6 +71,34 @@ TEST(Words, NodesAndNumbers) {
   EXPECT_FALSE(has(graphOf({"switch:ibl=off"}), "\"id\": \"base.indirect\""));
 }
 
+/// The vertex and the fragment stage.
+std::pair<std::string, std::string> codeOf(const Strings& words) {
+  Options options;
+  options.simplify = words;
+  options.targets = {Target::Glsl};
+  options.lights = {Lights::Mode::Fixed, {{"directional", 1}}};
+  Messages messages;
+  const Scene scene = Scene::fromMemory(kCoat, "m.gltf", options, messages);
+  Attributes attributes;
+  attributes.normal = attributes.tangent = true;
+  attributes.texCoord = {true, false, false, false};
+  const Shader shader = scene.graph(0, attributes, options, messages).generate(options, messages);
+  EXPECT_FALSE(hasError(messages)) << messages[0].text;
+  return {shader.vertexText(Target::Glsl), shader.fragmentText(Target::Glsl)};
+}
+
+TEST(Words, ANodeGoesToTheVertices) {
+  const auto before = codeOf({});
+  const auto after = codeOf({"vertex:coat.fresnel"});
+  EXPECT_FALSE(has(before.first, "coat.fresnel"));
+  EXPECT_TRUE(has(after.first, "coat.fresnel"));
+  EXPECT_FALSE(has(before.second, "in float v_fresnel;"));
+  EXPECT_TRUE(has(after.second, "in float v_fresnel;"));
+  // A light, a texture without a level and a node that is not there are none of the vertices'.
+  for (const char* other : {"vertex:coat.specular", "vertex:coat.surface", "vertex:nobody"})
+    EXPECT_TRUE(codeOf({other}) == before) << other;
+}
+
 TEST(Words, ALodWhoseLineComesToNothingLeavesTheOther) {
   const fs::path folder = fs::path(testing::TempDir()) / "lacquer_lod_words";
   fs::create_directories(folder);

@@ -1,0 +1,26 @@
+// A value of the fragment as the vertices have it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "ir/dag.h"
+
+namespace lacquer::lower {
+
+class AtVertices {
+public:
+  explicit AtVertices(ir::Dag& dag) : dag_(dag) {}
+
+  /// The same made of what is interpolated, as it is before that. Nothing where the value has something in it
+  /// that vertices do not know: a light, a derivative, the side of the triangle, a lookup without a level.
+  std::optional<ir::ValueId> operator()(ir::ValueId root);
+
+private:
+  ir::ValueId made(ir::ValueId id);
+
+  ir::Dag& dag_;
+  std::vector<ir::ValueId> known_;  ///< by value; kNoValue where it was not asked for, or cannot be
+};
+
+}  // namespace lacquer::lower
