@@ -98,21 +98,39 @@ function cubeColor(texture, point) {
   return texture.texels.slice(at, at + 4);
 }
 
+function targetOf(image) {
+  return {cube: gl.TEXTURE_CUBE_MAP, '2d-array': gl.TEXTURE_2D_ARRAY}[image.shape] ?? gl.TEXTURE_2D;
+}
+
+function uploadTexels(image, target, point) {
+  if (image.compares) {
+    const depths = Float32Array.from({length: image.width * image.height}, (_, i) => image.texels[4 * i]);
+    gl.texImage2D(target, 0, gl.DEPTH_COMPONENT32F, image.width, image.height, 0, gl.DEPTH_COMPONENT, gl.FLOAT, depths);
+    gl.texParameteri(target, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
+    gl.texParameteri(target, gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
+  } else if (image.shape === '2d-array') {
+    const layers = image.texels.length / (4 * image.width * image.height);
+    gl.texImage3D(target, 0, gl.RGBA32F, image.width, image.height, layers, 0, gl.RGBA, gl.FLOAT,
+                  new Float32Array(image.texels));
+  } else if (image.shape === 'cube') {
+    const texel = new Float32Array(cubeColor(image, point));
+    for (let face = 0; face < 6; ++face)
+      gl.texImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, gl.RGBA32F, 1, 1, 0, gl.RGBA, gl.FLOAT, texel);
+  } else {
+    gl.texImage2D(target, 0, gl.RGBA32F, image.width, image.height, 0, gl.RGBA, gl.FLOAT,
+                  new Float32Array(image.texels));
+  }
+}
+
 function imageTexture(image, point) {
-  const cube = image.shape === 'cube';
-  const target = cube ? gl.TEXTURE_CUBE_MAP : gl.TEXTURE_2D;
+  const target = targetOf(image);
   const texture = gl.createTexture();
   gl.bindTexture(target, texture);
-  const [width, height] = cube ? [1, 1] : [image.width, image.height];
-  const texels = new Float32Array(cube ? cubeColor(image, point) : image.texels);
-  for (let face = 0; face < (cube ? 6 : 1); ++face) {
-    const to = cube ? gl.TEXTURE_CUBE_MAP_POSITIVE_X + face : target;
-    gl.texImage2D(to, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, texels);
-  }
+  uploadTexels(image, target, point);
   const wraps = {repeat: gl.REPEAT, clamp: gl.CLAMP_TO_EDGE, mirror: gl.MIRRORED_REPEAT};
   gl.texParameteri(target, gl.TEXTURE_WRAP_S, wraps[image.wrap[0]]);
   gl.texParameteri(target, gl.TEXTURE_WRAP_T, wraps[image.wrap[1]]);
-  const filter = image.nearest || cube ? gl.NEAREST : gl.LINEAR;
+  const filter = image.nearest || image.shape === 'cube' ? gl.NEAREST : gl.LINEAR;
   gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, filter);
   gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, filter);
   return texture;
@@ -128,7 +146,7 @@ function bindTextures(work, program) {
     const key = `${unit} ${own ? point : ''}`;
     gl.activeTexture(gl.TEXTURE0 + unit);
     if (!cache.has(key)) cache.set(key, one.list ? listTexture(one, work, point) : imageTexture(one, point));
-    gl.bindTexture(one.shape === 'cube' ? gl.TEXTURE_CUBE_MAP : gl.TEXTURE_2D, cache.get(key));
+    gl.bindTexture(targetOf(one), cache.get(key));
   });
 }
 

@@ -62,16 +62,36 @@ function bufferOf(data, usage) {
   return buffer;
 }
 
-function textureOf({shape, compares, width, height, texels}) {
-  const layers = shape === 'cube' ? 6 : 1;
-  const format = compares ? 'depth32float' : 'rgba32float';
+/// A depth map of one depth: WebGPU writes floats into none, it renders into them.
+function depthMap({width, height, texels}) {
+  if (texels.some((x, i) => i % 4 === 0 && x !== texels[0])) throw new Error('a depth map here has one depth');
+  const usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.RENDER_ATTACHMENT;
+  const texture = device.createTexture({size: [width, height], format: 'depth32float', usage});
+  const encoder = device.createCommandEncoder();
+  encoder.beginRenderPass({
+    colorAttachments: [],
+    depthStencilAttachment: {
+      view: texture.createView(), depthLoadOp: 'clear', depthStoreOp: 'store', depthClearValue: texels[0],
+    },
+  }).end();
+  device.queue.submit([encoder.finish()]);
+  return texture.createView();
+}
+
+function textureOf(image) {
+  if (image.compares) return depthMap(image);
+  const {shape, width, height, texels} = image;
+  const cube = shape === 'cube';
+  const layers = cube ? 6 : texels.length / (4 * width * height);
   const texture = device.createTexture({
     size: [width, height, layers],
-    format,
+    format: 'rgba32float',
     usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
   });
   for (let layer = 0; layer < layers; ++layer) {
-    device.queue.writeTexture({texture, origin: [0, 0, layer]}, new Float32Array(texels), {bytesPerRow: 16 * width},
+    const first = cube ? 0 : 4 * width * height * layer;
+    device.queue.writeTexture({texture, origin: [0, 0, layer]},
+                              new Float32Array(texels.slice(first, first + 4 * width * height)), {bytesPerRow: 16 * width},
                               [width, height]);
   }
   return texture.createView({dimension: shape});

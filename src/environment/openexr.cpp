@@ -21,7 +21,6 @@ namespace lacquer::environment {
 
 namespace {
 
-constexpr int kLongest = 32768;
 constexpr int kLargestTile = 4096;
 
 /// A file that is in memory. What reads past its end throws, which the library turns into an error of its
@@ -93,7 +92,7 @@ Result<Panorama> decode(Imf::InputFile& file, uint64_t most, const Place& place)
 Result<Panorama> readOpenExr(std::string_view bytes, uint64_t most, const Place& place) {
   try {
     // Before any room is taken: for lines and tiles the library takes what the head claims.
-    Imf::Header::setMaxImageSize(kLongest, kLongest);
+    Imf::Header::setMaxImageSize(kLongestSide, kLongestSide);
     Imf::Header::setMaxTileSize(kLargestTile, kLargestTile);
     MemoryStream stream(bytes);
     Imf::InputFile file(stream);

@@ -12,7 +12,6 @@ namespace lacquer::environment {
 namespace {
 
 constexpr float kMost = 65408;
-constexpr int64_t kLongest = 32768;
 
 /// How often a number was replaced.
 struct Replaced {
@@ -44,7 +43,7 @@ tl::unexpected<Diagnostics> unreadable(const Place& place, std::string message) 
 }
 
 Result<void> checkSize(int64_t width, int64_t height, uint64_t most, const Place& place) {
-  if (width < 1 || height < 1 || width > kLongest || height > kLongest)
+  if (width < 1 || height < 1 || width > kLongestSide || height > kLongestSide)
     return unreadable(place, fmt::format("the picture claims {} x {} pixels", width, height));
   const auto pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
   if (pixels <= most) return {};

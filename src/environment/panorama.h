@@ -34,7 +34,9 @@ Result<Panorama> readOpenExr(std::string_view bytes, uint64_t most, const Place&
 
 // What both say.
 tl::unexpected<Diagnostics> unreadable(const Place& place, std::string message);
-/// Errors: "environment-unreadable" for a side of 0 or more than 32768, "image-too-large".
+/// Of a side, in pixels.
+constexpr int kLongestSide = 32768;
+/// Errors: "environment-unreadable" for a side of 0 or beyond that, "image-too-large".
 Result<void> checkSize(int64_t width, int64_t height, uint64_t most, const Place& place);
 
 }  // namespace lacquer::environment

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <type_traits>
 
 #include "eval/rough.h"
 
@@ -41,6 +42,14 @@ struct Exactly {
 struct ToHalf {
   float input(float x) const { return roundedToHalf(x); }
   float operator()(Op, float, float, float x) const { return roundedToHalf(x); }
+};
+
+/// Half precision for what is relaxed, nothing else rounded.
+struct WhereRelaxed {
+  Halves halves;
+  bool half = false;  ///< of the instruction at work
+  double input(double x) const { return x; }
+  double operator()(Op, double, double, double x) { return half ? halves(x) : x; }
 };
 
 /// One component-wise op over the lanes. `b` and `c` are any readable array where the op has fewer operands.
@@ -214,7 +223,11 @@ private:
     };
     const Register out = instruction.outs[0];
     switch (instruction.step) {
-      case Step::Map: return mapLanes(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_, rounding_);
+      case Step::Map:
+        if constexpr (std::is_same_v<Rounding, WhereRelaxed>) {
+          if (instruction.half) return relaxed(instruction);
+        }
+        return mapLanes(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_, rounding_);
       case Step::Literal:
         return static_cast<void>(std::fill_n(
             at(out), lanes_, rounding_.input(static_cast<T>(program_.literals[instruction.payload]))));
@@ -249,6 +262,20 @@ private:
     }
   }
 
+  /// The operands are rounded, too.
+  void relaxed(const Instruction& instruction) {
+    std::array<std::array<T, kBatch>, 3> operands{};
+    for (size_t k = 0; k < operands.size(); ++k) {
+      const Register r = instruction.args[k];
+      const T* from = at(r == kNoRegister ? instruction.args[0] : r);
+      for (size_t i = 0; i < lanes_; ++i) operands[k][i] = rounding_.halves(from[i]);
+    }
+    rounding_.half = true;
+    mapLanes(instruction.op, operands[0].data(), operands[1].data(), operands[2].data(),
+             at(instruction.outs[0]), lanes_, rounding_);
+    rounding_.half = false;
+  }
+
   const Program& program_;
   const Bindings& bindings_;
   size_t points_;
@@ -275,6 +302,11 @@ std::vector<std::vector<float>> runHalf(const Program& program, const Bindings& 
 std::vector<std::vector<double>> runRough(const Program& program, const Bindings& bindings, size_t points,
                                           uint64_t seed) {
   return Machine<double, Rough>(program, bindings, points, Rough(seed)).run();
+}
+
+std::vector<std::vector<double>> runRelaxed(const Program& program, const Bindings& bindings, size_t points,
+                                            uint64_t seed) {
+  return Machine<double, WhereRelaxed>(program, bindings, points, {Halves(seed)}).run();
 }
 
 template <class T>

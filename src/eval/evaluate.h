@@ -24,6 +24,11 @@ std::vector<std::vector<float>> runHalf(const Program& program, const Bindings& 
 std::vector<std::vector<double>> runRough(const Program& program, const Bindings& bindings, size_t points,
                                           uint64_t seed);
 
+/// run<double>() with half precision where the Dag says that an operation is relaxed: operands and results
+/// become what it may make of them, chosen by `seed`, which is not 0.
+std::vector<std::vector<double>> runRelaxed(const Program& program, const Bindings& bindings, size_t points,
+                                            uint64_t seed);
+
 /// compile() and run().
 template <class T>
 Result<std::vector<std::vector<T>>> evaluate(const ir::Module& module, std::span<const ir::ValueId> roots,

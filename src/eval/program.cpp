@@ -68,6 +68,7 @@ private:
         std::all_of(args.begin(), args.end(), [&](Register r) { return virtuals_[r].uniform; });
     Instruction instruction{Step::Map, op};
     std::copy(args.begin(), args.end(), instruction.args.begin());
+    instruction.half = half_;
     return emit(instruction, uniform);
   }
   Register map(Op op, Register a, Register b) { return map(op, std::array{a, b}); }
@@ -290,6 +291,7 @@ private:
 
   void value(ValueId id) {
     // After an error registers are missing; what is left to find is more unbound inputs.
+    half_ = dag_.relaxed(id);
     if (wrong_.empty() || dag_[id].op == Op::Input) registers_of_[id] = made(id);
   }
 
@@ -322,6 +324,7 @@ private:
   size_t points_;
   Program program_;
   Diagnostics wrong_;
+  bool half_ = false;  ///< what is being compiled is relaxed
   std::vector<Virtual> virtuals_;
   std::vector<std::vector<Register>> registers_of_;
 };

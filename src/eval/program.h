@@ -42,6 +42,7 @@ struct Instruction {
   uint32_t payload = 0;
   std::array<Register, 4> outs{kNoRegister, kNoRegister, kNoRegister, kNoRegister};
   std::array<Register, 4> args{kNoRegister, kNoRegister, kNoRegister, kNoRegister};
+  bool half = false;  ///< of a value that the Dag says is relaxed
 };
 
 /// Holds for every Bindings that gives the same inputs as those that it was compiled for, each per point or

@@ -43,13 +43,29 @@ Allowed allowedOf(Op op, double a, double b, double x) {
   }
 }
 
+/// In [0, 1).
+double drawn(uint64_t& state) {
+  state ^= state << 13;
+  state ^= state >> 7;
+  state ^= state << 17;
+  return static_cast<double>(state >> 11) * 0x1p-53;
+}
+
 }  // namespace
 
+double Halves::operator()(double x) {
+  if (!std::isfinite(x) || x == 0) return x;
+  const double u = drawn(state_);
+  if (std::abs(x) < 0x1p-14 && u < 0.5) return 0;
+  if (u < 0.1) return x;
+  int exponent = 0;
+  std::frexp(x, &exponent);
+  const double step = std::ldexp(1.0, std::max(exponent, -13) - 11);
+  return (u < 0.55 ? std::floor(x / step) : std::ceil(x / step)) * step;
+}
+
 double Rough::symmetric() {
-  state_ ^= state_ << 13;
-  state_ ^= state_ >> 7;
-  state_ ^= state_ << 17;
-  const double u = static_cast<double>(state_ >> 11) * 0x1p-53;
+  const double u = drawn(state_);
   // A third at either end.
   return u < 1.0 / 3 ? -1 : u > 2.0 / 3 ? 1 : 6 * u - 3;
 }

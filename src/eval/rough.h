@@ -24,4 +24,16 @@ private:
   uint64_t state_;
 };
 
+/// What half precision may make of numbers, drawn at random: the number itself or one of its neighbours of 11
+/// bits, and what is below 2^-14 may become 0.
+class Halves {
+public:
+  explicit Halves(uint64_t seed) : state_(seed) {}
+
+  double operator()(double x);
+
+private:
+  uint64_t state_;
+};
+
 }  // namespace lacquer::eval

@@ -9,11 +9,11 @@ namespace lacquer::eval {
 namespace {
 
 /// SHEEN_ALPHA_MIN of nodes/sheen.node.
-constexpr double kAlphaMin = 0.002;
+constexpr double kSheenAlphaMin = 0.002;
 
 /// Samples over the light's cosine and around the normal. With twice as many what comes out moves by 1e-3.
 constexpr int kCosines = 64;
-constexpr int kTurns = 48;
+constexpr int kSheenTurns = 48;
 
 /// Conty and Kulla's fit to Smith's integral, with its coefficients for one alpha.
 class Masking {
@@ -36,14 +36,16 @@ private:
 /// The lobe of one roughness, with what the integrals over the light share.
 class Lobe {
 public:
-  explicit Lobe(double roughness) : alpha_(std::max(roughness * roughness, kAlphaMin)), masking_(alpha_) {
+  explicit Lobe(double roughness)
+      : alpha_(std::max(roughness * roughness, kSheenAlphaMin)), masking_(alpha_) {
     for (int i = 0; i < kCosines; ++i) {
       // The cosine is t^3: the lobe's detail is at grazing.
       const double t = (i + 0.5) / kCosines;
       lights_.push_back({t * t * t, 3 * t * t / kCosines, 0, 1});
       lights_.back().masked = masking_(lights_.back().cosine);
     }
-    for (int k = 0; k < kTurns; ++k) turns_.push_back(std::cos((k + 0.5) / kTurns * std::numbers::pi));
+    for (int k = 0; k < kSheenTurns; ++k)
+      turns_.push_back(std::cos((k + 0.5) / kSheenTurns * std::numbers::pi));
     std::vector<double> compensation;
     for (const Light& light : lights_) compensation.push_back(1 / std::max(albedos(light.cosine)[1], 1.0));
     for (size_t i = 0; i < lights_.size(); ++i) lights_[i].compensation = compensation[i];
@@ -69,7 +71,7 @@ public:
       kept += share * light.compensation;
       single += share;
     }
-    const double all_around = peak * 2 * std::numbers::pi / kTurns;
+    const double all_around = peak * 2 * std::numbers::pi / kSheenTurns;
     return {kept * all_around, single * all_around};
   }
 

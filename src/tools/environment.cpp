@@ -18,8 +18,8 @@ namespace lacquer {
 
 namespace {
 
-constexpr uint32_t kLeastSize = 32, kMostSize = 1024;
-constexpr uint32_t kLeastSamples = 64, kMostSamples = 65536;
+constexpr uint32_t kLeastFace = 32, kMostFace = 1024;
+constexpr uint32_t kLeastDraws = 64, kMostDraws = 65536;
 constexpr uint32_t kDfgSize = 128, kSheenSize = 64;
 
 struct Written {
@@ -60,13 +60,13 @@ private:
 
   Result<void> checkNumbers() const {
     if (Result<void> path = hasPath("the folder", of_.output); !path) return path;
-    if (Result<void> good = inRange("the size of a face", of_.size, kLeastSize, kMostSize, "texels"); !good)
+    if (Result<void> good = inRange("the size of a face", of_.size, kLeastFace, kMostFace, "texels"); !good)
       return good;
     if (!std::has_single_bit(of_.size)) {
       return fail("out-of-range", {}, fmt::format("the size of a face is {} texels", of_.size),
                   "it is a power of two from 32 to 1024");
     }
-    return inRange("the number of samples", of_.samples, kLeastSamples, kMostSamples, {});
+    return inRange("the number of samples", of_.samples, kLeastDraws, kMostDraws, {});
   }
 
   std::string fileName(std::string_view slot) const {

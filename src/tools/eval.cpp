@@ -172,19 +172,11 @@ vulkan::Texture environmentOf(const EvalPoints& points) {
   return texture;
 }
 
-vulkan::Shape shapeOf(ir::Type type) {
-  if (type == ir::Type::TextureCube) return vulkan::Shape::Cube;
-  if (type == ir::Type::Texture2DArray) return vulkan::Shape::Array;
-  return type == ir::Type::Texture3D ? vulkan::Shape::Volume : vulkan::Shape::Plane;
-}
-
 vulkan::Texture constantOf(const std::array<double, 4>& value, ir::Type type) {
   vulkan::Texel texel{};
   for (size_t i = 0; i < 4; ++i) texel[i] = static_cast<float>(value[i]);
-  vulkan::Texture texture;
+  vulkan::Texture texture = textureFor(type);
   texture.nearest = true;
-  texture.shape = shapeOf(type);
-  texture.compares = type == ir::Type::Texture2DShadow;
   texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(1, texel);
   return texture;
 }

@@ -12,6 +12,7 @@
 #include "shader/messages.h"
 #include "shader/module.h"
 #include "shader/options.h"
+#include "shader/simplify.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -98,13 +99,22 @@ void FileImages::passedOver(int texture, const gltf::TextureSource& source) {
                     {}});
 }
 
+Result<void> FileImages::open() {
+  if (opened_) return {};
+  Result<gltf::TextureFile> opened = bytes_ ? gltf::TextureFile::fromMemory(*bytes_, file_, access_)
+                                            : gltf::TextureFile::open(file_, access_);
+  if (!opened) return tl::make_unexpected(std::move(opened.error()));
+  opened_ = std::move(*opened);
+  return {};
+}
+
+gltf::Geometry FileImages::geometry(size_t material) {
+  if (!open()) return {};
+  return gltf::geometryOf(*opened_, material);
+}
+
 Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
-  if (!opened_) {
-    Result<gltf::TextureFile> opened = bytes_ ? gltf::TextureFile::fromMemory(*bytes_, file_, access_)
-                                              : gltf::TextureFile::open(file_, access_);
-    if (!opened) return tl::make_unexpected(std::move(opened.error()));
-    opened_ = std::move(*opened);
-  }
+  if (Result<void> opened = open(); !opened) return tl::make_unexpected(std::move(opened.error()));
   const Result<gltf::TextureSource> source = opened_->texture(texture);
   if (!source) return tl::make_unexpected(source.error());
   passedOver(texture, *source);
@@ -175,7 +185,7 @@ Result<void> EvalMaterial::lower(material::Material material, const Language& li
   if (Diagnostics wrong = graph::check(graph, library); lacquer::hasError(wrong)) {
     return tl::make_unexpected(std::move(wrong));
   }
-  Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options), true});
+  Result<ir::Module> module = lower::lower(graph, library, loweringOf(options, true));
   if (!module) return tl::make_unexpected(std::move(module.error()));
   module_ = std::move(*module);
   return checkTexels(**library.models.schema());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "eval/image.h"
+#include "gltf/geometry.h"
 #include "gltf/texture_source.h"
 #include "lacquer.h"
 #include "shader/module.h"
@@ -34,7 +35,9 @@ public:
   Result<Loaded> load(int texture, bool srgb);
   /// What load() has to say beside its errors, once: images that were passed over for another one.
   Diagnostics takeNotes() { return std::exchange(notes_, {}); }
-  /// The files that were read for images.
+  /// What the file's primitives of a material look like. Nothing where the file cannot be opened.
+  gltf::Geometry geometry(size_t material);
+  /// The files that were read for images and buffers.
   Strings read() const { return opened_ ? opened_->filesRead() : Strings(); }
 
 private:
@@ -44,6 +47,7 @@ private:
     uint64_t used = 0;    ///< a later use has a larger number
   };
 
+  Result<void> open();
   Result<Held> decode(const gltf::TextureSource& source);
   void passedOver(int texture, const gltf::TextureSource& source);
   bool makeRoom(uint64_t pixels);

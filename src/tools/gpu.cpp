@@ -193,6 +193,16 @@ Result<std::vector<uint32_t>> fragmentWords(const ir::Module& module, FragmentRo
   return words;
 }
 
+vulkan::Texture textureFor(ir::Type type) {
+  vulkan::Texture texture;
+  texture.shape = type == ir::Type::TextureCube      ? vulkan::Shape::Cube
+                  : type == ir::Type::Texture2DArray ? vulkan::Shape::Array
+                  : type == ir::Type::Texture3D      ? vulkan::Shape::Volume
+                                                     : vulkan::Shape::Plane;
+  texture.compares = type == ir::Type::Texture2DShadow;
+  return texture;
+}
+
 Result<vulkan::Work> gpuWork(const ir::Module& module, const eval::Bindings& bindings,
                              const GpuTextures& textures, size_t points, FragmentRoute route) {
   Result<vulkan::Work> work = WorkBuilder(module, bindings, points, route).build(textures);

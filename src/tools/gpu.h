@@ -15,6 +15,9 @@ namespace lacquer {
 /// By slot name; the places are filled in on the way to the device.
 using GpuTextures = std::map<std::string, vulkan::Texture, std::less<>>;
 
+/// A texture of a type's shape; a slot of a depth map compares. It has no texels yet.
+vulkan::Texture textureFor(ir::Type type);
+
 /// Where the fragment stage's SPIR-V comes from: the DAG, or glslang from the GLSL or the HLSL.
 enum class FragmentRoute : uint8_t { Direct, Glsl, Hlsl };
 

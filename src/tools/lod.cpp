@@ -161,20 +161,55 @@ private:
     const auto& uses = document.uses[static_cast<size_t>(material.index)];
     const gltf::VertexAttributes attributes =
         uses.empty() ? gltf::VertexAttributes{true, true, false, {true, true, false, false}} : uses[0];
-    LodMaterial subject({material, attributes, lightsOf(document), images, *language_, options_, lod_.texels},
-                        lod_.size);
+    const preview::Mesh mesh = meshOf(material, document.path, images);
+    LodMaterial subject(
+        {material, attributes, lightsOf(document), images, *language_, options_, lod_.texels, mesh},
+        lod_.size);
     Result<lod::Tried> exact = subject.open(messages_);
     if (!exact) return tl::make_unexpected(std::move(exact.error()));
     LodChain made;
     made.file = document.path;
     made.name = material.name;
     made.index = static_cast<size_t>(material.index);
+    made.triangles = subject.figures({}).on_mesh ? mesh.triangles.size() / 3 : 0;
     search(subject, *exact, made);
     if (Result<void> good = finish(subject, fmt::format("{}-{}", file, material.index), made); !good)
       return good;
     if (!subject.driver().empty()) driver_ = subject.driver();
     chains_.push_back(std::move(made));
     return {};
+  }
+
+  /// The file's own geometry that has the material.
+  preview::Mesh meshOf(const material::Material& material, const std::string& file, FileImages& images) {
+    const gltf::Geometry geometry = images.geometry(static_cast<size_t>(material.index));
+    if (!geometry.left_out.empty()) {
+      report({{"geometry-left-out",
+               Severity::Note,
+               {{}, 0, 0, fmt::format("/materials/{}", material.index)},
+               fmt::format("levels are compared {} of the file's own geometry: {}",
+                           geometry.triangles.empty() ? "without any" : "with a part", geometry.left_out),
+               "the ball is among the pictures in any case",
+               {}}},
+             file, messages_);
+    }
+    preview::Mesh mesh;
+    mesh.triangles = geometry.triangles;
+    for (const gltf::Corner& corner : geometry.corners) {
+      eval::Point& point = mesh.vertices.emplace_back();
+      std::copy(corner.position.begin(), corner.position.end(), point.position.begin());
+      std::copy(corner.normal.begin(), corner.normal.end(), point.n.begin());
+      std::copy(corner.tangent.begin(), corner.tangent.end(), point.t.begin());
+      std::copy(corner.color.begin(), corner.color.end(), point.color0.begin());
+      for (size_t set = 0; set < 4; ++set)
+        std::copy(corner.uv[set].begin(), corner.uv[set].end(), point.uv[set].begin());
+    }
+    const Result<const material::Schema*> schema = language_->models.schema();
+    for (const material::Material::Number& number : material.numbers) {
+      if (schema && (*schema)->properties[number.property].decl->name == "doubleSided")
+        mesh.double_sided = number.value[0] != 0;
+    }
+    return mesh;
   }
 
   /// Everything that is worth to be tried, then the best of it with a few numbers fitted.
@@ -184,7 +219,8 @@ private:
     lod::Bounds bounds;
     bounds.most_error = 2 * (lod_.errors.empty() ? lod_.most_error : lod_.errors.back());
     if (!lod_.costs.empty()) bounds.most_error = 100;
-    made.tried = lod::search(exact, subject.words(), of_word, bounds, measure);
+    const lod::Refit refit = [&](const lod::Words& words) { return subject.fitted(words); };
+    made.tried = lod::search(exact, subject.words(), of_word, bounds, measure, refit);
     std::vector<lod::Words> fitted;
     for (const lod::Tried& one : lod::front(made.tried)) {
       constexpr double kWorthIt = 0.05;
@@ -244,8 +280,10 @@ private:
     for (size_t i = 0; i < made.levels.size(); ++i) {
       LodLevel& level = made.levels[i];
       level.figures = (*costs)[i];
-      level.figures.seen = subject.figures(level.words).seen;
-      if (!levels.empty() && level.figures.cycles >= levels.back().figures.cycles) continue;
+      const LodFigures& found = subject.figures(level.words);
+      level.figures.seen = found.seen;
+      level.figures.on_mesh = found.on_mesh;
+      if (!levels.empty() && level.figures.cost >= levels.back().figures.cost) continue;
       levels.push_back(std::move(level));
       kept.push_back(std::move(modules[i]));
     }
@@ -305,11 +343,12 @@ private:
   Result<void> draw(const LodMaterial& subject, const std::string& stem, LodLevel& level) {
     for (const bool used : {false, true}) {
       const uint32_t size = used ? level.screen : kShown;
-      const auto exact = subject.shots({}, size);
+      const bool triangles = atVertices(level.words);
+      const auto exact = subject.shots({}, size, triangles);
       if (!exact) return tl::make_unexpected(exact.error());
-      const auto simpler = subject.shots(level.words, size);
+      const auto simpler = subject.shots(level.words, size, triangles);
       if (!simpler) return tl::make_unexpected(simpler.error());
-      if (used) level.at_screen = preview::compareShots(*exact, *simpler);
+      if (used) subject.compare(*exact, *simpler, level.at_screen, level.at_screen_on_mesh);
       std::string path = stem + (used ? "-used.png" : ".png");
       pictures_.emplace_back(path, strip(*exact, *simpler));
       (used ? level.used : level.pictures) = std::move(path);

@@ -17,6 +17,9 @@ namespace lacquer {
 
 namespace {
 
+/// Interpolants that every device takes, of four numbers each.
+constexpr size_t kMostVaryings = 15;
+
 /// Pixels of the pictures that numbers are fitted to.
 constexpr uint32_t kFitSize = 32;
 
@@ -72,7 +75,7 @@ Result<graph::Graph> LodMaterial::graphOf(const lod::Words& words) const {
 Result<ir::Module> LodMaterial::module(const lod::Words& words) const {
   const Result<graph::Graph> graph = graphOf(words);
   if (!graph) return tl::make_unexpected(graph.error());
-  return toModule(*graph, given_.language, given_.options, given_.lights);
+  return toModule(*graph, given_.language, optionsOf(words), given_.lights);
 }
 
 Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& words, Messages& messages,
@@ -102,14 +105,60 @@ Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& wo
   return shadings;
 }
 
-Result<std::vector<preview::Shot>> LodMaterial::shots(const lod::Words& words, uint32_t size) const {
+bool atVertices(const lod::Words& words) {
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return word.starts_with("vertex:"); });
+}
+
+Result<std::vector<preview::Shot>> LodMaterial::shots(const lod::Words& words, uint32_t size,
+                                                      bool triangles) const {
   Messages said_before;
   const Result<std::vector<preview::Shading>> made = shadings(words, said_before);
   if (!made) return tl::make_unexpected(made.error());
+  return shotsOf(*made, size, preview::gridOf(size), triangles);
+}
+
+const std::vector<preview::Coverage>& LodMaterial::coverages(const preview::Mesh& mesh, uint32_t size,
+                                                             uint32_t grid) const {
+  const auto [known, fresh] = coverages_.try_emplace({&mesh, size, grid});
+  if (!fresh || mesh.triangles.empty()) return known->second;
+  // Each studio sees the geometry from another side.
+  constexpr double kTurns[] = {0.5, 2.4, -1.7};
+  for (size_t i = 0; i < studios_.size(); ++i) {
+    std::optional<preview::Coverage> seen =
+        preview::coverageOf(mesh, kTurns[i % std::size(kTurns)], size, grid);
+    if (!seen) return known->second = {}, known->second;
+    known->second.push_back(std::move(*seen));
+  }
+  return known->second;
+}
+
+std::vector<preview::Shot> LodMaterial::shotsOf(const std::vector<preview::Shading>& shadings, uint32_t size,
+                                                uint32_t grid, bool triangles) const {
   std::vector<preview::Shot> shots;
-  for (const preview::Shading& shading : *made)
-    shots.push_back(preview::shoot(shading, size, preview::gridOf(size)));
+  const auto meshed = [&](const preview::Mesh& mesh) {
+    const std::vector<preview::Coverage>& seen = coverages(mesh, size, grid);
+    for (size_t i = 0; i < seen.size(); ++i) shots.push_back(preview::shoot(shadings[i], seen[i]));
+  };
+  if (triangles) {
+    meshed(ball_);
+  } else {
+    for (const preview::Shading& shading : shadings) shots.push_back(preview::shoot(shading, size, grid));
+  }
+  meshed(given_.mesh);
   return shots;
+}
+
+void LodMaterial::compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
+                          preview::Seen& seen, std::optional<preview::Seen>& on_mesh) const {
+  seen = preview::compareShots(exact, simpler);
+  on_mesh.reset();
+  const auto balls = static_cast<ptrdiff_t>(studios_.size());
+  if (std::ssize(exact) <= balls) return;
+  const auto rest = [&](const std::vector<preview::Shot>& shots) {
+    return std::vector<preview::Shot>(shots.begin() + balls, shots.end());
+  };
+  on_mesh = preview::compareShots(rest(exact), rest(simpler));
 }
 
 /// Which textures have images, and what their means are.
@@ -149,11 +198,14 @@ Result<lod::Tried> LodMaterial::open(Messages& messages) {
   if (Result<void> lowered = evaluated.lower(given_.material, given_.language, true, "", messages); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
   readTextures(evaluated);
-  Result<std::vector<preview::Shot>> shot = shots({}, size_);
-  if (!shot) return tl::make_unexpected(std::move(shot.error()));
-  exact_ = std::move(*shot);
-  if (auto small = shotsWith({}, {}, {})) small_ = std::move(*small);
+  for (const bool triangles : {false, true}) {
+    Result<std::vector<preview::Shot>> shot = shots({}, size_, triangles);
+    if (!shot) return tl::make_unexpected(std::move(shot.error()));
+    exact_[triangles] = std::move(*shot);
+    if (auto small = shotsWith({}, {}, {}, triangles)) small_[triangles] = std::move(*small);
+  }
   const std::vector<std::optional<lod::Tried>> measured = measure({{}});
+  if (measured[0]) exact_vertex_ = figures({}).vertex_cycles;
   if (!measured[0]) return fail("cost-unknown", {}, "the material's own shader could not be measured");
   return *measured[0];
 }
@@ -165,15 +217,26 @@ lod::Words LodMaterial::words() const {
   all.insert(all.end(), means_.begin(), means_.end());
   lod::Words good;
   std::set<std::string> seen{exact_graph_};
-  for (std::string& word : all) {
+  for (const std::string& word : all) {
     // Without a picture of it nobody knows what a texture is worth.
     const std::string subject = lacquer::subjectOf(word);
     const bool unknown = subject.starts_with("texture:") && absent_.contains(subject.substr(8));
     if (unknown) continue;
+    // What cannot go to the vertices alone may do so beside something else.
+    if (word.starts_with("vertex:")) {
+      good.push_back(word);
+      continue;
+    }
     const Result<graph::Graph> simpler = graphOf({word});
-    if (simpler && seen.insert(graph::toJson(*simpler)).second) good.push_back(std::move(word));
+    if (simpler && seen.insert(graph::toJson(*simpler)).second) good.push_back(word);
   }
   return good;
+}
+
+double LodMaterial::costOf(const LodFigures& figures) const {
+  const uint64_t before = exact_vertex_.value_or(figures.vertex_cycles);
+  const uint64_t more = figures.vertex_cycles - std::min(before, figures.vertex_cycles);
+  return static_cast<double>(figures.cycles) + kVertexShare * static_cast<double>(more);
 }
 
 Result<std::vector<LodFigures>> LodMaterial::costs(const std::vector<ir::Module>& modules) {
@@ -184,6 +247,8 @@ Result<std::vector<LodFigures>> LodMaterial::costs(const std::vector<ir::Module>
       figures[i].instructions = estimate.instructions;
       figures[i].cycles = estimate.cycles;
       figures[i].quarter_cycles = estimate.quarter_cycles;
+      figures[i].vertex_cycles = estimate.vertex_cycles;
+      figures[i].cost = costOf(figures[i]);
     }
     return figures;
   }
@@ -201,6 +266,8 @@ Result<std::vector<LodFigures>> LodMaterial::costs(const std::vector<ir::Module>
     figures[i].instructions = outcome.statistics->instructions;
     figures[i].cycles = outcome.statistics->inverse_throughput;
     figures[i].quarter_cycles = figures[i].cycles + cost::quarterRateCycles(outcome.disassembly);
+    figures[i].vertex_cycles = outcome.statistics->vertex_inverse_throughput;
+    figures[i].cost = costOf(figures[i]);
   }
   return figures;
 }
@@ -210,7 +277,8 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
   std::vector<std::pair<std::string, const lod::Words*>> of_fresh;
   for (const lod::Words& set : sets) {
     Result<ir::Module> made = module(set);
-    if (!made || !lod::texturesWithin(*made, *exact_module_)) continue;
+    if (!made || !lod::texturesWithin(*made, *exact_module_) || made->varyings.size() > kMostVaryings)
+      continue;
     std::string id = shaderId(*made, given_.language);
     const bool known = figures_.contains(id) || std::any_of(of_fresh.begin(), of_fresh.end(),
                                                             [&](const auto& one) { return one.first == id; });
@@ -221,9 +289,10 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
   }
   Result<std::vector<LodFigures>> costs = this->costs(fresh);
   for (size_t i = 0; costs && i < fresh.size(); ++i) {
-    const auto shot = shots(*of_fresh[i].second, size_);
+    const bool triangles = atVertices(*of_fresh[i].second);
+    const auto shot = shots(*of_fresh[i].second, size_, triangles);
     if (!shot) continue;
-    (*costs)[i].seen = preview::compareShots(exact_, *shot);
+    compare(exact_[triangles], *shot, (*costs)[i].seen, (*costs)[i].on_mesh);
     figures_.emplace(of_fresh[i].first, (*costs)[i]);
   }
   std::vector<std::optional<lod::Tried>> tried(sets.size());
@@ -231,7 +300,7 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
     const auto id = ids_.find(sets[i]);
     const auto found = id == ids_.end() ? figures_.end() : figures_.find(id->second);
     if (found == figures_.end()) continue;
-    tried[i] = lod::Tried{sets[i], static_cast<double>(found->second.cycles), found->second.seen.delta_e};
+    tried[i] = lod::Tried{sets[i], found->second.cost, found->second.seen.delta_e};
   }
   return tried;
 }
@@ -259,7 +328,8 @@ std::vector<LodMaterial::Parameter> LodMaterial::fittable(const lod::Words& word
 
 std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(const lod::Words& words,
                                                                  const std::vector<Parameter>& parameters,
-                                                                 const std::vector<double>& scales) const {
+                                                                 const std::vector<double>& scales,
+                                                                 bool triangles) const {
   const auto change = [&](ir::Module& module) {
     for (size_t i = 0; i < parameters.size(); ++i) {
       for (ir::Parameter& p : module.parameters) {
@@ -271,9 +341,7 @@ std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(const lod::Word
   Messages ignored;
   const Result<std::vector<preview::Shading>> made = shadings(words, ignored, change);
   if (!made) return std::nullopt;
-  std::vector<preview::Shot> shots;
-  for (const preview::Shading& shading : *made) shots.push_back(preview::shoot(shading, kFitSize, 2));
-  return shots;
+  return shotsOf(*made, kFitSize, 2, triangles);
 }
 
 namespace {
@@ -314,20 +382,36 @@ std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<doubl
 
 }  // namespace
 
+/// What the words that scale numbers say of these; 1 where they say nothing.
+std::vector<double> LodMaterial::scalesOf(const lod::Words& words, const std::vector<Parameter>& parameters) {
+  std::vector<double> scales(parameters.size(), 1.0);
+  const Result<Simplification> simpler = simplificationOf(words);
+  for (size_t i = 0; simpler && i < parameters.size(); ++i) {
+    const auto found = simpler->scales.find(parameters[i].name);
+    if (found != simpler->scales.end() && found->second.size() == parameters[i].components)
+      scales[i] = found->second[parameters[i].component];
+  }
+  return scales;
+}
+
 /// Levenberg and Marquardt's least squares over the pictures' colours, with differences for derivatives.
-std::optional<lod::Words> LodMaterial::fitted(const lod::Words& words) const {
+std::optional<lod::Words> LodMaterial::fitted(const lod::Words& given) const {
   constexpr int kRounds = 4;
   constexpr double kStep = 0.02;
   constexpr double kLeast = 0.2;
   constexpr double kMost = 3;
+  // Numbers that are fitted already are where this begins.
+  lod::Words words = given;
+  std::erase_if(words, [](const std::string& word) { return word.starts_with("scale:"); });
   const std::vector<Parameter> parameters = fittable(words);
   if (parameters.empty()) return std::nullopt;
-  std::vector<double> scales(parameters.size(), 1.0);
+  std::vector<double> scales = scalesOf(given, parameters);
+  const bool triangles = atVertices(words);
   const auto labsWith = [&](const std::vector<double>& with) -> std::vector<double> {
-    const auto shots = shotsWith(words, parameters, with);
+    const auto shots = shotsWith(words, parameters, with, triangles);
     return shots ? labsOf(*shots) : std::vector<double>();
   };
-  const std::vector<double> wanted = labsOf(small_);
+  const std::vector<double> wanted = labsOf(small_[triangles]);
   std::vector<double> now = labsWith(scales);
   if (now.size() != wanted.size()) return std::nullopt;
   double error = squares(now, wanted);
@@ -382,8 +466,8 @@ std::optional<lod::Words> LodMaterial::fitted(const lod::Words& words) const {
     for (const double x : by) numbers += fmt::format("{}{:.4g}", numbers.empty() ? "" : ",", x);
     result.push_back(fmt::format("scale:{}={}", parameters[first].name, numbers));
   }
-  if (result.size() == words.size()) return std::nullopt;
   std::sort(result.begin(), result.end());
+  if (result == given) return std::nullopt;
   return result;
 }
 

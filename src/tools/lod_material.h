@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "lod/search.h"
@@ -16,8 +17,18 @@ namespace lacquer {
 struct LodFigures {
   uint64_t instructions = 0, cycles = 0;  ///< on navi21; cycles of inverse throughput
   uint64_t quarter_cycles = 0;            ///< the same with roots and the like at a quarter of the rate
-  preview::Seen seen;                     ///< against the exact shader
+  uint64_t vertex_cycles = 0;             ///< of the vertex stage
+  double cost = 0;                        ///< cycles, and those that the vertices take more (kVertexShare)
+  preview::Seen seen;                     ///< against the exact shader, of all pictures together
+  std::optional<preview::Seen> on_mesh;   ///< of the pictures of the file's own geometry alone
 };
+
+/// Vertices for each pixel that a level is charged for: triangles of four pixels, as there are two triangles
+/// for each vertex. What a level computes more at the vertices than the exact shader counts so much.
+inline constexpr double kVertexShare = 0.125;
+
+/// Whether something is computed at vertices that was not: pictures are of triangles then.
+bool atVertices(const lod::Words& words);
 
 class LodMaterial {
 public:
@@ -29,6 +40,7 @@ public:
     const Language& language;
     const Options& options;  ///< with its names resolved
     const Strings& texels;
+    const preview::Mesh& mesh;  ///< the file's own geometry; without triangles where there is none
   };
   /// What is given must outlive this. Pictures to search by are `size` pixels wide.
   LodMaterial(const Given& given, uint32_t size) : given_(given), size_(size) {}
@@ -45,8 +57,12 @@ public:
 
   /// The shader of a set of words, placed.
   Result<ir::Module> module(const lod::Words& words) const;
-  /// Pictures by a set of words, one for each studio.
-  Result<std::vector<preview::Shot>> shots(const lod::Words& words, uint32_t size) const;
+  /// Pictures by a set of words: of the ball one for each studio, then as many of the file's geometry. With
+  /// `triangles` the ball is one of 1,010 vertices; else it is as round as can be, and has a facet.
+  Result<std::vector<preview::Shot>> shots(const lod::Words& words, uint32_t size, bool triangles) const;
+  /// What two sets of pictures of one size differ by: all of them, and those of the geometry.
+  void compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
+               preview::Seen& seen, std::optional<preview::Seen>& on_mesh) const;
   /// What was found of a set that was measured.
   const LodFigures& figures(const lod::Words& words) const { return figures_.at(ids_.at(words)); }
   /// "Mesa 22.3.6"; empty where the costs are estimates.
@@ -69,16 +85,27 @@ private:
   Result<graph::Graph> graphOf(const lod::Words& words) const;
   Result<std::vector<preview::Shading>> shadings(const lod::Words& words, Messages& messages,
                                                  const Change& change = {}) const;
+  const std::vector<preview::Coverage>& coverages(const preview::Mesh& mesh, uint32_t size,
+                                                  uint32_t grid) const;
+  std::vector<preview::Shot> shotsOf(const std::vector<preview::Shading>& shadings, uint32_t size,
+                                     uint32_t grid, bool triangles) const;
+  double costOf(const LodFigures& figures) const;
+  static std::vector<double> scalesOf(const lod::Words& words, const std::vector<Parameter>& parameters);
   std::vector<Parameter> fittable(const lod::Words& words) const;
   std::optional<std::vector<preview::Shot>> shotsWith(const lod::Words& words,
                                                       const std::vector<Parameter>& parameters,
-                                                      const std::vector<double>& scales) const;
+                                                      const std::vector<double>& scales,
+                                                      bool triangles) const;
   void readTextures(EvalMaterial& evaluated);
 
   Given given_;
   uint32_t size_;
   std::vector<preview::Studio> studios_ = preview::comparisonStudios();
-  std::vector<preview::Shot> exact_, small_;  ///< to compare with; to fit to
+  std::vector<preview::Shot> exact_[2], small_[2];  ///< to compare with; to fit to; the second of triangles
+  preview::Mesh ball_ = preview::ballOf(48, 22);
+  /// What is seen of a mesh, by size and grid, a view for each studio; none where it cannot be drawn.
+  mutable std::map<std::tuple<const preview::Mesh*, uint32_t, uint32_t>, std::vector<preview::Coverage>>
+      coverages_;
   std::string exact_graph_;
   std::optional<ir::Module> exact_module_;
   lod::Words means_;              ///< words for textures that have images
@@ -86,6 +113,7 @@ private:
   std::map<lod::Words, std::string> ids_;
   std::map<std::string, LodFigures> figures_;  ///< by shader
   std::string driver_;
+  std::optional<uint64_t> exact_vertex_;  ///< cycles of the exact shader's vertex stage
 };
 
 }  // namespace lacquer

@@ -133,35 +133,50 @@ std::string rowOf(const LodChain& chain, size_t i, const lang::Library& library)
   std::string changes;
   for (const std::string& word : level.words)
     changes += fmt::format("<li title=\"{}\">{}</li>", escaped(word), escaped(described(word, library)));
-  const double part =
-      100 * static_cast<double>(f.cycles) / static_cast<double>(chain.levels[0].figures.cycles);
+  const double part = 100 * f.cost / chain.levels[0].figures.cost;
+  std::string on_mesh;
+  if (chain.triangles > 0) {
+    const preview::Seen at_size = level.at_screen_on_mesh.value_or(preview::Seen{});
+    on_mesh = fmt::format("<td>{:.2f}</td><td>{:.2f}</td>", f.on_mesh.value_or(preview::Seen{}).delta_e,
+                          at_size.delta_e);
+  }
   return fmt::format(
-      "<tr><td>{}</td><td>{}</td><td>{} ({:.0f} %)</td><td>{}</td><td>{}</td><td>{:.2f} / "
+      "<tr><td>{}</td><td>{}</td><td>{} ({:.0f} %)</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} / "
       "{:.2f}</td><td>{:.3f} / "
-      "{:.3f}</td><td>{:.2f} / {:.2f}</td><td>{}</td></tr>\n",
-      i, screenText(level.screen), f.cycles, part, f.quarter_cycles, f.instructions, f.seen.delta_e,
-      f.seen.delta_e_95, f.seen.flip, f.seen.flip_95, level.at_screen.delta_e, level.at_screen.delta_e_95,
+      "{:.3f}</td><td>{:.2f} / {:.2f}</td>{}<td>{}</td></tr>\n",
+      i, screenText(level.screen), f.cycles, part, f.vertex_cycles, f.quarter_cycles, f.instructions,
+      f.seen.delta_e, f.seen.delta_e_95, f.seen.flip, f.seen.flip_95, level.at_screen.delta_e,
+      level.at_screen.delta_e_95, on_mesh,
       changes.empty() ? std::string("everything") : "<ul>" + changes + "</ul>");
 }
 
 std::string chainHtml(const LodChain& chain, uint32_t size, const lang::Library& library) {
   std::string text =
-      fmt::format("<h2>{}</h2>\n<p class=\"quiet\">{}, material {}; {} shaders were measured</p>\n",
+      fmt::format("<h2>{}</h2>\n<p class=\"quiet\">{}, material {}; {} shaders were measured on {}</p>\n",
                   escaped(chain.name.empty() ? "(no name)" : chain.name), escaped(chain.file), chain.index,
-                  chain.tried.size());
+                  chain.tried.size(),
+                  chain.triangles == 0 ? std::string("the ball")
+                                       : fmt::format("the ball and on the {} triangles of the file that "
+                                                     "have the material",
+                                                     chain.triangles));
   text += fmt::format(
-      "<table>\n<tr><th>level</th><th>for</th><th>cycles</th><th>quarter "
+      "<table>\n<tr><th>level</th><th>for</th><th>cycles</th><th title=\"of the vertex stage; what it takes "
+      "more than that of level 0 "
+      "counts an eighth in the percentage\">at the vertices</th><th>quarter "
       "rate</th><th>instructions</th><th>ΔE at {0}, "
-      "mean / 95 %</th><th>FLIP at {0}</th><th>ΔE at its size</th><th>what is simpler</th></tr>\n",
-      size);
+      "mean / 95 %</th><th>FLIP at {0}</th><th>ΔE at its size</th>{1}<th>what is simpler</th></tr>\n",
+      size,
+      chain.triangles == 0
+          ? std::string()
+          : fmt::format("<th>ΔE on the geometry alone, at {}</th><th>and at its size</th>", size));
   for (size_t i = 0; i < chain.levels.size(); ++i) text += rowOf(chain, i, library);
   text += "</table>\n" + Plot(chain).svg();
   for (size_t i = 1; i < chain.levels.size(); ++i) {
     const LodLevel& level = chain.levels[i];
     text += fmt::format(
         "<h3>Level {}</h3>\n<figure><img src=\"{}\" alt=\"\"><figcaption>exact, level {}, FLIP "
-        "between them; one row for each studio</figcaption></figure>\n",
-        i, escaped(level.pictures), i);
+        "between them; one row for each studio{}</figcaption></figure>\n",
+        i, escaped(level.pictures), i, chain.triangles == 0 ? "" : ", then the file's own geometry in each");
     text += fmt::format("<figure><img src=\"{}\" alt=\"\"><figcaption>at {} pixels</figcaption></figure>\n",
                         escaped(level.used), level.screen);
   }
@@ -198,9 +213,10 @@ std::string lodPage(const std::vector<LodChain>& chains, const std::string& driv
   text += fmt::format(
       "<p>Costs are those of the level's own fragment shader on navi21, {}. <em>Quarter rate</em> counts "
       "reciprocals, "
-      "roots and what is transcendental four times. Differences are measured on a ball with an edge in {} "
-      "studios: "
-      "ΔE is CIEDE2000, FLIP is in [0, 1], both over the pixels of the ball. Hover a change for its "
+      "roots and what is transcendental four times. Differences are measured on a ball with an edge, and on "
+      "the file's own geometry where it has "
+      "any, in {} studios: "
+      "ΔE is CIEDE2000, FLIP is in [0, 1], both over the pixels that show either. Hover a change for its "
       "word.</p>\n",
       driver.empty() ? std::string("estimated from its operations, since no driver is installed")
                      : "measured with " + escaped(driver),
@@ -220,11 +236,16 @@ json::Json chainsJson(const std::vector<LodChain>& chains) {
                         {"cost",
                          {{"inverse_throughput", f.cycles},
                           {"quarter_rate", f.quarter_cycles},
-                          {"instructions", f.instructions}}},
+                          {"instructions", f.instructions},
+                          {"vertex_inverse_throughput", f.vertex_cycles},
+                          {"counted", f.cost}}},
                         {"error", seenJson(f.seen)}};
+      if (f.on_mesh) row["error_on_geometry"] = seenJson(*f.on_mesh);
       if (level.screen > 0) {
         row["screen_size"] = level.screen;
         row["error_at_screen_size"] = seenJson(level.at_screen);
+        if (level.at_screen_on_mesh)
+          row["error_on_geometry_at_screen_size"] = seenJson(*level.at_screen_on_mesh);
       }
       levels.push_back(std::move(row));
     }
@@ -233,6 +254,7 @@ json::Json chainsJson(const std::vector<LodChain>& chains) {
                    {"name", chain.name},
                    {"uniforms", chain.uniforms},
                    {"measured", chain.tried.size()},
+                   {"triangles", chain.triangles},
                    {"levels", std::move(levels)}});
   }
   return all;

@@ -16,13 +16,15 @@ struct LodLevel {
   LodFigures figures;       ///< by pictures of the size that was searched with
   uint32_t screen = 0;      ///< pixels of the ball from which on downwards it is used; 0 for the exact shader
   preview::Seen at_screen;  ///< by pictures of that size
-  std::string pictures, used;  ///< PNG files below the folder: large, and as used
+  std::optional<preview::Seen> at_screen_on_mesh;  ///< of the file's own geometry alone
+  std::string pictures, used;                      ///< PNG files below the folder: large, and as used
 };
 
 /// The levels of a material.
 struct LodChain {
   std::string file, name;
-  size_t index = 0;  ///< in the file
+  size_t index = 0;      ///< in the file
+  size_t triangles = 0;  ///< of the file's own geometry among the pictures; 0 where they are balls alone
   std::vector<LodLevel> levels;
   std::vector<lod::Tried> tried, best;  ///< everything that was measured; what no other beats
   json::Json uniforms;                  ///< of the material block, for today's numbers, by field

@@ -9,14 +9,14 @@ namespace lacquer {
 
 namespace {
 
-Json rangeJson(const ir::Range& range) {
+Json limitsJson(const ir::Range& range) {
   const auto end = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
   return Json::array({end(range.gap > 0 ? range.gap : range.lo), end(range.hi)});
 }
 
 Json paramJson(const lang::Param& param, std::string_view fallback) {
   Json json = {{"name", param.name.empty() ? fallback : param.name}, {"type", ir::typeName(param.type)}};
-  if (param.has_range) json["range"] = rangeJson(param.range);
+  if (param.has_range) json["range"] = limitsJson(param.range);
   if (param.range.gap > 0) json["or_zero"] = true;
   if (param.default_value) json["default"] = componentsJson(param.type, *param.default_value);
   if (!param.prose.empty()) json["meaning"] = param.prose;
@@ -40,7 +40,7 @@ Json nodeJson(const lang::NodeDecl& node) {
   Json assumptions = Json::array();
   for (const lang::Assumption& a : node.assumptions) {
     assumptions.push_back({{"value", a.value},
-                           {"range", rangeJson({a.range, 0})},
+                           {"range", limitsJson({a.range, 0})},
                            {"reason", a.reason},
                            {"variant", a.variant}});
   }
@@ -94,7 +94,7 @@ Json extensionJson(const lang::ExtensionDecl& decl) {
 
 /// The declarations of a kind, each by `row`.
 template <class Get, class Row>
-Json listOf(const lang::Library& library, lang::DeclKind kind, Get get, Row row) {
+Json rowsOf(const lang::Library& library, lang::DeclKind kind, Get get, Row row) {
   Json all = Json::array();
   for (const std::string_view name : library.names(kind)) all.push_back(row(**(library.*get)(name)));
   return all;
@@ -116,18 +116,18 @@ std::string nodesJson(const Options& options, Messages& messages) {
   const auto documented = [](const auto& decl) { return Json{{"name", decl.name}, {"doc", decl.doc}}; };
   Json json = {
       {"lacquer", version()},
-      {"extensions", listOf(all, lang::DeclKind::Extension, &lang::Library::extension, extensionJson)},
-      {"profiles", listOf(all, lang::DeclKind::Profile, &lang::Library::profile, documented)},
-      {"lods", listOf(all, lang::DeclKind::Lod, &lang::Library::lod, documented)},
-      {"switches", listOf(all, lang::DeclKind::Switch, &lang::Library::switch_,
+      {"extensions", rowsOf(all, lang::DeclKind::Extension, &lang::Library::extension, extensionJson)},
+      {"profiles", rowsOf(all, lang::DeclKind::Profile, &lang::Library::profile, documented)},
+      {"lods", rowsOf(all, lang::DeclKind::Lod, &lang::Library::lod, documented)},
+      {"switches", rowsOf(all, lang::DeclKind::Switch, &lang::Library::switch_,
                           [&](const lang::SwitchDecl& decl) {
                             Json row = documented(decl);
                             row["default"] = decl.value;
                             return row;
                           })},
-      {"templates", listOf(all, lang::DeclKind::Template, &lang::Library::template_, documented)},
+      {"templates", rowsOf(all, lang::DeclKind::Template, &lang::Library::template_, documented)},
       {"live", liveTerms(options)},
-      {"nodes", listOf(all, lang::DeclKind::Node, &lang::Library::node, nodeJson)}};
+      {"nodes", rowsOf(all, lang::DeclKind::Node, &lang::Library::node, nodeJson)}};
   return json.dump(2);  // a node file may hold any bytes
 }
 

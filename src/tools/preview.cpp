@@ -21,8 +21,8 @@ namespace lacquer {
 
 namespace {
 
-constexpr uint32_t kLeastSize = 16;  ///< pixels of a ball
-constexpr uint32_t kMostSize = 2048;
+constexpr uint32_t kLeastBall = 16;  ///< pixels of a ball
+constexpr uint32_t kMostBall = 2048;
 constexpr uint32_t kMostColumns = 100;
 
 /// A material compiled for the studio. `substituted` is the number of images that a neutral colour stands
@@ -155,7 +155,7 @@ private:
 
   Result<void> checkNumbers() const {
     if (Result<void> path = hasPath("the picture", preview_.output); !path) return path;
-    if (Result<void> size = inRange("the size of a ball", preview_.size, kLeastSize, kMostSize, "pixels");
+    if (Result<void> size = inRange("the size of a ball", preview_.size, kLeastBall, kMostBall, "pixels");
         !size)
       return size;
     if (preview_.compare.size() == 1 || preview_.compare.size() > 2) {
@@ -275,7 +275,7 @@ std::string drawPreview(const Preview& preview, const std::vector<std::string>& 
 static Result<std::vector<uint8_t>> ballOf(const SceneMaterial& of, uint32_t size, const Strings& texels,
                                            const Options& options, Messages& messages) {
   if (Diagnostics wrong = checkReading(options); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
-  if (Result<void> good = inRange("the size of a ball", size, kLeastSize, kMostSize, "pixels"); !good)
+  if (Result<void> good = inRange("the size of a ball", size, kLeastBall, kMostBall, "pixels"); !good)
     return tl::make_unexpected(std::move(good.error()));
   report(of.material.diagnostics, of.file, messages);
   if (lacquer::hasError(of.material.diagnostics)) return std::vector<uint8_t>();

@@ -18,7 +18,7 @@ using stress::Shown;
 using stress::Subject;
 
 /// Where a root's numbers lie among the colours.
-struct Place {
+struct At {
   size_t root = 0;
   size_t first = 0;  ///< number of the first component, four for each colour
   size_t components = 0;
@@ -27,7 +27,7 @@ struct Place {
 /// A subject's module with results for colours.
 struct Ready {
   ir::Module module;
-  std::vector<Place> places;
+  std::vector<At> places;
 };
 
 /// A parameter as a fragment's input.
@@ -120,14 +120,10 @@ vulkan::Texture textureOf(const Subject& subject, const ir::TextureSlot& slot,
     for (int c = 0; c < variable.components; ++c) texel[static_cast<size_t>(c)] = static_cast<float>(from[c]);
     texels.insert(texels.end(), subject.lanes, texel);
   }
-  vulkan::Texture texture;
+  vulkan::Texture texture = textureFor(slot.type);
   texture.nearest = true;
   texture.per_point = true;
-  texture.compares = slot.type == ir::Type::Texture2DShadow;
   texture.s = texture.t = vulkan::Wrap::Clamp;  // coordinates may be anything
-  texture.shape = slot.type == ir::Type::TextureCube      ? vulkan::Shape::Cube
-                  : slot.type == ir::Type::Texture2DArray ? vulkan::Shape::Array
-                                                          : vulkan::Shape::Plane;
   texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(std::move(texels));
   return texture;
 }
@@ -156,7 +152,7 @@ Result<Shown> shown(const Subject& subject, const Ready& ready, const vulkan::De
   Shown answer;
   answer.values.resize(subject.roots.size());
   for (size_t i = 0; i < count; ++i) answer.dropped.push_back(outcome->discarded[i * subject.lanes]);
-  for (const Place& place : ready.places) {
+  for (const At& place : ready.places) {
     std::vector<double>& values = answer.values[place.root];
     for (size_t i = 0; i < count; ++i) {
       for (size_t k = place.first; k < place.first + place.components; ++k)

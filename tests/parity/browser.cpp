@@ -36,6 +36,32 @@ bool isList(const ir::Module& module, const vulkan::UniformBlock& block) {
   });
 }
 
+json textureWords(const vulkan::Texture& texture) {
+  constexpr const char* kWraps[] = {"repeat", "clamp", "mirror"};
+  constexpr const char* kShapes[] = {"2d", "cube", "2d-array", "3d"};
+  json texels = json::array();
+  for (const vulkan::Texel& texel : *texture.texels) {
+    for (const float x : texel) texels.push_back(x);
+  }
+  return {{"shape", kShapes[static_cast<size_t>(texture.shape)]},
+          {"compares", texture.compares},
+          {"width", texture.width},
+          {"height", texture.height},
+          {"texels", std::move(texels)},
+          {"wrap", {kWraps[static_cast<size_t>(texture.s)], kWraps[static_cast<size_t>(texture.t)]}},
+          {"nearest", texture.nearest}};
+}
+
+json workWords(const vulkan::Work& work, const ir::Module& module) {
+  json made = {{"points", work.points}, {"backFacing", work.back_facing}};
+  for (const char* list : {"outputs", "inputs", "blocks", "lists", "textures"}) made[list] = json::array();
+  made["constants"] = json::object();
+  for (const ir::Output& output : module.outputs) {
+    if (output.kind == ir::OutputKind::Color) made["outputs"].push_back(output.location);
+  }
+  return made;
+}
+
 static double numberOf(const json& spelled) {
   if (spelled.is_number()) return spelled.get<double>();
   return std::strtod(spelled.get<std::string>().c_str(), nullptr);  // NaN, Infinity, -Infinity

@@ -16,6 +16,12 @@ std::string base64(const std::vector<unsigned char>& bytes);
 /// Whether what is bound there is a list of the module's.
 bool isList(const ir::Module& module, const vulkan::UniformBlock& block);
 
+/// What both pages call the same of a texture: its shape, size, texels, and how they are looked up.
+nlohmann::json textureWords(const vulkan::Texture& texture);
+
+/// The same of a fragment stage: how many points, and its colours; the other lists are empty.
+nlohmann::json workWords(const vulkan::Work& work, const ir::Module& module);
+
 /// Runs all works in one browser, by a program of checks/; nothing where there is none.
 std::optional<nlohmann::json> colorsOf(const char* program, const nlohmann::json& works);
 

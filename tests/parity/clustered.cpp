@@ -6,6 +6,7 @@
 #include <array>
 
 #include "eval/evaluate.h"
+#include "parity/browser.h"
 
 namespace lacquer::parity {
 namespace {
@@ -132,6 +133,41 @@ ClusteredScene thousandLightsInClusters(size_t graph, std::map<std::string, bool
     for (const size_t light : list) numbers.push_back(static_cast<double>(light));
   }
   return scene;
+}
+
+ClusteredScene dimmedLightsInClusters() {
+  ClusteredScene scene = thousandLightsInClusters(
+      0, {{"light_shadows", true}, {"light_cookies", true}, {"light_profiles", true}, {"light_masks", true}});
+  eval::Bindings& bindings = scene.clustered.bindings;
+  for (size_t i = 0; i < bindings.lights.size(); ++i) {
+    const auto set = [&](const char* field, double value) {
+      bindings.lights[i][std::string("light.") + field] = eval::Column::constant({value});
+    };
+    set("shadow_strength", i % 2 == 0 ? 0.5 : 0);
+    for (const char* layer : {"cookie", "profile", "mask"}) set(layer, i % 3 == 0 ? -1 : 0);
+  }
+  for (const char* map : {"light_shadow_map", "light_cookies", "light_profiles", "light_masks"}) {
+    const vulkan::Texel texel = {map[6] == 's' ? 0.0F : 0.25F, 0.5F, 0.75F, 1};
+    vulkan::Texture& texture = scene.clustered.textures.at(map);
+    texture.width = texture.height = 1;
+    texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(1, texel);
+    bindings.textures[map] = [texel](size_t, const std::array<double, 3>&, double) {
+      return std::array<double, 4>{texel[0], texel[1], texel[2], texel[3]};
+    };
+  }
+  return scene;
+}
+
+void expectDimmedLights(const char* program, const std::function<nlohmann::json(const Subject&)>& work_of) {
+  const ClusteredScene scene = dimmedLightsInClusters();
+  const std::optional<nlohmann::json> colors =
+      colorsOf(program, nlohmann::json::array({work_of(scene.clustered)}));
+  if (!colors)
+    GTEST_SKIP() << "NOT TESTED: there is no Chromium that can run this, or no node, on this machine";
+  const auto outputs = outputsOf(scene.clustered, (*colors)[0], "lights with all that dims them");
+  ASSERT_FALSE(outputs.empty());
+  const std::vector<double> expected = firstColors(scene.clustered.module, scene.clustered.bindings);
+  EXPECT_LE(apart(outputs[0], expected, 5e-3), outputs[0].size() / 200);
 }
 
 std::vector<double> firstColors(const ir::Module& module, const eval::Bindings& bindings) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
 
 #include "parity/subject.h"
 
@@ -22,6 +24,13 @@ struct ClusteredScene {
 
 /// A material of examples/ by its number.
 ClusteredScene thousandLightsInClusters(size_t graph, std::map<std::string, bool, std::less<>> switches = {});
+
+/// The same with all that dims a light: shadow map, cookies, profiles, masks, of one texel each, since where
+/// filters look is what other tests are about.
+ClusteredScene dimmedLightsInClusters();
+
+/// Those, in a browser: what the CPU gives.
+void expectDimmedLights(const char* program, const std::function<nlohmann::json(const Subject&)>& work_of);
 
 /// The first colour of each point, in double.
 std::vector<double> firstColors(const ir::Module& module, const eval::Bindings& bindings);

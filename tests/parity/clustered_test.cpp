@@ -51,27 +51,8 @@ TEST(Clustered, EveryRouteToTheDeviceGivesIt) {
 /// With all that dims a light, the device gives what the CPU gives.
 TEST(Clustered, DimmedLightsAreTheSameOnTheDevice) {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
-  ClusteredScene scene = thousandLightsInClusters(
-      0, {{"light_shadows", true}, {"light_cookies", true}, {"light_profiles", true}, {"light_masks", true}});
-  eval::Bindings& bindings = scene.clustered.bindings;
-  for (size_t i = 0; i < bindings.lights.size(); ++i) {
-    const auto set = [&](const char* field, double value) {
-      bindings.lights[i][std::string("light.") + field] = eval::Column::constant({value});
-    };
-    set("shadow_strength", i % 2 == 0 ? 0.5 : 0);
-    for (const char* layer : {"cookie", "profile", "mask"}) set(layer, i % 3 == 0 ? -1 : 0);
-  }
-  // One texel each: where filters look is what other tests are about.
-  for (const char* map : {"light_shadow_map", "light_cookies", "light_profiles", "light_masks"}) {
-    const vulkan::Texel texel = {map[6] == 's' ? 0.0F : 0.25F, 0.5F, 0.75F, 1};
-    vulkan::Texture& texture = scene.clustered.textures.at(map);
-    texture.width = texture.height = 1;
-    texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(1, texel);
-    bindings.textures[map] = [texel](size_t, const std::array<double, 3>&, double) {
-      return std::array<double, 4>{texel[0], texel[1], texel[2], texel[3]};
-    };
-  }
-  const std::vector<double> expected = firstColors(scene.clustered.module, bindings);
+  const ClusteredScene scene = dimmedLightsInClusters();
+  const std::vector<double> expected = firstColors(scene.clustered.module, scene.clustered.bindings);
   EXPECT_GT(apart(expected, scene.expected(), 1e-3), 100U) << "nothing is dimmed";
   for (const FragmentRoute route : {FragmentRoute::Direct, FragmentRoute::Glsl, FragmentRoute::Hlsl}) {
     const auto outputs = onDevice(scene.clustered, route);
@@ -114,6 +95,63 @@ TEST(Clustered, WhatDimsALightDimsIt) {
   expectPart(dark("light_masks", "light.mask", -1), 1, "no mask");
   expectPart(dark("light_shadows", "light.shadow_strength", 0.75), 0.25, "shadows");
   expectPart(dark("light_shadows", "light.shadow_strength", 0), 1, "no shadow");
+}
+
+/// A table of directions is looked up by the angle to the light's axis and by the turn about it, as its
+/// comment says.
+TEST(Clustered, AProfileHasTwoAngles) {
+  const ClusteredScene scene = thousandLightsInClusters(0, {{"light_profiles", true}});
+  eval::Bindings bindings = scene.clustered.bindings;
+  const std::array<double, 3> from = {0.3, 2.5, 0.1};
+  const std::array<double, 3> direction = {0.6, 0, 0.8};
+  const std::array<double, 3> axis = {0, 1, 0};
+  const std::array<double, 3> across = {-0.8, 0, 0.6};  // cross(direction, axis)
+  const auto set = [&](const char* field, std::vector<double> value) {
+    for (eval::Columns& light : bindings.lights)
+      light[std::string("light.") + field] = eval::Column::constant(value);
+  };
+  set("position", {from.begin(), from.end()});
+  set("positional", {1});
+  set("radiance", {50, 50, 50});
+  set("inverse_range_4", {0});
+  set("spot_scale", {0});
+  set("spot_offset", {1});
+  set("direction", {direction.begin(), direction.end()});
+  set("profile_axis", {axis.begin(), axis.end()});
+  for (double& count : bindings.lists["cluster.count"]) count = 1;
+  for (double& first : bindings.lists["cluster.first"]) first = 0;
+  const auto colors = [&](double profile) {
+    set("profile", {profile});
+    return firstColors(scene.clustered.module, bindings);
+  };
+  const auto intensity = [](double u, double v) {
+    return 0.5 + 0.25 * u + 0.2 * std::sin(2 * M_PI * v + 0.4);
+  };
+  bindings.textures["light_profiles"] = [&](size_t, const std::array<double, 3>& at, double) {
+    return std::array<double, 4>{intensity(at[0], at[1]), 0, 0, 1};
+  };
+  const std::vector<double> bright = colors(-1);
+  const std::vector<double> shaped = colors(0);
+  set("radiance", {0, 0, 0});
+  std::vector<double> expected = colors(-1);
+  const std::vector<double>& at = bindings.columns.at("position").values;
+  for (size_t i = 0; i < expected.size(); ++i) {
+    const size_t point = i / (expected.size() / kClusteredPoints);
+    std::array<double, 3> local = {0, 0, 0};  // along the axes above
+    double length = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      const double way = at[3 * point + k] - from[k];
+      local[0] += way * axis[k];
+      local[1] += way * across[k];
+      local[2] += way * direction[k];
+      length += way * way;
+    }
+    const double u = std::acos(local[2] / std::sqrt(length)) / M_PI;
+    const double v = std::atan2(local[1], local[0]) / (2 * M_PI);
+    expected[i] += intensity(u, v) * (bright[i] - expected[i]);
+  }
+  EXPECT_GT(apart(bright, expected, 1e-3), 100U) << "the profile changes nothing";
+  EXPECT_EQ(apart(shaped, expected, 1e-9), 0U);
 }
 
 }  // namespace

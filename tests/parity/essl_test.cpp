@@ -20,21 +20,6 @@ std::string textOf(ir::Module module) {
   return targets::printText(module, schedule::schedule(module, ir::Stage::Fragment), Target::Essl, {});
 }
 
-json textureOf(const ir::TextureSlot& slot, const vulkan::Texture& texture) {
-  constexpr const char* kWraps[] = {"repeat", "clamp", "mirror"};
-  json texels = json::array();
-  for (const vulkan::Texel& texel : *texture.texels) {
-    for (const float x : texel) texels.push_back(x);
-  }
-  return {{"name", slot.name},
-          {"shape", texture.shape == vulkan::Shape::Cube ? "cube" : "2d"},
-          {"width", texture.width},
-          {"height", texture.height},
-          {"texels", std::move(texels)},
-          {"wrap", {kWraps[static_cast<size_t>(texture.s)], kWraps[static_cast<size_t>(texture.t)]}},
-          {"nearest", texture.nearest}};
-}
-
 /// What a Vulkan device would be given, by names, in the words of checks/webgl/lacquer-essl-colors.
 json workOf(const Subject& subject) {
   const ir::Module& module = subject.module;
@@ -43,11 +28,8 @@ json workOf(const Subject& subject) {
   EXPECT_TRUE(work) << subject.name;
   if (!work) return {};
   const schedule::Program program = schedule::schedule(module, ir::Stage::Fragment);
-  json made = {{"essl", textOf(module)}, {"points", work->points}, {"backFacing", work->back_facing}};
-  for (const char* list : {"outputs", "inputs", "blocks", "lists", "textures"}) made[list] = json::array();
-  for (const ir::Output& output : module.outputs) {
-    if (output.kind == ir::OutputKind::Color) made["outputs"].push_back(output.location);
-  }
+  json made = workWords(*work, module);
+  made["essl"] = textOf(module);
   for (size_t i = 0; i < work->inputs.size(); ++i) {
     made["inputs"].push_back({{"name", targets::varyingName(module.varyings[program.varyings[i]])},
                               {"components", work->inputs[i].components},
@@ -60,8 +42,11 @@ json workOf(const Subject& subject) {
          {"perPoint", work->blocks[i].per_point},
          {"bytes", base64(work->blocks[i].bytes)}});
   }
-  for (size_t i = 0; i < work->textures.size(); ++i)
-    made["textures"].push_back(textureOf(module.textures[program.textures[i]], work->textures[i]));
+  for (size_t i = 0; i < work->textures.size(); ++i) {
+    json texture = textureWords(work->textures[i]);
+    texture["name"] = module.textures[program.textures[i]].name;
+    made["textures"].push_back(std::move(texture));
+  }
   return made;
 }
 
@@ -102,6 +87,8 @@ TEST(ParityEssl, AThousandLightsInClusters) {
   ASSERT_FALSE(outputs.empty());
   EXPECT_LE(apart(outputs[0], scene.expected(), 2e-3), outputs[0].size() / 500);
 }
+
+TEST(ParityEssl, DimmedLightsInClusters) { expectDimmedLights(kProgram, workOf); }
 
 /// What is compared must be able to differ: a hundredth less light is seen.
 TEST(ParityEssl, AnotherShaderIsOutside) {

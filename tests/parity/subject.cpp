@@ -55,8 +55,7 @@ void roundAll(eval::Columns& columns) {
 /// A texture of a slot: a small random image, or for a cube map a colour for each point.
 void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
   std::vector<vulkan::Texel> texels;
-  vulkan::Texture texture;
-  texture.shape = slot.type == ir::Type::TextureCube ? vulkan::Shape::Cube : vulkan::Shape::Plane;
+  vulkan::Texture texture = textureFor(slot.type);
   if (texture.shape == vulkan::Shape::Cube) {
     std::vector<vulkan::Texel> few(8);
     for (vulkan::Texel& texel : few) {
@@ -73,7 +72,7 @@ void addTexture(Subject& subject, const ir::TextureSlot& slot, Random& random) {
   } else {
     // Tables of numbers hold one and are not filtered: random coordinates between random ones would say
     // nothing of what is made of them. Where they are looked up, tests/vertex tells.
-    const bool table = slot.type == ir::Type::Texture2DArray || slot.name == "joints";
+    const bool table = texture.shape == vulkan::Shape::Array || texture.compares || slot.name == "joints";
     texture.width = table ? 1 : static_cast<uint32_t>(2 + random.below(6));
     texture.height = table ? 1 : static_cast<uint32_t>(2 + random.below(6));
     texture.s = static_cast<vulkan::Wrap>(random.below(3));

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "parity/browser.h"
+#include "parity/clustered.h"
 #include "schedule/schedule.h"
 #include "targets/legalize.h"
 #include "targets/target.h"
@@ -15,28 +16,10 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kProgram = "checks/wgsl/lacquer-wgsl-colors";
+
 std::string textOf(ir::Module module) {
   targets::legalize(module);
   return targets::printText(module, schedule::schedule(module, ir::Stage::Fragment), Target::Wgsl, {});
-}
-
-json textureOf(const vulkan::Texture& texture) {
-  constexpr const char* kWraps[] = {"repeat", "clamp", "mirror"};
-  const targets::WgslBinding at = targets::wgslBinding({texture.image.first, texture.image.second, 0});
-  json texels = json::array();
-  for (const vulkan::Texel& texel : *texture.texels) {
-    for (const float x : texel) texels.push_back(x);
-  }
-  return {{"group", at.group},
-          {"binding", at.binding},
-          {"sampler", at.sampler},
-          {"shape", texture.shape == vulkan::Shape::Cube ? "cube" : "2d"},
-          {"compares", texture.compares},
-          {"width", texture.width},
-          {"height", texture.height},
-          {"texels", std::move(texels)},
-          {"wrap", {kWraps[static_cast<size_t>(texture.s)], kWraps[static_cast<size_t>(texture.t)]}},
-          {"nearest", texture.nearest}};
 }
 
 /// What a Vulkan device would be given, in the words of checks/wgsl/lacquer-wgsl-colors.
@@ -46,12 +29,8 @@ json workOf(const Subject& subject) {
   EXPECT_TRUE(work) << subject.name;
   if (!work) return {};
   const schedule::Program program = schedule::schedule(subject.module, ir::Stage::Fragment);
-  json made = {{"wgsl", textOf(subject.module)}, {"points", work->points}, {"backFacing", work->back_facing}};
-  for (const char* list : {"outputs", "inputs", "blocks", "textures"}) made[list] = json::array();
-  made["constants"] = json::object();
-  for (const ir::Output& output : subject.module.outputs) {
-    if (output.kind == ir::OutputKind::Color) made["outputs"].push_back(output.location);
-  }
+  json made = workWords(*work, subject.module);
+  made["wgsl"] = textOf(subject.module);
   for (size_t i = 0; i < work->inputs.size(); ++i) {
     made["inputs"].push_back({{"location", subject.module.varyings[program.varyings[i]].location},
                               {"components", work->inputs[i].components},
@@ -65,7 +44,14 @@ json workOf(const Subject& subject) {
                               {"storage", isList(subject.module, block)},
                               {"bytes", base64(block.bytes)}});
   }
-  for (const vulkan::Texture& texture : work->textures) made["textures"].push_back(textureOf(texture));
+  for (const vulkan::Texture& texture : work->textures) {
+    const targets::WgslBinding at = targets::wgslBinding({texture.image.first, texture.image.second, 0});
+    json made_texture = textureWords(texture);
+    made_texture["group"] = at.group;
+    made_texture["binding"] = at.binding;
+    made_texture["sampler"] = at.sampler;
+    made["textures"].push_back(std::move(made_texture));
+  }
   for (const auto& [id, bits] : work->constants)
     made["constants"][std::to_string(id)] = std::bit_cast<float>(bits);
   return made;
@@ -119,6 +105,8 @@ TEST(ParityWgsl, VertexStages) {
   for (const NamedGraph& graph : exampleGraphs({})) subjects.push_back(vertexSubject(graph, {}, 64, 5));
   expectAgreement(subjects, 4000);
 }
+
+TEST(ParityWgsl, DimmedLightsInClusters) { expectDimmedLights(kProgram, workOf); }
 
 /// What is compared must be able to differ: a hundredth less light is seen.
 TEST(ParityWgsl, AnotherShaderIsOutside) {
