@@ -90,10 +90,10 @@ int lacquer_graph_set_output(lacquer_graph* graph, const char* port, const char*
 int lacquer_graph_set_parameter(lacquer_graph* graph, const char* name, const double* numbers, size_t count,
                                 lacquer_messages* messages) {
   return guarded(messages, 0, [&](Messages& to) {
-    // More than any parameter has are not looked at: their number is the error.
-    constexpr size_t kMost = 5;
-    std::vector<double> values;
-    if (numbers != nullptr) values.assign(numbers, numbers + (count < kMost ? count : kMost));
+    // Of more than any parameter has not one is read, since their number is the error and may be wrong, too.
+    constexpr size_t kMost = 4;
+    std::vector<double> values(count > kMost ? kMost + 1 : 0);
+    if (numbers != nullptr && count <= kMost) values.assign(numbers, numbers + count);
     return editable(graph).setParameter(textOf(name), values, to) ? 1 : 0;
   });
 }

@@ -136,6 +136,11 @@ constexpr Row kRows[] = {
     {"permissive", kTruth, setBool<&Options::permissive>},
     {"validate", kTruth, setBool<&Options::validate>},
     {"spirv_route", "\"direct\" or \"glslang\"", setRoute},
+    {"relaxed", "a number",
+     [](const Json& value, lacquer_options& to) {
+       if (value.is_number()) to.options.relaxed = value.get<double>();
+       return value.is_number();
+     }},
     {"debug", kTruth, setBool<&Options::debug>},
     {"live", kTexts, setStrings<&Options::live>},
     {"node_directories", kTexts, setStrings<&Options::node_directories>},

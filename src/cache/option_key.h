@@ -24,10 +24,10 @@ enum class Decides : uint8_t {
 template <class Each>
 void eachOption(const Options& options, Each each) {
   const auto& [profile, simplify, template_name, targets, parameters, lights, switches, ibl,
-               multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, spirv_route, debug,
-               live, node_directories, jobs, cache, cache_size, depfile, shard, limits, allow, cache_key,
-               argument_buffers, sync, programs, weights, programs_report, programs_model, pipelines] =
-      options;
+               multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, spirv_route,
+               relaxed, debug, live, node_directories, jobs, cache, cache_size, depfile, shard, limits, allow,
+               cache_key, argument_buffers, sync, programs, weights, programs_report, programs_model,
+               pipelines] = options;
   each(Decides::Graph, profile);
   each(Decides::Graph, simplify);
   each(Decides::Graph, template_name);
@@ -43,6 +43,7 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Code, validate);
   each(Decides::Graph, unused);
   each(Decides::SpirvCode, spirv_route);
+  each(Decides::Module, relaxed);
   each(Decides::SpirvCode, debug);
   each(Decides::Graph, live);
   // What is in them goes into every key; the depfile has their names.

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Diagnostic plainError(const char* code, const std::string& name, std::string message) {
+Diagnostic dxcError(const char* code, const std::string& name, std::string message) {
   return {code, Severity::Error, {name, 0, 0, {}}, std::move(message), {}, {}};
 }
 
@@ -125,7 +125,7 @@ std::optional<Diagnostic> diagnosticOf(std::string_view line, const std::string&
   for (std::string line; std::getline(lines, line);) {
     if (auto diagnostic = diagnosticOf(line, file, text, name)) list.push_back(std::move(*diagnostic));
   }
-  if (!hasError(list)) list.push_back(plainError("dxc", name, "dxc failed: " + log));
+  if (!hasError(list)) list.push_back(dxcError("dxc", name, "dxc failed: " + log));
   return list;
 }
 
@@ -142,9 +142,9 @@ std::string dxcIdentity() {
 
 Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::string& name) {
   const auto program = findProgram("dxc");
-  if (!program) return {plainError("dxc-missing", name, "there is no `dxc` on the PATH")};
+  if (!program) return {dxcError("dxc-missing", name, "there is no `dxc` on the PATH")};
   const TemporaryFolder folder;
-  if (folder.path().empty()) return {plainError("dxc", name, "no temporary folder could be made")};
+  if (folder.path().empty()) return {dxcError("dxc", name, "no temporary folder could be made")};
   const std::string source = (folder.path() / "shader.hlsl").string();
   std::ofstream(source, std::ios::binary) << text;
 
@@ -153,7 +153,7 @@ Diagnostics compileWithDxc(const std::string& text, Stage stage, const std::stri
   const auto status = runProgram({program->string(), "-nologo", "-T", profile, "-E", "main", "-Fo",
                                   (folder.path() / "shader.dxil").string(), source},
                                  log_file);
-  if (!status) return {plainError("dxc", name, fmt::format("{} could not be run", program->string()))};
+  if (!status) return {dxcError("dxc", name, fmt::format("{} could not be run", program->string()))};
   if (*status == 0) return {};
   std::ostringstream log;
   log << std::ifstream(log_file, std::ios::binary).rdbuf();
@@ -167,7 +167,7 @@ bool haveDxc() { return false; }
 std::string dxcIdentity() { return {}; }
 
 Diagnostics compileWithDxc(const std::string&, Stage, const std::string& name) {
-  return {plainError("dxc-missing", name, "dxc is run on POSIX systems only")};
+  return {dxcError("dxc-missing", name, "dxc is run on POSIX systems only")};
 }
 
 #endif

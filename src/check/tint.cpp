@@ -31,7 +31,7 @@ namespace {
 
 constexpr const char* kProgram = "lacquer-wgsl-check";
 
-Diagnostic plainError(const char* code, const std::string& name, std::string message, std::string help = {}) {
+Diagnostic tintError(const char* code, const std::string& name, std::string message, std::string help = {}) {
   return {code, Severity::Error, {name, 0, 0, {}}, std::move(message), std::move(help), {}};
 }
 
@@ -201,7 +201,7 @@ public:
     std::optional<Diagnostics> answer = ask(text, name);
     if (answer) return std::move(*answer);
     process_.stop();
-    return {plainError("tint", name, fmt::format("{} gave no answer", program.string()))};
+    return {tintError("tint", name, fmt::format("{} gave no answer", program.string()))};
   }
 
 private:
@@ -211,11 +211,11 @@ private:
     if (hello == "lacquer-wgsl-check 1") return {};
     process_.stop();
     if (hello.starts_with("missing ")) {
-      return {plainError("tint-missing", name,
-                         fmt::format("{} has no compiler: {}", program.string(), unescaped(hello.substr(8))),
-                         "`npm ci` in its folder installs it")};
+      return {tintError("tint-missing", name,
+                        fmt::format("{} has no compiler: {}", program.string(), unescaped(hello.substr(8))),
+                        "`npm ci` in its folder installs it")};
     }
-    return {plainError("tint", name, fmt::format("{} could not be run", program.string()))};
+    return {tintError("tint", name, fmt::format("{} could not be run", program.string()))};
   }
 
   std::optional<Diagnostics> ask(const std::string& text, const std::string& name) {
@@ -253,7 +253,7 @@ Diagnostics compileWithTint(const std::string& text, const std::string& name) {
   static Tint tint;
   const auto program = findProgram(kProgram);
   if (program) return tint.compile(*program, text, name);
-  return {plainError("tint-missing", name, fmt::format("there is no `{}` on the PATH", kProgram))};
+  return {tintError("tint-missing", name, fmt::format("there is no `{}` on the PATH", kProgram))};
 }
 
 #else
@@ -263,7 +263,7 @@ bool haveTint() { return false; }
 std::string tintIdentity() { return {}; }
 
 Diagnostics compileWithTint(const std::string&, const std::string& name) {
-  return {plainError("tint-missing", name, fmt::format("{} is run on POSIX systems only", kProgram))};
+  return {tintError("tint-missing", name, fmt::format("{} is run on POSIX systems only", kProgram))};
 }
 
 #endif

@@ -46,16 +46,18 @@ void printChains(const std::string& text) {
     double exact = 0;
     for (const auto& level : chain["levels"]) {
       const double cycles = level["cost"]["inverse_throughput"].get<double>();
-      if (exact == 0) exact = cycles;
+      const double counted = level["cost"]["counted"].get<double>();
+      if (exact == 0) exact = counted;
       std::string words;
       for (const auto& word : level["simplify"])
         words += (words.empty() ? "" : " ") + word.get<std::string>();
       const auto& error = level["error"];
       const bool screen = level.contains("screen_size");
       fmt::print(
-          "{:>8} {:>4.0f} % {:>8} {:>8.2f} {:>8.2f} {:>8.3f} {:>8} {:>7}  {}\n", cycles, 100 * cycles / exact,
-          level["cost"]["quarter_rate"].get<uint64_t>(), error["delta_e"]["mean"].get<double>(),
-          error["delta_e"]["p95"].get<double>(), error["flip"]["mean"].get<double>(),
+          "{:>8} {:>4.0f} % {:>8} {:>8.2f} {:>8.2f} {:>8.3f} {:>8} {:>7}  {}\n", cycles,
+          100 * counted / exact, level["cost"]["quarter_rate"].get<uint64_t>(),
+          error["delta_e"]["mean"].get<double>(), error["delta_e"]["p95"].get<double>(),
+          error["flip"]["mean"].get<double>(),
           screen ? fmt::format("{:.2f}", level["error_at_screen_size"]["delta_e"]["mean"].get<double>()) : "",
           screen ? fmt::format("{}", level["screen_size"].get<uint32_t>()) : "",
           printable(words.empty() ? "nothing" : words));

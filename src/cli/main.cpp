@@ -171,6 +171,9 @@ void addShared(CLI::App& app, Flags& flags) {
                  "the split sum's factors: from the texture environment_dfg, or a fit without one")
       ->check(CLI::IsMember({"table", "fit"}))
       ->capture_default_str();
+  app.add_option("--relaxed", flags.options.relaxed,
+                 "the part of a colour, such as 0.01, that half precision may change (docs/intervals.md)")
+      ->check(CLI::Range(0.0, 0.5));
   app.add_flag("--decode-srgb", flags.options.decode_srgb, "decode colour textures in the shader");
   app.add_flag("--permissive", flags.options.permissive,
                "drop an extension that must not be there instead of failing");

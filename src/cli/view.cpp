@@ -33,9 +33,11 @@ std::string pageOf(const std::string& program) {
 class Scratch {
 public:
   Scratch() {
+#if defined(__unix__) || defined(__APPLE__)  // elsewhere there is no driver that could be asked for costs
     std::error_code error;
     std::string pattern = (fs::temp_directory_path(error) / "lacquer-view-XXXXXX").string();
     if (!error && mkdtemp(pattern.data()) != nullptr) path = pattern;
+#endif
   }
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;

@@ -21,6 +21,7 @@ struct Statistics {
   uint64_t code_size = 0;           ///< bytes
   uint64_t latency = 0;             ///< cycles from the start of one wave to its end, a static estimate
   uint64_t inverse_throughput = 0;  ///< cycles a busy GPU needs for each wave, a static estimate
+  uint64_t vertex_inverse_throughput = 0;  ///< the same of the vertex stage before it; 0 where nobody tells
   bool operator==(const Statistics&) const = default;
 };
 

@@ -218,8 +218,8 @@ uint64_t valueOf(const VkPipelineExecutableStatisticKHR& statistic) {
   return 0;
 }
 
-/// The index of the fragment shader among the pipeline's executables; their number when it is not there.
-uint32_t fragmentExecutable(const Device& device, VkPipeline pipeline) {
+/// The index of a stage's shader among the pipeline's executables; UINT32_MAX when it is not there.
+uint32_t executableOf(const Device& device, VkPipeline pipeline, VkShaderStageFlagBits stage) {
   VkPipelineInfoKHR info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR;
   info.pipeline = pipeline;
@@ -230,18 +230,24 @@ uint32_t fragmentExecutable(const Device& device, VkPipeline pipeline) {
   std::vector<VkPipelineExecutablePropertiesKHR> properties(count, empty);
   device.vk.GetPipelineExecutablePropertiesKHR(device.handle, &info, &count, properties.data());
   for (uint32_t i = 0; i < properties.size(); ++i) {
-    if ((properties[i].stages & VK_SHADER_STAGE_FRAGMENT_BIT) != 0) return i;
+    if ((properties[i].stages & stage) != 0) return i;
   }
   return UINT32_MAX;
 }
 
-void readStatistics(const Device& device, const VkPipelineExecutableInfoKHR& info, Outcome& outcome) {
+std::vector<VkPipelineExecutableStatisticKHR> rowsOf(const Device& device,
+                                                     const VkPipelineExecutableInfoKHR& info) {
   uint32_t count = 0;
   device.vk.GetPipelineExecutableStatisticsKHR(device.handle, &info, &count, nullptr);
   VkPipelineExecutableStatisticKHR empty{};
   empty.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR;
   std::vector<VkPipelineExecutableStatisticKHR> rows(count, empty);
   device.vk.GetPipelineExecutableStatisticsKHR(device.handle, &info, &count, rows.data());
+  return rows;
+}
+
+void readStatistics(const Device& device, const VkPipelineExecutableInfoKHR& info, Outcome& outcome) {
+  const std::vector<VkPipelineExecutableStatisticKHR> rows = rowsOf(device, info);
   Statistics statistics;
   const std::pair<std::string_view, uint64_t*> wanted[] = {
       {"instructions", &statistics.instructions},
@@ -263,6 +269,14 @@ void readStatistics(const Device& device, const VkPipelineExecutableInfoKHR& inf
     *value = valueOf(*row);
   }
   outcome.statistics = statistics;
+}
+
+void readVertexStage(const Device& device, VkPipelineExecutableInfoKHR info, Statistics& statistics) {
+  info.executableIndex = executableOf(device, info.pipeline, VK_SHADER_STAGE_VERTEX_BIT);
+  if (info.executableIndex == UINT32_MAX) return;
+  for (const VkPipelineExecutableStatisticKHR& row : rowsOf(device, info)) {
+    if (lower(row.name) == "inverse throughput") statistics.vertex_inverse_throughput = valueOf(row);
+  }
 }
 
 void readDisassembly(const Device& device, const VkPipelineExecutableInfoKHR& info, Outcome& outcome) {
@@ -305,12 +319,13 @@ Outcome compilePipeline(const Device& device, const Subject& subject, bool disas
   VkPipelineExecutableInfoKHR info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR;
   info.pipeline = pipeline.handle();
-  info.executableIndex = fragmentExecutable(device, pipeline.handle());
+  info.executableIndex = executableOf(device, pipeline.handle(), VK_SHADER_STAGE_FRAGMENT_BIT);
   if (info.executableIndex == UINT32_MAX) {
     outcome.problem = "the pipeline has no fragment shader left";
     return outcome;
   }
   readStatistics(device, info, outcome);
+  if (outcome.statistics) readVertexStage(device, info, *outcome.statistics);
   if (disassembly && outcome.statistics) readDisassembly(device, info, outcome);
   return outcome;
 }

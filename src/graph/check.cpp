@@ -36,7 +36,7 @@ constexpr size_t kLast = std::numeric_limits<size_t>::max();
 bool fitsFloat(double x) { return std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max()); }
 constexpr std::string_view kFloatHelp = "it must fit a 32-bit float: at most about 3.4e38";
 
-std::string quote(std::string_view name) { return "'" + printable(name) + "'"; }
+std::string inQuotes(std::string_view name) { return "'" + printable(name) + "'"; }
 
 /// The sections of the JSON form, in its order.
 enum class Section : uint8_t { Template, Parameters, Textures, Nodes, Outputs };
@@ -212,8 +212,8 @@ std::string GraphCheck::pointerOf(const Sink& sink) const {
 }
 
 std::string GraphCheck::textOf(const Sink& sink) const {
-  if (sink.spot.section != Section::Nodes) return fmt::format("the port {}", quote(sink.name));
-  return fmt::format("{} of the node {}", quote(sink.name), quote(graph_.nodes[sink.spot.item].id));
+  if (sink.spot.section != Section::Nodes) return fmt::format("the port {}", inQuotes(sink.name));
+  return fmt::format("{} of the node {}", inQuotes(sink.name), inQuotes(graph_.nodes[sink.spot.item].id));
 }
 
 std::string article(Type type) {
@@ -221,10 +221,10 @@ std::string article(Type type) {
 }
 
 /// "'a', 'b' and 'c'", not too many of them.
-std::string listOf(const std::vector<std::string_view>& names) {
+std::string shortList(const std::vector<std::string_view>& names) {
   constexpr size_t kMost = 12;
   std::vector<std::string> quoted;
-  for (const std::string_view name : names) quoted.push_back(quote(name));
+  for (const std::string_view name : names) quoted.push_back(inQuotes(name));
   std::vector<std::string_view> shown(
       quoted.begin(), quoted.begin() + static_cast<ptrdiff_t>(std::min(kMost, quoted.size())));
   const std::string rest = fmt::format("{} more", quoted.size() - shown.size());
@@ -238,7 +238,7 @@ void GraphCheck::templateDecl() {
   const Spot spot{Section::Template, 0, 0};
   if (!library_.has(lang::DeclKind::Template, graph_.template_name)) {
     return error(spot, "/template", "unknown-template",
-                 fmt::format("the library has no template {}", quote(graph_.template_name)),
+                 fmt::format("the library has no template {}", inQuotes(graph_.template_name)),
                  suggest(graph_.template_name, [&] { return library_.names(lang::DeclKind::Template); }));
   }
   const Result<const lang::TemplateDecl*> found = library_.template_(graph_.template_name);
@@ -261,11 +261,11 @@ void GraphCheck::parameter(size_t index) {
     return pointerTo("parameters", p.name) + std::string(member);
   };
   if (!isName(p.name)) {
-    error(spot, at(), "wrong-name", fmt::format("{} cannot be the name of a parameter", quote(p.name)),
+    error(spot, at(), "wrong-name", fmt::format("{} cannot be the name of a parameter", inQuotes(p.name)),
           "a name has letters, digits and underscores, and begins with no digit");
   }
   if (!parameters_.emplace(p.name, index).second) {
-    error(spot, at(), "duplicate-name", fmt::format("there are two parameters {}", quote(p.name)));
+    error(spot, at(), "duplicate-name", fmt::format("there are two parameters {}", inQuotes(p.name)));
   }
   if (p.type != Type::Bool && !ir::isFloating(p.type)) {
     return error(spot, at("/type"), "wrong-type", fmt::format("a parameter cannot be {}", article(p.type)),
@@ -275,7 +275,8 @@ void GraphCheck::parameter(size_t index) {
   for (const double end : {p.range.lo, p.range.hi, p.range.gap}) {
     if (!std::isfinite(end) || fitsFloat(end)) continue;
     return error(spot, at("/range"), "out-of-range",
-                 fmt::format("the range of {} has the end {}", quote(p.name), end), std::string(kFloatHelp));
+                 fmt::format("the range of {} has the end {}", inQuotes(p.name), end),
+                 std::string(kFloatHelp));
   }
   if (!(p.range.lo <= p.range.hi) || p.range.gap > p.range.hi) {
     return error(spot, at("/range"), "wrong-range", fmt::format("{} is no range", ir::rangeText(p.range)),
@@ -284,20 +285,22 @@ void GraphCheck::parameter(size_t index) {
   for (int i = 0; i < ir::componentCount(p.type); ++i) {
     const double x = p.value[static_cast<size_t>(i)];
     if (!std::isfinite(x)) {
-      return error(spot, at("/value"), "not-finite", fmt::format("the value of {} is {}", quote(p.name), x));
+      return error(spot, at("/value"), "not-finite",
+                   fmt::format("the value of {} is {}", inQuotes(p.name), x));
     }
     if (!fitsFloat(x)) {
-      return error(spot, at("/value"), "out-of-range", fmt::format("the value of {} is {}", quote(p.name), x),
-                   std::string(kFloatHelp));
+      return error(spot, at("/value"), "out-of-range",
+                   fmt::format("the value of {} is {}", inQuotes(p.name), x), std::string(kFloatHelp));
     }
     if (const double neutral = p.neutral[static_cast<size_t>(i)]; !fitsFloat(neutral)) {
       return error(spot, at("/default"), "out-of-range",
-                   fmt::format("the default of {} is {}", quote(p.name), neutral), std::string(kFloatHelp));
+                   fmt::format("the default of {} is {}", inQuotes(p.name), neutral),
+                   std::string(kFloatHelp));
     }
     if (!p.range.contains(x)) {
-      return error(
-          spot, at("/value"), "out-of-range",
-          fmt::format("the value {} of {} is not in its range {}", x, quote(p.name), ir::rangeText(p.range)));
+      return error(spot, at("/value"), "out-of-range",
+                   fmt::format("the value {} of {} is not in its range {}", x, inQuotes(p.name),
+                               ir::rangeText(p.range)));
     }
   }
 }
@@ -314,17 +317,17 @@ void GraphCheck::textures() {
       return pointerTo("textures", t.name) + std::string(member);
     };
     if (!isName(t.name)) {
-      error(spot, at(), "wrong-name", fmt::format("{} cannot be the name of a texture", quote(t.name)),
+      error(spot, at(), "wrong-name", fmt::format("{} cannot be the name of a texture", inQuotes(t.name)),
             "a name has letters, digits and underscores, and begins with no digit");
     }
     if (environment(t.name) != nullptr) {
       error(spot, at(), "duplicate-name",
-            fmt::format("{} is a texture that the template {} gives", quote(t.name),
-                        quote(graph_.template_name)),
+            fmt::format("{} is a texture that the template {} gives", inQuotes(t.name),
+                        inQuotes(graph_.template_name)),
             "give the material's texture another name");
     }
     if (!textures_.emplace(t.name, i).second) {
-      error(spot, at(), "duplicate-name", fmt::format("there are two textures {}", quote(t.name)));
+      error(spot, at(), "duplicate-name", fmt::format("there are two textures {}", inQuotes(t.name)));
     }
     if (!ir::isTexture(t.type)) {
       error(spot, at("/type"), "wrong-type", fmt::format("a texture cannot be {}", article(t.type)),
@@ -336,7 +339,7 @@ void GraphCheck::textures() {
     }
     if (t.environment) {
       error(spot, at(), "wrong-texture",
-            fmt::format("{} is marked as a texture of the environment", quote(t.name)),
+            fmt::format("{} is marked as a texture of the environment", inQuotes(t.name)),
             "those are the template's: a source names them without an entry here");
     }
   }
@@ -349,22 +352,22 @@ void GraphCheck::nodeHead(size_t index) {
   const Spot spot{Section::Nodes, index, 0};
   if (!isDottedName(node.id)) {
     error(spot, nodePointer(index, "id"), "wrong-name",
-          fmt::format("{} cannot be the id of a node", quote(node.id)),
+          fmt::format("{} cannot be the id of a node", inQuotes(node.id)),
           "an id is names joined by dots, such as coat.absorption");
   }
   if (!nodes_.emplace(node.id, index).second) {
     error(spot, nodePointer(index, "id"), "duplicate-name",
-          fmt::format("there are two nodes {}", quote(node.id)));
+          fmt::format("there are two nodes {}", inQuotes(node.id)));
   }
   const lang::NodeDecl* decl = decls_[index];
   if (decl == nullptr || decl->find(node.variant) != nullptr) return;
   Names variants;
   for (const lang::Variant& variant : decl->variants) variants.push_back(variant.name);
   error(spot, nodePointer(index, "variant"), "unknown-variant",
-        fmt::format("the node {} has no variant {}", quote(node.type), quote(node.variant)),
+        fmt::format("the node {} has no variant {}", inQuotes(node.type), inQuotes(node.variant)),
         suggest(
             node.variant, [&] { return variants; },
-            variants.empty() ? "it has none: leave \"variant\" out" : "it has " + listOf(variants)));
+            variants.empty() ? "it has none: leave \"variant\" out" : "it has " + shortList(variants)));
 }
 
 void GraphCheck::nodeHeads() {
@@ -375,7 +378,7 @@ void GraphCheck::nodeHeads() {
     const Spot spot{Section::Nodes, i, 0};
     if (!library_.has(lang::DeclKind::Node, type)) {
       error(spot, nodePointer(i, "node"), "unknown-node",
-            fmt::format("the library has no node {}", quote(type)),
+            fmt::format("the library has no node {}", inQuotes(type)),
             suggest(type, [&] { return library_.names(lang::DeclKind::Node); }));
     } else if (fresh) {
       // What is wrong within the library is said once, however many nodes use it.
@@ -414,8 +417,8 @@ void GraphCheck::nodeInputs(size_t index) {
       } else {
         const Names names = params();
         error(sink, "unknown-input",
-              fmt::format("the node {} has no input {}", quote(node.type), quote(name)),
-              suggest(name, params, names.empty() ? "it has none" : "it has " + listOf(names)));
+              fmt::format("the node {} has no input {}", inQuotes(node.type), inQuotes(name)),
+              suggest(name, params, names.empty() ? "it has none" : "it has " + shortList(names)));
       }
     }
     value(source, sink);
@@ -428,8 +431,8 @@ void GraphCheck::nodeInputs(size_t index) {
   if (missing.empty()) return;
   const std::string what = missing.size() == 1 ? "input" : "inputs";
   error({Section::Nodes, index, kLast}, nodePointer(index, "inputs"), "missing-input",
-        fmt::format("the node {} lacks the {} {}", quote(node.id), what, listOf(missing)),
-        fmt::format("of {}, {} no default", quote(node.type),
+        fmt::format("the node {} lacks the {} {}", inQuotes(node.id), what, shortList(missing)),
+        fmt::format("of {}, {} no default", inQuotes(node.type),
                     missing.size() == 1 ? "this input has" : "these inputs have"));
 }
 
@@ -451,18 +454,19 @@ void GraphCheck::outputs() {
       sink.contract = &template_->ports[static_cast<size_t>(port - ports.begin())].param;
     } else if (template_ != nullptr) {
       error(sink, "unknown-port",
-            fmt::format("the template {} has no port {}", quote(graph_.template_name), quote(name)),
+            fmt::format("the template {} has no port {}", inQuotes(graph_.template_name), inQuotes(name)),
             suggest(
-                name, [&] { return ports; }, ports.empty() ? "it has none" : "it has " + listOf(ports)));
+                name, [&] { return ports; }, ports.empty() ? "it has none" : "it has " + shortList(ports)));
     }
     value(source, sink);
   }
   if (template_ == nullptr) return;
   for (const lang::PortDecl& port : template_->ports) {
     if (port.default_value || connected_.contains(port.param.name)) continue;
-    error({Section::Outputs, kLast, 0}, "/outputs", "missing-port",
-          fmt::format("the graph does not deliver {}, {}", quote(port.param.name), article(port.param.type)),
-          fmt::format("in the template {} this port has no default", quote(graph_.template_name)));
+    error(
+        {Section::Outputs, kLast, 0}, "/outputs", "missing-port",
+        fmt::format("the graph does not deliver {}, {}", inQuotes(port.param.name), article(port.param.type)),
+        fmt::format("in the template {} this port has no default", inQuotes(graph_.template_name)));
   }
 }
 
@@ -513,7 +517,7 @@ void GraphCheck::range(const Source& source, const Sink& sink) {
     const double x = (*value)[static_cast<size_t>(component)];
     if (sink.contract->range.contains(x)) continue;
     const std::string what =
-        ref != nullptr ? fmt::format("the parameter {} has the value", quote(ref->name)) : "the value";
+        ref != nullptr ? fmt::format("the parameter {} has the value", inQuotes(ref->name)) : "the value";
     return error(sink, "out-of-range",
                  fmt::format("{} {}{} not in the range of {}", what, x, ref != nullptr ? ", which is" : " is",
                              textOf(sink)),
@@ -553,7 +557,7 @@ std::optional<Type> GraphCheck::typeOf(const ParameterRef& ref, const Sink& sink
     if (type != Type::Bool && !ir::isFloating(type)) return std::nullopt;  // reported at the parameter
     return type;
   }
-  error(sink, "unknown-parameter", fmt::format("there is no parameter {}", quote(ref.name)),
+  error(sink, "unknown-parameter", fmt::format("there is no parameter {}", inQuotes(ref.name)),
         suggest(ref.name,
                 namesOf(graph_.parameters, [](const ir::Parameter& p) { return std::string_view(p.name); })));
   return std::nullopt;
@@ -572,7 +576,7 @@ std::optional<Type> GraphCheck::typeOf(const TextureRef& ref, const Sink& sink) 
     return all;
   };
   if (template_ == nullptr) return std::nullopt;  // it may be the template's
-  error(sink, "unknown-texture", fmt::format("there is no texture {}", quote(ref.name)),
+  error(sink, "unknown-texture", fmt::format("there is no texture {}", inQuotes(ref.name)),
         suggest(ref.name, names));
   return std::nullopt;
 }
@@ -595,19 +599,19 @@ void GraphCheck::unknownGiven(std::string_view name, const Sink& sink) {
     if (!given.multiple || given.name != head) continue;
     const std::string_view result = name.substr(std::min(name.size(), head.size() + 1));
     const Names names = namesOf(given.results, [](const lang::Param& r) { return r.name; })();
-    const std::string all = "it has " + listOf(names);
+    const std::string all = "it has " + shortList(names);
     if (result.empty()) {
-      return error(sink, "unknown-given", fmt::format("{} has several results", quote(head)),
+      return error(sink, "unknown-given", fmt::format("{} has several results", inQuotes(head)),
                    fmt::format("name one behind a dot: '{}.{}'; {}", head, names[0], all));
     }
     return error(sink, "unknown-given",
-                 fmt::format("the given {} has no result {}", quote(head), quote(result)),
+                 fmt::format("the given {} has no result {}", inQuotes(head), inQuotes(result)),
                  suggest(
                      result, [&names] { return Names(names); }, all));
   }
   std::sort(full.begin(), full.end());
   error(sink, "unknown-given",
-        fmt::format("the template {} does not give {}", quote(graph_.template_name), quote(name)),
+        fmt::format("the template {} does not give {}", inQuotes(graph_.template_name), inQuotes(name)),
         suggest(name, namesOf(full, [](const std::string& one) { return std::string_view(one); })));
 }
 
@@ -615,7 +619,7 @@ std::optional<Type> GraphCheck::typeOf(const NodeRef& ref, const Sink& sink) {
   const auto it = nodes_.find(ref.node);
   if (it == nodes_.end()) {
     error(
-        sink, "unknown-source", fmt::format("there is no node {}", quote(ref.node)),
+        sink, "unknown-source", fmt::format("there is no node {}", inQuotes(ref.node)),
         suggest(ref.node, namesOf(graph_.nodes, [](const Node& node) { return std::string_view(node.id); })));
     return std::nullopt;
   }
@@ -629,14 +633,14 @@ std::optional<Type> GraphCheck::typeOf(const NodeRef& ref, const Sink& sink) {
     if (!result.name.empty()) names.push_back(result.name);
   }
   if (ref.output.empty()) {
-    error(sink, "unknown-output", fmt::format("the node {} has several results", quote(ref.node)),
-          "name one as \"output\": " + listOf(names));
+    error(sink, "unknown-output", fmt::format("the node {} has several results", inQuotes(ref.node)),
+          "name one as \"output\": " + shortList(names));
   } else {
     error(sink, "unknown-output",
-          fmt::format("the node {} has no result {}", quote(ref.node), quote(ref.output)),
+          fmt::format("the node {} has no result {}", inQuotes(ref.node), inQuotes(ref.output)),
           suggest(
               ref.output, [&] { return names; },
-              names.empty() ? "it has a single result: leave \"output\" out" : "it has " + listOf(names)));
+              names.empty() ? "it has a single result: leave \"output\" out" : "it has " + shortList(names)));
   }
   return std::nullopt;
 }
@@ -649,7 +653,7 @@ std::optional<Type> GraphCheck::swizzled(Type type, const std::string& swizzle, 
       std::all_of(picked.begin(), picked.end(), [&](char c) { return static_cast<size_t>(c) < size; });
   if (fits) return ir::floatType(static_cast<int>(picked.size()));
   const auto letters = [&](std::string_view set) { return set.substr(0, size); };
-  error(sink, "wrong-swizzle", fmt::format("{} has no components {}", article(type), quote(swizzle)),
+  error(sink, "wrong-swizzle", fmt::format("{} has no components {}", article(type), inQuotes(swizzle)),
         ir::isFloatVector(type) ? fmt::format("one to four of {}, {} or {}, not mixed", letters("xyzw"),
                                               letters("rgba"), letters("stpq"))
                                 : "only a vector can have a swizzle");
@@ -730,22 +734,22 @@ void GraphCheck::rates() {
     const Spot spot{Section::Outputs, i, 0};
     if ((wrong & kLight) != 0) {
       error(spot, pointerTo("outputs", name), "light-rate",
-            fmt::format("the port {} takes one value, its source has one for each light", quote(name)),
-            fmt::format("it depends on {}; {}", quote(tied.light),
+            fmt::format("the port {} takes one value, its source has one for each light", inQuotes(name)),
+            fmt::format("it depends on {}; {}", inQuotes(tied.light),
                         summed.empty() ? "no port of the template sums over the lights"
-                                       : "summed over the lights: " + listOf(summed)));
+                                       : "summed over the lights: " + shortList(summed)));
     }
     if ((wrong & kVertex) != 0) {
       error(spot, pointerTo("outputs", name), "vertex-rate",
             fmt::format("the port {} takes values of the fragment, its source has those of the vertices",
-                        quote(name)),
-            fmt::format("it depends on {}, which is not interpolated", quote(tied.vertex)));
+                        inQuotes(name)),
+            fmt::format("it depends on {}, which is not interpolated", inQuotes(tied.vertex)));
     }
     if ((wrong & kFragment) != 0) {
       error(spot, pointerTo("outputs", name), "fragment-rate",
             fmt::format("the port {} takes values of the vertices, its source has those of the fragment",
-                        quote(name)),
-            fmt::format("it depends on {}, which is of the fragment", quote(tied.fragment)));
+                        inQuotes(name)),
+            fmt::format("it depends on {}, which is of the fragment", inQuotes(tied.fragment)));
     }
   }
 }

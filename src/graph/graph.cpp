@@ -37,8 +37,8 @@ std::optional<size_t> placeOf(const List& list, Name name, std::string_view want
 
 std::optional<size_t> Graph::find(std::string_view id) const { return placeOf(nodes, &Node::id, id); }
 
-std::optional<size_t> Graph::findParameter(std::string_view name) const {
-  return placeOf(parameters, &ir::Parameter::name, name);
+std::optional<size_t> Graph::findParameter(std::string_view wanted) const {
+  return placeOf(parameters, &ir::Parameter::name, wanted);
 }
 
 bool Graph::remove(std::string_view id) {

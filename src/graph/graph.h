@@ -106,7 +106,7 @@ struct Graph {
   /// Connects (or reconnects) an input of the node at a place.
   void connect(size_t node, std::string_view input, Source source);
   std::optional<size_t> find(std::string_view id) const;
-  std::optional<size_t> findParameter(std::string_view name) const;
+  std::optional<size_t> findParameter(std::string_view wanted) const;
   /// Removes a node; its users keep dangling edges, which check() reports.
   bool remove(std::string_view id);
   /// Says why a term is not there. A term that several parts have is named once, with the first reason.

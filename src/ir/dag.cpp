@@ -328,6 +328,11 @@ void Dag::inherit(ValueId id, ValueId from) {
   if (fact_of_[from] != 0) assume(id, Interval(facts_[fact_of_[from] - 1]));
 }
 
+void Dag::relax(ValueId id) {
+  if (relaxed_.size() < values_.size()) relaxed_.resize(values_.size(), false);
+  relaxed_[id] = true;
+}
+
 void Dag::assume(ValueId id, Interval range) {
   // What is said of a splat holds for its Float, which operations on splats are made of.
   const Value& value = values_[id];
@@ -415,6 +420,7 @@ std::vector<ValueId> Dag::compact(std::span<const ValueId> roots) {
     for (size_t i = 0; i < order.size(); ++i) to[i] = from[order[i]];
     from = std::move(to);
   };
+  if (anyRelaxed()) relaxed_.resize(moved.size(), false), take(relaxed_);
   take(values_), take(term_of_), take(name_of_), take(fact_of_);
   for (Value& value : values_) {
     for (size_t k = 0; k < value.count; ++k) value.args[k] = moved[value.args[k]];

@@ -183,6 +183,13 @@ public:
   void assume(ValueId id, Interval range);
   std::optional<Interval> assumed(ValueId id) const;
 
+  /// States that an operation may be done at half precision: its operands may be rounded to it, and so may
+  /// its result. A swizzle, a constructor, a sign: all that they move is at half precision. It never takes
+  /// part in identity.
+  void relax(ValueId id);
+  bool relaxed(ValueId id) const { return id < relaxed_.size() && relaxed_[id]; }
+  bool anyRelaxed() const { return !relaxed_.empty(); }
+
   // Order. A rewrite appends values, yet what replaces an early value belongs where that stood: values have a
   // rank, which is their id unless setRank() gave another. It never takes part in identity.
   static constexpr uint32_t kOwnRank = ~uint32_t{0};
@@ -222,6 +229,7 @@ private:
   std::vector<uint32_t> constant_table_;  ///< open addressing over constants_; a power of two
   std::vector<uint32_t> fact_of_;         ///< 1 + index into facts_, 0 for none
   std::vector<Interval> facts_;
+  std::vector<bool> relaxed_;  ///< empty where no value is
   std::vector<uint32_t> rank_of_;
   std::vector<ValueId> table_;  ///< open addressing over values_, by content; a power of two; empty after
                                 ///< compact() until a value is made

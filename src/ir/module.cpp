@@ -209,38 +209,69 @@ private:
 /// Values are numbered densely, so that a dump does not depend on what else the DAG ever held.
 using Numbers = std::vector<uint32_t>;
 
-std::string spell(const Module& module, const Numbers& numbers, ValueId id) {
+template <class... Parts>
+void append(std::string& text, const Parts&... parts) {
+  (text.append(std::string_view(parts)), ...);
+}
+
+void appendNumber(std::string& text, double x) { fmt::format_to(std::back_inserter(text), "{}", x); }
+void appendNumber(std::string& text, uint32_t x) {
+  append(text, std::string_view(fmt::format_int(x).c_str()));
+}
+
+/// Written piece by piece: every shader's identity is the hash of a dump.
+void spell(const Module& module, const Numbers& numbers, ValueId id, std::string& text) {
   const Dag& dag = module.dag;
   const Value& value = dag[id];
   if (value.op == Op::Constant) {
     const Components& c = dag.constantOf(id);
-    if (value.type == Type::Bool) return c[0] != 0 ? "true" : "false";
-    std::string text;
+    if (value.type == Type::Bool) return append(text, c[0] != 0 ? "true" : "false");
+    const bool several = value.type != Type::Float && value.type != Type::Int;
+    if (several) text += '(';
     for (int i = 0; i < componentCount(value.type); ++i) {
-      text += fmt::format("{}{}", i == 0 ? "" : ", ", c[static_cast<size_t>(i)]);
+      if (i > 0) append(text, ", ");
+      appendNumber(text, c[static_cast<size_t>(i)]);
     }
-    return value.type == Type::Float || value.type == Type::Int ? text : "(" + text + ")";
+    if (several) text += ')';
+    return;
   }
   if (value.op == Op::Input) {
     const Input& input = dag.inputOf(id);
-    return input.element < 0 ? input.name : fmt::format("{}[{}]", input.name, input.element);
+    append(text, input.name);
+    if (input.element >= 0) append(text, "[", fmt::format_int(input.element).c_str(), "]");
+    return;
   }
-  std::string text(info(value.op).name);
+  append(text, info(value.op).name);
   if (value.op == Op::Swizzle) {
     text += '.';
     for (int i = 0; i < componentCount(value.type); ++i) text += "xyzw"[swizzleComponent(value.payload, i)];
   }
-  if (value.op == Op::SumOverLights) text += fmt::format("[{}]", value.payload);
+  if (value.op == Op::SumOverLights) append(text, "[", fmt::format_int(value.payload).c_str(), "]");
   if (value.op == Op::Element) {
     const Block& block = module.blocks[ListField::of(value).block];
-    text += fmt::format(" {}.{}", block.instance, block.fields[ListField::of(value).field].name);
+    append(text, " ", block.instance, ".", block.fields[ListField::of(value).field].name);
   }
   for (const ValueId operand : value.operands()) {
     const Value& o = dag[operand];
-    const bool leaf = o.op == Op::Constant || o.op == Op::Input;
-    text += leaf ? " " + spell(module, numbers, operand) : fmt::format(" %{}", numbers[operand]);
+    text += ' ';
+    if (o.op == Op::Constant || o.op == Op::Input) {
+      spell(module, numbers, operand, text);
+    } else {
+      text += '%';
+      appendNumber(text, numbers[operand]);
+    }
   }
-  return text;
+}
+
+/// Fills a line that begins at `start` up to a column; names may have wide characters.
+void pad(std::string& text, size_t start) {
+  constexpr size_t kColumn = 44;
+  const std::string_view line = std::string_view(text).substr(start);
+  const bool ascii = std::all_of(line.begin(), line.end(), [](char c) { return (c & 0x80) == 0; });
+  if (!ascii)
+    text.replace(start, std::string::npos, fmt::format("{:<{}}", std::string(line), kColumn));
+  else if (line.size() < kColumn)
+    text.append(kColumn - line.size(), ' ');
 }
 
 }  // namespace
@@ -263,18 +294,26 @@ std::string dump(const Module& module) {
     if (dag.termOf(id) != term) {
       term = dag.termOf(id);
       const Term& t = dag.terms()[term];
-      if (!t.name.empty()) text += fmt::format("; {}{}{}\n", t.name, t.source.empty() ? "" : ": ", t.source);
+      if (!t.name.empty()) append(text, "; ", t.name, t.source.empty() ? "" : ": ", t.source, "\n");
     }
     const std::string_view name = dag.nameOf(id);
-    text += fmt::format(
-        "{:<44} ; {} {}\n",
-        fmt::format("  %{} = {} {}", numbers[id], typeName(value.type), spell(module, numbers, id)),
-        rateName(value.rate), name);
-    while (text.size() >= 2 && text[text.size() - 2] == ' ') text.erase(text.size() - 2, 1);
+    const size_t start = text.size();
+    text += "  %";
+    appendNumber(text, numbers[id]);
+    append(text, " = ", typeName(value.type), " ");
+    spell(module, numbers, id, text);
+    pad(text, start);
+    append(text, " ; ", rateName(value.rate), " ", name);
+    if (dag.relaxed(id)) append(text, name.empty() ? "half" : " half");
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    text += '\n';
   }
   const auto refer = [&](ValueId id) {
     const bool leaf = dag[id].op == Op::Constant || dag[id].op == Op::Input;
-    return leaf ? spell(module, numbers, id) : fmt::format("%{}", numbers[id]);
+    if (!leaf) return fmt::format("%{}", numbers[id]);
+    std::string spelt;
+    spell(module, numbers, id, spelt);
+    return spelt;
   };
   for (const PreshaderField& field : module.preshader) {
     for (const Block& block : module.blocks) {

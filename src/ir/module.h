@@ -167,6 +167,7 @@ struct Module {
   LightCount light_count;              ///< of a template with lights
   std::optional<LightLists> light_lists;
   uint32_t material_textures = 0;  ///< the flat number of the material's first texture
+  double relaxed_bound = 0;        ///< what its relaxed operations may change of a colour (analysis/relax.h)
   bool sums_lights = false;        ///< an output of the template is a sum over the lights
   bool spec_constants =
       false;  ///< parameters are specialization constants: only the animated ones are in a material block

@@ -127,6 +127,10 @@ struct Options {
   bool validate = true;     ///< compile and validate everything with glslang and SPIRV-Tools
   bool unused = false;      ///< also materials that no primitive uses, as with kUnusedAttributes
   SpirvRoute spirv_route = SpirvRoute::Direct;
+  /// What half precision (`mediump` of Glsl and Essl, RelaxedPrecision of Spirv) may change of a colour, as a
+  /// part of the colour, or of the light where that is more: fragment operations have it as far as ranges and
+  /// propagated errors prove that (docs/intervals.md). At most 0.5; 0 for none.
+  double relaxed = 0;
   bool debug = false;        ///< SPIR-V has the names of values and the lines of the nodes (Direct)
   Strings live;              ///< terms kept though today's value would remove them, of liveTerms()
   Strings node_directories;  ///< folders with more node files (*.node) beside the built-in library

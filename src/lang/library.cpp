@@ -97,6 +97,8 @@ public:
   std::deque<File> files;
   std::deque<Entry> entries;  ///< by file, then by place
   Diagnostics scan_errors;    ///< of embedded files
+  /// The default one, once it was looked for; more files may bring another.
+  const Entry* default_template = nullptr;
 
 private:
   tl::unexpected<Diagnostics> missing(DeclKind kind, std::string_view name) const;
@@ -111,6 +113,7 @@ private:
 
 Diagnostics Library::Impl::scanFrom(size_t first) {
   const size_t old_entries = entries.size();
+  default_template = nullptr;
   Diagnostics errors;
   for (size_t i = first; i < files.size(); ++i) {
     const File& file = files[i];
@@ -435,11 +438,13 @@ Result<const SwitchDecl*> Library::switch_(std::string_view name) const {
 
 Result<std::string> Library::defaultTemplate() const {
   const std::lock_guard lock(impl_->mutex);
-  for (auto entry = impl_->entries.rbegin(); entry != impl_->entries.rend(); ++entry) {
+  const Entry*& known = impl_->default_template;
+  for (auto entry = impl_->entries.rbegin(); known == nullptr && entry != impl_->entries.rend(); ++entry) {
     if (entry->kind != DeclKind::Template) continue;
     Reporter silent(entry->file->name, entry->file->text);
-    if (Parser(silent, entry->begin, entry->end).templateDecl().is_default) return std::string(entry->name);
+    if (Parser(silent, entry->begin, entry->end).templateDecl().is_default) known = &*entry;
   }
+  if (known != nullptr) return std::string(known->name);
   return fail("unknown-template", {}, "no template is named, and none is the default",
               "a template is that which says `default;`");
 }

@@ -13,7 +13,7 @@ namespace lacquer::material {
 
 namespace {
 
-constexpr std::string_view kTransform = "extensions/KHR_texture_transform/";
+constexpr std::string_view kTransformPath = "extensions/KHR_texture_transform/";
 
 Diagnostic problem(const std::string& file, const gltf::AnimatedPointer& pointer, std::string_view code,
                    std::string message, std::string help) {
@@ -145,8 +145,8 @@ private:
         animated.members.push_back(i);
       return true;
     }
-    if (!tail.starts_with(kTransform)) return false;
-    tail.remove_prefix(kTransform.size());
+    if (!tail.starts_with(kTransformPath)) return false;
+    tail.remove_prefix(kTransformPath.size());
     bool* const to = tail == "offset"     ? &animated.offset
                      : tail == "rotation" ? &animated.rotation
                      : tail == "scale"    ? &animated.scale

@@ -7,7 +7,7 @@ namespace lacquer::material {
 
 namespace {
 
-struct Row {
+struct Beside {
   std::string_view extension, reason;
 };
 
@@ -19,7 +19,7 @@ constexpr std::string_view kNodes = "which nodes there are and what they can do"
 constexpr std::string_view kData = "data beside the picture";
 
 /// What there is in the registry of glTF, apart from the materials' own.
-constexpr Row kRows[] = {
+constexpr Beside kRows[] = {
     {"KHR_accessor_float64", kStored},
     {"KHR_draco_mesh_compression", kStored},
     {"KHR_mesh_quantization", kStored},
@@ -70,7 +70,7 @@ constexpr Row kRows[] = {
 
 std::string_view besideMaterials(std::string_view extension) {
   const auto row = std::find_if(std::begin(kRows), std::end(kRows),
-                                [&](const Row& each) { return each.extension == extension; });
+                                [&](const Beside& each) { return each.extension == extension; });
   return row == std::end(kRows) ? std::string_view{} : row->reason;
 }
 

@@ -17,7 +17,7 @@ namespace lacquer::model {
 namespace {
 
 using lang::LineDecl;
-using Kind = LineDecl::Kind;
+using LineKind = LineDecl::Kind;
 
 class Check {
 public:
@@ -177,7 +177,7 @@ void Check::ports() {
           lang::didYouMean(use.name, types_.ports()));
   }
   for (const Uses::Placed& placed : uses_.lines) {
-    if (placed.decl->kind != Kind::Out) continue;
+    if (placed.decl->kind != LineKind::Out) continue;
     const uint32_t out = model_.lines[placed.line].id;
     if (types_.port(placed.decl->id) || uses_.outs.contains(out)) continue;
     error(placed.text, placed.decl->span, "unknown-port",
@@ -190,15 +190,15 @@ void Check::ports() {
 /// One term says an id, or what a port takes, in one line: of two, only the first could ever count. Lines of
 /// a part are not said again by another part.
 void Check::doubles() {
-  std::map<std::tuple<Kind, uint32_t, uint32_t, uint32_t>, const Uses::Placed*> seen;
+  std::map<std::tuple<LineKind, uint32_t, uint32_t, uint32_t>, const Uses::Placed*> seen;
   std::map<uint32_t, const Uses::Placed*> of_part;
   for (const Uses::Placed& placed : uses_.lines) {
     const Line& line = model_.lines[placed.line];
-    if (line.kind == Kind::Replace || line.kind == Kind::Require) continue;
+    if (line.kind == LineKind::Replace || line.kind == LineKind::Require) continue;
     if (uses_.overlays.contains(placed.line)) continue;
-    const bool out = line.kind == Kind::Out;
+    const bool out = line.kind == LineKind::Out;
     const auto [first, fresh] =
-        seen.try_emplace({out ? Kind::Out : Kind::Value, line.id, line.part, line.term}, &placed);
+        seen.try_emplace({out ? LineKind::Out : LineKind::Value, line.id, line.part, line.term}, &placed);
     if (!fresh) {
       error(placed.text, placed.decl->span, "duplicate-name",
             fmt::format("'{}' is said already in this term", placed.decl->id),
@@ -231,9 +231,9 @@ void Check::typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, st
 
 void Check::line(const Uses::Placed& placed) {
   const Line& line = model_.lines[placed.line];
-  if (line.kind == Kind::Out)
+  if (line.kind == LineKind::Out)
     typed(placed, types_.port(placed.decl->id), fmt::format("the port '{}'", placed.decl->id));
-  if (line.kind == Kind::Replace && line.target.kind == Value::Kind::Id)
+  if (line.kind == LineKind::Replace && line.target.kind == Value::Kind::Id)
     typed(placed, types_.of(line.target), fmt::format("'{}'", model_.ids[line.target.index].name));
   if (uses_.adds.contains(placed.line)) added(placed);
 }
@@ -241,7 +241,7 @@ void Check::line(const Uses::Placed& placed) {
 /// What a profile says beside the lines that it replaces must be for something.
 void Check::added(const Uses::Placed& placed) {
   const Line& line = model_.lines[placed.line];
-  if ((line.kind != Kind::Value && line.kind != Kind::Flag) || uses_.ids.contains(line.id)) return;
+  if ((line.kind != LineKind::Value && line.kind != LineKind::Flag) || uses_.ids.contains(line.id)) return;
   std::vector<std::string_view> names;
   for (const Id& id : model_.ids) {
     if (id.name != placed.decl->id) names.push_back(id.name);

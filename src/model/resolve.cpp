@@ -70,6 +70,7 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
       values_(model.ids.size()),
       nodes_(model.ids.size()),
       taken_(model.lines.size()),
+      absent_(model.givens.size(), -1),
       terms_(model.terms.size(), -1),
       unmet_(model.terms.size()) {}
 
@@ -198,7 +199,7 @@ Found Resolver::role(const Value& value) {
   return texel == options_.texels.end() ? out : constantTexel(texel->second, out.swizzle);
 }
 
-Found Resolver::given(const Value& value) const {
+Found Resolver::given(const Value& value) {
   const std::string& name = model_.givens[value.index];
   Found out;
   out.index = value.index;
@@ -210,7 +211,10 @@ Found Resolver::given(const Value& value) const {
   }
   const std::optional<lang::GivenResult> result = template_.find(name);
   if (!result) return {};
-  if (result->given->value && readsAbsent(template_, *result->given->value, attributes_)) return {};
+  signed char& absent = absent_[value.index];
+  if (absent < 0)
+    absent = result->given->value && readsAbsent(template_, *result->given->value, attributes_) ? 1 : 0;
+  if (absent == 1) return {};
   out.kind = Found::Kind::Given;
   out.type = result->given->results[result->index].type;
   return behind(std::move(out), value.path);

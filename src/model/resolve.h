@@ -91,7 +91,7 @@ private:
   Found found(const Value& value, const Line& line);
   Found role(const Value& value);
   Found number(const Role& role, const Value& value);
-  Found given(const Value& value) const;
+  Found given(const Value& value);
   /// With `from`, the line that gives it.
   Found below(const Value& value, uint32_t part, uint32_t* from = nullptr);
   Found call(const Value& value, const Line& line);
@@ -119,8 +119,10 @@ private:
   std::vector<State> states_;
   std::vector<Found> values_;
   std::vector<Node> nodes_;
-  std::vector<bool> taken_;              ///< of the lines
-  std::vector<signed char> terms_;       ///< -1 unknown, else whether it is alive
+  std::vector<bool> taken_;  ///< of the lines
+  std::vector<signed char>
+      absent_;                      ///< of what the template gives: -1 unknown, else whether it cannot be had
+  std::vector<signed char> terms_;  ///< -1 unknown, else whether it is alive
   std::vector<std::string_view> unmet_;  ///< of a term: why a requirement is not met
   std::vector<uint32_t> open_;
 };

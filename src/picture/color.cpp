@@ -7,8 +7,6 @@ namespace lacquer::picture {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 using Matrix = std::array<Color, 3>;
 
 /// sRGB's primaries and white, in the fractions that FLIP's paper takes.
@@ -45,12 +43,12 @@ Color times(const Matrix& m, const Color& c) {
   return result;
 }
 
-double radians(double degrees) { return degrees * kPi / 180; }
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 /// The angle of a colour without any, 0 by the text's rule.
 double hueOf(double a, double b) {
   if (a == 0 && b == 0) return 0;
-  const double angle = std::atan2(b, a) * 180 / kPi;
+  const double angle = std::atan2(b, a) * 180 / std::numbers::pi;
   return angle < 0 ? angle + 360 : angle;
 }
 

@@ -8,8 +8,6 @@ namespace lacquer::picture {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 using Plane = std::vector<double>;
 /// Weights from -radius to radius.
 using Kernel = std::vector<double>;
@@ -60,7 +58,7 @@ Kernel gaussian(int radius, double b, double per_degree) {
   Kernel kernel;
   for (int k = -radius; k <= radius; ++k) {
     const double d = k / per_degree;
-    kernel.push_back(std::exp(-kPi * kPi * d * d / b));
+    kernel.push_back(std::exp(-std::numbers::pi * std::numbers::pi * d * d / b));
   }
   return kernel;
 }
@@ -72,13 +70,14 @@ double sumOf(const Kernel& kernel) {
 }
 
 Plane seen(const Plane& plane, Size size, const Sensitivity& of, double per_degree) {
-  const int radius = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * per_degree));
+  const int radius = static_cast<int>(
+      std::ceil(3 * std::sqrt(kWidest / (2 * std::numbers::pi * std::numbers::pi)) * per_degree));
   Plane sum(plane.size(), 0.0);
   double weight = 0;
   for (const auto& [a, b] : {std::pair(of.a1, of.b1), std::pair(of.a2, of.b2)}) {
     if (a == 0) continue;
     const Kernel kernel = gaussian(radius, b, per_degree);
-    const double factor = a * std::sqrt(kPi / b);
+    const double factor = a * std::sqrt(std::numbers::pi / b);
     const Plane part = filtered(plane, size, kernel, kernel);
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += factor * part[i];
     weight += factor * sumOf(kernel) * sumOf(kernel);

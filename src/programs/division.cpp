@@ -7,7 +7,7 @@ namespace lacquer::programs {
 
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kImpossible = std::numeric_limits<double>::infinity();
 /// Of so many items all divisions are looked at.
 constexpr size_t kFew = 10;
 /// Of so many exchanges are tried, too.
@@ -33,7 +33,7 @@ public:
     for (const uint32_t i : group) {
       const Item& item = items_[i];
       if (item.domain != items_[group[0]].domain) {
-        sum = kNever;
+        sum = kImpossible;
         break;
       }
       double rest = item.program.cost;
@@ -50,7 +50,7 @@ public:
     for (const uint32_t i : group) {
       for (const Feature& feature : items_[i].program.features) most_[feature.id] = 0;
     }
-    return sum < kNever ? weight * (always + sum) : kNever;
+    return sum < kImpossible ? weight * (always + sum) : kImpossible;
   }
 
 private:

@@ -15,6 +15,7 @@
 #include "shader/limits.h"
 #include "shader/module.h"
 #include "shader/options.h"
+#include "shader/simplify.h"
 
 namespace lacquer {
 
@@ -208,11 +209,11 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
   Result<ir::Module> module;
   {
     const StageTimer timer(setting.times, StageOfRun::Lower);
-    module = lower::lower(graph, setting.library, {parameterMode(setting.options)});
+    module = lower::lower(graph, setting.library, loweringOf(setting.options));
   }
   if (!module) return module;
   const StageTimer timer(setting.times, StageOfRun::Passes);
-  return throughPasses(std::move(*module), {lights, {}});
+  return throughPasses(std::move(*module), {lights, {}, setting.options.relaxed});
 }
 
 }  // namespace

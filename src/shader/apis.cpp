@@ -12,7 +12,7 @@ namespace {
 
 using json::Json;
 
-constexpr std::array kStages = {ir::Stage::Vertex, ir::Stage::Fragment};
+constexpr std::array kBothStages = {ir::Stage::Vertex, ir::Stage::Fragment};
 
 /// The blocks and textures that a stage reads, by index.
 struct Used {
@@ -34,7 +34,7 @@ Used usedBy(const ir::Module& module, ir::Stage stage) {
 class Describer {
 public:
   explicit Describer(const ir::Module& module)
-      : module_(module), used_{usedBy(module, kStages[0]), usedBy(module, kStages[1])} {}
+      : module_(module), used_{usedBy(module, kBothStages[0]), usedBy(module, kBothStages[1])} {}
 
   Json webgpu() const { return {{"bindings", webgpuBindings()}, {"limits", limits()}}; }
 
@@ -101,8 +101,8 @@ private:
   template <class Uses>
   void add(Json& list, Json row, Uses uses, const Json& what) const {
     Json stages = Json::array();
-    for (size_t s = 0; s < kStages.size(); ++s) {
-      if (uses(used_[s])) stages.push_back(kStages[s] == ir::Stage::Vertex ? "vertex" : "fragment");
+    for (size_t s = 0; s < kBothStages.size(); ++s) {
+      if (uses(used_[s])) stages.push_back(kBothStages[s] == ir::Stage::Vertex ? "vertex" : "fragment");
     }
     if (stages.empty()) return;
     row["visibility"] = std::move(stages);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "analysis/relax.h"
 #include "json/text.h"
 #include "shader/apis.h"
 #include "shader/proofs.h"
@@ -163,6 +164,14 @@ std::vector<ir::Input> usedInputs(const ir::Module& module) {
   return inputs;
 }
 
+/// What is at half precision, and what that is worth.
+Json relaxedJson(const ir::Module& module) {
+  const analysis::RelaxedCost cost = analysis::relaxedCost(module);
+  return {{"bound", module.relaxed_bound}, {"operations", cost.operations},
+          {"of_operations", cost.all},     {"cycles", cost.cycles},
+          {"of_cycles", cost.all_cycles},  {"conversions", cost.conversions}};
+}
+
 }  // namespace
 
 Json componentsJson(ir::Type type, const ir::Components& components) {
@@ -173,7 +182,8 @@ Json componentsJson(ir::Type type, const ir::Components& components) {
   return array;
 }
 
-Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
+/// What is shown for every target.
+static Json commonOf(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
   const std::vector<ir::Input> inputs = usedInputs(module);
   const auto uses = [&](ir::InputKind kind, uint32_t index) {
     return std::any_of(inputs.begin(), inputs.end(),
@@ -223,6 +233,12 @@ Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Sche
   }
   json["outputs"] = std::move(outputs);
   json["proofs"] = proofsJson(module);
+  if (module.dag.anyRelaxed()) json["relaxed"] = relaxedJson(module);
+  return json;
+}
+
+Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
+  Json json = commonOf(module, has_vertex, schema);
   json[kWebGpu] = webgpuOf(module);
   json[kMetal] = metalOf(module, false);
   json[kMetalArgumentBuffers] = metalOf(module, true);
@@ -241,12 +257,13 @@ bool isShown(std::string_view member, const Options& options) {
 
 std::string interfaceJson(const ir::Module& module, bool has_vertex, const material::Schema* schema,
                           const Options& options) {
-  const Json all = interfaceOf(module, has_vertex, schema);
-  json::JsonText json;
-  Json shown;
-  for (const auto& [name, value] : all.items()) {
-    if (isShown(name, options)) shown[name.substr(0, name.find(' '))] = value;
+  Json shown = commonOf(module, has_vertex, schema);
+  if (isShown(kWebGpu, options)) shown[kWebGpu] = webgpuOf(module);
+  for (const bool buffers : {false, true}) {
+    const std::string_view member = buffers ? kMetalArgumentBuffers : kMetal;
+    if (isShown(member, options)) shown[kMetal] = metalOf(module, buffers);
   }
+  json::JsonText json;
   return json.json(shown).take();
 }
 

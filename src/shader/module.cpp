@@ -49,10 +49,10 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
 
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
                             const passes::LightFacts& scene_lights, const AfterPass& after) {
-  Result<ir::Module> module = lower::lower(graph, library, {parameterMode(options)});
+  Result<ir::Module> module = lower::lower(graph, library, loweringOf(options));
   if (!module) return module;
   if (after) after("lower", *module);
-  return throughPasses(std::move(*module), {lightFacts(options, scene_lights), after});
+  return throughPasses(std::move(*module), {lightFacts(options, scene_lights), after, options.relaxed});
 }
 
 Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options) {

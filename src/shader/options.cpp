@@ -86,6 +86,10 @@ Diagnostics checkReading(const Options& options) {
   if (const Result<Limits> limits = limitsOf(options); !limits) wrong = limits.error();
   checkNames(options, wrong);
   checkEnumerator("Options::parameters", options.parameters, 3, wrong);
+  if (!(options.relaxed >= 0 && options.relaxed <= 0.5)) {
+    add(wrong, "out-of-range", fmt::format("Options::relaxed is {}", options.relaxed),
+        "it must be from 0 to 0.5");
+  }
   checkEnumerator("Lights::mode", options.lights.mode, 3, wrong);
   return wrong;
 }

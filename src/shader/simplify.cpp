@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "lang/suggest.h"
+#include "shader/options.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -53,6 +54,7 @@ bool take(const Word& word, Simplification& to) {
   const bool plain = word.value.empty();
   if (word.kind == "without") return plain && (to.without.insert(name), true);
   if (word.kind == "lod") return plain && (to.lods.insert(name), true);
+  if (word.kind == "vertex") return plain && (to.vertices.insert(name), true);
   if (word.kind == "drop") return plain && (to.dropped.insert(name), true);
   if (word.kind == "variant") {
     to.variants[name] = word.value;
@@ -144,7 +146,7 @@ Result<Simplification> simplificationOf(const Strings& words) {
     if (take(partsOf(word), result)) continue;
     return fail("bad-simplification", {}, fmt::format("'{}' says nothing to make simpler", printable(word)),
                 "write without:TERM, lod:NAME, switch:NAME=on, variant:NODE=NAME, drop:TEXTURE, "
-                "texel:TEXTURE=r,g,b,a or scale:PARAMETER=x");
+                "texel:TEXTURE=r,g,b,a, vertex:NODE or scale:PARAMETER=x");
   }
   return result;
 }
@@ -188,6 +190,13 @@ Diagnostics checkSimplification(const Strings& words, const Language& language) 
   return wrong;
 }
 
+lower::LowerOptions loweringOf(const Options& options, bool evaluable) {
+  lower::LowerOptions lowering{parameterMode(options), evaluable};
+  if (const Result<Simplification> simpler = simplificationOf(options.simplify))
+    lowering.at_vertices = simpler->vertices;
+  return lowering;
+}
+
 material::Material withoutTextures(material::Material material, const material::Schema& schema,
                                    const Simplification& simpler) {
   std::erase_if(material.textures, [&](const material::Material::Texture& texture) {
@@ -224,7 +233,9 @@ Strings possibleWords(const graph::Graph& graph, const material::Material& mater
     words.push_back(fmt::format("switch:{}={}", name, value ? "off" : "on"));
   for (const graph::Node& node : graph.nodes) {
     const Result<const lang::NodeDecl*> decl = language.node(node.type);
-    if (!decl || !node.variant.empty()) continue;
+    if (!decl) continue;
+    words.push_back(fmt::format("vertex:{}", node.id));
+    if (!node.variant.empty()) continue;
     for (const lang::Variant& variant : (*decl)->variants)
       words.push_back(fmt::format("variant:{}={}", node.id, variant.name));
   }
@@ -251,6 +262,7 @@ std::string described(std::string_view word, const lang::Library& library) {
   if (parts.kind == "texel") return fmt::format("one colour for {}: {}", parts.name, parts.value);
   if (parts.kind == "variant") return fmt::format("{}: the variant {}", parts.name, parts.value);
   if (parts.kind == "switch") return fmt::format("{} {}", parts.name, parts.value);
+  if (parts.kind == "vertex") return fmt::format("{} computed at the vertices", parts.name);
   if (parts.kind == "scale") return fmt::format("{} times {}", parts.name, parts.value);
   return std::string(word);
 }

@@ -6,6 +6,7 @@
 //   variant:NODE=NAME        a node of the graph has another body
 //   drop:TEXTURE             the material does not have the texture, as glTF calls it
 //   texel:TEXTURE=r,g,b,a    every texel of it is this one
+//   vertex:NODE              a node of the graph is computed at the vertices and interpolated
 //   scale:PARAMETER=x,...    a number of the material, each component times one of these and at most 1
 #pragma once
 
@@ -16,6 +17,7 @@
 
 #include "graph/graph.h"
 #include "lacquer/options.h"
+#include "lower/lower.h"
 #include "material/material.h"
 #include "shader/language.h"
 
@@ -27,6 +29,7 @@ struct Simplification {
   using ByName = std::map<std::string, T, std::less<>>;
 
   std::set<std::string, std::less<>> without, lods, dropped;
+  std::set<std::string, std::less<>> vertices;  ///< ids of nodes
   ByName<bool> switches;
   ByName<std::string> variants;  ///< by the node's id
   ByName<ir::Components> texels;
@@ -38,6 +41,9 @@ Result<Simplification> simplificationOf(const Strings& words);
 /// What is wrong with the words for this library, whatever the material is: unknown terms, lods, switches,
 /// textures.
 Diagnostics checkSimplification(const Strings& words, const Language& language);
+
+/// How graphs become modules: the parameters, and what is computed at the vertices.
+lower::LowerOptions loweringOf(const Options& options, bool evaluable = false);
 
 /// The material without the textures that are dropped.
 material::Material withoutTextures(material::Material material, const material::Schema& schema,

@@ -21,12 +21,12 @@ constexpr double kBeyond = 1;
 
 using Key = std::pair<Fault, std::string>;
 
-struct Found {
+struct Difference {
   uint64_t count = 0;
   double value = 0;
   std::vector<double> input;  ///< the group of the first
 };
-using Finds = std::map<Key, Found>;
+using Differences = std::map<Key, Difference>;
 
 /// What the CPU may give for a number: the ends of all that was seen.
 struct Seen {
@@ -109,7 +109,7 @@ Suspects suspectsOf(const Subject& subject, const Shown& shown, std::span<const 
 }
 
 void compare(const Subject& subject, const Shown& shown, std::span<const double> samples, size_t count,
-             Finds& finds) {
+             Differences& finds) {
   Suspects suspects = suspectsOf(subject, shown, samples, count);
   uint64_t seed = 1;
   for (const uint64_t tries : kTries) {
@@ -123,7 +123,7 @@ void compare(const Subject& subject, const Shown& shown, std::span<const double>
   }
   const size_t size = subject.group * widthOf(subject);
   for (const auto& [sample, of] : suspects) {
-    Found& found = finds[{Fault::Device, subject.roots[of.front().root].name}];
+    Difference& found = finds[{Fault::Device, subject.roots[of.front().root].name}];
     if (found.count++ > 0) continue;
     found.value = of.front().value;
     const std::span<const double> group = samples.subspan(sample / subject.group * size, size);
@@ -132,7 +132,7 @@ void compare(const Subject& subject, const Shown& shown, std::span<const double>
 }
 
 /// What is wrong with the device's numbers themselves.
-void check(const Subject& subject, const Shown& shown, std::span<const double> samples, Finds& finds) {
+void check(const Subject& subject, const Shown& shown, std::span<const double> samples, Differences& finds) {
   const size_t size = subject.group * widthOf(subject);
   for (size_t r = 0; r < subject.roots.size(); ++r) {
     const auto n = static_cast<size_t>(subject.roots[r].components);
@@ -140,7 +140,7 @@ void check(const Subject& subject, const Shown& shown, std::span<const double> s
       Fault fault{};
       double value = 0;
       if (shown.dropped[i] || !faultAt(subject.roots[r], shown.values[r], i, fault, value)) continue;
-      Found& found = finds[{fault, subject.roots[r].name}];
+      Difference& found = finds[{fault, subject.roots[r].name}];
       if (found.count++ > 0) continue;
       found.value = value;
       const std::span<const double> group = samples.subspan(i / subject.group * size, size);
@@ -149,11 +149,11 @@ void check(const Subject& subject, const Shown& shown, std::span<const double> s
   }
 }
 
-Result<Finds> findsOf(const Subject& subject, std::span<const double> samples, size_t count,
-                      const Shower& device) {
+Result<Differences> findsOf(const Subject& subject, std::span<const double> samples, size_t count,
+                            const Shower& device) {
   const Result<Shown> shown = device(samples, count);
   if (!shown) return tl::make_unexpected(shown.error());
-  Finds finds;
+  Differences finds;
   check(subject, *shown, samples, finds);
   compare(subject, *shown, samples, count, finds);
   return finds;
@@ -192,7 +192,7 @@ Result<std::vector<bool>> showing(const Subject& subject, const Finding& finding
       own.values.emplace_back(from.begin() + (from.empty() ? 0 : static_cast<ptrdiff_t>(i) * n),
                               from.begin() + (from.empty() ? 0 : static_cast<ptrdiff_t>(i + 1) * n));
     }
-    Finds finds;
+    Differences finds;
     check(subject, own, inputs[i], finds);
     if (finding.fault == Fault::Device) compare(subject, own, inputs[i], subject.group, finds);
     shows.push_back(finds.contains({finding.fault, finding.what}));
@@ -234,7 +234,7 @@ Result<void> minimise(const Subject& subject, Finding& finding, const Shower& de
   return {};
 }
 
-Report reportOf(const Subject& subject, uint64_t samples, Finds finds) {
+Report reportOf(const Subject& subject, uint64_t samples, Differences finds) {
   Report report;
   report.name = subject.name;
   report.is_node = subject.is_node;
@@ -247,15 +247,15 @@ Report reportOf(const Subject& subject, uint64_t samples, Finds finds) {
 }  // namespace
 
 Result<Report> attackOnDevice(const Subject& subject, const Plan& plan, const Shower& device) {
-  Finds all;
+  Differences all;
   std::vector<double> samples;
   for (uint64_t first = 0; first < plan.samples; first += kBatch) {
     const size_t count = (static_cast<size_t>(std::min<uint64_t>(kBatch, plan.samples - first)) + 3) / 4 * 4;
     drawSamples(subject, plan.seed, first, count, samples);
-    Result<Finds> finds = findsOf(subject, samples, count, device);
+    Result<Differences> finds = findsOf(subject, samples, count, device);
     if (!finds) return tl::make_unexpected(std::move(finds.error()));
     for (auto& [key, found] : *finds) {
-      Found& sum = all[key];
+      Difference& sum = all[key];
       const uint64_t count_before = sum.count;
       if (count_before == 0) sum = std::move(found);
       if (count_before > 0) sum.count += found.count;
@@ -265,7 +265,7 @@ Result<Report> attackOnDevice(const Subject& subject, const Plan& plan, const Sh
   for (Finding& finding : report.findings) {
     if (Result<void> done = minimise(subject, finding, device); !done)
       return tl::make_unexpected(std::move(done.error()));
-    const Result<Finds> finds = findsOf(subject, finding.input, subject.group, device);
+    const Result<Differences> finds = findsOf(subject, finding.input, subject.group, device);
     if (!finds) return tl::make_unexpected(finds.error());
     const auto own = finds->find({finding.fault, finding.what});
     if (own != finds->end()) finding.value = own->second.value;
@@ -275,7 +275,7 @@ Result<Report> attackOnDevice(const Subject& subject, const Plan& plan, const Sh
 
 Result<Report> replayOnDevice(const Subject& subject, std::span<const double> input, const Shower& device) {
   const size_t count = input.size() / widthOf(subject);
-  Result<Finds> finds = findsOf(subject, input, count, device);
+  Result<Differences> finds = findsOf(subject, input, count, device);
   if (!finds) return tl::make_unexpected(std::move(finds.error()));
   return reportOf(subject, count, std::move(*finds));
 }

@@ -2,20 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace lacquer::stress {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kGolden = 0.61803398874989484820;
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vec3 unit(const Vec3& a) {
-  const double length = std::sqrt(dot(a, a));
-  return {a[0] / length, a[1] / length, a[2] / length};
-}
 
 /// Half a turn about the z axis, for a lobe that is turned so.
 Vec3 about(const Lobe& lobe, const Vec3& l) { return lobe.back ? Vec3{-l[0], -l[1], l[2]} : l; }
@@ -28,7 +21,7 @@ double density(const Lobe& lobe, const Vec3& v, const Vec3& light) {
     return std::pow(lobe.alpha_t, power) * a[0] * a[0] + std::pow(lobe.alpha_b, power) * a[1] * a[1];
   };
   const double tail = stretched(h, -2) + h[2] * h[2];
-  const double d = 1 / (kPi * lobe.alpha_t * lobe.alpha_b * tail * tail);
+  const double d = 1 / (std::numbers::pi * lobe.alpha_t * lobe.alpha_b * tail * tail);
   const double g1 = 2 / (1 + std::sqrt(1 + stretched(v, 2) / (v[2] * v[2])));
   return d * g1 / (4 * v[2]);
 }
@@ -37,7 +30,7 @@ double density(const Lobe& lobe, const Vec3& v, const Vec3& light) {
 Vec3 mirrored(const Lobe& lobe, const Vec3& v, double a, double b) {
   const Vec3 w = unit({lobe.alpha_t * v[0], lobe.alpha_b * v[1], v[2]});
   // Even on the sphere's cap that the stretched view sees.
-  const double phi = 2 * kPi * a;
+  const double phi = 2 * std::numbers::pi * a;
   const double z = (1 - b) * (1 + w[2]) - w[2];
   const double ring = std::sqrt(std::max(1 - z * z, 0.0));
   const Vec3 h = unit({lobe.alpha_t * (ring * std::cos(phi) + w[0]),
@@ -49,7 +42,8 @@ Vec3 mirrored(const Lobe& lobe, const Vec3& v, double a, double b) {
 /// Even in projected area.
 Vec3 diffuse(double a, double b) {
   const double ring = std::sqrt(b);
-  return {ring * std::cos(2 * kPi * a), ring * std::sin(2 * kPi * a), std::sqrt(1 - b)};
+  return {ring * std::cos(2 * std::numbers::pi * a), ring * std::sin(2 * std::numbers::pi * a),
+          std::sqrt(1 - b)};
 }
 
 }  // namespace
@@ -64,7 +58,7 @@ std::vector<Direction> directions(const Vec3& v, std::span<const Lobe> lobes, si
       const double b = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
       const Vec3 l = kind == 0 ? diffuse(a, b) : mirrored(lobes[kind - 1], v, a, b);
       if (l[2] <= 0) continue;  // there is no light from below
-      double sum = l[2] / kPi;
+      double sum = l[2] / std::numbers::pi;
       for (const Lobe& lobe : lobes) sum += density(lobe, v, l);
       all.push_back({l, 1 / (sum * static_cast<double>(count))});
     }

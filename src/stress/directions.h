@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-namespace lacquer::stress {
+#include "stress/vectors.h"
 
-using Vec3 = std::array<double, 3>;
+namespace lacquer::stress {
 
 /// A GGX lobe about the z axis, stretched along x and y.
 struct Lobe {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "stress/attack.h"
 #include "stress/directions.h"
@@ -10,7 +11,6 @@ namespace lacquer::stress {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Directions for the diffuse part and for each lobe.
 constexpr size_t kDirections = 1600;
 /// Of ALPHA_MIN in nodes/: what a smaller roughness comes to.
@@ -101,7 +101,7 @@ public:
     std::vector<std::array<Vec3, 2>> pairs;
     const auto above = [&] {
       const double z = 0.02 + 0.98 * random.unit();
-      const double angle = 2 * kPi * random.unit();
+      const double angle = 2 * std::numbers::pi * random.unit();
       const double ring = std::sqrt(1 - z * z);
       return Vec3{ring * std::cos(angle), ring * std::sin(angle), z};
     };
@@ -190,7 +190,7 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report) {
     const std::vector<double> whole = light.material(seed);
     std::vector<double> base = whole;
     light.strip(base);
-    const double azimuth = 2 * kPi * Random(seed).unit();
+    const double azimuth = 2 * std::numbers::pi * Random(seed).unit();
     const auto view = [&](double cosine) {
       const double sine = std::sqrt(1 - cosine * cosine);
       return Vec3{sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};

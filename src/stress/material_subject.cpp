@@ -8,13 +8,13 @@
 #include "eval/dfg.h"
 #include "eval/points.h"
 #include "stress/subject.h"
+#include "stress/vectors.h"
 
 namespace lacquer::stress {
 
 namespace {
 
 using eval::Column;
-using Vec3 = std::array<double, 3>;
 
 /// Lengths that a file's normals and tangents may have; 0 is one of them.
 constexpr ir::Interval kLengths{0, 1e4};
@@ -24,11 +24,7 @@ constexpr double kBrightest = 1e4;
 /// Open ends of parameters: larger emission strengths and the like come from mistakes.
 constexpr double kLimit = 1e6;
 
-Vec3 unit(const double* a) {
-  const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-  if (!(length > 0)) return {0, 0, 1};
-  return {a[0] / length, a[1] / length, a[2] / length};
-}
+Vec3 unitOf(const double* a) { return unit(Vec3{a[0], a[1], a[2]}); }
 
 class Material final : public Subject {
 public:
@@ -225,8 +221,8 @@ private:
     std::vector<eval::Point> points(count);
     for (size_t i = 0; i < count; ++i) {
       eval::Point& point = points[i];
-      const Vec3 n = unit(at(samples, i, "n"));
-      const Vec3 t = unit(at(samples, i, "t"));
+      const Vec3 n = unitOf(at(samples, i, "n"));
+      const Vec3 t = unitOf(at(samples, i, "t"));
       const double n_length = *at(samples, i, "n_length");
       const double t_length = *at(samples, i, "t_length");
       for (size_t c = 0; c < 3; ++c) {
@@ -234,8 +230,8 @@ private:
         point.t[c] = t[c] * t_length;
       }
       point.t[3] = *at(samples, i, "t_sign") != 0 ? 1 : -1;
-      point.v = unit(at(samples, i, "v"));
-      point.l = unit(at(samples, i, "l"));
+      point.v = unitOf(at(samples, i, "v"));
+      point.l = unitOf(at(samples, i, "l"));
       std::copy_n(at(samples, i, "color0"), 4, point.color0.begin());
       std::copy_n(at(samples, i, "light"), 3, point.light.begin());
       point.front_facing = *at(samples, i, "front_facing") != 0;

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+
+#include "stress/vectors.h"
 
 namespace lacquer::stress {
 
 namespace {
 
-using Vec3 = std::array<double, 3>;
-
-constexpr double kPi = 3.14159265358979323846;
 /// Ranges wider than this are open ends that were cut: numbers as they occur are drawn by their magnitude.
 constexpr double kWide = 1e4;
 constexpr uint64_t kRare = 0x7261726573;  ///< any number
@@ -21,15 +21,8 @@ constexpr double kEdges[] = {0,           0x1p-149,    0x1p-126, 1e-12,     0x1p
                              1 - 0x1p-24, 1,           0.5,      1.0 / 255, 127.0 / 255, 128.0 / 255,
                              254.0 / 255, 1 + 0x1p-23, 1.5,      4};
 
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 Vec3 combined(const Vec3& a, double of_a, const Vec3& b, double of_b) {
   return {a[0] * of_a + b[0] * of_b, a[1] * of_a + b[1] * of_b, a[2] * of_a + b[2] * of_b};
-}
-
-Vec3 unit(const Vec3& a) {
-  const double length = std::sqrt(dot(a, a));
-  return length > 0 ? combined(a, 1 / length, a, 0) : Vec3{0, 0, 1};
 }
 
 Vec3 anyDirection(Random& random) {
@@ -39,7 +32,7 @@ Vec3 anyDirection(Random& random) {
     return axis;
   }
   const double z = 2 * random.unit() - 1;
-  const double angle = 2 * kPi * random.unit();
+  const double angle = 2 * std::numbers::pi * random.unit();
   const double ring = std::sqrt(1 - z * z);
   return {ring * std::cos(angle), ring * std::sin(angle), z};
 }

@@ -25,9 +25,7 @@ constexpr int kSpacesPerIndent = 4;
 
 Precedence tighter(Precedence p) { return static_cast<Precedence>(static_cast<int>(p) + 1); }
 
-bool isOperator(std::string_view spelling) {
-  return !std::isalpha(static_cast<unsigned char>(spelling.front()));
-}
+bool isSign(std::string_view spelling) { return !std::isalpha(static_cast<unsigned char>(spelling.front())); }
 
 Precedence binaryPrecedence(std::string_view spelling) {
   if (spelling == "*" || spelling == "/") return Precedence::Multiplicative;
@@ -66,12 +64,12 @@ private:
   Expression constant(ValueId id) const;
   Expression input(const ir::Input& input) const;
   Expression blockField(const ir::Input& input) const;
-  Expression construct(const ir::Value& value) const;
+  Expression construct(ValueId id) const;
   Expression swizzle(const ir::Value& value) const;
   Expression element(const ir::Value& value) const;
   /// The argument list of a function of ops.def.
-  std::string arguments(const ir::Value& value) const;
-  Expression operation(const ir::Value& value) const;
+  std::string arguments(ValueId id) const;
+  Expression operation(ValueId id) const;
 
   void statement(Text& text, const Statement& statement) const;
   void section(Text& text, ir::TermId id) const;
@@ -81,7 +79,9 @@ private:
   /// An item of an argument list, where any expression may stand.
   std::string argument(ValueId id) const { return use(id).text; }
   /// An operand of an operation.
-  Expression operand(const ir::Value& value, size_t index) const;
+  Expression operand(ValueId user, size_t index) const;
+  /// An operand of anything, with the precision that it needs there.
+  Expression read(ValueId user, size_t index) const;
 
   const Dialect& dialect_;
   const ir::Module& module_;
@@ -96,9 +96,17 @@ Expression Printer::use(ValueId id) const {
   return name.empty() ? compute(id) : Expression{dialect_.name(name)};
 }
 
-Expression Printer::operand(const ir::Value& value, size_t index) const {
+Expression Printer::read(ValueId user, size_t index) const {
+  const ValueId id = dag_[user].args[index];
+  const Passing passing = dialect_.precisions() ? passingOf(dag_, user, index) : Passing::AsItIs;
+  if (passing == Passing::AsItIs) return use(id);
+  return {fmt::format("{}({})", passing == Passing::Lowered ? kLower : kRaise, use(id).text)};
+}
+
+Expression Printer::operand(ValueId user, size_t index) const {
+  const ir::Value& value = dag_[user];
   const ValueId id = value.args[index];
-  const Expression expression = use(id);
+  const Expression expression = read(user, index);
   return lateOperand(dag_, value) == static_cast<int>(index) ? dialect_.late(dag_[id].type, expression)
                                                              : expression;
 }
@@ -108,7 +116,7 @@ Expression Printer::compute(ValueId id) const {
   // Not a switch: an op with a spelling needs nothing but its row in ops.def.
   if (value.op == Op::Constant) return constant(id);
   if (value.op == Op::Input) return input(dag_.inputOf(id));
-  if (value.op == Op::Construct) return construct(value);
+  if (value.op == Op::Construct) return construct(id);
   if (value.op == Op::Swizzle) return swizzle(value);
   if (value.op == Op::Element) return element(value);
   // Implicit derivatives exist in fragments only, and Direct3D has no lookup without a level elsewhere: a
@@ -126,7 +134,7 @@ Expression Printer::compute(ValueId id) const {
     const bool top = !implicit || value.op == Op::TextureCompareLod;
     return {dialect_.comparison(argument(value.args[0]), use(value.args[1]), top)};
   }
-  return operation(value);
+  return operation(id);
 }
 
 Expression Printer::constant(ValueId id) const {
@@ -188,12 +196,13 @@ Expression Printer::element(const ir::Value& value) const {
   return dialect_.element(module_.blocks[block], module_.blocks[block].fields[field], use(value.args[0]));
 }
 
-Expression Printer::construct(const ir::Value& value) const {
+Expression Printer::construct(ValueId id) const {
+  const ir::Value& value = dag_[id];
   if (value.count == 1 && dag_[value.args[0]].type == Type::Float) {
-    return dialect_.splat(value.type, use(value.args[0]), dag_.isConstant(value.args[0]));
+    return dialect_.splat(value.type, read(id, 0), dag_.isConstant(value.args[0]));
   }
   std::string list;
-  for (ValueId part : value.operands()) list += (list.empty() ? "" : ", ") + argument(part);
+  for (size_t k = 0; k < value.count; ++k) list += (list.empty() ? "" : ", ") + read(id, k).text;
   return {fmt::format("{}({})", dialect_.type(value.type), list)};
 }
 
@@ -205,7 +214,8 @@ Expression Printer::swizzle(const ir::Value& value) const {
   return {dialect_.swizzle(value.type, parenthesized(use(value.args[0]), Precedence::Postfix), picks)};
 }
 
-std::string Printer::arguments(const ir::Value& value) const {
+std::string Printer::arguments(ValueId id) const {
+  const ir::Value& value = dag_[id];
   std::array<Type, 4> types{};
   for (size_t i = 0; i < value.count; ++i) types[i] = dag_[value.args[i]].type;
   // Only the component-wise functions broadcast.
@@ -215,23 +225,23 @@ std::string Printer::arguments(const ir::Value& value) const {
     const ValueId operand = value.args[i];
     const bool beside = map && types[i] == Type::Float && value.type != Type::Float;
     const bool splat = beside && !dialect_.takesFloat(value.op, {types.data(), value.count}, i);
-    const Expression text = this->operand(value, i);
+    const Expression text = this->operand(id, i);
     list += i == 0 ? "" : ", ";
     list += splat ? dialect_.splat(value.type, text, dag_.isConstant(operand)).text : text.text;
   }
   return list;
 }
 
-Expression Printer::operation(const ir::Value& value) const {
+Expression Printer::operation(ValueId id) const {
+  const ir::Value& value = dag_[id];
   const std::string_view spelling = dialect_.spelling(value.op);
   if (written_ != nullptr && spelling.empty())
-    return {fmt::format("{}({})", ir::info(value.op).name, arguments(value))};
+    return {fmt::format("{}({})", ir::info(value.op).name, arguments(id))};
   assert(!spelling.empty() && "not an op that a shader can say");
-  const auto& args = value.args;
-  if (value.op == Op::Select) return dialect_.select(use(args[0]), use(args[1]), use(args[2]));
-  if (!isOperator(spelling)) return {dialect_.call(value.op, value.type, arguments(value))};
-  if (value.count == 1) return dialect_.operation(spelling, std::array{operand(value, 0)});
-  return dialect_.operation(spelling, std::array{operand(value, 0), operand(value, 1)});
+  if (value.op == Op::Select) return dialect_.select(read(id, 0), read(id, 1), read(id, 2));
+  if (!isSign(spelling)) return {dialect_.call(value.op, value.type, arguments(id))};
+  if (value.count == 1) return dialect_.operation(spelling, std::array{operand(id, 0)});
+  return dialect_.operation(spelling, std::array{operand(id, 0), operand(id, 1)});
 }
 
 void Printer::section(Text& text, ir::TermId id) const {
@@ -282,7 +292,8 @@ void Printer::statement(Text& text, const Statement& s) const {
   switch (s.kind) {
     case StatementKind::Section: section(text, s.term); return;
     case StatementKind::Let:
-      text.line(dialect_.variable(dag_[s.value].type, dialect_.name(program_.names[s.value]),
+      text.line((dialect_.precisions() && dag_.relaxed(s.value) ? "mediump " : "") +
+                dialect_.variable(dag_[s.value].type, dialect_.name(program_.names[s.value]),
                                   compute(s.value).text, false));
       return;
     case StatementKind::LoopBegin: openLoop(text, s); return;
@@ -465,6 +476,20 @@ int lateOperand(const ir::Dag& dag, const ir::Value& value) {
     if (end(operands[2]) < end(operands[1])) return 1;
   }
   return -1;
+}
+
+Passing passingOf(const ir::Dag& dag, ValueId user, size_t index) {
+  if (!dag.anyRelaxed()) return Passing::AsItIs;
+  const ir::Value& value = dag[user];
+  const auto hasPrecision = [&](ValueId id) { return ir::isFloating(dag[id].type) && !dag.isConstant(id); };
+  if (!hasPrecision(value.args[index])) return Passing::AsItIs;
+  if (dag.relaxed(user)) return dag.relaxed(value.args[index]) ? Passing::AsItIs : Passing::Lowered;
+  // The first one is enough. What is at half precision throughout gives an operation that is.
+  for (size_t k = 0; k < value.count; ++k) {
+    if (!hasPrecision(value.args[k])) continue;
+    if (k < index || !dag.relaxed(value.args[k])) return Passing::AsItIs;
+  }
+  return Passing::Raised;
 }
 
 std::string attributeName(const ir::Attribute& attribute) { return "in_" + lower(attribute.name); }

@@ -102,6 +102,8 @@ public:
   /// number itself.
   virtual Expression late(ir::Type type, const Expression& number) const;
 
+  /// True where precisions are part of the language: what the Dag says is relaxed is `mediump`.
+  virtual bool precisions() const { return false; }
   /// A variable with its value; `changes`: the sum of a loop.
   virtual std::string variable(ir::Type type, std::string_view name, std::string_view value,
                                bool changes) const;
@@ -127,6 +129,14 @@ public:
 /// for its lower end above that for its upper one. The operand that a language must not see as a number then,
 /// where it refuses what it can tell of such operations; -1 elsewhere.
 int lateOperand(const ir::Dag& dag, const ir::Value& value);
+
+/// What an operand goes through, so that its operation gets the precision that it is to have: an operation's
+/// is the highest of its operands', and literals have none (GLSL ES 3.00, 4.5.2).
+enum class Passing : uint8_t { AsItIs, Lowered, Raised };
+Passing passingOf(const ir::Dag& dag, ir::ValueId user, size_t index);
+/// The functions for that; a parameter's precision is its own.
+inline constexpr std::string_view kLower = "lacquer_mediump";
+inline constexpr std::string_view kRaise = "lacquer_highp";
 
 /// The dialects' interface names, the same in all of them. Variables of a Program never begin with these
 /// prefixes.

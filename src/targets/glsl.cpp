@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <set>
+#include <utility>
 
 #include "targets/clike.h"
 #include "targets/target.h"
@@ -20,12 +22,13 @@ struct GlslRow {
   bool bindings;           ///< `binding =`; without it, names are the contract
   bool varying_locations;  ///< `location =` between the stages
   bool precisions;         ///< precision statements
+  bool half;               ///< `mediump` means something
   bool storage;            ///< storage buffers; without them lists are textures
 };
 
-constexpr GlslRow kVulkan = {"450", true, true, true, false, true};
-constexpr GlslRow kOpenGl = {"450", false, true, true, false, true};
-constexpr GlslRow kEssl300 = {"300 es", false, false, false, true, false};
+constexpr GlslRow kVulkan = {"450", true, true, true, false, true, true};
+constexpr GlslRow kOpenGl = {"450", false, true, true, false, false, true};
+constexpr GlslRow kEssl300 = {"300 es", false, false, false, true, true, false};
 
 class Glsl final : public Dialect {
 public:
@@ -35,6 +38,8 @@ public:
   std::string_view spelling(ir::Op op) const override { return ir::info(op).glsl; }
   std::string_view position() const override { return "gl_Position"; }
   std::string_view frontFacing() const override { return "gl_FrontFacing"; }
+
+  bool precisions() const override { return row_.half; }
 
   Expression splat(Type type, const Expression& x, bool) const override {
     return {fmt::format("{}({})", ir::typeName(type), x.text)};
@@ -61,6 +66,7 @@ public:
     attributes(text, module, program);
     varyings(text, module, program);
     outputs(text, module, program);
+    if (row_.half) passings(text, module, program);
     text.blank();
     text.line("void main() {");
   }
@@ -77,6 +83,25 @@ private:
                       [&](uint32_t t) { return module.textures[t].type == type; })) {
         text.line(fmt::format("precision highp {};", ir::typeName(type)));
       }
+    }
+  }
+
+  /// The functions that change a precision, of the types that pass through them.
+  static void passings(Text& text, const ir::Module& module, const schedule::Program& program) {
+    const ir::Dag& dag = module.dag;
+    if (!dag.anyRelaxed()) return;
+    std::set<std::pair<Passing, Type>> used;
+    for (const ir::ValueId id : ir::reachable(module, program.stage)) {
+      for (size_t k = 0; k < dag[id].count; ++k)
+        used.emplace(passingOf(dag, id, k), dag[dag[id].args[k]].type);
+    }
+    bool first = true;
+    for (const auto& [passing, type] : used) {
+      if (passing == Passing::AsItIs) continue;
+      const bool lowers = passing == Passing::Lowered;
+      if (std::exchange(first, false)) text.blank();
+      text.line(fmt::format("{0} {1} {2}({0} {1} x) {{ return x; }}", lowers ? "mediump" : "highp",
+                            ir::typeName(type), lowers ? kLower : kRaise));
     }
   }
 

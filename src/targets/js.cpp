@@ -24,7 +24,7 @@ using ir::ValueId;
 
 namespace {
 
-constexpr std::string_view kComponents = "xyzw";
+constexpr std::string_view kMembers = "xyzw";
 
 /// What a local of the module's function must not be called, beside what means something in another target.
 constexpr std::array kTaken = {
@@ -168,7 +168,7 @@ private:
       Node& part = nodes_[parts[i]];
       if (part.leaf || parts[i] < first || program_.names[id].empty()) continue;
       part.variable = true;
-      if (width > 1) part.wanted = fmt::format("{}_{}", wanted, kComponents[i]);
+      if (width > 1) part.wanted = fmt::format("{}_{}", wanted, kMembers[i]);
     }
   }
 

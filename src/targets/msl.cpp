@@ -103,7 +103,7 @@ Result<std::string> mslText(const ir::Module& module, const schedule::Program& p
   if (spvc_context_create(&context) != SPVC_SUCCESS)
     return fail("spirv-cross", {}, "SPIRV-Cross cannot be used");
   Crossing crossing(Context(context, spvc_context_destroy), argument_buffers);
-  Result<std::string> text = crossing.run(module, program, writeSpirv(module, program, {}));
+  Result<std::string> text = crossing.run(module, program, writeSpirv(module, program, {.relaxed = false}));
   if (!text) return text;
   return commentText(head) + "\n" + *text;
 }

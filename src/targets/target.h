@@ -89,7 +89,8 @@ std::vector<std::string> expressionTexts(const ir::Module& module, std::span<con
 
 /// The SPIR-V words of one stage, written directly: SPIR-V 1.3, Vulkan 1.1.
 struct SpirvOptions {
-  bool debug = false;  ///< OpLine toward the node source where known
+  bool debug = false;   ///< OpLine toward the node source where known
+  bool relaxed = true;  ///< RelaxedPrecision for what the Dag says is relaxed
 };
 std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Program& program,
                                  const SpirvOptions& options);

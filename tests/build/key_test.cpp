@@ -31,6 +31,7 @@ const std::vector<Row>& rows() {
       {"validate", Decides::Code, [](Options& o) { o.validate = false; }},
       {"unused", Decides::Graph, [](Options& o) { o.unused = true; }},
       {"spirv_route", Decides::SpirvCode, [](Options& o) { o.spirv_route = SpirvRoute::Glslang; }},
+      {"relaxed", Decides::Module, [](Options& o) { o.relaxed = 0.01; }},
       {"debug", Decides::SpirvCode, [](Options& o) { o.debug = true; }},
       {"live", Decides::Graph, [](Options& o) { o.live = {"coat.darkening"}; }},
       {"node_directories", Decides::Run, [](Options& o) { o.node_directories = {"nodes"}; }},

@@ -42,13 +42,14 @@ spv::Op integerComparison(Op op) {
 }  // namespace
 
 Body::Body(const ir::Module& module, const schedule::Program& program, const Interface& interface,
-           Globals& globals, bool debug)
+           Globals& globals, const SpirvOptions& options)
     : module_(module),
       dag_(module.dag),
       program_(program),
       interface_(interface),
       globals_(globals),
-      debug_(debug),
+      debug_(options.debug),
+      relaxed_(options.relaxed),
       live_(ir::reachable(module, program.stage)),
       ids_(dag_.size(), 0),
       splats_(dag_.size() * 3, 0),
@@ -80,7 +81,8 @@ void Body::findFusedProducts() {
       const bool alike = product.op == Op::Mul && dag_[product.args[0]].type == dag_[product.args[1]].type;
       // What does not change with the light stays outside of the loop.
       const bool together = (product.rate == Rate::Light) == (sum.rate == Rate::Light);
-      if (!alike || !together) continue;
+      // One instruction has one precision.
+      if (!alike || !together || relaxed(id) != relaxed(operand)) continue;
       product_in_[id] = static_cast<uint8_t>(1 + k);
       if (uses[operand] != 1) continue;
       fused_[operand] = 1;
@@ -221,6 +223,7 @@ uint32_t Body::splat(ValueId scalar, Type like) {
   code_.word(id);
   for (size_t i = 0; i < width; ++i) code_.word(component);
   code_.end();
+  if (relaxed(scalar)) globals_.decorations.op(spv::OpDecorate, id, spv::DecorationRelaxedPrecision);
   splats_[slot] = id;
   if (in_loop_) splats_in_loop_.push_back(static_cast<uint32_t>(slot));
   return id;
@@ -387,6 +390,7 @@ uint32_t Body::instruction(ValueId id, const Instruction& what, const uint32_t* 
 /// A new id for a value, with the names that debugging wants.
 uint32_t Body::result(ValueId id) {
   const uint32_t made = globals_.newId();
+  if (relaxed(id)) globals_.decorations.op(spv::OpDecorate, made, spv::DecorationRelaxedPrecision);
   if (!debug_) return made;
   if (!program_.names[id].empty()) globals_.name(made, program_.names[id]);
   const ir::TermId term = dag_.termOf(id);

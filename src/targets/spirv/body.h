@@ -9,13 +9,14 @@
 #include "ir/names.h"
 #include "schedule/schedule.h"
 #include "targets/spirv/interface.h"
+#include "targets/target.h"
 
 namespace lacquer::targets::spirv {
 
 class Body {
 public:
   Body(const ir::Module& module, const schedule::Program& program, const Interface& interface,
-       Globals& globals, bool debug);
+       Globals& globals, const SpirvOptions& options);
 
   /// Writes the function; returns its id.
   uint32_t write();
@@ -58,6 +59,7 @@ private:
   uint32_t lightCount();
   uint32_t instruction(ir::ValueId id, const Instruction& what, const uint32_t* operands, size_t count);
   uint32_t result(ir::ValueId id);
+  bool relaxed(ir::ValueId id) const { return relaxed_ && dag_.relaxed(id); }
 
   // statements
   void statement(const schedule::Statement& statement);
@@ -79,6 +81,7 @@ private:
   const Interface& interface_;
   Globals& globals_;
   const bool debug_;
+  const bool relaxed_;  ///< what the Dag says is relaxed counts
   Words code_;
 
   std::vector<ir::ValueId> live_;

@@ -12,7 +12,7 @@ std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Progr
                                  const SpirvOptions& options) {
   spirv::Globals globals;
   const spirv::Interface interface = declareInterface(module, program, globals);
-  spirv::Body body(module, program, interface, globals, options.debug);
+  spirv::Body body(module, program, interface, globals, options);
   const uint32_t main = body.write();
   const bool fragment = program.stage == ir::Stage::Fragment;
 
