@@ -15,7 +15,8 @@ namespace {
 /// stopped by it.
 thread_local size_t largest_block = 0;
 
-void* takeBlock(size_t size) { return size <= largest_block ? std::malloc(size) : nullptr; }
+/// Zeros: a JPEG may use tables that it has not got, and those are read as the memory has them.
+void* takeBlock(size_t size) { return size <= largest_block ? std::calloc(size, 1) : nullptr; }
 void* growBlock(void* block, size_t size) {
   return size <= largest_block ? std::realloc(block, size) : nullptr;
 }

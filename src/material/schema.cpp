@@ -192,6 +192,12 @@ Result<Schema> schemaOf(const lang::Library& library) {
   }
   std::stable_partition(schema.extensions.begin(), schema.extensions.end(),
                         [](const lang::ExtensionDecl* decl) { return decl->core; });
+  const bool has_core = !schema.extensions.empty() && schema.extensions[0]->core;
+  // What is wrong with the file that holds it has been said.
+  if (!has_core && wrong.empty()) {
+    return fail("unknown-extension", {}, "no node file declares glTF's own material",
+                "`material gltf { ... }` does");
+  }
   for (size_t i = 1; i < schema.extensions.size(); ++i) {
     const lang::ExtensionDecl& decl = *schema.extensions[i];
     if (decl.core) {

@@ -127,6 +127,21 @@ TEST(HostileImage, huffmanTablesHaveTheirLength) {
   EXPECT_EQ(said(256).find("bad Huffman table"), std::string::npos) << said(256);
 }
 
+/// A JPEG of 8 by 8 without one table: the decoder takes what its memory holds for them, which must be zeros
+/// and not what another left there.
+TEST(HostileImage, missesTablesThatAreZero) {
+  const Workplace place;
+  const std::string jpeg(
+      "\xff\xd8\xff\xc0\0\x0b\x08\0\x08\0\x08\1\1\x11\0"
+      "\xff\xda\0\x08\1\1\0\0\x3f\0\x55\x55\x55\x55\xff\xd9",
+      31);
+  setenv("MALLOC_PERTURB_", "90", 1);  // rubbish in all memory that the C library gives away
+  const Outcome rubbish = evaluated(place, textured(dataUri(jpeg)));
+  unsetenv("MALLOC_PERTURB_");
+  EXPECT_EQ(rubbish.status, 0) << rubbish.all();
+  EXPECT_EQ(rubbish.out, evaluated(place, textured(dataUri(jpeg))).out);
+}
+
 /// 0xDA is the marker of a scan; its head says that it has no component, which the decoder would refuse.
 TEST(HostileImage, hasAHundredScansAtMost) {
   const Workplace place;

@@ -55,6 +55,19 @@ json everything(bool spelt_out, const std::vector<std::string_view>& without) {
   return material;
 }
 
+/// Not an index into what is not there.
+TEST(GltfTable, nodeFilesWithoutTheMaterialHaveNoSchema) {
+  for (const std::string& text :
+       {std::string(),
+        std::string("/// E.\n/// source: S\nextension FUZZ_e {\n    float x in [0, 1] = 0;\n}\n")}) {
+    const auto library = lang::Library::fromFiles({{"t.node", text}});
+    ASSERT_TRUE(library);
+    const auto schema = material::schemaOf(*library);
+    ASSERT_FALSE(schema);
+    EXPECT_EQ(schema.error()[0].code, "unknown-extension");
+  }
+}
+
 TEST(GltfTable, defaultsSpeltOutChangeNothing) {
   const auto text = [](bool spelt_out) {
     const json materials = {everything(spelt_out, {"clearcoat", "Glossiness", "_scatter"}),

@@ -504,11 +504,17 @@ test('a long session of edits takes no more memory', () =>
     await session(4);
     const before = await taken();
     await session(8);
-    const after = await taken();
+    // What is in flight (a frame, an animation, the compositor) may hold removed nodes for a while; what leaks stays.
+    const most = { heap: before.heap + 2_000_000, nodes: 1.1 * before.nodes, listeners: 1.1 * before.listeners };
+    const over = (after) => Object.keys(most).filter((what) => after[what] >= most[what]);
+    let after = await taken();
+    for (let i = 0; i < 40 && over(after).length > 0; ++i) {
+      await page.waitForTimeout(250);
+      after = await taken();
+    }
     console.log(`# after 4 and 12 rounds: ${JSON.stringify(before)}, ${JSON.stringify(after)}`);
     assert.equal(after.module, before.module);
-    assert.ok(after.heap < before.heap + 2_000_000, 'the heap');
-    assert.ok(after.nodes < 1.1 * before.nodes && after.listeners < 1.1 * before.listeners, 'what the document has');
+    assert.deepEqual(over(after), []);
     assert.ok(after.programs <= 48, 'programs');
   }));
 
