@@ -3,13 +3,14 @@
 // old file or the new one, whole, and the next run delivers what a run without a fault does.
 //
 // A step of the suite tries some of the places, evenly spread. LACQUER_FAULTS_ALL=1 tries all of them; =K
-// every Kth.
+// every Kth; =code, of the allocations, the first from each place in the code, and all of the rest.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -169,18 +170,38 @@ protected:
     EXPECT_EQ(missed(), "") << where;
   }
 
-  /// Some places of a kind, from the first to the last.
+  /// Which allocations are the first of their place in the code.
+  std::vector<long> firsts() const {
+    copy("work");
+    EXPECT_EQ(faulty({"LACQUER_FAULT_PLACES=" + (root_ / "places").string()}), 0);
+    std::ifstream places(root_ / "places");
+    return {std::istream_iterator<long>(places), {}};
+  }
+
+  /// The places of a kind that are to be tried, from the first to the last.
+  std::vector<long> chosen(const std::string& kind, long count, long most) const {
+    const char* all = std::getenv("LACQUER_FAULTS_ALL");
+    const std::string how = all == nullptr ? "" : all;
+    if (how == "code" && kind == "alloc") return firsts();
+    const double step = all == nullptr ? static_cast<double>(count) / static_cast<double>(most)
+                        : how == "code" ? 1
+                                        : std::atof(all);
+    std::vector<long> places;
+    for (double n = 1; n <= static_cast<double>(count); n += std::max(1.0, step))
+      places.push_back(static_cast<long>(n));
+    return places;
+  }
+
   void sweep(const std::string& kind, const std::string& action, const std::vector<int>& exits, long most) {
     const long count = countOf(kind);
     ASSERT_GT(count, 0) << kind;
-    const char* all = std::getenv("LACQUER_FAULTS_ALL");
-    const double step = all != nullptr
-                            ? std::max(1.0, std::atof(all))
-                            : std::max(1.0, static_cast<double>(count) / static_cast<double>(most));
-    size_t tried = 0;
-    for (double n = 1; n <= static_cast<double>(count) && !HasFailure(); n += step, ++tried)
-      at(kind, static_cast<long>(n), action, exits);
-    std::cout << fmt::format("{} {}s, {} of {} places\n", kind, action, tried, count);
+    const std::vector<long> places = chosen(kind, count, most);
+    EXPECT_FALSE(places.empty());
+    for (const long n : places) {
+      if (HasFailure()) break;
+      at(kind, n, action, exits);
+    }
+    std::cout << fmt::format("{} {}s, {} of {} places\n", kind, action, places.size(), count);
   }
 
   fs::path root_;

@@ -11,9 +11,12 @@
 //             vanish  the folder LACQUER_FAULT_FOLDER is moved away (to its name with .gone), then the call
 //             is made
 //   LACQUER_FAULT_COUNTS=FILE     how many calls of each kind there were: "alloc 12", a line each
+//   LACQUER_FAULT_PLACES=FILE     which of the allocations are the first of their place in the code, as the innermost
+//                                 calls on the stack say it: "12", a line each
 //   LACQUER_FAULT_TRACE=FILE      a line for each fsync ("fsync PATH") and each rename ("rename FROM TO")
 #include <dirent.h>
 #include <dlfcn.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
@@ -45,6 +48,7 @@ std::atomic<bool> active{false};
 std::atomic<long> counts[kKinds];
 Plan plan;
 int trace = -1;
+int places = -1;
 thread_local bool inside = false;
 
 /// The function behind ours.
@@ -65,10 +69,32 @@ void vanish() {
   real<int (*)(const char*, const char*)>("rename")(folder, gone);
 }
 
+/// Notes an allocation whose stack is new. One thread allocates when this is asked for.
+void notePlace(long n) {
+  constexpr size_t kRoom = size_t{1} << 18;
+  constexpr int kOwn = 2;  // this function and the one that it was called by
+  constexpr int kFrames = 12;
+  static size_t seen[kRoom];
+  void* frames[kOwn + kFrames];
+  inside = true;
+  const int depth = backtrace(frames, kOwn + kFrames);
+  inside = false;
+  size_t hash = 1;
+  for (int i = kOwn; i < depth; ++i)
+    hash = (hash ^ reinterpret_cast<size_t>(frames[i])) * size_t{0x9E3779B97F4A7C15};
+  size_t at = hash >> 46;  // 18 bits of it
+  for (; seen[at] != 0; at = (at + 1) % kRoom) {
+    if (seen[at] == hash) return;
+  }
+  seen[at] = hash;
+  dprintf(places, "%ld\n", n);
+}
+
 /// True when this call is to fail.
 bool strikes(Kind kind) {
   if (!active.load(std::memory_order_relaxed) || inside) return false;
   const long n = ++counts[kind];
+  if (places >= 0 && kind == kAlloc) notePlace(n);
   if (plan.kind != kind || n < plan.at || (n > plan.at && kind != kSpace)) return false;
   if (plan.action == 'k') {
     kill(getpid(), SIGKILL);
@@ -112,6 +138,11 @@ void begin() {
   }
   if (const char* file = getenv("LACQUER_FAULT_TRACE"))
     trace = open(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  if (const char* file = getenv("LACQUER_FAULT_PLACES")) {
+    places = open(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    void* frame = nullptr;
+    backtrace(&frame, 1);  // loads what it needs
+  }
   active = true;
 }
 
