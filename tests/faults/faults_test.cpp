@@ -183,7 +183,7 @@ protected:
     const char* all = std::getenv("LACQUER_FAULTS_ALL");
     const std::string how = all == nullptr ? "" : all;
     if (how == "code" && kind == "alloc") return firsts();
-    const double step = all == nullptr ? static_cast<double>(count) / static_cast<double>(most)
+    const double step = all == nullptr  ? static_cast<double>(count) / static_cast<double>(most)
                         : how == "code" ? 1
                                         : std::atof(all);
     std::vector<long> places;

@@ -11,7 +11,8 @@
 //             vanish  the folder LACQUER_FAULT_FOLDER is moved away (to its name with .gone), then the call
 //             is made
 //   LACQUER_FAULT_COUNTS=FILE     how many calls of each kind there were: "alloc 12", a line each
-//   LACQUER_FAULT_PLACES=FILE     which of the allocations are the first of their place in the code, as the innermost
+//   LACQUER_FAULT_PLACES=FILE     which of the allocations are the first of their place in the code, as the
+//   innermost
 //                                 calls on the stack say it: "12", a line each
 //   LACQUER_FAULT_TRACE=FILE      a line for each fsync ("fsync PATH") and each rename ("rename FROM TO")
 #include <dirent.h>
