@@ -1,5 +1,6 @@
 // Everything that runs on several threads, or may be called from several: small enough for the thread
 // sanitizer (`./dev tsan`), which looks at it for races; here the results are compared.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -91,6 +92,32 @@ TEST_F(Threads, theOtherParallelParts) {
   stress.samples = 600;
   EXPECT_FALSE(stressNodes(stress, {plain[0], "schlick"}, options, messages).empty());
   EXPECT_FALSE(hasError(messages));
+}
+
+/// What is made of the surroundings, and the programs that materials share, do not depend on how many threads
+/// there are.
+TEST_F(Threads, environmentsAndPrograms) {
+  std::string picture = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";
+  for (int i = 0; i < 4 * 8; ++i) picture += {'\x40', static_cast<char>(4 * i), '\x20', '\x81'};
+  writeText(folder_ / "sky.hdr", picture);
+  Messages messages;
+  for (const uint32_t jobs : {1U, 4U}) {
+    Options options = options_;
+    options.jobs = jobs;
+    options.validate = false;
+    options.programs = 2;
+    options.programs_report = (folder_ / fmt::format("report{}.json", jobs)).string();
+    EXPECT_TRUE(make(fmt::format("programs{}", jobs), options));
+    Environment environment;
+    environment.output = (folder_ / fmt::format("sky{}", jobs)).string();
+    environment.size = 32;
+    environment.samples = 64;
+    EXPECT_NE(writeEnvironment(environment, (folder_ / "sky.hdr").string(), options, messages), "");
+  }
+  EXPECT_FALSE(hasError(messages));
+  for (const char* made : {"programs", "sky"})
+    EXPECT_EQ(differences(folder_ / (made + std::string("1")), folder_ / (made + std::string("4"))), "")
+        << made;
 }
 
 /// Const functions of one object, and distinct objects, from distinct threads.
