@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <limits>
 
 #include "json/json.h"
 #include "json/path.h"
@@ -30,13 +30,15 @@ Share readShare(const Json& row, const Path& path, json::Report& report) {
       if (value.is_string()) share.file = value.get<std::string>();
     } else if (key == "material") {
       const bool index =
-          value.is_number_integer() && value.get<int64_t>() >= -1 && value.get<int64_t>() <= 1 << 30;
+          value.is_number_integer() && value.get<double>() >= -1 && value.get<double>() <= 1 << 30;
       if (!value.is_string() && !index) report.wrongType(here, "material", value, "a name or an index");
       if (value.is_string()) share.material = value.get<std::string>();
       if (index) share.material = value.get<int>();
     } else if (key == "share") {
-      const bool good = value.is_number() && value.get<double>() >= 0 && std::isfinite(value.get<double>());
-      if (!good) report.wrongType(here, "share", value, "a number of at least 0");
+      // A million of the largest are a number still.
+      constexpr double kMost = std::numeric_limits<float>::max();
+      const bool good = value.is_number() && value.get<double>() >= 0 && value.get<double>() <= kMost;
+      if (!good) report.wrongType(here, "share", value, "a number from 0 to 3.4e38");
       if (good) share.share = value.get<double>();
     } else {
       report.error("unknown-property", here, fmt::format("a share has no {}", quote(key)),

@@ -40,6 +40,9 @@ public:
       return tl::make_unexpected(std::move(wrong));
     const Result<environment::Panorama> panorama = panoramaOf(picture, options_, messages_);
     if (!panorama) return tl::make_unexpected(panorama.error());
+    // Before what takes a while.
+    if (const Result<bool> usable = makeFolder(of_.output); !usable)
+      return tl::make_unexpected(usable.error());
     const environment::MapOptions how{of_.size, of_.samples};
     const environment::LightTree tree(*panorama, environment::treeSizeOf(*panorama, how));
     const environment::Maps maps = environment::makeMaps(tree, how, progress);

@@ -101,6 +101,7 @@ public:
       return fail("no-such-material", {}, fmt::format("no material is named '{}'", printable(missing[0])),
                   "`lacquer gen` lists the materials of a file");
     inputs_ = files;
+    if (Result<void> may = mayWrite(); !may) return tl::make_unexpected(std::move(may.error()));
     for (size_t f = 0; f < documents.size(); ++f) {
       FileImages images(documents[f].path, options_);
       for (const material::Material& material : documents[f].materials)
@@ -177,6 +178,16 @@ private:
       return good;
     if (!subject.driver().empty()) driver_ = subject.driver();
     chains_.push_back(std::move(made));
+    return {};
+  }
+
+  /// Before the search, which takes a while: the folder, and the names that are known.
+  Result<void> mayWrite() const {
+    if (Diagnostics wrong = clashes(inputs_, {lod_.output + "/manifest.json", lod_.output + "/report.html"});
+        !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    if (const Result<bool> usable = makeFolder(lod_.output); !usable)
+      return tl::make_unexpected(usable.error());
     return {};
   }
 

@@ -322,6 +322,7 @@ TEST(Outputs, areNoInputs) {
       {"gen", "manifest.json", "-o", "."},
       {"plan", "a.gltf", "-o", "out", "--ninja", "a.gltf"},
       {"preview", "a.gltf", "-o", "a.gltf", "--size", "16"},
+      {"lod", "manifest.json", "-o", "."},
   };
   for (const std::vector<std::string>& words : all) {
     fresh();
@@ -381,6 +382,21 @@ TEST(Outputs, areFiles) {
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(place / "a.d")));
   EXPECT_FALSE(place.has("nothing"));
   EXPECT_EQ(place.read("a.gltf"), gltf);
+}
+
+/// It is looked at before what takes a while.
+TEST(Outputs, areFoldersFirst) {
+  const Workplace place;
+  place.write("a.gltf", readFile(example("coat.gltf")));
+  place.write("sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + std::string(8, '\x7f'));
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"gen", "a.gltf", "-o", "a.gltf"},
+                                             {"lod", "a.gltf", "-o", "a.gltf"},
+                                             {"environment", "sky.hdr", "-o", "a.gltf"}}) {
+    const Outcome outcome = place.run(words);
+    expectRefused(outcome, "file-unwritable");
+    EXPECT_NE(outcome.err.find("the folder cannot be made"), std::string::npos) << outcome.err;
+  }
 }
 
 TEST(Outputs, areNotTheCachesKey) {

@@ -40,6 +40,10 @@ TEST(Weights, SayWhatIsWrong) {
   EXPECT_EQ(code(R"({"weights": [{"material": "a"}]})"), "missing-property");
   EXPECT_EQ(code(R"({"weights": [{"material": "a", "share": -1}]})"), "wrong-type");
   EXPECT_EQ(code(R"({"weights": [{"material": "a", "share": "x"}]})"), "wrong-type");
+  EXPECT_EQ(code(R"({"weights": [{"material": "a", "share": 3.4e38}]})"), "");
+  EXPECT_EQ(code(R"({"weights": [{"material": "a", "share": 1e308}, {"material": "b", "share": 1e308}]})"),
+            "wrong-type");
+  EXPECT_EQ(code(R"({"weights": [{"material": 18446744073709551615, "share": 1}]})"), "wrong-type");
   EXPECT_EQ(code(R"({"weights": [{"material": 0.5, "share": 1}]})"), "wrong-type");
   EXPECT_EQ(code(R"({"weights": [{"material": "a", "share": 1, "wieght": 1}]})"), "unknown-property");
   EXPECT_EQ(code(R"({"weights": [{"material": "a", "share": 0}]})"), "out-of-range");
