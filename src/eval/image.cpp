@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 
 #include "support/limits.h"
@@ -19,6 +20,12 @@ thread_local size_t largest_block = 0;
 void* takeBlock(size_t size) { return size <= largest_block ? std::calloc(size, 1) : nullptr; }
 void* growBlock(void* block, size_t size) {
   return size <= largest_block ? std::realloc(block, size) : nullptr;
+}
+
+/// Where a PNG's first chunk of data is empty the decoder copies none of it to a null pointer, which C leaves
+/// undefined.
+void* copyBlock(void* to, const void* from, size_t size) {
+  return size == 0 ? to : std::memcpy(to, from, size);
 }
 
 }  // namespace
@@ -41,7 +48,9 @@ void* growBlock(void* block, size_t size) {
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 #pragma GCC diagnostic ignored "-Wsign-compare"
 #endif
+#define memcpy copyBlock
 #include <stb/stb_image.h>
+#undef memcpy
 #ifdef __GNUC__
 #pragma GCC diagnostic pop
 #endif
