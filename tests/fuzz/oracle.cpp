@@ -32,6 +32,7 @@ std::string textOf(const Diagnostics& diagnostics) {
 
 /// Whether all that is connected lies in the range of what it goes to, as both are declared: what a parameter
 /// may be and a node may give, where check() looks at today's values alone and trusts the graph for the rest.
+/// Behind a broken promise a colour may come to anything.
 class Promises {
 public:
   Promises(const graph::Graph& graph, const lang::Library& library)
@@ -96,8 +97,9 @@ std::string codeOf(const ir::Module& module, const Language& language, const Opt
   return {};
 }
 
-/// Colours of samples over all inputs in their ranges, the material's parameters among them.
-std::string coloursOf(const graph::Graph& graph, const Language& language, uint64_t seed, bool positive) {
+/// Colours of samples over all inputs in their ranges, the material's parameters among them. `promised`: they
+/// must be good ones.
+std::string coloursOf(const graph::Graph& graph, const Language& language, uint64_t seed, bool promised) {
   Result<ir::Module> module = lower::lower(graph, language, {lower::ParameterMode::Uniform, true});
   if (!module) return "an accepted graph is not lowered:\n" + textOf(module.error());
   passes::PipelineOptions pipeline;
@@ -114,15 +116,15 @@ std::string coloursOf(const graph::Graph& graph, const Language& language, uint6
     const stress::Root& root = (*subject)->roots[r];
     if (root.kind != stress::Root::Kind::Result) continue;
     for (const double x : values[r]) {
-      if (!(std::isfinite(x) && (x >= 0 || !positive))) return fmt::format("{} comes to {}", root.name, x);
+      if (!(std::isfinite(x) && x >= 0) && promised) return fmt::format("{} comes to {}", root.name, x);
     }
   }
   return {};
 }
 
-/// `graph` is checked. `positive`: no colour may be negative.
+/// `graph` is checked. `promised`: its colours must be good.
 std::string judge(const graph::Graph& graph, const Language& language, Options options, uint64_t seed,
-                  bool positive) {
+                  bool promised) {
   if (seed % kTextsEvery == 0) {
     options.targets = {Target::Glsl, Target::GlslGl, Target::Essl, Target::Hlsl, Target::Spirv};
     if (options.parameters == Parameters::Spec) options.targets = {Target::Glsl, Target::Spirv};
@@ -131,7 +133,7 @@ std::string judge(const graph::Graph& graph, const Language& language, Options o
   const Result<ir::Module> module = toModule(graph, language, options, {});
   if (!module) return "an accepted graph makes no module:\n" + textOf(module.error());
   if (std::string wrong = codeOf(*module, language, options); !wrong.empty()) return wrong;
-  return graph.template_name == "forward" ? coloursOf(graph, language, seed, positive) : std::string();
+  return graph.template_name == "forward" ? coloursOf(graph, language, seed, promised) : std::string();
 }
 
 }  // namespace
