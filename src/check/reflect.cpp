@@ -126,7 +126,7 @@ uint32_t get(const Decorations& decorations, spv::Decoration decoration) {
 }
 
 void Reader::readEntryPoint(const Instruction& instruction) {
-  if (found_ || static_cast<spv::ExecutionModel>(instruction.at(1)) != model_) return;
+  if (found_ || instruction.at(1) != static_cast<uint32_t>(model_)) return;
   found_ = true;
   interface_.entry = instruction.text(3);
 }
@@ -296,7 +296,8 @@ uint32_t Reader::memberBytes(uint32_t type_id, const Decorations& member) const 
 void Reader::readVariable(const Instruction& instruction) {
   const uint32_t type_id = typeOf(instruction.at(1)).element;
   const Decorations& decorations = decorationsOf(instruction.at(2));
-  const auto storage = static_cast<spv::StorageClass>(instruction.at(3));
+  const uint32_t storage =
+      instruction.at(3);  // whatever the file says, and so no value of the enumeration yet
   if (storage == spv::StorageClassInput) {
     readSlots(type_id, decorations, interface_.inputs);
   } else if (storage == spv::StorageClassOutput) {
@@ -305,8 +306,9 @@ void Reader::readVariable(const Instruction& instruction) {
     interface_.push_constant_bytes = std::max(interface_.push_constant_bytes, typeOf(type_id).bytes);
   } else if (storage == spv::StorageClassUniform || storage == spv::StorageClassUniformConstant ||
              storage == spv::StorageClassStorageBuffer) {
-    readPlace(instruction, storage, decorations);
-    readResource(type_id, storage, decorations);
+    const auto known = static_cast<spv::StorageClass>(storage);
+    readPlace(instruction, known, decorations);
+    readResource(type_id, known, decorations);
   }
 }
 
