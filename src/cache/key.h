@@ -44,7 +44,6 @@ public:
   }
   KeyBuilder& key(const Key& key) { return number(key.high).number(key.low); }
   Key finish() const;
-  void reset() { bytes_.clear(); }
 
 private:
   std::string bytes_;

@@ -237,8 +237,8 @@ void writeSkipped(const std::vector<std::pair<std::string, std::string>>& skippe
 }
 
 Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting) {
-  thread_local KeyBuilder key;
-  key.reset();
+  KeyBuilder key;  // none that a thread keeps: the C library ends the process where it has no memory to note
+                   // its destructor
   const bool baked = setting.options.parameters == Parameters::Baked;
   key.text("structure").key(setting.base);
   addOptions(setting.options, {Decides::Module}, key);

@@ -202,11 +202,9 @@ protected:
     ASSERT_GT(count, 0) << kind;
     const std::vector<long> places = chosen(kind, count, most);
     EXPECT_FALSE(places.empty());
-    for (const long n : places) {
-      if (HasFailure()) break;
-      at(kind, n, action, exits);
-    }
-    std::cout << fmt::format("{} {}s, {} of {} places\n", kind, action, places.size(), count);
+    size_t tried = 0;
+    for (; tried < places.size() && !HasFailure(); ++tried) at(kind, places[tried], action, exits);
+    std::cout << fmt::format("{} {}s, {} of {} places\n", kind, action, tried, count);
   }
 
   fs::path root_;
