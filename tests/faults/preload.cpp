@@ -3,6 +3,7 @@
 //
 //   LACQUER_FAULT=KIND:N:ACTION   at the Nth call of a kind:
 //     KIND    alloc   malloc, calloc, realloc, aligned_alloc, posix_memalign: ENOMEM
+//             tbb     of these, what libtbb asks for, itself or by operator new
 //             file    whatever opens, reads, writes, looks at, moves or removes a file or a folder: EIO
 //             space   of these, what needs room on the disk: ENOSPC, and so do all that follow
 //             thread  pthread_create: EAGAIN
@@ -19,6 +20,7 @@
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <fcntl.h>
+#include <link.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -35,9 +37,9 @@
 
 namespace {
 
-enum Kind { kAlloc, kFile, kSpace, kThread, kKinds };
-constexpr const char* kNames[] = {"alloc", "file", "space", "thread"};
-constexpr int kErrors[] = {ENOMEM, EIO, ENOSPC, EAGAIN};
+enum Kind { kAlloc, kTbb, kFile, kSpace, kThread, kKinds };
+constexpr const char* kNames[] = {"alloc", "tbb", "file", "space", "thread"};
+constexpr int kErrors[] = {ENOMEM, ENOMEM, EIO, ENOSPC, EAGAIN};
 
 struct Plan {
   int kind = -1;
@@ -111,6 +113,38 @@ bool strikes(Kind kind) {
   return true;
 }
 
+/// Where libtbb lies; looked for only when it matters.
+struct Code {
+  uintptr_t from = 0, to = 0;
+};
+Code tbb;
+
+int findTbb(dl_phdr_info* info, size_t, void*) {
+  if (strstr(info->dlpi_name, "libtbb.so") == nullptr) return 0;
+  tbb.from = info->dlpi_addr;
+  for (int i = 0; i < info->dlpi_phnum; ++i) {
+    const uintptr_t end = info->dlpi_addr + info->dlpi_phdr[i].p_vaddr + info->dlpi_phdr[i].p_memsz;
+    if (info->dlpi_phdr[i].p_type == PT_LOAD && end > tbb.to) tbb.to = end;
+  }
+  return 1;
+}
+
+/// An allocation, by whomever; another kind where it is for libtbb.
+bool strikesAlloc() {
+  const bool bad = strikes(kAlloc);
+  if (tbb.to == 0 || inside || !active.load(std::memory_order_relaxed)) return bad;
+  constexpr int kFrames = 4;  // this function, malloc, perhaps operator new, and who wants it
+  void* frames[kFrames];
+  inside = true;
+  const int depth = backtrace(frames, kFrames);
+  inside = false;
+  for (int i = 0; i < depth; ++i) {
+    const auto at = reinterpret_cast<uintptr_t>(frames[i]);
+    if (at >= tbb.from && at < tbb.to) return strikes(kTbb) || bad;
+  }
+  return bad;
+}
+
 /// A call that needs room, too.
 bool strikesSpace() {
   const bool full = strikes(kSpace);
@@ -141,9 +175,10 @@ void begin() {
     trace = open(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   if (const char* file = getenv("LACQUER_FAULT_PLACES")) {
     places = open(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    void* frame = nullptr;
-    backtrace(&frame, 1);  // loads what it needs
   }
+  if (plan.kind == kTbb || getenv("LACQUER_FAULT_COUNTS") != nullptr) dl_iterate_phdr(findTbb, nullptr);
+  void* frame = nullptr;
+  if (places >= 0 || tbb.to != 0) backtrace(&frame, 1);  // loads what it needs
   active = true;
 }
 
@@ -202,13 +237,13 @@ void* malloc(size_t size) {
   static auto* kReal = static_cast<void* (*)(size_t)>(nullptr);
   if (kReal == nullptr && !inside) kReal = real<void* (*)(size_t)>("malloc");
   if (kReal == nullptr) return earlyAlloc(size);
-  return strikes(kAlloc) ? nullptr : kReal(size);
+  return strikesAlloc() ? nullptr : kReal(size);
 }
 void* calloc(size_t n, size_t size) {
   static auto* kReal = static_cast<void* (*)(size_t, size_t)>(nullptr);
   if (kReal == nullptr && !inside) kReal = real<void* (*)(size_t, size_t)>("calloc");
   if (kReal == nullptr) return earlyAlloc(n * size);
-  return strikes(kAlloc) ? nullptr : kReal(n, size);
+  return strikesAlloc() ? nullptr : kReal(n, size);
 }
 void free(void* at) {
   static const auto kReal = real<void (*)(void*)>("free");
@@ -221,13 +256,13 @@ void* realloc(void* at, size_t size) {
     if (to != nullptr) memcpy(to, at, size);
     return to;
   }
-  return strikes(kAlloc) ? nullptr : kReal(at, size);
+  return strikesAlloc() ? nullptr : kReal(at, size);
 }
 FAULT(
-    void*, aligned_alloc, nullptr, [] { return strikes(kAlloc); }, (size_t a, size_t n), (a, n))
+    void*, aligned_alloc, nullptr, [] { return strikesAlloc(); }, (size_t a, size_t n), (a, n))
 int posix_memalign(void** to, size_t a, size_t n) {
   static const auto kReal = real<int (*)(void**, size_t, size_t)>("posix_memalign");
-  return strikes(kAlloc) ? ENOMEM : kReal(to, a, n);
+  return strikesAlloc() ? ENOMEM : kReal(to, a, n);
 }
 
 /// Looks the allocator up before anything else does: dlerror() allocates, and dlsym() within would free what
