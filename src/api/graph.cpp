@@ -162,9 +162,12 @@ bool Graph::check(Messages& messages, const Options& options) {
     report(library.error(), {}, messages);
     return false;
   }
+  const Diagnostics doubts = graph::doubts(impl_->graph, **library);
   const Diagnostics found = graph::check(impl_->graph, **library);
   report(found, impl_->file, messages);
-  return !lacquer::hasError(found);
+  if (lacquer::hasError(found)) return false;
+  report(doubts, impl_->file, messages);
+  return true;
 }
 
 Result<ir::Module> Graph::Impl::module(const Options& options, Diagnostics (*check)(const Options&),

@@ -120,6 +120,13 @@ struct Graph {
 /// JSON form.
 Diagnostics check(Graph& graph, const lang::Library& library);
 
+/// Warnings ("may-leave-range") of what check() takes on trust: what is connected and may come to lie outside
+/// of the range of what it goes to, by the range of a parameter or what a node or the template is declared to
+/// give; with `undeclared` also of what is declared to give no range at all. Where there is neither, a
+/// checked graph's colours are finite and not negative. What is wrong in another way is left to check(),
+/// which may order the nodes: places are those before it.
+Diagnostics doubts(const Graph& graph, const lang::Library& library, bool undeclared = false);
+
 /// The JSON form (docs/graph-format.md), two spaces of indent, stable key order, a final newline.
 std::string toJson(const Graph& graph);
 

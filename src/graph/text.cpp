@@ -62,11 +62,13 @@ void shorten(Diagnostics& diagnostics) {
   constexpr size_t kMost = 100;
   if (diagnostics.size() <= kMost) return;
   const size_t more = diagnostics.size() - kMost;
+  const bool errors = std::any_of(diagnostics.begin() + kMost, diagnostics.end(),
+                                  [](const Diagnostic& d) { return d.severity == Severity::Error; });
   diagnostics.resize(kMost);
   diagnostics.push_back({"more-errors",
                          Severity::Note,
                          diagnostics[0].place,
-                         fmt::format("{} more errors are not shown", more),
+                         fmt::format("{} more {} are not shown", more, errors ? "errors" : "warnings"),
                          {},
                          {}});
   diagnostics.back().place.pointer.clear();

@@ -448,6 +448,16 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
   return result;
 }
 
+/// For whoever wrote the graph, on the screen alone: a manifest would differ from that of the file which the
+/// graph was made of.
+static void addDoubts(const graph::Graph& graph, const std::string& path, const lang::Library& library,
+                      Diagnostics& to) {
+  for (Diagnostic& doubt : graph::doubts(graph, library)) {
+    doubt.place.file = path;
+    to.push_back(std::move(doubt));
+  }
+}
+
 FileResult readGraph(const std::string& path, const Setting& setting, Structures& structures) {
   const Result<std::string> text = readFile(path, setting.limits.file);
   Result<graph::Graph> graph =
@@ -462,6 +472,7 @@ FileResult readGraph(const std::string& path, const Setting& setting, Structures
   result.diagnostics = std::move(done.diagnostics);
   result.structures = std::move(done.structures);
   result.ok = done.report.ok;
+  if (result.ok) addDoubts(*graph, path, setting.library, result.diagnostics);
   result.materials.push_back(std::move(done.report));
   JsonText json(kFileDepth);
   json.beginObject()

@@ -109,6 +109,23 @@ TEST(Edits, ofAnIndexOfRefractionHaveItsExactRange) {
   }
 }
 
+/// What may leave the range of what it goes to is good, and said.
+TEST(Edits, areDoubtedWhereRangesDoNotFit) {
+  Messages messages;
+  Graph graph = paintGraph();
+  EXPECT_TRUE(graph.addNode("my.f0", "f0_from_ior", messages));
+  EXPECT_TRUE(graph.setParameter("my_ior", {1.5}, messages));
+  EXPECT_TRUE(graph.connect("my.f0", "ior", R"({"parameter": "my_ior"})", messages));
+  EXPECT_TRUE(graph.check(messages));
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].code, "may-leave-range");
+  EXPECT_EQ(messages[0].level, Message::Level::Warning);
+  messages.clear();
+  EXPECT_TRUE(graph.setRange("my_ior", {1, 3}, messages));
+  EXPECT_TRUE(graph.check(messages));
+  EXPECT_TRUE(messages.empty());
+}
+
 /// What a glTF file's coat may have, its graph may have, and nothing else.
 TEST(Edits, ofACoatsIndexOfRefraction) {
   Messages messages;

@@ -283,5 +283,23 @@ TEST(BadGraphs, areDiagnosticsAndOne) {
   EXPECT_EQ(place.run({"gen", "--graph", "none.json", "-o", "out"}).status, 1);
 }
 
+/// A number that may leave the range of what it goes to makes a shader, and its author is told.
+TEST(Inputs, graphsThatMayLeaveARange) {
+  const Workplace place;
+  const std::string graph =
+      R"({"lacquer_graph": 1, "template": "forward", "parameters": {"x": {"type": "float", "value": 1.5RANGE}},
+          "nodes": [{"id": "f", "node": "f0_from_ior", "inputs": {"ior": {"parameter": "x"}}}],
+          "outputs": {"alpha": {"node": "f"}}})";
+  for (const std::string range : {"", R"(, "range": [1, 3])"}) {
+    std::string text = graph;
+    text.replace(text.find("RANGE"), 5, range);
+    place.write("g.json", text);
+    const Outcome outcome = place.run({"gen", "--graph", "g.json", "-o", "out", "--target", "glsl"});
+    EXPECT_EQ(outcome.status, 0) << outcome.all();
+    const bool told = outcome.err.starts_with("g.json:/nodes/0/inputs/ior: warning: ");
+    EXPECT_EQ(told, range.empty()) << outcome.err;
+  }
+}
+
 }  // namespace
 }  // namespace lacquer::test

@@ -30,60 +30,6 @@ std::string textOf(const Diagnostics& diagnostics) {
   return text;
 }
 
-/// Whether all that is connected lies in the range of what it goes to, as both are declared: what a parameter
-/// may be and a node may give, where check() looks at today's values alone and trusts the graph for the rest.
-/// Behind a broken promise a colour may come to anything.
-class Promises {
-public:
-  Promises(const graph::Graph& graph, const lang::Library& library)
-      : graph_(graph), library_(library), template_(**library.template_(graph.template_name)) {}
-
-  bool kept() const {
-    for (const graph::Node& node : graph_.nodes) {
-      for (const auto& [name, source] : node.inputs) {
-        if (!fits(source, named((*library_.node(node.type))->params, name))) return false;
-      }
-    }
-    return std::all_of(graph_.outputs.begin(), graph_.outputs.end(), [&](const auto& output) {
-      const auto port = std::find_if(template_.ports.begin(), template_.ports.end(),
-                                     [&](const lang::PortDecl& p) { return p.param.name == output.first; });
-      return fits(output.second, port->param);
-    });
-  }
-
-private:
-  static const lang::Param& named(const std::vector<lang::Param>& params, std::string_view name) {
-    return *std::find_if(params.begin(), params.end(), [&](const lang::Param& p) { return p.name == name; });
-  }
-
-  bool fits(const graph::Source& source, const lang::Param& into) const {
-    if (!into.has_range || !ir::isFloating(into.type)) return true;
-    const ir::Range* range = rangeOf(source);
-    if (range == nullptr) return std::holds_alternative<graph::Literal>(source.from);
-    const bool gap = into.range.gap > range->gap && range->lo < into.range.gap;
-    return range->lo >= into.range.lo && range->hi <= into.range.hi && !gap;
-  }
-
-  /// Null for a literal, which check() has looked at, and where nothing is declared.
-  const ir::Range* rangeOf(const graph::Source& source) const {
-    if (const auto* parameter = std::get_if<graph::ParameterRef>(&source.from))
-      return &graph_.parameters[*graph_.findParameter(parameter->name)].range;
-    const lang::Param* declared = nullptr;
-    if (const auto* given = std::get_if<graph::GivenRef>(&source.from)) {
-      const auto found = template_.find(given->name);
-      declared = &found->given->results[found->index];
-    } else if (const auto* node = std::get_if<graph::NodeRef>(&source.from)) {
-      const std::string& type = graph_.nodes[*graph_.find(node->node)].type;
-      declared = &named((*library_.node(type))->results, node->output);
-    }
-    return declared != nullptr && declared->has_range ? &declared->range : nullptr;
-  }
-
-  const graph::Graph& graph_;
-  const lang::Library& library_;
-  const lang::TemplateDecl& template_;
-};
-
 std::string codeOf(const ir::Module& module, const Language& language, const Options& options) {
   ShaderData data;
   data.module = module;
@@ -167,7 +113,9 @@ std::string judgeGraph(std::string_view bytes) {
   const auto language = libraryFor(options);
   Result<graph::Graph> graph = graph::fromJson(bytes, "fuzz.json");
   if (!graph || lacquer::hasError(graph::check(*graph, **language))) return {};
-  return judge(*graph, **language, options, keyOf(bytes).high, Promises(*graph, **language).kept());
+  // Where something may leave the range of what it goes to, a colour may come to anything.
+  const bool promised = graph::doubts(*graph, **language, true).empty();
+  return judge(*graph, **language, options, keyOf(bytes).high, promised);
 }
 
 }  // namespace lacquer::fuzz

@@ -12,11 +12,14 @@ void checkCase(const std::filesystem::path& file) {
   std::string text;
   if (Result<graph::Graph> graph = graph::fromJson(readFile(file), name)) {
     const std::string before = toJson(*graph);
+    Diagnostics doubts = graph::doubts(*graph, sampleLibrary());
     Diagnostics found = graph::check(*graph, sampleLibrary());
-    for (Diagnostic& one : found) {
-      if (one.place.file.empty()) one.place.file = name;
+    for (Diagnostics* all : {&found, &doubts}) {
+      for (Diagnostic& one : *all) {
+        if (one.place.file.empty()) one.place.file = name;
+      }
     }
-    text = formatAll(found);
+    text = formatAll(found) + (hasError(found) ? "" : formatAll(doubts));
     if (hasError(found)) {
       text += "---- wrong\n";
       EXPECT_EQ(toJson(*graph), before) << "a graph with errors stays as it was";

@@ -16,6 +16,7 @@ void buildAndCheck(const material::Material& material, const gltf::VertexAttribu
   EXPECT_FALSE(hasError(warnings)) << formatAll(warnings);
   const std::vector<graph::Node> built = graph.nodes;
   EXPECT_EQ(formatAll(graph::check(graph, builtInLibrary())), "") << toJson(graph);
+  EXPECT_EQ(formatAll(graph::doubts(graph, builtInLibrary())), "") << "no node gives more than is taken";
   EXPECT_EQ(graph.nodes, built) << "sources stand before their users already";
   const std::string text = toJson(graph);
   EXPECT_EQ(toJson(graphOf(text)), text);

@@ -1,5 +1,5 @@
 #version 300 es
-// forward-anisotropy-83e67ac75c1c69db
+// forward-base-6c3f4340161dba3a
 // Lacquer 0.2.0, template forward
 
 precision highp float;
@@ -29,39 +29,51 @@ layout(std140) uniform Lights {
     Light lights[16];
 };
 
+layout(std140) uniform SeeThrough {
+    vec4 scene_u;
+    vec4 scene_v;
+    vec4 scene_w;
+    float scene_max_lod;
+} see_through;
+
 layout(std140) uniform Material {
     vec3 base_color_factor;
     float metallic_factor;
     vec3 lower_f0;
     float roughness_factor;
     vec3 one_minus_lower_f0;
-    float alpha;
+    float film_thickness;
     vec3 turn;
-    float anisotropy_strength;
-    vec3 body;
-    float strength;
-    vec3 mean_fresnel;
+    float film_thickness_2;
+    vec3 front;
+    float iridescence_factor;
+    vec3 tint;
     float inverse_ior2;
+    vec3 mean_fresnel;
     float least_cos2_t;
-    float longest;
+    float iridescence_ior_times_0_000125;
     float r_squared;
     float F0_complement;
     float film_fresnel;
     float film_fresnel_2;
     float film_fresnel_3;
-    float alpha_b2;
+    float alpha2;
+    float ggx_peak;
+    float alpha2_ratio;
+    float weight_times_ggx_peak;
+    float complement_root;
+    float one_minus_transmission_factor;
     float dielectric;
-    float smoothness_times_anisotropy_strength;
 } material;
 
 uniform samplerCube environment_specular;
 uniform samplerCube environment_irradiance;
 uniform sampler2D environment_dfg;
-uniform sampler2D anisotropy_texture;
+uniform sampler2D scene_behind;
+uniform sampler2D iridescence_thickness_texture;
 
 in vec3 v_position;
 in vec3 v_normal;
-in vec4 v_tangent;
 in vec2 v_uv0;
 
 layout(location = 0) out vec4 out_color;
@@ -70,41 +82,33 @@ void main() {
     // view: glTF 2.0, Appendix B, "Overview"
     vec3 to_eye = frame.camera_position - v_position;
     float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
-    vec3 V = to_eye * inversesqrt(to_eye.x * to_eye.x + view_part);
+    float view_part_2 = inversesqrt(to_eye.x * to_eye.x + view_part);
+    vec3 V = to_eye * view_part_2;
 
     // normal.unit: glTF 2.0, "Meshes"
     float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
     vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit_part);
 
-    // anisotropy.texel: glTF 2.0, "Textures"
-    vec4 texel = texture(anisotropy_texture, v_uv0);
+    // iridescence_thickness.texel: glTF 2.0, "Textures"
+    vec4 texel = texture(iridescence_thickness_texture, v_uv0);
 
-    // anisotropy.decoded: KHR_materials_coat, "Anisotropy" (dequantization)
-    vec2 d = texel.xy * 2.0 - 1.0;
-    float length2 = dot(d, d);
-    vec2 unit = d * inversesqrt(length2 + 1e-32);
-    vec2 direction = 1e-12 < length2 ? unit : vec2(1.0, 0.0);
+    // film.thickness: KHR_materials_iridescence, "Properties"
+    float thickness = mix(material.film_thickness, material.film_thickness_2, texel.y);
 
-    // anisotropy.textured: KHR_materials_coat, "Parameter Combinations"
-    float textured = texel.z * material.anisotropy_strength;
-
-    // anisotropy.across: KHR_materials_coat, "Anisotropy"
-    vec3 across_part = v_tangent.xyz * direction.x + cross(N, v_tangent.xyz) * (v_tangent.w * direction.y);
-    vec3 normal_to_both = cross(N, across_part);
-    float anisotropy_across_part = normal_to_both.y * normal_to_both.y + (normal_to_both.z * normal_to_both.z + 1e-32);
-    vec3 across = normal_to_both * inversesqrt(normal_to_both.x * normal_to_both.x + anisotropy_across_part);
-
-    // anisotropy.alpha: KHR_materials_coat, "Anisotropy" (directionAlphaRoughness)
-    float alpha_t = mix(material.alpha, 1.0, textured * textured);
+    // film.strength: KHR_materials_iridescence, "Properties"
+    float there = clamp(thickness * 10.0, 0.0, 1.0);
+    float strength = material.iridescence_factor * there;
 
     // base.view_cosine: KHR_materials_clearcoat, "Layering"
-    float signed_NdotV = dot(N, V);
-    float view_cosine = abs(signed_NdotV);
+    float view_cosine_part = dot(N, to_eye);
+    float signed_NdotV = view_cosine_part * view_part_2;
+    float view_cosine = abs(view_cosine_part) * view_part_2;
 
     // film.fresnel: KHR_materials_iridescence, "Iridescence Fresnel"; Belcour and Barla 2017
     float view_cosine2 = view_cosine * view_cosine;
     float cos_t = sqrt(material.least_cos2_t + material.inverse_ior2 * view_cosine2);
-    float path = clamp(material.longest * cos_t, 0.0, 1.0);
+    float longest = material.iridescence_ior_times_0_000125 * thickness;
+    float path = clamp(longest * cos_t, 0.0, 1.0);
     float c = 1.0 - view_cosine;
     float c2 = c * c;
     float upper = material.r_squared + material.F0_complement * (c2 * c2 * abs(c));
@@ -137,21 +141,11 @@ void main() {
     vec3 swing = repeated - through;
     vec3 metal = clamp(upper + repeated + swing * (sqrt(both) * film_first_rgb + both * film_second), 0.0, 1.0);
 
-    // anisotropy.cosines: KHR_materials_coat, "Anisotropy" (D, in h.t and h.b)
-    float BdotV = dot(across, V);
+    // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float masked_view = sqrt(material.alpha2_ratio + view_cosine2);
 
-    // anisotropy.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
-    float narrowness = min(material.alpha / alpha_t, 1.0);
-    float narrowness2 = narrowness * narrowness;
-    float narrowness2_complement = 1.0 - narrowness2;
-    float ggx_peak = material.alpha_b2 * narrowness / 3.1415927;
-
-    // anisotropy.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
-    float alpha_t2 = alpha_t * alpha_t;
-    float alpha2_difference = max(alpha_t2 - material.alpha_b2, 0.0);
-    float alpha_t2_complement = 1.0 - alpha_t2;
-    float masked_view2 = alpha_t2 - alpha2_difference * (BdotV * BdotV) + alpha_t2_complement * view_cosine2;
-    float masked_view = sqrt(clamp(masked_view2, 0.0, 1.0));
+    // behind.visibility: KHR_materials_transmission, "Implementation Notes" (V_T)
+    float behind_masked_view = view_cosine + material.complement_root * masked_view;
 
     // output
     vec3 light_sum = vec3(0.0);
@@ -162,17 +156,37 @@ void main() {
         float inverse_distance = mix(1.0, inversesqrt(distance2), lights[i].positional);
         vec3 L = to_light * inverse_distance;
         float window = clamp(1.0 - distance2 * (distance2 * lights[i].inverse_range_4), 0.0, 1.0);
-        float cone = clamp(lights[i].spot_offset - dot(L, lights[i].direction) * lights[i].spot_scale, 0.0, 1.0);
+        float cone = clamp(lights[i].spot_offset - dot(to_light, lights[i].direction) * inverse_distance * lights[i].spot_scale, 0.0, 1.0);
         vec3 radiance = lights[i].radiance * (window * (cone * cone) * (inverse_distance * inverse_distance));
 
         // half: glTF 2.0, Appendix B, "Overview"
         vec3 sum = V + L;
-        float half_length2 = dot(sum, sum);
-        float VdotH = clamp(0.5 * sqrt(half_length2), 0.0, 1.0);
+        float length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
 
         // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
-        float NdotL = clamp(dot(N, L), 0.0, 1.0);
-        float NdotSum = NdotL + signed_NdotV;
+        float signed_NdotL = dot(N, to_light) * inverse_distance;
+        float NdotL = clamp(signed_NdotL, 0.0, 1.0);
+
+        // behind.cosines: KHR_materials_transmission, "Implementation Notes" (the half vector of transmission)
+        float behind_NdotL = clamp(-signed_NdotL, 0.0, 1.0);
+        float NdotSum = behind_NdotL + signed_NdotV;
+        float straight = signed_NdotL + signed_NdotV;
+        float either = min(abs(signed_NdotL), 1.0);
+
+        // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        vec3 planar = sum - N * straight;
+        float planar2 = dot(planar, planar);
+        float spread = planar2 + material.alpha2 * (straight * straight);
+        float facing = 0.0 < straight ? length2 * length2 : 0.0;
+        float denominator = spread * spread;
+
+        // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float masked_light = sqrt(material.alpha2_ratio + either * either);
+        float base_sum = either * masked_view + view_cosine * masked_light;
+
+        // base.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float specular = material.weight_times_ggx_peak * facing / (denominator * base_sum + 3e-32);
 
         // dielectric.schlick: glTF 2.0, Appendix B, "Fresnel"; KHR_materials_specular, "Implementation"
         float dielectric_c = 1.0 - VdotH;
@@ -182,40 +196,50 @@ void main() {
         // metal.schlick: glTF 2.0, Appendix B, "Fresnel"; KHR_materials_specular, "Implementation"
         vec3 F = mix(material.base_color_factor, vec3(1.0), weight);
 
-        // anisotropy.cosines: KHR_materials_coat, "Anisotropy" (D, in h.t and h.b)
-        float BdotL = dot(across, L);
+        // behind.half: KHR_materials_transmission, "Implementation Notes" (the half vector of transmission)
+        float NdotSum2 = NdotSum * NdotSum;
+        float behind_length2 = planar2 + NdotSum2;
+        float behind_VdotH = clamp(0.5 * sqrt(behind_length2), 0.0, 1.0);
 
-        // anisotropy.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
-        vec3 planar = sum - N * NdotSum;
-        float planar2 = dot(planar, planar);
-        float BdotSum = BdotV + BdotL;
-        float spread = narrowness2_complement * (BdotSum * BdotSum) + narrowness2 * planar2 + material.alpha_b2 * (NdotSum * NdotSum);
-        float facing = 0.0 < NdotSum ? half_length2 * half_length2 : 0.0;
-        float numerator = facing * ggx_peak;
-        float denominator = spread * spread;
-
-        // anisotropy.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
-        float masked_light2 = alpha_t2 - alpha2_difference * (BdotL * BdotL) + alpha_t2_complement * (NdotL * NdotL);
-        float masked_light = sqrt(clamp(masked_light2, 0.0, 1.0));
-        float visibility = 2.0 * (NdotL * masked_view + view_cosine * masked_light);
-
-        // anisotropy.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
-        float specular = numerator / (denominator * visibility + 3e-32);
+        // behind.schlick: glTF 2.0, Appendix B, "Fresnel"; KHR_materials_specular, "Implementation"
+        float behind_c = 1.0 - behind_VdotH;
+        float behind_c2 = behind_c * behind_c;
+        float behind_weight = behind_c2 * behind_c2 * behind_c;
 
         // film.dielectric: KHR_materials_iridescence, "Layering"
-        vec3 film_F = mix(vec3(mix(0.04, 1.0, weight)), dielectric, material.strength);
+        vec3 film_F = mix(vec3(mix(0.04, 1.0, weight)), dielectric, strength);
         float most = max(max(film_F.x, film_F.y), film_F.z);
 
         // film.metal: KHR_materials_iridescence, "Layering"
-        vec3 film_F_2 = mix(F, metal, material.strength);
+        vec3 film_F_2 = mix(F, metal, strength);
+
+        // film.behind: KHR_materials_iridescence, "Layering"
+        vec3 film_F_3 = mix(vec3(mix(0.04, 1.0, behind_weight)), dielectric, strength);
+        float film_most = max(max(film_F_3.x, film_F_3.y), film_F_3.z);
+
+        // behind.distribution: KHR_materials_transmission, "Implementation Notes" (D_T)
+        float behind_spread = planar2 + material.alpha2 * NdotSum2;
+        float behind_facing = 0.0 < NdotSum ? behind_length2 * behind_length2 : 0.0;
+        float numerator = behind_facing * material.ggx_peak;
+        float behind_denominator = behind_spread * behind_spread;
+
+        // behind.visibility: KHR_materials_transmission, "Implementation Notes" (V_T)
+        float behind_masked_light = either + material.complement_root * masked_light;
+        float visibility = behind_masked_view * behind_masked_light;
+
+        // behind.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float behind_specular = numerator / (behind_denominator * visibility + 3e-32);
 
         // base.direct: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"; KHR_materials_specular, "Implementation"
         float reflected = specular * NdotL;
         float refracted = NdotL * (material.dielectric * (1.0 - most));
-        vec3 direct = film_F * (material.dielectric * reflected) + film_F_2 * (material.metallic_factor * reflected) + material.body * refracted;
+        vec3 direct = film_F * (material.dielectric * reflected) + film_F_2 * (material.metallic_factor * reflected) + material.front * refracted;
+
+        // base.through: KHR_materials_transmission, "Transmission BTDF"; KHR_materials_diffuse_transmission, "Material Structure Updates"
+        vec3 base_through = direct + material.tint * (behind_specular * (behind_NdotL * (material.dielectric * (1.0 - film_most))));
 
         // output
-        light_sum += direct * radiance;
+        light_sum += base_through * radiance;
     }
 
     // base.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
@@ -232,21 +256,15 @@ void main() {
     vec3 bounces = 1.000001 - material.mean_fresnel * lost;
     vec3 metal_all = clamp(once / bounces, 0.0, 1.0);
 
-    // anisotropy.bent_normal: McAuley 2015, "Rendering the World of Far Cry 4"; as in the Khronos sample viewer's anisotropy
-    vec3 towards = V - across * BdotV;
-    float bend = material.smoothness_times_anisotropy_strength * texel.z;
-    float straight = 1.0 - bend;
-    float straight2 = straight * straight;
-    vec3 bent_normal = mix(towards, N, straight2 * straight2);
+    // clear.lod: KHR_materials_transmission, "Implementation Notes"; Khronos glTF sample viewer (applyIorToRoughness, log2 of the
+    float lod = material.roughness_factor * see_through.scene_max_lod;
 
-    // anisotropy.reflection: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
-    vec3 reflection = bent_normal * (2.0 * dot(bent_normal, V)) - V * dot(bent_normal, bent_normal);
+    // clear.scene: KHR_materials_transmission, "Implementation Notes"
+    vec4 clear_point = vec4(v_position, 1.0);
+    vec2 uv = vec2(dot(see_through.scene_u, clear_point), dot(see_through.scene_v, clear_point)) / max(dot(see_through.scene_w, clear_point), 1e-6);
 
-    // base.irradiance: glTF 2.0, Appendix B, "Diffuse BRDF"
-    vec3 mean = textureLod(environment_irradiance, v_normal, 0.0).xyz;
-
-    // base.body_indirect: glTF 2.0, Appendix B, "Diffuse BRDF"
-    vec3 body_indirect = material.base_color_factor * mean;
+    // clear.seen: KHR_materials_transmission, "Tinting"
+    vec3 seen = material.tint * textureLod(scene_behind, uv, lod).xyz;
 
     // film.dielectric_environment: Karis 2013, "Real Shading in Unreal Engine 4" (split sum, with a Fresnel that does not depend on the light)
     float dielectric_environment_part = 1.0 - lost;
@@ -254,12 +272,22 @@ void main() {
     vec3 film_bounces = 1.000001 - dielectric * lost;
     vec3 film_all = clamp(film_once / film_bounces, 0.0, 1.0);
 
-    // film.dielectric_once: KHR_materials_iridescence, "Layering"
-    vec3 film_F_3 = mix(vec3(environment_part), film_once, material.strength);
-
     // film.dielectric_all: KHR_materials_iridescence, "Layering"
-    vec3 film_F_4 = mix(vec3(dielectric_most), film_all, material.strength);
-    float film_most = max(max(film_F_4.x, film_F_4.y), film_F_4.z);
+    vec3 film_F_4 = mix(vec3(dielectric_most), film_all, strength);
+    float film_most_2 = max(max(film_F_4.x, film_F_4.y), film_F_4.z);
+
+    // base.transmitted: KHR_materials_transmission, "Transmission BTDF"
+    float under = material.dielectric * (1.0 - film_most_2);
+    vec3 transmitted = seen * under;
+
+    // base.irradiance: glTF 2.0, Appendix B, "Diffuse BRDF"
+    vec3 mean = textureLod(environment_irradiance, v_normal, 0.0).xyz;
+
+    // base.body_indirect: glTF 2.0, Appendix B, "Diffuse BRDF"
+    vec3 body_indirect = material.base_color_factor * mean;
+
+    // film.dielectric_once: KHR_materials_iridescence, "Layering"
+    vec3 dielectric_once = mix(vec3(environment_part), film_once, strength);
 
     // film.metal_environment: Karis 2013, "Real Shading in Unreal Engine 4" (split sum, with a Fresnel that does not depend on the light)
     vec3 film_once_2 = metal * dielectric_environment_part;
@@ -267,18 +295,17 @@ void main() {
     vec3 film_all_2 = clamp(film_once_2 / film_bounces_2, 0.0, 1.0);
 
     // film.metal_once: KHR_materials_iridescence, "Layering"
-    vec3 film_F_5 = mix(once, film_once_2, material.strength);
+    vec3 metal_once = mix(once, film_once_2, strength);
 
     // film.metal_all: KHR_materials_iridescence, "Layering"
-    vec3 film_F_6 = mix(metal_all, film_all_2, material.strength);
+    vec3 film_F_5 = mix(metal_all, film_all_2, strength);
 
     // base.indirect: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"; KHR_materials_specular, "Implementation"
-    vec3 base_once = film_F_3 * material.dielectric + film_F_5 * material.metallic_factor;
-    vec3 base_all = film_F_4 * material.dielectric + film_F_6 * material.metallic_factor;
-    float under = material.dielectric * (1.0 - film_most);
-    vec3 indirect_part = base_once * textureLod(environment_specular, reflection, material.roughness_factor * frame.environment_max_lod).xyz + max(base_all - base_once, 0.0) * mean;
-    vec3 indirect = indirect_part + body_indirect * under;
+    vec3 base_once = dielectric_once * material.dielectric + metal_once * material.metallic_factor;
+    vec3 base_all = film_F_4 * material.dielectric + film_F_5 * material.metallic_factor;
+    vec3 indirect_part = base_once * textureLod(environment_specular, view_cosine_part * 2.0 * N - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + max(base_all - base_once, 0.0) * mean;
+    vec3 indirect = indirect_part + body_indirect * (material.one_minus_transmission_factor * under);
 
     // output
-    out_color = vec4(light_sum + indirect * frame.environment_intensity, 1.0);
+    out_color = vec4(light_sum + indirect * frame.environment_intensity + transmitted, 1.0);
 }

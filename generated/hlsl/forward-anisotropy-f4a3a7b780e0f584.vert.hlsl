@@ -1,4 +1,4 @@
-// forward-anisotropy-83e67ac75c1c69db
+// forward-anisotropy-f4a3a7b780e0f584
 // Lacquer 0.2.0, template forward
 
 struct FrameBlock {

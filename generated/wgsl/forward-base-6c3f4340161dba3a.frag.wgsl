@@ -1,4 +1,4 @@
-// forward-base-2f98947534872e29
+// forward-base-6c3f4340161dba3a
 // Lacquer 0.2.0, template forward
 
 struct Frame {
@@ -295,7 +295,7 @@ fn main(
     let body_indirect = material.base_color_factor * mean;
 
     // film.dielectric_once: KHR_materials_iridescence, "Layering"
-    let film_F_5 = mix(vec3f(environment_part), film_once, strength);
+    let dielectric_once = mix(vec3f(environment_part), film_once, strength);
 
     // film.metal_environment: Karis 2013, "Real Shading in Unreal Engine 4" (split sum, with a Fresnel that does not depend on the light)
     let film_once_2 = metal * dielectric_environment_part;
@@ -303,14 +303,14 @@ fn main(
     let film_all_2 = clamp(film_once_2 / film_bounces_2, vec3f(0.0), vec3f(1.0));
 
     // film.metal_once: KHR_materials_iridescence, "Layering"
-    let film_F_6 = mix(once, film_once_2, strength);
+    let metal_once = mix(once, film_once_2, strength);
 
     // film.metal_all: KHR_materials_iridescence, "Layering"
-    let film_F_7 = mix(metal_all, film_all_2, strength);
+    let film_F_5 = mix(metal_all, film_all_2, strength);
 
     // base.indirect: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"; KHR_materials_specular, "Implementation"
-    let base_once = film_F_5 * material.dielectric + film_F_6 * material.metallic_factor;
-    let base_all = film_F_4 * material.dielectric + film_F_7 * material.metallic_factor;
+    let base_once = dielectric_once * material.dielectric + metal_once * material.metallic_factor;
+    let base_all = film_F_4 * material.dielectric + film_F_5 * material.metallic_factor;
     let indirect_part = base_once * textureSampleLevel(environment_specular, environment_specular_sampler, view_cosine_part * 2.0 * N - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + max(base_all - base_once, vec3f(0.0)) * mean;
     let indirect = indirect_part + body_indirect * (material.one_minus_transmission_factor * under);
 

@@ -1,8 +1,8 @@
 #version 450
-// forward-base-2f98947534872e29
+// forward-base-6c3f4340161dba3a
 // Lacquer 0.2.0, template forward
 
-layout(std140, binding = 0) uniform Frame {
+layout(std140, set = 0, binding = 0) uniform Frame {
     mat4 view_projection;
     vec3 camera_position;
     float environment_intensity;
@@ -10,7 +10,7 @@ layout(std140, binding = 0) uniform Frame {
     int light_count;
 } frame;
 
-layout(std140, binding = 3) uniform Object {
+layout(std140, set = 2, binding = 0) uniform Object {
     mat4 model;
     mat4 normal_matrix;
 } object;

@@ -1,4 +1,4 @@
-// forward-base-2f98947534872e29
+// forward-base-6c3f4340161dba3a
 // Lacquer 0.2.0, template forward
 
 struct Frame {

@@ -1,4 +1,4 @@
-// forward-anisotropy-83e67ac75c1c69db
+// forward-anisotropy-f4a3a7b780e0f584
 // Lacquer 0.2.0, template forward
 
 struct Frame {
@@ -260,11 +260,11 @@ fn main(
     let film_all = clamp(film_once / film_bounces, vec3f(0.0), vec3f(1.0));
 
     // film.dielectric_once: KHR_materials_iridescence, "Layering"
-    let film_F_3 = mix(vec3f(environment_part), film_once, material.strength);
+    let dielectric_once = mix(vec3f(environment_part), film_once, material.strength);
 
     // film.dielectric_all: KHR_materials_iridescence, "Layering"
-    let film_F_4 = mix(vec3f(dielectric_most), film_all, material.strength);
-    let film_most = max(max(film_F_4.x, film_F_4.y), film_F_4.z);
+    let film_F_3 = mix(vec3f(dielectric_most), film_all, material.strength);
+    let film_most = max(max(film_F_3.x, film_F_3.y), film_F_3.z);
 
     // film.metal_environment: Karis 2013, "Real Shading in Unreal Engine 4" (split sum, with a Fresnel that does not depend on the light)
     let film_once_2 = metal * dielectric_environment_part;
@@ -272,14 +272,14 @@ fn main(
     let film_all_2 = clamp(film_once_2 / film_bounces_2, vec3f(0.0), vec3f(1.0));
 
     // film.metal_once: KHR_materials_iridescence, "Layering"
-    let film_F_5 = mix(once, film_once_2, material.strength);
+    let metal_once = mix(once, film_once_2, material.strength);
 
     // film.metal_all: KHR_materials_iridescence, "Layering"
-    let film_F_6 = mix(metal_all, film_all_2, material.strength);
+    let film_F_4 = mix(metal_all, film_all_2, material.strength);
 
     // base.indirect: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"; KHR_materials_specular, "Implementation"
-    let base_once = film_F_3 * material.dielectric + film_F_5 * material.metallic_factor;
-    let base_all = film_F_4 * material.dielectric + film_F_6 * material.metallic_factor;
+    let base_once = dielectric_once * material.dielectric + metal_once * material.metallic_factor;
+    let base_all = film_F_3 * material.dielectric + film_F_4 * material.metallic_factor;
     let under = material.dielectric * (1.0 - film_most);
     let indirect_part = base_once * textureSampleLevel(environment_specular, environment_specular_sampler, reflection, material.roughness_factor * frame.environment_max_lod).xyz + max(base_all - base_once, vec3f(0.0)) * mean;
     let indirect = indirect_part + body_indirect * under;

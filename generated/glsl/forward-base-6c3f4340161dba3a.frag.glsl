@@ -1,13 +1,8 @@
-#version 300 es
-// forward-base-2f98947534872e29
+#version 450
+// forward-base-6c3f4340161dba3a
 // Lacquer 0.2.0, template forward
 
-precision highp float;
-precision highp int;
-precision highp sampler2D;
-precision highp samplerCube;
-
-layout(std140) uniform Frame {
+layout(std140, set = 0, binding = 0) uniform Frame {
     mat4 view_projection;
     vec3 camera_position;
     float environment_intensity;
@@ -25,18 +20,18 @@ struct Light {
     float spot_offset;
 };
 
-layout(std140) uniform Lights {
+layout(std140, set = 0, binding = 1) uniform Lights {
     Light lights[16];
 };
 
-layout(std140) uniform SeeThrough {
+layout(std140, set = 0, binding = 7) uniform SeeThrough {
     vec4 scene_u;
     vec4 scene_v;
     vec4 scene_w;
     float scene_max_lod;
 } see_through;
 
-layout(std140) uniform Material {
+layout(std140, set = 1, binding = 0) uniform Material {
     vec3 base_color_factor;
     float metallic_factor;
     vec3 lower_f0;
@@ -66,15 +61,15 @@ layout(std140) uniform Material {
     float dielectric;
 } material;
 
-uniform samplerCube environment_specular;
-uniform samplerCube environment_irradiance;
-uniform sampler2D environment_dfg;
-uniform sampler2D scene_behind;
-uniform sampler2D iridescence_thickness_texture;
+layout(set = 0, binding = 2) uniform samplerCube environment_specular;
+layout(set = 0, binding = 3) uniform samplerCube environment_irradiance;
+layout(set = 0, binding = 4) uniform sampler2D environment_dfg;
+layout(set = 0, binding = 8) uniform sampler2D scene_behind;
+layout(set = 1, binding = 1) uniform sampler2D iridescence_thickness_texture;
 
-in vec3 v_position;
-in vec3 v_normal;
-in vec2 v_uv0;
+layout(location = 0) in vec3 v_position;
+layout(location = 1) in vec3 v_normal;
+layout(location = 2) in vec2 v_uv0;
 
 layout(location = 0) out vec4 out_color;
 
@@ -287,7 +282,7 @@ void main() {
     vec3 body_indirect = material.base_color_factor * mean;
 
     // film.dielectric_once: KHR_materials_iridescence, "Layering"
-    vec3 film_F_5 = mix(vec3(environment_part), film_once, strength);
+    vec3 dielectric_once = mix(vec3(environment_part), film_once, strength);
 
     // film.metal_environment: Karis 2013, "Real Shading in Unreal Engine 4" (split sum, with a Fresnel that does not depend on the light)
     vec3 film_once_2 = metal * dielectric_environment_part;
@@ -295,14 +290,14 @@ void main() {
     vec3 film_all_2 = clamp(film_once_2 / film_bounces_2, 0.0, 1.0);
 
     // film.metal_once: KHR_materials_iridescence, "Layering"
-    vec3 film_F_6 = mix(once, film_once_2, strength);
+    vec3 metal_once = mix(once, film_once_2, strength);
 
     // film.metal_all: KHR_materials_iridescence, "Layering"
-    vec3 film_F_7 = mix(metal_all, film_all_2, strength);
+    vec3 film_F_5 = mix(metal_all, film_all_2, strength);
 
     // base.indirect: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"; KHR_materials_specular, "Implementation"
-    vec3 base_once = film_F_5 * material.dielectric + film_F_6 * material.metallic_factor;
-    vec3 base_all = film_F_4 * material.dielectric + film_F_7 * material.metallic_factor;
+    vec3 base_once = dielectric_once * material.dielectric + metal_once * material.metallic_factor;
+    vec3 base_all = film_F_4 * material.dielectric + film_F_5 * material.metallic_factor;
     vec3 indirect_part = base_once * textureLod(environment_specular, view_cosine_part * 2.0 * N - to_eye, material.roughness_factor * frame.environment_max_lod).xyz + max(base_all - base_once, 0.0) * mean;
     vec3 indirect = indirect_part + body_indirect * (material.one_minus_transmission_factor * under);
 

@@ -1,5 +1,5 @@
 #version 450
-// forward-anisotropy-83e67ac75c1c69db
+// forward-anisotropy-f4a3a7b780e0f584
 // Lacquer 0.2.0, template forward
 
 layout(std140, binding = 0) uniform Frame {
@@ -250,11 +250,11 @@ void main() {
     vec3 film_all = clamp(film_once / film_bounces, 0.0, 1.0);
 
     // film.dielectric_once: KHR_materials_iridescence, "Layering"
-    vec3 film_F_3 = mix(vec3(environment_part), film_once, material.strength);
+    vec3 dielectric_once = mix(vec3(environment_part), film_once, material.strength);
 
     // film.dielectric_all: KHR_materials_iridescence, "Layering"
-    vec3 film_F_4 = mix(vec3(dielectric_most), film_all, material.strength);
-    float film_most = max(max(film_F_4.x, film_F_4.y), film_F_4.z);
+    vec3 film_F_3 = mix(vec3(dielectric_most), film_all, material.strength);
+    float film_most = max(max(film_F_3.x, film_F_3.y), film_F_3.z);
 
     // film.metal_environment: Karis 2013, "Real Shading in Unreal Engine 4" (split sum, with a Fresnel that does not depend on the light)
     vec3 film_once_2 = metal * dielectric_environment_part;
@@ -262,14 +262,14 @@ void main() {
     vec3 film_all_2 = clamp(film_once_2 / film_bounces_2, 0.0, 1.0);
 
     // film.metal_once: KHR_materials_iridescence, "Layering"
-    vec3 film_F_5 = mix(once, film_once_2, material.strength);
+    vec3 metal_once = mix(once, film_once_2, material.strength);
 
     // film.metal_all: KHR_materials_iridescence, "Layering"
-    vec3 film_F_6 = mix(metal_all, film_all_2, material.strength);
+    vec3 film_F_4 = mix(metal_all, film_all_2, material.strength);
 
     // base.indirect: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"; KHR_materials_specular, "Implementation"
-    vec3 base_once = film_F_3 * material.dielectric + film_F_5 * material.metallic_factor;
-    vec3 base_all = film_F_4 * material.dielectric + film_F_6 * material.metallic_factor;
+    vec3 base_once = dielectric_once * material.dielectric + metal_once * material.metallic_factor;
+    vec3 base_all = film_F_3 * material.dielectric + film_F_4 * material.metallic_factor;
     float under = material.dielectric * (1.0 - film_most);
     vec3 indirect_part = base_once * textureLod(environment_specular, reflection, material.roughness_factor * frame.environment_max_lod).xyz + max(base_all - base_once, 0.0) * mean;
     vec3 indirect = indirect_part + body_indirect * under;
