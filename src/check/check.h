@@ -35,6 +35,8 @@ Result<Spirv> compile(std::string_view text, Target target, Stage stage, const s
 
 /// spirv-val for Vulkan 1.1 (or OpenGL 4.5). An empty list when valid. Code "spirv-val".
 Diagnostics validate(const Spirv& words, bool open_gl, const std::string& name);
+/// The same for Vulkan 1.3, of modules that others made (SPIR-V up to 1.6).
+Diagnostics validateForeign(const Spirv& words, const std::string& name);
 
 /// Two resources in one place, by the decorations in the words; OpenGL numbers blocks and textures apart.
 /// Code "slot-clash"; spirv-val allows it. An empty list for words that are no module: validate() says so.

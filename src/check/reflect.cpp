@@ -18,6 +18,16 @@ constexpr uint32_t kHeaderWords = 5;
 constexpr uint32_t kMaxSlots = 64;   ///< more locations than any device has
 constexpr uint32_t kMaxNesting = 8;  ///< of arrays
 
+// Drivers make tables that reach to the highest set and binding, with a row for each descriptor: what a
+// module says here is what they take of memory.
+constexpr uint32_t kMaxSets = 32;                  ///< as most devices have it
+constexpr uint32_t kMaxBindings = 65'536;          ///< in a set; WebGPU has 1,000
+constexpr uint32_t kMaxCount = 65'536;             ///< descriptors of one binding
+constexpr uint64_t kMaxDescriptors = 1U << 20U;    ///< of all bindings, as devices with the most have it
+constexpr uint32_t kMaxPushConstantBytes = 4'096;  ///< more than any device has
+constexpr size_t kMaxMembers = 65'536;             ///< of all uniform blocks, each of which has one
+constexpr size_t kMaxName = 1'024;                 ///< characters; the rest is cut
+
 struct Instruction {
   spv::Op op = spv::OpNop;
   const uint32_t* words = nullptr;
@@ -64,11 +74,15 @@ struct Type {
 
 using Decorations = std::map<uint32_t, uint32_t>;  ///< decoration → its operand, or 0
 
+/// What of a module is kept: the rest may take far more room than the words do.
+enum class Wanted : uint8_t { Interface, Blocks, Places };
+
 class Reader {
 public:
-  /// Without a stage the module is read for its blocks and places alone.
-  explicit Reader(Stage stage = Stage::Fragment)
-      : model_(stage == Stage::Vertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment) {}
+  /// The stage matters to the interface alone.
+  explicit Reader(Wanted wanted, Stage stage = Stage::Fragment)
+      : wanted_(wanted),
+        model_(stage == Stage::Vertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment) {}
 
   bool read(const Instruction& instruction);
   Result<Interface> finish();
@@ -82,7 +96,9 @@ private:
   void readVariable(const Instruction& instruction);
   void readPlace(const Instruction& instruction, spv::StorageClass storage, const Decorations& decorations);
   void readBlock(uint32_t type_id, const Decorations& variable);
+  void readInterface(uint32_t type_id, uint32_t storage, const Decorations& decorations);
   void readResource(uint32_t type_id, spv::StorageClass storage, const Decorations& decorations);
+  void readPushConstants(uint32_t type_id);
   void readSlots(uint32_t type_id, const Decorations& decorations, std::vector<Slot>& slots);
   bool addSlots(uint32_t type_id, Slot& next, std::vector<Slot>& slots, uint32_t nesting) const;
   std::optional<Resource> resourceOf(uint32_t type_id, spv::StorageClass storage) const;
@@ -90,12 +106,18 @@ private:
   const Type& typeOf(uint32_t id) const;
   const Decorations& decorationsOf(uint32_t id, std::optional<uint32_t> member = {}) const;
 
+  void refuse(std::string why) {
+    if (error_.empty()) error_ = std::move(why);
+  }
+
+  Wanted wanted_;
   spv::ExecutionModel model_;
   bool found_ = false;
   Interface interface_;
-  std::string error_;
+  uint64_t descriptors_ = 0;  ///< of all bindings
   std::vector<Block> blocks_;
-  std::string block_error_;
+  size_t members_ = 0;  ///< of all blocks
+  std::string error_;   ///< the first
   std::map<uint32_t, std::string> names_;
   std::map<std::pair<uint32_t, uint32_t>, std::string> member_names_;
   std::map<uint32_t, Decorations> decorations_;
@@ -184,26 +206,38 @@ std::optional<Resource> Reader::resourceOf(uint32_t type_id, spv::StorageClass s
 }
 
 void Reader::readResource(uint32_t type_id, spv::StorageClass storage, const Decorations& decorations) {
-  Binding binding;
-  for (uint32_t i = 0; i < kMaxNesting; ++i) {
-    const Type& type = typeOf(type_id);
-    if (type.op != spv::OpTypeArray && type.op != spv::OpTypeRuntimeArray) break;
-    binding.count *= std::clamp(type.count, 1U, 1024U);
-    type_id = type.element;
+  const uint32_t set = get(decorations, spv::DecorationDescriptorSet);
+  const uint32_t number = get(decorations, spv::DecorationBinding);
+  const auto isArray = [this](uint32_t id) {
+    return typeOf(id).op == spv::OpTypeArray || typeOf(id).op == spv::OpTypeRuntimeArray;
+  };
+  uint64_t count = 1;
+  for (uint32_t i = 0; i < kMaxNesting && isArray(type_id); ++i) {
+    count = std::min<uint64_t>(count * std::max(typeOf(type_id).count, 1U), kMaxCount + 1U);
+    type_id = typeOf(type_id).element;
   }
   const std::optional<Resource> resource = resourceOf(type_id, storage);
-  const std::pair key(get(decorations, spv::DecorationDescriptorSet),
-                      get(decorations, spv::DecorationBinding));
-  if (!resource || key.first >= 32 || binding.count > 65536) {
-    error_ = fmt::format("the resource at set {}, binding {} is of a kind that is not measured", key.first,
-                         key.second);
-    return;
-  }
-  binding.resource = *resource;
-  Binding& known = interface_.bindings.try_emplace(key, binding).first->second;
+  const std::string name = fmt::format("the resource at set {}, binding {}", set, number);
+  if (!resource || isArray(type_id)) return refuse(name + " is of a kind that is not measured");
+  if (set >= kMaxSets) return refuse(fmt::format("{}: there are {} sets", name, kMaxSets));
+  if (number >= kMaxBindings) return refuse(fmt::format("{}: a set has {} bindings", name, kMaxBindings));
+  if (count > kMaxCount) return refuse(fmt::format("{} has more than {} descriptors", name, kMaxCount));
+  const Binding binding{*resource, static_cast<uint32_t>(count)};
+  const auto [place, fresh] = interface_.bindings.try_emplace({set, number}, binding);
+  Binding& known = place->second;
+  const uint32_t before = fresh ? 0 : known.count;
   // Two variables may share a binding: an image and its sampler out of one combined descriptor.
   if (known.resource != binding.resource) known.resource = Resource::CombinedImageSampler;
   known.count = std::max(known.count, binding.count);
+  descriptors_ += known.count - before;
+  if (descriptors_ > kMaxDescriptors)
+    refuse(fmt::format("the module's resources have more than {} descriptors", kMaxDescriptors));
+}
+
+void Reader::readPushConstants(uint32_t type_id) {
+  interface_.push_constant_bytes = std::max(interface_.push_constant_bytes, typeOf(type_id).bytes);
+  if (interface_.push_constant_bytes > kMaxPushConstantBytes)
+    refuse(fmt::format("the push constants take more than {} bytes", kMaxPushConstantBytes));
 }
 
 void Reader::readPlace(const Instruction& instruction, spv::StorageClass storage,
@@ -213,9 +247,11 @@ void Reader::readPlace(const Instruction& instruction, spv::StorageClass storage
   const bool stored =
       storage == spv::StorageClassStorageBuffer || decorationsOf(id).contains(spv::DecorationBufferBlock);
   const bool uniform = storage == spv::StorageClassUniform && !stored;
-  if (decorations.contains(spv::DecorationBinding)) {
-    places.push_back({names_[instruction.at(2)], get(decorations, spv::DecorationDescriptorSet),
-                      get(decorations, spv::DecorationBinding), uniform, stored});
+  if (wanted_ == Wanted::Places) {
+    if (decorations.contains(spv::DecorationBinding))
+      places.push_back({names_[instruction.at(2)], get(decorations, spv::DecorationDescriptorSet),
+                        get(decorations, spv::DecorationBinding), uniform, stored});
+    return;
   }
   if (!uniform) return;
   // An array of blocks.
@@ -225,23 +261,24 @@ void Reader::readPlace(const Instruction& instruction, spv::StorageClass storage
 }
 
 void Reader::readBlock(uint32_t type_id, const Decorations& variable) {
-  const auto complain = [this](std::string message) {
-    if (block_error_.empty()) block_error_ = std::move(message);
-  };
+  // Variables of one type have its members each, so that their sum is no part of the words.
+  members_ += std::max<size_t>(typeOf(type_id).members.size(), 1);
+  if (members_ > kMaxMembers)
+    return refuse(fmt::format("the uniform blocks have more than {} members", kMaxMembers));
   Block block{names_[type_id],
               get(variable, spv::DecorationDescriptorSet),
               get(variable, spv::DecorationBinding),
               typeOf(type_id).bytes,
               {}};
   if (!variable.contains(spv::DecorationBinding))
-    complain(fmt::format("block '{}' has no binding", block.name));
+    refuse(fmt::format("block '{}' has no binding", block.name));
   uint32_t index = 0;
   for (const uint32_t member_type : typeOf(type_id).members) {
     const Decorations& decorations = decorationsOf(type_id, index);
     BlockMember member{member_names_[{type_id, index}], get(decorations, spv::DecorationOffset),
                        memberBytes(member_type, decorations)};
     if (!decorations.contains(spv::DecorationOffset))
-      complain(fmt::format("member {} ('{}') of block '{}' has no offset", index, member.name, block.name));
+      refuse(fmt::format("member {} ('{}') of block '{}' has no offset", index, member.name, block.name));
     block.members.push_back(std::move(member));
     ++index;
   }
@@ -274,6 +311,8 @@ void Reader::readSlots(uint32_t type_id, const Decorations& decorations, std::ve
   const Type& type = typeOf(type_id);
   // gl_PerVertex is a block of built-ins.
   if (type.op == spv::OpTypeStruct && decorationsOf(type_id, 0).contains(spv::DecorationBuiltIn)) return;
+  if (slots.size() >= size_t{4} * kMaxSlots)  // a location has four components
+    return refuse("the module has more inputs or outputs than any device");
   Slot next;
   next.location = get(decorations, spv::DecorationLocation);
   next.component = get(decorations, spv::DecorationComponent);
@@ -293,22 +332,28 @@ uint32_t Reader::memberBytes(uint32_t type_id, const Decorations& member) const 
   return get(member, spv::DecorationMatrixStride) * (rows ? typeOf(type.element).count : type.count);
 }
 
-void Reader::readVariable(const Instruction& instruction) {
-  const uint32_t type_id = typeOf(instruction.at(1)).element;
-  const Decorations& decorations = decorationsOf(instruction.at(2));
-  const uint32_t storage =
-      instruction.at(3);  // whatever the file says, and so no value of the enumeration yet
+/// `storage` is whatever the module says, and so perhaps no value of the enumeration.
+void Reader::readInterface(uint32_t type_id, uint32_t storage, const Decorations& decorations) {
   if (storage == spv::StorageClassInput) {
     readSlots(type_id, decorations, interface_.inputs);
   } else if (storage == spv::StorageClassOutput) {
     readSlots(type_id, decorations, interface_.outputs);
   } else if (storage == spv::StorageClassPushConstant) {
-    interface_.push_constant_bytes = std::max(interface_.push_constant_bytes, typeOf(type_id).bytes);
+    readPushConstants(type_id);
   } else if (storage == spv::StorageClassUniform || storage == spv::StorageClassUniformConstant ||
              storage == spv::StorageClassStorageBuffer) {
-    const auto known = static_cast<spv::StorageClass>(storage);
-    readPlace(instruction, known, decorations);
-    readResource(type_id, known, decorations);
+    readResource(type_id, static_cast<spv::StorageClass>(storage), decorations);
+  }
+}
+
+void Reader::readVariable(const Instruction& instruction) {
+  const Decorations& decorations = decorationsOf(instruction.at(2));
+  const uint32_t storage = instruction.at(3);
+  if (wanted_ == Wanted::Interface) {
+    readInterface(typeOf(instruction.at(1)).element, storage, decorations);
+  } else if (storage == spv::StorageClassUniform || storage == spv::StorageClassUniformConstant ||
+             storage == spv::StorageClassStorageBuffer) {
+    readPlace(instruction, static_cast<spv::StorageClass>(storage), decorations);
   }
 }
 
@@ -317,10 +362,10 @@ bool Reader::read(const Instruction& instruction) {
   if (op == spv::OpFunction) return false;  // all declarations stand before it
   if (op == spv::OpEntryPoint) {
     readEntryPoint(instruction);
-  } else if (op == spv::OpName) {
-    names_[instruction.at(1)] = instruction.text(2);
-  } else if (op == spv::OpMemberName) {
-    member_names_[{instruction.at(1), instruction.at(2)}] = instruction.text(3);
+  } else if (op == spv::OpName && wanted_ != Wanted::Interface) {
+    names_[instruction.at(1)] = instruction.text(2).substr(0, kMaxName);
+  } else if (op == spv::OpMemberName && wanted_ == Wanted::Blocks) {
+    member_names_[{instruction.at(1), instruction.at(2)}] = instruction.text(3).substr(0, kMaxName);
   } else if (op == spv::OpDecorate) {
     decorations_[instruction.at(1)][instruction.at(2)] = instruction.at(3);
   } else if (op == spv::OpMemberDecorate) {
@@ -332,7 +377,7 @@ bool Reader::read(const Instruction& instruction) {
   } else if (op >= spv::OpTypeVoid && op <= spv::OpTypePointer) {
     readType(instruction);
   }
-  return true;
+  return error_.empty();
 }
 
 Result<Interface> Reader::finish() {
@@ -350,7 +395,7 @@ Result<Interface> Reader::finish() {
 }
 
 Result<std::vector<Block>> Reader::finishBlocks() {
-  if (!block_error_.empty()) return fail("spirv-reflection", {}, block_error_);
+  if (!error_.empty()) return fail("spirv-reflection", {}, error_);
   std::sort(blocks_.begin(), blocks_.end(), [](const Block& a, const Block& b) {
     return std::tie(a.set, a.binding, a.name) < std::tie(b.set, b.binding, b.name);
   });
@@ -365,19 +410,19 @@ bool readAll(const Spirv& words, Reader& reader) {
 }  // namespace
 
 Result<Interface> reflect(const Spirv& words, Stage stage) {
-  Reader reader(stage);
+  Reader reader(Wanted::Interface, stage);
   if (!readAll(words, reader)) return fail("spirv-reflection", {}, "not a SPIR-V module");
   return reader.finish();
 }
 
 Result<std::vector<Block>> reflectBlocks(const Spirv& words) {
-  Reader reader;
+  Reader reader(Wanted::Blocks);
   if (!readAll(words, reader)) return fail("spirv-reflection", {}, "not a SPIR-V module");
   return reader.finishBlocks();
 }
 
 std::vector<Taken> reflectPlaces(const Spirv& words) {
-  Reader reader;
+  Reader reader(Wanted::Places);
   return readAll(words, reader) ? std::move(reader.places) : std::vector<Taken>{};
 }
 

@@ -61,11 +61,15 @@ struct Interface {
   std::string odd_input;  ///< an input that Slot cannot describe; empty when there is none
 };
 
-/// Reads the first entry point of a stage. Any words are safe to give. Errors: "spirv-reflection".
+/// Reads the first entry point of a stage. Any words are safe to give, and what is returned is never much
+/// larger than they are. Errors: "spirv-reflection", also for what no device has: sets from 32 on, bindings
+/// from 65,536 on, more than 65,536 descriptors in a binding or 2^20 in all, more than 256 inputs or outputs,
+/// more than 4,096 bytes of push constants.
 Result<Interface> reflect(const Spirv& words, Stage stage);
 
 /// The uniform blocks of a SPIR-V module with their members' offsets, by the decorations in the words
-/// (not by layout rules), sorted by set and binding.
+/// (not by layout rules), sorted by set and binding. Errors: "spirv-reflection", also for more than 65,536
+/// members in all.
 Result<std::vector<Block>> reflectBlocks(const Spirv& words);
 
 /// What takes a place among the descriptors: a uniform block, a texture, a sampler.

@@ -46,14 +46,22 @@ std::string toolVersions() {
                      spvSoftwareVersionDetailsString());
 }
 
-Diagnostics validate(const Spirv& words, bool open_gl, const std::string& name) {
+static Diagnostics validateFor(spv_target_env environment, const Spirv& words, const std::string& name) {
   Diagnostics list;
-  spvtools::SpirvTools tools(open_gl ? SPV_ENV_OPENGL_4_5 : SPV_ENV_VULKAN_1_1);
+  spvtools::SpirvTools tools(environment);
   tools.SetMessageConsumer(collectInto(list, "spirv-val", name));
   const bool valid = tools.Validate(words);
   if (valid) return {};
   if (!hasError(list)) list.push_back(withoutReason("spirv-val", name));
   return list;
+}
+
+Diagnostics validate(const Spirv& words, bool open_gl, const std::string& name) {
+  return validateFor(open_gl ? SPV_ENV_OPENGL_4_5 : SPV_ENV_VULKAN_1_1, words, name);
+}
+
+Diagnostics validateForeign(const Spirv& words, const std::string& name) {
+  return validateFor(SPV_ENV_VULKAN_1_3, words, name);
 }
 
 Result<Spirv> optimize(const Spirv& words, const std::string& name) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,6 +34,12 @@ struct Subject {
   Spirv fragment;
 };
 
+/// The same of modules that somebody's files hold. Subjects may share them, and nobody has looked at them.
+struct FileSubject {
+  std::shared_ptr<const Spirv> vertex;  ///< may be null
+  std::shared_ptr<const Spirv> fragment;
+};
+
 struct Outcome {
   std::optional<Statistics> statistics;
   std::string disassembly;  ///< the GPU's instructions as text; empty when they were not asked for
@@ -56,9 +63,15 @@ std::string driverIdentity();
 
 /// Compiles each subject for a family as RADV_FORCE_FAMILY names it. The driver works in a child process with
 /// an environment of its own: the caller's is neither changed nor passed on, and a driver that crashes or
-/// takes more than a minute over one shader costs only that shader's numbers. Safe to call from several
-/// threads.
+/// takes more than a minute over one shader, or more than 2 GiB of memory, costs only that shader's numbers.
+/// Safe to call from several threads.
 Measurement measure(const std::vector<Subject>& subjects, const std::string& family, bool disassembly);
+
+/// For each of kFamilies, at the same time. Each pair of modules is compiled once, however many subjects have
+/// it, and only after it passed as valid for Vulkan 1.1, which is found out in the child process, too. All of
+/// them together have ten minutes and a second for each pair, and 256 MiB of disassembly for each family: the
+/// rest is a problem.
+std::vector<Measurement> measureFiles(const std::vector<FileSubject>& subjects, bool disassembly);
 
 /// Instructions inside functions, labels, line marks and the declarations of local variables not counted:
 /// what is left to do for a driver. 0 for words that are no module.

@@ -303,15 +303,15 @@ std::string textOf(const Diagnostics& diagnostics) {
 
 }  // namespace
 
-Outcome compilePipeline(const Device& device, const Subject& subject, bool disassembly) {
+Outcome compilePipeline(const Device& device, const Stages& subject, bool disassembly) {
   Outcome outcome;
-  const Result<Interface> fragment = check::reflect(subject.fragment, check::Stage::Fragment);
+  const Result<Interface> fragment = check::reflect(*subject.fragment, check::Stage::Fragment);
   if (!fragment) return {{}, {}, textOf(fragment.error())};
-  const Result<Interface> vertex = check::reflect(subject.vertex, check::Stage::Vertex);
+  const Result<Interface> vertex = check::reflect(*subject.vertex, check::Stage::Vertex);
   if (!vertex) return {{}, {}, textOf(vertex.error())};
 
   Pipeline pipeline(device, *vertex, *fragment);
-  const VkResult result = pipeline.create(subject.vertex, subject.fragment, disassembly);
+  const VkResult result = pipeline.create(*subject.vertex, *subject.fragment, disassembly);
   if (result != VK_SUCCESS || pipeline.handle() == VK_NULL_HANDLE) {
     outcome.problem = fmt::format("the driver refuses the shader (VkResult {})", static_cast<int>(result));
     return outcome;

@@ -3,10 +3,12 @@
 
 #include "cost/cost.h"
 #include "cost/loader.h"
+#include "cost/worker.h"
 
 namespace lacquer::cost {
 
-/// The subject has both stages. Never fails otherwise than by Outcome::problem, unless the driver crashes.
-Outcome compilePipeline(const Device& device, const Subject& subject, bool disassembly);
+/// The subject has both stages, and what is foreign has been validated. Never fails otherwise than by
+/// Outcome::problem, unless the driver crashes.
+Outcome compilePipeline(const Device& device, const Stages& subject, bool disassembly);
 
 }  // namespace lacquer::cost

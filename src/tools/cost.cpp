@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <future>
+#include <map>
+#include <memory>
 #include <optional>
+#include <set>
 
 #include "json/json.h"
 #include "lacquer/tools.h"
@@ -20,13 +22,53 @@ namespace lacquer {
 namespace {
 
 namespace fs = std::filesystem;
-using Subjects = std::vector<lacquer::cost::Subject>;
-
 constexpr std::string_view kFragmentEnd = ".frag.spv";
 constexpr std::string_view kVertexEnd = ".vert.spv";
+constexpr uint64_t kLargestModule = uint64_t{1} << 26U;  // bytes; SPIR-V has 4,194,303 ids at most
+
+struct SpirvFile {
+  std::shared_ptr<const cost::Spirv> words;
+  size_t instructions = 0;
+};
+
+/// What was read, by where it lies: a manifest may name one file many times, or many files that are equal.
+/// Each is read once, and held once.
+class SpirvFiles {
+public:
+  const Result<SpirvFile>& read(const std::string& path) {
+    std::error_code error;
+    std::string resolved = fs::canonical(path, error).string();
+    if (error) resolved = path;
+    const auto known = files_.find(resolved);
+    return known != files_.end() ? known->second : files_.emplace(resolved, load(path)).first->second;
+  }
+
+private:
+  struct ByWords {
+    bool operator()(const SpirvFile& a, const SpirvFile& b) const {
+      if (a.words->size() != b.words->size()) return a.words->size() < b.words->size();
+      return *a.words < *b.words;
+    }
+  };
+
+  Result<SpirvFile> load(const std::string& path);
+
+  std::map<std::string, Result<SpirvFile>> files_;
+  std::set<SpirvFile, ByWords> distinct_;
+  uint64_t bytes_ = 0;  ///< of all that are distinct
+};
+
+tl::unexpected<Diagnostics> tooLarge(const std::string& path, std::string message) {
+  return fail("spirv-too-large", {path, 0, 0, {}}, std::move(message),
+              "name fewer modules at a time, or smaller ones");
+}
 
 Result<cost::Spirv> readSpirv(const std::string& path) {
-  const Result<std::string> bytes = readFile(path);
+  std::error_code error;
+  const std::string too_large = fmt::format("a module has at most {} bytes", kLargestModule);
+  if (fs::file_size(path, error) > kLargestModule && !error) return tooLarge(path, too_large);
+  // It may have become longer.
+  const Result<std::string> bytes = readFile(path, kLargestModule);
   if (!bytes) return tl::unexpected(bytes.error());
   cost::Spirv words(bytes->size() / 4);
   for (size_t i = 0; i < words.size(); ++i) {
@@ -41,29 +83,51 @@ Result<cost::Spirv> readSpirv(const std::string& path) {
   return words;
 }
 
-/// Empty `vertex`: the fragment shader comes alone.
-void addPair(const std::string& name, const std::string& vertex, const std::string& fragment,
-             Subjects& subjects, Messages& messages) {
-  cost::Subject subject;
-  subject.name = name;
-  for (const auto& [path, words] :
-       {std::pair(&vertex, &subject.vertex), std::pair(&fragment, &subject.fragment)}) {
-    if (path->empty()) continue;
-    Result<cost::Spirv> read = readSpirv(*path);
-    if (!read) return report(read.error(), *path, messages);
-    *words = std::move(*read);
-  }
-  subjects.push_back(std::move(subject));
+Result<SpirvFile> SpirvFiles::load(const std::string& path) {
+  Result<cost::Spirv> words = readSpirv(path);
+  if (!words) return tl::unexpected(words.error());
+  const uint64_t size = words->size() * sizeof(uint32_t);
+  SpirvFile file{std::make_shared<const cost::Spirv>(std::move(*words)), 0};
+  if (const auto known = distinct_.find(file); known != distinct_.end()) return *known;
+  const uint64_t most = Limits{}.file;
+  if (size > most - bytes_)
+    return tooLarge(path, fmt::format("with this module they have more than {} bytes together", most));
+  bytes_ += size;
+  file.instructions = cost::spirvInstructions(*file.words);
+  return *distinct_.insert(std::move(file)).first;
 }
 
-void addFile(const std::string& path, Subjects& subjects, Messages& messages) {
-  std::string vertex;
+/// The shaders that were found: what is measured of each, and where that goes.
+struct Shaders {
+  SpirvFiles files;
+  std::vector<cost::FileSubject> subjects;
+  std::vector<ShaderCost> costs;  ///< as many
+};
+
+/// Without `vertex` the fragment shader comes alone.
+void addPair(const std::string& name, const std::optional<std::string>& vertex, const std::string& fragment,
+             Shaders& shaders, Messages& messages) {
+  cost::FileSubject subject;
+  if (vertex) {
+    const Result<SpirvFile>& file = shaders.files.read(*vertex);
+    if (!file) return report(file.error(), *vertex, messages);
+    subject.vertex = file->words;
+  }
+  const Result<SpirvFile>& file = shaders.files.read(fragment);
+  if (!file) return report(file.error(), fragment, messages);
+  subject.fragment = file->words;
+  shaders.subjects.push_back(std::move(subject));
+  shaders.costs.push_back({name, file->instructions, {}});
+}
+
+void addFile(const std::string& path, Shaders& shaders, Messages& messages) {
+  std::optional<std::string> vertex;
   if (path.ends_with(kFragmentEnd)) {
     const std::string beside = path.substr(0, path.size() - kFragmentEnd.size()) + std::string(kVertexEnd);
     std::error_code error;
     if (fs::exists(beside, error)) vertex = beside;
   }
-  addPair(path, vertex, path, subjects, messages);
+  addPair(path, vertex, path, shaders, messages);
 }
 
 /// The value at a path of keys when it is a text; else empty.
@@ -76,7 +140,7 @@ std::string textAt(const json::Json& json, std::initializer_list<const char*> ke
   return at->is_string() ? at->get<std::string>() : std::string();
 }
 
-void addManifest(const fs::path& folder, Subjects& subjects, Messages& messages) {
+void addManifest(const fs::path& folder, Shaders& shaders, Messages& messages) {
   const std::string path = (folder / "manifest.json").string();
   const Result<std::string> text = readFile(path);
   if (!text) return report(text.error(), path, messages);
@@ -84,14 +148,13 @@ void addManifest(const fs::path& folder, Subjects& subjects, Messages& messages)
   if (!manifest) return report(manifest.error(), path, messages);
   if (const Result<void> head = checkManifestHead(*manifest, path); !head)
     return report(head.error(), path, messages);
-  const json::Json* shaders = json::member(*manifest, "shaders");
-  const size_t before = subjects.size();
-  for (const auto& [id, shader] : shaders->items()) {
+  const size_t before = shaders.subjects.size();
+  for (const auto& [id, shader] : json::member(*manifest, "shaders")->items()) {
     const std::string vertex = textAt(shader, {"files", "spirv", "vert"});
     const std::string fragment = textAt(shader, {"files", "spirv", "frag"});
     if (fragment.empty()) continue;
     // A manifest of others does not choose which files are read.
-    const std::optional<std::string> vertex_file = resolveBelow(folder.string(), vertex, {});
+    std::optional<std::string> vertex_file = resolveBelow(folder.string(), vertex, {});
     const std::optional<std::string> file = resolveBelow(folder.string(), fragment, {});
     if (!vertex_file || !file) {
       report({{"manifest-outside",
@@ -103,9 +166,10 @@ void addManifest(const fs::path& folder, Subjects& subjects, Messages& messages)
              path, messages);
       continue;
     }
-    addPair(id, vertex.empty() ? "" : *vertex_file, *file, subjects, messages);
+    if (vertex.empty()) vertex_file.reset();
+    addPair(id, vertex_file, *file, shaders, messages);
   }
-  if (subjects.size() > before || hasError(messages)) return;
+  if (shaders.subjects.size() > before || hasError(messages)) return;
   const Diagnostic none{"no-spirv",
                         Severity::Error,
                         {path, 0, 0, {}},
@@ -115,16 +179,16 @@ void addManifest(const fs::path& folder, Subjects& subjects, Messages& messages)
   report({none}, path, messages);
 }
 
-void addFolder(const fs::path& folder, Subjects& subjects, Messages& messages) {
+void addFolder(const fs::path& folder, Shaders& shaders, Messages& messages) {
   std::error_code error;
-  if (fs::exists(folder / "manifest.json", error)) return addManifest(folder, subjects, messages);
+  if (fs::exists(folder / "manifest.json", error)) return addManifest(folder, shaders, messages);
   std::vector<std::string> files;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().string();
     if (name.ends_with(kFragmentEnd)) files.push_back(name);
   }
   std::sort(files.begin(), files.end());
-  for (const std::string& file : files) addFile(file, subjects, messages);
+  for (const std::string& file : files) addFile(file, shaders, messages);
   if (!files.empty()) return;
   const Diagnostic none{"no-spirv",
                         Severity::Error,
@@ -153,28 +217,39 @@ GpuCost toGpuCost(const std::string& family, cost::Outcome& outcome) {
   return result;
 }
 
-void measureAll(const Subjects& subjects, bool disassembly, std::vector<ShaderCost>& costs,
-                Messages& messages) {
-  std::vector<std::future<cost::Measurement>> running;
-  for (const std::string& family : cost::kFamilies) {
-    running.push_back(std::async(std::launch::async, [&subjects, &family, disassembly] {
-      return cost::measure(subjects, family, disassembly);
-    }));
-  }
-  for (size_t f = 0; f < running.size(); ++f) {
-    cost::Measurement measurement = running[f].get();
-    for (size_t i = 0; i < costs.size(); ++i) {
-      costs[i].gpus.push_back(toGpuCost(cost::kFamilies[f], measurement.outcomes[i]));
-      const GpuCost& gpu = costs[i].gpus.back();
+void measureAll(Shaders& shaders, bool disassembly, Messages& messages) {
+  std::vector<cost::Measurement> measurements = cost::measureFiles(shaders.subjects, disassembly);
+  for (size_t f = 0; f < measurements.size(); ++f) {
+    for (size_t i = 0; i < shaders.costs.size(); ++i) {
+      ShaderCost& shader = shaders.costs[i];
+      shader.gpus.push_back(toGpuCost(cost::kFamilies[f], measurements[f].outcomes[i]));
+      const GpuCost& gpu = shader.gpus.back();
       if (gpu.problem.empty()) continue;
       const Diagnostic failed{"cost-unknown",
                               Severity::Error,
-                              {costs[i].name, 0, 0, {}},
+                              {shader.name, 0, 0, {}},
                               fmt::format("no cost for {}: {}", gpu.gpu, gpu.problem),
                               {},
                               {}};
-      report({failed}, costs[i].name, messages);
+      report({failed}, shader.name, messages);
     }
+  }
+}
+
+void addPath(const std::string& path, Shaders& shaders, Messages& messages) {
+  std::error_code error;
+  if (path.empty()) {
+    const Diagnostic empty{"file-unreadable",
+                           Severity::Error,
+                           {},
+                           "\"\" is the name of no file",
+                           "name .spv files, or folders that hold some",
+                           {}};
+    report({empty}, {}, messages);
+  } else if (fs::is_directory(path, error)) {
+    addFolder(path, shaders, messages);
+  } else {
+    addFile(path, shaders, messages);
   }
 }
 
@@ -182,21 +257,10 @@ void measureAll(const Subjects& subjects, bool disassembly, std::vector<ShaderCo
 
 std::vector<ShaderCost> measureCost(const std::vector<std::string>& paths, bool disassembly,
                                     Messages& messages) {
-  Subjects subjects;
-  for (const std::string& path : paths) {
-    std::error_code error;
-    if (fs::is_directory(path, error)) {
-      addFolder(path, subjects, messages);
-    } else {
-      addFile(path, subjects, messages);
-    }
-  }
-  std::vector<ShaderCost> costs;
-  for (const cost::Subject& subject : subjects) {
-    costs.push_back({subject.name, cost::spirvInstructions(subject.fragment), {}});
-  }
+  Shaders shaders;
+  for (const std::string& path : paths) addPath(path, shaders, messages);
   if (const std::string reason = cost::unavailable(); reason.empty()) {
-    if (!subjects.empty()) measureAll(subjects, disassembly, costs, messages);
+    if (!shaders.subjects.empty()) measureAll(shaders, disassembly, messages);
   } else {
     const Diagnostic missing{
         "cost-unavailable",
@@ -207,7 +271,7 @@ std::vector<ShaderCost> measureCost(const std::vector<std::string>& paths, bool 
         {}};
     report({missing}, {}, messages);
   }
-  return costs;
+  return std::move(shaders.costs);
 }
 
 }  // namespace lacquer

@@ -94,6 +94,80 @@ TEST(Reflect, CountsWhatIsInFunctions) {
   EXPECT_EQ(instructionCount(compile(text, check::Stage::Fragment)), 3U);
 }
 
+/// The message about a shader with this declaration, whose bindings 9 are others, as no compiler has them.
+std::string refusal(const std::string& declaration, uint32_t binding = 9) {
+  const std::string text = "#version 450\nlayout(location = 0) out vec4 color;\n" + declaration +
+                           "\nvoid main() { color = vec4(1.0); }\n";
+  check::Spirv words = compile(text.c_str(), check::Stage::Fragment);
+  constexpr uint32_t kDecorate = 4U << 16U | 71U;
+  constexpr uint32_t kBinding = 33;
+  for (size_t i = 0; i + 3 < words.size(); ++i) {
+    if (words[i] == kDecorate && words[i + 2] == kBinding && words[i + 3] == 9) words[i + 3] = binding;
+  }
+  const Result<Interface> read = reflect(words, check::Stage::Fragment);
+  return read ? "" : read.error()[0].message;
+}
+
+TEST(Reflect, RefusesWhatNoDeviceHas) {
+  EXPECT_EQ(refusal("layout(set = 31, binding = 9) uniform sampler2D image;", 65535), "");
+  EXPECT_EQ(refusal("layout(set = 0, binding = 0) uniform sampler2D images[256][256];"), "");
+  EXPECT_EQ(refusal("layout(set = 32, binding = 7) uniform sampler2D image;"),
+            "the resource at set 32, binding 7: there are 32 sets");
+  EXPECT_EQ(refusal("layout(set = 1, binding = 9) uniform sampler2D image;", 65536),
+            "the resource at set 1, binding 65536: a set has 65536 bindings");
+  EXPECT_EQ(refusal("layout(set = 1, binding = 2) uniform sampler2D images[65537];"),
+            "the resource at set 1, binding 2 has more than 65536 descriptors");
+  EXPECT_EQ(refusal("layout(set = 1, binding = 2) uniform sampler2D images[65536][65536];"),
+            "the resource at set 1, binding 2 has more than 65536 descriptors");
+  std::string many;
+  for (int i = 0; i < 17; ++i) {
+    const std::string number = std::to_string(i);
+    many += "layout(binding = " + number + ") uniform sampler2D i" + number + "[65536];\n";
+  }
+  EXPECT_EQ(refusal(many), "the module's resources have more than 1048576 descriptors");
+  EXPECT_EQ(refusal("layout(push_constant) uniform P { vec4 numbers[256]; } p;"), "");
+  EXPECT_EQ(refusal("layout(push_constant) uniform P { vec4 numbers[257]; } p;"),
+            "the push constants take more than 4096 bytes");
+}
+
+/// A fragment shader's declarations: uniform variables of one struct.
+check::Spirv blocks(uint32_t members, uint32_t variables) {
+  check::Spirv words{0x07230203, 0x00010000, 0, 1'000'000, 0};
+  const auto add = [&](uint32_t code, const check::Spirv& operands) {
+    words.push_back(static_cast<uint32_t>(operands.size() + 1) << 16U | code);
+    words.insert(words.end(), operands.begin(), operands.end());
+  };
+  add(15, {4, 1, 0x6e69616d, 0});
+  add(71, {5, 2});
+  for (uint32_t i = 0; i < members; ++i) add(72, {5, i, 35, 4 * i});
+  for (uint32_t i = 0; i < variables; ++i) add(71, {100 + i, 33, i});
+  add(22, {3, 32});
+  check::Spirv type(members + 1, 3);
+  type[0] = 5;
+  add(30, type);
+  add(32, {6, 2, 5});
+  for (uint32_t i = 0; i < variables; ++i) add(59, {6, 100 + i, 2});
+  return words;
+}
+
+/// The members of all variables are no part of the words, however few these are.
+TEST(Reflect, BlocksHaveABoundedNumberOfMembers) {
+  const Result<std::vector<Block>> most = reflectBlocks(blocks(1'024, 64));
+  ASSERT_TRUE(most) << format(most.error()[0]);
+  EXPECT_EQ(most->size(), 64U);
+  EXPECT_EQ(most->back().members.size(), 1'024U);
+  for (const check::Spirv& words : {blocks(1'024, 65), blocks(60'000, 2), blocks(0, 65'537)}) {
+    const Result<std::vector<Block>> more = reflectBlocks(words);
+    ASSERT_FALSE(more);
+    EXPECT_EQ(more.error()[0].message, "the uniform blocks have more than 65536 members");
+  }
+  // An interface holds none of them, nor does a list of places.
+  const Result<Interface> interface = reflect(blocks(1'024, 65), check::Stage::Fragment);
+  ASSERT_TRUE(interface) << format(interface.error()[0]);
+  EXPECT_EQ(interface->bindings.size(), 65U);
+  EXPECT_EQ(reflectPlaces(blocks(1'024, 65)).size(), 65U);
+}
+
 TEST(Reflect, DamagedModulesAreReadOrRefused) {
   const check::Spirv good = compile(kFragment, check::Stage::Fragment);
   for (size_t length = 0; length < good.size(); ++length) {
