@@ -21,6 +21,8 @@ Strings graphCommand(const std::string& program, const std::string& folder, cons
   if (options.parameters == Parameters::Spec) add({"--params", "spec"});
   if (options.spirv_route == SpirvRoute::Glslang) add({"--spirv-from", "glslang"});
   if (options.debug) add({"--debug"});
+  if (options.relaxed != 0) add({"--relaxed", fmt::format("{}", options.relaxed)});
+  if (options.argument_buffers) add({"--msl-argument-buffers"});
   if (!options.validate) add({"--no-validate"});
   if (!options.sync) add({"--no-sync"});
   for (const std::string& limit : options.limits) add({"--limit", limit});

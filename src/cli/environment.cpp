@@ -14,7 +14,8 @@ CLI::App* addEnvironment(CLI::App& app, EnvironmentFlags& flags) {
   CLI::App* verb = app.add_subcommand(
       "environment", "the cube maps and tables of image-based light, from a picture of the surroundings");
   verb->add_option("picture", flags.picture, "equirectangular: Radiance HDR (.hdr) or OpenEXR (.exr)")
-      ->required();
+      ->required()
+      ->check(kNotEmpty);
   verb->add_option("-o,--output", flags.environment.output, "the folder to write to")
       ->required()
       ->check(kNotEmpty);

@@ -12,11 +12,12 @@ namespace lacquer::cli {
 CLI::App* addEval(CLI::App& app, EvalFlags& flags) {
   CLI::App* verb = app.add_subcommand(
       "eval", "the linear colours of a material at points, computed on the CPU or by a GPU");
-  verb->add_option("file", flags.file, "a .gltf or .glb file")->required();
+  verb->add_option("file", flags.file, "a .gltf or .glb file")->required()->check(kNotEmpty);
   verb->add_option("--material", flags.material, "the material's name; not needed for a file with one");
   verb->add_option("--points", flags.points,
                    "a JSON file with points (docs/eval.md); - for the standard input")
-      ->required();
+      ->required()
+      ->check(kNotEmpty);
   verb->add_option("--engine", flags.engine,
                    "double or float: on the CPU; vulkan: the shader on a Vulkan device")
       ->check(CLI::IsMember({"float", "double", "vulkan"}))

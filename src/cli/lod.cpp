@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/build.h"
+#include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
 #include "json/json.h"
@@ -12,6 +13,7 @@ namespace lacquer::cli {
 void addLod(CLI::App& verb, LodFlags& flags) {
   verb.add_option("--levels", flags.lod.levels, "how many at most, the exact shader among them")
       ->check(CLI::Range(2, 16))
+      ->check(kWhole)
       ->capture_default_str();
   verb.add_option("--most-error", flags.lod.most_error, "the mean colour difference of the last of them")
       ->check(CLI::Range(0.0, 100.0))
@@ -27,6 +29,7 @@ void addLod(CLI::App& verb, LodFlags& flags) {
       ->excludes(errors);
   verb.add_option("--size", flags.lod.size, "pixels of the balls that candidates are compared by")
       ->check(CLI::Range(16, 512))
+      ->check(kWhole)
       ->capture_default_str();
   verb.add_option("--texel", flags.lod.texels,
                   "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")

@@ -24,6 +24,7 @@
 #include "cli/table.h"
 #include "cli/view.h"
 #include "lacquer.h"
+#include "support/shown.h"
 
 namespace {
 
@@ -72,7 +73,7 @@ std::string parseSwitches(const std::vector<std::string>& texts,
     const size_t equals = text.find('=');
     const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
     if (equals == 0 || (value != "on" && value != "off"))
-      return fmt::format("--switch: '{}' is neither NAME=on nor NAME=off", text);
+      return fmt::format("--switch: '{}' is neither NAME=on nor NAME=off", lacquer::shown(text));
     switches[text.substr(0, equals)] = value == "on";
   }
   return {};
@@ -95,8 +96,8 @@ std::string parseLights(const std::string& text, lacquer::Lights& lights) {
       return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
     });
     if (!name || count > kMostLights) {
-      return fmt::format("--lights: '{}' is not KIND:COUNT with a kind of the template's and up to {}", part,
-                         kMostLights);
+      return fmt::format("--lights: '{}' is not KIND:COUNT with a kind of the template's and up to {}",
+                         lacquer::shown(part), kMostLights);
     }
     if (!lights.counts.emplace(type, static_cast<uint32_t>(count)).second)
       return fmt::format("--lights: '{}' is counted twice", type);
@@ -125,7 +126,7 @@ std::string finish(Flags& flags) {
     if (!lacquer::findTarget(name, target)) {
       return fmt::format(
           "--target: there is no '{}'; targets are glsl, glsl-gl, essl, hlsl, spirv, cpp, wgsl and msl",
-          name);
+          lacquer::shown(name));
     }
     if (spec && !lacquer::hasSpecializationConstants(target)) {
       return fmt::format(
@@ -153,6 +154,7 @@ void addShared(CLI::App& app, Flags& flags) {
       ->check(CLI::IsMember({"uniform", "baked", "spec"}))
       ->capture_default_str();
   app.add_option("--lights", flags.lights, "any, scene, none, or fixed counts such as directional:1,point:4")
+      ->check(kNotEmpty)
       ->capture_default_str();
   // Options that may be repeated take one argument each time: the next one may be a file.
   app.add_option("--live", flags.options.live, "terms to keep though today's value would remove them")
@@ -267,7 +269,7 @@ void addPlan(CLI::App& verb, Flags& flags) {
 
 /// The one material that is looked at.
 void addLook(CLI::App& verb, Flags& flags) {
-  verb.add_option("file", flags.files, "a .gltf or .glb file")->required()->expected(1);
+  verb.add_option("file", flags.files, "a .gltf or .glb file")->required()->expected(1)->check(kNotEmpty);
   verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
   addShared(verb, flags);
 }
@@ -286,7 +288,7 @@ void addDump(CLI::App& verb, Flags& flags) {
 }
 
 void addProve(CLI::App& verb, Flags& flags) {
-  verb.add_option("files", flags.files, ".gltf or .glb files");
+  verb.add_option("files", flags.files, ".gltf or .glb files")->check(kNotEmpty);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   verb.add_flag("--json", flags.json, "as JSON, with everything that is proved");
@@ -306,7 +308,7 @@ void addNodes(CLI::App& verb, Flags& flags, std::string& name) {
 }
 
 void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
-  verb.add_option("files", flags.files, ".gltf or .glb files")->required();
+  verb.add_option("files", flags.files, ".gltf or .glb files")->required()->check(kNotEmpty);
   verb.add_option("-o,--output", lod.lod.output, "the folder to write to")->required()->check(kNotEmpty);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
@@ -317,7 +319,8 @@ void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
       ->allow_extra_args(false);
   verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");
   verb.add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
-      ->check(CLI::Range(0, kMostJobs));
+      ->check(CLI::Range(0, kMostJobs))
+      ->check(kWhole);
   verb.add_option("--allow", flags.options.allow,
                   "a folder in which images may lie, beside the file's own (may be repeated)")
       ->allow_extra_args(false);
@@ -424,12 +427,19 @@ int cost(const Flags& flags) {
   return hasError(messages) ? kFailed : kGood;
 }
 
+/// As CLI11 says it, of which the words that were given are no more than words.
+std::string wrongUsage(const CLI::App* app, const CLI::Error& error) {
+  return CLI::FailureMessage::simple(
+      app, CLI::Error(error.get_name(), lacquer::shown(error.what()), error.get_exit_code()));
+}
+
 int run(int argc, char** argv) {
   std::optional<lacquer::cli::Reserve> reserve(std::in_place);  // while CLI11 is at work
   CLI::App app{"Lacquer turns glTF materials into GLSL, HLSL and SPIR-V.", "lacquer"};
   app.set_version_flag("--version", std::string(lacquer::version()));
   app.set_help_all_flag("--help-all", "the help of every verb");
   app.require_subcommand(1);
+  app.failure_message(wrongUsage);
   Flags flags;
   flags.arguments.assign(argv, argv + argc);
   std::string node_name;
@@ -462,7 +472,9 @@ int run(int argc, char** argv) {
   if (called(nodes_verb)) addNodes(*nodes_verb, flags, node_name);
   CLI::App* cost_verb =
       app.add_subcommand("cost", "what SPIR-V fragment shaders cost on AMD GPUs, by Mesa's compiler");
-  cost_verb->add_option("paths", flags.files, "folders that gen wrote, or .spv files")->required();
+  cost_verb->add_option("paths", flags.files, "folders that gen wrote, or .spv files")
+      ->required()
+      ->check(kNotEmpty);
   cost_verb->add_flag("--json", flags.json, "as JSON");
   cost_verb->add_flag("--disassembly", flags.disassembly, "the GPUs' instructions, too");
 
@@ -491,7 +503,7 @@ int run(int argc, char** argv) {
   const auto named = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '\0' && std::none_of(verbs.begin(), verbs.end(), named) &&
       app.get_option_no_throw(argv[1]) == nullptr) {
-    say("lacquer: there is no '{}'; `lacquer --help` lists what there is\n", argv[1]);
+    say("lacquer: there is no '{}'; `lacquer --help` lists what there is\n", lacquer::shown(argv[1]));
     return kUsage;
   }
   try {
@@ -540,7 +552,7 @@ int main(int argc, char** argv) {
     if (std::ferror(stdout) != 0)
       say(kNoOutput);
     else
-      say("lacquer: error: {} [stopped]\n", error.what());
+      say("lacquer: error: {} [stopped]\n", lacquer::shown(error.what()));
   }
   return kFailed;
 }

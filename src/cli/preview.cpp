@@ -13,7 +13,7 @@ namespace lacquer::cli {
 CLI::App* addPreview(CLI::App& app, PreviewFlags& flags) {
   CLI::App* verb =
       app.add_subcommand("preview", "a picture with a lit ball for each material, computed on the CPU");
-  verb->add_option("files", flags.files, ".gltf or .glb files")->required();
+  verb->add_option("files", flags.files, ".gltf or .glb files")->required()->check(kNotEmpty);
   verb->add_option("-o,--output", flags.preview.output, "the PNG file to write")
       ->required()
       ->check(kNotEmpty);

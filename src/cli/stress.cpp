@@ -14,8 +14,9 @@ CLI::App* addStress(CLI::App& app, StressFlags& flags) {
   CLI::App* verb =
       app.add_subcommand("stress", "attacks nodes and materials with the inputs that break shaders");
   verb->add_option(
-      "subjects", flags.subjects,
-      "nodes, .gltf or .glb files, .json cases; `nodes` is every node of the library, as when absent");
+          "subjects", flags.subjects,
+          "nodes, .gltf or .glb files, .json cases; `nodes` is every node of the library, as when absent")
+      ->check(kNotEmpty);
   CLI::Option* samples =
       verb->add_option("--samples", flags.stress.samples, "inputs for each node and each material")
           ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
@@ -44,6 +45,10 @@ CLI::App* addStress(CLI::App& app, StressFlags& flags) {
       ->check(CLI::IsMember({"direct", "glslang", "hlsl"}))
       ->capture_default_str();
   verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files")
+      ->check(kNotEmpty)
+      ->allow_extra_args(false);
+  verb->add_option("--allow", flags.options.allow,
+                   "a folder in which a case's file and images may lie, beside their own (may be repeated)")
       ->check(kNotEmpty)
       ->allow_extra_args(false);
   verb->add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")

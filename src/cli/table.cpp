@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
 #include "json/json.h"
+#include "support/text.h"
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <sys/ioctl.h>
@@ -24,29 +26,13 @@ int terminalWidth() {
   return 0;
 }
 
-namespace {
-
-/// Bytes of what acts on a terminal at the start of `text`, in UTF-8; 0 where the first byte is shown.
-size_t actingBytes(std::string_view text) {
-  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-  if (byte(0) < 0x20 || byte(0) == 0x7F) return 1;
-  if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0) return 2;  // U+0080 to U+009F
-  if (byte(0) == 0xD8 && byte(1) == 0x9C) return 2;                    // U+061C
-  if (byte(0) != 0xE2) return 0;
-  const bool marks = byte(1) == 0x80 && ((byte(2) >= 0x8E && byte(2) <= 0x8F) ||  // U+200E, U+200F
-                                         (byte(2) >= 0xA8 && byte(2) <= 0xAE));   // U+2028 to U+202E
-  const bool isolates = byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9;    // U+2066 to U+2069
-  return marks || isolates ? 3 : 0;
-}
-
-}  // namespace
-
 std::string printable(std::string_view text, std::string_view kept) {
   std::string result;
-  for (size_t i = 0; i < text.size();) {
-    const size_t acting = kept.find(text[i]) == std::string_view::npos ? actingBytes(text.substr(i)) : 0;
-    result += acting != 0 ? '?' : text[i];
-    i += acting != 0 ? acting : 1;
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = std::min(text.find_first_of(kept, at), text.size());
+    result += lacquer::printable(text.substr(at, end - at), std::string_view::npos);
+    if (end < text.size()) result += text[end];
+    at = end + 1;
   }
   return result;
 }

@@ -11,8 +11,9 @@ namespace lacquer::cli {
 /// Columns of the terminal behind stderr; 0 when it is none.
 int terminalWidth();
 
-/// Text from a file as a terminal may show it on one line: control characters (C0, DEL, C1), marks of writing
-/// direction and separators of lines become `?`. `kept`: line ends or tabs that stay.
+/// Text from a file as a terminal may show it on one line: control characters (C0, DEL, C1), bytes that are
+/// no UTF-8, marks of writing direction and separators of lines become `?`. `kept`: line ends or tabs that
+/// stay.
 std::string printable(std::string_view text, std::string_view kept = {});
 
 /// Materials with their terms, then shaders with their files.

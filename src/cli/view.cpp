@@ -69,7 +69,7 @@ CLI::App* addView(CLI::App& app, ViewFlags& flags) {
       [](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "");
   CLI::App* verb = app.add_subcommand(
       "view", "a page that shows and edits materials, with the compiler inside, as one file");
-  verb->add_option("files", flags.files, ".gltf or .glb files");
+  verb->add_option("files", flags.files, ".gltf or .glb files")->check(not_empty);
   verb->add_option("-o,--output", flags.view.output, "the HTML file to write")->required()->check(not_empty);
   verb->add_option("--page", flags.view.page,
                    "the page without files, in place of the one that is installed");

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
+#include <tuple>
 
 #include "json/json.h"
 #include "json/path.h"
@@ -16,14 +19,15 @@ namespace {
 using json::Json;
 using json::Path;
 
-/// One share; its errors go to `report`.
-Share readShare(const Json& row, const Path& path, json::Report& report) {
+/// One share; its errors go to `report`, whose list is `wrong`.
+Share readShare(const Json& row, const Path& path, json::Report& report, const Diagnostics& wrong) {
   Share share;
   if (!row.is_object()) {
     report.wrongType(path, "a share", row, "an object");
     return share;
   }
   for (const auto& [key, value] : row.items()) {
+    if (wrong.size() > kMostDiagnostics) break;  // no more of it is said
     const Path here(path, key);
     if (key == "file") {
       if (!value.is_string()) report.wrongType(here, "file", value, "a string");
@@ -52,8 +56,24 @@ Share readShare(const Json& row, const Path& path, json::Report& report) {
   return share;
 }
 
-bool endsWith(std::string_view path, std::string_view parts) {
-  return path == parts || (path.ends_with(parts) && path[path.size() - parts.size() - 1] == '/');
+using Material = std::variant<std::string, int>;
+
+/// Those of one material of one file stand together, and of them the last of the file is the last.
+bool before(const Share& a, const Share& b) {
+  return std::tie(a.material, a.file, a.place) < std::tie(b.material, b.file, b.place);
+}
+
+bool alike(const Share& a, const Share& b) { return a.material == b.material && a.file == b.file; }
+
+/// The last share of that material with that `file`; -1 where there is none.
+ptrdiff_t lastOf(const std::vector<Share>& shares, const Material& material, std::string_view file) {
+  const auto end =
+      std::upper_bound(shares.begin(), shares.end(), file, [&](std::string_view of, const Share& share) {
+        return material != share.material ? material < share.material : of < share.file;
+      });
+  if (end == shares.begin()) return -1;
+  const Share& share = *std::prev(end);
+  return share.material == material && share.file == file ? end - shares.begin() - 1 : -1;
 }
 
 }  // namespace
@@ -74,42 +94,54 @@ Result<Weights> Weights::read(std::string_view text, const std::string& file, co
   Weights weights;
   weights.given_ = true;
   double sum = 0;
-  for (size_t i = 0; i < rows->size(); ++i) {
-    weights.shares_.push_back(readShare((*rows)[i], Path(path, i), report));
+  for (size_t i = 0; i < rows->size() && wrong.size() <= kMostDiagnostics; ++i) {
+    weights.shares_.push_back(readShare((*rows)[i], Path(path, i), report, wrong));
     weights.shares_.back().place = i;
     sum += weights.shares_.back().share;
   }
   if (wrong.empty() && !(sum > 0)) report.error("out-of-range", path, "no material has a share above 0");
   if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  std::sort(weights.shares_.begin(), weights.shares_.end(), before);
   weights.used_.resize(weights.shares_.size());
   return weights;
 }
 
 double Weights::of(std::string_view file, std::string_view name, size_t index) {
   if (!given_) return 1;
-  double share = 0;
-  for (size_t i = 0; i < shares_.size(); ++i) {
-    const Share& one = shares_[i];
-    const auto* by_name = std::get_if<std::string>(&one.material);
-    const bool named =
-        by_name != nullptr ? *by_name == name : std::get<int>(one.material) == static_cast<int>(index);
-    if (!named || (!one.file.empty() && !endsWith(file, one.file))) continue;
-    share = one.share;
-    used_[i] = true;
-  }
-  return share;
+  const Material by_name = std::string(name), by_index = static_cast<int>(index);
+  const Share* counts = nullptr;
+  const auto look = [&](std::string_view parts) {
+    for (const Material* material : {&by_name, &by_index}) {
+      const ptrdiff_t at = lastOf(shares_, *material, parts);
+      if (at < 0) continue;
+      const Share& share = shares_[static_cast<size_t>(at)];
+      used_[static_cast<size_t>(at)] = true;
+      if (counts == nullptr || counts->place < share.place) counts = &share;
+    }
+  };
+  look({});
+  look(file);
+  for (size_t slash = file.find('/'); slash != std::string_view::npos; slash = file.find('/', slash + 1))
+    look(file.substr(slash + 1));
+  return counts != nullptr ? counts->share : 0;
 }
 
 Diagnostics Weights::unused(const std::string& file) const {
+  std::vector<size_t> places;
+  for (size_t i = shares_.size(), last = i; i-- > 0;) {
+    if (i + 1 == shares_.size() || !alike(shares_[i], shares_[i + 1])) last = i;
+    if (!used_[last]) places.push_back(shares_[i].place);
+  }
+  std::sort(places.begin(), places.end());
   Diagnostics all;
-  for (size_t i = 0; i < shares_.size(); ++i) {
-    if (used_[i]) continue;
-    all.push_back({"no-such-material",
-                   Severity::Warning,
-                   {file, 0, 0, fmt::format("/weights/{}", shares_[i].place)},
-                   "the run has no such material",
-                   "name a material of the files, and its file where several have the name",
-                   {}});
+  for (const size_t place : places) {
+    if (all.size() > kMostDiagnostics) break;
+    addBounded(all, {"no-such-material",
+                     Severity::Warning,
+                     {file, 0, 0, fmt::format("/weights/{}", place)},
+                     "the run has no such material",
+                     "name a material of the files, and its file where several have the name",
+                     {}});
   }
   return all;
 }

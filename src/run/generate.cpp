@@ -15,10 +15,10 @@ namespace lacquer {
 
 namespace {
 
-/// `path: every input`, as Make and Ninja read it. A name that could be read as something else, a recipe or
-/// an assignment say, is refused: there is no way to write it that both understand.
+/// `path: every input`, as Make and Ninja read it. A name that could be read as something else, a recipe, an
+/// assignment or a member of an archive say, is refused: there is no way to write it that both understand.
 Result<std::string> depfileText(const std::string& target, const std::vector<std::string>& inputs) {
-  constexpr std::string_view kRefused = ":;=|%*?[]\\\x7f";
+  constexpr std::string_view kRefused = ":;=|%*?[]()\\\x7f";
   std::string text;
   Diagnostics wrong;
   const auto add = [&](const std::string& path) {

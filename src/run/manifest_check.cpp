@@ -20,8 +20,6 @@ namespace {
 
 using json::Path;
 
-constexpr size_t kMostErrors = 100;  ///< nobody reads more
-
 /// A member that an entry of docs/manifest.schema.json has.
 struct Member {
   std::string_view name;
@@ -68,24 +66,36 @@ constexpr Member kShader[] = {
     {"textures", isObjects, kObjects},   {"inputs", isObjects, kObjects},
     {"outputs", isObjects, kObjects},    {"proofs", isObject, kObject}};
 
+constexpr std::string_view kMembers[] = {"lacquer", "schema", "files", "shaders"};  ///< of a manifest
+
 class Checker {
 public:
   Checker(const std::string& file, std::vector<NamedShader>& named) : report_(file, wrong_), named_(named) {}
 
   void manifest(const Json& json) {
     const Path root;
+    for (const auto& [name, value] : json.items()) {
+      if (full()) return;
+      if (std::find(std::begin(kMembers), std::end(kMembers), name) != std::end(kMembers)) continue;
+      report_.error("unknown-property", Path(root, name), fmt::format("a manifest has no {}", quote(name)),
+                    "it has " + listOf(kMembers));
+    }
     const Path files(root, "files");
-    for (size_t i = 0; i < json["files"].size(); ++i) file(json["files"][i], Path(files, i));
+    const Json& all_files = json["files"];
+    for (size_t i = 0; i < all_files.size() && !full(); ++i) file(all_files[i], Path(files, i));
     const Path shaders(root, "shaders");
-    for (const auto& [id, entry] : json["shaders"].items()) shader(id, entry, Path(shaders, id));
+    for (const auto& [id, entry] : json["shaders"].items()) {
+      if (full()) return;
+      shader(id, entry, Path(shaders, id));
+    }
   }
 
-  Diagnostics take() {
-    if (wrong_.size() > kMostErrors) wrong_.resize(kMostErrors);
-    return std::move(wrong_);
-  }
+  Diagnostics take() { return std::move(wrong_); }
 
 private:
+  /// What else is wrong would not be said.
+  bool full() const { return wrong_.size() > kMostDiagnostics; }
+
   /// Whether the entry is an object whose members have their types.
   bool fits(const Json& json, const Path& path, std::string_view what, std::span<const Member> members) {
     if (!json.is_object()) {
@@ -110,7 +120,8 @@ private:
   void file(const Json& json, const Path& path) {
     if (!fits(json, path, "the file's entry", kFile)) return;
     const Path materials(path, "materials");
-    for (size_t i = 0; i < json["materials"].size(); ++i) material(json["materials"][i], Path(materials, i));
+    const Json& all = json["materials"];
+    for (size_t i = 0; i < all.size() && !full(); ++i) material(all[i], Path(materials, i));
     if (const Json* unnamed = json::member(json, "default_material"))
       material(*unnamed, Path(path, "default_material"));
   }
@@ -118,10 +129,11 @@ private:
   void material(const Json& json, const Path& path) {
     if (!fits(json, path, "the material's entry", kMaterial)) return;
     const Path uses(path, "uses");
-    for (size_t i = 0; i < json["uses"].size(); ++i) {
+    const Json& all = json["uses"];
+    for (size_t i = 0; i < all.size() && !full(); ++i) {
       const Path use(uses, i);
-      if (!fits(json["uses"][i], use, "the use", kUse)) continue;
-      named_.push_back({json["uses"][i]["shader"].get<std::string>(), Path(use, "shader").text()});
+      if (!fits(all[i], use, "the use", kUse)) continue;
+      named_.push_back({all[i]["shader"].text(), Path(use, "shader").text()});
     }
   }
 
@@ -132,7 +144,10 @@ private:
     }
     if (!fits(json, path, "the shader's entry", kShader)) return;
     const Path files(path, "files");
-    for (const auto& [name, entry] : json["files"].items()) target(id, name, entry, Path(files, name));
+    for (const auto& [name, entry] : json["files"].items()) {
+      if (full()) return;
+      target(id, name, entry, Path(files, name));
+    }
   }
 
   /// The paths follow from the id: a manifest that says otherwise leads elsewhere.
@@ -142,6 +157,7 @@ private:
       return report_.error("unknown-target", path, fmt::format("there is no target {}", quote(name)));
     if (!json.is_object()) return report_.wrongType(path, "the target's entry", json, kObject);
     for (const auto& [stage, file] : json.items()) {
+      if (full()) return;
       const bool known = stage == fileKind(target, 0) || stage == fileKind(target, 1);
       if (!known) {
         report_.error("wrong-path", Path(path, stage),

@@ -11,12 +11,14 @@
 #include "shader/options.h"
 #include "shader/print.h"
 #include "support/jobs.h"
-#include "support/relative.h"
+#include "support/outputs.h"
 #include "support/text.h"
 
 namespace lacquer {
 
 namespace {
+
+bool isNodeFile(const std::string& path) { return path.ends_with(".node"); }
 
 /// A path in a build statement.
 std::string escaped(const std::string& path) {
@@ -50,7 +52,7 @@ std::string lightsWord(const passes::LightFacts& lights) {
 
 /// Errors about names that Ninja's format cannot hold: it has an escape for a space, but for neither a line's
 /// end nor a bar.
-Diagnostics unfit(const Strings& paths, const Strings& words) {
+Diagnostics unfitForNinja(const Strings& paths, const Strings& words) {
   Diagnostics wrong;
   const auto look = [&](const std::string& text, bool path) {
     const bool control = std::any_of(
@@ -67,6 +69,48 @@ Diagnostics unfit(const Strings& paths, const Strings& words) {
   };
   for (const std::string& path : paths) look(path, true);
   for (const std::string& word : words) look(word, false);
+  return wrong;
+}
+
+/// Errors about words that JSON has no place for: another name would stand there.
+Diagnostics unfitForJson(const Strings& words) {
+  Diagnostics wrong;
+  for (const std::string& word : words) {
+    if (json::reread(json::quotedText(word)).text() == word) continue;
+    wrong.push_back({"json-name",
+                     Severity::Error,
+                     {word, 0, 0, {}},
+                     "JSON cannot hold a name that is not UTF-8",
+                     "nothing was written: rename it, or leave --json out",
+                     {}});
+  }
+  return wrong;
+}
+
+/// Errors about names that what the plan writes cannot hold.
+Diagnostics unfit(const Plan& plan, const std::string& folder, const Strings& inputs) {
+  Strings paths{plan.ninja, folder, plan.program};
+  paths.insert(paths.end(), inputs.begin(), inputs.end());
+  Strings words = plan.command;
+  words.insert(words.end(), plan.replan.begin(), plan.replan.end());
+  Diagnostics wrong = unfitForNinja(paths, words);
+  if (plan.json.empty() || !wrong.empty()) return wrong;
+  // The glTF files are in none of the commands.
+  Strings said{plan.ninja, folder, plan.program};
+  said.insert(said.end(), plan.command.begin(), plan.command.end());
+  std::copy_if(inputs.begin(), inputs.end(), std::back_inserter(said), isNodeFile);
+  return unfitForJson(said);
+}
+
+/// The folder of what the commands read and say: its files have names of the plan's own.
+std::string folderBeside(const Plan& plan) { return plan.ninja + ".plan"; }
+
+std::string materialsOf(const Plan& plan) { return folderBeside(plan) + "/materials.json"; }
+
+/// Errors about files that the user named and that lie there.
+Diagnostics amongOurs(const Plan& plan, const Strings& named) {
+  Diagnostics wrong = reservedNames({folderBeside(plan)}, {}, named);
+  for (Diagnostic& one : wrong) one.message = "this file is to be written where the plan's own are";
   return wrong;
 }
 
@@ -99,8 +143,8 @@ public:
             std::vector<std::string> inputs)
       : plan_(plan), folder_(folder), options_(options), inputs_(std::move(inputs)) {}
 
-  std::string stem(const std::string& id) const { return plan_.ninja + ".plan/" + id; }
-  std::string materials() const { return plan_.ninja + ".plan/materials.json"; }
+  std::string stem(const std::string& id) const { return folderBeside(plan_) + "/" + id; }
+  std::string materials() const { return materialsOf(plan_); }
 
   void head() {
     text_ +=
@@ -210,8 +254,7 @@ private:
 
   std::vector<std::string> nodeInputs() const {
     std::vector<std::string> all;
-    std::copy_if(inputs_.begin(), inputs_.end(), std::back_inserter(all),
-                 [](const std::string& path) { return path.ends_with(".node"); });
+    std::copy_if(inputs_.begin(), inputs_.end(), std::back_inserter(all), isNodeFile);
     return all;
   }
 
@@ -235,20 +278,21 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
     run.result().ok = false;
     return run.finish();
   }
-  const std::string all_materials = plan.ninja + ".plan/materials.json";
-  if (!run.open(folderOf(all_materials))) return run.finish();
-  Strings paths{plan.ninja, folder, plan.program};
-  const Strings read = run.inputs();
-  paths.insert(paths.end(), read.begin(), read.end());
-  Strings words = plan.command;
-  words.insert(words.end(), plan.replan.begin(), plan.replan.end());
-  if (const Diagnostics wrong = unfit(paths, words); !wrong.empty()) {
+  const std::string all_materials = materialsOf(plan);
+  if (!run.open(folderBeside(plan))) return run.finish();
+  if (const Diagnostics wrong = unfit(plan, folder, run.inputs()); !wrong.empty()) {
     run.wrote(tl::make_unexpected(wrong));
     return run.finish();
   }
-  Strings outputs = {plan.ninja, all_materials};
-  if (!plan.json.empty()) outputs.push_back(plan.json);
+  Strings named_files = {plan.ninja};
+  if (!plan.json.empty()) named_files.push_back(plan.json);
+  Strings outputs = named_files;
+  outputs.push_back(all_materials);
   if (!run.mayWrite(outputs) || !run.mayName(outputs, folder)) return run.finish();
+  if (const Diagnostics wrong = amongOurs(plan, named_files); !wrong.empty()) {
+    run.wrote(tl::make_unexpected(wrong));
+    return run.finish();
+  }
   const Writing how{nullptr, options.sync};
   ManifestFile manifest(all_materials, how);
   run.readScenes(files, materials, [&](FileResult& file) { manifest.file(file.text); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <unordered_map>
 
 namespace lacquer {
 
@@ -14,10 +15,11 @@ static void fields(Archive& archive, MaterialReport& m) {
 void writeMaterials(std::span<const MaterialReport> materials, BlobWriter& blob) {
   std::vector<std::shared_ptr<const MaterialTerms>> terms;
   std::vector<uint64_t> places;
+  std::unordered_map<const MaterialTerms*, uint64_t> known;  // their order is that of the materials
   for (const MaterialReport& m : materials) {
-    const auto it = std::find(terms.begin(), terms.end(), m.terms);
-    places.push_back(static_cast<uint64_t>(it - terms.begin()));
-    if (it == terms.end()) terms.push_back(m.terms);
+    const auto [it, fresh] = known.try_emplace(m.terms.get(), terms.size());
+    places.push_back(it->second);
+    if (fresh) terms.push_back(m.terms);
   }
   blob(materials, places, terms);
 }

@@ -11,6 +11,7 @@
 #include "shader/options.h"
 #include "shader/print.h"
 #include "support/outputs.h"
+#include "support/relative.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -21,6 +22,9 @@ namespace {
 /// files does not grow with their number.
 constexpr size_t kFilesAtOnce = 16;
 constexpr auto kProgressGrain = std::chrono::milliseconds(50);
+
+// Where Scratch and Cache write by names of their own.
+constexpr std::string_view kTemporaries = "/.lacquer-tmp", kCacheEntries = "/v1";
 
 }  // namespace
 
@@ -37,6 +41,9 @@ Run::Run(const Options& options, const Strings& inputs, Messages& messages,
 
 bool Run::prepare() {
   prepared_ = true;
+  for (const std::string& input : inputs_) {
+    if (const Result<void> named = hasPath("an input", input); !named) return allGood(named.error());
+  }
   if (const Diagnostics wrong = checkOptions(options_); !wrong.empty()) {
     report(wrong, {});
     report_.ok = false;
@@ -70,6 +77,7 @@ bool Run::prepare() {
 
 bool Run::open(const std::string& folder) {
   if (!prepared_ && !prepare()) return false;
+  if (const Result<void> placed = hasPlace(folder, inputs_); !placed) return allGood(placed.error());
   const StageTimer timer(&times_, StageOfRun::Library);
   const auto library = libraryFor(options_);
   if (!library) {
@@ -114,9 +122,10 @@ bool Run::checkPrograms() {
                      {}}});
   }
   if (options_.weights.empty()) return true;
-  const Result<std::string> text = readFile(options_.weights);
+  const Limits limits = *limitsOf(options_);
+  const Result<std::string> text = readFile(options_.weights, limits.file);
   if (!text) return allGood(text.error());
-  Result<programs::Weights> weights = programs::Weights::read(*text, options_.weights, *limitsOf(options_));
+  Result<programs::Weights> weights = programs::Weights::read(*text, options_.weights, limits);
   if (!weights) return allGood(weights.error());
   weights_ = std::move(*weights);
   return true;
@@ -313,10 +322,16 @@ bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt*
 bool Run::mayWrite(const Strings& outputs) { return allGood(clashes(readFiles(), outputs)); }
 
 bool Run::mayName(const Strings& outputs, const std::string& folder) {
-  Strings folders;
+  Strings folders{folder + std::string(kTemporaries)};
   for (size_t t = 0; t < kTargetCount; ++t)
     folders.push_back(fmt::format("{}/{}", folder, targetName(static_cast<Target>(t))));
-  return allGood(reservedNames(folders, {folder + "/manifest.json"}, outputs));
+  Diagnostics wrong = reservedNames(folders, {folder + "/manifest.json"}, outputs);
+  if (options_.cache.empty()) return allGood(wrong);
+  for (Diagnostic& one : reservedNames({options_.cache + std::string(kCacheEntries)}, {}, outputs)) {
+    one.message = "this file is to be written where the cache's own are";
+    wrong.push_back(std::move(one));
+  }
+  return allGood(wrong);
 }
 
 bool Run::allGood(const Diagnostics& wrong) {

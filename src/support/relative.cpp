@@ -1,6 +1,6 @@
 #include "support/relative.h"
 
-#include <filesystem>
+#include <algorithm>
 
 namespace lacquer {
 
@@ -19,6 +19,16 @@ fs::path plain(const fs::path& path) {
 
 fs::path withoutSlash(const fs::path& path) { return path.has_filename() ? path : path.parent_path(); }
 
+/// From the root of the file system.
+fs::path whole(const std::string& path) {
+  const fs::path given(path);
+  return given.is_absolute() ? given : fs::current_path() / given;
+}
+
+/// The same with links followed, and without a slash at the end. A call that fails ends the run: without it
+/// the path would be another one, and the manifest say so.
+fs::path followed(const std::string& folder) { return withoutSlash(fs::weakly_canonical(whole(folder))); }
+
 /// Below the working folder, and not through links: `..` in a path that begins there means what it says.
 bool isBelow(const fs::path& folder) {
   const fs::path words = folder.lexically_normal();
@@ -32,24 +42,33 @@ bool isBelow(const fs::path& folder) {
 }  // namespace
 
 std::string relativeTo(const std::string& folder, const std::string& path) {
-  // A call that fails ends the run: without it the path would be another one, and the manifest say so.
-  const fs::path here = fs::current_path();
-  fs::path from = fs::weakly_canonical(here / folder);
-  if (!from.has_filename()) from = from.parent_path();  // "a/" is "a" and an empty name
-  const fs::path to = plain(here / path);
-  const fs::path relative = to.lexically_relative(from);
+  const fs::path to = plain(whole(path));
+  const fs::path relative = to.lexically_relative(followed(folder));
   return relative.empty() ? to.generic_string() : relative.generic_string();
 }
 
-std::string fromFolder(const std::string& folder, const std::string& path) {
-  return (fs::path(folder) / path).generic_string();
+Result<void> hasPlace(const std::string& folder, const std::vector<std::string>& paths) {
+  const auto is_relative = [](const std::string& path) { return !fs::path(path).is_absolute(); };
+  std::error_code error;
+  fs::path here;
+  if (is_relative(folder) || std::any_of(paths.begin(), paths.end(), is_relative))
+    here = fs::current_path(error);
+  if (!error) (void)fs::weakly_canonical(here / folder, error);
+  if (!error) return {};
+  return fail("file-unwritable", {folder, 0, 0, {}},
+              "where this folder is cannot be told: " + error.message(), "nothing was written");
 }
 
-std::string moved(const std::string& path, const std::string& from, const std::string& to) {
-  const std::string here = fromFolder(from, path);
-  if (fs::path(path).is_absolute() || !isBelow(from) || !isBelow(to)) return relativeTo(to, here);
-  const fs::path words = fs::path(here).lexically_normal();
-  return words.lexically_relative(withoutSlash(fs::path(to).lexically_normal())).generic_string();
+Moved::Moved(const std::string& from, const std::string& to) : below_(isBelow(from) && isBelow(to)) {
+  absolute_to_ = followed(to);
+  from_ = below_ ? fs::path(from) : followed(from);
+  if (below_) to_ = withoutSlash(fs::path(to).lexically_normal());
+}
+
+std::string Moved::operator()(const std::string& path) const {
+  const fs::path there = (from_ / path).lexically_normal();
+  const fs::path relative = there.lexically_relative(there.is_absolute() ? absolute_to_ : to_);
+  return relative.empty() ? there.generic_string() : relative.generic_string();
 }
 
 std::string folderOf(const std::string& path) {
