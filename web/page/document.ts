@@ -1,6 +1,7 @@
 // The file that is edited: what is read from it, what changes it, and the way back.
 import type { Attribute, Lacquer } from '../src/index';
 import { geometry, openGltf, type Drawable, type GltfFile } from '../src/gltf';
+import { list } from '../src/json';
 
 export interface Input {
   name: string;
@@ -54,33 +55,44 @@ export class Document {
   /** Of that what no edit changes; an animation of a material's property keeps the property's terms. */
   private unedited(): object {
     const { asset, textures, samplers, images, animations } = this.json;
-    const targets = (channels: any) => (Array.isArray(channels) ? channels : [])
-      .filter(({ target }: any) => /^\/materials\//.test(target?.extensions?.KHR_animation_pointer?.pointer))
-      .map(({ target }: any) => ({ target }));
+    const targets = (channels: any) => list(channels)
+      .map((channel) => channel?.target)
+      .filter((target) => {
+        const pointer = target?.extensions?.KHR_animation_pointer?.pointer;
+        return typeof pointer === 'string' && pointer.startsWith('/materials/');
+      })
+      .map((target) => ({ target }));
     return {
       asset, textures, samplers,
-      images: images?.map(({ mimeType, name }: any) => ({ mimeType, name, uri: 'image' })),
-      animations: animations?.map(({ channels }: any) => ({ channels: targets(channels) })),
+      images: images && list(images).map((each) => ({ mimeType: each?.mimeType, name: each?.name, uri: 'image' })),
+      animations: animations && list(animations).map((each) => ({ channels: targets(each?.channels) })),
     };
   }
 
   /** The value at a JSON pointer; undefined where there is none. */
   get(pointer: string): any {
-    return parts(pointer).reduce((at, part) => at?.[part], this.json);
+    return parts(pointer).reduce(own, this.json);
   }
-  /** Sets it, making the objects on the way; undefined removes it. Edits of one `key` in a row are one step back. */
+  /** Sets it, making the objects on the way; undefined removes it. Edits of one `key` in a row are one step back. A pointer
+   * to what no JSON object has, or through what is none, changes nothing. */
   set(pointer: string, value: unknown, key: string): void {
-    this.keep(key);
     const path = parts(pointer);
-    const last = path.pop()!;
-    const at = path.reduce((object, part) => (object[part] ??= {}), this.json);
+    let at = this.json;
+    for (const part of path) {
+      if (!leads(at, part)) return;
+      at = own(at, part) ?? {};
+    }
+    const last = path.pop();
+    if (last === undefined) return;
+    this.keep(key);
+    at = path.reduce((object, part) => (object[part] = own(object, part) ?? {}), this.json);
     if (value === undefined) delete at[last];
     else at[last] = value;
   }
   /** Adds or removes an extension of the material, with an empty object as its value. */
   setExtension(pointer: string, name: string, on: boolean): void {
     this.set(pointer, on ? {} : undefined, `extension ${name} ${on}`);
-    const used = new Set<string>(this.json.extensionsUsed ?? []);
+    const used = new Set<string>(list(this.json.extensionsUsed));
     if (on) used.add(name);
     this.json.extensionsUsed = [...used];
   }
@@ -156,6 +168,17 @@ export class Document {
     bytes.set(chunks[1], 12 + chunks[0].length);
     return { name: this.file.name, bytes };
   }
+}
+
+/** Whether a part of a pointer may lead on from there: to any key of an object, but the one that sets its prototype, and to
+ * the elements of a list. */
+function leads(at: any, part: string): boolean {
+  if (typeof at !== 'object' || at === null || part === '__proto__') return false;
+  return !Array.isArray(at) || (/^\d+$/.test(part) && Object.hasOwn(at, part));
+}
+/** What a value has itself: pointers come with files, and what all objects inherit is none of the file's. */
+function own(at: any, part: string): any {
+  return leads(at, part) && Object.hasOwn(at, part) ? at[part] : undefined;
 }
 
 function parts(pointer: string): string[] {

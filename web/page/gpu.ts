@@ -62,6 +62,8 @@ export class GpuPainter {
   private readonly format: GPUTextureFormat;
   private programs = new Map<string, Program>();
   private geometries = new WeakMap<Drawable, Geometry>();
+  /** Of numbers that several drawables may have. */
+  private arrays = new WeakMap<ArrayBufferView, GPUBuffer>();
   private materials = new WeakMap<Look, GPUBuffer>();
   private cubes = new WeakMap<Cube, GPUTextureView>();
   private textures = new Map<string, GPUTextureView>();
@@ -202,13 +204,14 @@ export class GpuPainter {
       color: { srcFactor: 'src-alpha', dstFactor: 'one-minus-src-alpha' }, alpha: { srcFactor: 'one', dstFactor: 'one-minus-src-alpha' },
     };
     const full = (type: string) => Number(/\d/.exec(type)?.[0] ?? 1);
+    const format = (size: number) => (size === 1 ? 'float32' : `float32x${size}`) as GPUVertexFormat;
     made = this.device.createRenderPipeline({
       layout: this.device.createPipelineLayout({ bindGroupLayouts: program.layouts }),
       vertex: {
         module: program.stages.vertex,
         buffers: program.inputs.map(({ location, type }, i) => ({
           arrayStride: 4 * sizes[i],
-          attributes: [{ shaderLocation: location, offset: 0, format: `float32x${sizes[i] || full(type)}` as GPUVertexFormat }],
+          attributes: [{ shaderLocation: location, offset: 0, format: format(sizes[i] || full(type)) }],
         })),
       },
       fragment: { module: program.stages.fragment, targets: [{ format: kColor, blend: look.blended ? blend : undefined }] },
@@ -273,13 +276,18 @@ export class GpuPainter {
     const object = new Float32Array(32);
     object.set(drawable.model);
     object.set(drawable.normal, 16);
+    const arrayOf = (data: Float32Array | Uint32Array, usage: number) => {
+      const buffer = this.arrays.get(data) ?? this.buffer(data, usage);
+      this.arrays.set(data, buffer);
+      return buffer;
+    };
     const attributes: Geometry['attributes'] = new Map();
     for (const [name, { data, size }] of drawable.attributes) {
-      if (kLocations.includes(name)) attributes.set(name, { buffer: this.buffer(data, GPUBufferUsage.VERTEX), size });
+      if (kLocations.includes(name)) attributes.set(name, { buffer: arrayOf(data, GPUBufferUsage.VERTEX), size });
     }
     made = {
       attributes, object: this.buffer(object, GPUBufferUsage.UNIFORM), count: drawable.indices.length,
-      indices: this.buffer(drawable.indices, GPUBufferUsage.INDEX),
+      indices: arrayOf(drawable.indices, GPUBufferUsage.INDEX),
     };
     this.geometries.set(drawable, made);
     return made;

@@ -15,6 +15,9 @@ const kMostPixels = 1 << 27;
 class Bytes {
   at = 0;
   constructor(private readonly bytes: Uint8Array) {}
+  left(): number {
+    return this.bytes.length - this.at;
+  }
   next(): number {
     if (this.at >= this.bytes.length) throw new Error('the picture ends too early');
     return this.bytes[this.at++];
@@ -24,6 +27,11 @@ class Bytes {
     for (let c = this.next(); c !== 10; c = this.next()) text += String.fromCharCode(c);
     return text;
   }
+}
+
+/** What a row takes at least: of each of four planes runs of two bytes, as long as there are, or plain pixels. */
+function leastBytes(width: number): number {
+  return width < 8 || width > 32767 ? 4 * width : 8 * Math.ceil(width / 127);
 }
 
 /** A row of four planes, each run-length coded, or of plain pixels as old writers have them. */
@@ -58,6 +66,8 @@ export function readHdr(data: Uint8Array): Picture {
   if (!size) throw new Error('the picture has no size, or its rows do not run from the top left');
   const [height, width] = [Number(size[1]), Number(size[2])];
   if (width < 1 || height < 1 || width * height > kMostPixels) throw new Error(`a picture of ${width} by ${height} is not read`);
+  // Before any room is taken for the pixels.
+  if (height * leastBytes(width) > bytes.left()) throw new Error('the picture ends too early');
   const pixels = new Float32Array(3 * width * height);
   const row = new Uint8Array(4 * width);
   for (let y = 0; y < height; ++y) {

@@ -1,5 +1,6 @@
 // Lamps: two of the page's own, and those of a file (KHR_lights_punctual), as elements of the block Lights.
 import { eachNode, type GltfFile } from '../src/gltf';
+import { isNear, item, list } from '../src/json';
 import { scale, unit, type Vec3 } from '../src/math';
 
 /** The fields of an element, as docs/bindings.md has them. */
@@ -37,17 +38,18 @@ export function element({ position, positional, radiance, range, direction, spot
 
 /** Those that nodes of the default scene refer to, the first sixteen. */
 export function fileLights(file: GltfFile): Light[] {
-  const declared = file.json.extensions?.KHR_lights_punctual?.lights ?? [];
+  const declared = file.json.extensions?.KHR_lights_punctual?.lights;
+  const real = (x: unknown, otherwise: number) => (isNear(x) ? x : otherwise);
   const found: Light[] = [];
   eachNode(file, (node, world) => {
-    const of = declared[node.extensions?.KHR_lights_punctual?.light];
+    const of = item(declared, node.extensions?.KHR_lights_punctual?.light);
     if (!of || found.length === kMostLights) return;
     const direction = unit([-world[8], -world[9], -world[10]]);
-    const radiance = [0, 1, 2].map((i) => (of.color?.[i] ?? 1) * (of.intensity ?? 1)) as Vec3;
+    const radiance = [0, 1, 2].map((i) => real(list(of.color)[i], 1) * real(of.intensity, 1)) as Vec3;
     if (of.type === 'directional') return void found.push({ ...directional(scale(direction, -1), radiance), direction });
-    const { innerConeAngle: inner = 0, outerConeAngle: outer = Math.PI / 4 } = of.spot ?? {};
+    const [inner, outer] = [real(of.spot?.innerConeAngle, 0), real(of.spot?.outerConeAngle, Math.PI / 4)];
     const position: Vec3 = [world[12], world[13], world[14]];
-    found.push({ position, positional: true, radiance, range: of.range ?? 0, direction, spot: of.type === 'spot' ? { inner, outer } : null });
+    found.push({ position, positional: true, radiance, range: real(of.range, 0), direction, spot: of.type === 'spot' ? { inner, outer } : null });
   });
   return found;
 }

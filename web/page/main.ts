@@ -602,11 +602,14 @@ function messageOf(error: unknown, level: Level = 'error'): Message {
 interface Embedded {
   name: string;
   bytes: string;
-  resources: { uri: string; bytes: string }[];
+  /** Another spelling of a file before it has no bytes, but that one's. */
+  resources: { uri: string; bytes?: string; same?: string }[];
 }
 
 function inputOf({ name, bytes, resources }: Embedded): Input {
-  return { name, bytes: fromBase64(bytes), resources: new Map(resources.map((each) => [each.uri, fromBase64(each.bytes)])) };
+  const all = new Map<string, Uint8Array>();
+  for (const { uri, bytes, same } of resources) all.set(uri, same === undefined ? fromBase64(bytes!) : all.get(same)!);
+  return { name, bytes: fromBase64(bytes), resources: all };
 }
 
 async function start(): Promise<void> {

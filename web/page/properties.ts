@@ -2,6 +2,7 @@
 import type { Document } from './document';
 import { h } from './dom';
 import { sourceOf } from '../src/gltf';
+import { item } from '../src/json';
 
 interface Property {
   name: string;
@@ -116,9 +117,9 @@ export class Properties {
   }
 
   private texture(of: Document, property: Property, pointer: string): HTMLElement {
-    const { index } = of.get(pointer);
-    const source = sourceOf(of.json.textures?.[index]);
-    const image = of.json.images?.[source];
+    const index = of.get(`${pointer}/index`);
+    const source = sourceOf(item(of.json.textures, index));
+    const image = item(of.json.images, source);
     const name = image?.name ?? (typeof image?.uri === 'string' && !image.uri.startsWith('data:') ? image.uri : `texture ${index}`);
     const remove = () => {
       of.set(pointer, undefined, `remove ${pointer}`);
@@ -136,7 +137,10 @@ export class Properties {
   private choice(of: Document, property: Property, pointer: string): HTMLElement {
     const values = property.type === 'bool' ? ['false', 'true'] : property.values ?? [];
     const select = h('select', { id: `p:${pointer}` }, ...values.map((value) => h('option', {}, value)));
-    const update = () => (select.value = String(of.get(pointer) ?? (property.type === 'bool' ? 'false' : property.default)));
+    const update = () => {
+      const now = of.get(pointer); // an object may have no text
+      select.value = String((typeof now === 'object' ? null : now) ?? (property.type === 'bool' ? 'false' : property.default));
+    };
     select.addEventListener('change', () => {
       of.set(pointer, property.type === 'bool' ? select.value === 'true' : select.value, `set ${pointer}`);
       of.settle();
@@ -153,7 +157,7 @@ export class Properties {
     const value = () => {
       const now = of.get(pointer);
       const list = (now === undefined ? usual : [now].flat()) as number[];
-      return Array.from({ length: count }, (_, i) => Number(list[i] ?? usual[i] ?? usual[0]));
+      return Array.from({ length: count }, (_, i) => (typeof list[i] === 'number' ? list[i] : Number(usual[i] ?? usual[0])));
     };
     const isColor = count >= 3 && /colou?r|emissive|tint/i.test(property.name);
     const change = (i: number, x: number, done: boolean) => {

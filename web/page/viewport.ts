@@ -3,6 +3,7 @@ import type { Interface, Shader } from '../src/index';
 import { constantEnvironment, environmentOf, type Cube, type Environment } from './environment';
 import { bounds, image, sourceOf, type Drawable, type GltfFile } from '../src/gltf';
 import type { GpuPainter } from './gpu';
+import { isCount, item, list } from '../src/json';
 import { directional, element, kMostLights, kStudioLights, type Light } from './lights';
 import { add, cross, lookAt, mirrors, multiply, perspective, scale, type Mat4, type Vec3 } from '../src/math';
 import { ball, flatDrawable } from './shapes';
@@ -181,11 +182,12 @@ export class Viewport {
 
   setScene(drawables: Drawable[]): void {
     for (const mesh of this.meshes) this.dropMesh(mesh);
-    // What is at several places is uploaded once.
+    // What is at several places is uploaded once, and so are the numbers that several primitives have.
     const shapes = new Map<Drawable['attributes'], Mesh>();
+    const uploaded = new Map<ArrayBufferView, WebGLBuffer>();
     this.meshes = drawables.map((drawable) => {
       const same = shapes.get(drawable.attributes);
-      const mesh = same ? { ...same, drawable, buffers: [] } : this.upload(drawable);
+      const mesh = same ? { ...same, drawable, buffers: [] } : this.upload(drawable, uploaded);
       shapes.set(drawable.attributes, mesh);
       drawable.mirrored = mirrors(drawable.model);
       return mesh;
@@ -211,12 +213,12 @@ export class Viewport {
   }
   private async loadTexture(file: GltfFile, texture: number, srgb: boolean, key: string): Promise<void> {
     const { loading, gl } = this;
-    const of = file.json.textures?.[texture];
-    const most = Math.min(mostPixels(file.json.images?.length ?? 1), gl.getParameter(gl.MAX_TEXTURE_SIZE));
+    const of = item(file.json.textures, texture);
+    const most = Math.min(mostPixels(list(file.json.images).length), gl.getParameter(gl.MAX_TEXTURE_SIZE));
     const bitmap = of ? await image(file, sourceOf(of), most) : null;
     if (!bitmap) return;
     if (this.loading !== loading) return bitmap.close(); // of a file that has gone
-    const sampler = file.json.samplers?.[of.sampler] ?? {};
+    const sampler = Object.fromEntries(Object.entries(item(file.json.samplers, of.sampler) ?? {}).filter(([, x]) => isCount(x)));
     this.bitmaps.set(key, { bitmap, sampler });
     this.textures.set(key, this.imageTexture(bitmap, srgb, sampler));
   }
@@ -534,13 +536,17 @@ export class Viewport {
     return texture;
   }
 
-  private upload(drawable: Drawable): Mesh {
+  private upload(drawable: Drawable, uploaded = new Map<ArrayBufferView, WebGLBuffer>()): Mesh {
     const { gl } = this;
     const arrays = gl.createVertexArray()!;
     const buffers: WebGLBuffer[] = [];
     const fill = (kind: number, data: Float32Array | Uint32Array) => {
-      buffers.push(gl.createBuffer()!);
-      gl.bindBuffer(kind, buffers[buffers.length - 1]);
+      const known = uploaded.get(data);
+      if (known) return gl.bindBuffer(kind, known);
+      const buffer = gl.createBuffer()!;
+      buffers.push(buffer);
+      uploaded.set(data, buffer);
+      gl.bindBuffer(kind, buffer);
       gl.bufferData(kind, data as Float32Array<ArrayBuffer>, gl.STATIC_DRAW);
     };
     gl.bindVertexArray(arrays);
@@ -560,8 +566,7 @@ export class Viewport {
     return { drawable, arrays, buffers, count: drawable.indices.length };
   }
   private dropMesh({ arrays, buffers }: Mesh): void {
-    if (buffers.length === 0) return; // it has another's
-    this.gl.deleteVertexArray(arrays);
+    this.gl.deleteVertexArray(arrays); // where it is another's, too, the second time does nothing
     for (const buffer of buffers) this.gl.deleteBuffer(buffer);
   }
 

@@ -1,5 +1,6 @@
 // What a program that draws glTF needs beside shaders: a file's JSON and bytes, its triangles and its images. It knows no
-// materials: those the library reads. Whatever is wrong with a primitive leaves it out.
+// materials: those the library reads. Whatever is wrong with a primitive leaves it out, and so does what is too much.
+import { isCount, isNear, item, list, numbersOf, once } from './json.js';
 import { compose, identity, multiply, normalMatrix, point, type Mat4, type Vec3 } from './math.js';
 
 export type { Mat4, Vec3 };
@@ -29,26 +30,36 @@ export interface Drawable {
   normal: Mat4;
   /** The model swaps front and back faces. */
   mirrored?: boolean;
-  /** As floats, by the attributes' names. Primitives of one mesh at several places have one map. */
+  /** As floats, by the attributes' names. Primitives of one mesh at several places have one map, and those that name one
+   * accessor, its one array. */
   attributes: Map<string, Numbers>;
   /** Of triangles. */
   indices: Uint32Array;
 }
 
-const decoder = new TextDecoder();
+/** Of a file: more, which a few kilobytes can ask for, are left out. */
+const kMostDrawables = 100_000;
+/** Numbers that are read of a file's accessors, or made for its primitives: 256 MB. */
+const kMostNumbers = 2 ** 26;
+
+function objectFrom(bytes: Uint8Array): any {
+  const json = JSON.parse(new TextDecoder().decode(bytes));
+  if (typeof json !== 'object' || json === null) throw new Error('the JSON is no object');
+  return json;
+}
 
 /** Takes a .gltf or .glb apart; throws where there is no JSON. */
 export function openGltf(name: string, bytes: Uint8Array, resources = new Map<string, Uint8Array>()): GltfFile {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   if (bytes.length < 20 || view.getUint32(0, true) !== 0x46546c67)
-    return { name, bytes, json: JSON.parse(decoder.decode(bytes)), binary: null, resources };
+    return { name, bytes, json: objectFrom(bytes), binary: null, resources };
   let json: any = null;
   let binary: Uint8Array | null = null;
   for (let at = 12; at + 8 <= bytes.length; ) {
     const size = view.getUint32(at, true);
     const chunk = bytes.subarray(at + 8, at + 8 + size);
     const kind = view.getUint32(at + 4, true);
-    if (kind === 0x4e4f534a && json === null) json = JSON.parse(decoder.decode(chunk));
+    if (kind === 0x4e4f534a && json === null) json = objectFrom(chunk);
     if (kind === 0x004e4942 && binary === null) binary = chunk;
     at += 8 + size;
   }
@@ -64,8 +75,8 @@ export async function fetchGltf(url: URL | string): Promise<GltfFile> {
     return new Uint8Array(await response.arrayBuffer());
   };
   const file = openGltf(String(url), await bytesAt(url));
-  const { buffers = [], images = [] } = file.json;
-  const named = new Set<string>([...buffers, ...images].map(({ uri }) => uri).filter((uri) => uri && !uri.startsWith('data:')));
+  const uris = [...list(file.json.buffers), ...list(file.json.images)].map((each) => each?.uri);
+  const named = new Set<string>(uris.filter((uri) => uri && typeof uri === 'string' && !uri.startsWith('data:')));
   const base = new URL(url, globalThis.document?.baseURI);
   await Promise.all([...named].map(async (uri) => file.resources.set(uri, await bytesAt(new URL(uri, base)))));
   return file;
@@ -86,13 +97,14 @@ function resource(file: GltfFile, uri: string): Uint8Array | null {
   if (uri.startsWith('data:')) {
     const comma = uri.indexOf(',');
     if (!uri.slice(0, comma).endsWith(';base64')) return null;
+    let bytes: Uint8Array = new Uint8Array();
     try {
-      const bytes = fromBase64(uri.slice(comma + 1));
-      file.resources.set(uri, bytes);
-      return bytes;
+      bytes = fromBase64(uri.slice(comma + 1));
     } catch {
-      return null;
+      // none: nor are they looked for again
     }
+    file.resources.set(uri, bytes);
+    return bytes;
   }
   let plain = uri;
   try {
@@ -106,25 +118,25 @@ function resource(file: GltfFile, uri: string): Uint8Array | null {
 
 /** The bytes of a buffer view; null where they are not all there. */
 export function bufferView(file: GltfFile, index: number): Uint8Array | null {
-  const view = file.json.bufferViews?.[index];
-  const buffer = file.json.buffers?.[view?.buffer];
-  if (!view || !buffer) return null;
+  const view = item(file.json.bufferViews, index);
+  const buffer = item(file.json.buffers, view?.buffer);
+  if (!buffer) return null;
   const bytes = typeof buffer.uri === 'string' ? resource(file, buffer.uri) : file.binary;
   const from = view.byteOffset ?? 0;
-  if (!bytes || from + view.byteLength > bytes.length) return null;
+  if (!bytes || !isCount(from) || !isCount(view.byteLength) || from + view.byteLength > bytes.length) return null;
   return bytes.subarray(from, from + view.byteLength);
 }
 
 /** The image of a texture: its own, or one in another format that browsers decode. */
 export function sourceOf(texture: any): number {
   const { EXT_texture_webp: webp, EXT_texture_avif: avif } = texture?.extensions ?? {};
-  return texture?.source ?? webp?.source ?? avif?.source ?? -1;
+  return [texture?.source, webp?.source, avif?.source].find(isCount) ?? -1;
 }
 
 /** An image as the browser decodes it, its numbers untouched; made smaller where a side has more than `most` pixels. null
  * where it is not there or no browser decodes it. */
 export async function image(file: GltfFile, index: number, most = Infinity): Promise<ImageBitmap | null> {
-  const of = file.json.images?.[index];
+  const of = item(file.json.images, index);
   if (!of) return null;
   const bytes = typeof of.uri === 'string' ? resource(file, of.uri) : bufferView(file, of.bufferView);
   if (!bytes) return null;
@@ -144,18 +156,53 @@ export async function image(file: GltfFile, index: number, most = Infinity): Pro
 
 type Stored = Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array | Float32Array;
 /** By component type: arrays, their elements' bytes, and the number that stands for 1 where it is normalized. */
-const kArrays: Record<number, [new (buffer: ArrayBuffer) => Stored, number, number]> = {
-  5120: [Int8Array, 1, 127], 5121: [Uint8Array, 1, 255], 5122: [Int16Array, 2, 32767], 5123: [Uint16Array, 2, 65535],
-  5125: [Uint32Array, 4, 1], 5126: [Float32Array, 4, 1],
-};
-const kSizes: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
-const isCount = (x: unknown) => Number.isInteger(x) && (x as number) >= 0;
+const kArrays = new Map<unknown, [new (buffer: ArrayBuffer) => Stored, number, number]>([
+  [5120, [Int8Array, 1, 127]], [5121, [Uint8Array, 1, 255]], [5122, [Int16Array, 2, 32767]], [5123, [Uint16Array, 2, 65535]],
+  [5125, [Uint32Array, 4, 1]], [5126, [Float32Array, 4, 1]],
+]);
+const kTypes: unknown[] = ['SCALAR', 'VEC2', 'VEC3', 'VEC4'];
+
+/** What is read of a file: each accessor once, however many primitives have it. */
+class Reader {
+  private left = kMostNumbers;
+  private readonly floats = new Map<unknown, Numbers | null>();
+  private readonly places = new Map<unknown, Float32Array | null>();
+  private readonly corners = new Map<unknown, Uint32Array | null>();
+
+  constructor(readonly file: GltfFile) {}
+
+  /** Takes room for so many more numbers, if there is that much. */
+  takes(count: number): boolean {
+    if (count > this.left) return false;
+    this.left -= count;
+    return true;
+  }
+  /** An accessor as floats; what is normalized is from -1 or 0 to 1. */
+  numbers(index: unknown): Numbers | null {
+    return once(this.floats, index, () => numbers(this, index));
+  }
+  /** As the positions of vertices, each of them a place; null where one is none. */
+  positions(index: unknown): Float32Array | null {
+    return once(this.places, index, () => {
+      const read = this.numbers(index);
+      return read?.size === 3 && read.data.every(isNear) ? read.data : null;
+    });
+  }
+  /** As the numbers of vertices. */
+  indices(index: unknown): Uint32Array | null {
+    return once(this.corners, index, () => {
+      const read = stored(this, index);
+      return read?.size === 1 ? new Uint32Array(read.data) : null;
+    });
+  }
+}
 
 /** The elements of an accessor one behind the other, as they are stored; null where it has none that can be read. */
-function stored(file: GltfFile, index: number): { data: Stored; size: number; largest: number } | null {
-  const of = file.json.accessors?.[index];
-  const [Kind, component, largest] = kArrays[of?.componentType] ?? [];
-  const size = kSizes[of?.type];
+function stored(from: Reader, index: unknown): { data: Stored; size: number; largest: number } | null {
+  const { file } = from;
+  const of = item(file.json.accessors, index);
+  const [Kind, component, largest] = kArrays.get(of?.componentType) ?? [];
+  const size = kTypes.indexOf(of?.type) + 1;
   if (!Kind || !component || !largest || !size || of.sparse || !isCount(of.count) || of.count === 0) return null;
   const bytes = bufferView(file, of.bufferView);
   if (!bytes) return null;
@@ -163,19 +210,19 @@ function stored(file: GltfFile, index: number): { data: Stored; size: number; la
   const stride = file.json.bufferViews[of.bufferView].byteStride ?? width;
   const start = of.byteOffset ?? 0;
   if (!isCount(start) || !isCount(stride) || stride < width || start + stride * (of.count - 1) + width > bytes.length) return null;
+  if (!from.takes(of.count * size)) return null;
   const packed = new Uint8Array(width * of.count);
   if (stride === width) packed.set(bytes.subarray(start, start + packed.length));
   else for (let i = 0; i < of.count; ++i) packed.set(bytes.subarray(start + i * stride, start + i * stride + width), i * width);
   return { data: new Kind(packed.buffer), size, largest };
 }
 
-/** An accessor as floats; what is normalized is from -1 or 0 to 1. */
-function numbers(file: GltfFile, index: number): Numbers | null {
-  const read = stored(file, index);
+function numbers(from: Reader, index: unknown): Numbers | null {
+  const read = stored(from, index);
   if (!read) return null;
   const { data, size, largest } = read;
   if (data instanceof Float32Array) return { data, size };
-  if (!file.json.accessors[index].normalized) return { data: Float32Array.from(data), size };
+  if (from.file.json.accessors[index as number].normalized !== true) return { data: new Float32Array(data), size };
   const floats = new Float32Array(data.length);
   for (let i = 0; i < data.length; ++i) floats[i] = Math.max(data[i] / largest, -1);
   return { data: floats, size };
@@ -183,32 +230,43 @@ function numbers(file: GltfFile, index: number): Numbers | null {
 
 /** The corners of the triangles, three by three, from those of a list, a strip or a fan; null for lines and points. */
 function triangles(mode: number, corners: Uint32Array): Uint32Array | null {
-  if (mode === 4) return corners.subarray(0, corners.length - (corners.length % 3));
+  if (mode === 4) return corners.length % 3 === 0 ? corners : corners.subarray(0, corners.length - (corners.length % 3));
   if (mode !== 5 && mode !== 6) return null;
   const made = new Uint32Array(3 * Math.max(corners.length - 2, 0));
   for (let t = 0; 3 * t < made.length; ++t) {
-    const turned = mode === 5 && t % 2 === 1 ? [t + 1, t, t + 2] : [t, t + 1, t + 2];
-    if (mode === 6) turned[0] = 0;
-    turned.forEach((at, k) => (made[3 * t + k] = corners[at]));
+    const turned = mode === 5 ? t % 2 : 0;
+    made[3 * t] = corners[mode === 6 ? 0 : t + turned];
+    made[3 * t + 1] = corners[t + 1 - turned];
+    made[3 * t + 2] = corners[t + 2];
   }
   return made;
 }
 
-function primitive(file: GltfFile, of: any): Pick<Drawable, 'attributes' | 'indices'> | null {
+type Shape = Pick<Drawable, 'material' | 'attributes' | 'indices'>;
+
+function primitive(from: Reader, of: any): Shape | null {
+  const material = of?.material ?? -1;
+  const positions = from.positions(of?.attributes?.POSITION);
+  if (!positions || (material !== -1 && !isCount(material))) return null;
+  const vertices = positions.length / 3;
   const attributes = new Map<string, Numbers>();
-  for (const [name, index] of Object.entries(of?.attributes ?? {})) {
-    const read = numbers(file, index as number);
-    if (read) attributes.set(name, read);
+  for (const [name, index] of Object.entries(of.attributes)) {
+    const read = from.numbers(index);
+    // One that ends before the vertices do cannot be drawn with.
+    if (read && read.data.length === read.size * vertices) attributes.set(name, read);
   }
-  const positions = attributes.get('POSITION');
-  if (!positions || positions.size !== 3) return null;
-  const vertices = positions.data.length / 3;
-  const given = of.indices === undefined ? null : stored(file, of.indices);
+  const given = of.indices === undefined ? null : from.indices(of.indices);
   if (of.indices !== undefined && !given) return null;
-  const indices = triangles(of.mode ?? 4, given ? Uint32Array.from(given.data) : Uint32Array.from({ length: vertices }, (_, i) => i));
+  // Every primitive is gone through, and a strip is made to triangles, though its accessors are read once.
+  const corners = given?.length ?? vertices;
+  if (!from.takes((of.mode ?? 4) === 4 ? corners : 3 * corners)) return null;
+  const indices = triangles(of.mode ?? 4, given ?? new Uint32Array(vertices).map((_, i) => i));
   if (!indices || indices.some((i) => i >= vertices)) return null;
-  if (!attributes.has('NORMAL')) attributes.set('NORMAL', { data: facetNormals(positions.data, indices), size: 3 });
-  return { attributes, indices };
+  if (!attributes.has('NORMAL')) {
+    if (!from.takes(positions.length)) return null;
+    attributes.set('NORMAL', { data: facetNormals(positions, indices), size: 3 });
+  }
+  return { material, attributes, indices };
 }
 
 /** The sum of the triangles' normals at each vertex. */
@@ -229,32 +287,43 @@ function facetNormals(p: Float32Array, indices: Uint32Array): Float32Array {
 
 /** Calls with every node of the default scene and where it is in the world. */
 export function eachNode(file: GltfFile, use: (node: any, world: Mat4) => void): void {
-  const { nodes = [], scenes = [], scene = 0 } = file.json;
+  const { nodes, scenes, scene = 0 } = file.json;
   const seen = new Set<number>(); // a node has one parent, and a broken file may go in circles
-  const walk = (index: number, parent: Mat4) => {
-    const node = nodes[index];
-    if (!node || seen.has(index)) return;
-    seen.add(index);
-    const local = Array.isArray(node.matrix)
-      ? new Float32Array(node.matrix)
-      : compose(node.translation ?? [0, 0, 0], node.rotation ?? [0, 0, 0, 1], node.scale ?? [1, 1, 1]);
-    const world = multiply(parent, local);
-    use(node, world);
-    for (const child of node.children ?? []) walk(child, world);
+  const open: [number, Mat4][] = []; // a chain of nodes may be longer than the stack of calls is deep
+  const push = (indices: any[], parent: Mat4) => {
+    for (let i = indices.length; i-- > 0; ) open.push([indices[i], parent]); // the last is taken first
   };
-  for (const root of scenes[scene]?.nodes ?? nodes.map((_: unknown, i: number) => i)) walk(root, identity());
+  const roots = item(scenes, scene)?.nodes;
+  push(roots === undefined ? list(nodes).map((_, i) => i) : list(roots), identity());
+  for (let next = open.pop(); next; next = open.pop()) {
+    const [index, parent] = next;
+    const node = item(nodes, index);
+    if (!node || seen.has(index)) continue;
+    seen.add(index);
+    const matrix = numbersOf(node.matrix, 16);
+    const local = matrix
+      ? new Float32Array(matrix)
+      : compose(numbersOf(node.translation, 3) ?? [0, 0, 0], numbersOf(node.rotation, 4) ?? [0, 0, 0, 1], numbersOf(node.scale, 3) ?? [1, 1, 1]);
+    const world = multiply(parent, local);
+    if (!world.every(isNear)) continue; // it would take what is drawn beside it out of sight
+    use(node, world);
+    push(list(node.children), world);
+  }
 }
 
 /** Every triangle mesh of the default scene, in world space. */
 export function geometry(file: GltfFile): Drawable[] {
   const found: Drawable[] = [];
-  const made = new Map<any, ReturnType<typeof primitive>>();
+  const from = new Reader(file);
+  const made = new Map<any, Shape[]>();
   eachNode(file, (node, model) => {
-    for (const of of file.json.meshes?.[node.mesh]?.primitives ?? []) {
-      if (!made.has(of)) made.set(of, primitive(file, of));
-      const shape = made.get(of);
-      if (shape) found.push({ material: of.material ?? -1, model, normal: normalMatrix(model), ...shape });
-    }
+    const mesh = item(file.json.meshes, node.mesh);
+    const room = kMostDrawables - found.length;
+    if (!mesh || room === 0) return;
+    // What is left out of a mesh is not come upon again at its other nodes.
+    const shapes = once(made, mesh, () => list(mesh.primitives).map((of) => primitive(from, of)).filter((shape) => shape !== null));
+    const normal = normalMatrix(model);
+    for (const shape of shapes.slice(0, room)) found.push({ model, normal, ...shape });
   });
   return found;
 }
@@ -263,10 +332,10 @@ export function geometry(file: GltfFile): Drawable[] {
 export function bounds(drawables: Drawable[]): { middle: Vec3; radius: number } {
   const low: Vec3 = [Infinity, Infinity, Infinity];
   const high: Vec3 = [-Infinity, -Infinity, -Infinity];
-  const boxes = new Map<Map<string, Numbers>, Vec3[]>();
+  const boxes = new Map<Float32Array, Vec3[]>();
   for (const { attributes, model } of drawables) {
-    if (!boxes.has(attributes)) boxes.set(attributes, cornersOf(attributes.get('POSITION')!.data));
-    for (const corner of boxes.get(attributes)!) {
+    const positions = attributes.get('POSITION')!.data;
+    for (const corner of once(boxes, positions, () => cornersOf(positions))) {
       point(model, corner).forEach((x, k) => {
         low[k] = Math.min(low[k], x);
         high[k] = Math.max(high[k], x);

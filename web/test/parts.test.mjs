@@ -70,6 +70,10 @@ test('what is no such picture, or ends too early, is refused', () => {
   assert.throws(() => readHdr(text('FORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234')), /is not read/);
   assert.throws(() => readHdr(text('\n+X 1 -Y 1\n1234')), /no size/);
   assert.throws(() => readHdr(text('\n-Y 99999 +X 99999\n')), /is not read/);
+  // What claims more than there is takes no room for it.
+  const taken = process.memoryUsage().arrayBuffers;
+  assert.throws(() => readHdr(text('\n-Y 8192 +X 16384\n____')), /ends too early/);
+  assert.ok(process.memoryUsage().arrayBuffers - taken < 1 << 20);
   const long = text('\n-Y 1 +X 8\n________');
   long.set([2, 2, 0, 8, 137, 1], long.length - 8);
   assert.throws(() => readHdr(long), /longer/);
