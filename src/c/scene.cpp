@@ -126,7 +126,7 @@ int lacquer_scene_preview(const lacquer_scene* scene, size_t material, uint32_t 
     }
     const std::vector<uint8_t> drawn =
         lacquer::drawBall(sceneOf(scene), material, pixels, how.texels, how.options, to);
-    if (drawn.size() != needed) return 0;
+    if (drawn.empty() || drawn.size() != needed) return 0;
     std::copy(drawn.begin(), drawn.end(), rgb);
     return 1;
   });

@@ -18,6 +18,9 @@ namespace {
 
 constexpr std::string_view kMagic = "LACQUER1";
 constexpr std::string_view kKeyedMagic = "LACQUERK";
+/// What somebody may have us read who may write to the folder and has not the key: the checksum is known to
+/// be wrong only behind all of it.
+constexpr uint64_t kLargestEntry = uint64_t{256} << 20;
 constexpr auto kUseGrain = std::chrono::hours(1);
 
 bool isLink(const fs::path& path) {
@@ -57,6 +60,17 @@ Cache::Header Cache::headerOf(const Key& key, std::string_view payload) const {
   crypto_generichash_final(&state, reinterpret_cast<unsigned char*>(&header.checksum),
                            sizeof header.checksum);
   return header;
+}
+
+/// The bytes of an entry that begins so, by what it says; 0 where it is none of that key, or one too large.
+uint64_t Cache::sizeOf(std::string_view start, const Key& key) const {
+  Header header{};
+  if (start.size() != sizeof header) return 0;
+  std::memcpy(&header, start.data(), sizeof header);
+  const std::string_view magic = secret_.empty() ? kMagic : kKeyedMagic;
+  const uint64_t most = std::min(limit_, kLargestEntry);
+  if (std::memcmp(header.magic, magic.data(), magic.size()) != 0 || header.key != key) return 0;
+  return most < sizeof header || header.size > most - sizeof header ? 0 : sizeof header + header.size;
 }
 
 /// True when the bytes are the whole entry of that key.
@@ -99,7 +113,9 @@ std::string Cache::pathOf(const Key& key) const {
 
 std::optional<std::string> Cache::get(const Key& key, bool* rested) {
   const std::string path = pathOf(key);
-  Result<std::string> bytes = readFile(path, limit_, Links::Refuse);
+  const uint64_t size = sizeOf(startOf(path, sizeof(Header), Links::Refuse), key);
+  if (size == 0) return std::nullopt;
+  Result<std::string> bytes = readFile(path, size, Links::Refuse);
   if (!bytes || !isEntry(*bytes, key)) return std::nullopt;
   std::error_code ignored;
   const auto now = fs::file_time_type::clock::now();
@@ -115,7 +131,7 @@ void Cache::put(const Key& key, std::string_view payload, bool optional) {
   const Header header = headerOf(key, payload);
   std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
   bytes += payload;
-  if (bytes.size() > limit_) return;
+  if (bytes.size() > std::min(limit_, kLargestEntry)) return;
   // A damaged entry is none: it need not be on the disk to be whole.
   const std::string path = pathOf(key);
   const Result<bool> written = isLink(folder_) || isLink(fs::path(path).parent_path())

@@ -44,6 +44,7 @@ public:
 private:
   struct Header;
   Header headerOf(const Key& key, std::string_view payload) const;
+  uint64_t sizeOf(std::string_view start, const Key& key) const;
   bool isEntry(const std::string& bytes, const Key& key) const;
   std::string pathOf(const Key& key) const;
   void trim();

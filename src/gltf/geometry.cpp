@@ -168,13 +168,12 @@ private:
       if (list == nullptr || !list->is_array()) return;
       // The last is taken first.
       for (size_t i = list->size(); i-- > 0;) {
-        const Json& index = (*list)[i];
-        if (!index.is_number()) continue;
-        const double x = index.get<double>();
-        if (x >= 0 && x < static_cast<double>(nodes)) open.push_back({static_cast<size_t>(x), place});
+        const std::optional<size_t> node = whole(&(*list)[i]);
+        // Each has one parent at most: longer lists than there are nodes say something twice.
+        if (node && *node < nodes && open.size() <= 2 * nodes) open.push_back({*node, place});
       }
     };
-    const Json* scene = element(root_, "scenes", wholeMember(root_, "scene").value_or(0));
+    const Json* scene = element(root_, "scenes", wholeOr(root_, "scene", 0));
     if (scene != nullptr) {
       push(member(*scene, "nodes"), kIdentity);
     } else {
@@ -273,10 +272,9 @@ private:
   std::shared_ptr<const std::string> buffer(size_t index) {
     const auto [known, fresh] = buffers_.try_emplace(index);
     if (!fresh) return known->second;
-    Result<std::string> bytes = file_.bufferBytes(index, {});
+    const Result<std::shared_ptr<const std::string>> bytes = file_.bufferBytes(index, {});
     if (!bytes) leaveOut(bytes.error()[0].message);
-    known->second = std::make_shared<const std::string>(bytes ? std::move(*bytes) : std::string());
-    return known->second;
+    return known->second = bytes ? *bytes : std::make_shared<const std::string>();
   }
 
   std::optional<Elements> elements(std::optional<size_t> index) {
@@ -308,18 +306,19 @@ private:
     const Json* normalized = member(*accessor, "normalized");
     out.normalized = normalized != nullptr && *normalized == true;
     const size_t size = out.components * out.component->bytes;
-    out.stride = wholeMember(*view, "byteStride").value_or(size);
+    out.stride = wholeOr(*view, "byteStride", size).value_or(0);
     constexpr size_t kWidest = 252;  // glTF 2.0, section 5.11.4
     if (out.stride < size || out.stride > std::max(size, kWidest)) return wrong("a byteStride is wrong");
     // All sizes are below 2^53, and the elements' below 2^30: no sum or product passes 2^64.
-    const size_t of_buffer = wholeMember(*view, "byteOffset").value_or(0);
+    const std::optional<size_t> of_buffer = wholeOr(*view, "byteOffset", 0);
     const size_t length = wholeMember(*view, "byteLength").value_or(0);
-    const size_t offset = wholeMember(*accessor, "byteOffset").value_or(0);
-    const size_t needed = offset + out.stride * (out.count - 1) + size;
+    const std::optional<size_t> offset = wholeOr(*accessor, "byteOffset", 0);
+    if (!of_buffer || !offset) return wrong("a byteOffset is no whole number");
+    const size_t needed = *offset + out.stride * (out.count - 1) + size;
     out.buffer = buffer(*of_view);
-    if (needed > length || of_buffer + length > out.buffer->size())
+    if (needed > length || *of_buffer + length > out.buffer->size())
       return wrong("an accessor lies outside of its buffer");
-    out.first = of_buffer + offset;
+    out.first = *of_buffer + *offset;
     return out;
   }
 
@@ -403,7 +402,7 @@ private:
     } else {
       for (size_t i = 0; i < count; ++i) list.push_back(static_cast<uint32_t>(i));
     }
-    const size_t mode = wholeMember(primitive, "mode").value_or(4);
+    const size_t mode = wholeOr(primitive, "mode", 4).value_or(0);
     const auto triangle = [&](size_t a, size_t b, size_t c) {
       // Triangles of vertices that are not there, or are the same twice, are none.
       const uint32_t x = list[a], y = list[b], z = list[c];

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <unordered_set>
 
 #include "gltf/container.h"
 #include "gltf/members.h"
@@ -78,6 +79,12 @@ bool hasScheme(std::string_view uri) {
   return colon != std::string_view::npos && uri.find_first_of("/?#") > colon;
 }
 
+bool isData(std::string_view uri) {
+  constexpr std::string_view kScheme = "data:";
+  return uri.size() > kScheme.size() && std::equal(kScheme.begin(), kScheme.end(), uri.begin(),
+                                                   [](char a, char b) { return (b | 0x20) == a || a == b; });
+}
+
 }  // namespace
 
 Result<TextureFile> TextureFile::open(const std::string& path, const TextureAccess& access) {
@@ -98,7 +105,7 @@ Result<TextureFile> TextureFile::fromMemory(std::string_view bytes, const std::s
   file.path_ = name;
   file.access_ = access;
   file.in_memory_ = true;
-  file.binary_ = binaryChunk(bytes);
+  file.binary_ = std::make_shared<const std::string>(binaryChunk(bytes));
   file.root_ = std::move(*root);
   return file;
 }
@@ -107,8 +114,7 @@ Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& p
   const auto missing = [&](std::string message, std::string help) {
     return fail("image-missing", place, std::move(message), std::move(help));
   };
-  if (uri.size() > 5 && std::equal(uri.begin(), uri.begin() + 5,
-                                   "data:", [](char a, char b) { return (a | 0x20) == b || a == b; })) {
+  if (isData(uri)) {
     const size_t comma = uri.find(',');
     const bool base64 =
         comma != std::string::npos && std::string_view(uri).substr(0, comma).ends_with(";base64");
@@ -139,13 +145,28 @@ Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& p
   return bytes;
 }
 
-Result<std::string> TextureFile::bufferBytes(size_t index, const Place& place) const {
+Result<std::shared_ptr<const std::string>> TextureFile::bufferBytes(size_t index, const Place& place) const {
   const Json* buffer = element(root_, "buffers", index);
   if (buffer == nullptr) return fail("image-missing", place, fmt::format("there is no buffer {}", index));
   const Json* uri = member(*buffer, "uri");
-  if (uri == nullptr) return index == 0 ? binary_ : std::string();
+  if (uri == nullptr) {
+    static const auto kEmpty = std::make_shared<const std::string>();
+    return index == 0 ? binary_ : kEmpty;
+  }
   if (!uri->is_string()) return fail("image-missing", place, "the buffer's uri is no string");
-  return uriBytes(uri->get<std::string>(), place);
+  // Buffers may name one file, again and again, and images lie in one buffer.
+  const auto [known, fresh] =
+      buffers_.try_emplace(isData(uri->text()) ? fmt::format("data:{}", index) : uri->text());
+  if (!fresh && known->second != nullptr) return known->second;
+  Result<std::string> bytes = uriBytes(uri->text(), place);
+  if (!bytes) return tl::make_unexpected(bytes.error());
+  if (bytes->size() > access_.limits.file - held_) {
+    return fail("image-missing", place,
+                fmt::format("its buffers have more than {} bytes together", access_.limits.file),
+                raising("file"));
+  }
+  held_ += bytes->size();
+  return known->second = std::make_shared<const std::string>(std::move(*bytes));
 }
 
 Result<std::string> TextureFile::viewBytes(size_t index, const Place& place) const {
@@ -155,14 +176,14 @@ Result<std::string> TextureFile::viewBytes(size_t index, const Place& place) con
   const std::optional<size_t> buffer_index = wholeMember(*view, "buffer");
   if (element(root_, "buffers", buffer_index) == nullptr)
     return broken("the image's bufferView has no buffer");
-  const Result<std::string> bytes = bufferBytes(*buffer_index, place);
-  if (!bytes) return bytes;
-  const size_t offset = wholeMember(*view, "byteOffset").value_or(0);
+  const Result<std::shared_ptr<const std::string>> bytes = bufferBytes(*buffer_index, place);
+  if (!bytes) return tl::make_unexpected(bytes.error());
+  const std::optional<size_t> offset = wholeOr(*view, "byteOffset", 0);
   const size_t length = wholeMember(*view, "byteLength").value_or(0);
-  if (length == 0 || offset > bytes->size() || length > bytes->size() - offset) {
+  if (length == 0 || !offset || *offset > (*bytes)->size() || length > (*bytes)->size() - *offset) {
     return broken("the image's bufferView lies outside of its buffer");
   }
-  return bytes->substr(offset, length);
+  return (*bytes)->substr(*offset, length);
 }
 
 Result<std::string> TextureFile::imageBytes(const Json& image, const Place& place) const {
@@ -191,14 +212,14 @@ Result<TextureSource> TextureFile::texture(int index) const {
 
 std::vector<std::string> TextureFile::fileUris() const {
   std::vector<std::string> uris;
+  std::unordered_set<std::string_view> seen;
   for (const std::string_view array : {"buffers", "images"}) {
-    for (size_t i = 0; i < json::arraySize(root_, array); ++i) {
-      const Json* object = element(root_, array, i);
-      const Json* uri = object == nullptr ? nullptr : member(*object, "uri");
+    const Json* all = member(root_, array);
+    if (all == nullptr || !all->is_array()) continue;
+    for (const Json& object : *all) {
+      const Json* uri = member(object, "uri");
       if (uri == nullptr || !uri->is_string()) continue;
-      const std::string& text = uri->text();
-      const bool data = text.starts_with("data:");
-      if (!data && std::find(uris.begin(), uris.end(), text) == uris.end()) uris.push_back(text);
+      if (!isData(uri->text()) && seen.insert(uri->text()).second) uris.push_back(uri->text());
     }
   }
   return uris;

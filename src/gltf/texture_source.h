@@ -1,6 +1,8 @@
 // The bytes and the sampler behind a texture, for those who look into images. Generation does not.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,8 +51,9 @@ public:
   Result<std::string> fileBytes(const std::string& uri) const { return uriBytes(uri, {path_, 0, 0, {}}); }
 
   /// A whole buffer: a file, a data URI or the GLB's own chunk, which only the first buffer may be. Errors:
-  /// those of image().
-  Result<std::string> bufferBytes(size_t index, const Place& place) const;
+  /// those of image(), and "image-missing" where the buffers are together larger than a file may be. Each is
+  /// read once, and held.
+  Result<std::shared_ptr<const std::string>> bufferBytes(size_t index, const Place& place) const;
   /// The file's JSON, which nobody has checked.
   const Json& root() const { return root_; }
 
@@ -62,10 +65,14 @@ private:
   Result<std::string> imageBytes(const Json& image, const Place& place) const;
   Result<std::string> viewBytes(size_t index, const Place& place) const;
 
-  std::string path_, binary_;
+  std::string path_;
+  std::shared_ptr<const std::string> binary_;
   TextureAccess access_;
   bool in_memory_ = false;
   mutable std::vector<std::string> read_;
+  mutable std::map<std::string, std::shared_ptr<const std::string>>
+      buffers_;                ///< by URI, those in one by index
+  mutable uint64_t held_ = 0;  ///< bytes of these
   Json root_;
 };
 

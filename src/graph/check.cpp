@@ -142,6 +142,7 @@ private:
   Graph& graph_;
   const lang::Library& library_;
   std::vector<Found> found_;
+  size_t left_out_ = 0;  ///< what is wrong beyond these
   size_t suggestions_ = 0;
   const lang::TemplateDecl* template_ = nullptr;
   Arena arena_;
@@ -155,6 +156,10 @@ private:
 
 void GraphCheck::error(const Spot& spot, std::string pointer, std::string_view code, std::string message,
                        std::string help) {
+  if (found_.size() >= kMostDiagnostics) {
+    ++left_out_;
+    return;
+  }
   found_.push_back({spot,
                     {std::string(code),
                      Severity::Error,
@@ -773,7 +778,7 @@ Diagnostics GraphCheck::run() {
                    [](const Found& a, const Found& b) { return a.spot < b.spot; });
   Diagnostics diagnostics;
   for (Found& found : found_) diagnostics.push_back(std::move(found.diagnostic));
-  shorten(diagnostics);
+  shorten(diagnostics, left_out_);
   return diagnostics;
 }
 

@@ -107,7 +107,7 @@ private:
   void look(const Source& source, const lang::Param* into, Place place, What what) {
     if (into == nullptr || !into->has_range || !ir::isFloating(into->type)) return;
     const Given given = givenBy(source);
-    if (!given.known || (!given.has_range && !undeclared_)) return;
+    if (!given.known || (!given.has_range && !undeclared_) || !hasRoom(found_)) return;
     const ir::Range& to = into->range;
     const bool gap = to.gap > given.range.gap && given.range.lo < to.gap;
     if (given.has_range && given.range.lo >= to.lo && given.range.hi <= to.hi && !gap) return;

@@ -58,10 +58,10 @@ std::string swizzleComponents(std::string_view swizzle) {
   return {};
 }
 
-void shorten(Diagnostics& diagnostics) {
+void shorten(Diagnostics& diagnostics, size_t left_out) {
   constexpr size_t kMost = 100;
   if (diagnostics.size() <= kMost) return;
-  const size_t more = diagnostics.size() - kMost;
+  const size_t more = diagnostics.size() - kMost + left_out;
   const bool errors = std::any_of(diagnostics.begin() + kMost, diagnostics.end(),
                                   [](const Diagnostic& d) { return d.severity == Severity::Error; });
   diagnostics.resize(kMost);

@@ -25,7 +25,7 @@ bool isDottedName(std::string_view text);
 /// not mixed.
 std::string swizzleComponents(std::string_view swizzle);
 
-/// Nobody reads more than the first hundred: the rest becomes one note.
-void shorten(Diagnostics& diagnostics);
+/// Nobody reads more than the first hundred: the rest, and so many that are not there, become one note.
+void shorten(Diagnostics& diagnostics, size_t left_out = 0);
 
 }  // namespace lacquer::graph

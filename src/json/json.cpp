@@ -67,6 +67,7 @@ public:
   }
   bool end_object() override {
     dropDoubles(open_.back()->items());
+    open_.back()->index();
     open_.pop_back();
     return true;
   }
@@ -125,13 +126,12 @@ private:
   }
 
   /// The JSON pointer of the innermost open object: what is open is the last of its parent.
-  std::string pointer() const { return pointer(open_.size()); }
-  std::string pointer(size_t depth) const {
-    if (depth <= 1) return {};
-    const Json& parent = *open_[depth - 2];
-    if (parent.is_array()) return fmt::format("{}/{}", pointer(depth - 1), parent.size() - 1);
-    const std::string& name = parent.items().back().first;
-    return pointer(depth - 1) + Path(Path(), name).text();
+  std::string pointer() const { return pointer(Path(), 0); }
+  std::string pointer(const Path& path, size_t depth) const {
+    if (depth + 1 >= open_.size()) return path.text();
+    const Json& parent = *open_[depth];
+    if (parent.is_array()) return pointer(Path(path, parent.size() - 1), depth + 1);
+    return pointer(Path(path, parent.items().back().first), depth + 1);
   }
 
   void dropDoubles(Json::Members& members) {

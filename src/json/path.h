@@ -18,10 +18,12 @@ public:
   Path(const Path&) = delete;
   Path& operator=(const Path&) = delete;
 
-  /// The JSON pointer (RFC 6901); empty for the root.
+  /// The JSON pointer (RFC 6901); empty for the root. Behind a thousand bytes it is cut, with "..." there.
   std::string text() const;
 
 private:
+  void append(std::string& out) const;
+
   const Path* parent_ = nullptr;
   std::string_view key_;
   size_t index_ = 0;

@@ -60,8 +60,13 @@ bool Report::index(const Path& path, std::string_view name, const Json& value, s
 
 void Report::add(Severity severity, std::string_view code, const Path& path, std::string message,
                  std::string help) {
-  out_.push_back(
-      {std::string(code), severity, {file_, 0, 0, path.text()}, std::move(message), std::move(help), {}});
+  std::string pointer = hasRoom(out_) ? path.text() : std::string();
+  addBounded(out_, {std::string(code),
+                    severity,
+                    {file_, 0, 0, std::move(pointer)},
+                    std::move(message),
+                    std::move(help),
+                    {}});
 }
 
 }  // namespace lacquer::json

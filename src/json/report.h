@@ -11,7 +11,7 @@
 
 namespace lacquer::json {
 
-/// Adds diagnostics of one file to a list.
+/// Adds diagnostics of one file to a list, as many as addBounded() takes.
 class Report {
 public:
   Report(const std::string& file, Diagnostics& out) : file_(file), out_(out) {}

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <stdexcept>
 
 namespace lacquer::json {
@@ -36,7 +37,7 @@ Json::Json(std::string text) {
 
 Json Json::object() {
   Json json;
-  json.value_.members = new Members;
+  json.value_.object = new Object;
   json.kind_ = Kind::Object;
   return json;
 }
@@ -70,7 +71,7 @@ Json::Json(const Json& other) {
   switch (other.kind_) {
     case Kind::String: value_.text = new std::string(*other.value_.text); break;
     case Kind::Array: value_.elements = new Elements(*other.value_.elements); break;
-    case Kind::Object: value_.members = new Members(*other.value_.members); break;
+    case Kind::Object: value_.object = new Object(*other.value_.object); break;
     default: value_ = other.value_; break;
   }
   kind_ = other.kind_;
@@ -80,7 +81,7 @@ Json::~Json() {
   switch (kind_) {
     case Kind::String: delete value_.text; break;
     case Kind::Array: delete value_.elements; break;
-    case Kind::Object: delete value_.members; break;
+    case Kind::Object: delete value_.object; break;
     default: break;
   }
 }
@@ -91,7 +92,7 @@ size_t Json::size() const {
   switch (kind_) {
     case Kind::Null: return 0;
     case Kind::Array: return value_.elements->size();
-    case Kind::Object: return value_.members->size();
+    case Kind::Object: return value_.object->members.size();
     default: return 1;
   }
 }
@@ -166,13 +167,14 @@ const std::string& Json::text() const {
 const Json::Members& Json::items() const {
   if (is_null()) return kNone;
   if (!is_object()) throwKind("an object");
-  return *value_.members;
+  return value_.object->members;
 }
 
 Json::Members& Json::items() {
   if (is_null()) *this = object();
   if (!is_object()) throwKind("an object");
-  return *value_.members;
+  value_.object->order.clear();
+  return value_.object->members;
 }
 
 const Json& Json::operator[](size_t index) const {
@@ -181,7 +183,13 @@ const Json& Json::operator[](size_t index) const {
 
 const Json* Json::find(std::string_view key) const {
   if (!is_object()) return nullptr;
-  for (const auto& [name, value] : *value_.members) {
+  const auto& [members, order] = *value_.object;
+  if (!order.empty()) {
+    const auto at = std::lower_bound(order.begin(), order.end(), key,
+                                     [&](uint32_t i, std::string_view k) { return members[i].first < k; });
+    return at != order.end() && members[*at].first == key ? &members[*at].second : nullptr;
+  }
+  for (const auto& [name, value] : members) {
     if (name == key) return &value;
   }
   return nullptr;
@@ -198,7 +206,7 @@ Json& Json::operator[](std::string_view key) {
   for (auto& [name, value] : items()) {
     if (name == key) return value;
   }
-  return value_.members->emplace_back(std::string(key), Json()).second;
+  return value_.object->members.emplace_back(std::string(key), Json()).second;
 }
 
 void Json::push_back(Json value) {
@@ -209,6 +217,17 @@ void Json::push_back(Json value) {
 
 void Json::erase(std::string_view key) {
   std::erase_if(items(), [&](const auto& member) { return member.first == key; });
+}
+
+void Json::index() {
+  constexpr size_t kSmall = 32;  // fewer are looked through as fast
+  if (!is_object() || size() <= kSmall || size() > std::numeric_limits<uint32_t>::max()) return;
+  auto& [members, order] = *value_.object;
+  order.resize(members.size());
+  std::iota(order.begin(), order.end(), uint32_t{0});
+  // Of members of one name the first is found, as without an index.
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return members[a].first < members[b].first; });
 }
 
 void Json::update(const Json& other) {
@@ -275,7 +294,7 @@ void Json::write(std::string& out, int indent, size_t margin) const {
       all('[', ']', *value_.elements, [&](const Json& element) { element.write(out, indent, inner); });
       break;
     case Kind::Object:
-      all('{', '}', *value_.members, [&](const auto& member) {
+      all('{', '}', value_.object->members, [&](const auto& member) {
         out += quotedText(member.first) + (indent >= 0 ? ": " : ":");
         member.second.write(out, indent, inner);
       });

@@ -111,6 +111,8 @@ public:
   /// At the end of a list. Null becomes one.
   void push_back(Json value);
   void erase(std::string_view key);
+  /// A member of a large object is found in logarithmic time from here on, until the object is changed.
+  void index();
   /// The other object's members, in place of those of the same name.
   void update(const Json& other);
 
@@ -127,6 +129,12 @@ private:
   To whole() const;
   void write(std::string& out, int indent, size_t margin) const;
 
+  /// Members, and their places by name, or none.
+  struct Object {
+    Members members;
+    std::vector<uint32_t> order;
+  };
+
   union Value {
     bool boolean;
     int64_t integer;
@@ -134,7 +142,7 @@ private:
     double number;
     std::string* text;
     Elements* elements;
-    Members* members;
+    Object* object;
   };
   Kind kind_ = Kind::Null;
   Value value_{};

@@ -141,7 +141,7 @@ struct Options {
       depfile;  ///< of generate(), generateGraphs(): a file for Make and Ninja, what the manifest depends on
   std::string shard;      ///< of the same: the shaders' part of the manifest alone, written here, for merge()
   Strings limits;         ///< "images=1G", each: what an input may be at most (docs/security.md)
-  Strings allow;          ///< folders in which images may lie, beside the glTF file's own
+  Strings allow;          ///< folders in which images may lie, beside the glTF file's own, and a case's file
   std::string cache_key;  ///< a file: what was not written to the cache with its bytes is not there
   bool argument_buffers = false;  ///< Target::Msl: one for each descriptor set, not plain bindings
   bool sync = true;               ///< what is written is on the disk before it gets its name

@@ -69,7 +69,7 @@ private:
   static constexpr size_t kMostUnknown = 16;
 
   void warn(std::string_view code, std::string message, std::string help) {
-    material_.diagnostics.push_back(problem(file_, *pointer_, code, std::move(message), std::move(help)));
+    addBounded(material_.diagnostics, problem(file_, *pointer_, code, std::move(message), std::move(help)));
   }
 
   void unknown(std::string_view target) {
@@ -183,9 +183,9 @@ std::map<size_t, AnimatedOf> animatedMaterials(const gltf::Scene& scene, size_t 
     const bool whole = error == std::errc() && end == digits.data() + digits.size() &&
                        (digits == "0" || !digits.starts_with('0'));
     if (!whole || index >= materials || digits.size() == rest.size()) {
-      diagnostics.push_back(problem(scene.path, pointer, "animation-pointer",
-                                    fmt::format("{} leads nowhere", quote(target)),
-                                    fmt::format("the file has {}", countOf(materials, "material"))));
+      addBounded(diagnostics, problem(scene.path, pointer, "animation-pointer",
+                                      fmt::format("{} leads nowhere", quote(target)),
+                                      fmt::format("the file has {}", countOf(materials, "material"))));
       continue;
     }
     out[index].emplace_back(rest.substr(digits.size() + 1), &pointer);

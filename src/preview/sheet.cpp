@@ -41,6 +41,10 @@ uint32_t chooseColumns(size_t cells, size_t pictures) {
   return best;
 }
 
+tl::unexpected<Diagnostics> tooLarge(std::string message) {
+  return fail("sheet-too-large", {}, std::move(message), "choose a smaller --size, or fewer materials");
+}
+
 class Layout {
 public:
   Layout(const std::vector<Section>& sections, uint32_t size, uint32_t columns)
@@ -72,10 +76,8 @@ public:
     for (const Section& section : sections_) height += heightOf(section);
     const uint64_t width =
         static_cast<uint64_t>(columns_) * static_cast<uint64_t>(width_) + uint64_t{2} * kMargin;
-    if (height < 0 || width * static_cast<uint64_t>(height) > kMostPixels) {
-      return fail("sheet-too-large", {}, fmt::format("the sheet would have {} x {} pixels", width, height),
-                  "choose a smaller --size, or fewer materials");
-    }
+    if (height < 0 || width * static_cast<uint64_t>(height) > kMostPixels)
+      return tooLarge(fmt::format("the sheet would have {} x {} pixels", width, height));
     Picture sheet(static_cast<uint32_t>(width), static_cast<uint32_t>(height), kBackground);
     int y = kMargin;
     if (!title.empty()) {
@@ -145,6 +147,12 @@ private:
 };
 
 }  // namespace
+
+Result<void> mayLayOut(size_t pictures, uint32_t size) {
+  const uint64_t each = uint64_t{size} * size;
+  if (each == 0 || pictures <= kMostPixels / each) return {};
+  return tooLarge(fmt::format("the sheet would have {} balls of {} x {} pixels", pictures, size, size));
+}
 
 Result<Picture> layOut(const std::vector<Section>& sections, const std::string& title, uint32_t size,
                        uint32_t columns) {

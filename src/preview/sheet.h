@@ -22,6 +22,10 @@ struct Section {
   std::vector<Cell> cells;
 };
 
+/// Whether a sheet may have room for so many pictures: to be asked before they are drawn. Errors:
+/// "sheet-too-large".
+Result<void> mayLayOut(size_t pictures, uint32_t size);
+
 /// `title` stands above all and may be empty. `columns` is a number of cells, 0 for a choice that leaves few
 /// places empty. Errors: "sheet-too-large".
 Result<Picture> layOut(const std::vector<Section>& sections, const std::string& title, uint32_t size,

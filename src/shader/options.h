@@ -25,8 +25,7 @@ Diagnostics checkOptions(const Options& options);
 /// "out-of-range" where a number of an argument is.
 Result<void> inRange(std::string_view what, uint64_t value, uint64_t least, uint64_t most,
                      std::string_view unit);
-/// "no-path" where a file or folder to write has no name: it would be the root of the file system, or
-/// nothing.
+/// "no-path" where a file or folder has no name: it would be the root of the file system, or nothing.
 Result<void> hasPath(std::string_view what, const std::string& path);
 
 /// `scene`: what is known of the lights where the options ask for the file's.

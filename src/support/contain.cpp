@@ -1,5 +1,7 @@
 #include "support/contain.h"
 
+#include <limits.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
@@ -66,6 +68,8 @@ private:
 
 std::optional<std::string> resolveBelow(const std::string& folder, const std::string& relative,
                                         const std::vector<std::string>& allowed) {
+  // No file has a longer name, and the way there takes its square.
+  if (relative.size() > PATH_MAX) return std::nullopt;
   std::error_code error;
   std::vector<fs::path> roots{fs::canonical(folder.empty() ? "." : folder, error)};
   if (error) return std::nullopt;

@@ -41,6 +41,22 @@ std::string format(const Diagnostic& diagnostic) {
   return text;
 }
 
+void addBounded(Diagnostics& to, Diagnostic one) {
+  constexpr std::string_view kMore = "more-diagnostics";
+  if (hasRoom(to)) {
+    to.push_back(std::move(one));
+  } else if (to.back().code != kMore) {
+    to.push_back({std::string(kMore),
+                  one.severity,
+                  {std::move(one.place.file), 0, 0, {}},
+                  "there is more to say of it, which is not shown",
+                  {},
+                  {}});
+  } else if (one.severity == Severity::Error) {
+    to.back().severity = Severity::Error;
+  }
+}
+
 bool hasError(const Diagnostics& diagnostics) {
   return std::any_of(diagnostics.begin(), diagnostics.end(),
                      [](const Diagnostic& d) { return d.severity == Severity::Error; });

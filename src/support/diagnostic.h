@@ -40,6 +40,15 @@ using Result = tl::expected<T, Diagnostics>;
 /// An unexpected result made of one error.
 tl::unexpected<Diagnostics> fail(std::string code, Place place, std::string message, std::string help = {});
 
+/// A file of others may be wrong in a million places, and nobody reads more than the first of them.
+inline constexpr size_t kMostDiagnostics = 1000;
+
+/// False when a list holds so many that addBounded() takes no more.
+inline bool hasRoom(const Diagnostics& list) { return list.size() < kMostDiagnostics; }
+
+/// Adds one where there is room. One more then says that there are others, and is as grave as the gravest.
+void addBounded(Diagnostics& to, Diagnostic one);
+
 /// "error", "warning" or "note".
 std::string_view severityName(Severity severity);
 

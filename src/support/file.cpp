@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <random>
 #include <utility>
 
@@ -183,6 +184,27 @@ tl::unexpected<Diagnostics> tooLarge(const Place& place, uint64_t largest) {
   return fail("file-too-large", place, fmt::format("it has more than {} bytes", largest), raising("file"));
 }
 
+/// Opens what is a regular file; null and the reason for all else.
+std::FILE* openToRead(const std::string& path, Links links, std::string& why, uint64_t& size) {
+#ifdef LACQUER_POSIX
+  struct stat status {};
+  const int fd = openRegular(path, links, why, status);
+  if (fd < 0) return nullptr;
+  std::FILE* file = streamOf(fd, "rb");
+  size = static_cast<uint64_t>(status.st_size);
+  if (file == nullptr) why = "the file cannot be opened";
+#else
+  std::error_code error;
+  why = fs::is_directory(path, error)                           ? "this is a folder, not a file"
+        : links == Links::Refuse && fs::is_symlink(path, error) ? "a link"
+                                                                : "";
+  std::FILE* file = why.empty() ? std::fopen(path.c_str(), "rb") : nullptr;
+  if (file == nullptr && why.empty()) why = "there is no such file";
+  size = file == nullptr ? 0 : fs::file_size(path, error);
+#endif
+  return file;
+}
+
 /// What is left of an open file of about `expected` bytes. Closes it.
 Result<std::string> readRest(std::FILE* file, uint64_t expected, uint64_t largest, const Place& place) {
   std::setvbuf(file, nullptr, _IONBF, 0);
@@ -202,6 +224,16 @@ Result<std::string> readRest(std::FILE* file, uint64_t expected, uint64_t larges
   return bytes;
 }
 
+/// What killed processes left in a folder of the user's, where files are written beside their places.
+void clearOnce(const std::string& folder) {
+  static std::mutex mutex;
+  static std::string last;  // many files go to one folder, one after the other
+  const std::lock_guard lock(mutex);
+  if (last == folder) return;
+  last = folder;
+  removeAbandonedIn(folder);
+}
+
 }  // namespace
 
 std::vector<std::string> namesIn(const std::string& folder) {
@@ -212,27 +244,27 @@ std::vector<std::string> namesIn(const std::string& folder) {
 
 Result<std::string> readFile(const std::string& path, uint64_t largest, Links links) {
   const Place place{path, 0, 0, {}};
-#ifdef LACQUER_POSIX
   std::string why;
-  struct stat status {};
-  const int fd = openRegular(path, links, why, status);
-  if (fd < 0) return fail("file-unreadable", place, std::move(why));
-  std::FILE* file = streamOf(fd, "rb");
-  if (file == nullptr) return fail("file-unreadable", place, "the file cannot be opened");
-  const uint64_t size = static_cast<uint64_t>(status.st_size);
-#else
-  std::error_code error;
-  if (fs::is_directory(path, error)) return fail("file-unreadable", place, "this is a folder, not a file");
-  if (links == Links::Refuse && fs::is_symlink(path, error)) return fail("file-unreadable", place, "a link");
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) return fail("file-unreadable", place, "there is no such file");
-  const uint64_t size = fs::file_size(path, error);
-#endif
+  uint64_t size = 0;
+  std::FILE* file = openToRead(path, links, why, size);
+  if (file == nullptr) return fail("file-unreadable", place, std::move(why));
   if (size > largest) {
     std::fclose(file);
     return tooLarge(place, largest);
   }
   return readRest(file, size, largest, place);
+}
+
+std::string startOf(const std::string& path, size_t most, Links links) {
+  std::string why;
+  uint64_t size = 0;
+  std::string bytes(most, '\0');
+  std::FILE* file = openToRead(path, links, why, size);
+  if (file == nullptr) return {};
+  std::setvbuf(file, nullptr, _IONBF, 0);
+  bytes.resize(std::fread(bytes.data(), 1, most, file));
+  std::fclose(file);
+  return bytes;
 }
 
 Result<std::string> readStandardInput(uint64_t largest) {
@@ -316,6 +348,7 @@ ReplacingFile::~ReplacingFile() {
 }
 
 void ReplacingFile::create() {
+  if (!of_scratch_) clearOnce(folder_);
   for (int attempt = 0; attempt < 100; ++attempt) {
     std::error_code error;
     fs::create_directories(folder_, error);

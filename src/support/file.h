@@ -19,6 +19,8 @@ enum class Links : uint8_t { Follow, Refuse };
 /// for more bytes than `largest`. With Links::Refuse the last part of the path may be no symbolic link.
 Result<std::string> readFile(const std::string& path, uint64_t largest = Limits{}.file,
                              Links links = Links::Follow);
+/// Its first bytes, so many at most; none where readFile() would fail.
+std::string startOf(const std::string& path, size_t most, Links links = Links::Follow);
 /// The bytes of the standard input, with the same errors.
 Result<std::string> readStandardInput(uint64_t largest = Limits{}.file);
 

@@ -101,6 +101,8 @@ public:
     }
     if (Diagnostics wrong = clashes(inputs, {preview_.output}); !wrong.empty())
       return tl::make_unexpected(std::move(wrong));
+    if (Result<void> fits = preview::mayLayOut(total_ * settings_.size(), preview_.size); !fits)
+      return tl::make_unexpected(std::move(fits.error()));
     std::vector<preview::Section> sections;
     for (const material::Document& document : documents) {
       preview::Section section{documents.size() > 1 ? document.path : std::string(), {}};

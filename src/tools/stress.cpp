@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "shader/language.h"
 #include "shader/messages.h"
 #include "shader/options.h"
+#include "support/contain.h"
 #include "support/file.h"
 #include "support/jobs.h"
 #include "support/text.h"
@@ -263,9 +265,17 @@ private:
     if (!test.contains("file") || !test["file"].is_string() || !test.contains("material") ||
         !test["material"].is_number_unsigned())
       return wrong("a case has a \"node\", or a \"file\" and the index of a \"material\"");
-    std::string file = test["file"].get<std::string>();
-    const size_t slash = path.find_last_of('/');
-    if (slash != std::string::npos && !file.starts_with('/')) file = path.substr(0, slash + 1) + file;
+    // A case may come from others: where a file lies elsewhere nobody looks at it.
+    const std::string named = test["file"].get<std::string>();
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    const std::optional<std::string> inside =
+        named.find('\0') == std::string::npos ? resolveBelow(folder, named, options_.allow) : std::nullopt;
+    if (!inside)
+      return fail("case-outside", {path, 0, 0, {}},
+                  fmt::format("{} leads out of the case's folder", quote(named)),
+                  "--allow DIR lets it lie in another folder, too");
+    const std::string file =
+        folder.empty() || std::filesystem::path(named).is_absolute() ? named : folder + "/" + named;
     const Result<material::Document> document = read(file);
     if (!document) return tl::make_unexpected(document.error());
     const auto index = test["material"].get<size_t>();

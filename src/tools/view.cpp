@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 
 #include "gltf/texture_source.h"
 #include "shader/language.h"
@@ -104,10 +105,21 @@ private:
     const Result<std::string> bytes = readFile(path, limits_.file);
     if (!bytes) return tl::make_unexpected(bytes.error());
     json::Json resources = json::Json::array();
+    std::map<std::string, std::string> known;  // by path: one file may have many spellings
+    held_ += bytes->size();
     for (const std::string& uri : file->fileUris()) {
       Result<std::string> resource = file->fileBytes(uri);
       if (resource) {
-        resources.push_back({{"uri", uri}, {"bytes", toBase64(*resource)}});
+        const auto [first, fresh] = known.try_emplace(file->filesRead().back(), uri);
+        held_ += fresh ? resource->size() : 0;
+        if (held_ > limits_.file)
+          return fail("file-too-large", {path, 0, 0, {}},
+                      fmt::format("the page would hold files of more than {} bytes", limits_.file),
+                      raising("file"));
+        if (fresh)
+          resources.push_back({{"uri", uri}, {"bytes", toBase64(*resource)}});
+        else
+          resources.push_back({{"uri", uri}, {"same", first->second}});
         continue;
       }
       for (Diagnostic& diagnostic : resource.error()) diagnostic.severity = Severity::Warning;
@@ -125,6 +137,7 @@ private:
   Messages& messages_;
   Limits limits_;
   Strings inputs_;
+  uint64_t held_ = 0;  ///< bytes of files that the page holds
 };
 
 }  // namespace

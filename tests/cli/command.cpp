@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <fstream>
 #include <thread>
 
@@ -75,6 +76,25 @@ Outcome Workplace::run(std::vector<std::string> arguments, std::chrono::seconds 
   if (to.empty()) fs::remove(out);
   fs::remove(err);
   return outcome;
+}
+
+Outcome Workplace::shell(const std::string& script) const {
+  Outcome outcome;
+  const std::string command = "cd '" + path_.string() + "' && { " + script + "; } >sh.out 2>sh.err";
+  outcome.status = statusOf(std::system(command.c_str()));
+  outcome.out = read("sh.out");
+  outcome.err = read("sh.err");
+  return outcome;
+}
+
+Outcome Workplace::within([[maybe_unused]] int mebibytes, const std::string& arguments,
+                          std::chrono::seconds most) const {
+#ifdef __SANITIZE_ADDRESS__
+  const std::string limit;
+#else
+  const std::string limit = "ulimit -v " + std::to_string(mebibytes * 1024) + "; ";
+#endif
+  return shell(limit + "timeout " + std::to_string(most.count()) + " '" LACQUER_PROGRAM "' " + arguments);
 }
 
 void Workplace::write(const std::string& name, const std::string& text) const {

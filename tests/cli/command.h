@@ -34,6 +34,12 @@ public:
   /// goes to `out` where one is given.
   Outcome run(std::vector<std::string> arguments, std::chrono::seconds most = std::chrono::seconds(120),
               const std::filesystem::path& out = {}) const;
+  /// Runs a command of the shell in the folder.
+  Outcome shell(const std::string& script) const;
+  /// Runs the program, its arguments in a shell's words, with so many MiB of address space, which sanitizers
+  /// need more of, and for so long at most.
+  Outcome within(int mebibytes, const std::string& arguments,
+                 std::chrono::seconds most = std::chrono::seconds(60)) const;
   /// Writes a file below the folder.
   void write(const std::string& name, const std::string& text) const;
   std::string read(const std::string& name) const;

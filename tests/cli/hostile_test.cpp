@@ -224,26 +224,14 @@ TEST(HostileInput, isARegularFile) {
   }
 }
 
-/// Runs the program after `words` of a shell, "exec" aside.
-Outcome shell(const Workplace& place, const std::string& script) {
-  Outcome outcome;
-  const std::string command =
-      fmt::format("cd '{}' && {{ {}; }} >sh.out 2>sh.err", place.path().string(), script);
-  const int status = std::system(command.c_str());
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-  outcome.out = place.read("sh.out");
-  outcome.err = place.read("sh.err");
-  return outcome;
-}
-
 TEST(HostileStreams, endInAStatus) {
   const Workplace place;
   const std::string gen = fmt::format("'{}' gen '{}' --no-validate --target glsl -o out", LACQUER_PROGRAM,
                                       example("clearcoat.gltf"));
-  EXPECT_EQ(shell(place, gen + " >&- 2>&-").status, 1);
-  EXPECT_EQ(shell(place, gen + " -q --time 2>&-").status, 0);
-  EXPECT_EQ(shell(place, fmt::format("'{}' gen nowhere.gltf -o out 2>&-", LACQUER_PROGRAM)).status, 1);
-  const Outcome small = shell(place, "ulimit -f 1; rm -rf out; " + gen + " -q");
+  EXPECT_EQ(place.shell(gen + " >&- 2>&-").status, 1);
+  EXPECT_EQ(place.shell(gen + " -q --time 2>&-").status, 0);
+  EXPECT_EQ(place.shell(fmt::format("'{}' gen nowhere.gltf -o out 2>&-", LACQUER_PROGRAM)).status, 1);
+  const Outcome small = place.shell("ulimit -f 1; rm -rf out; " + gen + " -q");
   EXPECT_EQ(small.status, 1) << small.all();
   EXPECT_NE(small.err.find("[file-unwritable]"), std::string::npos) << small.all();
 }
@@ -502,8 +490,7 @@ TEST(GraphNames, ofTexturesFitEveryTarget) {
   }
   for (const auto& entry : fs::directory_iterator(place / "out/cpp")) {
     EXPECT_EQ(
-        shell(place, fmt::format("c++ -std=c++11 -x c++ -fsyntax-only '{}'", entry.path().string())).status,
-        0)
+        place.shell(fmt::format("c++ -std=c++11 -x c++ -fsyntax-only '{}'", entry.path().string())).status, 0)
         << entry.path() << place.read("sh.err");
   }
 }
@@ -582,7 +569,7 @@ TEST(HostileStreams, aFullOutputIsAnErrorOfEveryVerb) {
   for (const char* words : {"nodes", "nodes --json", "nodes coat_absorption", "graph a.gltf",
                             "graph a.gltf --format dot", "dump a.gltf", "prove a.gltf --json",
                             "eval a.gltf --points p.json", "gen a.gltf -o out --target glsl"}) {
-    const Outcome outcome = shell(place, fmt::format("'{}' {} >/dev/full", LACQUER_PROGRAM, words));
+    const Outcome outcome = place.shell(fmt::format("'{}' {} >/dev/full", LACQUER_PROGRAM, words));
     expectRefused(outcome, "output-unwritable");
     EXPECT_EQ(outcome.err.find("[stopped]"), std::string::npos) << words << outcome.err;
   }

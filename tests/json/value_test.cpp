@@ -11,6 +11,7 @@
 #include <random>
 
 #include "json/json.h"
+#include "json/report.h"
 
 namespace {
 std::atomic<bool> no_memory{false};
@@ -139,6 +140,53 @@ TEST(Value, anotherKindIsRefused) {
   EXPECT_THROW((void)Json(1).text(), std::logic_error);
   EXPECT_THROW((void)Json::array().items(), std::logic_error);
   EXPECT_THROW((void)reread("[1,"), std::logic_error);
+}
+
+/// A large object that was read finds its members by an index; one that is changed, without.
+TEST(JsonValue, membersOfLargeObjectsAreFound) {
+  constexpr size_t kMany = 1000;
+  std::string text = "{";
+  for (size_t i = 0; i < kMany; ++i)
+    text += fmt::format(R"({}"m{}": {})", i == 0 ? "" : ", ", i * 7919 % kMany, i);
+  Json json = *parse(text + R"(, "m3": "twice"})", "a.json", {}, Doubles::LastCounts);
+  const auto all = [&] {
+    for (size_t i = 0; i < kMany; ++i) {
+      const std::string name = fmt::format("m{}", i * 7919 % kMany);
+      ASSERT_NE(json.find(name), nullptr) << name;
+      EXPECT_EQ(*json.find(name), name == "m3" ? Json("twice") : Json(i));
+    }
+    for (const char* absent : {"", "a", "m", "m1000", "z"}) EXPECT_EQ(json.find(absent), nullptr);
+  };
+  all();
+  const Json copy = json;
+  EXPECT_EQ(copy["m7"], json["m7"]);
+  json["new"] = 1;
+  EXPECT_EQ(json["new"], Json(1));
+  json.erase("new");
+  EXPECT_EQ(json.find("new"), nullptr);
+  all();
+  json.index();
+  json.items().insert(json.items().begin(), {"first", Json(2)});
+  EXPECT_EQ(json["first"], Json(2));
+  all();
+}
+
+/// However long what it names, and however much is wrong.
+TEST(JsonReport, isBounded) {
+  const std::string file = "a.json";
+  Diagnostics said;
+  Report report(file, said);
+  const Path root;
+  const std::string name(100'000, '\xC3');
+  const Path path(root, name);
+  for (size_t i = 0; i < 3 * kMostDiagnostics; ++i) report.warning("odd", Path(path, i), "it is odd");
+  ASSERT_EQ(said.size(), kMostDiagnostics + 1);
+  EXPECT_EQ(said.back().code, "more-diagnostics");
+  EXPECT_FALSE(hasError(said));
+  EXPECT_LT(said[0].place.pointer.size(), 1100U);
+  report.error("wrong", path, "it is wrong");
+  EXPECT_EQ(said.size(), kMostDiagnostics + 1);
+  EXPECT_TRUE(hasError(said));
 }
 
 }  // namespace
