@@ -142,6 +142,7 @@ private:
   Graph& graph_;
   const lang::Library& library_;
   std::vector<Found> found_;
+  size_t before_ = 0;  ///< of these, what was found by earlier steps: each finds the first in the file first
   size_t left_out_ = 0;  ///< what is wrong beyond these
   size_t suggestions_ = 0;
   const lang::TemplateDecl* template_ = nullptr;
@@ -156,7 +157,7 @@ private:
 
 void GraphCheck::error(const Spot& spot, std::string pointer, std::string_view code, std::string message,
                        std::string help) {
-  if (found_.size() >= kMostDiagnostics) {
+  if (found_.size() - before_ >= kMostDiagnostics) {
     ++left_out_;
     return;
   }
@@ -760,12 +761,15 @@ void GraphCheck::rates() {
 }
 
 Diagnostics GraphCheck::run() {
+  const auto nextStep = [this] { before_ = found_.size(); };
   templateDecl();
   parameters();
   textures();
   nodeHeads();
+  nextStep();
   for (size_t i = 0; i < graph_.nodes.size(); ++i) nodeInputs(i);
   outputs();
+  nextStep();
   order();
   if (found_.empty()) rates();
   if (found_.empty()) {

@@ -183,7 +183,8 @@ const Json& Json::operator[](size_t index) const {
 
 const Json* Json::find(std::string_view key) const {
   if (!is_object()) return nullptr;
-  const auto& [members, order] = *value_.object;
+  const Members& members = value_.object->members;
+  const std::vector<uint32_t>& order = value_.object->order;
   if (!order.empty()) {
     const auto at = std::lower_bound(order.begin(), order.end(), key,
                                      [&](uint32_t i, std::string_view k) { return members[i].first < k; });
@@ -222,7 +223,8 @@ void Json::erase(std::string_view key) {
 void Json::index() {
   constexpr size_t kSmall = 32;  // fewer are looked through as fast
   if (!is_object() || size() <= kSmall || size() > std::numeric_limits<uint32_t>::max()) return;
-  auto& [members, order] = *value_.object;
+  const Members& members = value_.object->members;
+  std::vector<uint32_t>& order = value_.object->order;
   order.resize(members.size());
   std::iota(order.begin(), order.end(), uint32_t{0});
   // Of members of one name the first is found, as without an index.
