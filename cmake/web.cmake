@@ -31,6 +31,10 @@ function(lacquer_module)
     string(APPEND names ",_${CMAKE_MATCH_1}")
   endforeach()
   target_compile_definitions(lacquer_c PRIVATE LACQUER_NO_CHECK)  # nothing is validated unless it is asked for
+  # What hands on, reads and says takes no time worth the bytes.
+  foreach(folder c api graph)
+    target_compile_options(lacquer_${folder} PRIVATE -Os)
+  endforeach()
   add_executable(lacquer_wasm ${absent} "${PROJECT_SOURCE_DIR}/web/shim/png.cpp" $<TARGET_OBJECTS:lacquer_c>)
   set_target_properties(lacquer_wasm PROPERTIES OUTPUT_NAME lacquer SUFFIX .wasm)
   target_link_libraries(lacquer_wasm PRIVATE lacquer_c lacquer_tools lacquer_check lacquer_vulkan stb
