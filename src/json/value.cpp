@@ -228,8 +228,10 @@ void Json::index() {
   order.resize(members.size());
   std::iota(order.begin(), order.end(), uint32_t{0});
   // Of members of one name the first is found, as without an index.
-  std::stable_sort(order.begin(), order.end(),
-                   [&](uint32_t a, uint32_t b) { return members[a].first < members[b].first; });
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    const int compared = members[a].first.compare(members[b].first);
+    return compared < 0 || (compared == 0 && a < b);
+  });
 }
 
 void Json::update(const Json& other) {
