@@ -32,7 +32,7 @@ function(lacquer_module)
   endforeach()
   target_compile_definitions(lacquer_c PRIVATE LACQUER_NO_CHECK)  # nothing is validated unless it is asked for
   # What hands on, reads and says takes no time worth the bytes.
-  foreach(folder c api graph)
+  foreach(folder c api)
     target_compile_options(lacquer_${folder} PRIVATE -Os)
   endforeach()
   add_executable(lacquer_wasm ${absent} "${PROJECT_SOURCE_DIR}/web/shim/png.cpp" $<TARGET_OBJECTS:lacquer_c>)
