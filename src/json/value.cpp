@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <stdexcept>
@@ -37,7 +38,7 @@ Json::Json(std::string text) {
 
 Json Json::object() {
   Json json;
-  json.value_.object = new Object;
+  json.value_.members = new Members;
   json.kind_ = Kind::Object;
   return json;
 }
@@ -71,17 +72,28 @@ Json::Json(const Json& other) {
   switch (other.kind_) {
     case Kind::String: value_.text = new std::string(*other.value_.text); break;
     case Kind::Array: value_.elements = new Elements(*other.value_.elements); break;
-    case Kind::Object: value_.object = new Object(*other.value_.object); break;
+    case Kind::Object:
+      if (other.indexed_)
+        value_.indexed = new Indexed(*other.value_.indexed);
+      else
+        value_.members = new Members(*other.value_.members);
+      break;
     default: value_ = other.value_; break;
   }
   kind_ = other.kind_;
+  indexed_ = other.indexed_;
 }
 
 Json::~Json() {
   switch (kind_) {
     case Kind::String: delete value_.text; break;
     case Kind::Array: delete value_.elements; break;
-    case Kind::Object: delete value_.object; break;
+    case Kind::Object:
+      if (indexed_)
+        delete value_.indexed;
+      else
+        delete value_.members;
+      break;
     default: break;
   }
 }
@@ -92,7 +104,7 @@ size_t Json::size() const {
   switch (kind_) {
     case Kind::Null: return 0;
     case Kind::Array: return value_.elements->size();
-    case Kind::Object: return value_.object->members.size();
+    case Kind::Object: return members().size();
     default: return 1;
   }
 }
@@ -167,14 +179,15 @@ const std::string& Json::text() const {
 const Json::Members& Json::items() const {
   if (is_null()) return kNone;
   if (!is_object()) throwKind("an object");
-  return value_.object->members;
+  return members();
 }
 
 Json::Members& Json::items() {
   if (is_null()) *this = object();
   if (!is_object()) throwKind("an object");
-  value_.object->order.clear();
-  return value_.object->members;
+  if (!indexed_) return *value_.members;
+  value_.indexed->order.clear();
+  return value_.indexed->members;
 }
 
 const Json& Json::operator[](size_t index) const {
@@ -183,9 +196,9 @@ const Json& Json::operator[](size_t index) const {
 
 const Json* Json::find(std::string_view key) const {
   if (!is_object()) return nullptr;
-  const Members& members = value_.object->members;
-  const std::vector<uint32_t>& order = value_.object->order;
-  if (!order.empty()) {
+  const Members& members = this->members();
+  if (indexed_ && !value_.indexed->order.empty()) {
+    const std::vector<uint32_t>& order = value_.indexed->order;
     const auto at = std::lower_bound(order.begin(), order.end(), key,
                                      [&](uint32_t i, std::string_view k) { return members[i].first < k; });
     return at != order.end() && members[*at].first == key ? &members[*at].second : nullptr;
@@ -207,7 +220,7 @@ Json& Json::operator[](std::string_view key) {
   for (auto& [name, value] : items()) {
     if (name == key) return value;
   }
-  return value_.object->members.emplace_back(std::string(key), Json()).second;
+  return items().emplace_back(std::string(key), Json()).second;
 }
 
 void Json::push_back(Json value) {
@@ -223,8 +236,15 @@ void Json::erase(std::string_view key) {
 void Json::index() {
   constexpr size_t kSmall = 32;  // fewer are looked through as fast
   if (!is_object() || size() <= kSmall || size() > std::numeric_limits<uint32_t>::max()) return;
-  const Members& members = value_.object->members;
-  std::vector<uint32_t>& order = value_.object->order;
+  if (!indexed_) {
+    auto indexed = std::make_unique<Indexed>();
+    indexed->members = std::move(*value_.members);
+    delete value_.members;
+    value_.indexed = indexed.release();
+    indexed_ = true;
+  }
+  const Members& members = value_.indexed->members;
+  std::vector<uint32_t>& order = value_.indexed->order;
   order.resize(members.size());
   std::iota(order.begin(), order.end(), uint32_t{0});
   // Of members of one name the first is found, as without an index.
@@ -298,7 +318,7 @@ void Json::write(std::string& out, int indent, size_t margin) const {
       all('[', ']', *value_.elements, [&](const Json& element) { element.write(out, indent, inner); });
       break;
     case Kind::Object:
-      all('{', '}', value_.object->members, [&](const auto& member) {
+      all('{', '}', members(), [&](const auto& member) {
         out += quotedText(member.first) + (indent >= 0 ? ": " : ":");
         member.second.write(out, indent, inner);
       });

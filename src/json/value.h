@@ -60,9 +60,12 @@ public:
   static Json array(std::initializer_list<Part> parts);
 
   Json(const Json& other);
-  Json(Json&& other) noexcept : kind_(other.kind_), value_(other.value_) { other.kind_ = Kind::Null; }
+  Json(Json&& other) noexcept : kind_(other.kind_), indexed_(other.indexed_), value_(other.value_) {
+    other.kind_ = Kind::Null;
+  }
   Json& operator=(Json other) noexcept {
     std::swap(kind_, other.kind_);
+    std::swap(indexed_, other.indexed_);
     std::swap(value_, other.value_);
     return *this;
   }
@@ -129,11 +132,12 @@ private:
   To whole() const;
   void write(std::string& out, int indent, size_t margin) const;
 
-  /// Members, and their places by name, or none.
-  struct Object {
+  /// Members, and their places by name; none where they were changed.
+  struct Indexed {
     Members members;
     std::vector<uint32_t> order;
   };
+  const Members& members() const { return indexed_ ? value_.indexed->members : *value_.members; }
 
   union Value {
     bool boolean;
@@ -142,9 +146,11 @@ private:
     double number;
     std::string* text;
     Elements* elements;
-    Object* object;
+    Members* members;
+    Indexed* indexed;
   };
   Kind kind_ = Kind::Null;
+  bool indexed_ = false;  ///< an object that is large; small ones are many
   Value value_{};
 };
 // NOLINTEND(readability-identifier-naming)
