@@ -148,6 +148,7 @@ TEST_F(Paths, WhatIsWrongIsSaid) {
     EXPECT_TRUE(measureCost({path}, false, messages).empty());
     return messages.empty() ? "" : messages[0].code;
   };
+  EXPECT_EQ(codeOf(""), "file-unreadable");
   EXPECT_EQ(codeOf(folder_ + "/absent.spv"), "file-unreadable");
   EXPECT_EQ(codeOf(folder_), "no-spirv");
   EXPECT_EQ(codeOf(write("text.spv", std::string("this is text"))), "spirv-unreadable");
