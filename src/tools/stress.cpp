@@ -274,14 +274,12 @@ private:
       return fail("case-outside", {path, 0, 0, {}},
                   fmt::format("{} leads out of the case's folder", quote(named)),
                   "--allow DIR lets it lie in another folder, too");
-    const std::string file =
-        folder.empty() || std::filesystem::path(named).is_absolute() ? named : folder + "/" + named;
-    const Result<material::Document> document = read(file);
+    const Result<material::Document> document = read(*inside);
     if (!document) return tl::make_unexpected(document.error());
     const auto index = test["material"].get<size_t>();
     if (index >= document->materials.size()) return wrong("the file has no material of that index");
     const bool tangents = !test.contains("tangents") || test["tangents"] != false;
-    return materialSubject(file, document->materials[index], tangents);
+    return materialSubject(*inside, document->materials[index], tangents);
   }
 
   Result<std::vector<double>> inputOf(const Subject& subject, const Json& test,
