@@ -95,8 +95,10 @@ Result<std::string> Cache::secretOf(const std::string& path) {
   return secret;
 }
 
+std::string Cache::entriesBelow(const std::string& folder) { return folder + "/v1"; }
+
 Cache::Cache(const std::string& folder, uint64_t limit, std::string secret)
-    : folder_(folder + "/v1"), limit_(limit), secret_(std::move(secret)), scratch_(folder_) {}
+    : folder_(entriesBelow(folder)), limit_(limit), secret_(std::move(secret)), scratch_(folder_) {}
 
 Cache::~Cache() {
   try {

@@ -26,6 +26,8 @@ class Cache {
 public:
   /// `limit`: bytes that all entries may take together. `secret`: of secretOf(), or empty.
   Cache(const std::string& folder, uint64_t limit, std::string secret);
+  /// Where its entries are below its folder.
+  static std::string entriesBelow(const std::string& folder);
   /// Keeps the limit.
   ~Cache();
 

@@ -27,7 +27,7 @@ Share readShare(const Json& row, const Path& path, json::Report& report, const D
     return share;
   }
   for (const auto& [key, value] : row.items()) {
-    if (wrong.size() > kMostDiagnostics) break;  // no more of it is said
+    if (isFull(wrong)) break;  // no more of it is said
     const Path here(path, key);
     if (key == "file") {
       if (!value.is_string()) report.wrongType(here, "file", value, "a string");
@@ -94,7 +94,7 @@ Result<Weights> Weights::read(std::string_view text, const std::string& file, co
   Weights weights;
   weights.given_ = true;
   double sum = 0;
-  for (size_t i = 0; i < rows->size() && wrong.size() <= kMostDiagnostics; ++i) {
+  for (size_t i = 0; i < rows->size() && !isFull(wrong); ++i) {
     weights.shares_.push_back(readShare((*rows)[i], Path(path, i), report, wrong));
     weights.shares_.back().place = i;
     sum += weights.shares_.back().share;
@@ -135,7 +135,7 @@ Diagnostics Weights::unused(const std::string& file) const {
   std::sort(places.begin(), places.end());
   Diagnostics all;
   for (const size_t place : places) {
-    if (all.size() > kMostDiagnostics) break;
+    if (isFull(all)) break;
     addBounded(all, {"no-such-material",
                      Severity::Warning,
                      {file, 0, 0, fmt::format("/weights/{}", place)},

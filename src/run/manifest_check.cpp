@@ -94,7 +94,7 @@ public:
 
 private:
   /// What else is wrong would not be said.
-  bool full() const { return wrong_.size() > kMostDiagnostics; }
+  bool full() const { return isFull(wrong_); }
 
   /// Whether the entry is an object whose members have their types.
   bool fits(const Json& json, const Path& path, std::string_view what, std::span<const Member> members) {

@@ -82,7 +82,7 @@ Diagnostics absent(const Merged& merged) {
   for (const auto& [path, uses] : merged.named) {
     for (const NamedShader& use : uses) {
       if (merged.shaders.contains(use.id)) continue;
-      if (wrong.size() > kMostDiagnostics) return wrong;
+      if (isFull(wrong)) return wrong;
       addBounded(wrong, {"no-such-shader",
                          Severity::Error,
                          {path, 0, 0, use.pointer},

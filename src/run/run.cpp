@@ -23,9 +23,6 @@ namespace {
 constexpr size_t kFilesAtOnce = 16;
 constexpr auto kProgressGrain = std::chrono::milliseconds(50);
 
-// Where Scratch and Cache write by names of their own.
-constexpr std::string_view kTemporaries = "/.lacquer-tmp", kCacheEntries = "/v1";
-
 }  // namespace
 
 Run::Run(const Options& options, const Strings& inputs, Messages& messages,
@@ -322,12 +319,12 @@ bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt*
 bool Run::mayWrite(const Strings& outputs) { return allGood(clashes(readFiles(), outputs)); }
 
 bool Run::mayName(const Strings& outputs, const std::string& folder) {
-  Strings folders{folder + std::string(kTemporaries)};
+  Strings folders{Scratch::below(folder)};
   for (size_t t = 0; t < kTargetCount; ++t)
     folders.push_back(fmt::format("{}/{}", folder, targetName(static_cast<Target>(t))));
   Diagnostics wrong = reservedNames(folders, {folder + "/manifest.json"}, outputs);
   if (options_.cache.empty()) return allGood(wrong);
-  for (Diagnostic& one : reservedNames({options_.cache + std::string(kCacheEntries)}, {}, outputs)) {
+  for (Diagnostic& one : reservedNames({Cache::entriesBelow(options_.cache)}, {}, outputs)) {
     one.message = "this file is to be written where the cache's own are";
     wrong.push_back(std::move(one));
   }

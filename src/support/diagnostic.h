@@ -45,6 +45,8 @@ inline constexpr size_t kMostDiagnostics = 1000;
 
 /// False when a list holds so many that addBounded() takes no more.
 inline bool hasRoom(const Diagnostics& list) { return list.size() < kMostDiagnostics; }
+/// True when it has said that there are more, too.
+inline bool isFull(const Diagnostics& list) { return list.size() > kMostDiagnostics; }
 
 /// Adds one where there is room. One more then says that there are others, and is as grave as the gravest.
 void addBounded(Diagnostics& to, Diagnostic one);

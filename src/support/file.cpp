@@ -315,8 +315,9 @@ Result<bool> makeFolder(const std::string& path) {
   return made;
 }
 
-Scratch::Scratch(std::string folder) : path_(std::move(folder)) {
-  path_ += kScratch;
+std::string Scratch::below(const std::string& folder) { return folder + std::string(kScratch); }
+
+Scratch::Scratch(const std::string& folder) : path_(below(folder)) {
   removeAbandonedIn(path_);
   removeFolder(path_);
 }

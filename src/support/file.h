@@ -44,11 +44,13 @@ Result<bool> makeFolder(const std::string& path);
 /// and what has no name of ours or is no regular file is left alone.
 class Scratch {
 public:
-  explicit Scratch(std::string folder);
+  explicit Scratch(const std::string& folder);
   ~Scratch();
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
   const std::string& path() const { return path_; }
+  /// Where it is below a folder.
+  static std::string below(const std::string& folder);
 
 private:
   std::string path_;
