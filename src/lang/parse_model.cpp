@@ -277,6 +277,8 @@ bool Parser::line(LineDecl& line) {
     line.kind = LineDecl::Kind::Flag;
   } else if (keyword && accept("shared")) {
     line.shared = true;
+  } else if (keyword && accept("light")) {
+    line.light = true;
   }
   if (!dottedName(line.id, line.span, "a line: its name") || !expect("=", "the line's name")) return false;
   return alternatives(line);

@@ -45,8 +45,8 @@ private:
     }
   }
 
-  bool fits(const Value& value, std::string_view path, int depth) const;
-  bool fits(uint32_t id, std::string_view path, int depth) const;
+  bool fits(const Value& value, std::string_view path, std::set<uint32_t>& seen) const;
+  bool fits(uint32_t id, std::string_view path, std::set<uint32_t>& seen) const;
   void paths();
   void arguments();
   void ports();
@@ -65,21 +65,21 @@ private:
   Diagnostics wrong_;
 };
 
-/// Whether what is behind an id's point is an output of one of its nodes, or a swizzle.
-bool Check::fits(uint32_t id, std::string_view path, int depth) const {
-  constexpr int kDeepest = 32;
-  if (depth > kDeepest) return true;
+/// Whether what is behind an id's point is an output of one of its nodes, or a swizzle. `seen`: ids that were asked.
+bool Check::fits(uint32_t id, std::string_view path, std::set<uint32_t>& seen) const {
+  if (!seen.insert(id).second) return false;
   for (const uint32_t line : model_.ids[id].lines) {
     for (const Alternative& alternative : model_.lines[line].alternatives) {
-      if (fits(alternative.value, path, depth)) return true;
+      if (fits(alternative.value, path, seen)) return true;
     }
   }
   return false;
 }
 
-bool Check::fits(const Value& value, std::string_view path, int depth) const {
-  if (path.empty() || isSwizzle(path)) return true;
-  if (value.kind == Value::Kind::Id) return value.path.empty() ? fits(value.index, path, depth + 1) : false;
+bool Check::fits(const Value& value, std::string_view path, std::set<uint32_t>& seen) const {
+  constexpr size_t kMost = 500;  // ids that are other names of one another
+  if (path.empty() || isSwizzle(path) || seen.size() > kMost) return true;
+  if (value.kind == Value::Kind::Id) return value.path.empty() ? fits(value.index, path, seen) : false;
   if (value.kind == Value::Kind::Below) return true;
   if (value.kind != Value::Kind::Call) return false;
   const std::string_view head = path.substr(0, path.find('.'));
@@ -90,7 +90,8 @@ bool Check::fits(const Value& value, std::string_view path, int depth) const {
 
 void Check::paths() {
   for (const Uses::Path& use : uses_.paths) {
-    if (fits(use.id, use.path, 0)) continue;
+    std::set<uint32_t> seen;
+    if (fits(use.id, use.path, seen)) continue;
     error(use.text, use.span, "unknown-output",
           fmt::format("'{}' has no output '{}'", model_.ids[use.id].name, use.path));
   }
@@ -219,10 +220,21 @@ void Check::doubles() {
 }
 
 void Check::typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, std::string_view what) {
-  if (!wanted) return;
   const Line& line = model_.lines[placed.line];
   for (size_t i = 0; i < line.alternatives.size(); ++i) {
-    const std::optional<ir::Type> type = types_.of(line.alternatives[i].value);
+    const Value& value = line.alternatives[i].value;
+    const lang::NodeDecl* node = value.kind == Value::Kind::Call ? value.node : several(value);
+    if (node != nullptr && node->results.size() > 1) {
+      error(placed.text, placed.decl->alternatives[i].value->span, "unknown-output",
+            fmt::format("{} takes one value, '{}' has several results", what, node->name),
+            value.kind == Value::Kind::Id
+                ? fmt::format("name one: '{}.{}'", model_.ids[value.index].name, node->results[0].name)
+                : fmt::format("give it a line `id = {}(...);` and name one: 'id.{}'", node->name,
+                              node->results[0].name));
+      continue;
+    }
+    if (!wanted) continue;
+    const std::optional<ir::Type> type = types_.of(value);
     if (!type || *type == *wanted) continue;
     error(placed.text, placed.decl->alternatives[i].value->span, "wrong-type",
           fmt::format("{} is {}, this is {}", what, lang::aType(*wanted), lang::aType(*type)));
@@ -230,11 +242,16 @@ void Check::typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, st
 }
 
 void Check::line(const Uses::Placed& placed) {
+  // Of a line whose values stand in one of its own, that one is looked at.
   const Line& line = model_.lines[placed.line];
-  if (line.kind == LineKind::Out)
+  if (line.carried) return;
+  if (placed.decl->kind == LineKind::Out)
     typed(placed, types_.port(placed.decl->id), fmt::format("the port '{}'", placed.decl->id));
-  if (line.kind == LineKind::Replace && line.target.kind == Value::Kind::Id)
-    typed(placed, types_.of(line.target), fmt::format("'{}'", model_.ids[line.target.index].name));
+  if (placed.decl->kind == LineKind::Replace) {
+    const Value& target = model_.lines[line.kind == LineKind::Replace ? placed.line : placed.line + 1].target;
+    if (target.kind == Value::Kind::Id)
+      typed(placed, types_.of(target), fmt::format("'{}'", model_.ids[target.index].name));
+  }
   if (uses_.adds.contains(placed.line)) added(placed);
 }
 

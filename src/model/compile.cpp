@@ -11,6 +11,7 @@
 #include "lang/reporter.h"
 #include "lang/suggest.h"
 #include "model/check.h"
+#include "model/dimming.h"
 #include "model/model.h"
 #include "model/names.h"
 
@@ -42,11 +43,14 @@ private:
   void addedLines(const lang::ProfileDecl& overlay);
   static const LineDecl* overriding(const lang::ProfileDecl& overlay, std::string_view id);
   Line line(const LineDecl& decl, uint32_t part, uint32_t term);
+  void carry(Line& line, const LineDecl& decl);
   void place(Line line, const LineDecl& decl);
   Condition condition(const ExprPtr& expr);
   Condition operation(const Expr& expr);
   Condition comparison(const Expr& expr);
   Condition named(const Expr& expr);
+  bool question(const Expr& expr, Condition& out);
+  Value operand(const ExprPtr& expr);
   Value value(const ExprPtr& expr);
   Value call(const Expr& expr);
   void argument(Value& call, const Expr& expr, size_t at);
@@ -54,6 +58,8 @@ private:
   Value reference(const Expr& expr);
   bool comparable(const Value& left, const Value& right, const Expr& expr);
   void checkNames();
+  void checkWriterNames();
+  void findDimmed();
   void findLive();
   void order();
 
@@ -68,6 +74,7 @@ private:
   Uses uses_;
   std::vector<const lang::ProfileDecl*> overlays_;  ///< the lods, then the profile: the first has its say
   std::set<const LineDecl*> placed_;                ///< their lines that stand in place of others
+  std::string_view overlay_;                        ///< the one whose added lines are placed
 };
 
 void Compiler::error(const Text& source, Span span, std::string code, std::string message, std::string help) {
@@ -193,7 +200,7 @@ Line Compiler::line(const LineDecl& decl, uint32_t part, uint32_t term) {
   line.message = decl.message;
   line.help = decl.help;
   line.reason = decl.reason;
-  if (decl.place) line.place = value(decl.place);
+  if (decl.place) line.place = operand(decl.place);
   if (decl.kind == LineDecl::Kind::Replace) {
     line.target = value(decl.target);
     if (line.target.kind != Value::Kind::Id)
@@ -208,7 +215,8 @@ Line Compiler::line(const LineDecl& decl, uint32_t part, uint32_t term) {
     if (decl.kind == LineDecl::Kind::Flag) {
       one.condition = condition(alternative.value);
     } else {
-      one.value = value(alternative.value);
+      const bool asked = decl.kind == LineDecl::Kind::Require;
+      one.value = asked ? operand(alternative.value) : value(alternative.value);
       if (alternative.condition) one.condition = condition(alternative.condition);
       one.unless = alternative.unless;
     }
@@ -217,7 +225,34 @@ Line Compiler::line(const LineDecl& decl, uint32_t part, uint32_t term) {
   return line;
 }
 
+/// A node behind `out` or `replace` has a line of its own, with a name that no text says: "coat.direct" of the part
+/// coat, `out direct = ...`.
+void Compiler::carry(Line& line, const LineDecl& decl) {
+  const bool out = line.kind == LineDecl::Kind::Out;
+  const bool calls =
+      std::any_of(line.alternatives.begin(), line.alternatives.end(),
+                  [](const Alternative& one) { return one.value.kind == Value::Kind::Call; });
+  if (!calls || (!out && line.kind != LineDecl::Kind::Replace)) return;
+  const bool of_part = line.part < model_.parts.size();
+  const std::string_view owner = of_part ? model_.parts[line.part].decl->name : overlay_;
+  const std::string_view what = out ? decl.id : names_.textOf(source_.text, decl.target->span);
+  Line own = line;
+  own.kind = LineDecl::Kind::Value;
+  own.id = names_.makeId(fmt::format("{}.{}", owner, what));
+  own.target = {};
+  uses_.ids.insert(own.id);
+  Value carried;
+  carried.kind = Value::Kind::Id;
+  carried.index = own.id;
+  line.alternatives.clear();
+  line.alternatives.emplace_back();
+  line.alternatives[0].value = std::move(carried);
+  line.carried = true;
+  place(std::move(own), decl);
+}
+
 void Compiler::place(Line line, const LineDecl& decl) {
+  carry(line, decl);
   const auto index = static_cast<uint32_t>(model_.lines.size());
   switch (line.kind) {
     case LineDecl::Kind::Value:
@@ -278,6 +313,7 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
       made.order = made.shared ? Line::kNone : order;
       place(std::move(made), line_decl);
     };
+    if (own.light) model_.ids[names_.id(own.id)].light = true;
     bool replaced = false;
     for (size_t k = 0; value && !replaced && k < overlays_.size(); ++k) {
       const LineDecl* other = overriding(*overlays_[k], own.id);
@@ -306,6 +342,7 @@ void Compiler::overridden(const LineDecl& own, const LineDecl& other) {
 
 /// What a profile or a lod adds beside the lines that it replaces stands outside of all parts.
 void Compiler::addedLines(const lang::ProfileDecl& overlay) {
+  overlay_ = overlay.name;
   source_ = {overlay.origin.file, overlay.text};
   for (const LineDecl& decl : overlay.lines) {
     if (placed_.contains(&decl)) continue;
@@ -315,6 +352,7 @@ void Compiler::addedLines(const lang::ProfileDecl& overlay) {
     }
     Line made = line(decl, static_cast<uint32_t>(model_.parts.size()), Line::kNone);
     made.order = Line::kNone;
+    if (decl.light) model_.ids[made.id].light = true;
     uses_.adds.insert(static_cast<uint32_t>(model_.lines.size()));
     place(std::move(made), decl);
   }
@@ -449,6 +487,48 @@ void Compiler::argument(Value& call, const Expr& expr, size_t at) {
 
 // -- conditions --
 
+/// What a condition or a requirement asks for: no node comes of it.
+Value Compiler::operand(const ExprPtr& expr) {
+  if (expr->kind != Expr::Kind::Call) return value(expr);
+  error(expr->span, "wrong-line", "only a line can call a node",
+        "give the call a line of its own, and ask for that one");
+  return {};
+}
+
+/// `uniform(x)` and others that are written as calls.
+bool Compiler::question(const Expr& expr, Condition& out) {
+  const ExprPtr& asked = expr.args[0];
+  if (expr.name == "uniform") {
+    out.kind = Condition::Kind::Uniform;
+    out.values.push_back(operand(asked));
+    return true;
+  }
+  if (expr.name == "replaced") {
+    out.kind = Condition::Kind::Replaced;
+    out.values.push_back(operand(asked));
+    if (out.values[0].kind != Value::Kind::Id)
+      error(asked->span, "wrong-condition", "only a line's value can be replaced");
+    return true;
+  }
+  const std::string_view port = names_.textOf(source_.text, asked->span);
+  if (expr.name == "takes") {
+    out.kind = Condition::Kind::Takes;
+    out.name = port;
+    uses_.ports.push_back({port, source_, asked->span});
+    return true;
+  }
+  if (expr.name != "dimmable") return false;
+  out.kind = Condition::Kind::Dimmable;
+  if (const std::optional<uint32_t> found = names_.findOut(port)) {
+    out.index = *found;
+    model_.outs[*found].dimmed = true;
+  } else {
+    error(asked->span, "unknown-port", fmt::format("no part puts out '{}'", port),
+          lang::didYouMean(port, names_.outs()));
+  }
+  return true;
+}
+
 Condition Compiler::condition(const ExprPtr& expr) {
   if (expr->kind == Expr::Kind::Operation) return operation(*expr);
   Condition out;
@@ -458,30 +538,11 @@ Condition Compiler::condition(const ExprPtr& expr) {
     out.conditions.emplace_back();
     return out;
   }
-  if (expr->kind == Expr::Kind::Call && expr->args.size() == 1) {
-    if (expr->name == "uniform") {
-      out.kind = Condition::Kind::Uniform;
-      out.values.push_back(value(expr->args[0]));
-      return out;
-    }
-    if (expr->name == "replaced") {
-      out.kind = Condition::Kind::Replaced;
-      out.values.push_back(value(expr->args[0]));
-      if (out.values[0].kind != Value::Kind::Id)
-        error(expr->args[0]->span, "wrong-condition", "only a line's value can be replaced");
-      return out;
-    }
-    if (expr->name == "takes") {
-      out.kind = Condition::Kind::Takes;
-      out.name = names_.textOf(source_.text, expr->args[0]->span);
-      uses_.ports.push_back({out.name, source_, expr->args[0]->span});
-      return out;
-    }
-  }
+  if (expr->kind == Expr::Kind::Call && expr->args.size() == 1 && question(*expr, out)) return out;
   if (expr->kind == Expr::Kind::Name || expr->kind == Expr::Kind::Member) return named(*expr);
   error(expr->span, "wrong-condition", "this is no condition",
-        "conditions are names, comparisons, uniform(x), takes(port), replaced(line), and '!', '&&', '||' of "
-        "them");
+        "conditions are names, comparisons, uniform(x), takes(port), replaced(line), dimmable(port), and "
+        "'!', '&&', '||' of them");
   return out;
 }
 
@@ -527,7 +588,7 @@ Condition Compiler::comparison(const Expr& expr) {
           "write '==' or '!='");
     return out;
   }
-  const Value left = value(expr.args[0]);
+  const Value left = operand(expr.args[0]);
   const lang::PropertyDecl* choice = names_.choice(left);
   Value right;
   if (choice != nullptr) {
@@ -542,7 +603,7 @@ Condition Compiler::comparison(const Expr& expr) {
     right.constant[0] = static_cast<double>(found - choice->choices.begin());
     out.name = wanted;
   } else {
-    right = value(expr.args[1]);
+    right = operand(expr.args[1]);
   }
   if (right.kind == Value::Kind::Constant) {
     out.kind = Condition::Kind::Equal;
@@ -591,6 +652,20 @@ void Compiler::checkNames() {
   }
 }
 
+/// Nodes of textures are named after their slots: no line has such a name.
+void Compiler::checkWriterNames() {
+  for (const material::Property& property : model_.schema->properties) {
+    if (property.decl->kind != material::Kind::Texture) continue;
+    for (const std::string_view what : {"uv", "texel", "decoded"}) {
+      const std::string name = fmt::format("{}.{}", property.parameter_name, what);
+      if (!names_.hasId(name) || (what == "decoded" && !property.decl->srgb)) continue;
+      const lang::ExtensionDecl& extension = *model_.schema->extensions[property.extension];
+      error({extension.origin.file, extension.text}, property.decl->span, "duplicate-name",
+            fmt::format("its node '{}' has the name of a line", name), "give the line another name");
+    }
+  }
+}
+
 namespace {
 
 /// Calls `see(role, member)` for every property in a value or a condition.
@@ -633,6 +708,16 @@ void Compiler::findLive() {
   }
 }
 
+/// Which of the values that a dimmed port is given scale with the light lines whatever the material has. Of the others
+/// it is found for each material.
+void Compiler::findDimmed() {
+  model_.scales.resize(model_.lines.size());
+  Dimming dimming(model_, [](uint32_t) { return true; });
+  for (const Out& out : model_.outs) {
+    for (const uint32_t line : out.lines) model_.scales[line] = out.dimmed && dimming.scales(line);
+  }
+}
+
 void Compiler::order() {
   for (size_t i = 0; i < model_.lines.size(); ++i) {
     const Line& line = model_.lines[i];
@@ -661,9 +746,11 @@ Result<Model> Compiler::run(std::string_view profile, const std::set<std::string
   for (uint32_t i = 0; i < model_.parts.size(); ++i) lines(i, model_.parts[i].term);
   for (const lang::ProfileDecl* overlay : overlays_) addedLines(*overlay);
   checkNames();
+  checkWriterNames();
   // What is made of a wrong line is wrong as well.
   if (wrong_.empty()) wrong_ = check(library_, model_, uses_);
   if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
+  findDimmed();
   findLive();
   order();
   return std::move(model_);

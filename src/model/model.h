@@ -58,6 +58,7 @@ struct Condition {
     Uniform,    ///< values[0] does not change from pixel to pixel
     Takes,      ///< the template has a port `name`
     Replaced,   ///< another part, or the profile, has put something in place of values[0], a line's value
+    Dimmable,   ///< `index` in Model::outs: what the parts below put out scales with the light lines
   };
   Kind kind = Kind::Always;
   uint32_t index = 0;
@@ -77,6 +78,7 @@ struct Alternative {
 /// A line, where its part's term is alive.
 struct Line {
   lang::LineDecl::Kind kind = lang::LineDecl::Kind::Value;
+  bool carried = false;  ///< Out, Replace: the values are those of a line of its own, the one before it
   bool shared = false;
   uint32_t id = 0;        ///< in Model::ids; of an Out: in Model::outs
   uint32_t part = 0;      ///< in Model::parts; for a line that a profile adds: their number
@@ -95,6 +97,9 @@ struct Id {
   std::vector<uint32_t> lines;     ///< that say it
   std::vector<uint32_t> replaced;  ///< lines that replace it, or one of its outputs, by part
   bool overridden = false;         ///< the profile has another line in its place
+  /// Light of a lamp. What replaces it acts on the parts below alone, and all that they make of it must scale
+  /// with it.
+  bool light = false;
 };
 
 struct Term {
@@ -124,6 +129,7 @@ struct Role {
 struct Out {
   std::string_view name;
   std::vector<uint32_t> lines;  ///< from the inside outwards
+  bool dimmed = false;          ///< some condition asks whether it is dimmable
 };
 
 struct Model {
@@ -140,6 +146,10 @@ struct Model {
   std::vector<std::string_view> switches;
   std::vector<bool> switch_defaults;
   std::vector<uint32_t> ordered;  ///< lines of Kind::Value with an order, sorted by it
+  /// Of each line: an Out that scales with the light lines in every material, whatever else is there.
+  std::vector<bool> scales;
+  /// Names of lines that the text gives none; Id::name views them.
+  std::vector<std::shared_ptr<const std::string>> made_names;
 
   /// The terms that stay though their value would remove them, when they are asked to: sorted.
   std::vector<std::string_view> liveTerms() const;

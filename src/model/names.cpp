@@ -59,6 +59,26 @@ void Names::addId(std::string_view name) {
   if (fresh) model_.ids.push_back({name, {}, {}});
 }
 
+uint32_t Names::makeId(const std::string& name) {
+  std::string free = name;
+  for (int i = 2; ids_.contains(free) || made_.contains(free); ++i) free = fmt::format("{}_{}", name, i);
+  model_.made_names.push_back(std::make_shared<const std::string>(std::move(free)));
+  made_.insert(*model_.made_names.back());
+  model_.ids.push_back({*model_.made_names.back(), {}, {}});
+  return static_cast<uint32_t>(model_.ids.size() - 1);
+}
+
+std::optional<uint32_t> Names::findOut(std::string_view name) const {
+  const auto it = outs_.find(name);
+  return it == outs_.end() ? std::nullopt : std::optional(it->second);
+}
+
+std::vector<std::string_view> Names::outs() const {
+  std::vector<std::string_view> names;
+  for (const auto& [name, index] : outs_) names.push_back(name);
+  return names;
+}
+
 void Names::addOut(std::string_view name) {
   const auto [it, fresh] = outs_.emplace(name, static_cast<uint32_t>(model_.outs.size()));
   if (fresh) model_.outs.push_back({name, {}});

@@ -31,6 +31,10 @@ public:
 
   uint32_t id(std::string_view name) const { return ids_.at(name); }
   uint32_t out(std::string_view name) const { return outs_.at(name); }
+  std::optional<uint32_t> findOut(std::string_view name) const;
+  std::vector<std::string_view> outs() const;
+  /// A line that no text refers to: its name, or the next one with a number behind it that is no other's.
+  uint32_t makeId(const std::string& name);
   bool hasId(std::string_view name) const { return ids_.contains(name); }
   /// "view", "light_sample" of "light_sample.L", a texture of the environment.
   bool hasGiven(std::string_view name) const;
@@ -60,7 +64,7 @@ private:
   Model& model_;
   std::vector<std::string_view> sections_;
   std::map<std::string_view, uint32_t> ids_, outs_, roles_, terms_, switches_;
-  std::set<std::string_view> flags_;
+  std::set<std::string_view> flags_, made_;
   std::map<std::string, uint32_t, std::less<>> givens_;
 };
 

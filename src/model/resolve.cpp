@@ -71,7 +71,10 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
       nodes_(model.ids.size()),
       taken_(model.lines.size()),
       absent_(model.givens.size(), -1),
-      terms_(model.terms.size(), -1),
+      terms_(model.terms.size(), Life::Unknown),
+      uniform_(model.ids.size(), -1),
+      line_states_(model.lines.size()),
+      line_values_(model.lines.size()),
       unmet_(model.terms.size()) {}
 
 namespace {
@@ -273,6 +276,7 @@ Found Resolver::found(const Value& value, const Line& line) {
 /// The value that parts have put in place of another. A part that replaces it sees what the parts below it
 /// see.
 Found Resolver::replacement(const Value& value, uint32_t part) {
+  if (model_.ids[value.index].light) return behind(dimmed(value.index, part), value.path);
   const std::vector<uint32_t>& lines = model_.ids[value.index].replaced;
   // What stands in the place of a whole value stands in that of its parts, too.
   const auto names = [&](const Line& line) {
@@ -292,13 +296,82 @@ Found Resolver::replacement(const Value& value, uint32_t part) {
   return {};
 }
 
+/// The light that reaches a part, where a layer above it lets less than all of it through: what the nearest one says,
+/// which itself sees what those above it let through.
+Found Resolver::dimmed(uint32_t id, uint32_t part) {
+  for (const uint32_t index : model_.ids[id].replaced) {
+    const Line& line = model_.lines[index];
+    if (line.part <= part || (line.term != Line::kNone && !alive(line.term))) continue;
+    Found instead = fromLine(line);
+    if (!instead) continue;
+    checkDimmed(line);
+    return instead;
+  }
+  return {};
+}
+
+/// The first of what the parts below put out for a port that does not scale with the light that may be dimmed.
+const Line* Resolver::undimmed(uint32_t out, uint32_t part) {
+  for (const uint32_t index : model_.outs[out].lines) {
+    const Line& line = model_.lines[index];
+    if (line.part >= part || model_.scales[index]) continue;
+    if (line.term != Line::kNone && !alive(line.term)) continue;
+    // Not with all that a material could have; perhaps with what this one has.
+    if (!dimming_) dimming_.emplace(model_, [this](uint32_t p) { return alive(model_.parts[p].term); });
+    if (!dimming_->scales(index)) return &line;
+  }
+  return nullptr;
+}
+
+/// A layer that dims the light below itself must not lie over a part that would not notice.
+void Resolver::checkDimmed(const Line& line) {
+  for (uint32_t out = 0; out < model_.outs.size() && wrong_.empty(); ++out) {
+    const Line* other = model_.outs[out].dimmed ? undimmed(out, line.part) : nullptr;
+    if (other == nullptr) continue;
+    const std::string_view port = model_.outs[out].name;
+    wrong(line.part, "light-not-dimmed",
+          fmt::format("'{}' is dimmed for the parts below, but what '{}' puts out as '{}' does not scale with it",
+                      model_.ids[line.target.index].name, model_.parts[other->part].decl->name, port),
+          fmt::format("replace it only when dimmable({}), and dim 'below.{}' else", port, port));
+  }
+}
+
 Found Resolver::replaced(const Value& value, uint32_t part, Found original) {
   Found instead = replacement(value, part);
   return instead ? instead : original;
 }
 
-/// The first of a line's values whose condition holds and which is there.
+/// Lines that need each other, and chains that no stack has room for, are errors of the text.
+bool Resolver::enter(uint32_t part) {
+  constexpr int kDeepest = 500;  // of the library's lines: some thirty
+  if (depth_ < kDeepest) return true;
+  wrong(part, "limit", fmt::format("more than {} lines need one another", kDeepest),
+        "put some of them into one node");
+  return false;
+}
+
+/// What a line comes to. Of `out` and `replace` it is kept; that of other lines is by their ids.
 Found Resolver::fromLine(const Line& line) {
+  const auto index = static_cast<size_t>(&line - model_.lines.data());
+  const bool kept = line.kind == LineDecl::Kind::Out || line.kind == LineDecl::Kind::Replace;
+  if (kept && line_states_[index] == State::Done) return line_values_[index];
+  if (kept && line_states_[index] == State::Open) {
+    wrong(line.part, "recursion", "what stands in the place of a line needs that line",
+          "give it a value that does not need what it replaces");
+    return {};
+  }
+  if (!enter(line.part)) return {};
+  ++depth_;
+  if (kept) line_states_[index] = State::Open;
+  Found value = chosen(line);
+  --depth_;
+  if (!kept) return value;
+  line_states_[index] = State::Done;
+  return line_values_[index] = std::move(value);
+}
+
+/// The first of a line's values whose condition holds and which is there.
+Found Resolver::chosen(const Line& line) {
   const bool live = line.term != Line::kNone && options_.live.contains(model_.terms[line.term].name);
   for (const Alternative& alternative : line.alternatives) {
     const bool asks = !alternative.unless || !live;
@@ -315,21 +388,28 @@ void Resolver::circle(uint32_t id) {
     if (path.empty() && open != id) continue;
     path += fmt::format("{} -> ", model_.ids[open].name);
   }
-  const lang::ProfileDecl& profile = *model_.profile;
-  const uint32_t part = model_.lines[model_.ids[id].lines[0]].part;
-  const lang::Origin& origin = part < model_.parts.size() ? model_.parts[part].decl->origin : profile.origin;
-  wrong_.push_back({"recursion",
+  wrong(model_.lines[model_.ids[id].lines[0]].part, "recursion",
+        fmt::format("lines need each other: {}{}", path, model_.ids[id].name),
+        "give one of them a value that does not need the other");
+}
+
+/// An error of a part's text, once.
+void Resolver::wrong(uint32_t part, std::string code, std::string message, std::string help) {
+  if (!wrong_.empty()) return;
+  const lang::Origin& origin =
+      part < model_.parts.size() ? model_.parts[part].decl->origin : model_.profile->origin;
+  wrong_.push_back({std::move(code),
                     Severity::Error,
                     {std::string(origin.file), origin.line, 0, {}},
-                    fmt::format("lines need each other: {}{}", path, model_.ids[id].name),
-                    "give one of them a value that does not need the other",
+                    std::move(message),
+                    std::move(help),
                     {}});
 }
 
 Found Resolver::id(uint32_t id) {
   if (states_[id] == State::Done) return values_[id];
   if (states_[id] == State::Open) {
-    if (wrong_.empty()) circle(id);
+    circle(id);
     return {};
   }
   states_[id] = State::Open;
@@ -376,7 +456,7 @@ Found Resolver::port(std::string_view name) {
 
 // -- conditions --
 
-bool Resolver::uniform(const Found& value) const {
+bool Resolver::uniform(const Found& value) {
   switch (value.kind) {
     case Found::Kind::Nothing:
     case Found::Kind::Void:
@@ -389,8 +469,12 @@ bool Resolver::uniform(const Found& value) const {
     case Found::Kind::Texture: return false;
     case Found::Kind::Node: break;
   }
-  const std::vector<Found>& inputs = nodes_[value.index].inputs;
-  return std::all_of(inputs.begin(), inputs.end(), [&](const Found& input) { return uniform(input); });
+  signed char& known = uniform_[value.index];
+  if (known < 0) {
+    const std::vector<Found>& inputs = nodes_[value.index].inputs;
+    known = std::all_of(inputs.begin(), inputs.end(), [&](const Found& input) { return uniform(input); }) ? 1 : 0;
+  }
+  return known != 0;
 }
 
 bool Resolver::equal(const Condition& condition, const Line&) {
@@ -404,10 +488,12 @@ bool Resolver::equal(const Condition& condition, const Line&) {
 
 bool Resolver::flag(uint32_t id) {
   if (states_[id] == State::Open) {
-    if (wrong_.empty()) circle(id);
+    circle(id);
     return false;
   }
   if (states_[id] == State::Unknown) {
+    if (!enter(model_.lines[model_.ids[id].lines[0]].part)) return false;
+    ++depth_;
     states_[id] = State::Open;
     open_.push_back(id);
     for (const uint32_t index : model_.ids[id].lines) {
@@ -419,6 +505,7 @@ bool Resolver::flag(uint32_t id) {
     }
     open_.pop_back();
     states_[id] = State::Done;
+    --depth_;
   }
   return static_cast<bool>(values_[id]);
 }
@@ -450,6 +537,7 @@ bool Resolver::holds(const Condition& condition, const Line& line) {
     case Condition::Kind::Replaced:
       return model_.ids[condition.values[0].index].overridden ||
              static_cast<bool>(replacement(condition.values[0], line.part));
+    case Condition::Kind::Dimmable: return undimmed(condition.index, line.part) == nullptr;
     case Condition::Kind::Takes:
       return std::any_of(template_.ports.begin(), template_.ports.end(),
                          [&](const lang::PortDecl& port) { return port.param.name == condition.name; });
@@ -491,8 +579,17 @@ bool Resolver::required(const Term& term) {
 }
 
 bool Resolver::alive(uint32_t index) {
-  if (terms_[index] >= 0) return terms_[index] != 0;
+  Life& life = terms_[index];
+  if (life == Life::Dead || life == Life::Alive) return life == Life::Alive;
   const Term& term = model_.terms[index];
+  if (life == Life::Asked) {
+    wrong(term.part, "recursion", fmt::format("whether '{}' is there depends on itself", term.name),
+          "its conditions must not ask for its own lines");
+    return false;
+  }
+  if (!enter(term.part)) return false;
+  ++depth_;
+  life = Life::Asked;
   Line context = kNoLine;
   context.part = term.part;
   context.term = index;
@@ -501,12 +598,13 @@ bool Resolver::alive(uint32_t index) {
   good = good && !options_.without.contains(term.name);
   good = good && holds(term.when, context);
   good = good && (!term.has_unless || options_.live.contains(term.name) || !holds(term.unless, context));
-  terms_[index] = good ? 1 : 0;
+  life = good ? Life::Alive : Life::Dead;
   if (good && !term.requirements.empty()) {
     // The requirements are lines of the term, so they are looked at as if it were alive.
     good = required(term);
-    terms_[index] = good ? 1 : 0;
+    life = good ? Life::Alive : Life::Dead;
   }
+  --depth_;
   return good;
 }
 
@@ -621,7 +719,8 @@ std::string Resolver::because(const Condition& condition, const Line& line, bool
     case Condition::Kind::Flag:
     case Condition::Kind::Term:
     case Condition::Kind::Uniform:
-    case Condition::Kind::Replaced: break;
+    case Condition::Kind::Replaced:
+    case Condition::Kind::Dimmable: break;
   }
   return "the material does not ask for it";
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/build.h"
+#include "model/dimming.h"
 
 namespace lacquer::model {
 
@@ -88,6 +89,9 @@ private:
 
   Found id(uint32_t id);
   Found fromLine(const Line& line);
+  Found chosen(const Line& line);
+  Found dimmed(uint32_t id, uint32_t part);
+  bool enter(uint32_t part);
   Found found(const Value& value, const Line& line);
   Found role(const Value& value);
   Found number(const Role& role, const Value& value);
@@ -102,12 +106,15 @@ private:
   bool equal(const Condition& condition, const Line& line);
   bool flag(uint32_t id);
   bool live(const std::vector<std::string_view>& terms) const;
-  bool uniform(const Found& value) const;
+  bool uniform(const Found& value);
+  const Line* undimmed(uint32_t out, uint32_t part);
+  void checkDimmed(const Line& line);
   bool required(const Term& term);
   std::string missing(const Value& value, const Line& line, int depth);
   std::string because(const Condition& condition, const Line& line, bool holds);
   std::string shown(const Condition& equal) const;
   void circle(uint32_t id);
+  void wrong(uint32_t part, std::string code, std::string message, std::string help);
 
   const Model& model_;
   const lang::TemplateDecl& template_;
@@ -122,7 +129,13 @@ private:
   std::vector<bool> taken_;  ///< of the lines
   std::vector<signed char>
       absent_;                      ///< of what the template gives: -1 unknown, else whether it cannot be had
-  std::vector<signed char> terms_;  ///< -1 unknown, else whether it is alive
+  enum class Life : uint8_t { Unknown, Asked, Dead, Alive };
+  std::vector<Life> terms_;
+  std::vector<signed char> uniform_;  ///< of the ids' nodes: -1 unknown, else whether it is
+  std::vector<State> line_states_;    ///< of what stands behind `out` and `replace`
+  std::vector<Found> line_values_;
+  int depth_ = 0;
+  std::optional<Dimming> dimming_;    ///< of this material, where it is asked
   std::vector<std::string_view> unmet_;  ///< of a term: why a requirement is not met
   std::vector<uint32_t> open_;
 };

@@ -51,8 +51,14 @@ std::optional<ir::Type> Types::of(const Value& value, int depth) const {
   return std::nullopt;
 }
 
-/// What all lines that say the id agree on.
 std::optional<ir::Type> Types::id(uint32_t id, std::string_view path, int depth) const {
+  const auto [it, fresh] = known_.try_emplace({id, path});
+  if (fresh) it->second = agreed(id, path, depth);
+  return it->second;
+}
+
+/// What all lines that say the id agree on.
+std::optional<ir::Type> Types::agreed(uint32_t id, std::string_view path, int depth) const {
   std::optional<ir::Type> agreed;
   for (const uint32_t line : model_.ids[id].lines) {
     if (model_.lines[line].kind == lang::LineDecl::Kind::Flag) return ir::Type::Bool;

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "model/model.h"
@@ -24,6 +25,7 @@ public:
 private:
   std::optional<ir::Type> of(const Value& value, int depth) const;
   std::optional<ir::Type> id(uint32_t id, std::string_view path, int depth) const;
+  std::optional<ir::Type> agreed(uint32_t id, std::string_view path, int depth) const;
   std::optional<ir::Type> call(const Value& value, std::string_view path) const;
   std::optional<ir::Type> role(const Value& value) const;
   std::optional<ir::Type> given(const Value& value) const;
@@ -31,6 +33,8 @@ private:
   const Model& model_;
   std::vector<const lang::TemplateDecl*> templates_;
   std::map<std::string_view, ir::Type> ports_;
+  /// What was found of an id's path. Lines that need each other are asked while they are looked at: nothing is known then.
+  mutable std::map<std::pair<uint32_t, std::string_view>, std::optional<ir::Type>> known_;
 };
 
 }  // namespace lacquer::model
