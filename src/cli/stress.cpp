@@ -15,7 +15,8 @@ CLI::App* addStress(CLI::App& app, StressFlags& flags) {
       app.add_subcommand("stress", "attacks nodes and materials with the inputs that break shaders");
   verb->add_option(
           "subjects", flags.subjects,
-          "nodes, .gltf or .glb files, .json cases; `nodes` is every node of the library, as when absent")
+          "nodes, extensions, .gltf or .glb files, .json cases; `nodes` is every node of the library, `extensions` "
+          "every extension; both when absent")
       ->check(kNotEmpty);
   CLI::Option* samples =
       verb->add_option("--samples", flags.stress.samples, "inputs for each node and each material")
@@ -70,8 +71,19 @@ std::string titleOf(const Json& subject) {
     const std::string name = subject["node"].get<std::string>();
     return subject.contains("variant") ? name + "." + subject["variant"].get<std::string>() : name;
   }
-  return fmt::format("{}: {}{}", subject["file"].get<std::string>(), subject["name"].get<std::string>(),
-                     subject.contains("tangents") ? ", without tangents" : "");
+  if (subject.contains("extension")) return subject["extension"].get<std::string>();
+  return fmt::format("{}: {}{}{}", subject["file"].get<std::string>(), subject["name"].get<std::string>(),
+                     subject.contains("tangents") ? ", without tangents" : "",
+                     subject.contains("forms") ? ", its forms" : "");
+}
+
+/// A colour that is another at a threshold and beside it.
+void printForm(const Json& finding) {
+  fmt::print("  form        {} at {} = {} and beside it", printable(finding["what"].get<std::string>()),
+             printable(finding["parameter"].get<std::string>()), finding["at"].dump());
+  if (finding.contains("layer")) fmt::print(", under {}", printable(finding["layer"].get<std::string>()));
+  if (finding.contains("value")) fmt::print(": differs by {:.3g}", finding["value"].get<double>());
+  fmt::print("\n    sample: {}\n", printable(finding["sample"].dump()));
 }
 
 void printFound(const std::string& text, bool quiet) {
@@ -91,6 +103,10 @@ void printFound(const std::string& text, bool quiet) {
           energy["largest"].get<double>(), energy["base"].get<double>(), energy["asymmetry"].get<double>());
     }
     for (const auto& finding : subject["findings"]) {
+      if (finding["fault"] == "form") {
+        printForm(finding);
+        continue;
+      }
       fmt::print("  {:<11} {} in {}", finding["fault"].get<std::string>(), finding["count"].get<uint64_t>(),
                  printable(finding["what"].get<std::string>()));
       if (finding.contains("value")) fmt::print(": {:.9g}", finding["value"].get<double>());

@@ -16,6 +16,7 @@
 #include "tools/eval_material.h"
 #include "tools/node_proofs.h"
 #include "tools/stress_device.h"
+#include "tools/stress_forms.h"
 
 namespace lacquer {
 
@@ -27,8 +28,8 @@ using stress::Subject;
 
 constexpr uint64_t kMostSamples = uint64_t{1} << 40;
 
-/// Stands for every node of the library.
-constexpr std::string_view kNodes = "nodes";
+/// Stand for every node and for every extension of the library.
+constexpr std::string_view kNodes = "nodes", kExtensions = "extensions";
 
 bool ends(const std::string& text, std::string_view end) { return text.ends_with(end); }
 
@@ -119,15 +120,61 @@ private:
       else if (ends(name, ".gltf") || ends(name, ".glb"))
         added = addFile(name);
       else if (name == kNodes && !library_->node(name))
-        added = addLibrary();
+        added = addNodes();
+      else if (name == kExtensions && !library_->node(name))
+        added = addExtensions({});
+      else if (library_->has(lang::DeclKind::Extension, name))
+        added = addExtensions(name);
       else
         added = addNode(name);
       if (!added) return added;
     }
-    return names.empty() ? addLibrary() : Result<void>{};
+    if (!names.empty()) return {};
+    if (Result<void> added = addNodes(); !added) return added;
+    return addExtensions({});
   }
 
-  Result<void> addLibrary() {
+  /// Materials that have one extension, at the values where their shaders have other forms. Without a name all.
+  Result<void> addExtensions(const std::string& name) {
+    // What is compared are doubles: devices and half precision have nothing to say of it.
+    if (device_ || plan_.half) return {};
+    const Result<const material::Schema*> schema = library_->models.schema();
+    if (!schema) return tl::make_unexpected(schema.error());
+    for (uint16_t i = 1; i < (*schema)->extensions.size(); ++i) {
+      const std::string_view own = (*schema)->extensions[i]->name;
+      if (!name.empty() && own != name) continue;
+      const std::optional<material::Material> material = materialWith(**schema, i, plan_.seed);
+      if (material) addForms(*material, {}, {{"extension", own}});
+    }
+    return {};
+  }
+
+  void addForms(const material::Material& material, const std::string& file, Json about) {
+    work_.emplace_back([this, material, file, about = std::move(about)](size_t& faults) -> Result<Json> {
+      const Result<Forms> forms = compareForms(material, file, *library_, options_, plan_.seed);
+      if (!forms) return tl::make_unexpected(forms.error());
+      return reported(*forms, about, faults);
+    });
+  }
+
+  static Json reported(const Forms& forms, Json about, size_t& faults) {
+    about["forms"] = forms.compared;
+    Json& findings = about["findings"] = Json::array();
+    faults += forms.faults.size();
+    for (const FormFault& fault : forms.faults) {
+      Json one = {{"fault", "form"}, {"what", fault.output}, {"parameter", fault.parameter}};
+      if (!fault.layer.empty()) one["layer"] = fault.layer;
+      one["at"] = Json(fault.at);
+      one["beside"] = Json(fault.beside);
+      if (std::isfinite(fault.value)) one["value"] = fault.value;
+      Json& sample = one["sample"] = Json::object();
+      for (const auto& [variable, value] : fault.input) sample[variable] = Json(value);
+      findings.push_back(std::move(one));
+    }
+    return about;
+  }
+
+  Result<void> addNodes() {
     for (const std::string_view name : library_->names(lang::DeclKind::Node)) {
       if (Result<void> added = addNode(std::string(name)); !added) return added;
     }
@@ -206,6 +253,7 @@ private:
       if (!subject) return tl::make_unexpected(std::move(subject.error()));
       Json about = {{"file", file}, {"material", material.index}, {"name", material.name}};
       add(std::move(*subject), about);
+      if (!device_ && !plan_.half) addForms(material, file, about);
       // Where frames come of derivatives it is another function.
       subject = materialSubject(file, material, false);
       if (!subject) return tl::make_unexpected(std::move(subject.error()));
