@@ -13,10 +13,10 @@ namespace lacquer::cli {
 CLI::App* addStress(CLI::App& app, StressFlags& flags) {
   CLI::App* verb =
       app.add_subcommand("stress", "attacks nodes and materials with the inputs that break shaders");
-  verb->add_option(
-          "subjects", flags.subjects,
-          "nodes, extensions, .gltf or .glb files, .json cases; `nodes` is every node of the library, `extensions` "
-          "every extension; both when absent")
+  verb->add_option("subjects", flags.subjects,
+                   "nodes, extensions, .gltf or .glb files, .json cases; `nodes` is every node of the "
+                   "library, `extensions` "
+                   "every extension; both when absent")
       ->check(kNotEmpty);
   CLI::Option* samples =
       verb->add_option("--samples", flags.stress.samples, "inputs for each node and each material")

@@ -59,7 +59,7 @@ struct LineDecl {
   };
   Kind kind = Kind::Value;
   bool shared = false;  ///< one node for all shared lines with the same call, put out where it is first used
-  bool light = false;   ///< of a lamp's light: a layer may put a dimmed value in its place for the parts below
+  bool light = false;  ///< of a lamp's light: a layer may put a dimmed value in its place for the parts below
   std::string_view id;
   std::string_view section;
   uint32_t term = 0;  ///< in the part's list

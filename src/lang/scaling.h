@@ -1,11 +1,11 @@
-// How a node's results change when some of its arguments are multiplied by one number: what tells whether light that a
-// layer dims is dimmed in all that is made of it.
+// How a node's results change when some of its arguments are multiplied by one number: what tells whether
+// light that a layer dims is dimmed in all that is made of it.
 #pragma once
 
 #include <cstdint>
 #include <map>
-#include <tuple>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 

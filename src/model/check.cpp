@@ -65,7 +65,8 @@ private:
   Diagnostics wrong_;
 };
 
-/// Whether what is behind an id's point is an output of one of its nodes, or a swizzle. `seen`: ids that were asked.
+/// Whether what is behind an id's point is an output of one of its nodes, or a swizzle. `seen`: ids that were
+/// asked.
 bool Check::fits(uint32_t id, std::string_view path, std::set<uint32_t>& seen) const {
   if (!seen.insert(id).second) return false;
   for (const uint32_t line : model_.ids[id].lines) {

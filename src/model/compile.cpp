@@ -225,13 +225,12 @@ Line Compiler::line(const LineDecl& decl, uint32_t part, uint32_t term) {
   return line;
 }
 
-/// A node behind `out` or `replace` has a line of its own, with a name that no text says: "coat.direct" of the part
-/// coat, `out direct = ...`.
+/// A node behind `out` or `replace` has a line of its own, with a name that no text says: "coat.direct" of
+/// the part coat, `out direct = ...`.
 void Compiler::carry(Line& line, const LineDecl& decl) {
   const bool out = line.kind == LineDecl::Kind::Out;
-  const bool calls =
-      std::any_of(line.alternatives.begin(), line.alternatives.end(),
-                  [](const Alternative& one) { return one.value.kind == Value::Kind::Call; });
+  const bool calls = std::any_of(line.alternatives.begin(), line.alternatives.end(),
+                                 [](const Alternative& one) { return one.value.kind == Value::Kind::Call; });
   if (!calls || (!out && line.kind != LineDecl::Kind::Replace)) return;
   const bool of_part = line.part < model_.parts.size();
   const std::string_view owner = of_part ? model_.parts[line.part].decl->name : overlay_;
@@ -708,8 +707,8 @@ void Compiler::findLive() {
   }
 }
 
-/// Which of the values that a dimmed port is given scale with the light lines whatever the material has. Of the others
-/// it is found for each material.
+/// Which of the values that a dimmed port is given scale with the light lines whatever the material has. Of
+/// the others it is found for each material.
 void Compiler::findDimmed() {
   model_.scales.resize(model_.lines.size());
   Dimming dimming(model_, [](uint32_t) { return true; });

@@ -13,9 +13,7 @@ using lang::Scaling;
 Dimming::Dimming(const Model& model, std::function<bool(uint32_t part)> counts)
     : model_(model), counts_(std::move(counts)) {}
 
-bool Dimming::there(const Line& line) const {
-  return line.part >= model_.parts.size() || counts_(line.part);
-}
+bool Dimming::there(const Line& line) const { return line.part >= model_.parts.size() || counts_(line.part); }
 
 bool Dimming::scales(uint32_t index) {
   const Scaling all = line(index, {});

@@ -1,5 +1,6 @@
-// Whether what a part makes of a lamp's light is dimmed when that light is: the contract of parts that lie under a layer
-// which dims the light itself (`replace base.light with ...`) and not what comes back from below.
+// Whether what a part makes of a lamp's light is dimmed when that light is: the contract of parts that lie
+// under a layer which dims the light itself (`replace base.light with ...`) and not what comes back from
+// below.
 #pragma once
 
 #include <functional>

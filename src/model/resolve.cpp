@@ -296,8 +296,8 @@ Found Resolver::replacement(const Value& value, uint32_t part) {
   return {};
 }
 
-/// The light that reaches a part, where a layer above it lets less than all of it through: what the nearest one says,
-/// which itself sees what those above it let through.
+/// The light that reaches a part, where a layer above it lets less than all of it through: what the nearest
+/// one says, which itself sees what those above it let through.
 Found Resolver::dimmed(uint32_t id, uint32_t part) {
   for (const uint32_t index : model_.ids[id].replaced) {
     const Line& line = model_.lines[index];
@@ -310,7 +310,8 @@ Found Resolver::dimmed(uint32_t id, uint32_t part) {
   return {};
 }
 
-/// The first of what the parts below put out for a port that does not scale with the light that may be dimmed.
+/// The first of what the parts below put out for a port that does not scale with the light that may be
+/// dimmed.
 const Line* Resolver::undimmed(uint32_t out, uint32_t part) {
   for (const uint32_t index : model_.outs[out].lines) {
     const Line& line = model_.lines[index];
@@ -330,8 +331,9 @@ void Resolver::checkDimmed(const Line& line) {
     if (other == nullptr) continue;
     const std::string_view port = model_.outs[out].name;
     wrong(line.part, "light-not-dimmed",
-          fmt::format("'{}' is dimmed for the parts below, but what '{}' puts out as '{}' does not scale with it",
-                      model_.ids[line.target.index].name, model_.parts[other->part].decl->name, port),
+          fmt::format(
+              "'{}' is dimmed for the parts below, but what '{}' puts out as '{}' does not scale with it",
+              model_.ids[line.target.index].name, model_.parts[other->part].decl->name, port),
           fmt::format("replace it only when dimmable({}), and dim 'below.{}' else", port, port));
   }
 }
@@ -472,7 +474,8 @@ bool Resolver::uniform(const Found& value) {
   signed char& known = uniform_[value.index];
   if (known < 0) {
     const std::vector<Found>& inputs = nodes_[value.index].inputs;
-    known = std::all_of(inputs.begin(), inputs.end(), [&](const Found& input) { return uniform(input); }) ? 1 : 0;
+    known =
+        std::all_of(inputs.begin(), inputs.end(), [&](const Found& input) { return uniform(input); }) ? 1 : 0;
   }
   return known != 0;
 }

@@ -128,14 +128,14 @@ private:
   std::vector<Node> nodes_;
   std::vector<bool> taken_;  ///< of the lines
   std::vector<signed char>
-      absent_;                      ///< of what the template gives: -1 unknown, else whether it cannot be had
+      absent_;  ///< of what the template gives: -1 unknown, else whether it cannot be had
   enum class Life : uint8_t { Unknown, Asked, Dead, Alive };
   std::vector<Life> terms_;
   std::vector<signed char> uniform_;  ///< of the ids' nodes: -1 unknown, else whether it is
   std::vector<State> line_states_;    ///< of what stands behind `out` and `replace`
   std::vector<Found> line_values_;
   int depth_ = 0;
-  std::optional<Dimming> dimming_;    ///< of this material, where it is asked
+  std::optional<Dimming> dimming_;       ///< of this material, where it is asked
   std::vector<std::string_view> unmet_;  ///< of a term: why a requirement is not met
   std::vector<uint32_t> open_;
 };

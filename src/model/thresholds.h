@@ -1,5 +1,5 @@
-// Where a material's values decide of its form: the numbers that conditions of the model compare properties with. The colour
-// must not notice on which side of one it is.
+// Where a material's values decide of its form: the numbers that conditions of the model compare properties
+// with. The colour must not notice on which side of one it is.
 #pragma once
 
 #include <vector>

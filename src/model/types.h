@@ -33,7 +33,8 @@ private:
   const Model& model_;
   std::vector<const lang::TemplateDecl*> templates_;
   std::map<std::string_view, ir::Type> ports_;
-  /// What was found of an id's path. Lines that need each other are asked while they are looked at: nothing is known then.
+  /// What was found of an id's path. Lines that need each other are asked while they are looked at: nothing
+  /// is known then.
   mutable std::map<std::pair<uint32_t, std::string_view>, std::optional<ir::Type>> known_;
 };
 

@@ -134,7 +134,8 @@ private:
     return addExtensions({});
   }
 
-  /// Materials that have one extension, at the values where their shaders have other forms. Without a name all.
+  /// Materials that have one extension, at the values where their shaders have other forms. Without a name
+  /// all.
   Result<void> addExtensions(const std::string& name) {
     // What is compared are doubles: devices and half precision have nothing to say of it.
     if (device_ || plan_.half) return {};

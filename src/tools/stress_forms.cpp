@@ -19,8 +19,9 @@ using material::Schema;
 using model::Threshold;
 using stress::Subject;
 
-/// How far beside a threshold a number is: near, and nearer. A lobe's peak makes slopes of 10^10, so that only what does
-/// not shrink with the distance is a jump. Evaluations are in double, whose rounding is far below.
+/// How far beside a threshold a number is: near, and nearer. A lobe's peak makes slopes of 10^10, so that
+/// only what does not shrink with the distance is a jump. Evaluations are in double, whose rounding is far
+/// below.
 constexpr double kNear = 1e-9, kNearer = 1e-12;
 /// A slope shrinks by 1000, the root of the distance by 32.
 constexpr double kShrinks = 0.1;
@@ -143,7 +144,8 @@ public:
         thresholds_(model::thresholds(model)) {}
 
   Result<Forms> run(const Material& material) {
-    if (Result<void> own = atThresholds(material, {}); !own) return tl::make_unexpected(std::move(own.error()));
+    if (Result<void> own = atThresholds(material, {}); !own)
+      return tl::make_unexpected(std::move(own.error()));
     for (uint16_t layer = 1; layer < schema_.extensions.size(); ++layer) {
       if (material.has(layer) || !model::isLayer(model_, layer)) continue;
       if (Result<void> laid = under(material, layer); !laid)
@@ -153,8 +155,8 @@ public:
   }
 
 private:
-  /// The material's own thresholds and the layer's, the layer's other numbers drawn; then the layer's again, with its
-  /// others at theirs: the plainest form that it has.
+  /// The material's own thresholds and the layer's, the layer's other numbers drawn; then the layer's again,
+  /// with its others at theirs: the plainest form that it has.
   Result<void> under(const Material& material, uint16_t layer) {
     std::vector<uint16_t> extensions = material.extensions;
     if (!addExtension(schema_, layer, extensions)) return {};
@@ -227,7 +229,8 @@ private:
   }
 
   /// The same numbers for all that both have.
-  void draw(const Subject& first, const Subject& second, std::vector<double>& a, std::vector<double>& b) const {
+  void draw(const Subject& first, const Subject& second, std::vector<double>& a,
+            std::vector<double>& b) const {
     const size_t wide = first.space.width();
     const size_t other = second.space.width();
     for (size_t i = 0; i < kSamples; ++i) {
@@ -261,7 +264,8 @@ private:
           subject.module().textures.begin(), subject.module().textures.end(),
           [&](const ir::TextureSlot& slot) { return slot.environment && slot.name == variable.name; });
       if (!environment && variable.name != "light") continue;
-      const auto from = samples.begin() + static_cast<ptrdiff_t>(sample * subject.space.width() + variable.first);
+      const auto from =
+          samples.begin() + static_cast<ptrdiff_t>(sample * subject.space.width() + variable.first);
       most = std::max(most, *std::max_element(from, from + variable.components));
     }
     return most;
@@ -274,9 +278,10 @@ private:
     FormFault fault;
     for (size_t r = 0; r < first.roots.size(); ++r) {
       const stress::Root& root = first.roots[r];
-      const auto same = std::find_if(second.roots.begin(), second.roots.end(), [&](const stress::Root& other) {
-        return other.kind == stress::Root::Kind::Result && other.name == root.name;
-      });
+      const auto same =
+          std::find_if(second.roots.begin(), second.roots.end(), [&](const stress::Root& other) {
+            return other.kind == stress::Root::Kind::Result && other.name == root.name;
+          });
       if (root.kind != stress::Root::Kind::Result || same == second.roots.end()) continue;
       const std::vector<double>& other = y[static_cast<size_t>(same - second.roots.begin())];
       for (size_t i = 0; i < x[r].size(); ++i) {
@@ -288,7 +293,8 @@ private:
         fault.output = root.name;
         fault.input.clear();
         for (const stress::Variable& variable : second.space.variables()) {
-          const auto from = b.begin() + static_cast<ptrdiff_t>(sample * second.space.width() + variable.first);
+          const auto from =
+              b.begin() + static_cast<ptrdiff_t>(sample * second.space.width() + variable.first);
           fault.input.emplace_back(variable.name, std::vector<double>(from, from + variable.components));
         }
       }

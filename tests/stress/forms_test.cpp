@@ -1,5 +1,5 @@
-// Forms: a colour at a value that leaves terms out, or takes cheaper ones, and a hair beside it, with every extension of
-// the library and of forms/ laid over every other.
+// Forms: a colour at a value that leaves terms out, or takes cheaper ones, and a hair beside it, with every
+// extension of the library and of forms/ laid over every other.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ Options optionsWith(const std::string& nodes, const std::string& profile) {
 }
 
 /// What was found with every extension, or with the one of that name.
-std::vector<FormFault> faultsOf(const Options& options, std::string_view only, double allowed, size_t& compared) {
+std::vector<FormFault> faultsOf(const Options& options, std::string_view only, double allowed,
+                                size_t& compared) {
   const auto library = libraryFor(options);
   if (!library) throw std::runtime_error(format(library.error().front()));
   const Result<const material::Schema*> found = (*library)->models.schema();
