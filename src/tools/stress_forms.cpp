@@ -8,6 +8,7 @@
 #include "model/thresholds.h"
 #include "shader/messages.h"
 #include "stress/subject.h"
+#include "stress/vectors.h"
 #include "tools/eval_material.h"
 
 namespace lacquer {
@@ -95,8 +96,14 @@ void drawNumbers(const Schema& schema, const std::vector<uint16_t>& extensions, 
 }
 
 /// Puts a value where a threshold is; false where the material has no such place.
-bool setAt(const Threshold& threshold, const ir::Components& value, Material& material) {
+bool setAt(const Schema& schema, const Threshold& threshold, const ir::Components& value,
+           Material& material) {
   if (threshold.member < 0) {
+    // It alone has its say: of two properties that mean the same the other would count.
+    const std::string_view role = schema.properties[threshold.property].decl->role;
+    std::erase_if(material.numbers, [&](const Material::Number& number) {
+      return schema.properties[number.property].decl->role == role;
+    });
     setNumber(material, threshold.property, value);
     return true;
   }
@@ -169,7 +176,7 @@ private:
     if (Result<void> drawn = atThresholds(laid, name); !drawn) return drawn;
     for (const Threshold& threshold : thresholds_) {
       const bool of_layer = schema_.properties[threshold.property].extension == layer;
-      if (of_layer && !threshold.whole_part) setAt(threshold, threshold.at, laid);
+      if (of_layer && !threshold.whole_part) setAt(schema_, threshold, threshold.at, laid);
     }
     return atThresholds(laid, name);
   }
@@ -181,7 +188,8 @@ private:
       const std::optional<ir::Components> near = beside(schema_, threshold, kNear);
       Material at = material;
       Material off = material;
-      if (!near || !setAt(threshold, threshold.at, at) || !setAt(threshold, *near, off)) continue;
+      if (!near || !setAt(schema_, threshold, threshold.at, at) || !setAt(schema_, threshold, *near, off))
+        continue;
       if (Result<void> compared = compare(threshold, at, off, *near, layer); !compared) return compared;
     }
     return {};
@@ -210,7 +218,11 @@ private:
     std::vector<double> a(kSamples * (*first)->space.width());
     std::vector<double> b(kSamples * (*second)->space.width());
     draw(**first, **second, a, b);
-    place(**first, variable, threshold.at, a);
+    for (const auto& [subject, samples] : {std::pair{first->get(), &a}, std::pair{second->get(), &b}}) {
+      placeNumbers(*subject, *samples);
+      placeFrames(*subject, *samples);
+      placeTexels(*subject, *samples);
+    }
     place(**second, variable, near, b);
     const FormFault farther = worst(**first, **second, a, b);
     if (farther.value <= allowed_) return {};
@@ -244,6 +256,49 @@ private:
         if (same == nullptr || same->components != variable.components) continue;
         std::copy_n(from.begin() + static_cast<ptrdiff_t>(same->first), variable.components,
                     to.begin() + static_cast<ptrdiff_t>(variable.first));
+      }
+    }
+  }
+
+  /// The material's own numbers. The ends of their ranges, which are drawn else, make slopes of any
+  /// steepness: a medium through which light comes 10^-30 m far.
+  static void placeNumbers(const Subject& subject, std::vector<double>& samples) {
+    for (const ir::Parameter& parameter : subject.module().parameters)
+      place(subject, parameter.name, parameter.value, samples);
+  }
+
+  /// Normals and tangents of length 1, at right angles: a frame that is none makes steps as such texels do.
+  static void placeFrames(const Subject& subject, std::vector<double>& samples) {
+    for (const char* length : {"n_length", "t_length", "interpolated"})
+      place(subject, length, ir::Components{1}, samples);
+    const stress::Variable* n = subject.space.find("n");
+    const stress::Variable* t = subject.space.find("t");
+    if (n == nullptr || t == nullptr) return;
+    for (size_t i = 0; i < kSamples; ++i) {
+      const std::span<double> sample =
+          std::span(samples).subspan(i * subject.space.width(), subject.space.width());
+      const std::span<const double> normal = sample.subspan(n->first, 3);
+      size_t axis = 0;
+      for (const size_t c : {size_t{1}, size_t{2}}) axis = std::abs(normal[c]) < std::abs(normal[axis]) ? c : axis;
+      // Across the normal and that axis.
+      stress::Vec3 across{};
+      across[(axis + 1) % 3] = -normal[(axis + 2) % 3];
+      across[(axis + 2) % 3] = normal[(axis + 1) % 3];
+      std::ranges::copy(stress::unit(across), sample.begin() + static_cast<ptrdiff_t>(t->first));
+    }
+  }
+
+  /// Texels near the middle, and for a normal map near the normal: one that decodes to no direction, or to
+  /// one along the surface, makes steps of its own, which jumps are looked for by.
+  void placeTexels(const Subject& subject, std::vector<double>& samples) const {
+    for (const ir::TextureSlot& slot : subject.module().textures) {
+      const stress::Variable* variable = subject.space.find(slot.name);
+      if (slot.environment || variable == nullptr) continue;
+      for (size_t i = 0; i < kSamples; ++i) {
+        stress::Random random(stress::mixed(stress::mixed(seed_, slot.name), i));
+        const std::span<double> texel =
+            std::span(samples).subspan(i * subject.space.width() + variable->first, variable->components);
+        for (size_t c = 0; c < texel.size(); ++c) texel[c] = (c == 2 ? 0.8 : 0.55) + 0.2 * random.unit();
       }
     }
   }
