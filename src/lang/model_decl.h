@@ -83,8 +83,8 @@ struct TermDecl {
 struct PartDecl {
   std::string_view name;
   std::string doc, source;
-  std::vector<std::string_view> of;  ///< one of these extensions must be there; empty for any material
-  std::string_view over;             ///< the part above which it lies, where the layers do not list it
+  std::vector<std::string_view> of;    ///< one of these extensions must be there; empty for any material
+  std::vector<std::string_view> over;  ///< the parts above which it lies, where the layers do not list it
   std::vector<TermDecl> terms;
   std::vector<LineDecl> lines;
   Origin origin;

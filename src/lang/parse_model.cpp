@@ -197,8 +197,7 @@ PartDecl Parser::part() {
   whole.name = decl.name;
   whole.span = decl.span;
   if (accept("of") && !names(decl.of, "the name of an extension")) return decl;
-  Span ignored;
-  if (accept("over") && !name(decl.over, ignored, "the name of the part below")) return decl;
+  if (accept("over") && !names(decl.over, "the name of a part below")) return decl;
   if (!termConditions(whole)) return decl;
   decl.terms.push_back(std::move(whole));
   std::string_view section;

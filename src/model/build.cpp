@@ -361,7 +361,9 @@ Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
   chooseAttributes(template_decl, attributes, options, graph).report(material.index, warnings);
   Resolver resolver(model, template_decl, material, attributes, options, warnings);
   Writer(model, resolver, material, attributes, options, graph, warnings).run(template_decl);
+  const Diagnostics unordered = resolver.unordered();
   if (!resolver.wrong().empty()) return tl::make_unexpected(resolver.wrong());
+  warnings.insert(warnings.end(), unordered.begin(), unordered.end());
   return graph;
 }
 

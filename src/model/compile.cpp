@@ -14,6 +14,7 @@
 #include "model/dimming.h"
 #include "model/model.h"
 #include "model/names.h"
+#include "model/order.h"
 
 namespace lacquer::model {
 
@@ -35,7 +36,6 @@ public:
 
 private:
   void collectParts();
-  void insertOver(std::vector<const lang::PartDecl*>& parts);
   void declare(const std::vector<LineDecl>& lines);
   void part(uint32_t index);
   void lines(uint32_t part, uint32_t first_term);
@@ -117,8 +117,7 @@ void Compiler::collectParts() {
       }
     }
   }
-  insertOver(parts);
-  for (const lang::PartDecl* decl : parts) {
+  for (const lang::PartDecl* decl : withInserted(library_, std::move(parts), wrong_)) {
     Part part;
     part.decl = decl;
     source_ = {decl->origin.file, decl->text};
@@ -132,43 +131,6 @@ void Compiler::collectParts() {
     }
     model_.parts.push_back(std::move(part));
     declare(decl->lines);
-  }
-}
-
-/// Parts that the order does not list lie right above the part that they name.
-void Compiler::insertOver(std::vector<const lang::PartDecl*>& parts) {
-  std::vector<const lang::PartDecl*> left;
-  for (const std::string_view name : library_.names(lang::DeclKind::Part)) {
-    const Result<const lang::PartDecl*> part = library_.part(name);
-    if (!part) {
-      wrong_.insert(wrong_.end(), part.error().begin(), part.error().end());
-    } else if (std::find(parts.begin(), parts.end(), *part) == parts.end()) {
-      left.push_back(*part);
-    }
-  }
-  for (bool found = true; found && !left.empty();) {
-    found = false;
-    for (auto it = left.begin(); it != left.end();) {
-      const auto below = std::find_if(parts.begin(), parts.end(),
-                                      [&](const lang::PartDecl* part) { return part->name == (*it)->over; });
-      if (below == parts.end()) {
-        ++it;
-        continue;
-      }
-      // Behind those that lie over the same part already.
-      auto at = below + 1;
-      while (at != parts.end() && (*at)->over == (*it)->over && !(*it)->over.empty()) ++at;
-      parts.insert(at, *it);
-      it = left.erase(it);
-      found = true;
-    }
-  }
-  for (const lang::PartDecl* part : left) {
-    error({part->origin.file, part->text}, part->span, "unknown-part",
-          part->over.empty() ? fmt::format("the part '{}' has no place among the layers", part->name)
-                             : fmt::format("there is no part '{}' for it to lie over", part->over),
-          part->over.empty() ? "say `over PART` behind its name"
-                             : lang::didYouMean(part->over, library_.names(lang::DeclKind::Part)));
   }
 }
 
@@ -752,6 +714,7 @@ Result<Model> Compiler::run(std::string_view profile, const std::set<std::string
   findDimmed();
   findLive();
   order();
+  model_.unordered = findUnordered(model_, library_);
   return std::move(model_);
 }
 

@@ -136,6 +136,8 @@ struct Model {
   const material::Schema* schema = nullptr;
   const lang::ProfileDecl* profile = nullptr;
   std::vector<Part> parts;  ///< from the inside outwards
+  /// Pairs of them, the lower one first, that nothing but their names puts in this order (model/order.h).
+  std::vector<std::pair<uint32_t, uint32_t>> unordered;
   std::vector<Term> terms;
   std::vector<Line> lines;
   std::vector<Id> ids;

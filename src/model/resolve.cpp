@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model/names.h"
+#include "model/order.h"
 
 namespace lacquer::model {
 
@@ -752,6 +753,19 @@ std::vector<graph::Skipped> Resolver::skipped() {
     out.push_back({std::string(term.name), std::move(reason)});
   }
   return out;
+}
+
+Diagnostics Resolver::unordered() {
+  Diagnostics warnings;
+  for (const auto& [lower, upper] : model_.unordered) {
+    const Part& below = model_.parts[lower];
+    const Part& above = model_.parts[upper];
+    if (!has(below) || !has(above) || !alive(below.term) || !alive(above.term)) continue;
+    warnings.push_back(unorderedParts(*below.decl, *above.decl));
+    warnings.back().place = {{}, 0, 0, fmt::format("/materials/{}", material_.index)};
+    warnings.back().excerpt.clear();
+  }
+  return warnings;
 }
 
 }  // namespace lacquer::model

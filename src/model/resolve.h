@@ -72,6 +72,8 @@ public:
   /// Looks at every term of the parts that the material has; those that it could have and has not, with the
   /// reasons.
   std::vector<graph::Skipped> skipped();
+  /// The warnings about parts that are both there and whose order nothing says (model/order.h).
+  Diagnostics unordered();
   bool has(const Part& part) const;
   bool alive(uint32_t term);
   /// Whether a line of the part, or the last line of the term, comes to something: what it is for.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "model/order.h"
 #include "shader/options.h"
 #include "support/file.h"
 
@@ -26,6 +27,27 @@ Strings liveTerms(const Options& options) {
   if (!model) return {};
   const std::vector<std::string_view> terms = (*model)->liveTerms();
   return {terms.begin(), terms.end()};
+}
+
+Diagnostics Language::check() const {
+  Diagnostics all = checkAll();
+  if (hasError(all)) return all;
+  const auto profiles = model::profiles(*this);
+  if (!profiles) return profiles.error();
+  const auto add = [&](const Diagnostics& found) {
+    for (const Diagnostic& one : found) {
+      if (std::find(all.begin(), all.end(), one) == all.end()) addBounded(all, one);
+    }
+  };
+  const auto see = [&](std::string_view profile, const std::set<std::string, std::less<>>& lods) {
+    const Result<const model::Model*> model = models.of(profile, lods);
+    if (!model) return add(model.error());
+    for (const auto& [lower, upper] : (*model)->unordered)
+      add({model::unorderedParts(*(*model)->parts[lower].decl, *(*model)->parts[upper].decl)});
+  };
+  for (const lang::ProfileDecl* profile : *profiles) see(profile->name, {});
+  for (const std::string_view lod : names(lang::DeclKind::Lod)) see((*profiles)[0]->name, {std::string(lod)});
+  return all;
 }
 
 Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {

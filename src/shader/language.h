@@ -17,6 +17,10 @@ struct Language : lang::Library {
   Language(const Language&) = delete;
   Language& operator=(const Language&) = delete;
 
+  /// Everything that can be wrong without a material: declarations, and parts under each profile and with
+  /// each lod, whose names and types meet there. Errors and warnings, each once.
+  Diagnostics check() const;
+
   model::Models models;
 };
 

@@ -108,10 +108,9 @@ std::string nodesJson(const Options& options, Messages& messages) {
     report(library.error(), {}, messages);
     return {};
   }
-  if (const Diagnostics wrong = (*library)->checkAll(); !wrong.empty()) {
-    report(wrong, {}, messages);
-    return {};
-  }
+  const Diagnostics found = (*library)->check();
+  report(found, {}, messages);
+  if (hasError(found)) return {};
   const lang::Library& all = **library;
   const auto documented = [](const auto& decl) { return Json{{"name", decl.name}, {"doc", decl.doc}}; };
   Json json = {

@@ -84,10 +84,9 @@ std::string proveNodesJson(const Options& options, Messages& messages, Precision
     report(library.error(), {}, messages);
     return {};
   }
-  if (const Diagnostics wrong = (*library)->checkAll(); !wrong.empty()) {
-    report(wrong, {}, messages);
-    return {};
-  }
+  const Diagnostics found = (*library)->check();
+  report(found, {}, messages);
+  if (hasError(found)) return {};
   Json nodes = Json::array();
   for (const NodeProof& proof : proveNodes(**library, arithmeticOf(precision))) {
     Json row = {{"name", proof.node}};

@@ -69,8 +69,9 @@ public:
     auto library = libraryFor(options_);
     if (!library) return tl::make_unexpected(std::move(library.error()));
     library_ = std::move(*library);
-    if (Diagnostics wrong = library_->checkAll(); lacquer::hasError(wrong))
-      return tl::make_unexpected(std::move(wrong));
+    Diagnostics found = library_->check();
+    if (lacquer::hasError(found)) return tl::make_unexpected(std::move(found));
+    report(found, {}, messages_);
     if (Result<void> added = addAll(names); !added) return tl::make_unexpected(std::move(added.error()));
     if (total_ > 0) plan_.samples = (total_ + work_.size() - 1) / std::max<size_t>(work_.size(), 1);
     Json subjects = Json::array();

@@ -306,6 +306,27 @@ TEST(Usage, stressSaysWhatItFinds) {
   EXPECT_EQ(place.run({"stress", "worse"}).status, 1);
 }
 
+TEST(Usage, allThatLooksAtNodesLooksAtParts) {
+  const Workplace place;
+  place.write("n/a.node",
+              "/// P.\npart example over base {\nsurface:\n    out emission = vec2(1);\n"
+              "    out direct = missing.name;\n}\n");
+  place.write("m/a.node",
+              "/// P.\npart example_a over base {\nsurface:\n    out emission = vec3(1);\n}\n"
+              "/// P.\npart example_b over base {\nsurface:\n    out emission = vec3(0);\n}\n");
+  for (const Words& verb : {Words{"prove"}, Words{"nodes"}, Words{"stress", "schlick", "--samples", "100"}}) {
+    Words words = verb;
+    words.insert(words.end(), {"--nodes", "n"});
+    const Outcome wrong = place.run(words);
+    EXPECT_EQ(wrong.status, 1) << wrong.all();
+    EXPECT_NE(wrong.err.find("n/a.node:5:"), std::string::npos) << wrong.all();
+    words.back() = "m";
+    const Outcome unordered = place.run(words);
+    EXPECT_EQ(unordered.status, 0) << unordered.all();
+    EXPECT_NE(unordered.err.find("[unordered-parts]"), std::string::npos) << unordered.all();
+  }
+}
+
 TEST(Usage, misspeltTemplatesAndTermsAreErrors) {
   const Workplace place;
   const std::string coat = example("coat.gltf");
