@@ -228,100 +228,32 @@ Range Intervals::dot(ValueId a, ValueId b) const {
 
 Range Intervals::component(ValueId id, int c) const {
   const ir::Value& value = dag_[id];
+  const RangeMath& m = math_;
+  const auto x = [&](size_t k) -> const Range& { return at(value.args[k], c); };
+  const auto truth = [] { return Range{0, 1, false}; };
+  const auto truncated = [](const Range& a) { return Range{std::trunc(a.lo), std::trunc(a.hi), a.nan}; };
   switch (value.op) {
-    case Op::Constant: return math_.constant(dag_.constantOf(id)[static_cast<size_t>(c)]);
-    case Op::Dot: return dot(value.args[0], value.args[1]);
-    case Op::Length: return math_.sqrt(dot(value.args[0], value.args[0]));
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::Equal:
-    case Op::And:
-    case Op::Or:
-    case Op::Not: return comparison(id);
-    case Op::Select: return select(id, c);
-    case Op::Texture:
-    case Op::TextureLod: return at(value.args[0], 0);
-    case Op::TextureCompare:
-    case Op::TextureCompareLod: return {0, 1, false};
-    case Op::DFdx:
-    case Op::DFdy: return derivative(id, c);
-    case Op::Interpolate: return interpolated(at(value.args[0], c));
-    case Op::SumOverLights: return lights(id, c);
-    case Op::Element: {
-      const auto [block, field] = ir::ListField::of(value);
-      return open(module_.blocks[block].fields[field].range);
-    }
-    case Op::ToInt: {
-      const Range& a = at(value.args[0], 0);
-      return {std::trunc(a.lo), std::trunc(a.hi), a.nan};
-    }
-    case Op::Input:
-    case Op::MatMul:
-    case Op::Cross:
-    case Op::Normalize:
-    case Op::Construct:
-    case Op::Swizzle: return values_[facets_[id].place][static_cast<size_t>(c)];
-    case Op::Neg:
-    case Op::Abs:
-    case Op::Sign:
-    case Op::Floor:
-    case Op::Fract:
-    case Op::Sqrt:
-    case Op::InverseSqrt:
-    case Op::Exp2:
-    case Op::Log2:
-    case Op::Exp:
-    case Op::Log:
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Acos:
-    case Op::Add:
-    case Op::Sub:
-    case Op::Mul:
-    case Op::Div:
-    case Op::Min:
-    case Op::Max:
-    case Op::Pow:
-    case Op::Atan2:
-    case Op::Mix:
-    case Op::Clamp: break;
+#define FACTS(e, kind, domain, scaling, linear, range, slope, vulkan, half, error, operations, work) \
+  case Op::e:                                                                                        \
+    return range;
+#include "ir/facts.def"
+#undef FACTS
   }
-  return arithmetic(id, c);
+  return m.whole(true);
 }
 
-Range Intervals::arithmetic(ValueId id, int c) const {
-  const ir::Value& value = dag_[id];
-  const RangeMath& m = math_;
-  const Range& a = at(value.args[0], c);
-  const Range& b = value.count > 1 ? at(value.args[1], c) : a;
-  const Range& t = value.count > 2 ? at(value.args[2], c) : a;
-  switch (value.op) {
-    case Op::Neg: return m.neg(a);
-    case Op::Abs: return m.abs(a);
-    case Op::Sign: return m.sign(a);
-    case Op::Floor: return m.floor(a);
-    case Op::Fract: return m.fract(a);
-    case Op::Sqrt: return m.sqrt(a);
-    case Op::InverseSqrt: return m.inverseSqrt(a);
-    case Op::Exp2: return m.exp2(a);
-    case Op::Log2: return m.log2(a);
-    case Op::Exp: return m.exp(a);
-    case Op::Log: return m.log(a);
-    case Op::Sin:
-    case Op::Cos: return m.wave(a);
-    case Op::Acos: return m.acos(a);
-    case Op::Add: return m.add(a, b);
-    case Op::Sub: return m.sub(a, b);
-    case Op::Mul: return product(id, c);
-    case Op::Div: return m.div(a, b);
-    case Op::Min: return m.min(a, b);
-    case Op::Max: return m.max(a, b);
-    case Op::Pow: return m.pow(a, b);
-    case Op::Atan2: return m.atan2(a, b);
-    case Op::Clamp: return m.clamp(a, b, t);
-    case Op::Mix: return m.mix(a, b, t);
-    default: return m.whole(true);
-  }
+Range Intervals::literal(ValueId id, int c) const {
+  return math_.constant(dag_.constantOf(id)[static_cast<size_t>(c)]);
+}
+
+/// Of what evaluate() has said already, for all components at once.
+Range Intervals::stored(ValueId id, int c) const {
+  return values_[facets_[id].place][static_cast<size_t>(c)];
+}
+
+Range Intervals::element(const ir::Value& value) const {
+  const auto [block, field] = ir::ListField::of(value);
+  return open(module_.blocks[block].fields[field].range);
 }
 
 Range Intervals::product(ValueId id, int c) const {
@@ -351,15 +283,12 @@ Range Intervals::comparison(ValueId id) const {
   const auto known = [&](bool yes, bool no) {
     return Range{yes && !nan ? 1.0 : 0.0, no && !nan ? 0.0 : 1.0, false};
   };
-  switch (value.op) {
-    case Op::Less: return known(a.hi < b.lo, a.lo >= b.hi);
-    case Op::LessEqual: return known(a.hi <= b.lo, a.lo > b.hi);
-    case Op::Equal: return known(a.lo == a.hi && b.lo == b.hi && a.lo == b.lo, a.hi < b.lo || b.hi < a.lo);
-    case Op::And: return {std::min(a.lo, b.lo), std::min(a.hi, b.hi), false};
-    case Op::Or: return {std::max(a.lo, b.lo), std::max(a.hi, b.hi), false};
-    case Op::Not: return {1 - a.hi, 1 - a.lo, false};
-    default: return {0, 1, false};
-  }
+  if (value.op == Op::Less) return known(a.hi < b.lo, a.lo >= b.hi);
+  if (value.op == Op::LessEqual) return known(a.hi <= b.lo, a.lo > b.hi);
+  if (value.op == Op::And) return {std::min(a.lo, b.lo), std::min(a.hi, b.hi), false};
+  if (value.op == Op::Or) return {std::max(a.lo, b.lo), std::max(a.hi, b.hi), false};
+  if (value.op == Op::Not) return {1 - a.hi, 1 - a.lo, false};
+  return known(a.lo == a.hi && b.lo == b.hi && a.lo == b.lo, a.hi < b.lo || b.hi < a.lo);  // equal
 }
 
 Range Intervals::select(ValueId id, int c) const {

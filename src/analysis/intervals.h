@@ -76,7 +76,9 @@ private:
   void vectorOp(ir::ValueId id);
   void matMul(ir::ValueId id);
   Range component(ir::ValueId id, int c) const;
-  Range arithmetic(ir::ValueId id, int c) const;
+  Range literal(ir::ValueId id, int c) const;
+  Range stored(ir::ValueId id, int c) const;
+  Range element(const ir::Value& value) const;
   Range comparison(ir::ValueId id) const;
   Range select(ir::ValueId id, int c) const;
   Range derivative(ir::ValueId id, int c) const;

@@ -2,31 +2,15 @@
 
 #include <algorithm>
 
+#include "ir/facts.h"
+
 namespace lacquer::analysis {
 
 namespace {
 
+using ir::Domain;
 using ir::Op;
 using ir::ValueId;
-
-/// How an operation may fail.
-enum class Domain : uint8_t { None, NonNegative, Positive, NonZero, Unit, Power, Direction, Angle, Whole };
-
-Domain domainOf(Op op) {
-  switch (op) {
-    case Op::Sqrt: return Domain::NonNegative;
-    case Op::InverseSqrt:
-    case Op::Log:
-    case Op::Log2: return Domain::Positive;
-    case Op::Div: return Domain::NonZero;
-    case Op::Acos: return Domain::Unit;
-    case Op::Pow: return Domain::Power;
-    case Op::Normalize: return Domain::Direction;
-    case Op::Atan2: return Domain::Angle;
-    case Op::ToInt: return Domain::Whole;
-    default: return Domain::None;
-  }
-}
 
 class Prover {
 public:
@@ -35,8 +19,8 @@ public:
   bool proof(ValueId id, Proof& out) const {
     const ir::Value& value = dag_[id];
     const ValueId a = value.args[0];
-    switch (domainOf(value.op)) {
-      case Domain::None: return false;
+    switch (ir::facts(value.op).domain) {
+      case Domain::Any: return false;
       case Domain::NonNegative:
         out = each(id, a, ">= 0", [](const Range& x) { return x.lo >= 0; });
         return true;

@@ -7,11 +7,13 @@
 
 #include "analysis/error_math.h"
 #include "analysis/intervals.h"
+#include "ir/facts.h"
 
 namespace lacquer::analysis {
 
 namespace {
 
+using ir::Linear;
 using ir::Op;
 using ir::ValueId;
 
@@ -21,25 +23,6 @@ int width(const ir::Value& value) { return std::min(ir::componentCount(value.typ
 
 /// What moves numbers and changes none but their signs.
 bool moves(Op op) { return op == Op::Swizzle || op == Op::Construct || op == Op::Neg || op == Op::Abs; }
-
-/// Operations whose rules relaxedBound() has at half precision.
-bool relaxable(Op op) {
-  switch (op) {
-    case Op::Add:
-    case Op::Sub:
-    case Op::Mul:
-    case Op::Div:
-    case Op::Min:
-    case Op::Max:
-    case Op::Clamp:
-    case Op::Select:
-    case Op::Sqrt:
-    case Op::InverseSqrt:
-    case Op::Exp2:
-    case Op::Dot: return true;
-    default: return false;
-  }
-}
 
 bool fastVaries(const ir::Value& value) {
   return ir::isFloating(value.type) && (value.rate == ir::Rate::Fragment || value.rate == ir::Rate::Light);
@@ -116,20 +99,16 @@ private:
 
   bool linear(const ir::Value& value) const {
     const auto of = [&](size_t k) { return below_[value.args[k]]; };
-    switch (value.op) {
-      case Op::Add:
-      case Op::Sub:
-      case Op::Neg:
-      case Op::Swizzle:
-      case Op::Construct: return true;
-      case Op::SumOverLights: return value.count == 1;
-      case Op::Mul:
-      case Op::Dot: return (of(0) & of(1)) == 0;
-      case Op::Div: return of(1) == 0;
-      case Op::Select: return of(0) == 0;
-      case Op::Mix: return of(2) == 0;
-      default: return false;
+    switch (ir::facts(value.op).linear) {
+      case Linear::No: return false;
+      case Linear::All: return true;
+      case Linear::Product: return (of(0) & of(1)) == 0;
+      case Linear::Dividend: return of(1) == 0;
+      case Linear::Choice: return of(0) == 0;
+      case Linear::Ends: return of(2) == 0;
+      case Linear::Sum: return value.count == 1;
     }
+    return false;
   }
 
   void follow() {
@@ -178,7 +157,7 @@ public:
   std::vector<ValueId> candidates() const {
     std::vector<ValueId> ids;
     for (const ValueId id : live_) {
-      if (relaxable(dag_[id].op) && fastVaries(dag_[id]) && !lights_.below(id)) ids.push_back(id);
+      if (ir::facts(dag_[id].op).half.ever() && fastVaries(dag_[id]) && !lights_.below(id)) ids.push_back(id);
     }
     return ids;
   }
@@ -255,46 +234,34 @@ private:
   /// What the operation itself may be off by, in units of half precision; docs/intervals.md has the table.
   double units(ValueId id, int c) const {
     const ir::Value& value = dag_[id];
-    switch (value.op) {
-      case Op::Add:
-      case Op::Sub:
-      case Op::Mul: return 1;
-      case Op::Div: return 2.5;
-      case Op::InverseSqrt: return 2;
-      case Op::Sqrt: return 5;
-      case Op::Exp2: {
-        const Range& x = ranges_.at(value.args[0], c);
-        return 2 + 2 * std::max(std::abs(x.lo), std::abs(x.hi));  // the operand's own error: at most 1/2
-      }
-      default: return 0;
-    }
+    const ir::HalfError own = ir::facts(value.op).half;
+    if (own.per_operand == 0) return own.units;
+    const Range& x = ranges_.at(value.args[0], c);
+    return own.units + own.per_operand * std::max(std::abs(x.lo), std::abs(x.hi));
   }
 
   Error component(ValueId id, bool half, int c) const {
     const ir::Value& value = dag_[id];
+    const RangeMath& m = ranges_.math();
     const auto e = [&](size_t k) { return taken(value, half, k, c); };
-    const auto range = [&](size_t k) -> const Range& { return ranges_.at(value.args[k], c); };
+    const auto x = [&](size_t k) -> const Range& { return ranges_.at(value.args[k], c); };
+    const auto unknown = unknownError;
     switch (value.op) {
-      case Op::Neg:
-      case Op::Abs: return e(0);
-      case Op::Swizzle: return at(value.args[0], ir::swizzleComponent(value.payload, c));
-      case Op::Construct: return part(value, c);
-      case Op::Add: return errorOfSum(range(0), e(0), range(1), e(1));
-      case Op::Sub: return errorOfSum(range(0), e(0), ranges_.math().neg(range(1)), e(1));
-      case Op::Mul: return errorOfProduct(range(0), e(0), range(1), e(1));
-      case Op::Div: return errorOfQuotient(e(0), range(1), e(1));
-      case Op::Min:
-      case Op::Max: return errorOfEither(e(0), e(1));
-      case Op::Clamp: return errorOfEither(errorOfEither(e(0), e(1)), e(2));
-      case Op::Select: return at(value.args[0], 0).none() ? errorOfEither(e(1), e(2)) : unknownError();
-      case Op::Sqrt: return errorOfRoot(range(0), e(0));
-      case Op::InverseSqrt: return errorOfInverseRoot(range(0), e(0));
-      case Op::Exp2: return errorOfPower(range(0), e(0));
-      case Op::Mix: return blend(value, c);
-      case Op::Dot: return dot(value, half);
-      case Op::SumOverLights: return lights(value, c);
-      default: return unknownError();
+#define FACTS(e, kind, domain, scaling, linear, range, slope, vulkan, half, error, operations, work) \
+  case Op::e:                                                                                        \
+    return error;
+#include "ir/facts.def"
+#undef FACTS
     }
+    return unknown();
+  }
+
+  Error swizzled(const ir::Value& value, int c) const {
+    return at(value.args[0], ir::swizzleComponent(value.payload, c));
+  }
+
+  Error choice(const ir::Value& value, const Error& yes, const Error& no) const {
+    return at(value.args[0], 0).none() ? errorOfEither(yes, no) : unknownError();
   }
 
   Error part(const ir::Value& value, int c) const {
@@ -381,46 +348,20 @@ struct Weight {
 
 Weight weightOf(const ir::Dag& dag, ValueId id) {
   const ir::Value& value = dag[id];
-  const auto wide = static_cast<uint32_t>(width(value));
+  const auto w = static_cast<uint32_t>(width(value));
+  const auto wide = [&](size_t k) { return static_cast<uint32_t>(width(dag[value.args[k]])); };
+  const auto none = [] { return Weight{}; };
+  const auto these = [](uint32_t count, uint32_t cycles) { return Weight{count, cycles}; };
+  const auto each = [&](uint32_t count) { return these(count, count); };
+  const auto slow = [&](uint32_t count) { return these(count, 4 * count); };
   switch (value.op) {
-    case Op::Constant:
-    case Op::Input:
-    case Op::Construct:
-    case Op::Swizzle:
-    case Op::Neg:
-    case Op::Abs:
-    case Op::Texture:
-    case Op::TextureLod:
-    case Op::TextureCompare:
-    case Op::TextureCompareLod:
-    case Op::Interpolate:
-    case Op::Element: return {};
-    case Op::Dot: {
-      const auto terms = static_cast<uint32_t>(width(dag[value.args[0]]));
-      return {2 * terms - 1, 2 * terms - 1};
-    }
-    case Op::Cross: return {9, 9};
-    case Op::MatMul: return {28, 28};
-    case Op::Length:
-    case Op::Normalize: {
-      const auto terms = static_cast<uint32_t>(width(dag[value.args[0]]));
-      return {2 * terms + (value.op == Op::Normalize ? terms : 0), 2 * terms + 3};
-    }
-    case Op::Mix: return {3 * wide, 3 * wide};
-    case Op::Div:
-    case Op::Sqrt:
-    case Op::InverseSqrt:
-    case Op::Exp2:
-    case Op::Log2:
-    case Op::Exp:
-    case Op::Log:
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Acos:
-    case Op::Atan2:
-    case Op::Pow: return {wide, 4 * wide};
-    default: return {wide, wide};
+#define FACTS(e, kind, domain, scaling, linear, range, slope, vulkan, half, error, operations, work) \
+  case Op::e:                                                                                        \
+    return operations;
+#include "ir/facts.def"
+#undef FACTS
   }
+  return none();
 }
 
 /// What would turn numbers into half and back for itself alone.

@@ -13,6 +13,8 @@ using ir::ValueId;
 
 constexpr Range kZero{0, 0, false};
 
+constexpr Range exactly(double x) { return {x, x, false}; }
+
 bool isZero(const Range& r) { return r.lo == 0 && r.hi == 0; }
 
 /// Derivatives by one variable.
@@ -53,19 +55,36 @@ private:
     const ir::Value& value = dag_[id];
     // Another variable is held, whatever it is made of.
     if (value.count == 0 || constant(value)) return kZero;
+    constexpr double kLn2 = 0.6931471805599453;
+    const RangeMath& m = math_;
+    const Range ln2 = m.widened(exactly(kLn2), 0x1p-50, 0);
+    const Range& result = values_.at(id, c);
+    const auto x = [&](size_t k) -> const Range& { return values_.at(value.args[k], c); };
+    const auto d = [&](size_t k) -> const Range& { return of(value.args[k], c); };
+    const auto unknown = [&] { return m.whole(false); };
+    const auto held = [] { return kZero; };
+    const auto magnitude = [&] {
+      return x(0).lo >= 0 ? d(0) : x(0).hi <= 0 ? m.neg(d(0)) : hull(d(0), m.neg(d(0)));
+    };
     switch (value.op) {
-      case Op::Swizzle: return of(value.args[0], ir::swizzleComponent(value.payload, c));
-      case Op::Construct: return part(value, c);
-      case Op::Dot: {
-        Range total = kZero;
-        for (int k = 0; k < ir::componentCount(dag_[value.args[0]].type); ++k) {
-          total = math_.add(total, productSlope(value.args[0], value.args[1], k));
-        }
-        return total;
-      }
-      case Op::Select: return choice(value, c);
-      default: return arithmetic(id, c);
+#define FACTS(e, kind, domain, scaling, linear, range, slope, vulkan, half, error, operations, work) \
+  case Op::e:                                                                                        \
+    return slope;
+#include "ir/facts.def"
+#undef FACTS
     }
+    return unknown();
+  }
+
+  Range swizzled(const ir::Value& value, int c) const {
+    return of(value.args[0], ir::swizzleComponent(value.payload, c));
+  }
+
+  Range dotSlope(const ir::Value& value) const {
+    Range total = kZero;
+    for (int k = 0; k < ir::componentCount(dag_[value.args[0]].type); ++k)
+      total = math_.add(total, productSlope(value, k));
+    return total;
   }
 
   Range part(const ir::Value& value, int c) const {
@@ -85,14 +104,16 @@ private:
     return math_.whole(false);
   }
 
-  Range productSlope(ValueId a, ValueId b, int c) const {
+  Range productSlope(const ir::Value& value, int c) const {
+    const auto [a, b] = std::pair{value.args[0], value.args[1]};
     const Range first = math_.mul(of(a, c), values_.at(b, c));
-    if (a == b) return math_.mul({2, 2, false}, first);
+    if (a == b) return math_.mul(exactly(2), first);
     return math_.add(first, math_.mul(values_.at(a, c), of(b, c)));
   }
 
   /// Of the two operands of a minimum or maximum.
-  Range either(ValueId a, ValueId b, int c, bool larger) const {
+  Range extremum(const ir::Value& value, int c, bool larger) const {
+    const auto [a, b] = std::pair{value.args[0], value.args[1]};
     const Range& x = values_.at(a, c);
     const Range& y = values_.at(b, c);
     if (x.lo >= y.hi) return of(larger ? a : b, c);
@@ -112,45 +133,18 @@ private:
     return slope;
   }
 
-  Range arithmetic(ValueId id, int c) const {
-    const ir::Value& value = dag_[id];
-    const ValueId a = value.args[0];
-    const ValueId b = value.count > 1 ? value.args[1] : a;
-    const Range& x = values_.at(a, c);
-    const Range& dx = of(a, c);
-    const Range& result = values_.at(id, c);
-    constexpr double kLn2 = 0.6931471805599453;
-    const Range ln2 = math_.widened({kLn2, kLn2, false}, 0x1p-50, 0);
-    switch (value.op) {
-      case Op::Neg: return math_.neg(dx);
-      case Op::Abs: return x.lo >= 0 ? dx : x.hi <= 0 ? math_.neg(dx) : hull(dx, math_.neg(dx));
-      case Op::Add: return math_.add(dx, of(b, c));
-      case Op::Sub: return math_.sub(dx, of(b, c));
-      case Op::Mul: return productSlope(a, b, c);
-      case Op::Div: return math_.div(math_.sub(dx, math_.mul(result, of(b, c))), values_.at(b, c));
-      case Op::Min: return either(a, b, c, false);
-      case Op::Max: return either(a, b, c, true);
-      case Op::Clamp: return clampSlope(value, c);
-      case Op::Sqrt: return math_.div(dx, math_.mul({2, 2, false}, result));
-      case Op::InverseSqrt:
-        return math_.mul({-0.5, -0.5, false}, math_.mul(dx, math_.mul(result, math_.square(result))));
-      case Op::Exp2: return math_.mul(ln2, math_.mul(result, dx));
-      case Op::Exp: return math_.mul(result, dx);
-      case Op::Log2: return math_.div(dx, math_.mul(ln2, x));
-      case Op::Log: return math_.div(dx, x);
-      case Op::Pow: {
-        const Range& y = values_.at(b, c);
-        const Range grown = math_.mul(y, math_.div(dx, x));
-        return math_.mul(result, math_.add(grown, math_.mul(of(b, c), math_.log(x))));
-      }
-      case Op::Mix: {
-        const ValueId t = value.args[2];
-        const Range rest = math_.sub({1, 1, false}, values_.at(t, c));
-        const Range ends = math_.add(math_.mul(dx, rest), math_.mul(of(b, c), values_.at(t, c)));
-        return math_.add(ends, math_.mul(math_.sub(values_.at(b, c), x), of(t, c)));
-      }
-      default: return math_.whole(false);
-    }
+  Range powerSlope(const ir::Value& value, int c, const Range& result) const {
+    const Range& x = values_.at(value.args[0], c);
+    const Range& y = values_.at(value.args[1], c);
+    const Range grown = math_.mul(y, math_.div(of(value.args[0], c), x));
+    return math_.mul(result, math_.add(grown, math_.mul(of(value.args[1], c), math_.log(x))));
+  }
+
+  Range mixSlope(const ir::Value& value, int c) const {
+    const auto x = [&](size_t k) -> const Range& { return values_.at(value.args[k], c); };
+    const auto d = [&](size_t k) -> const Range& { return of(value.args[k], c); };
+    const Range ends = math_.add(math_.mul(d(0), math_.sub(exactly(1), x(2))), math_.mul(d(1), x(2)));
+    return math_.add(ends, math_.mul(math_.sub(x(1), x(0)), d(2)));
   }
 
   const ir::Dag& dag_;

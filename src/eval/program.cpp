@@ -297,25 +297,19 @@ private:
 
   std::vector<Register> made(ValueId id) {
     const ir::Value& value = dag_[id];
-    const auto components = static_cast<size_t>(ir::componentCount(value.type));
-    std::vector<Register> result;
-    switch (value.op) {
-      case Op::Constant:
-        for (size_t i = 0; i < components; ++i) result.push_back(literal(dag_.constantOf(id)[i]));
-        return result;
-      case Op::Input: return input(dag_.inputOf(id));
-      case Op::Interpolate: return of(value.args[0]);
-      case Op::MatMul: return matrixTimesVector(value.args[0], value.args[1]);
-      case Op::Texture:
-      case Op::TextureLod:
-      case Op::TextureCompare:
-      case Op::TextureCompareLod: return texture(value);
-      case Op::DFdx: return derivative(value, Step::DerivativeX);
-      case Op::DFdy: return derivative(value, Step::DerivativeY);
-      case Op::SumOverLights: return sumOverLights(value);
-      case Op::Element: return element(value);
-      default: return folded(value);
-    }
+    if (ir::facts(value.op).kind != ir::Kind::Surroundings) return folded(value);
+    if (ir::readsTexture(value.op)) return texture(value);
+    if (value.op == Op::Input) return input(dag_.inputOf(id));
+    if (value.op == Op::Interpolate) return of(value.args[0]);
+    if (value.op == Op::MatMul) return matrixTimesVector(value.args[0], value.args[1]);
+    if (value.op == Op::DFdx) return derivative(value, Step::DerivativeX);
+    if (value.op == Op::DFdy) return derivative(value, Step::DerivativeY);
+    if (value.op == Op::SumOverLights) return sumOverLights(value);
+    if (value.op == Op::Element) return element(value);
+    std::vector<Register> result;  // of a literal
+    for (size_t i = 0; i < static_cast<size_t>(ir::componentCount(value.type)); ++i)
+      result.push_back(literal(dag_.constantOf(id)[i]));
+    return result;
   }
 
   const ir::Module& module_;

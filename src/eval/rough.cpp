@@ -19,28 +19,22 @@ struct Allowed {
   bool exact = false;  ///< a result that is a float is met
 };
 
+/// Rounded right, a result that is no float too.
+Allowed rounded() { return {1, 0, true}; }
+Allowed ulps(double count) { return {count, 0}; }
+Allowed within(double ulps, double absolute) { return {ulps, absolute}; }
+
 Allowed allowedOf(Op op, double a, double b, double x) {
+  // Nothing is computed.
+  const auto exact = [&] { return Allowed{0, 0, x == static_cast<double>(static_cast<float>(x))}; };
   switch (op) {
-    case Op::Add:
-    case Op::Sub:
-    case Op::Mul: return {1, 0, true};
-    case Op::Div: return {2.5, 0};
-    case Op::InverseSqrt: return {2, 0};
-    case Op::Sqrt: return {3, 0};
-    case Op::Exp:
-    case Op::Exp2: return {3 + 2 * std::abs(a), 0};
-    case Op::Log:
-    case Op::Log2: return {3, a > 0.5 && a < 2 ? 0x1p-21 : 0};
-    // exp2(y log2(x)): the logarithm's error times y counts whole.
-    case Op::Pow: return {3 + 2 * std::abs(b * std::log2(a)) + 8 * std::abs(b), 0};
-    case Op::Sin:
-    case Op::Cos: return {0, std::abs(a) > kPi ? 2 : 0x1p-11};  // beyond it nothing is promised
-    case Op::Acos:
-    case Op::Atan2: return {4096, 0x1p-11};
-    // x (1 - t) + y t, or x + (y - x) t: the sizes of both ends count.
-    case Op::Mix: return {2, 2 * kUlp * (std::abs(a) + std::abs(b))};
-    default: return {0, 0, x == static_cast<double>(static_cast<float>(x))};
+#define FACTS(e, kind, domain, scaling, linear, range, slope, vulkan, half, error, operations, work) \
+  case Op::e:                                                                                        \
+    return vulkan;
+#include "ir/facts.def"
+#undef FACTS
   }
+  return exact();
 }
 
 /// In [0, 1).

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "ir/dag.h"
+#include "ir/facts.h"
 
 namespace lacquer::ir {
 
@@ -43,41 +43,36 @@ std::array<X, 4> fold(Op op, Type type, uint32_t payload, std::span<const std::s
   };
   const auto length = [&] { return map(Op::Sqrt, std::array<X, 1>{dot(a, a)}); };
   std::array<X, 4> out{};
-  switch (op) {
-    case Op::Construct: {
-      size_t at = 0;
-      for (const std::span<const X> part : operands) {
-        for (size_t i = 0; i < part.size() && at < width; ++i) out[at++] = part[i];
-      }
-      while (at < width) out[at++] = a[0];  // a splat
-      return out;
+  if (facts(op).kind == Kind::Components) {
+    for (size_t i = 0; i < width; ++i) {
+      std::array<X, 4> x{};
+      for (size_t k = 0; k < operands.size(); ++k) x[k] = operands[k][operands[k].size() == 1 ? 0 : i];
+      out[i] = map(op, std::span<const X>(x.data(), operands.size()));
     }
-    case Op::Swizzle:
-      for (size_t i = 0; i < width; ++i)
-        out[i] = a[a.size() == 1 ? 0 : static_cast<size_t>(swizzleComponent(payload, static_cast<int>(i)))];
-      return out;
-    case Op::Dot: out[0] = dot(a, operands[1]); return out;
-    case Op::Length: out[0] = length(); return out;
-    case Op::Normalize: {
-      const X divisor = length();
-      for (size_t i = 0; i < width; ++i) out[i] = two(Op::Div, a[i], divisor);
-      return out;
+  } else if (op == Op::Construct) {
+    size_t at = 0;
+    for (const std::span<const X> part : operands) {
+      for (size_t i = 0; i < part.size() && at < width; ++i) out[at++] = part[i];
     }
-    case Op::Cross:
-      for (size_t i = 0; i < width; ++i) {
-        const size_t j = (i + 1) % 3;
-        const size_t k = (i + 2) % 3;
-        const X first = two(Op::Mul, a[j], operands[1][k]);
-        const X second = two(Op::Mul, a[k], operands[1][j]);
-        out[i] = two(Op::Sub, first, second);
-      }
-      return out;
-    default: break;
-  }
-  for (size_t i = 0; i < width; ++i) {
-    std::array<X, 4> x{};
-    for (size_t k = 0; k < operands.size(); ++k) x[k] = operands[k][operands[k].size() == 1 ? 0 : i];
-    out[i] = map(op, std::span<const X>(x.data(), operands.size()));
+    while (at < width) out[at++] = a[0];  // a splat
+  } else if (op == Op::Swizzle) {
+    for (size_t i = 0; i < width; ++i)
+      out[i] = a[a.size() == 1 ? 0 : static_cast<size_t>(swizzleComponent(payload, static_cast<int>(i)))];
+  } else if (op == Op::Dot) {
+    out[0] = dot(a, operands[1]);
+  } else if (op == Op::Length) {
+    out[0] = length();
+  } else if (op == Op::Normalize) {
+    const X divisor = length();
+    for (size_t i = 0; i < width; ++i) out[i] = two(Op::Div, a[i], divisor);
+  } else if (op == Op::Cross) {
+    for (size_t i = 0; i < width; ++i) {
+      const size_t j = (i + 1) % 3;
+      const size_t k = (i + 2) % 3;
+      const X first = two(Op::Mul, a[j], operands[1][k]);
+      const X second = two(Op::Mul, a[k], operands[1][j]);
+      out[i] = two(Op::Sub, first, second);
+    }
   }
   return out;
 }

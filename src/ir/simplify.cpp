@@ -36,18 +36,10 @@ ValueId Simplifier::fold(Op op, Type type, std::span<const ValueId> operands) {
   if (!std::all_of(operands.begin(), operands.end(), [&](ValueId id) { return dag_.isConstant(id); })) {
     return kNoValue;
   }
-  switch (op) {
-    case Op::DFdx:
-    case Op::DFdy: return zero(type);
-    case Op::Interpolate: return operands[0];
-    case Op::Select: return operands[dag_.constantOf(operands[0])[0] != 0 ? 1 : 2];
-    case Op::Texture:
-    case Op::TextureLod:
-    case Op::MatMul:
-    case Op::Element:
-    case Op::SumOverLights: return kNoValue;
-    default: break;
-  }
+  if (op == Op::DFdx || op == Op::DFdy) return zero(type);
+  if (op == Op::Interpolate) return operands[0];
+  if (op == Op::Select) return operands[dag_.constantOf(operands[0])[0] != 0 ? 1 : 2];
+  if (facts(op).kind == Kind::Surroundings) return kNoValue;
   std::array<Operand, 4> in{};
   for (size_t k = 0; k < operands.size(); ++k) in[k] = {dag_[operands[k]].type, dag_.constantOf(operands[k])};
   const Components result = foldNumbers(op, type, 0, {in.data(), operands.size()});
@@ -74,41 +66,27 @@ ValueId Simplifier::unsplat(Op op, Type type, std::span<const ValueId> operands)
 
 ValueId Simplifier::unary(Op op, ValueId a) {
   const Value value = dag_[a];
-  switch (op) {
-    case Op::Neg:
-      if (value.op == Op::Neg) return value.args[0];
-      if (value.op == Op::Sub && dag_[value.args[0]].type == dag_[value.args[1]].type) {
-        return dag_.sub(value.args[1], value.args[0]);
-      }
-      return kNoValue;
-    case Op::Abs:
-      if (value.op == Op::Abs) return a;
-      if (value.op == Op::Neg) return dag_.make(Op::Abs, {value.args[0]});
-      return kNoValue;
-    case Op::Not: return value.op == Op::Not ? value.args[0] : kNoValue;
-    case Op::Normalize: return value.op == Op::Normalize ? a : kNoValue;
-    case Op::Interpolate: return value.rate < Rate::Vertex ? a : kNoValue;
-    case Op::DFdx:
-    case Op::DFdy: return value.rate < Rate::Vertex ? zero(value.type) : kNoValue;
-    case Op::SumOverLights: return dag_.isConstant(a, 0) ? a : kNoValue;
-    default: return kNoValue;
-  }
+  if (op == Op::Neg && value.op == Op::Neg) return value.args[0];
+  if (op == Op::Neg && value.op == Op::Sub && dag_[value.args[0]].type == dag_[value.args[1]].type)
+    return dag_.sub(value.args[1], value.args[0]);
+  if (op == Op::Abs && value.op == Op::Neg) return dag_.make(Op::Abs, {value.args[0]});
+  if ((op == Op::Abs || op == Op::Normalize) && value.op == op) return a;
+  if (op == Op::Not && value.op == Op::Not) return value.args[0];
+  if (op == Op::Interpolate && value.rate < Rate::Vertex) return a;
+  if ((op == Op::DFdx || op == Op::DFdy) && value.rate < Rate::Vertex) return zero(value.type);
+  if (op == Op::SumOverLights && dag_.isConstant(a, 0)) return a;
+  return kNoValue;
 }
 
 ValueId Simplifier::binary(Op op, Type type, ValueId a, ValueId b) {
-  switch (op) {
-    case Op::Add:
-    case Op::Sub: return sum(op, type, a, b);
-    case Op::Mul: return product(type, a, b);
-    case Op::Div: return quotient(type, a, b);
-    case Op::Min:
-    case Op::Max: return extremum(op, type, a, b);
-    case Op::Pow: return power(type, a, b);
-    case Op::And:
-    case Op::Or: return logic(op, a, b);
-    case Op::Dot: return dot(a, b);
-    default: return kNoValue;
-  }
+  if (op == Op::Add || op == Op::Sub) return sum(op, type, a, b);
+  if (op == Op::Mul) return product(type, a, b);
+  if (op == Op::Div) return quotient(type, a, b);
+  if (op == Op::Min || op == Op::Max) return extremum(op, type, a, b);
+  if (op == Op::Pow) return power(type, a, b);
+  if (op == Op::And || op == Op::Or) return logic(op, a, b);
+  if (op == Op::Dot) return dot(a, b);
+  return kNoValue;
 }
 
 ValueId Simplifier::sum(Op op, Type type, ValueId a, ValueId b) {

@@ -28,60 +28,21 @@ Scaling comparison(Scaling a, Scaling b) {
   return either(a, b) == Scaling::Other ? Scaling::Other : Scaling::Fixed;
 }
 
+Scaling quotient(Scaling a, Scaling b) { return b == Scaling::Fixed ? a : Scaling::Other; }
+
+Scaling blend(Scaling a, Scaling b, Scaling t) { return isFree(t) ? either(a, b) : Scaling::Other; }
+
 Scaling ofOp(Op op, std::span<const Scaling> args) {
+  const auto s = [&](size_t k) { return args[k]; };
+  const auto opaque = [&] { return lang::opaque(args); };
   switch (op) {
-    case Op::Neg:
-    case Op::Abs:
-    case Op::Length: return args[0];
-    case Op::Add:
-    case Op::Sub:
-    case Op::Min:
-    case Op::Max: return either(args[0], args[1]);
-    case Op::Clamp: return either(args[0], either(args[1], args[2]));
-    case Op::Mul:
-    case Op::Dot:
-    case Op::Cross:
-    case Op::MatMul: return product(args[0], args[1]);
-    case Op::Div: return args[1] == Scaling::Fixed ? args[0] : Scaling::Other;
-    case Op::Mix: return isFree(args[2]) ? either(args[0], args[1]) : Scaling::Other;
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::Equal: return comparison(args[0], args[1]);
-    case Op::Constant:
-    case Op::Input:
-    case Op::Sign:
-    case Op::Floor:
-    case Op::Fract:
-    case Op::Sqrt:
-    case Op::InverseSqrt:
-    case Op::Exp2:
-    case Op::Log2:
-    case Op::Exp:
-    case Op::Log:
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Acos:
-    case Op::Pow:
-    case Op::Atan2:
-    case Op::Normalize:
-    case Op::Construct:
-    case Op::Swizzle:
-    case Op::ToInt:
-    case Op::Element:
-    case Op::And:
-    case Op::Or:
-    case Op::Not:
-    case Op::Select:
-    case Op::Texture:
-    case Op::TextureLod:
-    case Op::TextureCompare:
-    case Op::TextureCompareLod:
-    case Op::DFdx:
-    case Op::DFdy:
-    case Op::Interpolate:
-    case Op::SumOverLights: break;
+#define FACTS(e, kind, domain, scaling, linear, range, slope, vulkan, half, error, operations, work) \
+  case Op::e:                                                                                        \
+    return scaling;
+#include "ir/facts.def"
+#undef FACTS
   }
-  return opaque(args);
+  return opaque();
 }
 
 Scaling ofExpansion(const Builtin& builtin, std::span<const Scaling> args) {

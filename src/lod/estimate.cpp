@@ -20,53 +20,28 @@ constexpr double kQuarter = 6;
 /// What a value takes of a GPU.
 Counts workOf(const ir::Dag& dag, ir::ValueId id) {
   const ir::Value& value = dag[id];
-  const double width = ir::componentCount(value.type);
-  const double first = value.count > 0 ? ir::componentCount(dag[value.args[0]].type) : 0;
+  const double w = ir::componentCount(value.type);
+  const auto wide = [&](size_t k) { return ir::componentCount(dag[value.args[k]].type); };
   Counts work;
   work.always = 0;
+  const auto nothing = [] {};
+  const auto sums = [&](double count) { work.sums = count; };
+  const auto roots = [&](double count) { work.roots = count; };
+  const auto read = [&] {
+    const ir::InputKind kind = dag.inputOf(id).kind;
+    if (kind == ir::InputKind::Varying) work.varyings = w;
+    if (kind == ir::InputKind::BlockField) work.loads = w;
+  };
+  const auto lookup = [&] {
+    (dag[value.args[0]].type == ir::Type::TextureCube ? work.cubes : work.pictures) = 1;
+  };
   switch (value.op) {
-    case ir::Op::Constant:
-    case ir::Op::Construct:
-    case ir::Op::Swizzle:
-    case ir::Op::Neg:
-    case ir::Op::Abs:
-    case ir::Op::SumOverLights: break;
-    case ir::Op::Input: {
-      const ir::InputKind kind = dag.inputOf(id).kind;
-      if (kind == ir::InputKind::Varying) work.varyings = width;
-      if (kind == ir::InputKind::BlockField) work.loads = width;
-      break;
-    }
-    case ir::Op::Div:
-      work.sums = width;
-      work.roots = ir::componentCount(dag[value.args[1]].type);
-      break;
-    case ir::Op::Sqrt:
-    case ir::Op::InverseSqrt:
-    case ir::Op::Exp2:
-    case ir::Op::Log2: work.roots = width; break;
-    case ir::Op::Pow:
-      work.sums = width;
-      work.roots = 2 * width;
-      break;
-    case ir::Op::Sin:
-    case ir::Op::Cos: work.sums = work.roots = width; break;
-    case ir::Op::Dot: work.sums = first; break;
-    case ir::Op::Length:
-      work.sums = first;
-      work.roots = 1;
-      break;
-    case ir::Op::Normalize:
-      work.sums = 2 * first;
-      work.roots = 1;
-      break;
-    case ir::Op::Cross: work.sums = 6; break;
-    case ir::Op::MatMul: work.sums = 4 * width; break;
-    case ir::Op::Texture:
-    case ir::Op::TextureLod:
-      (dag[value.args[0]].type == ir::Type::TextureCube ? work.cubes : work.pictures) = 1;
-      break;
-    default: work.sums = width;
+#define FACTS(e, kind, domain, scaling, linear, range, slope, vulkan, half, error, operations, statements) \
+  case ir::Op::e:                                                                                          \
+    statements;                                                                                            \
+    break;
+#include "ir/facts.def"
+#undef FACTS
   }
   return work;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 
+#include "ir/facts.h"
 #include "passes/passes.h"
 #include "passes/rewrite.h"
 
@@ -57,20 +58,12 @@ private:
     if (value.op == Op::Interpolate) return true;
     if (value.rate != ir::Rate::Fragment || !ir::isFloating(value.type)) return false;
     const auto fits = [&](ValueId operand) { return affine_[operand] || uniform(operand); };
-    switch (value.op) {
-      case Op::Neg:
-      case Op::Swizzle: return affine_[value.args[0]];
-      case Op::Add:
-      case Op::Sub: return fits(value.args[0]) && fits(value.args[1]);
-      case Op::Construct: {
-        const auto operands = value.operands();
-        return std::all_of(operands.begin(), operands.end(), fits);
-      }
-      case Op::Mul:
-        return (affine_[value.args[0]] && uniform(value.args[1])) ||
-               (uniform(value.args[0]) && affine_[value.args[1]]);
-      default: return false;
+    if (ir::facts(value.op).linear == ir::Linear::All) {
+      const auto operands = value.operands();
+      return std::all_of(operands.begin(), operands.end(), fits);
     }
+    return value.op == Op::Mul && ((affine_[value.args[0]] && uniform(value.args[1])) ||
+                                   (uniform(value.args[0]) && affine_[value.args[1]]));
   }
 
   /// Components interpolated when the given values come from the vertex stage.

@@ -30,19 +30,21 @@ std::string describedName(const ir::Dag& dag, ir::ValueId id) {
   const std::string a = value.count > 0 ? operandName(dag, value.args[0]) : "";
   const std::string b = value.count > 1 ? operandName(dag, value.args[1]) : "";
   std::string name;
-  switch (value.op) {
-    case ir::Op::Sin: name = "sin_" + a; break;
-    case ir::Op::Cos: name = "cos_" + a; break;
-    case ir::Op::Mul:
-      // The number last: a name does not begin with a digit.
-      name = value.args[0] == value.args[1]  ? a + "_squared"
-             : dag.isConstant(value.args[0]) ? b + "_times_" + a
-                                             : a + "_times_" + b;
-      break;
-    case ir::Op::Div: name = a + "_over_" + b; break;
-    case ir::Op::Add: name = a + "_plus_" + b; break;
-    case ir::Op::Sub: name = (a == "1" ? "one" : a) + "_minus_" + b; break;
-    default: return {};
+  if (value.op == ir::Op::Sin || value.op == ir::Op::Cos) {
+    name = fmt::format("{}_{}", ir::info(value.op).name, a);
+  } else if (value.op == ir::Op::Mul) {
+    // The number last: a name does not begin with a digit.
+    name = value.args[0] == value.args[1]  ? a + "_squared"
+           : dag.isConstant(value.args[0]) ? b + "_times_" + a
+                                           : a + "_times_" + b;
+  } else if (value.op == ir::Op::Div) {
+    name = a + "_over_" + b;
+  } else if (value.op == ir::Op::Add) {
+    name = a + "_plus_" + b;
+  } else if (value.op == ir::Op::Sub) {
+    name = (a == "1" ? "one" : a) + "_minus_" + b;
+  } else {
+    return {};
   }
   return a.empty() || (value.count == 2 && b.empty()) || name.size() > kLongest ? std::string() : name;
 }

@@ -36,27 +36,20 @@ public:
     const ir::Value& value = dag_[id];
     if (!decidable(value.op) || !intervals_.known(id)) return {};
     const int width = ir::componentCount(value.type);
-    switch (value.op) {
-      case Op::Max: return operand(larger(value, width));
-      case Op::Min: {
-        const int larger_one = larger(value, width);
-        return operand(larger_one < 0 ? -1 : 1 - larger_one);
-      }
-      case Op::Clamp: return operand(inside(value, width) ? 0 : -1);
-      case Op::Abs: return sign(value.args[0], width);
-      case Op::Select: {
-        const analysis::Range& condition = intervals_.at(value.args[0], 0);
-        return operand(condition.lo == 1 ? 1 : condition.hi == 0 ? 2 : -1);
-      }
-      case Op::Less:
-      case Op::LessEqual:
-      case Op::Equal: {
-        const analysis::Range& truth = intervals_.at(id, 0);
-        if (truth.lo != truth.hi) return {};
-        return {truth.lo == 1 ? Decision::Kind::True : Decision::Kind::False};
-      }
-      default: return {};
+    if (value.op == Op::Max) return operand(larger(value, width));
+    if (value.op == Op::Min) {
+      const int larger_one = larger(value, width);
+      return operand(larger_one < 0 ? -1 : 1 - larger_one);
     }
+    if (value.op == Op::Clamp) return operand(inside(value, width) ? 0 : -1);
+    if (value.op == Op::Abs) return sign(value.args[0], width);
+    if (value.op == Op::Select) {
+      const analysis::Range& condition = intervals_.at(value.args[0], 0);
+      return operand(condition.lo == 1 ? 1 : condition.hi == 0 ? 2 : -1);
+    }
+    const analysis::Range& truth = intervals_.at(id, 0);  // of a comparison
+    if (truth.lo != truth.hi) return {};
+    return {truth.lo == 1 ? Decision::Kind::True : Decision::Kind::False};
   }
 
 private:

@@ -74,18 +74,15 @@ bool Preshader::sound(const Step& step, size_t number) const {
   if (!std::all_of(step.args.begin(), step.args.begin() + step.count, known)) return false;
   const int width = ir::componentCount(step.type);
   const auto widthOf = [&](size_t k) { return ir::componentCount(steps_[step.args[k]].type); };
-  switch (step.op) {
-    case Op::Construct:
-    case Op::Length: return true;
-    case Op::Dot: return step.count == 2 && widthOf(0) == widthOf(1);
-    case Op::Cross: return step.count == 2 && width == 3 && widthOf(0) == 3 && widthOf(1) == 3;
-    case Op::Normalize: return widthOf(0) == width;
-    case Op::Swizzle:
-      for (int i = 0; i < width; ++i) {
-        if (widthOf(0) > 1 && ir::swizzleComponent(step.payload, i) >= widthOf(0)) return false;
-      }
-      return true;
-    default: break;
+  if (step.op == Op::Construct || step.op == Op::Length) return true;
+  if (step.op == Op::Dot) return step.count == 2 && widthOf(0) == widthOf(1);
+  if (step.op == Op::Cross) return step.count == 2 && width == 3 && widthOf(0) == 3 && widthOf(1) == 3;
+  if (step.op == Op::Normalize) return widthOf(0) == width;
+  if (step.op == Op::Swizzle) {
+    for (int i = 0; i < width; ++i) {
+      if (widthOf(0) > 1 && ir::swizzleComponent(step.payload, i) >= widthOf(0)) return false;
+    }
+    return true;
   }
   // Component by component.
   for (size_t k = 0; k < step.count; ++k) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "intervals/evaluator.h"
+#include "ir/facts.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
 #include "support/cases.h"
@@ -88,13 +89,8 @@ private:
   }
 
   void add() {
-    constexpr Op kOps[] = {Op::Neg,         Op::Abs,   Op::Sign,   Op::Floor,     Op::Fract, Op::Sqrt,
-                           Op::InverseSqrt, Op::Exp2,  Op::Log2,   Op::Exp,       Op::Log,   Op::Sin,
-                           Op::Cos,         Op::Acos,  Op::Add,    Op::Sub,       Op::Mul,   Op::Div,
-                           Op::Min,         Op::Max,   Op::Pow,    Op::Atan2,     Op::Mix,   Op::Clamp,
-                           Op::Dot,         Op::Cross, Op::Length, Op::Normalize, Op::Less,  Op::Select,
-                           Op::Mul,         Op::Sub,   Op::Add};
-    const Op op = kOps[pick(std::size(kOps))];
+    const Op op = static_cast<Op>(pick(ir::kOpCount));
+    if (ir::facts(op).kind == ir::Kind::Surroundings) return add();
     ir::Dag& dag = module_.dag;
     const Type type = pick(2) == 0 ? Type::Float : Type::Vec3;
     const ValueId a = of(type);
@@ -113,17 +109,41 @@ private:
       case ir::Signature::Length:
       case ir::Signature::Same: values_.push_back(dag.make(op, {a})); break;
       case ir::Signature::Compare:
-      case ir::Signature::Select:
-        values_.push_back(
-            dag.make(Op::Select, {dag.make(Op::Less, {of(Type::Float), of(Type::Float)}), a, b}));
-        break;
-      case ir::Signature::Special:
-      case ir::Signature::Logic: break;
+      case ir::Signature::Select: values_.push_back(dag.make(Op::Select, {comparison(op), a, b})); break;
+      case ir::Signature::Logic: values_.push_back(dag.make(Op::Select, {logic(op), a, b})); break;
+      case ir::Signature::Special: special(op); break;
     }
     // x + (k - x) * t and its kin.
     if (pick(6) == 0) values_.push_back(dag.add(a, dag.mul(dag.sub(b, a), of(type))));
     if (pick(6) == 0) values_.push_back(dag.add(dag.mul(a, of(type)), dag.sub(b, a)));
     if (pick(6) == 0) values_.push_back(dag.sub(a, dag.mul(a, of(type))));
+  }
+
+  ValueId comparison(Op op) {
+    return module_.dag.make(op == Op::Select ? Op::Less : op, {of(Type::Float), of(Type::Float)});
+  }
+
+  ValueId logic(Op op) {
+    const ValueId args[] = {comparison(Op::Less), comparison(Op::LessEqual)};
+    return module_.dag.make(op, std::span(args, static_cast<size_t>(ir::info(op).arity)));
+  }
+
+  void special(Op op) {
+    ir::Dag& dag = module_.dag;
+    if (op == Op::Construct) {
+      values_.push_back(dag.construct(Type::Vec3, {of(Type::Float), of(Type::Float), of(Type::Float)}));
+    } else if (op == Op::Swizzle) {
+      const int chosen[] = {static_cast<int>(pick(3)), 0, static_cast<int>(pick(3))};
+      values_.push_back(dag.swizzle(of(Type::Vec3), chosen));
+    } else {
+      ASSERT_EQ(op, Op::ToInt);
+      const auto whole = [&] {
+        const ValueId x = of(Type::Float);
+        return dag.make(op, {dag.make(Op::Clamp, {x, dag.constant(-1e9), dag.constant(1e9)})});
+      };
+      const ValueId less = dag.make(Op::Less, {whole(), whole()});
+      values_.push_back(dag.make(Op::Select, {less, of(Type::Float), of(Type::Float)}));
+    }
   }
 
   std::mt19937 random_;

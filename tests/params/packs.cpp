@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "ir/facts.h"
 #include "ir/names.h"
 #include "shader/preshader.h"
 
@@ -218,15 +219,14 @@ std::string packedByLibrary(const Shader& shader, const Numbers& numbers) {
 }
 
 const std::vector<ir::Op>& preshaderOps() {
-  static const std::vector<ir::Op> kOps = {
-      ir::Op::Neg,   ir::Op::Abs,         ir::Op::Sign,      ir::Op::Floor,     ir::Op::Fract,
-      ir::Op::Sqrt,  ir::Op::InverseSqrt, ir::Op::Exp2,      ir::Op::Log2,      ir::Op::Exp,
-      ir::Op::Log,   ir::Op::Sin,         ir::Op::Cos,       ir::Op::Acos,      ir::Op::Add,
-      ir::Op::Sub,   ir::Op::Mul,         ir::Op::Div,       ir::Op::Min,       ir::Op::Max,
-      ir::Op::Pow,   ir::Op::Atan2,       ir::Op::Mix,       ir::Op::Clamp,     ir::Op::Dot,
-      ir::Op::Cross, ir::Op::Length,      ir::Op::Normalize, ir::Op::Construct, ir::Op::Swizzle,
-      ir::Op::Less,  ir::Op::LessEqual,   ir::Op::Equal,     ir::Op::And,       ir::Op::Or,
-      ir::Op::Not,   ir::Op::Select};
+  static const std::vector<ir::Op> kOps = [] {
+    std::vector<ir::Op> ops;
+    for (const ir::Facts& facts : ir::kFacts) {
+      // No parameter is an integer.
+      if (facts.kind != ir::Kind::Surroundings && facts.op != ir::Op::ToInt) ops.push_back(facts.op);
+    }
+    return ops;
+  }();
   return kOps;
 }
 
