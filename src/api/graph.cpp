@@ -23,7 +23,7 @@ std::string inQuotes(std::string_view name) { return "'" + printable(name) + "'"
 
 Strings passNames() {
   std::vector<std::string> names = {"lower"};
-  for (const std::string_view pass : passes::passNames()) names.emplace_back(pass);
+  for (const passes::PassInfo& pass : passes::passes()) names.emplace_back(pass.name);
   return names;
 }
 

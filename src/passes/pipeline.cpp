@@ -13,44 +13,52 @@ namespace lacquer::passes {
 namespace {
 
 struct Pass {
-  std::string_view name;
+  PassInfo info;
   void (*run)(ir::Module&, const PipelineOptions&);
 };
 
 constexpr std::array kPasses{
-    // What is known of the lights turns fields into constants: whole branches of the light model fold away.
-    Pass{"lights", [](ir::Module& m, const PipelineOptions& o) { specializeLights(m, o.lights); }},
-    // Clamps and choices that the ranges of the inputs prove idle.
-    Pass{"ranges", [](ir::Module& m, const PipelineOptions&) { simplifyRanges(m); }},
-    // The preshader divides, and once.
-    Pass{"reciprocals", [](ir::Module& m, const PipelineOptions&) { takeReciprocals(m); }},
-    // One product of two Floats instead of three with a vector's components.
-    Pass{"scales", [](ir::Module& m, const PipelineOptions&) { placeScales(m); }},
-    // Affine functions of interpolated values may be computed at the vertices.
-    Pass{"vertex", [](ir::Module& m, const PipelineOptions&) { hoistToVertex(m); }},
-    // Material rate goes to the preshader, vertex rate to the vertex stage.
-    Pass{"place", [](ir::Module& m, const PipelineOptions&) { place(m); }},
-    // The textures that are left get their slots.
-    Pass{"bind", [](ir::Module& m, const PipelineOptions&) { bind(m); }},
-    // What may be done at half precision, where that is asked for. Behind all that changes values.
-    Pass{"relax", [](ir::Module& m, const PipelineOptions& o) { relax(m, o.relaxed); }},
+    Pass{{"lights",
+          "with known lights (`--lights`): fields of the light become constants, sums over one light lose "
+          "their "
+          "loop"},
+         [](ir::Module& m, const PipelineOptions& o) { specializeLights(m, o.lights); }},
+    Pass{{"ranges", "removes clamps, choices and guards that intervals prove idle"},
+         [](ir::Module& m, const PipelineOptions&) { simplifyRanges(m); }},
+    Pass{{"reciprocals", "divides by the preshader's values with reciprocals that the preshader makes"},
+         [](ir::Module& m, const PipelineOptions&) { takeReciprocals(m); }},
+    Pass{{"scales", "gathers scalar factors of vectors, takes them out of dot products"},
+         [](ir::Module& m, const PipelineOptions&) { placeScales(m); }},
+    Pass{{"vertex",
+          "moves affine functions of interpolated values to the vertex shader, where that costs no "
+          "interpolants"},
+         [](ir::Module& m, const PipelineOptions&) { hoistToVertex(m); }},
+    Pass{{"place",
+          "splits the DAG at its rates: material values become fields of the `Material` block, interpolated "
+          "ones varyings"},
+         [](ir::Module& m, const PipelineOptions&) { place(m); }},
+    Pass{{"bind", "numbers the textures that are left"},
+         [](ir::Module& m, const PipelineOptions&) { bind(m); }},
+    // Behind all that changes values.
+    Pass{{"relax", "with `--relaxed`: marks what may be computed at half precision"},
+         [](ir::Module& m, const PipelineOptions& o) { relax(m, o.relaxed); }},
 };
 
-constexpr auto kPassNames = [] {
-  std::array<std::string_view, kPasses.size()> names{};
-  for (size_t i = 0; i < kPasses.size(); ++i) names[i] = kPasses[i].name;
-  return names;
+constexpr auto kInfos = [] {
+  std::array<PassInfo, kPasses.size()> infos{};
+  for (size_t i = 0; i < kPasses.size(); ++i) infos[i] = kPasses[i].info;
+  return infos;
 }();
 
 }  // namespace
 
-std::span<const std::string_view> passNames() { return kPassNames; }
+std::span<const PassInfo> passes() { return kInfos; }
 
 void runPipeline(ir::Module& module, const PipelineOptions& options) {
   for (const Pass& pass : kPasses) {
     pass.run(module, options);
     assert(ir::verify(module).empty());
-    if (options.after) options.after(pass.name, module);
+    if (options.after) options.after(pass.info.name, module);
   }
 }
 

@@ -21,8 +21,12 @@ struct PipelineOptions {
 /// The module is verified after each pass in debug builds.
 void runPipeline(ir::Module& module, const PipelineOptions& options);
 
-/// The names of the passes, in order.
-std::span<const std::string_view> passNames();
+struct PassInfo {
+  std::string_view name;
+  std::string_view does;  ///< for the documentation
+};
+/// The passes, in order.
+std::span<const PassInfo> passes();
 
 /// The content address of a module that went through the pipeline: 16 hexadecimal digits. It covers
 /// everything that reaches a target's text or interface, and nothing else: no material's name, no index, no

@@ -40,6 +40,7 @@ std::string regionText(std::string_view name) {
   if (kind == "source") return sourceLines(of);
   if (kind == "options") return optionsTable(of);
   if (kind == "verbs") return verbsTable();
+  if (kind == "passes") return passesTable();
   if (kind == "accuracy") return accuracy::table(of);
   ADD_FAILURE() << "there is no region of the kind '" << kind << "', or a region has no end";
   return {};

@@ -12,6 +12,7 @@
 
 #include "docs/page.h"
 #include "docs/sample.h"
+#include "passes/pipeline.h"
 #include "support/cases.h"
 #include "support/limits.h"
 #include "support/materials.h"
@@ -346,6 +347,13 @@ std::string limitsTable() {
   for (const LimitRow& row : limitTable()) {
     out += fmt::format("| `{}` | {} | {} {} | {} |\n", row.name, row.meaning, row.value, row.unit, row.most);
   }
+  return out;
+}
+
+std::string passesTable() {
+  std::string out = "| pass | does |\n|---|---|\n";
+  for (const passes::PassInfo& pass : passes::passes())
+    out += fmt::format("| `{}` | {} |\n", pass.name, pass.does);
   return out;
 }
 

@@ -19,6 +19,7 @@ std::string propertiesTable(
     std::string_view of);  ///< an object of the table of properties; "core" for glTF 2.0's
 std::string extensionsTable();
 std::string limitsTable();
+std::string passesTable();
 std::string templateOutputs(std::string_view of);  ///< a template's name
 
 std::string glslSections(std::string_view of);  ///< terms, of the example in README.md
