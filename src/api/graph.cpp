@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "api/internal.h"
+#include "graph/text.h"
 #include "shader/interface.h"
 #include "shader/language.h"
 #include "shader/limits.h"
@@ -128,6 +131,13 @@ bool Graph::setParameter(const std::string& name, const std::vector<double>& val
     return impl_->refuse("wrong-type", fmt::format("{} is given {}", inQuotes(name), value[0]),
                          "it is a bool, 0 or 1", messages);
   }
+  const auto wrong =
+      std::find_if(value.begin(), value.end(), [](double x) { return !graph::fitsFloat(x); });
+  if (wrong != value.end()) {
+    return impl_->refuse(std::isfinite(*wrong) ? "out-of-range" : "not-finite",
+                         fmt::format("{} is given {}", inQuotes(name), *wrong),
+                         std::string(graph::kFloatHelp), messages);
+  }
   if (!found) parameters.push_back({name, ir::floatType(static_cast<int>(count)), {}, {}, {}});
   std::copy(value.begin(), value.end(), parameters[found.value_or(parameters.size() - 1)].value.begin());
   return true;
@@ -140,12 +150,20 @@ bool Graph::setRange(const std::string& parameter, const Range& range, Messages&
     return impl_->refuse("no-such-parameter", fmt::format("there is no parameter {}", inQuotes(parameter)),
                          {}, messages);
   }
+  const std::string said = fmt::format("[{}, {}]{} is no range of {}", range.low, range.high,
+                                       range.or_zero ? " or 0" : "", inQuotes(parameter));
   if (!(range.low <= range.high) || (range.or_zero && !(range.low > 0))) {
-    return impl_->refuse("wrong-range",
-                         fmt::format("[{}, {}]{} is no range of {}", range.low, range.high,
-                                     range.or_zero ? " or 0" : "", inQuotes(parameter)),
+    return impl_->refuse("wrong-range", said,
                          "the lowest number comes first; 0 stands beside a range that begins above it",
                          messages);
+  }
+  // -inf below and inf above stand for no end; between them there are numbers.
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  if (range.low == kInfinite || range.high == -kInfinite)
+    return impl_->refuse("wrong-range", said, "no number is in it", messages);
+  for (const double end : {range.low, range.high}) {
+    if (std::isfinite(end) && !graph::fitsFloat(end))
+      return impl_->refuse("out-of-range", said, std::string(graph::kFloatHelp), messages);
   }
   ir::Range& to = impl_->graph.parameters[*found].range;
   if (range.or_zero)

@@ -36,6 +36,9 @@ struct Scene::Impl {
 
 struct Shader::Impl : ShaderData {
   Preshader preshader;
+
+  /// Writes the whole of `block`, which has as many bytes as the material's.
+  void pack(const Values& value, std::span<std::byte> block, Messages* messages) const;
 };
 
 /// "empty-handle" where there is nothing behind a handle.

@@ -1,11 +1,16 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "api/internal.h"
 #include "shader/interface.h"
+#include "shader/messages.h"
 #include "shader/module.h"
 #include "shader/options.h"
 #include "shader/print.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -39,18 +44,33 @@ size_t Shader::uniformSize() const {
   return 0;
 }
 
-bool Shader::pack(const Values& value, std::span<std::byte> block) const {
-  const size_t size = uniformSize();
-  if (block.size() < size) return false;
-  std::vector<ir::Components> parameters;
-  for (const ir::Parameter& parameter : impl().module.parameters) {
-    ir::Components components = parameter.value;
-    const std::span<double> numbers(components.data(),
-                                    static_cast<size_t>(ir::componentCount(parameter.type)));
-    parameters.push_back(value && value(parameter.name, numbers) ? components : parameter.value);
+/// The numbers that a parameter is packed with; of the first that is not the one that is given, a warning.
+static ir::Components packedComponents(const ir::Parameter& parameter, const Shader::Values& value,
+                                       Messages* messages) {
+  ir::Components given = parameter.value;
+  const auto count = static_cast<size_t>(ir::componentCount(parameter.type));
+  if (!value || !value(parameter.name, {given.data(), count})) return parameter.value;
+  ir::Components packed = parameter.value;
+  for (size_t c = 0; c < count; ++c) {
+    packed[c] = packedNumber(parameter, given[c], parameter.value[c]);
+    if (packed[c] == given[c] || messages == nullptr) continue;
+    const bool number = !std::isnan(given[c]);
+    const std::string what = fmt::format("'{}' is given {}", printable(parameter.name), given[c]);
+    const std::string help =
+        number ? fmt::format("it takes {}: {} is packed", packedRangeText(parameter), packed[c])
+               : fmt::format("{} is packed, as if it were not given", packed[c]);
+    messages->push_back(toMessage(
+        {number ? "out-of-range" : "not-a-number", Severity::Warning, {}, what, help, {}}));
+    messages = nullptr;
   }
-  std::fill_n(block.begin(), size, std::byte{0});
-  const Preshader& preshader = impl().preshader;
+  return packed;
+}
+
+void Shader::Impl::pack(const Values& value, std::span<std::byte> block, Messages* messages) const {
+  std::vector<ir::Components> parameters;
+  for (const ir::Parameter& parameter : module.parameters)
+    parameters.push_back(packedComponents(parameter, value, messages));
+  std::fill(block.begin(), block.end(), std::byte{0});
   const std::vector<ir::Components> values =
       preshader.evaluate([&](uint32_t i) -> const ir::Components& { return parameters[i]; });
   for (size_t i = 0; i < values.size(); ++i) {
@@ -60,6 +80,25 @@ bool Shader::pack(const Values& value, std::span<std::byte> block) const {
       std::memcpy(block.data() + field.offset + size_t{4} * static_cast<size_t>(c), &x, 4);
     }
   }
+}
+
+bool Shader::pack(const Values& value, std::span<std::byte> block) const {
+  const size_t size = uniformSize();
+  if (block.size() < size) return false;
+  impl().pack(value, block.first(size), nullptr);
+  return true;
+}
+
+bool Shader::pack(const Values& value, std::span<std::byte> block, Messages& messages) const {
+  const size_t size = uniformSize();
+  if (block.size() < size) {
+    report(fail("block-too-small", {}, fmt::format("the block has {} bytes", block.size()),
+                fmt::format("it takes {}", size))
+               .value(),
+           {}, messages);
+    return false;
+  }
+  impl().pack(value, block.first(size), &messages);
   return true;
 }
 

@@ -54,14 +54,8 @@ size_t lacquer_shader_uniform_size(const lacquer_shader* shader) { return shader
 
 int lacquer_shader_pack(const lacquer_shader* shader, const lacquer_value* values, size_t count, void* block,
                         size_t capacity, lacquer_messages* messages) {
-  return guarded(messages, 0, [&](Messages&) {
+  return guarded(messages, 0, [&](Messages& to) {
     if (shader == nullptr) return sayError(messages, "empty-handle", "the shader is empty", ""), 0;
-    const size_t size = shader->shader.uniformSize();
-    if (capacity < size || (block == nullptr && size > 0)) {
-      sayError(messages, "block-too-small", fmt::format("the block has {} bytes", capacity),
-               fmt::format("it takes {}", size));
-      return 0;
-    }
     const std::span<const lacquer_value> given(values, values == nullptr ? 0 : count);
     bool good = true;
     const auto find = [&](std::string_view name, std::span<double> components) {
@@ -79,8 +73,9 @@ int lacquer_shader_pack(const lacquer_shader* shader, const lacquer_value* value
       std::copy_n(it->numbers, it->count, components.begin());
       return true;
     };
-    std::vector<std::byte> packed(size);
-    shader->shader.pack(find, packed);
+    // Beside the caller's block, which stays as it is where something is wrong.
+    std::vector<std::byte> packed(block == nullptr ? 0 : std::min(capacity, shader->shader.uniformSize()));
+    good = shader->shader.pack(find, packed, to) && good;
     if (good) std::copy(packed.begin(), packed.end(), static_cast<std::byte*>(block));
     return good ? 1 : 0;
   });

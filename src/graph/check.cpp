@@ -32,10 +32,6 @@ using lang::Ties;
 constexpr size_t kLast = std::numeric_limits<size_t>::max();
 
 /// A name from the graph as it stands in a message.
-/// Shaders compute with 32-bit floats: in one a larger number would be infinite.
-bool fitsFloat(double x) { return std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max()); }
-constexpr std::string_view kFloatHelp = "it must fit a 32-bit float: at most about 3.4e38";
-
 std::string inQuotes(std::string_view name) { return "'" + printable(name) + "'"; }
 
 /// The sections of the JSON form, in its order.

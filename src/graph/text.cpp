@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 namespace lacquer::graph {
 
@@ -21,6 +23,8 @@ std::optional<Type> oneOf(std::string_view name, std::initializer_list<Type> typ
 }
 
 }  // namespace
+
+bool fitsFloat(double x) { return std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max()); }
 
 std::optional<Type> valueType(std::string_view name) {
   return oneOf(name, {Type::Float, Type::Vec2, Type::Vec3, Type::Vec4, Type::Bool});

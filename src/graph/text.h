@@ -15,6 +15,11 @@ namespace lacquer::graph {
 std::optional<ir::Type> valueType(std::string_view name);
 std::optional<ir::Type> textureType(std::string_view name);
 
+/// Shaders compute with 32-bit floats: in one a larger number would be infinite. False for what is no number,
+/// too.
+bool fitsFloat(double x);
+inline constexpr std::string_view kFloatHelp = "it must fit a 32-bit float: at most about 3.4e38";
+
 /// Letters, digits and underscores, a letter or an underscore first.
 bool isName(std::string_view text);
 

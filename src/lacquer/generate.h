@@ -90,12 +90,16 @@ public:
   /// Bytes of the material's uniform block, a multiple of 16; 0 when there is none.
   size_t uniformSize() const;
   /// Fills `components`, as many as the parameter of that name has, in which today's value stands; false
-  /// keeps that. It is called by pack() alone, on its thread, once for each parameter. It may throw. Numbers
-  /// are taken as they are: for those outside of a parameter's range nothing holds of the shader's colours.
+  /// keeps that. It is called by pack() alone, on its thread, once for each parameter. It may throw.
   using Values = std::function<bool(std::string_view name, std::span<double> components)>;
   /// The preshader: material values in, the first uniformSize() bytes of `block` out, for any alignment.
-  /// Without `value` all parameters have today's. False, and nothing written, when `block` is smaller.
+  /// Without `value` all parameters have today's. A number outside of its parameter's range is packed as the
+  /// nearest one in it, NaN as if it were not given, and no field of the block is infinite or NaN
+  /// (docs/parameters.md). False, and nothing written, when `block` is smaller.
   bool pack(const Values& value, std::span<std::byte> block) const;
+  /// The same, and what is packed otherwise than it is given is said: the warnings "out-of-range" and
+  /// "not-a-number", at most one for each parameter. The error "block-too-small".
+  bool pack(const Values& value, std::span<std::byte> block, Messages& messages) const;
 
 private:
   friend class Graph;

@@ -62,10 +62,12 @@ public:
   /// The same for a port of the template.
   bool setOutput(const std::string& port, std::string_view source, Messages& messages);
   /// Adds an editable number of 1 to 4 components, with an unbounded range, or changes the value of the one
-  /// of that name; a bool is 0 or 1. "wrong-count" for another number of components than it has.
+  /// of that name; a bool is 0 or 1. "wrong-count" for another number of components than it has, "not-finite"
+  /// for an infinite one and NaN, "out-of-range" for one that fits no 32-bit float.
   bool setParameter(const std::string& name, const std::vector<double>& value, Messages& messages);
   /// Changes what a parameter may be; check() refuses values outside. "no-such-parameter"; "wrong-range" for
-  /// a range that holds no number, and for `or_zero` where `low` is not above 0.
+  /// a range that holds no number, and for `or_zero` where `low` is not above 0; "out-of-range" for a finite
+  /// end that fits no 32-bit float.
   bool setRange(const std::string& parameter, const Range& range, Messages& messages);
 
   /// Everything that generation relies on: types, ranges, names, cycles. True when there is no error. Of the

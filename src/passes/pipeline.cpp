@@ -74,6 +74,7 @@ std::string contentAddress(const ir::Module& module) {
     const ir::Parameter& p = module.parameters[index];
     key += fmt::format("parameter {} {}", p.name, ir::typeName(p.type));
     for (const double x : p.neutral) key += fmt::format(" {}", x);
+    key += fmt::format(" {} {} {}", p.range.lo, p.range.hi, p.range.gap);  // the packers hold to it
     key += fmt::format(" {}\n", p.constant_id);
   }
   for (const ir::Varying& varying : module.varyings) key += fmt::format("varying {}\n", varying.name);

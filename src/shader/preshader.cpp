@@ -1,14 +1,31 @@
 #include "shader/preshader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "ir/fold.h"
+#include "targets/packer.h"
 
 namespace lacquer {
 
 using ir::Components;
 using ir::Op;
+
+double packedNumber(const ir::Parameter& parameter, double x, double otherwise) {
+  if (std::isnan(x)) return otherwise;
+  if (parameter.type == ir::Type::Bool) return x != 0 ? 1 : 0;
+  const targets::PackedRange range = targets::packedRange(parameter.range);
+  if (range.or_zero && x == 0) return x;
+  return std::clamp(x, range.low, range.high);
+}
+
+std::string packedRangeText(const ir::Parameter& parameter) {
+  if (parameter.type == ir::Type::Bool) return "0 or 1";
+  const targets::PackedRange range = targets::packedRange(parameter.range);
+  return fmt::format("[{}, {}]{}", range.low, range.high, range.or_zero ? " or 0" : "");
+}
 
 Preshader::Preshader(const ir::Module& module) {
   std::vector<ir::ValueId> roots;
@@ -53,7 +70,8 @@ std::vector<Components> Preshader::evaluate(
   std::vector<Components> out;
   for (const Field& field : fields_) {
     out.push_back(values[field.value]);
-    for (double& x : out.back()) x = std::isfinite(x) && x != 0 ? x : 0;
+    for (double& x : out.back())
+      x = std::isnan(x) || x == 0 ? 0 : std::clamp(x, -targets::kLargestFloat, targets::kLargestFloat);
   }
   return out;
 }

@@ -24,6 +24,12 @@ struct LastEnumerator<ir::Type> {
   static constexpr ir::Type value = ir::Type::Vec4;
 };
 
+/// The number that a parameter is packed with where it is given `x` (docs/parameters.md): the nearest one of
+/// its range that fits a float, and `otherwise` where `x` is no number. Of a bool 0 or 1.
+double packedNumber(const ir::Parameter& parameter, double x, double otherwise);
+/// The numbers that a parameter is packed with: "[0, 1]", "[1, 1e+09] or 0", "0 or 1".
+std::string packedRangeText(const ir::Parameter& parameter);
+
 class Preshader {
 public:
   struct Field {
@@ -40,8 +46,9 @@ public:
   /// In the order of the module's Preshader list.
   const std::vector<Field>& fields() const { return fields_; }
 
-  /// The fields' values, for the parameters' values in the order of Module::parameters. A value that is not
-  /// finite becomes 0; every node's contract excludes that within its ranges.
+  /// The fields' values, for the parameters' values in the order of Module::parameters. All of them fit a
+  /// float: one beyond the largest becomes that, with its sign, and one that is no number becomes 0, as does
+  /// -0. Every node's contract excludes both within its ranges.
   std::vector<ir::Components> evaluate(
       const std::function<const ir::Components&(uint32_t parameter)>& value) const;
 

@@ -3,6 +3,7 @@
 // bytes are the same.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cctype>
@@ -295,7 +296,8 @@ public:
   Header(const ir::Module& module, std::string_view name)
       : module_(module), name_(identifier(name, false)), block_(materialBlock(module)) {
     for (const ir::PreshaderField& field : module.preshader) roots_.push_back(field.value);
-    for (const char* word : {"p", "block", "bytes", "store", "to_float", "pack"}) names_.take(word);
+    for (const char* word : {"p", "block", "bytes", "store", "to_float", "within", "packed", "pack"})
+      names_.take(word);
     for (const uint32_t index : ir::usedParameters(module)) {
       parameters_.push_back(index);
       dialect_.nameParameter(module.parameters[index].name, names_.pick(module.parameters[index].name));
@@ -337,6 +339,11 @@ private:
 
   void doc(std::string_view words) { text_.line(fmt::format("/// {}", words)); }
 
+  static std::string rangeDoc(const ir::Parameter& parameter) {
+    const ir::Range& range = parameter.range;
+    return range == ir::Range{} ? "" : fmt::format("  ///< {}", ir::rangeText(range));
+  }
+
   void parameters() {
     text_.blank();
     doc("What can be edited. The values here are glTF's defaults and belong to no material.");
@@ -347,14 +354,14 @@ private:
       if (p.type == Type::Bool) {
         text_.line(fmt::format("bool {} = {};", memberOf(p), p.neutral[0] != 0));
       } else if (p.type == Type::Float) {
-        text_.line(fmt::format("double {} = {};", memberOf(p), doubleLiteral(p.neutral[0])));
+        text_.line(fmt::format("double {} = {};{}", memberOf(p), doubleLiteral(p.neutral[0]), rangeDoc(p)));
       } else {
         const int width = ir::componentCount(p.type);
         std::string list;
         for (int i = 0; i < width; ++i) {
           list += fmt::format("{}{}", i == 0 ? "" : ", ", doubleLiteral(p.neutral[static_cast<size_t>(i)]));
         }
-        text_.line(fmt::format("double {}[{}] = {{{}}};", memberOf(p), width, list));
+        text_.line(fmt::format("double {}[{}] = {{{}}};{}", memberOf(p), width, list, rangeDoc(p)));
       }
     }
     text_.outdent();
@@ -394,12 +401,74 @@ private:
   void helpers(const Helpers& helpers) {
     text_.blank();
     text_.line("namespace detail {");
-    text_.comment("A value that is not finite becomes 0, and so does -0.");
-    text_.line(
-        "inline float to_float(double x) { return std::isfinite(x) && x != 0 ? static_cast<float>(x) : 0.0f; "
-        "}");
+    text_.comment("A number outside of a range counts as the nearest one in it.");
+    text_.line("inline double within(double x, double low, double high, double otherwise) {");
+    text_.indent();
+    text_.line("return x >= low ? (x <= high ? x : high) : x < low ? low : otherwise;");
+    text_.outdent();
+    text_.line("}");
+    const std::string largest = doubleLiteral(kLargestFloat);
+    text_.comment("A field is as large as a float at most; one that is no number becomes 0, and so does -0.");
+    text_.line("inline float to_float(double x) {");
+    text_.indent();
+    text_.line(fmt::format("return x == 0 ? 0.0f : static_cast<float>(within(x, -{0}, {0}, 0.0));", largest));
+    text_.outdent();
+    text_.line("}");
     helpers.print(text_);
+    packed();
     text_.line("}  // namespace detail");
+  }
+
+  /// A component of a member: "coat_factor", "base_color_factor[2]".
+  std::string componentOf(const ir::Parameter& parameter, int i) const {
+    const std::string& member = memberOf(parameter);
+    return ir::componentCount(parameter.type) == 1 ? member : fmt::format("{}[{}]", member, i);
+  }
+
+  /// The parameters as they are packed.
+  void packed() {
+    text_.line("inline Parameters packed(Parameters p) {");
+    text_.indent();
+    for (const uint32_t index : parameters_) {
+      const ir::Parameter& p = module_.parameters[index];
+      if (p.type == Type::Bool) continue;
+      const PackedRange range = packedRange(p.range);
+      for (int i = 0; i < ir::componentCount(p.type); ++i) {
+        const std::string component = componentOf(p, i);
+        text_.line(fmt::format("{0}p.{1} = within(p.{1}, {2}, {3}, {4});",
+                               range.or_zero ? fmt::format("if (p.{} != 0) ", component) : "", component,
+                               doubleLiteral(range.low), doubleLiteral(range.high),
+                               doubleLiteral(p.neutral[static_cast<size_t>(i)])));
+      }
+    }
+    text_.line("return p;");
+    text_.outdent();
+    text_.line("}");
+  }
+
+  void outside() {
+    text_.blank();
+    doc("The first parameter that is packed otherwise than it is given, for it is outside of its range or NaN; "
+        "null for none.");
+    const auto isNumber = [&](uint32_t index) { return module_.parameters[index].type != Type::Bool; };
+    if (block_ == nullptr || std::none_of(parameters_.begin(), parameters_.end(), isNumber))
+      return text_.line("inline const char* outside(const Parameters&) { return nullptr; }");
+    text_.line("inline const char* outside(const Parameters& given) {");
+    text_.indent();
+    text_.line("const Parameters p = detail::packed(given);");
+    for (const uint32_t index : parameters_) {
+      if (!isNumber(index)) continue;
+      const ir::Parameter& p = module_.parameters[index];
+      std::string differs;
+      for (int i = 0; i < ir::componentCount(p.type); ++i) {
+        const std::string component = componentOf(p, i);
+        differs += fmt::format("{0}p.{1} != given.{1}", i == 0 ? "" : " || ", component);
+      }
+      text_.line(fmt::format("if ({}) return \"{}\";", differs, p.name));
+    }
+    text_.line("return nullptr;");
+    text_.outdent();
+    text_.line("}");
   }
 
   void pack() {
@@ -409,19 +478,23 @@ private:
       text_.blank();
       doc("There is no block: nothing is written.");
       text_.line("inline void pack(const Parameters&, void*) {}");
-      return;
+      return outside();
     }
     Helpers needed(dialect_, module_, ir::reachable(module_.dag, roots_));
     helpers(needed);
     std::vector<std::string> taken = needed.names();
-    for (const char* word : {"p", "block", "store", "to_float", "pack"}) taken.emplace_back(word);
+    for (const char* word : {"given", "p", "block", "store", "to_float", "within", "packed", "pack"})
+      taken.emplace_back(word);
     for (const uint32_t index : parameters_) taken.push_back(memberOf(module_.parameters[index]));
     const schedule::Program program = schedule::schedulePreshader(module_, taken);
     text_.blank();
-    doc("The block for these parameters.");
-    text_.line("inline Block pack(const Parameters& p) {");
+    doc("The block for these parameters. A number outside of its parameter's range is packed as the nearest one "
+        "in it,");
+    doc("NaN as the default.");
+    text_.line("inline Block pack(const Parameters& given) {");
     text_.indent();
     text_.line("using namespace detail;");
+    text_.line("const Parameters p = packed(given);");
     for (const uint32_t index : parameters_) {
       const ir::Parameter& p = module_.parameters[index];
       if (!ir::isFloatVector(p.type)) continue;
@@ -439,6 +512,7 @@ private:
     text_.line("std::memcpy(bytes, &block, sizeof block);");
     text_.outdent();
     text_.line("}");
+    outside();
   }
 
   void assignments(const schedule::Program& program) {

@@ -34,7 +34,7 @@ constexpr std::array kTaken = {
     "NaN", "Math", "Number", "Object", "DataView", "Uint8Array", "RangeError",
     // the module's own
     "id", "defaults", "blockSize", "fields", "blocks", "textures", "pack", "parameters", "bytes", "view",
-    "put", "p"};
+    "put", "p", "within", "truth", "packed", "given", "outside"};
 
 /// A number: the shortest text that reads back as the same.
 Expression numberLiteral(double x) {
@@ -287,13 +287,15 @@ public:
     text_.line(fmt::format("export declare const blockSize: {};", size()));
     fieldTypes();
     text_.blank();
-    doc("Writes the block to the first blockSize bytes of `bytes`, which it returns. What `parameters` does "
-        "not\n"
-        "name has its default. Throws a RangeError where there are fewer bytes.");
+    packDoc();
     text_.line(
         "export declare function pack<T extends ArrayBufferView = Uint8Array>(parameters?: "
         "Partial<Parameters>, "
         "bytes?: T): T;");
+    text_.blank();
+    doc("The names of the parameters that are packed otherwise than they are given, for they are outside of\n"
+        "their ranges or no numbers.");
+    text_.line("export declare function outside(parameters?: Partial<Parameters>): (keyof Parameters)[];");
     bindingTypes();
     return text_.take();
   }
@@ -307,10 +309,13 @@ private:
   }
 
   void doc(std::string_view words) {
-    const size_t end = words.find('\n');
-    if (end == std::string_view::npos) return text_.line(fmt::format("/** {} */", words));
-    text_.line(fmt::format("/** {}", words.substr(0, end)));
-    text_.line(fmt::format(" *  {} */", words.substr(end + 1)));
+    std::string_view open = "/** ";
+    for (size_t end = words.find('\n'); end != std::string_view::npos; end = words.find('\n')) {
+      text_.line(fmt::format("{}{}", open, words.substr(0, end)));
+      words.remove_prefix(end + 1);
+      open = " *  ";
+    }
+    text_.line(fmt::format("{}{} */", open, words));
   }
 
   uint32_t size() const { return block_ == nullptr ? 0 : block_->size; }
@@ -355,7 +360,8 @@ private:
     text_.blank();
     if (block_ == nullptr) {
       doc("There is no block: nothing is written.");
-      return text_.line("export function pack(parameters = {}, bytes = new Uint8Array(0)) { return bytes; }");
+      text_.line("export function pack(parameters = {}, bytes = new Uint8Array(0)) { return bytes; }");
+      return outside();
     }
     const schedule::Program program = schedule::schedulePreshader(module_, {});
     Scalars scalars(module_, program);
@@ -364,18 +370,19 @@ private:
       for (int k = 0; k < ir::info(op).arity; ++k) list += fmt::format("{}{}", k == 0 ? "" : ", ", "abc"[k]);
       text_.line(fmt::format("const {} = ({}) => {};", ir::info(op).glsl, list, meaning(op)));
     }
-    if (!scalars.helpers().empty()) text_.blank();
-    doc("Writes the block to the first blockSize bytes of `bytes`, which it returns. What `parameters` does "
-        "not\n"
-        "name has its default. Throws a RangeError where there are fewer bytes.");
+    packed();
+    text_.blank();
+    packDoc();
     text_.line("export function pack(parameters = {}, bytes = new Uint8Array(blockSize)) {");
     text_.indent();
     text_.line(
         "if (bytes.byteLength < blockSize) throw new RangeError(`the block takes ${blockSize} bytes`);");
-    text_.line("const p = { ...defaults, ...parameters };");
+    text_.line("const p = packed({ ...defaults, ...parameters });");
     text_.line("const view = new DataView(bytes.buffer, bytes.byteOffset, blockSize);");
-    text_.comment("A value that is not finite becomes 0, and so does -0.");
-    text_.line("const put = (at, x) => view.setFloat32(at, Number.isFinite(x) && x !== 0 ? x : 0, true);");
+    text_.comment("A field is as large as a float at most; one that is no number becomes 0, and so does -0.");
+    text_.line(fmt::format(
+        "const put = (at, x) => view.setFloat32(at, x === 0 ? 0 : within(x, -{0}, {0}, 0), true);",
+        numberLiteral(kLargestFloat).text));
     text_.line("new Uint8Array(bytes.buffer, bytes.byteOffset, blockSize).fill(0);");
     scalars.print(text_);
     for (const ir::PreshaderField& p : module_.preshader) {
@@ -385,6 +392,64 @@ private:
         text_.line(fmt::format("put({}, {});", field.offset + 4 * i, parts[i]));
     }
     text_.line("return bytes;");
+    text_.outdent();
+    text_.line("}");
+    outside();
+  }
+
+  void packDoc() {
+    doc("Writes the block to the first blockSize bytes of `bytes`, which it returns. What `parameters` does not\n"
+        "name has its default, and so has what is no number; one outside of its parameter's range is packed as\n"
+        "the nearest in it. Throws a RangeError where there are fewer bytes.");
+  }
+
+  /// Of a parameter that is given as `given`, what is packed.
+  static std::string packedText(const ir::Parameter& p, const std::string& given, int i) {
+    const std::string otherwise = numberLiteral(p.neutral[static_cast<size_t>(i)]).text;
+    if (p.type == Type::Bool) return fmt::format("truth({}, {})", given, p.neutral[0] != 0);
+    const PackedRange range = packedRange(p.range);
+    const std::string within = fmt::format("within({}, {}, {}, {})", given, numberLiteral(range.low).text,
+                                           numberLiteral(range.high).text, otherwise);
+    return range.or_zero ? fmt::format("{} === 0 ? 0 : {}", given, within) : within;
+  }
+
+  void packed() {
+    const auto isTruth = [&](uint32_t index) { return module_.parameters[index].type == Type::Bool; };
+    text_.comment("A number outside of a range counts as the nearest one in it.");
+    text_.line("const within = (x, low, high, otherwise) => (x >= low ? (x <= high ? x : high) : x < low ? low : otherwise);");
+    if (std::any_of(parameters_.begin(), parameters_.end(), isTruth))
+      text_.line("const truth = (x, otherwise) => (x !== x ? otherwise : x !== 0);");
+    text_.comment("The parameters as they are packed.");
+    text_.line("const packed = (given) => ({");
+    text_.indent();
+    for (const uint32_t index : parameters_) {
+      const ir::Parameter& p = module_.parameters[index];
+      const int width = ir::componentCount(p.type);
+      std::string list;
+      for (int i = 0; i < width; ++i) {
+        const std::string from = width == 1 ? fmt::format("Number(given.{})", p.name)
+                                            : fmt::format("Number(Object(given.{})[{}])", p.name, i);
+        list += (i == 0 ? "" : ", ") + packedText(p, from, i);
+      }
+      text_.line(width == 1 ? fmt::format("{}: {},", keyOf(p.name), list)
+                            : fmt::format("{}: [{}],", keyOf(p.name), list));
+    }
+    text_.outdent();
+    text_.line("});");
+  }
+
+  void outside() {
+    text_.blank();
+    doc("The names of the parameters that are packed otherwise than they are given, for they are outside of\n"
+        "their ranges or no numbers.");
+    if (block_ == nullptr) return text_.line("export function outside(parameters = {}) { return []; }");
+    text_.line("export function outside(parameters = {}) {");
+    text_.indent();
+    text_.line("const given = { ...defaults, ...parameters };");
+    text_.line("const p = packed(given);");
+    text_.line("return Object.keys(p).filter((name) => Array.isArray(p[name])");
+    text_.line("    ? p[name].some((x, i) => x !== Object(given[name])[i])");
+    text_.line("    : Number(p[name]) !== Number(given[name]));");
     text_.outdent();
     text_.line("}");
   }

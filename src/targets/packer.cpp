@@ -21,6 +21,11 @@ bool isStandard(Op op) { return foldText(op).starts_with("std::"); }
 
 bool isOperator(Op op) { return std::isalpha(static_cast<unsigned char>(ir::info(op).glsl.front())) == 0; }
 
+PackedRange packedRange(const ir::Range& range) {
+  const double low = range.gap > 0 ? range.gap : range.lo;
+  return {std::max(low, -kLargestFloat), std::min(range.hi, kLargestFloat), range.gap > 0};
+}
+
 const ir::Block* materialBlock(const ir::Module& module) {
   const auto it = std::find_if(module.blocks.begin(), module.blocks.end(),
                                [](const ir::Block& block) { return block.role == ir::BlockRole::Material; });

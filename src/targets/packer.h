@@ -1,6 +1,7 @@
 // What the targets share that write no stage but pack the material's block: cpp, js.
 #pragma once
 
+#include <limits>
 #include <string_view>
 
 #include "ir/module.h"
@@ -14,6 +15,16 @@ std::string_view foldText(ir::Op op);
 bool isStandard(ir::Op op);
 /// True when the op stands before or between its operands.
 bool isOperator(ir::Op op);
+
+/// The largest number that a block holds.
+inline constexpr double kLargestFloat = std::numeric_limits<float>::max();
+
+/// The numbers that a parameter is packed with: its range, as far as floats go.
+struct PackedRange {
+  double low, high;
+  bool or_zero;  ///< 0 is one of them although `low` is above it
+};
+PackedRange packedRange(const ir::Range& range);
 
 /// The block that is packed; null where there is none.
 const ir::Block* materialBlock(const ir::Module& module);

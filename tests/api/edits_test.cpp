@@ -1,10 +1,15 @@
 // Edits of a graph: what fails says why and leaves the graph as it was.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "inputs.h"
 
 namespace lacquer::test {
 namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 TEST(Edits, thatFailSayWhyAndChangeNothing) {
   Graph graph = paintGraph();
@@ -43,6 +48,28 @@ TEST(Edits, thatFailSayWhyAndChangeNothing) {
       {"wrong-range",
        [&](Messages& m) {
          return graph.setRange("metallic_factor", {0, 1, true}, m);
+       }},
+      {"not-finite", [&](Messages& m) { return graph.setParameter("metallic_factor", {std::nan("")}, m); }},
+      {"not-finite",
+       [&](Messages& m) {
+         return graph.setParameter("fresh", {0, kInfinite}, m);
+       }},
+      {"out-of-range", [&](Messages& m) { return graph.setParameter("fresh", {1e39}, m); }},
+      {"wrong-range",
+       [&](Messages& m) {
+         return graph.setRange("metallic_factor", {kInfinite, kInfinite}, m);
+       }},
+      {"wrong-range",
+       [&](Messages& m) {
+         return graph.setRange("metallic_factor", {-kInfinite, -kInfinite}, m);
+       }},
+      {"wrong-range",
+       [&](Messages& m) {
+         return graph.setRange("metallic_factor", {std::nan(""), 1}, m);
+       }},
+      {"out-of-range",
+       [&](Messages& m) {
+         return graph.setRange("metallic_factor", {0, 1e39}, m);
        }},
   };
   for (const Edit& edit : kEdits) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -195,6 +196,28 @@ TEST_F(CCalls, packTakesValuesByName) {
   EXPECT_EQ(lacquer_shader_pack(shader.get(), nullptr, 0, changed.data(), size - 1, messages_), 0);
   EXPECT_EQ(lacquer_shader_pack(shader.get(), nullptr, 0, nullptr, size, messages_), 0);
   EXPECT_EQ(messages_.takeCodes(), "wrong-count, block-too-small, block-too-small");
+}
+
+TEST_F(CCalls, packSaysWhatItDoesNotTake) {
+  const CGraph graph = graphOf(0);
+  const CShader shader(lacquer_graph_generate(graph.get(), options_.get(), messages_));
+  const size_t size = lacquer_shader_uniform_size(shader.get());
+  const auto packed = [&](double roughness) {
+    std::vector<uint8_t> block(size);
+    const lacquer_value value{"coat_roughness_factor", &roughness, 1};
+    EXPECT_EQ(lacquer_shader_pack(shader.get(), &value, 1, block.data(), size, messages_), 1);
+    return block;
+  };
+  const std::vector<uint8_t> roughest = packed(1);
+  EXPECT_EQ(messages_.takeCodes(), "");
+  EXPECT_EQ(packed(1e300), roughest);
+  EXPECT_EQ(packed(std::numeric_limits<double>::infinity()), roughest);
+  EXPECT_EQ(packed(1.5), roughest);
+  EXPECT_EQ(messages_.takeCodes(), "out-of-range, out-of-range, out-of-range");
+  std::vector<uint8_t> todays(size);
+  EXPECT_EQ(lacquer_shader_pack(shader.get(), nullptr, 0, todays.data(), size, messages_), 1);
+  EXPECT_EQ(packed(std::nan("")), todays);
+  EXPECT_EQ(messages_.takeCodes(), "not-a-number");
 }
 
 TEST_F(CCalls, aMaterialIsEvaluatedAndDrawn) {

@@ -25,7 +25,9 @@ TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
       &Graph::check, &Graph::generate, &Graph::dump, &Graph::prove);
   all(&Shader::id, &Shader::hasVertexStage, &Shader::vertexText, &Shader::fragmentText, &Shader::vertexSpirv,
       &Shader::fragmentSpirv, &Shader::headerText, &Shader::interfaceJson, &Shader::uniformSize,
-      &Shader::pack);
+      static_cast<bool (Shader::*)(const Shader::Values&, std::span<std::byte>) const>(&Shader::pack),
+      static_cast<bool (Shader::*)(const Shader::Values&, std::span<std::byte>, Messages&) const>(
+          &Shader::pack));
   all(&generate, &generateGraphs, &plan, &merge);
   all(static_cast<std::string (*)(const Scene&, size_t, const std::string&, Engine, const Strings&,
                                   const Options&, Messages&)>(&evaluate),

@@ -29,7 +29,8 @@ std::string functionText(const HeaderCase& one, size_t index) {
   }
   text += fmt::format("  unsigned char bytes[{}::kBlockSize + 1];\n  bytes[{}::kBlockSize] = 0x5a;\n", space,
                       space);
-  text += fmt::format("  {0}::pack(p, bytes);\n  show(bytes, {0}::kBlockSize);\n}}\n", space);
+  text += fmt::format(
+      "  (void){0}::outside(p);\n  {0}::pack(p, bytes);\n  show(bytes, {0}::kBlockSize);\n}}\n", space);
   return text;
 }
 

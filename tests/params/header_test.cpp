@@ -25,8 +25,10 @@ TEST(Header, BytesOfTheExamplesAreTheLibrarys) {
     // Materials that share a shader share its header, whatever their numbers are.
     EXPECT_EQ(cases[it->second].text, shader.headerText());
     const Json parameters = Json::parse(graph.toJson())["parameters"];
-    for (int row = 0; row < 20; ++row) {
-      const Numbers numbers = row == 0 ? valuesOf(parameters) : randomValues(parameters, random);
+    for (int row = 0; row < 30; ++row) {
+      const Numbers numbers = row == 0   ? valuesOf(parameters)
+                              : row < 20 ? randomValues(parameters, random)
+                                         : outsideValues(parameters, random);
       cases[it->second].rows.push_back(numbers);
       expected[it->second].push_back(packedByLibrary(shader, numbers));
     }

@@ -31,6 +31,9 @@ struct ModuleCase {
   std::vector<std::string> expected;  ///< bytes, row by row
 };
 
+/// JSON has no infinities.
+Json numberOf(double x) { return std::isfinite(x) ? Json(x) : Json(x > 0 ? "Infinity" : "-Infinity"); }
+
 /// A row as an object: vectors as arrays, truths as truths.
 Json objectOf(const Numbers& numbers, const std::set<std::string>& truths) {
   Json object = Json::object();
@@ -38,9 +41,9 @@ Json objectOf(const Numbers& numbers, const std::set<std::string>& truths) {
     if (truths.contains(name)) {
       object[name] = values[0] != 0;
     } else if (values.size() == 1) {
-      object[name] = values[0];
+      object[name] = numberOf(values[0]);
     } else {
-      object[name] = values;
+      for (const double x : values) object[name].push_back(numberOf(x));
     }
   }
   return object;
@@ -50,7 +53,9 @@ Json objectOf(const Numbers& numbers, const std::set<std::string>& truths) {
 constexpr const char* kProgram = R"(import { readFileSync } from "node:fs";
 for (const one of JSON.parse(readFileSync("cases.json", "utf8"))) {
   const module = await import(`./${one.id}.js`);
-  for (const row of one.rows) {
+  const read = (x) => Array.isArray(x) ? x.map(read) : typeof x === "string" ? Number(x) : x;
+  for (const written of one.rows) {
+    const row = Object.fromEntries(Object.entries(written).map(([name, x]) => [name, read(x)]));
     const all = new Uint8Array(module.blockSize + 2).fill(0x5a);
     const bytes = all.subarray(1, module.blockSize + 1);
     if (module.pack(row, bytes) !== bytes) throw new Error("pack returns what it was given");
@@ -111,7 +116,9 @@ std::vector<ModuleCase> exampleCases(const Options& options, int rows) {
     EXPECT_EQ(one.types, shader.moduleTypes());
     const Json parameters = Json::parse(graph.toJson())["parameters"];
     for (int row = 0; row < rows; ++row) {
-      one.rows.push_back(row == 0 ? valuesOf(parameters) : randomValues(parameters, random));
+      one.rows.push_back(row == 0       ? valuesOf(parameters)
+                         : row % 3 != 0 ? randomValues(parameters, random)
+                                        : outsideValues(parameters, random));
       one.expected.push_back(packedByLibrary(shader, one.rows.back()));
     }
   });
@@ -192,6 +199,13 @@ TEST(Module, TheRestOfItIsWhatTheTypesSay) {
   const m = await import(`./${id}.mjs`);
   assert(m.id === id);
   assert.deepEqual(m.pack(), m.pack(m.defaults));
+  assert.deepEqual(m.outside(m.defaults), []);
+  for (const name of Object.keys(m.defaults).filter((name) => typeof m.defaults[name] === "number")) {
+    assert.deepEqual(m.pack({ [name]: NaN }), m.pack());
+    assert.deepEqual(m.pack({ [name]: "text" }), m.pack());
+    assert.deepEqual(m.outside({ [name]: NaN }), [name]);
+    assert.deepEqual(m.outside({ [name]: -1e39 }), [name]);
+  }
   assert.throws(() => m.pack({}, new Uint8Array(m.blockSize - 1)), RangeError);
   for (const { offset, components } of Object.values(m.fields)) assert(offset + 4 * components <= m.blockSize);
   for (const list of [m.blocks, m.textures]) {
@@ -209,9 +223,11 @@ TEST(Module, TheRestOfItIsWhatTheTypesSay) {
     ASSERT_TRUE(std::getline(lines, line));
     const Json names = Json::parse(line);
     for (const Json& name : names["exports"]) {
-      const bool function = name == "pack";
-      const std::string declared = fmt::format("export declare {} {}{}", function ? "function" : "const",
-                                               name.get<std::string>(), function ? "<" : ":");
+      const auto exported = name.get<std::string>();
+      const std::string declared = exported == "pack" ? "export declare function pack<"
+                                   : exported == "outside"
+                                       ? "export declare function outside("
+                                       : fmt::format("export declare const {}:", exported);
       EXPECT_NE(one.types.find(declared), std::string::npos) << declared << "\n" << one.types;
     }
     for (const Json& name : names["defaults"])

@@ -199,6 +199,21 @@ Numbers randomValues(const Json& parameters, std::mt19937& random) {
   return numbers;
 }
 
+Numbers outsideValues(const Json& parameters, std::mt19937& random) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  Numbers numbers = valuesOf(parameters);
+  for (auto& [name, components] : numbers) {
+    const Json range = parameters[name].value("range", Json::array({nullptr, nullptr}));
+    const auto end = [&](size_t i, double open) {
+      return range[i].is_number() ? range[i].get<double>() : open;
+    };
+    const double kinds[] = {end(0, -1) - 1, end(1, 1) + 1, 0.5,       3.5e38,    -3.5e38,
+                            1e308,          -1e308,        kInfinite, -kInfinite};
+    for (double& x : components) x = kinds[random() % std::size(kinds)];
+  }
+  return numbers;
+}
+
 std::string hexOf(const std::vector<uint8_t>& bytes) {
   std::string text;
   for (const uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
@@ -215,6 +230,11 @@ std::string packedByLibrary(const Shader& shader, const Numbers& numbers) {
       },
       std::as_writable_bytes(std::span(bytes)));
   EXPECT_TRUE(packed);
+  for (size_t at = 0; at + 4 <= bytes.size(); at += 4) {
+    float x = 0;
+    std::memcpy(&x, bytes.data() + at, 4);
+    EXPECT_TRUE(std::isfinite(x)) << shader.id() << " at " << at;
+  }
   return hexOf(bytes);
 }
 

@@ -28,9 +28,12 @@ Numbers valuesOf(const nlohmann::json& parameters);
 /// Numbers in the ranges, and at their ends.
 Numbers randomValues(const nlohmann::json& parameters, std::mt19937& random);
 
+/// Numbers outside of the ranges, some of which no float holds, and infinities.
+Numbers outsideValues(const nlohmann::json& parameters, std::mt19937& random);
+
 /// Bytes in hexadecimal.
 std::string hexOf(const std::vector<uint8_t>& bytes);
-/// The block of Shader::pack(), in hexadecimal.
+/// The block of Shader::pack(), in hexadecimal. All of it is finite, or the test fails.
 std::string packedByLibrary(const Shader& shader, const Numbers& numbers);
 
 /// A placed module of nothing but a preshader: so many operations on every type, each of `ops` in turn, with
