@@ -2,6 +2,7 @@
 //   node build.mjs WASM OUTPUT EXAMPLES
 import { build } from 'esbuild';
 import { execFileSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -50,6 +51,15 @@ function errors() {
   return { gpu, nodes: Object.fromEntries(Object.entries(nodes).map(([name, of]) => [name, bodies(of)])) };
 }
 
+/** The page runs this script and has this style, decodes pictures that it was given, and asks nobody for anything. */
+function policy(script, style) {
+  const hash = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+  return [
+    "default-src 'none'", `script-src ${hash(script)} 'wasm-unsafe-eval'`, `style-src ${hash(style)}`, 'img-src data: blob:',
+    "base-uri 'none'", "form-action 'none'",
+  ].join('; ');
+}
+
 async function makePage() {
   const bundle = await build({
     entryPoints: [join(here, 'page/main.ts')], bundle: true, format: 'esm', target: 'es2022', minify: true, write: false,
@@ -57,12 +67,15 @@ async function makePage() {
   });
   const inScript = (text) => text.replace(/<\/script/gi, '<\\/script');
   const samples = readdirSync(examples).filter((name) => name.endsWith('.gltf')).sort().map((name) => embedded(join(examples, name)));
+  const style = readFileSync(join(here, 'page/style.css'), 'utf8');
+  const script = inScript(bundle.outputFiles[0].text);
   const parts = {
-    '/*style*/': readFileSync(join(here, 'page/style.css'), 'utf8'),
+    '<!--policy-->': policy(script, style),
+    '/*style*/': style,
     '<!--samples-->': JSON.stringify(samples).replace(/</g, '\\u003c'),
     '<!--errors-->': JSON.stringify(errors()).replace(/</g, '\\u003c'),
     '<!--wasm-->': packed,
-    '<!--script-->': inScript(bundle.outputFiles[0].text),
+    '<!--script-->': script,
   };
   let page = readFileSync(join(here, 'page/index.html'), 'utf8');
   for (const [mark, text] of Object.entries(parts)) page = page.replace(mark, () => text);

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import ctypes
 import json
+import operator
+import os
 from ctypes import byref, c_double, c_float, c_size_t, c_uint8
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,6 +65,28 @@ class Error(Exception):
     def __init__(self, messages: List[Message]):
         super().__init__("\n".join(m.text for m in messages if m.level == "error") or "the call failed")
         self.messages = messages
+
+
+def _text(text: str) -> bytes:
+    """UTF-8 for a C string, which would end at a NUL."""
+    if "\0" in text:
+        raise ValueError(f"a NUL stands in {text!r}")
+    return text.encode()
+
+
+def _path(path: Union[str, "os.PathLike[str]"]) -> bytes:
+    name = os.fsencode(path)
+    if b"\0" in name:
+        raise ValueError(f"a NUL stands in {path!r}")
+    return name
+
+
+def _index(index: int) -> int:
+    """An index for a size_t, which would wrap. Whether there is such a material the library says."""
+    number = operator.index(index)
+    if not 0 <= number < _NONE:
+        raise IndexError(f"{number} is no index: they begin at 0")
+    return number
 
 
 def _sized(function: Callable[..., Optional[int]], *arguments: Any) -> str:
@@ -141,7 +165,7 @@ class Shader(_Handle):
 
     def text(self, target: str, stage: str = "fragment") -> str:
         """Empty for a target that was not asked for or that has no text."""
-        return _sized(_lib.lacquer_shader_text, self._at, target.encode(), _STAGES[stage])
+        return _sized(_lib.lacquer_shader_text, self._at, _text(target), _STAGES[stage])
 
     def spirv(self, stage: str = "fragment") -> NDArray[np.uint32]:
         """Words in the machine's byte order; empty when "spirv" was not asked for."""
@@ -165,7 +189,7 @@ class Shader(_Handle):
         rows = (Value * len(values or {}))()
         for row, (name, value) in zip(rows, (values or {}).items()):
             numbers = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
-            row.name = name.encode()
+            row.name = _text(name)
             row.numbers = (c_double * len(numbers))(*numbers)
             row.count = len(numbers)
         size = self.uniform_size
@@ -183,7 +207,7 @@ class Graph(_Handle):
     def from_json(cls, graph: Union[str, Mapping[str, Any]], name: str = "graph.json",
                   messages: Optional[List[Message]] = None) -> "Graph":
         text = (graph if isinstance(graph, str) else json.dumps(dict(graph))).encode()
-        return cls(_calling(None, messages, lambda said, _: _lib.lacquer_graph_read(text, len(text), name.encode(), said)))
+        return cls(_calling(None, messages, lambda said, _: _lib.lacquer_graph_read(text, len(text), _text(name), said)))
 
     def to_text(self) -> str:
         """The JSON form as the program writes it."""
@@ -215,12 +239,12 @@ class Graph(_Handle):
     def set_parameter(self, name: str, value: Numbers, messages: Optional[List[Message]] = None) -> None:
         numbers = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
         array = (c_double * len(numbers))(*numbers)
-        _calling(None, messages, lambda said, _: _lib.lacquer_graph_set_parameter(self._at, name.encode(), array,
+        _calling(None, messages, lambda said, _: _lib.lacquer_graph_set_parameter(self._at, _text(name), array,
                                                                                   len(numbers), said))
 
     def set_range(self, parameter: str, low: float, high: float, or_zero: bool = False,
                   messages: Optional[List[Message]] = None) -> None:
-        _calling(None, messages, lambda said, _: _lib.lacquer_graph_set_range(self._at, parameter.encode(), low, high,
+        _calling(None, messages, lambda said, _: _lib.lacquer_graph_set_range(self._at, _text(parameter), low, high,
                                                                               int(or_zero), said))
 
     def check(self, options: Optional[Options] = None) -> List[Message]:
@@ -237,11 +261,11 @@ class Graph(_Handle):
 
     def dump(self, after: str = "", options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> str:
         """The values of the code with their rates, after a pass; after the last without one."""
-        return _taken(_calling(options, messages, lambda said, how: _lib.lacquer_graph_dump(self._at, after.encode(),
+        return _taken(_calling(options, messages, lambda said, how: _lib.lacquer_graph_dump(self._at, _text(after),
                                                                                            how, said)))
 
     def _edit(self, messages: Optional[List[Message]], function: Callable[..., int], *texts: str) -> None:
-        words = [text.encode() for text in texts]
+        words = [_text(text) for text in texts]
         _calling(None, messages, lambda said, _: function(self._at, *words, said))
 
 
@@ -274,14 +298,14 @@ class Scene(_Handle):
     def load(cls, path: Union[str, Path], options: Optional[Options] = None,
              messages: Optional[List[Message]] = None) -> "Scene":
         """Reads .gltf or .glb; buffers and images need not exist."""
-        name = str(path).encode()
+        name = _path(path)
         return cls(_calling(options, messages, lambda said, how: _lib.lacquer_scene_load(name, how, said)))
 
     @classmethod
     def read(cls, data: bytes, name: str = "scene.gltf", options: Optional[Options] = None,
              messages: Optional[List[Message]] = None) -> "Scene":
         """The same from bytes; `name` stands for the file in messages. Such a scene reads no files."""
-        return cls(_calling(options, messages, lambda said, how: _lib.lacquer_scene_read(data, len(data), name.encode(),
+        return cls(_calling(options, messages, lambda said, how: _lib.lacquer_scene_read(data, len(data), _text(name),
                                                                                         how, said)))
 
     @property
@@ -292,7 +316,7 @@ class Scene(_Handle):
 
     def find(self, name: Optional[str] = None, messages: Optional[List[Message]] = None) -> int:
         """The index of the first material of that name; without one of the only material."""
-        text = None if name is None else name.encode()
+        text = None if name is None else _text(name)
 
         def call(said: int, _: Optional[int]) -> int:
             found = _lib.lacquer_scene_find_material(self._at, text, said)
@@ -302,8 +326,9 @@ class Scene(_Handle):
 
     def uses(self, material: int) -> List[List[str]]:
         """Attributes of the primitives that use a material, each kind once."""
-        bits = [_lib.lacquer_scene_use(self._at, material, i)
-                for i in range(_lib.lacquer_scene_use_count(self._at, material))]
+        index = _index(material)
+        bits = [_lib.lacquer_scene_use(self._at, index, i)
+                for i in range(_lib.lacquer_scene_use_count(self._at, index))]
         return [[name for i, name in enumerate(ATTRIBUTES) if use >> i & 1] for use in bits]
 
     def graph(self, material: int = 0, options: Optional[Options] = None, attributes: Optional[Sequence[str]] = None,
@@ -312,7 +337,7 @@ class Scene(_Handle):
         if attributes is None:
             attributes = next(iter(self.uses(material)), _UNUSED)
         bits = sum(1 << ATTRIBUTES.index(name) for name in attributes)
-        return Graph(_calling(options, messages, lambda said, how: _lib.lacquer_scene_graph(self._at, material, bits, how,
+        return Graph(_calling(options, messages, lambda said, how: _lib.lacquer_scene_graph(self._at, _index(material), bits, how,
                                                                                            said)))
 
     def evaluate(self, material: int, points: Union[Sequence[Mapping[str, Any]], Mapping[str, Any]],
@@ -321,7 +346,7 @@ class Scene(_Handle):
         """Linear colours at points (docs/eval.md), whose values may be arrays."""
         text = json.dumps(points, default=_plain).encode()
         answer = json.loads(_taken(_calling(options, messages, lambda said, how: _lib.lacquer_scene_evaluate(
-            self._at, material, text, len(text), _ENGINES[engine], how, said))))
+            self._at, _index(material), text, len(text), _ENGINES[engine], how, said))))
         rgba = np.array(answer["rgba"], dtype=np.float64).reshape(-1, 4)
         discarded = np.array(answer.get("discarded", [False] * len(rgba)), dtype=bool)
         return Evaluation(answer["material"], answer["engine"], answer["profile"], rgba, discarded)
@@ -331,7 +356,7 @@ class Scene(_Handle):
         """A lit ball: `pixels` rows of `pixels` by 3, sRGB; from 16 to 2048 pixels."""
         picture = np.zeros((pixels, pixels, 3), dtype=np.uint8)
         at = picture.ctypes.data_as(ctypes.POINTER(c_uint8))
-        _calling(options, messages, lambda said, how: _lib.lacquer_scene_preview(self._at, material, pixels, at,
+        _calling(options, messages, lambda said, how: _lib.lacquer_scene_preview(self._at, _index(material), pixels, at,
                                                                                 picture.size, how, said))
         return picture
 

@@ -98,6 +98,49 @@ def test_errors_have_the_librarys_messages(coat):
             call()
 
 
+def test_names_are_not_cut():
+    coat = lacquer.Scene.load(ROOT / "examples/coat.gltf")
+    graph = coat.graph(0)
+    for call in (
+        lambda: lacquer.Scene.load(str(ROOT / "examples/coat.gltf") + "\0.txt"),
+        lambda: lacquer.Scene.read(b"{}", "a\0b"),
+        lambda: coat.find("Coat\0"),
+        lambda: graph.set_parameter("coat_factor\0", 1),
+        lambda: graph.set_range("coat_factor\0", 0, 1),
+        lambda: graph.add_node("x\0", "schlick"),
+        lambda: graph.generate({"targets": ["essl"]}).pack({"coat_factor\0x": 1}),
+    ):
+        with pytest.raises(ValueError, match="NUL"):
+            call()
+
+
+def test_indices_do_not_wrap():
+    coat = lacquer.Scene.load(ROOT / "examples/coat.gltf")
+    for call in (coat.graph, coat.uses, coat.preview, lambda i: coat.evaluate(i, [])):
+        for index in (-1, 2**64, 2**64 + 1, -(2**64)):
+            with pytest.raises(IndexError):
+                call(index)
+        with pytest.raises(TypeError):
+            call(0.5)
+
+
+def test_numbers_outside_of_ranges():
+    graph = lacquer.Scene.load(ROOT / "examples/coat.gltf").graph(0)
+    shader = graph.generate({"targets": ["essl"], "validate": False})
+    said = []
+    assert shader.pack({"coat_roughness_factor": 1e300}, said) == shader.pack({"coat_roughness_factor": 1})
+    assert shader.pack({"coat_roughness_factor": float("nan")}, said) == shader.pack()
+    assert [one.code for one in said] == ["out-of-range", "not-a-number"]
+    for call in (
+        lambda: graph.set_parameter("coat_factor", float("nan")),
+        lambda: graph.set_parameter("coat_factor", 1e39),
+        lambda: graph.set_range("coat_factor", float("inf"), float("inf")),
+    ):
+        with pytest.raises(lacquer.Error):
+            call()
+    assert graph.generate({"targets": ["essl"], "validate": False}).uniform_size > 0
+
+
 def test_tables_and_nodes():
     table = lacquer.environment_dfg(16)
     assert table.shape == (16, 16, 2) and (table.sum(axis=2) <= 1.001).all() and table.max() > 0.9

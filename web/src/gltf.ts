@@ -67,19 +67,83 @@ export function openGltf(name: string, bytes: Uint8Array, resources = new Map<st
   return { name, bytes, json, binary, resources };
 }
 
-/** A file, its buffers and its images from where they are; throws where one cannot be had. */
-export async function fetchGltf(url: URL | string): Promise<GltfFile> {
-  const bytesAt = async (at: URL | string) => {
-    const response = await fetch(at);
+/** How far fetchGltf() goes for a file that anyone may have written. */
+export interface FetchLimits {
+  /** Asked of each buffer and image that is not of the file's origin and below its folder; without it none is fetched. */
+  allow?: (url: URL) => boolean;
+  /** Bytes of the file, its buffers and its images together; 2^30 where it is not said. */
+  maxBytes?: number;
+  /** Requests for buffers and images; 512. */
+  maxRequests?: number;
+  /** Milliseconds for all of it; five minutes. */
+  timeout?: number;
+  signal?: AbortSignal;
+}
+
+/** Whether a URL is of the origin of `base` and below its folder, however the server reads escapes. */
+function isBelow(url: URL, base: URL): boolean {
+  const folder = base.pathname.slice(0, base.pathname.lastIndexOf('/') + 1);
+  return base.origin !== 'null' && url.origin === base.origin && url.pathname.startsWith(folder) &&
+    !/%2f|%5c|%00/i.test(url.pathname.slice(folder.length)) && url.username === '' && url.password === '';
+}
+
+/** A response's body; throws where it has more bytes than `take` allows. */
+async function bodyOf(response: Response, take: (size: number) => void): Promise<Uint8Array> {
+  const parts: Uint8Array[] = [];
+  const reader = response.body?.getReader();
+  let size = 0;
+  for (let part = await reader?.read(); part && !part.done; part = await reader?.read()) {
+    take(part.value.length);
+    parts.push(part.value);
+    size += part.value.length;
+  }
+  const bytes = new Uint8Array(size);
+  let at = 0;
+  for (const part of parts) {
+    bytes.set(part, at);
+    at += part.length;
+  }
+  return bytes;
+}
+
+/** A file, its buffers and its images from where they are; throws where one cannot be had, or the limits do not allow it.
+ * Buffers and images are followed nowhere else: a redirect of one is an error. */
+export async function fetchGltf(url: URL | string, limits: FetchLimits = {}): Promise<GltfFile> {
+  const { allow, maxBytes = 2 ** 30, maxRequests = 512, timeout = 300_000, signal } = limits;
+  const stop = new AbortController();
+  const stopWith = () => stop.abort(signal?.reason);
+  const timer = setTimeout(() => stop.abort(new Error(`${url}: it takes more than ${timeout} ms`)), timeout);
+  signal?.addEventListener('abort', stopWith);
+  if (signal?.aborted) stopWith();
+  let left = maxBytes;
+  const bytesAt = async (at: URL | string, redirect: RequestRedirect): Promise<[Uint8Array, string]> => {
+    const response = await fetch(at, { redirect, signal: stop.signal });
     if (!response.ok) throw new Error(`${at}: ${response.status} ${response.statusText}`);
-    return new Uint8Array(await response.arrayBuffer());
+    const bytes = await bodyOf(response, (size) => {
+      left -= size;
+      if (left < 0) throw new Error(`${url}: it has more than ${maxBytes} bytes`);
+    });
+    return [bytes, response.url || String(at)];
   };
-  const file = openGltf(String(url), await bytesAt(url));
-  const uris = [...list(file.json.buffers), ...list(file.json.images)].map((each) => each?.uri);
-  const named = new Set<string>(uris.filter((uri) => uri && typeof uri === 'string' && !uri.startsWith('data:')));
-  const base = new URL(url, globalThis.document?.baseURI);
-  await Promise.all([...named].map(async (uri) => file.resources.set(uri, await bytesAt(new URL(uri, base)))));
-  return file;
+  try {
+    const [bytes, from] = await bytesAt(url, 'follow');
+    const file = openGltf(String(url), bytes);
+    const uris = [...list(file.json.buffers), ...list(file.json.images)].map((each) => each?.uri);
+    const named = [...new Set<string>(uris.filter((uri) => uri && typeof uri === 'string' && !uri.startsWith('data:')))];
+    if (named.length > maxRequests) throw new Error(`${url}: it names more than ${maxRequests} files`);
+    const base = new URL(from, globalThis.document?.baseURI);
+    const targets = named.map((uri) => {
+      const target = URL.canParse(uri, base) ? new URL(uri, base) : null;
+      if (target && (isBelow(target, base) || allow?.(target))) return target;
+      throw new Error(`${uri} is not below the folder of ${url}`);
+    });
+    await Promise.all(named.map(async (uri, i) => file.resources.set(uri, (await bytesAt(targets[i], 'error'))[0])));
+    return file;
+  } finally {
+    stop.abort();  // what is under way has nobody left who waits for it
+    clearTimeout(timer);
+    signal?.removeEventListener('abort', stopWith);
+  }
 }
 
 export function fromBase64(text: string): Uint8Array {

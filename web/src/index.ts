@@ -344,7 +344,7 @@ export class Lacquer {
   /** Reads the JSON form of a graph. */
   graph(json: GraphJson | string, name = 'graph.json', messages: Message[] = []): Graph {
     const text = typeof json === 'string' ? json : JSON.stringify(json);
-    const handle = this.it.withText(text, (at, size) =>
+    const handle = this.it.withBytes(new TextEncoder().encode(text), (at, size) =>
       this.it.withText(name, (named) =>
         calling(this.it, undefined, messages, (said) => this.it.call.lacquer_graph_read(at, size, named, said)),
       ),

@@ -104,15 +104,28 @@ export class Instance {
     }
   }
 
-  /** A text of UTF-8, ended by a NUL. */
+  /** A text of UTF-8, ended by a NUL. A name that holds one would end there: a TypeError. */
   withText<T>(text: string, use: (at: number, size: number) => T): T {
-    return this.withBytes(encoder.encode(text), use);
+    return this.withTexts([text], ([at], size) => use(at, size - 1));
   }
 
-  /** The addresses of all of them. */
-  withTexts<T>(texts: string[], use: (at: number[]) => T, done: number[] = []): T {
-    if (done.length === texts.length) return use(done);
-    return this.withText(texts[done.length], (at) => this.withTexts(texts, use, [...done, at]));
+  /** The addresses of all of them, in one block of `size` bytes. */
+  withTexts<T>(texts: string[], use: (at: number[], size: number) => T): T {
+    const nul = texts.find((text) => text.includes('\0'));
+    if (nul !== undefined) throw new TypeError(`a NUL stands in ${JSON.stringify(nul)}`);
+    const starts: number[] = [];
+    let size = 0;
+    const parts = texts.map((text) => {
+      const part = encoder.encode(text);
+      starts.push(size);
+      size += part.length + 1;
+      return part;
+    });
+    return this.withBytes(size, (at) => {
+      const room = this.bytes(at, size).fill(0);
+      parts.forEach((part, i) => room.set(part, starts[i]));
+      return use(starts.map((start) => at + start), size);
+    });
   }
 
   bytes(at: number, size: number): Uint8Array {

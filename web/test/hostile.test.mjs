@@ -2,6 +2,7 @@
 // rest of the file opens. No browser is needed.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
+import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
@@ -173,6 +174,65 @@ test('what a file names is fetched, whatever else stands among the names', async
   const json = { buffers: [null, 5, { uri: 5 }, { uri: {} }, { uri: 'data:,' }, {}], images: { uri: 'x' } };
   const { resources } = await fetchGltf(`data:model/gltf+json,${JSON.stringify(json)}`);
   assert.equal(resources.size, 0);
+});
+
+/** A server that answers by path, and what it was asked for. */
+async function serving(answers) {
+  const asked = [];
+  const server = createServer((request, response) => {
+    asked.push(request.url);
+    const answer = answers[request.url];
+    if (answer === undefined) response.writeHead(404).end();
+    else if (typeof answer === 'function') answer(response);
+    else response.end(answer);
+  });
+  await new Promise((done) => server.listen(0, '127.0.0.1', done));
+  const close = () => new Promise((done) => { server.closeAllConnections(); server.close(done); });
+  return { at: `http://127.0.0.1:${server.address().port}`, asked, close };
+}
+
+const naming = (...uris) => JSON.stringify({ buffers: uris.map((uri) => ({ uri, byteLength: 1 })) });
+
+test('a file has fetched what is below its folder, and nothing else', async () => {
+  const other = await serving({ '/secret': 'no' });
+  const redirect = (response) => response.writeHead(302, { location: `${other.at}/secret` }).end();
+  const escapes = [
+    '../up.bin', '/up.bin', '//127.0.0.1/up.bin', `${other.at}/secret`, 'file:///etc/passwd', '..%2fup.bin', '%2e%2e/up.bin', '..\\up.bin',
+    'a/../../up.bin', 'http://user@127.0.0.1/up.bin', 'data.bin%00', 'redirect.bin', 'blob:x', 'ftp://127.0.0.1/x', '?', '#',
+  ].filter((uri) => uri.length > 1);
+  const files = { '/up.bin': 'no', '/folder/..%2fup.bin': 'no', '/folder/in.bin': 'yes', '/folder/deep/in.bin': 'yes', '/folder/redirect.bin': redirect };
+  escapes.forEach((uri, i) => { files[`/folder/${i}.gltf`] = naming(uri); });
+  files['/folder/good.gltf'] = naming('in.bin', 'deep/in.bin', 'deep/../in.bin');
+  files['/folder/far.gltf'] = naming('../up.bin', `${other.at}/secret`);
+  const server = await serving(files);
+  for (const [i, uri] of escapes.entries()) await assert.rejects(fetchGltf(`${server.at}/folder/${i}.gltf`), undefined, uri);
+  assert.deepEqual(server.asked.filter((path) => path.includes('up.bin')), []);
+  assert.deepEqual(other.asked, []);
+  const good = await fetchGltf(`${server.at}/folder/good.gltf`);
+  assert.equal(good.resources.size, 3);
+  const far = await fetchGltf(`${server.at}/folder/far.gltf`, { allow: (url) => ['/up.bin', '/secret'].includes(url.pathname) });
+  assert.equal(far.resources.size, 2);
+  await Promise.all([server.close(), other.close()]);
+});
+
+test('what is fetched has an end in bytes, in requests and in time', async () => {
+  const endless = (response) => {
+    const more = () => response.destroyed || response.write(Buffer.alloc(65536), more);
+    more();
+  };
+  const server = await serving({
+    '/endless.gltf': endless, '/of.gltf': naming('endless.bin'), '/endless.bin': endless, '/slow.gltf': () => undefined,
+    '/many.gltf': naming(...Array.from({ length: 600 }, (_, i) => `${i}.bin`)),
+  });
+  await assert.rejects(fetchGltf(`${server.at}/endless.gltf`, { maxBytes: 1e6 }), /more than 1000000 bytes/);
+  await assert.rejects(fetchGltf(`${server.at}/of.gltf`, { maxBytes: 1e6 }), /more than 1000000 bytes/);
+  await assert.rejects(fetchGltf(`${server.at}/many.gltf`), /more than 512 files/);
+  assert.equal(server.asked.filter((path) => /\d+\.bin/.test(path)).length, 0);
+  await assert.rejects(fetchGltf(`${server.at}/slow.gltf`, { timeout: 100 }), /more than 100 ms/);
+  const stop = new AbortController();
+  stop.abort(new Error('enough'));
+  await assert.rejects(fetchGltf(`${server.at}/slow.gltf`, { signal: stop.signal }), /enough/);
+  await server.close();
 });
 
 test('an accessor is read once for all primitives that have it, and not more numbers than fit', () => {

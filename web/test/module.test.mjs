@@ -160,6 +160,31 @@ test('what is wrong is a message of the library', () => {
   assert.ok(library.scene(read('examples/coat.gltf'), 'coat.gltf').graph(0).generate().id);
 });
 
+test('names are not cut at a NUL, and may be many', () => {
+  const scene = library.scene(read('examples/car_paint.gltf'), 'car_paint.gltf');
+  const graph = scene.graph(0, { targets: ['essl'] });
+  const shader = graph.generate({ targets: ['essl'] });
+  for (const call of [
+    () => library.scene('{}', 'a\0b'), () => graph.setParameter('coat_factor\0', 1), () => graph.addNode('x\0', 'schlick'),
+    () => shader.pack({ 'coat_factor\0x': 1 }), () => shader.text('essl\0', 'fragment'), () => scene.find('Car paint\0'),
+  ]) assert.throws(call, { name: 'TypeError', message: /NUL/ });
+  const many = Object.fromEntries(Array.from({ length: 20000 }, (_, i) => [`no_${i}`, i]));
+  assert.deepEqual(shader.pack({ ...many, coat_factor: 0.25 }), shader.pack({ coat_factor: 0.25 }));
+});
+
+test('numbers outside of their ranges are packed as the nearest ones in them', () => {
+  const scene = library.scene(read('examples/car_paint.gltf'), 'car_paint.gltf');
+  const graph = scene.graph(0, { targets: ['essl'] });
+  const shader = graph.generate({ targets: ['essl'] });
+  const said = [];
+  for (const x of [1.5, 1e39, 1e300, Infinity]) assert.deepEqual(shader.pack({ coat_roughness_factor: x }, said), shader.pack({ coat_roughness_factor: 1 }));
+  assert.deepEqual(shader.pack({ coat_roughness_factor: NaN }, said), shader.pack());
+  assert.deepEqual(said.map(({ code }) => code), [...Array(4).fill('out-of-range'), 'not-a-number']);
+  for (const edit of [
+    () => graph.setParameter('coat_factor', NaN), () => graph.setParameter('coat_factor', 1e39), () => graph.setRange('coat_factor', Infinity, Infinity),
+  ]) assert.throws(edit, { name: 'LacquerError' });
+});
+
 test('long sessions take no more memory', () => {
   const bytes = read('examples/car_paint.gltf');
   const once = (value) => {

@@ -439,6 +439,36 @@ test('it opens from a static server, and its tabs from the keyboard', async () =
   }
 });
 
+test('its policy lets it run its own script, and ask nobody for anything', async () => {
+  const asked = [];
+  const stranger = createServer((request, response) => { asked.push(request.url); response.end('x'); });
+  await new Promise((done) => stranger.listen(0, '127.0.0.1', done));
+  const html = join(folder, 'policy.html');
+  lacquer('view', 'examples/coat.gltf', '-o', html, '--page', join(output, 'view.html'), '--no-cost');
+  const browser = await launch();
+  try {
+    const page = await browser.newPage();
+    await page.goto(pathToFileURL(html).href, { timeout: kPatience });
+    await page.waitForSelector('body.ready');
+    const [refused, ran] = await page.evaluate(async (at) => {
+      const list = [];
+      document.addEventListener('securitypolicyviolation', ({ effectiveDirective }) => list.push(effectiveDirective));
+      await fetch(`${at}/fetch`).catch(() => undefined);
+      for (const [tag, attributes] of [['img', { src: `${at}/img` }], ['script', { src: `${at}/script` }], ['script', { textContent: 'window.strange = 1' }],
+        ['iframe', { src: `${at}/frame` }], ['style', { textContent: 'body { color: red }' }]])
+        document.body.append(Object.assign(document.createElement(tag), attributes));
+      await new Promise((done) => setTimeout(done, 500));
+      return [[...new Set(list)].sort(), window.strange];
+    }, `http://127.0.0.1:${stranger.address().port}`);
+    assert.deepEqual(refused, ['connect-src', 'frame-src', 'img-src', 'script-src-elem', 'style-src-elem']);
+    assert.equal(ran, undefined);
+    assert.deepEqual(asked, []);
+  } finally {
+    await browser.close();
+    stranger.close();
+  }
+});
+
 test('a file without materials is seen as the default one, and so is geometry without', () =>
   open(['examples/coat.gltf'], async (page) => {
     const gltf = JSON.parse(read('web/examples/webgl2/triangle.gltf'));
