@@ -1,10 +1,12 @@
 // The page in a real browser: Debian's Chromium, driven by playwright-core.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
 import { basename, join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { hasWebGpu, kWebGpu, launch, serve } from './browser.mjs';
-import { glb, lacquer, read, realFiles, root } from './native.mjs';
+import { pathToFileURL } from 'node:url';
+import { hasWebGpu, kPatience, kWebGpu, launch, serve } from './browser.mjs';
+import { glb, lacquer, output, read, realFiles, root } from './native.mjs';
 import {
   begin, downloaded, drop, end, evaluated, evaluatedByProgram, folder, library, middle, open, painted, set, setAll, settled,
 } from './page.mjs';
