@@ -15,6 +15,7 @@ write is there and nothing else, or the task fails; then that is put into the st
 import argparse
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -105,9 +106,9 @@ def submit(arguments):
         command = ["sbatch", "--parsable", f"--array=0-{tasks - 1}", f"--job-name=lacquer-{number}"]
         if before:
             command += [f"--dependency=afterok:{before}", "--kill-on-invalid-dep=yes"]
-        scratch = f"--scratch '{arguments.scratch}'" if arguments.scratch else ""
-        script = (f"#!/bin/sh\nexec python3 '{here}' run '{arguments.actions}' {number} \"$SLURM_ARRAY_TASK_ID\" {tasks} "
-                  f"{scratch}\n")
+        scratch = ["--scratch", arguments.scratch] if arguments.scratch else []
+        words = ["python3", here, "run", *scratch, "--", arguments.actions, str(number)]
+        script = f"#!/bin/sh\nexec {shlex.join(words)} \"$SLURM_ARRAY_TASK_ID\" {tasks}\n"
         done = subprocess.run([*command, *arguments.sbatch], input=script, stdout=subprocess.PIPE, text=True, check=True)
         before = done.stdout.strip().split(";")[0]
         print(f"stage {number}: {len(actions)} actions in {tasks} tasks, job {before}", flush=True)

@@ -93,7 +93,26 @@ void Intervals::pattern(ValueId id, int c, Range& range) const {
     ratioPattern(id, c, range);
   } else if (value.op == Op::Mul && facets_[id].root) {
     unitPattern(id, c, range);
+  } else if (value.op == Op::Mul) {
+    smoothPattern(value.args[0], value.args[1], c, range);
+    smoothPattern(value.args[1], value.args[0], c, range);
   }
+}
+
+/// t t (3 - 2 t), the end of smoothstep: rises from 0 to 1 while t does, which the product does not show.
+void Intervals::smoothPattern(ValueId squared, ValueId slope, int c, Range& range) const {
+  const ir::Value& square = dag_[squared];
+  const ir::Value& difference = dag_[slope];
+  if (square.op != Op::Mul || square.args[0] != square.args[1] || difference.op != Op::Sub) return;
+  const ir::Value& twice = dag_[difference.args[1]];
+  if (!dag_.isConstant(difference.args[0], 3) || twice.op != Op::Mul) return;
+  const ValueId t = square.args[0];
+  const bool doubled = (dag_.isConstant(twice.args[0], 2) && twice.args[1] == t) ||
+                       (dag_.isConstant(twice.args[1], 2) && twice.args[0] == t);
+  const Range& x = at(t, c);
+  if (!doubled || !(x.lo >= 0 && x.hi <= 1) || x.nan) return;
+  const auto end = [](double at) { return at * at * (3 - 2 * at); };
+  range = meet(range, math_.widened({end(x.lo), end(x.hi), false}, math_.slack(), 0));
 }
 
 /// x + (k - x) * t, or x - (x - k) * t, or x - x * t: between x and k while t is in [0, 1], which the sum

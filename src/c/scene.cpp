@@ -106,8 +106,14 @@ lacquer_text* lacquer_scene_evaluate(const lacquer_scene* scene, size_t material
                                      size_t size, int engine, const lacquer_options* options,
                                      lacquer_messages* messages) {
   return guarded(messages, static_cast<lacquer_text*>(nullptr), [&](Messages& to) {
-    constexpr int kNoEngine = 255;
-    const auto wanted = static_cast<lacquer::Engine>(engine < 0 || engine > kNoEngine ? kNoEngine : engine);
+    if (engine < LACQUER_DOUBLE || engine > LACQUER_VULKAN_HLSL) {
+      sayError(messages, "unknown-enumerator",
+               fmt::format("the engine is {}, which is no enumerator", engine),
+               fmt::format("they are {} to {}", static_cast<int>(LACQUER_DOUBLE),
+                           static_cast<int>(LACQUER_VULKAN_HLSL)));
+      return static_cast<lacquer_text*>(nullptr);
+    }
+    const auto wanted = static_cast<lacquer::Engine>(engine);
     const lacquer_options& how = optionsOf(options);
     return textFrom(lacquer::evaluate(sceneOf(scene), material, std::string(bytesOf(points, size)), wanted,
                                       how.texels, how.options, to));

@@ -124,14 +124,17 @@ std::string finish(Flags& flags) {
   for (const std::string& name : flags.targets) {
     lacquer::Target target{};
     if (!lacquer::findTarget(name, target)) {
-      return fmt::format(
-          "--target: there is no '{}'; targets are glsl, glsl-gl, essl, hlsl, spirv, cpp, wgsl and msl",
-          lacquer::shown(name));
+      return fmt::format("--target: there is no '{}'; targets are {}", lacquer::shown(name),
+                         fmt::join(lacquer::targetNames(), ", "));
     }
     if (spec && !lacquer::hasSpecializationConstants(target)) {
-      return fmt::format(
-          "--target: {} has no specialization constants; --params spec is for glsl, spirv, wgsl and msl",
-          name);
+      lacquer::Strings with = lacquer::targetNames();
+      std::erase_if(with, [](const std::string& one) {
+        lacquer::Target id{};
+        return !lacquer::findTarget(one, id) || !lacquer::hasSpecializationConstants(id);
+      });
+      return fmt::format("--target: {} has no specialization constants; --params spec is for {}", name,
+                         fmt::join(with, ", "));
     }
     if (std::find(options.targets.begin(), options.targets.end(), target) == options.targets.end()) {
       options.targets.push_back(target);
@@ -189,7 +192,7 @@ void addShared(CLI::App& app, Flags& flags) {
 void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
   verb.add_option("--target", flags.targets,
-                  "of glsl, glsl-gl, essl, hlsl, spirv, cpp, js, wgsl, msl; the first five when absent")
+                  fmt::format("of {}; the first five when absent", fmt::join(lacquer::targetNames(), ", ")))
       ->delimiter(',')
       ->allow_extra_args(false);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
@@ -314,7 +317,7 @@ void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
       ->allow_extra_args(false);
   lacquer::cli::addLod(verb, lod);
   verb.add_option("--target", flags.targets,
-                  "of glsl, glsl-gl, essl, hlsl, spirv, cpp; all but cpp when absent")
+                  fmt::format("of {}; the first five when absent", fmt::join(lacquer::targetNames(), ", ")))
       ->delimiter(',')
       ->allow_extra_args(false);
   verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");

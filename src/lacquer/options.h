@@ -53,16 +53,15 @@ enum class Target : uint8_t {
   Wgsl,    ///< WGSL for WebGPU
   Msl,     ///< Metal's language, from the SPIR-V by SPIRV-Cross; nothing validates it
 };
-/// "glsl", "glsl-gl", "essl", "hlsl", "spirv", "cpp", "js", "wgsl", "msl": the names of `--target` and of the
-/// output folders. Empty for what is no enumerator.
+/// The name of `--target` and of the output folder: "glsl". Empty for what is no enumerator.
 std::string_view targetName(Target target);
+/// Of all targets, in the order of the enumeration.
+Strings targetNames();
 /// False, and `target` untouched, when there is none of that name.
 bool findTarget(std::string_view name, Target& target);
 
-/// Whether Parameters::Spec is for the target.
-constexpr bool hasSpecializationConstants(Target target) {
-  return target == Target::Glsl || target == Target::Spirv || target == Target::Wgsl || target == Target::Msl;
-}
+/// Whether Parameters::Spec is for the target. False for what is no enumerator.
+bool hasSpecializationConstants(Target target);
 
 /// What becomes of a material's numbers. The structure of the shader is specialised in each.
 enum class Parameters : uint8_t {

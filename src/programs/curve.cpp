@@ -151,8 +151,9 @@ std::string toSvg(const Curve& curve) {
   }
   // The logarithm, since most happens where programs are few.
   const auto x = [&](size_t programs) {
-    return kLeft +
-           (kWidth - kLeft - kRight) * std::log(static_cast<double>(programs)) / std::log(most_programs);
+    // Without materials there are none.
+    const auto count = static_cast<double>(std::max<size_t>(programs, 1));
+    return kLeft + (kWidth - kLeft - kRight) * std::log(count) / std::log(most_programs);
   };
   const auto y = [&](double part) { return kHeight - kBottom - (kHeight - kTop - kBottom) * part; };
   const auto line = [&](const char* color, auto&& part) {

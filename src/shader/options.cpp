@@ -65,6 +65,16 @@ std::string_view targetName(Target target) {
   return static_cast<size_t>(target) < kTargetCount ? targets::row(target).name : std::string_view{};
 }
 
+Strings targetNames() {
+  Strings names;
+  for (const targets::Row& row : targets::rows()) names.emplace_back(row.name);
+  return names;
+}
+
+bool hasSpecializationConstants(Target target) {
+  return static_cast<size_t>(target) < kTargetCount && targets::row(target).specialization;
+}
+
 bool findTarget(std::string_view name, Target& target) {
   const auto rows = targets::rows();
   const auto it =

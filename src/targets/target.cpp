@@ -10,15 +10,15 @@ namespace lacquer::targets {
 namespace {
 
 constexpr std::array<Row, 9> kRows = {{
-    {Target::Glsl, "glsl", "glsl", "GLSL 4.50 for Vulkan"},
-    {Target::GlslGl, "glsl-gl", "glsl", "GLSL 4.50 for OpenGL 4.5"},
-    {Target::Essl, "essl", "glsl", "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
-    {Target::Hlsl, "hlsl", "hlsl", "HLSL for Shader Model 5 and 6"},
-    {Target::Spirv, "spirv", "spv", "SPIR-V 1.3 for Vulkan 1.1"},
-    {Target::Cpp, "cpp", "h", "a C++11 header that packs the material's uniform block"},
-    {Target::Js, "js", "js", "an ES module that packs the material's uniform block, with its types"},
-    {Target::Wgsl, "wgsl", "wgsl", "WGSL for WebGPU"},
-    {Target::Msl, "msl", "metal", "MSL 2.1 for Metal, made of the SPIR-V"},
+    {Target::Glsl, "glsl", "glsl", true, "GLSL 4.50 for Vulkan"},
+    {Target::GlslGl, "glsl-gl", "glsl", false, "GLSL 4.50 for OpenGL 4.5"},
+    {Target::Essl, "essl", "glsl", false, "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
+    {Target::Hlsl, "hlsl", "hlsl", false, "HLSL for Shader Model 5 and 6"},
+    {Target::Spirv, "spirv", "spv", true, "SPIR-V 1.3 for Vulkan 1.1"},
+    {Target::Cpp, "cpp", "h", false, "a C++11 header that packs the material's uniform block"},
+    {Target::Js, "js", "js", false, "an ES module that packs the material's uniform block, with its types"},
+    {Target::Wgsl, "wgsl", "wgsl", true, "WGSL for WebGPU"},
+    {Target::Msl, "msl", "metal", true, "MSL 2.1 for Metal, made of the SPIR-V"},
 }};
 
 }  // namespace

@@ -15,9 +15,9 @@ namespace lacquer::targets {
 
 struct Row {
   Target id;
-  std::string_view name;  ///< on the command line and in DIR/<target>/: "glsl", "glsl-gl", "essl", "hlsl",
-                          ///< "spirv", "cpp", "js", "wgsl", "msl"
-  std::string_view extension;  ///< "glsl", "hlsl", "spv", "h", "js", "wgsl", "metal"
+  std::string_view name;       ///< on the command line and in DIR/<target>/: "glsl"
+  std::string_view extension;  ///< of its files: "spv"
+  bool specialization;         ///< it has specialization constants
   std::string_view prose;
 };
 

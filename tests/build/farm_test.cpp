@@ -276,5 +276,22 @@ TEST_F(Slurm, WhatIsNotDeclaredFails) {
   EXPECT_FALSE(fs::exists(folder_ / "out" / "manifest.json"));
 }
 
+/// Names of folders and files are no words of the job's script.
+TEST_F(Farm, NamesGoThroughNoShell) {
+  const std::string name = "x'$(touch strange)'`touch strange`; touch strange #.json";
+  fs::copy_file(folder_ / "actions.json", folder_ / name);
+  fs::create_directories(folder_ / "bin");
+  writeText(folder_ / "bin/sbatch",
+            "#!/bin/sh\ncat > job.sh\nSLURM_ARRAY_TASK_ID=0 sh job.sh 2>&1\necho 1\n");
+  fs::permissions(folder_ / "bin/sbatch", fs::perms::owner_all);
+  const std::string farm = std::string(LACQUER_SOURCE) + "/examples/slurm/farm.py";
+  std::string said;
+  runProgram({"sh", "-c", "PATH=\"$PWD/bin:$PATH\" exec python3 \"$@\"", "sh", farm, "submit", name,
+              "--scratch", "no '$(touch strange)' folder"},
+             folder_, &said);
+  EXPECT_NE(readText(folder_ / "job.sh").find("farm.py"), std::string::npos) << said;
+  EXPECT_FALSE(fs::exists(folder_ / "strange")) << readText(folder_ / "job.sh");
+}
+
 }  // namespace
 }  // namespace lacquer::test

@@ -89,8 +89,12 @@ TEST_F(CCalls, indicesThatDoNotExistGiveNothing) {
   EXPECT_EQ(lacquer_scene_evaluate(scene_.get(), count, "[{}]", 4, LACQUER_DOUBLE, nullptr, messages_),
             nullptr);
   EXPECT_EQ(messages_.takeCodes(), "no-such-material, no-such-material, no-such-material");
-  EXPECT_EQ(lacquer_scene_evaluate(scene_.get(), 0, "[{}]", 4, 77, nullptr, messages_), nullptr);
-  EXPECT_EQ(messages_.takeCodes(), "unknown-enumerator");
+  for (const int engine : {77, -1, 300}) {
+    EXPECT_EQ(lacquer_scene_evaluate(scene_.get(), 0, "[{}]", 4, engine, nullptr, messages_), nullptr);
+    const std::string said = lacquer_message_part(messages_, 0, LACQUER_MESSAGE_WHAT, nullptr);
+    EXPECT_NE(said.find(std::to_string(engine)), std::string::npos) << said;
+    EXPECT_EQ(messages_.takeCodes(), "unknown-enumerator");
+  }
 }
 
 TEST_F(CCalls, messagesHaveTheirParts) {

@@ -306,6 +306,17 @@ TEST(Usage, stressSaysWhatItFinds) {
   EXPECT_EQ(place.run({"stress", "worse"}).status, 1);
 }
 
+TEST(Usage, everyTargetIsNamedWhereOneIsMissing) {
+  const Workplace place;
+  const Outcome outcome = place.run({"gen", example("coat.gltf"), "-o", "out", "--target", "nope"});
+  EXPECT_EQ(outcome.status, 2) << outcome.all();
+  const Outcome help = place.run({"gen", "--help"});
+  for (const std::string& name : targetNames()) {
+    EXPECT_NE(outcome.err.find(" " + name), std::string::npos) << name << "\n" << outcome.err;
+    EXPECT_NE(help.out.find(name), std::string::npos) << name;
+  }
+}
+
 TEST(Usage, allThatLooksAtNodesLooksAtParts) {
   const Workplace place;
   place.write("n/a.node",

@@ -115,6 +115,17 @@ TEST_F(Prove, MediumpHasTenBits) {
   EXPECT_EQ(proofs.outputs[0].reached.hi, std::numeric_limits<double>::infinity()) << "beyond 2^14";
 }
 
+/// As the node language's smoothstep is made.
+TEST_F(Prove, SmoothstepIsBetweenItsEnds) {
+  const ValueId width = dag().sub(input("high", {2, 3}), input("low", {0, 1}));
+  const ValueId x = dag().div(dag().sub(input("x", {-5, 5}), input("low", {0, 1})), width);
+  const ValueId t = dag().make(Op::Clamp, {x, dag().constant(0), dag().constant(1)});
+  const ValueId slope = dag().sub(dag().constant(3), dag().mul(dag().constant(2), t));
+  const analysis::Proofs proofs = of(dag().mul(dag().mul(t, t), slope));
+  EXPECT_EQ(proofs.outputs[0].reached.lo, 0);
+  EXPECT_NEAR(proofs.outputs[0].reached.hi, 1, 1e-5);
+}
+
 TEST_F(Prove, OutputsAreReported) {
   const analysis::Proofs proofs = of(dag().mul(input("x", {0, 1}), input("y", {0, 2})));
   ASSERT_EQ(proofs.outputs.size(), 1U);

@@ -50,6 +50,8 @@ TEST(Curve, IsJsonATableAndAPicture) {
   const std::string svg = toSvg(curve());
   EXPECT_TRUE(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
   EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(toSvg({}).find("inf"), std::string::npos) << "without materials";
+  EXPECT_EQ(toSvg({}).find("nan"), std::string::npos);
 }
 
 TEST(Curve, TheModelIsFittedByItsScale) {
