@@ -94,7 +94,8 @@ std::vector<Attributes> Scene::uses(size_t material) const {
   std::vector<Attributes> uses;
   if (material >= materialCount()) return uses;
   for (const gltf::VertexAttributes& a : impl().document.uses[material]) {
-    uses.push_back({a.normal, a.tangent, a.color0, a.texCoord, a.skin, a.morph, a.instances, a.quantized});
+    uses.push_back({a.normal, a.tangent, a.color0, a.texCoord, a.skin, a.morph, a.instances, a.quantized,
+                    a.application});
   }
   return uses;
 }
@@ -116,9 +117,9 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   const auto language = libraryFor(options);
   if (!language) return report(language.error(), {}, messages), result;
   Diagnostics warnings;
-  const gltf::VertexAttributes a{attributes.normal,    attributes.tangent,  attributes.color0,
-                                 attributes.texCoord,  attributes.skin,     attributes.morph,
-                                 attributes.instances, attributes.quantized};
+  gltf::VertexAttributes a{attributes.normal,    attributes.tangent,   attributes.color0,
+                           attributes.texCoord,  attributes.skin,      attributes.morph,
+                           attributes.instances, attributes.quantized, attributes.application};
   Options named = options;
   if (const Result<void> resolved = resolveNames(**language, named); !resolved)
     return report(resolved.error(), document.path, messages), result;

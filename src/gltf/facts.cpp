@@ -20,6 +20,7 @@ std::vector<std::string> VertexAttributes::names() const {
   if (morph) out.emplace_back("MORPH_VERTEX");
   if (instances) out.insert(out.end(), {"TRANSLATION", "ROTATION", "SCALE"});
   if (quantized) out.emplace_back("QUANTIZED");
+  out.insert(out.end(), application.begin(), application.end());
   return out;
 }
 

@@ -39,6 +39,9 @@ struct TextureInfo {
 };
 
 /// The vertex attributes of a primitive, as the shader sees them. POSITION is always there.
+/// Of one primitive; no device takes more attributes.
+inline constexpr size_t kMostApplicationAttributes = 16;
+
 struct VertexAttributes {
   bool normal = false;
   bool tangent = false;
@@ -49,10 +52,12 @@ struct VertexAttributes {
   bool instances = false;      ///< a node has instances of its mesh (EXT_mesh_gpu_instancing)
   /// POSITION or a TEXCOORD_n is stored as integers that stand for themselves (KHR_mesh_quantization).
   bool quantized = false;
+  /// The application's own, sorted, at most kMostApplicationAttributes: "_WETNESS".
+  std::vector<std::string> application{};
   auto operator<=>(const VertexAttributes&) const = default;
   /// Semantic names without POSITION, in the order NORMAL, TANGENT, TEXCOORD_0…3, COLOR_0, JOINTS_0,
   /// WEIGHTS_0, JOINTS_1, WEIGHTS_1, MORPH_VERTEX (the vertex's number, which targets are looked up by),
-  /// TRANSLATION, ROTATION, SCALE, QUANTIZED (no attribute: how others are stored).
+  /// TRANSLATION, ROTATION, SCALE, QUANTIZED (no attribute: how others are stored), the application's.
   std::vector<std::string> names() const;
 };
 

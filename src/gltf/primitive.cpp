@@ -142,7 +142,20 @@ private:
       if (name == fmt::format("JOINTS_{}", i)) return joints_[i] = true;
       if (name == fmt::format("WEIGHTS_{}", i)) return weights_[i] = true;
     }
+    if (name.starts_with('_')) return application(name);
     return name == "POSITION";
+  }
+
+  /// glTF 2.0, section 3.7.2.1: application-specific semantics begin with an underscore.
+  bool application(std::string_view name) {
+    std::vector<std::string>& own = out_.attributes.application;
+    constexpr size_t kLongest = 64;
+    constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
+    // Of another name no template can speak.
+    if (name.size() > kLongest || name.find_first_not_of(kPlain) != std::string_view::npos) return false;
+    if (own.size() >= kMostApplicationAttributes) return false;
+    own.insert(std::upper_bound(own.begin(), own.end(), name), std::string(name));
+    return true;
   }
 
   void targets(const Json& targets, const Path& path) {

@@ -23,10 +23,12 @@ struct Attributes {
   bool morph = false, instances = false;
   /// POSITION or a TEXCOORD_n is stored as integers that stand for themselves (KHR_mesh_quantization).
   bool quantized = false;
+  /// The application's own, as glTF spells them: "_WETNESS".
+  Strings application{};
 };
 /// What a material that no primitive uses is read with.
-inline constexpr Attributes kUnusedAttributes{true, true,  false, {true, true, false, false},
-                                              {},   false, false, false};
+inline const Attributes kUnusedAttributes{true,  true,  false, {true, true, false, false}, {}, false,
+                                          false, false, {}};
 
 /// The materials of a glTF file.
 class Scene {

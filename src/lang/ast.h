@@ -202,6 +202,11 @@ struct BlockDecl {
   ir::Binding binding;
 };
 
+/// An attribute's name without the underscore that glTF's application-specific ones begin with.
+inline std::string_view withoutUnderscore(std::string_view name) {
+  return name.substr(name.starts_with('_') ? 1 : 0);
+}
+
 struct AttributeDecl {
   ir::Type type = ir::Type::Float;
   std::string_view name;

@@ -68,10 +68,11 @@ constexpr std::string_view kDoubled = "GLSL keeps two underscores in a row, and 
 
 }  // namespace
 
-/// Attributes have a prefix in the texts, and are in small letters. In HLSL they are semantics besides, whose
+/// Attributes have a prefix in the texts, which takes the place of the underscore that glTF's
+/// application-specific ones begin with, and are in small letters. In HLSL they are semantics besides, whose
 /// number has no underscore before it.
 void Checker::templateNames(const AttributeDecl& decl) {
-  std::string name(decl.name);
+  std::string name(withoutUnderscore(decl.name));
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool kept = name.starts_with("sv_");

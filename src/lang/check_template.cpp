@@ -293,7 +293,7 @@ void Checker::attribute(AttributeDecl& decl, uint32_t& slots) {
     if (std::find(known.begin(), known.end(), name) == known.end()) unknown(name, "switch", known, {});
   }
   decl.has_slot = slots++;
-  const std::string& has = made_names_.emplace_back(fmt::format("has_{}", decl.name));
+  const std::string& has = made_names_.emplace_back(fmt::format("has_{}", withoutUnderscore(decl.name)));
   declare({has, Name::Kind::Attribute, Type::Bool, decl.has_slot, decl.span, true, false, {}});
 }
 

@@ -339,6 +339,7 @@ LeftOut chooseAttributes(const lang::TemplateDecl& template_decl, const gltf::Ve
       left_out.add(attribute.name, fmt::format("it is left out (--switch {}=off)", choice.off));
   }
   for (const std::string& name : attributes.names()) {
+    if (name.starts_with('_')) continue;  // the application's, which knows what it has them for
     const bool taken = hasAttribute(common, name) ||
                        std::any_of(template_decl.attributes.begin(), template_decl.attributes.end(),
                                    [&](const lang::AttributeDecl& one) { return one.name == name; });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "model/names.h"
 #include "model/order.h"
@@ -14,6 +15,20 @@ using material::Kind;
 
 namespace {
 
+/// "TEXCOORD_0" for "TEXCOORD_".
+bool isNumbered(std::string_view name, std::string_view what) {
+  return name.starts_with(what) && name.size() == what.size() + 1;
+}
+
+/// Whether glTF, or an extension, says what an attribute is; all others are the application's.
+bool isGltfs(std::string_view name) {
+  constexpr std::array kNames = {"POSITION",    "NORMAL",   "TANGENT", "COLOR_0",  "MORPH_VERTEX",
+                                 "TRANSLATION", "ROTATION", "SCALE",   "QUANTIZED"};
+  constexpr std::array kSets = {"TEXCOORD_", "JOINTS_", "WEIGHTS_"};
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end() ||
+         std::any_of(kSets.begin(), kSets.end(), [&](std::string_view set) { return isNumbered(name, set); });
+}
+
 /// Whether an expression of the template reads an attribute that the primitive lacks.
 bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr,
                  const gltf::VertexAttributes& attributes) {
@@ -21,8 +36,9 @@ bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr,
     for (const lang::AttributeDecl& attribute : decl.attributes) {
       // What is optional is asked for before it is read.
       if (attribute.optional && attribute.has_slot == expr.slot) return false;
+      // What is not glTF's is the application's, which has it unless the template asks.
       if (!attribute.fact && attribute.slot == expr.slot)
-        return !attribute.optional && !hasAttribute(attributes, attribute.name);
+        return !attribute.optional && isGltfs(attribute.name) && !hasAttribute(attributes, attribute.name);
     }
     for (const lang::GivenDecl& given : decl.givens) {
       const bool this_one = expr.slot >= given.slot && expr.slot < given.slot + given.results.size();
@@ -40,7 +56,7 @@ const Line kNoLine{};
 
 bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name) {
   const auto numbered = [&](std::string_view what, const auto& sets, bool& has) {
-    if (!name.starts_with(what) || name.size() != what.size() + 1) return false;
+    if (!isNumbered(name, what)) return false;
     const auto set = static_cast<size_t>(name.back() - '0');
     has = set < sets.size() && sets[set];
     return true;
@@ -55,7 +71,11 @@ bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view nam
   if (numbered("TEXCOORD_", attributes.texCoord, has) || numbered("JOINTS_", attributes.skin, has) ||
       numbered("WEIGHTS_", attributes.skin, has))
     return has;
-  return true;
+  if (name == "POSITION") return true;
+  // glTF writes _WETNESS, a template may write WETNESS.
+  name.remove_prefix(name.starts_with('_') ? 1 : 0);
+  return std::any_of(attributes.application.begin(), attributes.application.end(),
+                     [&](std::string_view one) { return one.substr(1) == name; });
 }
 
 Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,

@@ -45,8 +45,8 @@ struct Found {
   bool operator==(const Found&) const = default;
 };
 
-/// Whether a primitive has what a template's attribute of that name stands for; what glTF does not know is
-/// the application's, and there.
+/// Whether a primitive has what a template's attribute of that name stands for. One of the application's may
+/// be spelled as in glTF, `_WETNESS`, or without the underscore.
 bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name);
 
 /// Resolves lazily: what nobody asks for is not looked at.

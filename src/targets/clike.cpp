@@ -492,7 +492,9 @@ Passing passingOf(const ir::Dag& dag, ValueId user, size_t index) {
   return Passing::Raised;
 }
 
-std::string attributeName(const ir::Attribute& attribute) { return "in_" + lower(attribute.name); }
+std::string attributeName(const ir::Attribute& attribute) {
+  return (attribute.name.starts_with('_') ? "in" : "in_") + lower(attribute.name);
+}
 
 std::string varyingName(const ir::Varying& varying) { return "v_" + varying.name; }
 

@@ -19,7 +19,7 @@ namespace {
 
 /// glTF numbers its semantics as TEXCOORD_0, HLSL as TEXCOORD0.
 std::string semantic(const ir::Attribute& attribute) {
-  std::string name = attribute.name;
+  std::string name = attribute.name.substr(attribute.name.starts_with('_') ? 1 : 0);
   const size_t underscore = name.rfind('_');
   if (underscore != std::string::npos &&
       name.find_first_not_of("0123456789", underscore + 1) == std::string::npos) {
