@@ -336,4 +336,53 @@ TEST(Templates, LightsAreThoseThatTheTemplateNames) {
   }
 }
 
+/// A file with one material on two primitives, of which the second has an attribute of the application's own.
+static std::string wetGltf() {
+  return R"({"asset": {"version": "2.0"}, "materials": [{"name": "wet"}],
+    "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+                  {"componentType": 5126, "count": 3, "type": "SCALAR"}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "material": 0},
+                               {"attributes": {"POSITION": 0, "NORMAL": 0, "_WETNESS": 1}, "material": 0}]}],
+    "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]})";
+}
+
+/// By glTF's own spelling, and by that without the underscore.
+TEST(Templates, AnAttributeOfOnesOwnIsThereWhereThePrimitiveHasIt) {
+  for (const std::string name : {"_WETNESS", "WETNESS"}) {
+    const Workplace place;
+    place.write("wet.gltf", wetGltf());
+    place.write("more/wet.node",
+                "/// T.\ntemplate wet extends forward {\n    optional attribute float " + name +
+                    ";\n    given float wet in [0, 1] = has_WETNESS ? clamp(interpolate(" + name +
+                    "), 0, 1) : 0.25;\n"
+                    "    replace output color vec4 color = vec4(wet, 0, 0, 1);\n}\n");
+    const Outcome outcome = place.run({"gen", "wet.gltf", "--nodes", "more", "--template", "wet", "-o", "out",
+                                       "--target", "glsl,glsl-gl,essl,hlsl,spirv"});
+    ASSERT_EQ(outcome.status, 0) << outcome.all();
+    EXPECT_EQ(outcome.err, "");
+    std::set<std::string> with, without;
+    for (const std::string& file : place.names()) {
+      if (file.find("glsl/") == std::string::npos || file.find(".vert") == std::string::npos) continue;
+      const std::string text = place.read(file);
+      EXPECT_EQ(text.find("__"), std::string::npos) << text;
+      (text.find("in_wetness") == std::string::npos ? without : with).insert(file);
+    }
+    EXPECT_FALSE(with.empty());
+    EXPECT_FALSE(without.empty()) << "the first primitive has none";
+    const Json uses = place.manifest("out")["files"][0]["materials"][0]["uses"];
+    ASSERT_EQ(uses.size(), 2U);
+    EXPECT_NE(uses[0]["shader"], uses[1]["shader"]);
+  }
+}
+
+TEST(Templates, OneAttributeHasOneSpelling) {
+  const Workplace place;
+  place.write("more/wet.node",
+              "/// T.\ntemplate wet extends forward {\n    attribute float WETNESS;\n    attribute float "
+              "_WETNESS;\n}\n");
+  const Outcome outcome = place.run({"nodes", "--nodes", "more"});
+  EXPECT_EQ(outcome.status, 1) << outcome.all();
+  EXPECT_NE(outcome.err.find("[duplicate-name]"), std::string::npos) << outcome.all();
+}
+
 }  // namespace lacquer::test
