@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kMagic = "LACQUER1";
-constexpr std::string_view kKeyedMagic = "LACQUERK";
+constexpr std::string_view kMagic = "LACQUER2";
+constexpr std::string_view kKeyedMagic = "LACQUERJ";
 /// What somebody may have us read who may write to the folder and has not the key: the checksum is known to
 /// be wrong only behind all of it.
 constexpr uint64_t kLargestEntry = uint64_t{256} << 20;
@@ -44,7 +44,7 @@ struct Cache::Header {
 };
 
 Cache::Header Cache::headerOf(const Key& key, std::string_view payload) const {
-  static_assert(sizeof(Header) == 48 && std::is_trivially_copyable_v<Header>);
+  static_assert(sizeof(Header) == 80 && std::is_trivially_copyable_v<Header>);
   Header header{{}, key, payload.size(), {}};
   std::memcpy(header.magic, (secret_.empty() ? kMagic : kKeyedMagic).data(), kMagic.size());
   if (secret_.empty()) {

@@ -1,29 +1,34 @@
-// Content addresses of 128 bits.
+// Content addresses: BLAKE2b of 256 bits.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
+#include "support/digest.h"
+
 namespace lacquer {
 
 struct Key {
-  uint64_t high = 0, low = 0;
+  Digest digest{};
   auto operator<=>(const Key&) const = default;
-  /// 32 hexadecimal digits.
-  std::string text() const;
+  /// 64 hexadecimal digits.
+  std::string text() const { return hexOf(digest); }
 };
 
 template <class Archive>
 void fields(Archive& archive, Key& key) {
-  archive(key.high, key.low);
+  archive(key.digest);
 }
 
 struct KeyHash {
-  size_t operator()(const Key& key) const { return key.low; }
+  size_t operator()(const Key& key) const {
+    size_t start = 0;  // any part of a digest is as good as another
+    std::memcpy(&start, key.digest.data(), sizeof start);
+    return start;
+  }
 };
 
 /// Collects what a key covers. Every text goes in with its length, so that no two sequences look alike.
@@ -42,7 +47,10 @@ public:
     bytes_ += text;
     return *this;
   }
-  KeyBuilder& key(const Key& key) { return number(key.high).number(key.low); }
+  KeyBuilder& key(const Key& key) {
+    bytes_.append(key.digest.begin(), key.digest.end());
+    return *this;
+  }
   Key finish() const;
 
 private:

@@ -219,7 +219,6 @@ void appendNumber(std::string& text, uint32_t x) {
   append(text, std::string_view(fmt::format_int(x).c_str()));
 }
 
-/// Written piece by piece: every shader's identity is the hash of a dump.
 void spell(const Module& module, const Numbers& numbers, ValueId id, std::string& text) {
   const Dag& dag = module.dag;
   const Value& value = dag[id];

@@ -1,12 +1,10 @@
 #include "passes/pipeline.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cassert>
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
+#include "ir/canonical.h"
+#include "support/digest.h"
 
 namespace lacquer::passes {
 
@@ -63,24 +61,8 @@ void runPipeline(ir::Module& module, const PipelineOptions& options) {
 }
 
 std::string contentAddress(const ir::Module& module) {
-  std::string key = module.template_name + "\n" + ir::dump(module);
-  for (const ir::TextureSlot& slot : module.textures) {
-    const uint32_t place = slot.optional      ? slot.binding.binding
-                           : slot.environment ? slot.binding.flat
-                                              : slot.binding.flat - module.material_textures;
-    key += fmt::format("texture {} {} {} {}\n", slot.name, ir::typeName(slot.type), slot.srgb, place);
-  }
-  for (const uint32_t index : ir::usedParameters(module)) {
-    const ir::Parameter& p = module.parameters[index];
-    key += fmt::format("parameter {} {}", p.name, ir::typeName(p.type));
-    for (const double x : p.neutral) key += fmt::format(" {}", x);
-    key += fmt::format(" {} {} {}", p.range.lo, p.range.hi, p.range.gap);  // the packers hold to it
-    key += fmt::format(" {}\n", p.constant_id);
-  }
-  for (const ir::Varying& varying : module.varyings) key += fmt::format("varying {}\n", varying.name);
-  for (const ir::LightGroup& group : module.light_groups)
-    key += fmt::format("lights {} {}\n", group.first, group.count);
-  return fmt::format("{:016x}", XXH3_64bits(key.data(), key.size()));
+  constexpr size_t kBytes = 16;
+  return hexOf(digestOf(ir::canonical(module)), kBytes);
 }
 
 }  // namespace lacquer::passes

@@ -28,9 +28,8 @@ struct PassInfo {
 /// The passes, in order.
 std::span<const PassInfo> passes();
 
-/// The content address of a module that went through the pipeline: 16 hexadecimal digits. It covers
-/// everything that reaches a target's text or interface, and nothing else: no material's name, no index, no
-/// pointer into a file.
+/// The content address of a module that went through the pipeline: 32 hexadecimal digits, 128 bits of
+/// BLAKE2b of ir::canonical().
 std::string contentAddress(const ir::Module& module);
 
 }  // namespace lacquer::passes
