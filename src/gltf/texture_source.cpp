@@ -139,7 +139,7 @@ Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& p
     return fail("image-outside", place, fmt::format("{} leads out of the file's folder", quote(uri)),
                 "--allow DIR lets images lie in another folder, too");
   }
-  Result<std::string> bytes = readFile(*file, access_.limits.file);
+  Result<std::string> bytes = readFile(*file, access_.limits.file, Links::None);
   if (bytes) read_.push_back(*file);
   if (!bytes) return missing(fmt::format("{} cannot be read: {}", quote(uri), bytes.error()[0].message), {});
   return bytes;

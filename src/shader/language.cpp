@@ -85,12 +85,12 @@ Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
 }
 
 Result<material::Document> readMaterials(const std::string& path, const Language& language,
-                                         const Options& options) {
+                                         const Options& options, Links links) {
   const Result<const material::Schema*> schema = language.models.schema();
   if (!schema) return tl::make_unexpected(schema.error());
   const Result<Limits> limits = limitsOf(options);
   if (!limits) return tl::make_unexpected(limits.error());
-  const Result<std::string> bytes = readFile(path, limits->file);
+  const Result<std::string> bytes = readFile(path, limits->file, links);
   if (!bytes) return tl::make_unexpected(bytes.error());
   return material::readText(*bytes, path, **schema, {options.permissive, *limits});
 }

@@ -9,6 +9,7 @@
 #include "lang/library.h"
 #include "material/material.h"
 #include "model/model.h"
+#include "support/file.h"
 
 namespace lacquer {
 
@@ -29,7 +30,7 @@ Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder);
 
 /// A file's materials by the library's declarations.
 Result<material::Document> readMaterials(const std::string& path, const Language& language,
-                                         const Options& options);
+                                         const Options& options, Links links = Links::Follow);
 
 /// The built-in library with the options' folders added. The built-in one alone is made once.
 Result<std::shared_ptr<const Language>> libraryFor(const Options& options);

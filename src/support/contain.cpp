@@ -2,7 +2,17 @@
 
 #include <limits.h>
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <fcntl.h>
+#include <unistd.h>
+#endif
+#ifdef __linux__
+#include <linux/openat2.h>
+#include <sys/syscall.h>
+#endif
+
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -79,5 +89,56 @@ std::optional<std::string> resolveBelow(const std::string& folder, const std::st
   }
   return Walk(std::move(roots)).to(relative);
 }
+
+#if defined(__unix__) || defined(__APPLE__)
+
+namespace {
+
+/// Folder by folder, each from the descriptor of the one before.
+int walkWithoutLinks(const std::string& path, int flags) {
+#ifdef O_PATH
+  constexpr int kFolder = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+#else
+  constexpr int kFolder = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+#endif
+  int at = ::open(path.starts_with('/') ? "/" : ".", kFolder & ~O_NOFOLLOW);
+  for (size_t begin = 0; at >= 0;) {
+    begin = path.find_first_not_of('/', begin);
+    if (begin == std::string::npos) break;
+    const size_t end = std::min(path.find('/', begin), path.size());
+    const std::string part = path.substr(begin, end - begin);
+    const bool last = path.find_first_not_of('/', end) == std::string::npos;
+    const int next = part == ".." ? -1 : ::openat(at, part.c_str(), last ? flags | O_NOFOLLOW : kFolder);
+    // A link that is to be a folder is told as none.
+    const int why = part == ".." || errno == ENOTDIR ? ELOOP : errno;
+    ::close(at);
+    errno = why;
+    if (last) return next;
+    at = next;
+    begin = end;
+  }
+  if (at >= 0) ::close(at);
+  return -1;
+}
+
+}  // namespace
+
+int openWithoutLinks(const std::string& path, int flags, bool by_kernel) {
+#ifdef SYS_openat2
+  if (by_kernel) {
+    struct open_how how {};
+    how.flags = static_cast<uint64_t>(flags);
+    how.resolve = RESOLVE_NO_SYMLINKS;
+    const auto fd = static_cast<int>(::syscall(SYS_openat2, AT_FDCWD, path.c_str(), &how, sizeof how));
+    // A sandbox that does not know it answers EPERM.
+    if (fd >= 0 || (errno != ENOSYS && errno != EPERM)) return fd;
+  }
+#else
+  (void)by_kernel;
+#endif
+  return walkWithoutLinks(path, flags);
+}
+
+#endif
 
 }  // namespace lacquer

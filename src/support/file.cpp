@@ -1,5 +1,6 @@
 #include "support/file.h"
 
+#include "support/contain.h"
 #include "support/outputs.h"
 
 #include <fmt/format.h>
@@ -91,8 +92,10 @@ std::FILE* createLocked(const std::string& folder, const std::string& name, Link
 
 /// Opens for reading what is a regular file, and waits for nothing: -1 and the reason for all else.
 int openRegular(const std::string& path, Links links, std::string& why, struct stat& status) {
-  const int fd = ::open(
-      path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | (links == Links::Refuse ? O_NOFOLLOW : 0));
+  constexpr int kFlags = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+  const int fd = links == Links::None
+                     ? openWithoutLinks(path, kFlags)
+                     : ::open(path.c_str(), kFlags | (links == Links::Refuse ? O_NOFOLLOW : 0));
   if (fd < 0) {
     why = errno == ENOENT ? "there is no such file"
                           : fmt::format("the file cannot be opened: {}", std::strerror(errno));
@@ -196,7 +199,7 @@ std::FILE* openToRead(const std::string& path, Links links, std::string& why, ui
 #else
   std::error_code error;
   why = fs::is_directory(path, error)                           ? "this is a folder, not a file"
-        : links == Links::Refuse && fs::is_symlink(path, error) ? "a link"
+        : links != Links::Follow && fs::is_symlink(path, error) ? "a link"
                                                                 : "";
   std::FILE* file = why.empty() ? std::fopen(path.c_str(), "rb") : nullptr;
   if (file == nullptr && why.empty()) why = "there is no such file";

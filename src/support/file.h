@@ -13,10 +13,15 @@
 
 namespace lacquer {
 
-enum class Links : uint8_t { Follow, Refuse };
+/// Symbolic links on the way to a file that is read.
+enum class Links : uint8_t {
+  Follow,
+  Refuse,  ///< the last part of the path may be none
+  None,    ///< no part of it: of a path that resolveBelow() gives, from which a link would lead elsewhere
+};
 
 /// The bytes of a regular file: no folder, no pipe, no device. Errors: "file-unreadable", "file-too-large"
-/// for more bytes than `largest`. With Links::Refuse the last part of the path may be no symbolic link.
+/// for more bytes than `largest`. The file is looked at by its descriptor alone.
 Result<std::string> readFile(const std::string& path, uint64_t largest = Limits{}.file,
                              Links links = Links::Follow);
 /// Its first bytes, so many at most; none where readFile() would fail.

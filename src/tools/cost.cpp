@@ -35,12 +35,12 @@ struct SpirvFile {
 /// Each is read once, and held once.
 class SpirvFiles {
 public:
-  const Result<SpirvFile>& read(const std::string& path) {
+  const Result<SpirvFile>& read(const std::string& path, Links links) {
     std::error_code error;
-    std::string resolved = fs::canonical(path, error).string();
+    std::string resolved = links == Links::None ? path : fs::canonical(path, error).string();
     if (error) resolved = path;
     const auto known = files_.find(resolved);
-    return known != files_.end() ? known->second : files_.emplace(resolved, load(path)).first->second;
+    return known != files_.end() ? known->second : files_.emplace(resolved, load(path, links)).first->second;
   }
 
 private:
@@ -51,7 +51,7 @@ private:
     }
   };
 
-  Result<SpirvFile> load(const std::string& path);
+  Result<SpirvFile> load(const std::string& path, Links links);
 
   std::map<std::string, Result<SpirvFile>> files_;
   std::set<SpirvFile, ByWords> distinct_;
@@ -63,12 +63,12 @@ tl::unexpected<Diagnostics> tooLarge(const std::string& path, std::string messag
               "name fewer modules at a time, or smaller ones");
 }
 
-Result<cost::Spirv> readSpirv(const std::string& path) {
+Result<cost::Spirv> readSpirv(const std::string& path, Links links) {
   std::error_code error;
   const std::string too_large = fmt::format("a module has at most {} bytes", kLargestModule);
   if (fs::file_size(path, error) > kLargestModule && !error) return tooLarge(path, too_large);
   // It may have become longer.
-  const Result<std::string> bytes = readFile(path, kLargestModule);
+  const Result<std::string> bytes = readFile(path, kLargestModule, links);
   if (!bytes) return tl::unexpected(bytes.error());
   cost::Spirv words(bytes->size() / 4);
   for (size_t i = 0; i < words.size(); ++i) {
@@ -83,8 +83,8 @@ Result<cost::Spirv> readSpirv(const std::string& path) {
   return words;
 }
 
-Result<SpirvFile> SpirvFiles::load(const std::string& path) {
-  Result<cost::Spirv> words = readSpirv(path);
+Result<SpirvFile> SpirvFiles::load(const std::string& path, Links links) {
+  Result<cost::Spirv> words = readSpirv(path, links);
   if (!words) return tl::unexpected(words.error());
   const uint64_t size = words->size() * sizeof(uint32_t);
   SpirvFile file{std::make_shared<const cost::Spirv>(std::move(*words)), 0};
@@ -106,14 +106,14 @@ struct Shaders {
 
 /// Without `vertex` the fragment shader comes alone.
 void addPair(const std::string& name, const std::optional<std::string>& vertex, const std::string& fragment,
-             Shaders& shaders, Messages& messages) {
+             Links links, Shaders& shaders, Messages& messages) {
   cost::FileSubject subject;
   if (vertex) {
-    const Result<SpirvFile>& file = shaders.files.read(*vertex);
+    const Result<SpirvFile>& file = shaders.files.read(*vertex, links);
     if (!file) return report(file.error(), *vertex, messages);
     subject.vertex = file->words;
   }
-  const Result<SpirvFile>& file = shaders.files.read(fragment);
+  const Result<SpirvFile>& file = shaders.files.read(fragment, links);
   if (!file) return report(file.error(), fragment, messages);
   subject.fragment = file->words;
   shaders.subjects.push_back(std::move(subject));
@@ -127,7 +127,7 @@ void addFile(const std::string& path, Shaders& shaders, Messages& messages) {
     std::error_code error;
     if (fs::exists(beside, error)) vertex = beside;
   }
-  addPair(path, vertex, path, shaders, messages);
+  addPair(path, vertex, path, Links::Follow, shaders, messages);
 }
 
 /// The value at a path of keys when it is a text; else empty.
@@ -167,7 +167,7 @@ void addManifest(const fs::path& folder, Shaders& shaders, Messages& messages) {
       continue;
     }
     if (vertex.empty()) vertex_file.reset();
-    addPair(id, vertex_file, *file, shaders, messages);
+    addPair(id, vertex_file, *file, Links::None, shaders, messages);
   }
   if (shaders.subjects.size() > before || hasError(messages)) return;
   const Diagnostic none{"no-spirv",

@@ -239,8 +239,8 @@ private:
     return stress::materialSubject(material.name, evaluated.module(), (*model)->layers());
   }
 
-  Result<material::Document> read(const std::string& file) {
-    Result<material::Document> document = readMaterials(file, *library_, options_);
+  Result<material::Document> read(const std::string& file, Links links = Links::Follow) {
+    Result<material::Document> document = readMaterials(file, *library_, options_, links);
     if (document) report(document->diagnostics, file, messages_);
     return document;
   }
@@ -324,7 +324,7 @@ private:
       return fail("case-outside", {path, 0, 0, {}},
                   fmt::format("{} leads out of the case's folder", quote(named)),
                   "--allow DIR lets it lie in another folder, too");
-    const Result<material::Document> document = read(*inside);
+    const Result<material::Document> document = read(*inside, Links::None);
     if (!document) return tl::make_unexpected(document.error());
     const auto index = test["material"].get<size_t>();
     if (index >= document->materials.size()) return wrong("the file has no material of that index");
