@@ -36,6 +36,7 @@ bool onBall(double x, double y, eval::Point& point) {
   const double longitude = std::atan2(n[0], n[2]);
   const double latitude = std::acos(std::clamp(n[1], -1.0, 1.0));
   const std::array<double, 2> uv{longitude / std::numbers::pi + 0.5, latitude / std::numbers::pi};
+  point.position = n;  // a ball of radius 1 about the origin
   point.n = n;
   point.t = {std::cos(longitude), 0, -std::sin(longitude), 1};
   point.v = {-way[0] / length, -way[1] / length, -way[2] / length};

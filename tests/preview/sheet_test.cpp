@@ -98,6 +98,43 @@ TEST(Sheet, ShowsAnUnlitColourAsItIs) {
   for (size_t c = 0; c < 3; ++c) EXPECT_EQ(corner[c], preview::kBackground[c]);
 }
 
+/// The ball lies in space: a pattern by the position has many values on it.
+TEST(Sheet, PositionsAreThoseOfABall) {
+  const std::string file = write(
+      "place.gltf", fileOf({{{"name", "Place"}, {"extensions", {{"EXAMPLE_place", {{"placeFactor", 1}}}}}}}));
+  const fs::path nodes = scratch() / "place";
+  fs::create_directories(nodes);
+  std::ofstream(nodes / "place.node") << R"(
+/// E.
+/// source: E
+extension EXAMPLE_place { float placeFactor in [0, 1] = 0; }
+
+/// E.
+part place of EXAMPLE_place over base unless placeFactor == 0 {
+surface:
+    place.color = color_of_place(position);
+    out base_color = place.color;
+    out emission = place.color.rgb;
+}
+
+/// The position as a colour.
+/// source: E
+node color_of_place(vec3 place) -> vec4 in [0, 1] {
+    return vec4(clamp(place * 0.5 + vec3(0.5), vec3(0), vec3(1)), 1);
+}
+)";
+  Options options;
+  options.node_directories = {nodes.string()};
+  const Made made = make({file}, small(), {}, options);
+  ASSERT_FALSE(made.png.empty()) << (made.messages.empty() ? "" : made.messages[0].text);
+  const auto left = pixel(made.image, kFirst + 3, kTop + 16),
+             right = pixel(made.image, kFirst + 28, kTop + 16);
+  const auto top = pixel(made.image, kFirst + 16, kTop + 3),
+             bottom = pixel(made.image, kFirst + 16, kTop + 28);
+  EXPECT_GT(right[0], left[0] + 20);
+  EXPECT_GT(top[1], bottom[1] + 20);
+}
+
 TEST(Sheet, EdgesAreShadesBetweenBallAndBackground) {
   const std::string file =
       write("white.gltf", fileOf({{{"extensions", {{"KHR_materials_unlit", json::object()}}}}}));
