@@ -1,11 +1,14 @@
 #include "shader/language.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
 #include "model/order.h"
 #include "shader/options.h"
 #include "support/file.h"
+#include "support/stack.h"
 
 namespace lacquer {
 
@@ -70,6 +73,10 @@ Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {
 }
 
 Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
+  if (!hasStack())
+    return fail("stack-too-small", {}, "the thread has too little stack",
+                fmt::format("it takes {} KiB: `ulimit -s`, or the size that the thread is made with",
+                            kStackNeeded / 1024));
   if (options.node_directories.empty()) {
     static const auto kBuiltIn = std::make_shared<const Language>(lang::Library::embedded());
     return kBuiltIn;

@@ -583,5 +583,29 @@ TEST(LongLines, areCut) {
   EXPECT_LT(outcome.err.size(), 3000U);
 }
 
+/// A stack that the deepest inputs do not fit in is told of, not overrun.
+TEST(Hostile, smallStacksAreTold) {
+  const Workplace place;
+  std::string text = "x";
+  for (int i = 0; i < 250; ++i) text = "(-" + text + ")";
+  place.write("n/deep.node",
+              "/// D.\n/// source: S\nnode deep(float x in [0, 1]) -> float { return " + text + "; }\n");
+  place.write("m/deep.node", "/// D.\n/// source: S\nnode deep(float x in [0, 1]) -> float { return x; }\n");
+  for (const char* verb : {"nodes", "gen a.gltf -o out -q"}) {
+    for (const char* folder : {"n", "m"}) {
+      for (const int kibibytes : {128, 512, 1023}) {
+        const Outcome small =
+            place.shell(fmt::format("cp {} a.gltf; ulimit -s {}; {} {} --nodes {}", example("coat.gltf"),
+                                    kibibytes, LACQUER_PROGRAM, verb, folder));
+        EXPECT_EQ(small.status, 1) << kibibytes << small.all();
+        EXPECT_NE(small.err.find("[stack-too-small]"), std::string::npos) << small.all();
+      }
+    }
+  }
+  const Outcome enough = place.shell(fmt::format("ulimit -s 1536; {} nodes --nodes n", LACQUER_PROGRAM));
+  EXPECT_LE(enough.status, 1) << enough.all();
+  EXPECT_EQ(enough.err.find("[stack-too-small]"), std::string::npos) << enough.all();
+}
+
 }  // namespace
 }  // namespace lacquer::test
