@@ -251,8 +251,12 @@ void Printer::section(Text& text, ir::TermId id) const {
 
 std::string Printer::lightCount() const {
   const ir::Block& block = module_.blocks[module_.light_count.block];
-  return fmt::format("{}.{}", dialect_.name(block.instance),
-                     dialect_.name(block.fields[module_.light_count.field].name));
+  const std::string count = fmt::format("{}.{}", dialect_.name(block.instance),
+                                        dialect_.name(block.fields[module_.light_count.field].name));
+  if (!dialect_.clampsLoops()) return count;
+  const auto lights = std::find_if(module_.blocks.begin(), module_.blocks.end(),
+                                   [](const ir::Block& one) { return one.role == ir::BlockRole::Lights; });
+  return fmt::format("min({}, {})", count, lights->array);
 }
 
 void Printer::openLoop(Text& text, const Statement& statement) const {
@@ -268,7 +272,10 @@ void Printer::openLoop(Text& text, const Statement& statement) const {
     const ir::Value& sum = dag_[statement.sums[0]];
     const std::string first = parenthesized(use(sum.args[1]), Precedence::Additive);
     const std::string count = parenthesized(use(sum.args[2]), tighter(Precedence::Additive));
-    text.line(dialect_.loop(first, fmt::format("{} + {}", first, count)));
+    const std::string end = fmt::format("{} + {}", first, count);
+    const ir::Block& numbers = module_.blocks[module_.light_lists->number.block];
+    text.line(dialect_.loop(
+        first, dialect_.clampsLoops() ? fmt::format("min({}, {})", end, dialect_.listLength(numbers)) : end));
   } else {
     const bool counted = group.count == ir::LightGroup::kCounted;
     text.line(dialect_.loop(fmt::format("{}", group.first),

@@ -112,6 +112,11 @@ public:
                              const Expression& number) const;
   /// The opening line of the loop over lights from `first` to before `end`.
   virtual std::string loop(std::string_view first, std::string_view end) const;
+  /// True for a target whose contract with the application may be broken by a page that anyone wrote: loops
+  /// run no further than arrays and lists reach, whatever counts the application gives.
+  virtual bool clampsLoops() const { return false; }
+  /// With clampsLoops(): the number of elements of a list.
+  virtual std::string listLength(const ir::Block&) const { return {}; }
   /// A member of a block; `array`: 0 or the number of elements.
   virtual std::string member(ir::Type type, std::string_view name, uint32_t array) const;
   /// A fragment output or an interpolant where it is assigned.

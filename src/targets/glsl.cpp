@@ -159,6 +159,15 @@ private:
                                     : fmt::format("uintBitsToFloat({})", bits)};
   }
 
+  /// Where there are no storage buffers it is WebGL's.
+  bool clampsLoops() const override { return !row_.storage; }
+  std::string listLength(const ir::Block& list) const override {
+    constexpr uint32_t kTexel = 16;
+    const std::string texels = fmt::format("textureSize({0}s, 0).x * textureSize({0}s, 0).y", list.instance);
+    return list.size % kTexel == 0 ? fmt::format("{} / {}", texels, list.size / kTexel)
+                                   : fmt::format("{} * {}", texels, kTexel / list.size);
+  }
+
   /// A list where there are no storage buffers: its bytes are the texels of an RGBA32UI texture, row by row.
   void listTexture(Text& text, const ir::Block& block) const {
     const std::string name = block.instance + "s";

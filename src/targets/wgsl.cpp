@@ -190,6 +190,11 @@ public:
     return {fmt::format("{}[{}].{}", name(list.instance + "s"), number.text, name(field.name))};
   }
 
+  bool clampsLoops() const override { return true; }
+  std::string listLength(const ir::Block& list) const override {
+    return fmt::format("i32(arrayLength(&{}))", name(list.instance + "s"));
+  }
+
   std::string loop(std::string_view first, std::string_view end) const override {
     return fmt::format("for (var {0} = {1}; {0} < {2}; {0}++) {{", ir::kLightIndexName, first, end);
   }

@@ -385,4 +385,26 @@ TEST(Templates, OneAttributeHasOneSpelling) {
   EXPECT_NE(outcome.err.find("[duplicate-name]"), std::string::npos) << outcome.all();
 }
 
+/// Whoever writes a page gives the counts: in WebGL and WebGPU no loop leaves an array or a list.
+TEST(Templates, LoopsOfTheWebEndWithTheirArrays) {
+  const Workplace place;
+  for (const char* name : {"forward", "forward_clustered"}) {
+    const Outcome outcome = place.run({"gen", example("coat.gltf"), "-o", name, "--template", name, "--target",
+                                       "glsl,essl,hlsl,wgsl", "--no-validate"});
+    ASSERT_EQ(outcome.status, 0) << outcome.all();
+  }
+  size_t loops = 0;
+  for (const std::string& file : place.names()) {
+    if (file.find(".frag.") == std::string::npos) continue;
+    const bool web = file.find("/essl/") != std::string::npos || file.find("/wgsl/") != std::string::npos;
+    const std::string text = place.read(file);
+    for (size_t at = text.find("for ("); at != std::string::npos; at = text.find("for (", at + 1)) {
+      const std::string line = text.substr(at, text.find('\n', at) - at);
+      EXPECT_EQ(line.find("min(") != std::string::npos, web) << file << ": " << line;
+      ++loops;
+    }
+  }
+  EXPECT_GT(loops, 8U);
+}
+
 }  // namespace lacquer::test

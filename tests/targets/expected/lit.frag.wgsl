@@ -54,7 +54,7 @@ fn main(
 
     // base.lambert: glTF 2.0, B.3.1
     var direct = vec3f(0.0);
-    for (var i = 0; i < frame.light_count; i++) {
+    for (var i = 0; i < min(frame.light_count, 16); i++) {
         let n_dot_l = max(0.0, dot(normal, lights[i].direction));
         direct += base_color * lights[i].color * (n_dot_l * select(1.0, lights[i].range, lights[i].lacquer_type == 1));
     }
