@@ -43,7 +43,10 @@ std::optional<ir::Type> Types::of(const Value& value, int depth) const {
     case Value::Kind::None: return std::nullopt;
     case Value::Kind::Constant: return value.type;
     case Value::Kind::Id: return id(value.index, value.path, depth);
-    case Value::Kind::Below: return std::nullopt;
+    case Value::Kind::Below: {
+      const std::optional<ir::Type> whole = port(model_.outs[value.index].name);
+      return whole ? swizzled(*whole, value.path) : std::nullopt;
+    }
     case Value::Kind::Role: return role(value);
     case Value::Kind::Given: return given(value);
     case Value::Kind::Call: return call(value, {});
@@ -71,7 +74,8 @@ std::optional<ir::Type> Types::agreed(uint32_t id, std::string_view path, int de
       } else if (const std::optional<ir::Type> whole = of(value, depth + 1)) {
         type = swizzled(*whole, path);
       }
-      if (!type || (agreed && *agreed != *type)) return std::nullopt;
+      if (!type) continue;
+      if (agreed && *agreed != *type) return std::nullopt;
       agreed = type;
     }
   }

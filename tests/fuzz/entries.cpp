@@ -109,7 +109,7 @@ namespace {
 std::optional<std::string> withoutARun(const Filled& filled, const Entry& entry, bool damaged,
                                        std::string_view payload) {
   constexpr uint64_t kRuns = 16;
-  if (keyOf(payload).low % kRuns == 0) return std::nullopt;
+  if (numberOf(payload) % kRuns == 0) return std::nullopt;
   if (damaged) {
     const std::optional<std::string> got = Cache(filled.options.cache, kRoom, "").get(entry.key);
     const bool taken = got && *got != std::string_view(entry.bytes).substr(kHeader);

@@ -1,10 +1,13 @@
 // The functions behind the targets.
 #pragma once
 
+#include <cstdint>
+#include <cstring>
 #include <string>
 #include <string_view>
 
 #include "lacquer.h"
+#include "support/digest.h"
 
 namespace lacquer::fuzz {
 
@@ -20,6 +23,9 @@ std::string judgeGraph(std::string_view bytes);
 std::string feedNode(std::string_view bytes);
 std::string feedDeclaration(std::string_view bytes);
 
+// parts.cpp
+std::string feedPart(std::string_view bytes);
+
 // bytes.cpp
 std::string feedImage(std::string_view bytes);
 std::string feedPanorama(std::string_view bytes);
@@ -34,6 +40,14 @@ std::string feedManifest(std::string_view bytes);
 
 // entries.cpp
 std::string feedEntry(std::string_view bytes);
+
+/// A number that the input chooses, and another one for each `which` of the first four.
+inline uint64_t numberOf(std::string_view bytes, size_t which = 0) {
+  const Digest digest = digestOf(bytes);
+  uint64_t number = 0;
+  std::memcpy(&number, digest.data() + sizeof number * which, sizeof number);
+  return number;
+}
 
 /// Options that the input's hash chooses; one target, SPIR-V, and no validation.
 Options optionsOf(std::string_view bytes);

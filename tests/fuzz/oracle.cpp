@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cache/key.h"
 #include "feeds.h"
 #include "graph/graph.h"
 #include "lower/lower.h"
@@ -92,7 +91,7 @@ std::string judgeGltf(std::string_view bytes) {
   const auto document =
       material::readText(std::string(bytes), "fuzz.gltf", **schema, {options.permissive, {}});
   if (!document) return {};
-  const uint64_t seed = keyOf(bytes).high;
+  const uint64_t seed = numberOf(bytes);
   size_t left = kMostMaterials;
   for (const material::Material& material : document->materials) {
     if (lacquer::hasError(material.diagnostics)) continue;
@@ -115,7 +114,7 @@ std::string judgeGraph(std::string_view bytes) {
   if (!graph || lacquer::hasError(graph::check(*graph, **language))) return {};
   // Where something may leave the range of what it goes to, a colour may come to anything.
   const bool promised = graph::doubts(*graph, **language, true).empty();
-  return judge(*graph, **language, options, keyOf(bytes).high, promised);
+  return judge(*graph, **language, options, numberOf(bytes), promised);
 }
 
 }  // namespace lacquer::fuzz

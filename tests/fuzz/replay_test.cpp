@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <set>
 #include <sstream>
 
@@ -62,6 +63,18 @@ INSTANTIATE_TEST_SUITE_P(Targets, Replay, testing::ValuesIn(targets().begin(), t
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+/// Parts are written from any bytes: these are tried by every compiler.
+TEST(Parts, ofRandomBytesHold) {
+  const Target* parts = findTarget("parts");
+  ASSERT_NE(parts, nullptr);
+  std::mt19937 random(1);
+  for (int i = 0; i < 250; ++i) {
+    std::string bytes(8 + random() % 40, '\0');
+    for (char& byte : bytes) byte = static_cast<char>(random());
+    EXPECT_EQ(parts->feed(bytes), "") << i;
+  }
+}
 
 /// The folder holds nothing that no target replays.
 TEST(Corpus, everyFolderHasATarget) {

@@ -1,7 +1,6 @@
 // glTF files and graphs through the public library: each of them to its graph, some all the way to SPIR-V.
 #include <algorithm>
 
-#include "cache/key.h"
 #include "feeds.h"
 
 namespace lacquer::fuzz {
@@ -14,12 +13,12 @@ constexpr size_t kMostMaterials = 3;
 /// oracle's targets make shaders of each.
 constexpr uint64_t kShadersEvery = 8;
 
-bool becomesShaders(std::string_view bytes) { return keyOf(bytes).high % kShadersEvery == 0; }
+bool becomesShaders(std::string_view bytes) { return numberOf(bytes) % kShadersEvery == 0; }
 
 }  // namespace
 
 Options optionsOf(std::string_view bytes) {
-  uint64_t random = keyOf(bytes).low;
+  uint64_t random = numberOf(bytes, 1);
   const auto below = [&random](uint64_t n) {
     const uint64_t rest = random % n;
     random /= n;

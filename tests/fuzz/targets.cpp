@@ -16,6 +16,7 @@ constexpr Target kTargets[] = {
     {"graph-oracle", "graph", Form::Graph, judgeGraph},
     {"node", "node", Form::Bytes, feedNode},
     {"declaration", "declaration", Form::Bytes, feedDeclaration},
+    {"parts", "parts", Form::Bytes, feedPart},
     {"image", "image", Form::Bytes, feedImage},
     {"panorama", "panorama", Form::Bytes, feedPanorama},
     {"texture", "texture", Form::Json, feedTexture},
