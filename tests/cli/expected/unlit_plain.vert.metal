@@ -1,4 +1,4 @@
-// forward-base-9db4c77b8e1c98ba
+// forward-base-57950a6da550adc5f49c0bb8dcf93f38
 // Lacquer 0.2.0, template forward
 
 #include <metal_stdlib>

@@ -1,9 +1,9 @@
-// forward-coat-3156e1436f5327df
+// forward-coat-b7afc6faa1668a6e0322f53b3f2a1f5f
 // Lacquer 0.2.0, template forward
 //
 // The types of the module beside this file.
 
-export declare const id: "forward-coat-3156e1436f5327df";
+export declare const id: "forward-coat-b7afc6faa1668a6e0322f53b3f2a1f5f";
 
 /** What can be edited. */
 export interface Parameters {
@@ -43,8 +43,13 @@ export declare const fields: {
 };
 
 /** Writes the block to the first blockSize bytes of `bytes`, which it returns. What `parameters` does not
- *  name has its default. Throws a RangeError where there are fewer bytes. */
+ *  name has its default, and so has what is no number; one outside of its parameter's range is packed as
+ *  the nearest in it. Throws a RangeError where there are fewer bytes. */
 export declare function pack<T extends ArrayBufferView = Uint8Array>(parameters?: Partial<Parameters>, bytes?: T): T;
+
+/** The names of the parameters that are packed otherwise than they are given, for they are outside of
+ *  their ranges or no numbers. */
+export declare function outside(parameters?: Partial<Parameters>): (keyof Parameters)[];
 
 /** Where something is bound: `set` and `binding` for Vulkan and WebGPU, `flat` where there are no sets. */
 export interface Binding { readonly set: number; readonly binding: number; readonly flat: number; }

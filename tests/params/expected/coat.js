@@ -1,11 +1,11 @@
-// forward-coat-3156e1436f5327df
+// forward-coat-b7afc6faa1668a6e0322f53b3f2a1f5f
 // Lacquer 0.2.0, template forward
 //
 // The material's uniform block from its parameters: an ES module. It computes in double what the library's
 // pack() computes, and rounds each component to float once.
 
 /** The shader that this belongs to. */
-export const id = "forward-coat-3156e1436f5327df";
+export const id = "forward-coat-b7afc6faa1668a6e0322f53b3f2a1f5f";
 
 /** What can be edited, with glTF's defaults, which belong to no material. */
 export const defaults = Object.freeze({
@@ -42,15 +42,26 @@ export const fields = Object.freeze({
 
 const inversesqrt = (a) => (1) / Math.sqrt(a);
 const max = (a, b) => (a < b ? b : a);
+// A number outside of a range counts as the nearest one in it.
+const within = (x, low, high, otherwise) => (x >= low ? (x <= high ? x : high) : x < low ? low : otherwise);
+// The parameters as they are packed.
+const packed = (given) => ({
+    base_color_factor: [within(Number(Object(given.base_color_factor)[0]), 0, 1, 1), within(Number(Object(given.base_color_factor)[1]), 0, 1, 1), within(Number(Object(given.base_color_factor)[2]), 0, 1, 1), within(Number(Object(given.base_color_factor)[3]), 0, 1, 1)],
+    coat_factor: within(Number(given.coat_factor), 0, 1, 0),
+    coat_roughness_factor: within(Number(given.coat_roughness_factor), 0, 1, 0),
+    metallic_factor: within(Number(given.metallic_factor), 0, 1, 1),
+    roughness_factor: within(Number(given.roughness_factor), 0, 1, 1),
+});
 
 /** Writes the block to the first blockSize bytes of `bytes`, which it returns. What `parameters` does not
- *  name has its default. Throws a RangeError where there are fewer bytes. */
+ *  name has its default, and so has what is no number; one outside of its parameter's range is packed as
+ *  the nearest in it. Throws a RangeError where there are fewer bytes. */
 export function pack(parameters = {}, bytes = new Uint8Array(blockSize)) {
     if (bytes.byteLength < blockSize) throw new RangeError(`the block takes ${blockSize} bytes`);
-    const p = { ...defaults, ...parameters };
+    const p = packed({ ...defaults, ...parameters });
     const view = new DataView(bytes.buffer, bytes.byteOffset, blockSize);
-    // A value that is not finite becomes 0, and so does -0.
-    const put = (at, x) => view.setFloat32(at, Number.isFinite(x) && x !== 0 ? x : 0, true);
+    // A field is as large as a float at most; one that is no number becomes 0, and so does -0.
+    const put = (at, x) => view.setFloat32(at, x === 0 ? 0 : within(x, -3.4028234663852886e+38, 3.4028234663852886e+38, 0), true);
     new Uint8Array(bytes.buffer, bytes.byteOffset, blockSize).fill(0);
     // base.alpha: glTF 2.0, Appendix B, "Microfacet Surfaces" and "Specular BRDF" (note on alpha = 0)
     const alpha = max(p.roughness_factor * p.roughness_factor, 0.001);
@@ -108,6 +119,16 @@ export function pack(parameters = {}, bytes = new Uint8Array(blockSize)) {
     put(92, dielectric_repeated);
     put(96, white_F0);
     return bytes;
+}
+
+/** The names of the parameters that are packed otherwise than they are given, for they are outside of
+ *  their ranges or no numbers. */
+export function outside(parameters = {}) {
+    const given = { ...defaults, ...parameters };
+    const p = packed(given);
+    return Object.keys(p).filter((name) => Array.isArray(p[name])
+        ? p[name].some((x, i) => x !== Object(given[name])[i])
+        : Number(p[name]) !== Number(given[name]));
 }
 
 /** The blocks that the shader reads, by their names in GLSL. `set` and `binding` are Vulkan's and WebGPU's,
