@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "support/diagnostic.h"
@@ -38,10 +39,10 @@ struct TextureInfo {
   } animated{};
 };
 
-/// The vertex attributes of a primitive, as the shader sees them. POSITION is always there.
 /// Of one primitive; no device takes more attributes.
 inline constexpr size_t kMostApplicationAttributes = 16;
 
+/// The vertex attributes of a primitive, as the shader sees them. POSITION is always there.
 struct VertexAttributes {
   bool normal = false;
   bool tangent = false;
@@ -54,7 +55,15 @@ struct VertexAttributes {
   bool quantized = false;
   /// The application's own, sorted, at most kMostApplicationAttributes: "_WETNESS".
   std::vector<std::string> application{};
-  auto operator<=>(const VertexAttributes&) const = default;
+  bool operator==(const VertexAttributes&) const = default;
+  /// Some total order. By hand: the vectors of LLVM's library have no <=> before version 16.
+  bool operator<(const VertexAttributes& other) const {
+    const auto tied = [](const VertexAttributes& a) {
+      return std::tie(a.normal, a.tangent, a.color0, a.texCoord, a.skin, a.morph, a.instances, a.quantized,
+                      a.application);
+    };
+    return tied(*this) < tied(other);
+  }
   /// Semantic names without POSITION, in the order NORMAL, TANGENT, TEXCOORD_0…3, COLOR_0, JOINTS_0,
   /// WEIGHTS_0, JOINTS_1, WEIGHTS_1, MORPH_VERTEX (the vertex's number, which targets are looked up by),
   /// TRANSLATION, ROTATION, SCALE, QUANTIZED (no attribute: how others are stored), the application's.

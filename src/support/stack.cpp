@@ -23,6 +23,9 @@ std::optional<uint64_t> stackLeft() {
 #endif
 }
 
+#if defined(__EMSCRIPTEN__)
+bool hasStack() { return true; }  // one thread, whose stack the module brings
+#else
 bool hasStack() {
   enum class State : uint8_t { Unknown, Enough, Little };
   thread_local State state = State::Unknown;
@@ -30,5 +33,6 @@ bool hasStack() {
     state = stackLeft().value_or(kStackNeeded) >= kStackNeeded ? State::Enough : State::Little;
   return state == State::Enough;
 }
+#endif
 
 }  // namespace lacquer

@@ -128,7 +128,7 @@ TEST(Spec, NumbersNeedNoNewModule) {
     const Words words = wordsOf(before, ir::Stage::Fragment);
     randomize(graph, random);
     const ir::Module after = moduleOf(graph, lower::ParameterMode::Spec);
-    EXPECT_EQ(passes::contentAddress(before), passes::contentAddress(after));
+    EXPECT_EQ(passes::contentDigest(before), passes::contentDigest(after));
     EXPECT_EQ(words, wordsOf(after, ir::Stage::Fragment));
     EXPECT_EQ(after.preshader.size(), 0u);
     for (const ir::Block& block : after.blocks) EXPECT_NE(block.role, ir::BlockRole::Material);
@@ -174,7 +174,7 @@ TEST(Spec, OtherTargetsHaveNone) {
     EXPECT_EQ(
         said,
         fmt::format(
-            "--target: {} has no specialization constants; --params spec is for glsl, spirv, wgsl and msl\n",
+            "--target: {} has no specialization constants; --params spec is for glsl, spirv, wgsl, msl\n",
             target));
     EXPECT_FALSE(fs::exists(folder / "out"));
   }
