@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <cstring>
+#include <mutex>
 #include <string>
 #include <string_view>
-#include <type_traits>
+#include <unordered_map>
+#include <utility>
 
 #include "support/digest.h"
 
@@ -36,10 +38,7 @@ class KeyBuilder {
 public:
   template <class T>
   KeyBuilder& number(T value) {
-    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
-    char bytes[sizeof value];
-    std::memcpy(bytes, &value, sizeof value);
-    bytes_.append(bytes, sizeof value);
+    appendNumber(bytes_, value);
     return *this;
   }
   KeyBuilder& text(std::string_view text) {
@@ -52,6 +51,7 @@ public:
     return *this;
   }
   Key finish() const;
+  std::string take() { return std::move(bytes_); }
 
 private:
   std::string bytes_;
@@ -59,5 +59,28 @@ private:
 
 /// The key of bytes alone.
 Key keyOf(std::string_view bytes);
+
+/// The keys of one run, in which contents are compared byte by byte where their digests are equal: two
+/// contents never have one key. May be used from several threads at once.
+class Keys {
+public:
+  static constexpr size_t kAll = 8 * sizeof(Digest);
+  /// `bits`: of a digest that count. Fewer than all are for tests, in which contents meet.
+  explicit Keys(size_t bits = kAll) : bits_(bits) {}
+
+  Key of(const std::string& content);
+  /// False where another content has the key; else this one has it from now on.
+  bool take(const Key& key, const std::string& content);
+  /// What has the key; empty where nothing has.
+  std::string contentOf(const Key& key) const;
+
+private:
+  const size_t bits_;
+  mutable std::mutex mutex_;
+  std::unordered_map<Key, std::string, KeyHash> contents_;
+};
+
+/// The same with all but the first bits 0.
+Digest shortened(Digest digest, size_t bits);
 
 }  // namespace lacquer

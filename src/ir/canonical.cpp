@@ -1,8 +1,8 @@
 #include "ir/canonical.h"
 
-#include <cstring>
-#include <type_traits>
 #include <utility>
+
+#include "support/digest.h"
 
 namespace lacquer::ir {
 
@@ -30,6 +30,8 @@ public:
       number(output.location);
       text(output.name);
       refer(output.value);
+      // Only packed colours have them, which their names tell.
+      for (const std::string& held : output.holds) text(held);
     }
     textures();
     parameters();
@@ -45,10 +47,7 @@ public:
 private:
   template <class T>
   void number(T x) {
-    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
-    char raw[sizeof x];
-    std::memcpy(raw, &x, sizeof x);
-    bytes_.append(raw, sizeof x);
+    appendNumber(bytes_, x);
   }
   void text(std::string_view text) {
     number(static_cast<uint32_t>(text.size()));

@@ -60,9 +60,11 @@ void runPipeline(ir::Module& module, const PipelineOptions& options) {
   }
 }
 
-std::string contentAddress(const ir::Module& module) {
+Digest contentDigest(const ir::Module& module) { return digestOf(ir::canonical(module)); }
+
+std::string contentAddress(const Digest& digest) {
   constexpr size_t kBytes = 16;
-  return hexOf(digestOf(ir::canonical(module)), kBytes);
+  return hexOf(digest, kBytes);
 }
 
 }  // namespace lacquer::passes

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "passes/passes.h"
+#include "support/digest.h"
 
 namespace lacquer::passes {
 
@@ -28,8 +29,9 @@ struct PassInfo {
 /// The passes, in order.
 std::span<const PassInfo> passes();
 
-/// The content address of a module that went through the pipeline: 32 hexadecimal digits, 128 bits of
-/// BLAKE2b of ir::canonical().
-std::string contentAddress(const ir::Module& module);
+/// BLAKE2b of ir::canonical() of a module that went through the pipeline.
+Digest contentDigest(const ir::Module& module);
+/// Its first 128 bits as 32 hexadecimal digits.
+std::string contentAddress(const Digest& digest);
 
 }  // namespace lacquer::passes

@@ -171,9 +171,11 @@ void renderTerms(Structure& structure) {
       textAt(kTermsDepth, [&](JsonText& json) { writeSkipped(structure.terms->skipped, json); });
 }
 
-void describe(const ir::Module& module, const graph::Graph& graph, const Language& library,
+void describe(const ir::Module& module, const graph::Graph& graph, const Setting& setting,
               Structure& structure) {
-  structure.shader = shaderId(module, library);
+  const Language& library = setting.library;
+  structure.module = passes::contentDigest(module);
+  structure.shader = shaderId(module, library, shortened(structure.module, setting.id_bits));
   structure.has_vertex = hasVertexStage(module);
   const Result<const material::Schema*> schema = library.models.schema();
   const Json interface = interfaceOf(module, structure.has_vertex, schema ? *schema : nullptr);
@@ -247,7 +249,7 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
   // They decide what is said of the shader.
   for (const Target target : setting.options.targets) key.number(target);
   StructureKey(key, baked).graph(graph);
-  return key.finish();
+  return setting.keys->of(key.take());
 }
 
 std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
@@ -275,7 +277,7 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
   structure.graph = graph::toJson(plain);
   // Places are those in the graph as it comes, which check() may have ordered, but not its parameters and
   // textures.
-  describe(*module, graph, setting.library, structure);
+  describe(*module, graph, setting, structure);
   return std::move(*module);
 }
 
@@ -348,8 +350,8 @@ static void fields(Archive& archive, LightFacts& lights) {
 
 template <class Archive>
 static void fields(Archive& archive, Structure& s) {
-  archive(s.diagnostics, s.shader, s.has_vertex, s.absent, s.interface, s.terms, s.preshader, s.parameters,
-          s.textures, s.inputs, s.limits, s.graph, s.lights);
+  archive(s.content, s.module, s.diagnostics, s.shader, s.has_vertex, s.absent, s.interface, s.terms,
+          s.preshader, s.parameters, s.textures, s.inputs, s.limits, s.graph, s.lights);
 }
 
 std::string toBlob(const Structure& structure) {

@@ -24,6 +24,8 @@ using json::JsonText;
 /// What is the same for every material of one structure.
 struct Structure {
   Key key;
+  std::string content;      ///< what the key is of; empty where it is known (Setting::keys)
+  Digest module{};          ///< of the module behind `shader`
   Diagnostics diagnostics;  ///< of the structure, whatever the numbers are
   std::string shader;       ///< id; empty when none can be made
   bool has_vertex = false;
@@ -56,10 +58,12 @@ struct Setting {
   std::string folder = {};             ///< that the manifest lies in: sources are relative to it
   const Programs* programs = nullptr;  ///< that materials share, once it is known
   Examples* examples = nullptr;        ///< takes note of the materials, before that
+  std::shared_ptr<Keys> keys = std::make_shared<Keys>();
+  size_t id_bits = Keys::kAll;  ///< of a module's digest; fewer are for tests, in which ids meet
 };
 
 /// The address of a graph without what belongs to one material: names, JSON pointers, texture indices and,
-/// where the numbers stay editable, the parameters' values.
+/// where the numbers stay editable, the parameters' values. Of its content there is one in Setting::keys.
 Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting);
 
 /// The graph, its numbers replaced by others that the check accepts, lowered and through the passes. On an

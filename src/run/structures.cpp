@@ -1,5 +1,7 @@
 #include "run/structures.h"
 
+#include <fmt/format.h>
+
 namespace lacquer {
 
 Structures::Entry& Structures::entryOf(const Key& key) {
@@ -15,21 +17,37 @@ bool Structures::load(const Key& key, Entry& entry) {
   const std::optional<std::string> bytes = setting_.cache->get(key);
   if (!bytes) return false;
   Structure structure;
-  if (!fromBlob(*bytes, structure)) return false;
+  if (!fromBlob(*bytes, structure) || !setting_.keys->take(key, structure.content)) return false;
   structure.key = key;
+  structure.content.clear();
   entry.structure = std::move(structure);
-  entry.ready = true;
-  need(entry.structure, std::nullopt);
+  entry.ready = need(entry.structure, std::nullopt);
+  return entry.ready;
+}
+
+/// False where another shader has its id.
+bool Structures::need(const Structure& structure, std::optional<ir::Module> module) {
+  if (structure.shader.empty()) return true;
+  const std::lock_guard lock(mutex_);
+  Distinct& shader = shaders_[structure.shader];
+  if (shader.structure != nullptr && shader.structure->module != structure.module) return false;
+  if (shader.structure == nullptr || structure.key < shader.structure->key) shader.structure = &structure;
+  if (module && !shader.module) shader.module = std::move(module);
   return true;
 }
 
-void Structures::need(const Structure& structure, std::optional<ir::Module> module) {
-  if (structure.shader.empty()) return;
-  const std::lock_guard lock(mutex_);
-  Distinct& shader = shaders_[structure.shader];
-  if (shader.structure == nullptr || structure.key < shader.structure->key) shader.structure = &structure;
-  if (module && !shader.module) shader.module = std::move(module);
+namespace {
+
+Diagnostic sameId(const std::string& id) {
+  return {"same-id",
+          Severity::Error,
+          {},
+          fmt::format("another shader of this run has the identifier '{}'", id),
+          "128 bits of their digests are equal: please report both materials",
+          {}};
 }
+
+}  // namespace
 
 const Structure& Structures::of(const graph::Graph& graph, const passes::LightFacts& lights) {
   const Key key = structureKey(graph, lights, setting_);
@@ -42,9 +60,14 @@ const Structure& Structures::of(const graph::Graph& graph, const passes::LightFa
   entry.ready = true;
   if (module && setting_.cache != nullptr) {
     const StageTimer timer(setting_.times, StageOfRun::Cache);
+    entry.structure.content = setting_.keys->contentOf(key);
     setting_.cache->put(key, toBlob(entry.structure));
+    entry.structure.content.clear();
   }
-  need(entry.structure, std::move(module));
+  if (!need(entry.structure, std::move(module))) {
+    entry.structure.diagnostics.push_back(sameId(entry.structure.shader));
+    entry.structure.shader.clear();
+  }
   return met(entry.structure);
 }
 

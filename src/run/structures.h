@@ -44,7 +44,7 @@ private:
   };
   Entry& entryOf(const Key& key);
   bool load(const Key& key, Entry& entry);
-  void need(const Structure& structure, std::optional<ir::Module> module);
+  bool need(const Structure& structure, std::optional<ir::Module> module);
   const Structure& met(const Structure& structure);
 
   const Setting& setting_;

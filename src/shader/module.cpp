@@ -69,8 +69,12 @@ bool hasVertexStage(const ir::Module& module) {
                      [](const ir::Output& o) { return o.stage == ir::Stage::Vertex; });
 }
 
-/// The outermost layer that an extension has brought, or else the innermost of all.
 std::string shaderId(const ir::Module& module, const lang::Library& library) {
+  return shaderId(module, library, passes::contentDigest(module));
+}
+
+/// Its middle is the outermost layer that an extension has brought, or else the innermost of all.
+std::string shaderId(const ir::Module& module, const lang::Library& library, const Digest& digest) {
   std::vector<ir::ValueId> roots;
   for (const ir::Output& output : module.outputs) roots.push_back(output.value);
   const std::vector<ir::ValueId> values = ir::reachable(module.dag, roots);
@@ -90,7 +94,7 @@ std::string shaderId(const ir::Module& module, const lang::Library& library) {
       if (decl && !(*decl)->of.empty() && has(part)) kind = part;
     }
   }
-  return fmt::format("{}-{}-{}", module.template_name, kind, passes::contentAddress(module));
+  return fmt::format("{}-{}-{}", module.template_name, kind, passes::contentAddress(digest));
 }
 
 bool isShaderId(std::string_view id) {

@@ -29,8 +29,10 @@ Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOption
 /// True when the module has something to draw with at vertices.
 bool hasVertexStage(const ir::Module& module);
 
-/// "forward-coat-0123456789abcdef"
+/// "forward-coat-" and 32 hexadecimal digits.
 std::string shaderId(const ir::Module& module, const lang::Library& library);
+/// The same where passes::contentDigest() is known.
+std::string shaderId(const ir::Module& module, const lang::Library& library, const Digest& digest);
 /// True for what shaderId() may give: an id from elsewhere is asked for this before it becomes part of a
 /// path.
 bool isShaderId(std::string_view id);

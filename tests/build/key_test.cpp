@@ -5,6 +5,9 @@
 #include <functional>
 
 #include "cache/option_key.h"
+#include "run/source_file.h"
+#include "shader/language.h"
+#include "support/cases.h"
 
 namespace lacquer::test {
 namespace {
@@ -109,6 +112,37 @@ TEST(OptionKeys, ListsDoNotRunIntoOneAnother) {
   other.live = {"coat"};
   other.profile = "emission";
   EXPECT_NE(keyOf(one, Decides::Graph), keyOf(other, Decides::Graph));
+}
+
+TEST(Keys, ContentsThatMeetHaveKeysOfTheirOwn) {
+  Keys keys(0);
+  const Key a = keys.of("a"), b = keys.of("b"), c = keys.of("c");
+  EXPECT_TRUE(a != b && b != c && a != c);
+  EXPECT_EQ(keys.of("b"), b);
+  EXPECT_EQ(keys.contentOf(c), "c");
+  EXPECT_TRUE(keys.take(a, "a"));
+  EXPECT_FALSE(keys.take(a, "other"));
+  EXPECT_EQ(keys.contentOf(lacquer::keyOf("never asked for")), "");
+}
+
+TEST(Keys, ShadersOfOneIdentifierAreTold) {
+  Options options;
+  options.targets = {Target::Spirv};
+  const auto language = libraryFor(options);
+  ASSERT_TRUE(language.has_value());
+  ASSERT_TRUE(resolveNames(**language, options));
+  const auto diagnosticsOf = [&](size_t bits) {
+    Setting setting{options, **language, {}};
+    setting.id_bits = bits;
+    Structures structures(setting);
+    const std::string path = (sourceFolder() / "examples/coat.gltf").string();
+    const FileResult result = readScene(path, {}, setting, structures);
+    EXPECT_EQ(result.ok, bits == Keys::kAll);
+    return static_cast<size_t>(std::count_if(result.diagnostics.begin(), result.diagnostics.end(),
+                                             [](const Diagnostic& d) { return d.code == "same-id"; }));
+  };
+  EXPECT_EQ(diagnosticsOf(Keys::kAll), 0u);
+  EXPECT_GT(diagnosticsOf(0), 0u);
 }
 
 }  // namespace

@@ -124,10 +124,10 @@ TEST(ParityMaterials, QuadsWithoutTangents) {
 
 TEST(ParityMaterials, VertexStages) {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
-  std::set<std::string> seen;
+  std::set<Digest> seen;
   for (const NamedGraph& graph : exampleGraphs({})) {
     const Subject subject = vertexSubject(graph, {}, 1024, 5);
-    if (!seen.insert(passes::contentAddress(subject.module)).second) continue;
+    if (!seen.insert(passes::contentDigest(subject.module)).second) continue;
     const Comparison comparison = compareEngines(subject);
     EXPECT_EQ(comparison.outside, 0U) << comparison.first;
     EXPECT_LT(comparison.vague, comparison.numbers / 100) << graph.name;

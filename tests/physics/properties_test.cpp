@@ -159,8 +159,8 @@ TEST(Properties, ACoatOfWeightZeroIsTheBaseToTheBit) {
     const std::vector<Vec4> expected = bare.colors<double>(samples, {1, 2, 3});
     EXPECT_EQ(expected, coat.colors<double>(samples, {1, 2, 3}));
     EXPECT_EQ(expected, clearcoat.colors<double>(samples, {1, 2, 3}));
-    EXPECT_EQ(passes::contentAddress(bare.module()), passes::contentAddress(coat.module()));
-    EXPECT_EQ(passes::contentAddress(bare.module()), passes::contentAddress(clearcoat.module()));
+    EXPECT_EQ(passes::contentDigest(bare.module()), passes::contentDigest(coat.module()));
+    EXPECT_EQ(passes::contentDigest(bare.module()), passes::contentDigest(clearcoat.module()));
   }
 }
 
