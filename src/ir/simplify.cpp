@@ -72,7 +72,8 @@ ValueId Simplifier::unary(Op op, ValueId a) {
   if (op == Op::Abs && value.op == Op::Neg) return dag_.make(Op::Abs, {value.args[0]});
   if ((op == Op::Abs || op == Op::Normalize) && value.op == op) return a;
   if (op == Op::Not && value.op == Op::Not) return value.args[0];
-  if (op == Op::Interpolate && value.rate < Rate::Vertex) return a;
+  // What is one object's may be interpolated, so that the vertices compute it.
+  if (op == Op::Interpolate && value.rate <= Rate::Frame) return a;
   if ((op == Op::DFdx || op == Op::DFdy) && value.rate < Rate::Vertex) return zero(value.type);
   if (op == Op::SumOverLights && dag_.isConstant(a, 0)) return a;
   return kNoValue;

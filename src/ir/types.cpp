@@ -34,6 +34,7 @@ std::string_view rateName(Rate rate) {
     case Rate::Constant: return "constant";
     case Rate::Material: return "material";
     case Rate::Frame: return "frame";
+    case Rate::Object: return "object";
     case Rate::Vertex: return "vertex";
     case Rate::Fragment: return "fragment";
     case Rate::Light: return "light";

@@ -52,7 +52,7 @@ Type floatType(int components);
 
 /// How often a value can change, lowest first. A value has the highest rate among its operands, except that
 /// Interpolate lifts Vertex to Fragment and SumOverLights lowers Light to Fragment.
-enum class Rate : uint8_t { Constant, Material, Frame, Vertex, Fragment, Light };
+enum class Rate : uint8_t { Constant, Material, Frame, Object, Vertex, Fragment, Light };
 
 /// "constant", "material", …
 std::string_view rateName(Rate rate);

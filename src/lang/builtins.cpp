@@ -127,7 +127,7 @@ std::optional<Type> typeOfUniform(const Builtin&, Types types) {
   return ir::isFloating(types[0]) || types[0] == Type::Bool ? std::optional(Type::Bool) : std::nullopt;
 }
 ValueId makeUniform(const Builtin&, Dag& dag, Values args) {
-  return dag.boolean(dag[args[0]].rate <= ir::Rate::Frame);
+  return dag.boolean(dag[args[0]].rate <= ir::Rate::Object);
 }
 
 std::optional<Type> typeOfReflect(const Builtin&, Types types) {

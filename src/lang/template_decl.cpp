@@ -65,9 +65,7 @@ private:
 
   void inputs() {
     for (const BlockDecl& block : decl_.blocks) {
-      const Ties ties = block.role == BlockRole::Lights                    ? kLight
-                        : block.role == BlockRole::Object && vertex_stage_ ? kVertex
-                                                                           : Ties{0};
+      const Ties ties = block.role == BlockRole::Lights ? kLight : Ties{0};
       for (const BlockFieldDecl& field : block.fields)
         std::fill_n(ties_.begin() + field.slot, field.elements(), ties);
     }

@@ -51,7 +51,9 @@ public:
   }
 
 private:
-  bool uniform(ValueId id) const { return dag_[id].rate <= ir::Rate::Frame && ir::isFloating(dag_[id].type); }
+  bool uniform(ValueId id) const {
+    return dag_[id].rate <= ir::Rate::Object && ir::isFloating(dag_[id].type);
+  }
 
   bool affine(ValueId id) const {
     const ir::Value& value = dag_[id];
