@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ir/dag.h"
@@ -26,7 +27,15 @@ struct Output {
   std::string name;
   uint32_t location = 0;
   ValueId value = kNoValue;
+  /// Of a colour that packs components of several: their names, at most four. Empty: it is as declared.
+  std::vector<std::string> holds = {};
 };
+
+/// The most colours of a fragment: D3D12_SIMULTANEOUS_RENDER_TARGET_COUNT, Metal's colour attachments,
+/// WebGPU's maxColorAttachments, and what every GPU has for Vulkan and OpenGL (ES).
+inline constexpr uint32_t kMostColors = 8;
+/// Begins the names of colours that pack components; no template may declare such a name.
+inline constexpr std::string_view kPackedPrefix = "packed_";
 
 /// Where something is bound: descriptor set and binding for Vulkan; `flat` for the targets without sets
 /// (OpenGL's block binding or texture unit, HLSL's register number). See docs/bindings.md.

@@ -315,6 +315,12 @@ struct OutputDecl {
   ExprPtr value;
 };
 
+/// `without output`: an output of the base that is not there.
+struct WithoutDecl {
+  std::string_view name;
+  Span span;
+};
+
 struct TemplateDecl {
   std::string_view name;
   bool is_default = false;  ///< `default;`: it is meant where no template is named
@@ -326,6 +332,7 @@ struct TemplateDecl {
   std::vector<GivenDecl> givens;
   std::vector<PortDecl> ports;
   std::vector<OutputDecl> outputs;
+  std::vector<WithoutDecl> without;        ///< taken from `outputs` when checked
   std::vector<LightKindDecl> light_kinds;  ///< in the order in which lights lie in the array
   std::optional<LightListsDecl> light_lists;
   uint32_t material_textures = 0;  ///< the flat number of the material's first texture

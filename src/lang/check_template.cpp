@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <span>
 #include <utility>
 
+#include "ir/module.h"
 #include "lang/builtins.h"
 #include "lang/checker.h"
 #include "lang/evaluate.h"
@@ -182,6 +184,7 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
   }
   for (LightKindDecl& kind : decl.light_kinds) lightKind(kind, slots);
   decl.slots = slots;
+  leaveOut(decl, bases);
   for (auto base = bases.rbegin(); base != bases.rend(); ++base) {
     inherit(base->givens);
     inherit(base->ports);
@@ -202,10 +205,38 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
   outputRules(decl);
 }
 
+/// `of` comes behind these bases, which lose what it leaves out. True for each name that there was.
+static std::vector<bool> erased(const TemplateDecl& of, std::span<TemplateDecl> bases) {
+  std::vector<bool> found;
+  for (const WithoutDecl& without : of.without) {
+    size_t left = 0;
+    for (TemplateDecl& base : bases)
+      left += std::erase_if(base.outputs, [&](const OutputDecl& o) { return o.name == without.name; });
+    found.push_back(left != 0);
+  }
+  return found;
+}
+
+void Checker::leaveOut(const TemplateDecl& decl, std::vector<TemplateDecl>& bases) {
+  for (size_t i = 0; i < bases.size(); ++i) erased(bases[i], std::span(bases).first(i));
+  const std::vector<bool> found = erased(decl, std::span(bases));
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (found[i]) continue;
+    reporter_.error("unknown-output", decl.without[i].span,
+                    fmt::format("there is no output '{}' to leave out", decl.without[i].name),
+                    "it must come from the template that this one extends");
+  }
+}
+
 void Checker::outputRules(TemplateDecl& decl) {
   for (size_t i = 0; i < decl.outputs.size(); ++i) {
     const OutputDecl& output = decl.outputs[i];
     if (output.value && sumsLights(*output.value)) decl.sums_lights = true;
+    if (output.name.starts_with(ir::kPackedPrefix)) {
+      reporter_.error("reserved-name", output.span,
+                      fmt::format("'{}' begins with '{}'", output.name, ir::kPackedPrefix),
+                      "outputs that share one place have such names");
+    }
     if (output.replaces) {
       reporter_.error("unknown-output", output.span,
                       fmt::format("there is no output '{}' of that kind to replace", output.name),

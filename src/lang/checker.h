@@ -121,6 +121,7 @@ private:
   void given(GivenDecl& decl, uint32_t& slots);
   void port(PortDecl& decl, uint32_t& slots);
   void output(OutputDecl& decl);
+  void leaveOut(const TemplateDecl& decl, std::vector<TemplateDecl>& bases);
   void outputRules(TemplateDecl& decl);
   bool unlike(const Param& param, const Expr& value, std::string_view what);
 

@@ -338,6 +338,14 @@ bool Parser::templateItem(TemplateDecl& decl) {
     decl.outputs.back().replaces = true;
     return true;
   }
+  if (is("without") && token(1).is("output")) {
+    at_ += 2;
+    do {
+      WithoutDecl& without = decl.without.emplace_back();
+      if (!name(without.name, without.span, "the name of the output")) return false;
+    } while (accept(","));
+    return expect(";", "the output's name");
+  }
   if (is("attribute") || is("fact")) return attribute(decl);
   constexpr std::array<std::string_view, 5> kOptional = {"block", "environment", "object", "output",
                                                          "attribute"};
@@ -372,7 +380,7 @@ bool Parser::templateItem(TemplateDecl& decl) {
       "its parts are default, block, extend block, light kind, lights from, attribute, fact, environment, "
       "object, given, "
       "port, output, optional block, optional attribute, optional environment, optional object, optional "
-      "output and replace output");
+      "output, replace output and without output");
 }
 
 /// `attribute TYPE NAME by SWITCH, ...;` or `fact NAME by SWITCH, ...;`

@@ -10,6 +10,7 @@
 #include "ir/names.h"
 #include "lower/at_vertices.h"
 #include "lower/inline.h"
+#include "lower/pack_outputs.h"
 
 namespace lacquer::lower {
 
@@ -29,7 +30,7 @@ ir::Rate rateOf(lang::BlockRole role) {
   switch (role) {
     case lang::BlockRole::Frame: return ir::Rate::Frame;
     case lang::BlockRole::Lights: return ir::Rate::Light;
-    case lang::BlockRole::Object: return ir::Rate::Vertex;
+    case lang::BlockRole::Object: return ir::Rate::Object;
     case lang::BlockRole::List: return ir::Rate::Frame;
   }
   return ir::Rate::Frame;
@@ -87,7 +88,7 @@ public:
     bindLightRange();
     if (Diagnostics wrong = nodes(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     ports();
-    outputs();
+    if (Diagnostics wrong = outputs(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     if (Diagnostics wrong = rates(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     assert(ir::verify(module_).empty());
     return std::move(module_);
@@ -385,12 +386,28 @@ private:
                        [&](const lang::ExprPtr& arg) { return arg && delivers(*arg); });
   }
 
-  void outputs() {
+  /// What the template's slots are where the graph delivers nothing that it may leave out.
+  std::vector<ir::ValueId> slotsWithoutPorts() {
+    std::vector<ir::ValueId> slots = slots_;
+    for (const lang::PortDecl& port : template_->ports) {
+      if (port.default_value) slots[port.slot] = inliner_.evaluate(*port.default_value, slots);
+    }
+    return slots;
+  }
+
+  Diagnostics outputs() {
     uint32_t color = 0;
+    const bool packs = packsOutputs(*template_);
+    OutputPacker packer(dag(), *template_);
+    const std::vector<ir::ValueId> without = packs ? slotsWithoutPorts() : std::vector<ir::ValueId>();
     dag().setTerm(dag().addTerm({"output", "", std::string(template_->origin.file), template_->origin.line}));
     for (const lang::OutputDecl& decl : template_->outputs) {
       if (decl.optional && !delivers(*decl.value)) {
-        color += decl.role == lang::OutputRole::Color ? 1 : 0;
+        color += decl.role == lang::OutputRole::Color && !packs ? 1 : 0;
+        continue;
+      }
+      if (packs && decl.optional && decl.role == lang::OutputRole::Color) {
+        packer.add(decl, inliner_.evaluate(*decl.value, slots_), inliner_.evaluate(*decl.value, without));
         continue;
       }
       ir::Output output{ir::OutputKind::Color, ir::Stage::Fragment, std::string(decl.name), 0, ir::kNoValue};
@@ -400,7 +417,10 @@ private:
           output.kind = ir::OutputKind::Position;
           output.stage = ir::Stage::Vertex;
           break;
-        case lang::OutputRole::Color: output.location = color++; break;
+        case lang::OutputRole::Color:
+          output.location = color++;
+          if (packs && output.value == inliner_.evaluate(*decl.value, without)) packer.idle(decl.name);
+          break;
         case lang::OutputRole::Discard:
           output.kind = ir::OutputKind::Discard;
           if (dag().isConstant(output.value, 0)) continue;
@@ -408,6 +428,7 @@ private:
       }
       module_.outputs.push_back(output);
     }
+    return packer.finish(color, module_.outputs);
   }
 
   /// What the checks of the template and of the graph do not find, for they do not look into nodes: a

@@ -122,24 +122,20 @@ private:
   /// WebGPU's defaults (WebGPU, "Limits"), and what the shader comes to.
   Json limits() const {
     constexpr size_t kHalfFloats = 8;  // bytes of an rgba16float, and of an rgba8unorm as WebGPU counts
-    size_t colors = 0;
-    size_t places = 0;  // a shader may leave some out, and has later ones all the same
-    for (const ir::Output& output : module_.outputs) {
-      if (output.kind != ir::OutputKind::Color) continue;
-      ++colors;
-      places = std::max<size_t>(places, output.location + 1);
-    }
+    const auto colors = static_cast<size_t>(
+        std::count_if(module_.outputs.begin(), module_.outputs.end(),
+                      [](const ir::Output& output) { return output.kind == ir::OutputKind::Color; }));
     Json asked = Json::object();
     const auto ask = [&](const char* limit, size_t least, size_t wanted) {
       if (wanted > least) asked[limit] = wanted;
     };
-    ask("maxColorAttachments", 8, places);
+    const targets::DeviceLimits& sure = *targets::row(Target::Wgsl).limits;
     ask("maxColorAttachmentBytesPerSample", 32, kHalfFloats * colors);
-    ask("maxSampledTexturesPerShaderStage", 16, most(&Used::textures));
-    ask("maxSamplersPerShaderStage", 16, most(&Used::textures));
-    ask("maxUniformBuffersPerShaderStage", 12, mostBlocks(false));
+    ask("maxSampledTexturesPerShaderStage", sure.textures.sure, most(&Used::textures));
+    ask("maxSamplersPerShaderStage", sure.textures.sure, most(&Used::textures));
+    ask("maxUniformBuffersPerShaderStage", sure.blocks.sure, mostBlocks(false));
     ask("maxStorageBuffersPerShaderStage", 8, mostBlocks(true));
-    ask("maxInterStageShaderVariables", 16, module_.varyings.size());
+    ask("maxInterStageShaderVariables", sure.varyings.sure, module_.varyings.size());
     return asked;
   }
 

@@ -227,9 +227,10 @@ static Json commonOf(const ir::Module& module, bool has_vertex, const material::
   json["inputs"] = std::move(attributes);
   Json outputs = Json::array();
   for (const ir::Output& output : module.outputs) {
-    if (output.kind == ir::OutputKind::Color) {
-      outputs.push_back({{"name", output.name}, {"type", "vec4"}, {"location", output.location}});
-    }
+    if (output.kind != ir::OutputKind::Color) continue;
+    Json row = {{"name", output.name}, {"type", "vec4"}, {"location", output.location}};
+    if (!output.holds.empty()) row["holds"] = output.holds;
+    outputs.push_back(std::move(row));
   }
   json["outputs"] = std::move(outputs);
   json["proofs"] = proofsJson(module);

@@ -9,9 +9,8 @@
 
 namespace lacquer {
 
-/// What a placed module has more of than a target's platform guarantees, for the targets named: colour
-/// outputs, bytes of a uniform block, textures of the fragment stage. Warnings, code "over-limit";
-/// docs/bindings.md has the numbers and where they come from.
+/// What a placed module has more of than the platforms of these targets take (targets::DeviceLimits): code
+/// "over-limit", an error where no device takes it, a warning where some may.
 Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets);
 
 }  // namespace lacquer

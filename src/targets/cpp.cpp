@@ -448,7 +448,8 @@ private:
 
   void outside() {
     text_.blank();
-    doc("The first parameter that is packed otherwise than it is given, for it is outside of its range or NaN; "
+    doc("The first parameter that is packed otherwise than it is given, for it is outside of its range or "
+        "NaN; "
         "null for none.");
     const auto isNumber = [&](uint32_t index) { return module_.parameters[index].type != Type::Bool; };
     if (block_ == nullptr || std::none_of(parameters_.begin(), parameters_.end(), isNumber))
@@ -488,7 +489,8 @@ private:
     for (const uint32_t index : parameters_) taken.push_back(memberOf(module_.parameters[index]));
     const schedule::Program program = schedule::schedulePreshader(module_, taken);
     text_.blank();
-    doc("The block for these parameters. A number outside of its parameter's range is packed as the nearest one "
+    doc("The block for these parameters. A number outside of its parameter's range is packed as the nearest "
+        "one "
         "in it,");
     doc("NaN as the default.");
     text_.line("inline Block pack(const Parameters& given) {");

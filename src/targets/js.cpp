@@ -398,8 +398,10 @@ private:
   }
 
   void packDoc() {
-    doc("Writes the block to the first blockSize bytes of `bytes`, which it returns. What `parameters` does not\n"
-        "name has its default, and so has what is no number; one outside of its parameter's range is packed as\n"
+    doc("Writes the block to the first blockSize bytes of `bytes`, which it returns. What `parameters` does "
+        "not\n"
+        "name has its default, and so has what is no number; one outside of its parameter's range is packed "
+        "as\n"
         "the nearest in it. Throws a RangeError where there are fewer bytes.");
   }
 
@@ -416,7 +418,9 @@ private:
   void packed() {
     const auto isTruth = [&](uint32_t index) { return module_.parameters[index].type == Type::Bool; };
     text_.comment("A number outside of a range counts as the nearest one in it.");
-    text_.line("const within = (x, low, high, otherwise) => (x >= low ? (x <= high ? x : high) : x < low ? low : otherwise);");
+    text_.line(
+        "const within = (x, low, high, otherwise) => (x >= low ? (x <= high ? x : high) : x < low ? low : "
+        "otherwise);");
     if (std::any_of(parameters_.begin(), parameters_.end(), isTruth))
       text_.line("const truth = (x, otherwise) => (x !== x ? otherwise : x !== 0);");
     text_.comment("The parameters as they are packed.");

@@ -9,16 +9,39 @@ namespace lacquer::targets {
 
 namespace {
 
+constexpr Bound kColors = {ir::kMostColors, ir::kMostColors};
+
+/// Vulkan 1.1, "Required Limits": maxPerStageDescriptorUniformBuffers, maxUniformBufferRange,
+/// maxPerStageDescriptorSamplers, maxVertexOutputComponents (64). Of colours it promises 4 (so does OpenGL
+/// ES), but a device with fewer than 8 is not found any more, and every G-buffer has more than 4.
+constexpr DeviceLimits kVulkan = {kColors, {12}, {16384}, {16}, {16}};
+/// OpenGL 4.5, "Implementation Dependent Values": MAX_DRAW_BUFFERS, MAX_FRAGMENT_UNIFORM_BLOCKS,
+/// MAX_UNIFORM_BLOCK_SIZE, MAX_TEXTURE_IMAGE_UNITS, MAX_VARYING_VECTORS.
+constexpr DeviceLimits kOpenGl = {kColors, {14}, {16384}, {16}, {15}};
+/// OpenGL ES 3.0, the same; so WebGL 2.
+constexpr DeviceLimits kEs = {kColors, {12}, {16384}, {16}, {15}};
+/// Direct3D 11 and 12: D3D11_COMMONSHADER_CONSTANT_BUFFER_API_SLOT_COUNT,
+/// D3D11_REQ_CONSTANT_BUFFER_ELEMENT_COUNT, D3D11_COMMONSHADER_SAMPLER_SLOT_COUNT (of Direct3D 12 on hardware
+/// of tier 1), and D3D11_VS_OUTPUT_REGISTER_COUNT, of which SV_Position takes one.
+constexpr DeviceLimits kDirect3d = {kColors, {14}, {65536, 65536}, {16}, {31, 31}};
+/// WebGPU, "Limits", what a device has without asking: maxUniformBuffersPerShaderStage,
+/// maxUniformBufferBindingSize, maxSamplersPerShaderStage, maxInterStageShaderVariables.
+constexpr DeviceLimits kWebGpu = {kColors, {12}, {65536}, {16}, {16}};
+/// Metal's feature set tables: the entries of the tables of buffers and of sampler states, and the inputs of
+/// a fragment function of the family Mac 2. Of the constant address space 64 KiB are sure.
+constexpr DeviceLimits kMetal = {kColors, {31}, {65536}, {16}, {31}};
+
 constexpr std::array<Row, 9> kRows = {{
-    {Target::Glsl, "glsl", "glsl", true, "GLSL 4.50 for Vulkan"},
-    {Target::GlslGl, "glsl-gl", "glsl", false, "GLSL 4.50 for OpenGL 4.5"},
-    {Target::Essl, "essl", "glsl", false, "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
-    {Target::Hlsl, "hlsl", "hlsl", false, "HLSL for Shader Model 5 and 6"},
-    {Target::Spirv, "spirv", "spv", true, "SPIR-V 1.3 for Vulkan 1.1"},
-    {Target::Cpp, "cpp", "h", false, "a C++11 header that packs the material's uniform block"},
-    {Target::Js, "js", "js", false, "an ES module that packs the material's uniform block, with its types"},
-    {Target::Wgsl, "wgsl", "wgsl", true, "WGSL for WebGPU"},
-    {Target::Msl, "msl", "metal", true, "MSL 2.1 for Metal, made of the SPIR-V"},
+    {Target::Glsl, "glsl", "glsl", true, &kVulkan, "GLSL 4.50 for Vulkan"},
+    {Target::GlslGl, "glsl-gl", "glsl", false, &kOpenGl, "GLSL 4.50 for OpenGL 4.5"},
+    {Target::Essl, "essl", "glsl", false, &kEs, "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
+    {Target::Hlsl, "hlsl", "hlsl", false, &kDirect3d, "HLSL for Shader Model 5 and 6"},
+    {Target::Spirv, "spirv", "spv", true, &kVulkan, "SPIR-V 1.3 for Vulkan 1.1"},
+    {Target::Cpp, "cpp", "h", false, nullptr, "a C++11 header that packs the material's uniform block"},
+    {Target::Js, "js", "js", false, nullptr,
+     "an ES module that packs the material's uniform block, with its types"},
+    {Target::Wgsl, "wgsl", "wgsl", true, &kWebGpu, "WGSL for WebGPU"},
+    {Target::Msl, "msl", "metal", true, &kMetal, "MSL 2.1 for Metal, made of the SPIR-V"},
 }};
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The back-ends: a row per target.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,11 +14,28 @@
 
 namespace lacquer::targets {
 
+/// How much of something a platform takes.
+struct Bound {
+  uint32_t sure;             ///< every device of it takes that many
+  uint32_t most = kNoBound;  ///< and none more
+  static constexpr uint32_t kNoBound = ~0U;
+};
+
+/// What a shader may have on the target's platform.
+struct DeviceLimits {
+  Bound outputs;      ///< colours of a fragment
+  Bound blocks;       ///< uniform blocks of a stage
+  Bound block_bytes;  ///< of one
+  Bound textures;     ///< of a stage, each with its sampler
+  Bound varyings;     ///< between the stages, each of up to four components
+};
+
 struct Row {
   Target id;
   std::string_view name;       ///< on the command line and in DIR/<target>/: "glsl"
   std::string_view extension;  ///< of its files: "spv"
   bool specialization;         ///< it has specialization constants
+  const DeviceLimits* limits;  ///< null: it is no shader
   std::string_view prose;
 };
 

@@ -30,6 +30,7 @@ std::string regionText(std::string_view name) {
   if (kind == "properties") return propertiesTable(of);
   if (kind == "extensions") return extensionsTable();
   if (kind == "limits") return limitsTable();
+  if (kind == "devices") return deviceLimitsTable();
   if (kind == "outputs") return templateOutputs(of);
   if (kind == "glsl") return glslSections(of);
   if (kind == "dump") return dumpSection(of);

@@ -16,6 +16,7 @@
 #include "support/cases.h"
 #include "support/limits.h"
 #include "support/materials.h"
+#include "targets/target.h"
 
 namespace lacquer::test {
 
@@ -354,6 +355,36 @@ std::string passesTable() {
   std::string out = "| pass | does |\n|---|---|\n";
   for (const passes::PassInfo& pass : passes::passes())
     out += fmt::format("| `{}` | {} |\n", pass.name, pass.does);
+  return out;
+}
+
+std::string deviceLimitsTable() {
+  struct Line {
+    const char* what;
+    targets::Bound targets::DeviceLimits::*of;
+  };
+  constexpr Line kLines[] = {{"colour outputs", &targets::DeviceLimits::outputs},
+                             {"uniform blocks of a stage", &targets::DeviceLimits::blocks},
+                             {"bytes of a block", &targets::DeviceLimits::block_bytes},
+                             {"textures of a stage", &targets::DeviceLimits::textures},
+                             {"values between the stages", &targets::DeviceLimits::varyings}};
+  std::string out = "| |", rule = "\n|---|";
+  for (const targets::Row& row : targets::rows()) {
+    if (row.limits == nullptr) continue;
+    out += fmt::format(" `{}` |", row.name);
+    rule += "---|";
+  }
+  out += rule + "\n";
+  for (const Line& line : kLines) {
+    out += fmt::format("| {} |", line.what);
+    for (const targets::Row& row : targets::rows()) {
+      if (row.limits == nullptr) continue;
+      const targets::Bound bound = row.limits->*line.of;
+      out +=
+          bound.sure == bound.most ? fmt::format(" **{}** |", bound.sure) : fmt::format(" {} |", bound.sure);
+    }
+    out += "\n";
+  }
   return out;
 }
 

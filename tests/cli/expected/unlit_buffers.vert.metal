@@ -1,4 +1,4 @@
-// forward-base-57950a6da550adc5f49c0bb8dcf93f38
+// forward-base-3af5dabd320269c3a8c2194cf058616d
 // Lacquer 0.2.0, template forward
 
 #include <metal_stdlib>
