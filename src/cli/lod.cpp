@@ -31,6 +31,10 @@ void addLod(CLI::App& verb, LodFlags& flags) {
       ->check(CLI::Range(16, 512))
       ->check(kWhole)
       ->capture_default_str();
+  verb.add_option("--radius", flags.lod.radius,
+                  "meters: the ball's radius, where the file has no geometry of a material")
+      ->check(CLI::Range(1e-6, 1e6))
+      ->capture_default_str();
   verb.add_option("--texel", flags.lod.texels,
                   "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
       ->allow_extra_args(false);

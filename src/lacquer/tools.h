@@ -62,7 +62,9 @@ struct Lod {
       costs;              ///< instead, the part of the exact shader's cost for each, in (0, 1), descending
   double most_error = 2;  ///< of the last of `levels`, at the size at which it is used
   uint32_t size = 48;     ///< pixels of the balls that candidates are compared by, from 16 to 512
-  Strings texels;         ///< as for evaluate()
+  double radius = 1;  ///< of the ball where the file has no geometry of a material, from 1e-6 to 1e6, in the
+                      ///< unit of positions (glTF: meters); else it has the geometry's
+  Strings texels;     ///< as for evaluate()
 };
 /// Looks for the materials' levels (of those of the names in `materials` where that is not empty), and writes
 /// their shaders, manifest.json and a report with pictures. Returns what was found as JSON; empty on an

@@ -16,39 +16,24 @@ constexpr uint32_t kNone = ~uint32_t{0};
 /// A little from above: what lies flat is seen, too.
 constexpr double kTilt = 0.35;
 
-/// The middle of the mesh's box comes to the origin, its farthest vertex to the unit sphere.
+/// The middle of the mesh's box comes to the origin. Its size stays: what is drawn in space, a noise say, is
+/// as fine on it as it is in use.
 std::optional<Standing> standingOf(const Mesh& mesh, double turn) {
-  Vec3 low, high;
-  low.fill(std::numeric_limits<double>::infinity());
-  high.fill(-std::numeric_limits<double>::infinity());
-  for (const uint32_t index : mesh.triangles) {
-    const Vec3& p = mesh.vertices[index].position;
-    for (size_t i = 0; i < 3; ++i) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
-  }
-  Vec3 middle{};
-  for (size_t i = 0; i < 3; ++i) middle[i] = 0.5 * (low[i] + high[i]);
-  double radius2 = 0;
-  for (const uint32_t index : mesh.triangles) {
-    const Vec3& p = mesh.vertices[index].position;
-    const Vec3 off{p[0] - middle[0], p[1] - middle[1], p[2] - middle[2]};
-    radius2 = std::max(radius2, dot(off, off));
-  }
-  if (!(radius2 > 1e-24) || !std::isfinite(radius2)) return std::nullopt;
-  const double scale = 1 / std::sqrt(radius2);
+  const std::optional<Extent> extent = extentOf(mesh);
+  if (!extent) return std::nullopt;
   const double c = std::cos(turn), s = std::sin(turn);
   const double tc = std::cos(kTilt), ts = std::sin(kTilt);
   // About y, then about x.
   const Vec3 rows[] = {{c, 0, s}, {ts * s, tc, -ts * c}, {-tc * s, ts, tc * c}};
   Standing standing;
   for (size_t row = 0; row < 3; ++row) {
-    for (size_t column = 0; column < 3; ++column) {
-      standing.model[4 * column + row] = scale * rows[row][column];
-      standing.normal_matrix[4 * column + row] = rows[row][column] / scale;
-    }
-    standing.model[12 + row] = -scale * dot(rows[row], middle);
+    for (size_t column = 0; column < 3; ++column)
+      standing.model[4 * column + row] = standing.normal_matrix[4 * column + row] = rows[row][column];
+    standing.model[12 + row] = -dot(rows[row], extent->middle);
   }
   standing.model[15] = standing.normal_matrix[15] = 1;
-  standing.eye = {0, 0, kEye};
+  standing.radius = extent->radius;
+  standing.eye = {0, 0, kEye * extent->radius};
   return standing;
 }
 
@@ -62,7 +47,7 @@ Seat seatOf(const Standing& standing, const Vec3& p, uint32_t size) {
   const double x = m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12];
   const double y = m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13];
   const double z = m[2] * p[0] + m[6] * p[1] + m[10] * p[2] + m[14];
-  const double nearness = 1 / (kEye - z);
+  const double nearness = 1 / (standing.eye[2] - z);
   const double scale = kEye * nearness / kHalf;
   return {(x * scale + 1) * size / 2, (1 - y * scale) * size / 2, nearness};
 }
@@ -176,7 +161,28 @@ private:
 
 }  // namespace
 
-Mesh ballOf(uint32_t around, uint32_t down) {
+std::optional<Extent> extentOf(const Mesh& mesh) {
+  // The square of a distance, and its square, are floats.
+  constexpr double kSmallest = 1e-9, kLargest = 1e9;
+  Vec3 low, high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  for (const uint32_t index : mesh.triangles) {
+    const Vec3& p = mesh.vertices[index].position;
+    for (size_t i = 0; i < 3; ++i) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+  }
+  Extent extent;
+  for (size_t i = 0; i < 3; ++i) extent.middle[i] = 0.5 * (low[i] + high[i]);
+  for (const uint32_t index : mesh.triangles) {
+    const Vec3& p = mesh.vertices[index].position;
+    const Vec3 off{p[0] - extent.middle[0], p[1] - extent.middle[1], p[2] - extent.middle[2]};
+    extent.radius = std::max(extent.radius, std::sqrt(dot(off, off)));
+  }
+  if (!(extent.radius >= kSmallest && extent.radius <= kLargest)) return std::nullopt;
+  return extent;
+}
+
+Mesh ballOf(uint32_t around, uint32_t down, double radius) {
   Mesh mesh;
   for (uint32_t row = 0; row <= down; ++row) {
     // The seam has its vertices twice, for the two ends of u.
@@ -186,7 +192,7 @@ Mesh ballOf(uint32_t around, uint32_t down) {
       eval::Point& point = mesh.vertices.emplace_back();
       point.n = {std::sin(latitude) * std::sin(longitude), std::cos(latitude),
                  std::sin(latitude) * std::cos(longitude)};
-      point.position = point.n;
+      point.position = {radius * point.n[0], radius * point.n[1], radius * point.n[2]};
       point.t = {std::cos(longitude), 0, -std::sin(longitude), 1};
       point.uv.fill({longitude / std::numbers::pi + 0.5, latitude / std::numbers::pi});
     }

@@ -18,17 +18,26 @@ struct Mesh {
   bool double_sided = false;        ///< triangles are seen from behind, too
 };
 
-/// The unit ball of so many vertices around and down, and those at its poles.
-Mesh ballOf(uint32_t around, uint32_t down);
+/// The ball of so many vertices around and down, and those at its poles.
+Mesh ballOf(uint32_t around, uint32_t down, double radius);
+
+/// A ball about what is drawn of a mesh, in its units.
+struct Extent {
+  Vec3 middle{};  ///< of the box
+  double radius = 0;
+};
+/// Nothing for a mesh that is none, or so small or large that floats do not hold its squares.
+std::optional<Extent> extentOf(const Mesh& mesh);
 
 /// Where a mesh stands and who looks at it, as the templates for meshes have it.
 struct Standing {
   std::array<double, 16> model{}, normal_matrix{};  ///< by columns
   Vec3 eye{};
+  double radius = 1;  ///< of the ball about the origin that the picture shows
 };
 
-/// What is seen of a mesh that fills the ball's place, turned about the upright axis. Vertices and samples
-/// are those that count.
+/// What is seen of a mesh at its own size, turned about the upright axis, its middle in the origin. Vertices
+/// and samples are those that count.
 struct Coverage {
   struct Sample {
     uint32_t pixel = 0;

@@ -20,7 +20,7 @@ constexpr double kCut = 0.86;
 constexpr double kBehind[] = {0.10, 0.22};
 
 /// The point at a place of the picture, both in [-1, 1]; false beside the ball.
-bool onFacetedBall(double x, double y, eval::Point& point) {
+bool onFacetedBall(double x, double y, double ball, eval::Point& point) {
   const Vec3 way{x * kHalf, y * kHalf, -kEye};
   const double a = dot(way, way);
   const double half_b = kEye * way[2];
@@ -38,7 +38,7 @@ bool onFacetedBall(double x, double y, eval::Point& point) {
   const double longitude = std::atan2(p[0], p[2]);
   const double latitude = std::acos(std::clamp(p[1] / radius, -1.0, 1.0));
   const double length = std::sqrt(a);
-  point.position = p;
+  point.position = {ball * p[0], ball * p[1], ball * p[2]};
   point.n = flat ? kFacet : p;
   const Vec3 t{std::cos(longitude), 0, -std::sin(longitude)};
   const double off = dot(t, point.n);
@@ -79,7 +79,8 @@ void addRow(const std::vector<std::array<double, 4>>& colors, const std::vector<
   }
 }
 
-void shootRow(const Shading& shading, uint32_t y, uint32_t grid, Shot& shot, std::vector<uint8_t>& hit) {
+void shootRow(const Shading& shading, double radius, uint32_t y, uint32_t grid, Shot& shot,
+              std::vector<uint8_t>& hit) {
   const uint32_t size = shot.pixels.width;
   const uint32_t samples = grid * grid;
   std::vector<eval::Point> points;
@@ -88,7 +89,7 @@ void shootRow(const Shading& shading, uint32_t y, uint32_t grid, Shot& shot, std
     const uint32_t x = i / samples;
     const auto [dx, dy] = sampleOf(i % samples, grid);
     eval::Point point;
-    if (!onFacetedBall((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, point)) continue;
+    if (!onFacetedBall((x + dx) * 2 / size - 1, 1 - (y + dy) * 2 / size, radius, point)) continue;
     points.push_back(point);
     pixels.push_back(x);
   }
@@ -129,10 +130,10 @@ Color heat(double x) {
 
 }  // namespace
 
-Shot shoot(const Shading& shading, uint32_t size, uint32_t grid) {
+Shot shoot(const Shading& shading, double radius, uint32_t size, uint32_t grid) {
   Shot shot = emptyShot(size);
   std::vector<uint8_t> hit(size_t{size} * size, 0);
-  tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) { shootRow(shading, y, grid, shot, hit); });
+  tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) { shootRow(shading, radius, y, grid, shot, hit); });
   noteInside(shot, hit);
   return shot;
 }

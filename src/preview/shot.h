@@ -15,8 +15,8 @@ struct Shot {
   std::vector<uint32_t> inside;  ///< the pixels that show the ball or the mesh, at least in part
 };
 
-/// The ball, `size` pixels wide, each with `grid` times `grid` samples. Uses threads.
-Shot shoot(const Shading& shading, uint32_t size, uint32_t grid);
+/// The ball of that radius, `size` pixels wide, each with `grid` times `grid` samples. Uses threads.
+Shot shoot(const Shading& shading, double radius, uint32_t size, uint32_t grid);
 
 /// A mesh: the vertex stage at its vertices, and what that hands over interpolated. Uses threads.
 Shot shoot(const Shading& shading, const Coverage& coverage);

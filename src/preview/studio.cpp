@@ -52,14 +52,17 @@ Surroundings clearDay() {
 }
 
 /// Hardly anything but a bulb beside the ball and a spot from above.
-Surroundings darkRoom() {
+Surroundings darkRoom(double radius) {
+  const auto at = [&](const Vec3& to) { return Vec3{radius * to[0], radius * to[1], radius * to[2]}; };
+  const double square = radius * radius;
   return {
       "night",
       {{{0.9, 0.35, 0.45}, 0.18, 0.26, {1.5, 1.2, 0.8}}, {{-0.9, -0.1, 0.5}, 0.08, 0.5, {0.25, 0.4, 0.8}}},
       {0.02, 0.025, 0.035},
       {0.035, 0.035, 0.04},
       {0.02, 0.018, 0.015},
-      {{"point", {-1.3, 0.7, 1.4}, {4.2, 3.4, 2.4}}, {"spot", {0.8, 2.2, 1.5}, {9, 9.5, 10}}}};
+      {{"point", at({-1.3, 0.7, 1.4}), {4.2 * square, 3.4 * square, 2.4 * square}},
+       {"spot", at({0.8, 2.2, 1.5}), {9 * square, 9.5 * square, 10 * square}}}};
 }
 
 /// The edges of a box for a mirror are this soft (the tangent of an angle): an edge of a step function would
@@ -187,11 +190,11 @@ std::vector<eval::Columns> Studio::lights(const ir::Module& module) const {
   return lights;
 }
 
-std::vector<Studio> comparisonStudios() {
+std::vector<Studio> comparisonStudios(double radius) {
   std::vector<Studio> studios;
   studios.emplace_back();
   studios.emplace_back(clearDay(), -0.6);
-  studios.emplace_back(darkRoom(), 0.5);
+  studios.emplace_back(darkRoom(radius), 0.5);
   return studios;
 }
 

@@ -70,7 +70,8 @@ private:
 };
 
 /// The studios that materials are compared in, each from its own side: the contact sheets', a clear day with
-/// the sun, and a dark room with a lamp and a spot nearby.
-std::vector<Studio> comparisonStudios();
+/// the sun, and a dark room with a lamp and a spot nearby, as far off as `radius`, the ball's, wants it: a
+/// ball of any size is lit alike.
+std::vector<Studio> comparisonStudios(double radius);
 
 }  // namespace lacquer::preview

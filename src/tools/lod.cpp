@@ -54,6 +54,9 @@ Result<void> checkLod(const Lod& lod, const Options& options) {
   if (Result<void> costs = checkBounds("costs", lod.costs, 1, false); !costs) return costs;
   if (!lod.errors.empty() && !lod.costs.empty())
     return fail("wrong-count", {}, "levels are asked for by error and by cost", "name one of them");
+  if (!(lod.radius >= 1e-6 && lod.radius <= 1e6))
+    return fail("out-of-range", {}, fmt::format("the ball's radius is {}", lod.radius),
+                "from 1e-6 to 1e6, in the unit of positions (glTF: meters)");
   if (!(lod.most_error > 0 && lod.most_error <= 100))
     return fail("out-of-range", {}, fmt::format("the last level's error is {}", lod.most_error),
                 "it is a colour difference above 0, at most 100");
@@ -163,9 +166,9 @@ private:
     const gltf::VertexAttributes attributes =
         uses.empty() ? gltf::VertexAttributes{true, true, false, {true, true, false, false}} : uses[0];
     const preview::Mesh mesh = meshOf(material, document.path, images);
-    LodMaterial subject(
-        {material, attributes, lightsOf(document), images, *language_, options_, lod_.texels, mesh},
-        lod_.size);
+    LodMaterial subject({material, attributes, lightsOf(document), images, *language_, options_, lod_.texels,
+                         mesh, lod_.radius},
+                        lod_.size);
     Result<lod::Tried> exact = subject.open(messages_);
     if (!exact) return tl::make_unexpected(std::move(exact.error()));
     LodChain made;
@@ -173,6 +176,7 @@ private:
     made.name = material.name;
     made.index = static_cast<size_t>(material.index);
     made.triangles = subject.figures({}).on_mesh ? mesh.triangles.size() / 3 : 0;
+    made.radius = subject.radius();
     search(subject, *exact, made);
     if (Result<void> good = finish(subject, fmt::format("{}-{}", file, material.index), made); !good)
       return good;

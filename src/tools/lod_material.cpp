@@ -56,6 +56,13 @@ Result<cost::Subject> subjectOf(const ir::Module& module, const Options& options
 
 }  // namespace
 
+LodMaterial::LodMaterial(const Given& given, uint32_t size)
+    : given_(given),
+      size_(size),
+      radius_(preview::extentOf(given.mesh).value_or(preview::Extent{{}, given.radius}).radius),
+      studios_(preview::comparisonStudios(radius_)),
+      ball_(preview::ballOf(48, 22, radius_)) {}
+
 Options LodMaterial::optionsOf(const lod::Words& words) const {
   Options options = given_.options;
   options.simplify.insert(options.simplify.end(), words.begin(), words.end());
@@ -143,7 +150,8 @@ std::vector<preview::Shot> LodMaterial::shotsOf(const std::vector<preview::Shadi
   if (triangles) {
     meshed(ball_);
   } else {
-    for (const preview::Shading& shading : shadings) shots.push_back(preview::shoot(shading, size, grid));
+    for (const preview::Shading& shading : shadings)
+      shots.push_back(preview::shoot(shading, radius_, size, grid));
   }
   meshed(given_.mesh);
   return shots;

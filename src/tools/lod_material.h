@@ -41,9 +41,10 @@ public:
     const Options& options;  ///< with its names resolved
     const Strings& texels;
     const preview::Mesh& mesh;  ///< the file's own geometry; without triangles where there is none
+    double radius;              ///< of the ball where there is no geometry
   };
   /// What is given must outlive this. Pictures to search by are `size` pixels wide.
-  LodMaterial(const Given& given, uint32_t size) : given_(given), size_(size) {}
+  LodMaterial(const Given& given, uint32_t size);
 
   /// Measures the exact shader. What is to be said of the material goes to `messages`.
   Result<lod::Tried> open(Messages& messages);
@@ -68,6 +69,8 @@ public:
   /// "Mesa 22.3.6"; empty where the costs are estimates.
   const std::string& driver() const { return driver_; }
   size_t measured() const { return figures_.size(); }
+  /// Of the ball in the pictures: the geometry's, where there is one.
+  double radius() const { return radius_; }
 
   /// Measures modules: cycles and instructions alone.
   Result<std::vector<LodFigures>> costs(const std::vector<ir::Module>& modules);
@@ -100,9 +103,10 @@ private:
 
   Given given_;
   uint32_t size_;
-  std::vector<preview::Studio> studios_ = preview::comparisonStudios();
+  double radius_;
+  std::vector<preview::Studio> studios_;
   std::vector<preview::Shot> exact_[2], small_[2];  ///< to compare with; to fit to; the second of triangles
-  preview::Mesh ball_ = preview::ballOf(48, 22);
+  preview::Mesh ball_;
   /// What is seen of a mesh, by size and grid, a view for each studio; none where it cannot be drawn.
   mutable std::map<std::tuple<const preview::Mesh*, uint32_t, uint32_t>, std::vector<preview::Coverage>>
       coverages_;

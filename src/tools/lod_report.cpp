@@ -151,14 +151,14 @@ std::string rowOf(const LodChain& chain, size_t i, const lang::Library& library)
 }
 
 std::string chainHtml(const LodChain& chain, uint32_t size, const lang::Library& library) {
-  std::string text =
-      fmt::format("<h2>{}</h2>\n<p class=\"quiet\">{}, material {}; {} shaders were measured on {}</p>\n",
-                  escaped(chain.name.empty() ? "(no name)" : chain.name), escaped(chain.file), chain.index,
-                  chain.tried.size(),
-                  chain.triangles == 0 ? std::string("the ball")
-                                       : fmt::format("the ball and on the {} triangles of the file that "
-                                                     "have the material",
-                                                     chain.triangles));
+  std::string text = fmt::format(
+      "<h2>{}</h2>\n<p class=\"quiet\">{}, material {}; {} shaders were measured on {}</p>\n",
+      escaped(chain.name.empty() ? "(no name)" : chain.name), escaped(chain.file), chain.index,
+      chain.tried.size(),
+      chain.triangles == 0 ? fmt::format("a ball of radius {:.4g}", chain.radius)
+                           : fmt::format("the {} triangles of the file that have the material, and "
+                                         "on a ball of their size (radius {:.4g})",
+                                         chain.triangles, chain.radius));
   text += fmt::format(
       "<table>\n<tr><th>level</th><th>for</th><th>cycles</th><th title=\"of the vertex stage; what it takes "
       "more than that of level 0 "
@@ -214,13 +214,13 @@ std::string lodPage(const std::vector<LodChain>& chains, const std::string& driv
       "<p>Costs are those of the level's own fragment shader on navi21, {}. <em>Quarter rate</em> counts "
       "reciprocals, "
       "roots and what is transcendental four times. Differences are measured on a ball with an edge, and on "
-      "the file's own geometry where it has "
+      "the file's own geometry at its own size where it has "
       "any, in {} studios: "
       "ΔE is CIEDE2000, FLIP is in [0, 1], both over the pixels that show either. Hover a change for its "
       "word.</p>\n",
       driver.empty() ? std::string("estimated from its operations, since no driver is installed")
                      : "measured with " + escaped(driver),
-      preview::comparisonStudios().size());
+      preview::comparisonStudios(1).size());
   for (const LodChain& chain : chains) text += chainHtml(chain, size, library);
   return text + "</html>\n";
 }
@@ -255,6 +255,7 @@ json::Json chainsJson(const std::vector<LodChain>& chains) {
                    {"uniforms", chain.uniforms},
                    {"measured", chain.tried.size()},
                    {"triangles", chain.triangles},
+                   {"radius", chain.radius},
                    {"levels", std::move(levels)}});
   }
   return all;

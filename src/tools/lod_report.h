@@ -25,6 +25,7 @@ struct LodChain {
   std::string file, name;
   size_t index = 0;      ///< in the file
   size_t triangles = 0;  ///< of the file's own geometry among the pictures; 0 where they are balls alone
+  double radius = 1;     ///< of the ball, and of the geometry about its middle
   std::vector<LodLevel> levels;
   std::vector<lod::Tried> tried, best;  ///< everything that was measured; what no other beats
   json::Json uniforms;                  ///< of the material block, for today's numbers, by field

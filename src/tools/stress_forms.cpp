@@ -279,12 +279,14 @@ private:
           std::span(samples).subspan(i * subject.space.width(), subject.space.width());
       const std::span<const double> normal = sample.subspan(n->first, 3);
       size_t axis = 0;
-      for (const size_t c : {size_t{1}, size_t{2}}) axis = std::abs(normal[c]) < std::abs(normal[axis]) ? c : axis;
+      for (const size_t c : {size_t{1}, size_t{2}})
+        axis = std::abs(normal[c]) < std::abs(normal[axis]) ? c : axis;
       // Across the normal and that axis.
       stress::Vec3 across{};
       across[(axis + 1) % 3] = -normal[(axis + 2) % 3];
       across[(axis + 2) % 3] = normal[(axis + 1) % 3];
-      std::ranges::copy(stress::unit(across), sample.begin() + static_cast<ptrdiff_t>(t->first));
+      const auto turned = stress::unit(across);
+      std::copy(turned.begin(), turned.end(), sample.begin() + static_cast<ptrdiff_t>(t->first));
     }
   }
 

@@ -153,7 +153,7 @@ TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
   const Strings no_texels;
   const preview::Mesh no_mesh;
   LodMaterial again({document->materials[0], document->uses[0][0], lightsOf(*document), images, **language,
-                     named, no_texels, no_mesh},
+                     named, no_texels, no_mesh, 1},
                     16);
   const auto words = level["simplify"].get<lod::Words>();
   const auto exact = again.shots({}, 16, atVertices(words));
@@ -216,6 +216,7 @@ TEST_F(Levels, AreComparedOnTheFilesOwnGeometryToo) {
   const json with = make(file, lod, quick())["materials"][0];
   ASSERT_EQ(with["levels"].size(), 2U);
   EXPECT_EQ(with["triangles"], 4);
+  EXPECT_NEAR(with["radius"].get<double>(), std::sqrt(3), 1e-12);
   const json& level = with["levels"].back();
   ASSERT_TRUE(level.contains("error_on_geometry"));
   EXPECT_GT(level["error_on_geometry"]["delta_e"]["mean"], 0);
@@ -225,6 +226,53 @@ TEST_F(Levels, AreComparedOnTheFilesOwnGeometryToo) {
   const json& without = chain()["materials"][0];
   EXPECT_EQ(without["triangles"], 0);
   EXPECT_FALSE(without["levels"].back().contains("error_on_geometry"));
+}
+
+/// Stripes in space, some four of them in a meter.
+constexpr const char* kStripes = R"(
+/// Stripes.
+/// source: a test
+extension ACME_materials_stripes {
+    status vendor;
+    float stripesFactor in [0, 1];
+}
+/// Stripes over the base.
+/// source: a test
+part stripes of ACME_materials_stripes over base unless stripesFactor == 0 {
+surface:
+    stripes.color = striped(base.color, position, stripesFactor);
+    replace base.color with stripes.color;
+}
+/// Darker and brighter along x.
+/// source: a test
+node striped(vec4 below in [0, 1], vec3 p, float factor in [0, 1]) -> vec4 in [0, 1] {
+    float waves = sin(25 * p.x + sin(23 * p.y) + sin(21 * p.z) + sin(19 * (p.x + p.y)) + sin(17 * (p.y + p.z)));
+    return vec4(below.rgb * (1 - factor * (0.5 + 0.5 * waves)), below.a);
+}
+)";
+
+/// Whether a level computes the stripes at the vertices of an object of that radius.
+TEST_F(Levels, WhatIsDrawnInSpaceIsAsFineAsOnTheObject) {
+  std::ofstream(folder_ / "stripes.node") << kStripes;
+  const std::string file = (folder_ / "striped.gltf").string();
+  std::ofstream(file) << R"({"asset": {"version": "2.0"}, "materials": [{"extensions": {
+      "ACME_materials_stripes": {"stripesFactor": 1}}}]})";
+  const auto atVertices = [&](double radius) {
+    Lod lod;
+    lod.size = 32;
+    lod.errors = {1};
+    lod.radius = radius;
+    Options options = quick();
+    options.node_directories = {folder_.string()};
+    const json chain = make(file, lod, options)["materials"][0];
+    EXPECT_EQ(chain["radius"], radius);
+    for (const json& word : chain["levels"].back()["simplify"]) {
+      if (word == "vertex:stripes.color") return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(atVertices(0.05));
+  EXPECT_FALSE(atVertices(20));
 }
 
 TEST_F(Levels, EqualInputGivesEqualBytes) {
@@ -248,6 +296,7 @@ TEST_F(Levels, WrongRequestsAreMessages) {
       {"no-path", [](Lod& lod, Options&) { lod.output.clear(); }},
       {"out-of-range", [](Lod& lod, Options&) { lod.levels = 1; }},
       {"out-of-range", [](Lod& lod, Options&) { lod.size = 1 << 20; }},
+      {"out-of-range", [](Lod& lod, Options&) { lod.radius = 0; }},
       {"out-of-range",
        [](Lod& lod, Options&) {
          lod.errors = {2, 1};

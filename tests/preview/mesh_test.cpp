@@ -43,6 +43,10 @@ TEST(Mesh, ASphereFillsTheBallsPlace) {
   // A disk of the picture's width less its margin; a polyhedron has a little less.
   const double disk = std::numbers::pi / 4 * std::pow(kSize * 2 / 1.045 * 0.5, 2) * 4;
   EXPECT_NEAR(static_cast<double>(seen->samples.size()), disk * 1.028, 0.02 * disk);
+  // As large as it is: nothing is scaled but the way from the eye.
+  const double radius = seen->standing.radius;
+  EXPECT_NEAR(radius, 250, 1);
+  EXPECT_NEAR(seen->standing.eye[2], 6 * radius, 1e-9);
   const std::array<double, 16>& m = seen->standing.model;
   for (const Coverage::Sample& sample : seen->samples) {
     EXPECT_TRUE(sample.front);
@@ -52,7 +56,7 @@ TEST(Mesh, ASphereFillsTheBallsPlace) {
       const Vec3& v = seen->vertices[sample.corners[k]].position;
       for (size_t i = 0; i < 3; ++i)
         p[i] += static_cast<double>(sample.weights[k]) *
-                (m[i] * v[0] + m[4 + i] * v[1] + m[8 + i] * v[2] + m[12 + i]);
+                (m[i] * v[0] + m[4 + i] * v[1] + m[8 + i] * v[2] + m[12 + i]) / radius;
       sum += sample.weights[k];
     }
     EXPECT_NEAR(sum, 1, 1e-5);
