@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace lacquer::stress {
 
@@ -22,6 +23,10 @@ constexpr int kRounds = 3;
 /// A step of a result that counts as a jump, relative to 1 and to the result: above what steep functions do
 /// over two neighbouring doubles, and below what an eye sees.
 constexpr double kJump = 1e-3;
+
+/// What a comparison compares moves less than this part of the step where it turns: over two neighbouring
+/// doubles even steep numbers move by a millionth.
+constexpr double kCarried = 1e-3;
 
 using Key = std::pair<Fault, std::string>;
 
@@ -152,6 +157,29 @@ double heightOf(const Subject& subject, const Values& values, size_t below, size
   return height;
 }
 
+/// By how much the numbers that a condition compares move between the two sides; nothing where it compares
+/// none.
+std::optional<double> movedBy(const Subject& subject, const Values& values, size_t condition, size_t below,
+                              size_t above) {
+  const size_t gap = condition + 1;
+  if (gap == subject.roots.size() || subject.roots[gap].kind != Root::Kind::Gap) return std::nullopt;
+  return std::abs(values[gap][below] - values[gap][above]);
+}
+
+/// A height that is the condition's own doing, and else 0. What compares numbers that jump themselves has not
+/// made the jump: what has made theirs has, a comparison that turns there, too, of numbers that move less.
+double blamed(const Subject& subject, const Values& values, size_t condition, size_t below, size_t above) {
+  const double height = heightOf(subject, values, below, above);
+  const std::optional<double> moved = movedBy(subject, values, condition, below, above);
+  if (!moved) return height;
+  if (*moved > kCarried * height) return 0;
+  for (size_t r = 0; r < subject.roots.size(); ++r) {
+    if (subject.roots[r].kind != Root::Kind::Condition || values[r][below] == values[r][above]) continue;
+    if (movedBy(subject, values, r, below, above).value_or(*moved) < kCarried * *moved) return 0;
+  }
+  return height;
+}
+
 void probe(const Subject& subject, std::span<const double> samples, size_t count, Finds& finds) {
   const size_t width = subject.space.width() * subject.group;
   const size_t groups = count / subject.group;
@@ -190,7 +218,9 @@ void probe(const Subject& subject, std::span<const double> samples, size_t count
   }
   const Values values = subject.evaluate(Arithmetic::Double, both, 2 * crossings.size() * subject.group);
   for (size_t k = 0; k < crossings.size(); ++k) {
-    if (heightOf(subject, values, 2 * k * subject.group, (2 * k + 1) * subject.group) < kJump) continue;
+    if (blamed(subject, values, crossings[k].root, 2 * k * subject.group, (2 * k + 1) * subject.group) <
+        kJump)
+      continue;
     Found& found = finds[{Fault::Jump, subject.roots[crossings[k].root].name}];
     if (found.count++ == 0)
       found.input.assign(both.begin() + static_cast<ptrdiff_t>(2 * k * width),
@@ -267,6 +297,7 @@ std::string_view faultName(Fault fault) {
 
 bool faultAt(const Root& root, const std::vector<double>& values, size_t sample, Fault& fault,
              double& value) {
+  if (root.kind == Root::Kind::Gap) return false;
   for (int c = 0; c < root.components; ++c) {
     const double x = values[sample * static_cast<size_t>(root.components) + static_cast<size_t>(c)];
     value = x;
@@ -313,13 +344,13 @@ bool shows(const Subject& subject, Fault fault, const std::string& what, std::sp
   const size_t count = input.size() / subject.space.width();
   if (fault == Fault::Jump) {
     const Values values = subject.evaluate(Arithmetic::Double, input, count);
-    bool turns = false;
+    value = 0;
     for (size_t r = 0; r < subject.roots.size(); ++r) {
-      turns |= subject.roots[r].kind == Root::Kind::Condition && subject.roots[r].name == what &&
-               values[r][0] != values[r][subject.group];
+      if (subject.roots[r].kind == Root::Kind::Condition && subject.roots[r].name == what &&
+          values[r][0] != values[r][subject.group])
+        value = std::max(value, blamed(subject, values, r, 0, subject.group));
     }
-    value = heightOf(subject, values, 0, subject.group);
-    return turns && value >= kJump;
+    return value >= kJump;
   }
   const Values values = subject.evaluate(Arithmetic::Float, input, count);
   for (size_t r = 0; r < subject.roots.size(); ++r) {

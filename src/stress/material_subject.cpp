@@ -176,7 +176,7 @@ private:
   }
 
   void makeRoots() {
-    const ir::Dag& dag = module_.dag;
+    ir::Dag& dag = module_.dag;
     const double inf = std::numeric_limits<double>::infinity();
     std::vector<ir::ValueId> outputs;
     for (const ir::Output& output : module_.outputs) {
@@ -195,9 +195,8 @@ private:
       if (dag[id].rate == ir::Rate::Light) continue;
       if (dag[id].op != ir::Op::Less && dag[id].op != ir::Op::LessEqual && dag[id].op != ir::Op::Equal)
         continue;
-      ids_.push_back(id);
       const std::string term = dag.terms().empty() ? "" : dag.terms()[dag.termOf(id)].name + ": ";
-      roots.push_back({Root::Kind::Condition, term + conditionName(module_, id), 1, true, {0, 1, false}});
+      addCondition(module_, id, term + conditionName(module_, id), roots, ids_);
     }
   }
 

@@ -185,8 +185,7 @@ private:
       if (dag[id].op == ir::Op::DFdx || dag[id].op == ir::Op::DFdy) group = 4;
       if (dag[id].op != ir::Op::Less && dag[id].op != ir::Op::LessEqual && dag[id].op != ir::Op::Equal)
         continue;
-      ids_.push_back(id);
-      roots.push_back({Root::Kind::Condition, conditionName(module_, id), 1, true, {0, 1, false}});
+      addCondition(module_, id, conditionName(module_, id), roots, ids_);
     }
   }
 
@@ -287,6 +286,16 @@ std::string operandName(const ir::Module& module, ir::ValueId id) {
 }  // namespace
 
 Result<std::unique_ptr<Subject>> nodeSubject(NodeSource source) { return Node::make(std::move(source)); }
+
+void addCondition(ir::Module& module, ir::ValueId id, std::string name, std::vector<Root>& roots,
+                  std::vector<ir::ValueId>& ids) {
+  ids.push_back(id);
+  roots.push_back({Root::Kind::Condition, std::move(name), 1, true, {0, 1, false}});
+  const ir::Value value = module.dag[id];
+  if (module.dag[value.args[0]].type != ir::Type::Float) return;
+  ids.push_back(module.dag.sub(value.args[0], value.args[1]));
+  roots.push_back({Root::Kind::Gap, "", 1, true, {}});
+}
 
 std::string conditionName(const ir::Module& module, ir::ValueId id) {
   const ir::Value& value = module.dag[id];

@@ -20,6 +20,7 @@ struct Root {
     Result,     ///< what the node or the material gives
     Fact,       ///< a value that an `assume` speaks of
     Condition,  ///< a comparison: where it turns, results may jump
+    Gap,        ///< the difference of the numbers that the comparison before it compares
   };
   Kind kind = Kind::Result;
   std::string name;  ///< "the result", "planar2", "NdotSum > 0"
@@ -78,6 +79,10 @@ Result<std::unique_ptr<Subject>> nodeSubject(NodeSource source);
 /// light, every texel and every parameter of the material.
 /// `layers` are those that may lie over the base; names that the module does not have count for nothing.
 Result<std::unique_ptr<Subject>> materialSubject(std::string name, ir::Module module, Layers layers);
+
+/// A comparison's roots, and their values: its own, and of two numbers the gap between them.
+void addCondition(ir::Module& module, ir::ValueId id, std::string name, std::vector<Root>& roots,
+                  std::vector<ir::ValueId>& ids);
 
 /// A comparison as a person writes it, of two names or constants where they have such.
 std::string conditionName(const ir::Module& module, ir::ValueId id);

@@ -83,6 +83,13 @@ TEST(Stress, CasesAreSmall) {
 
 TEST(Stress, AThresholdWithoutAStepIsNoFault) { EXPECT_EQ(found("steady"), json::array()); }
 
+/// What makes the step is named, and not what compares its outcome.
+TEST(Stress, AStepIsItsOwnComparisonsFault) {
+  const json findings = found("carried");
+  ASSERT_EQ(findings.size(), 1U) << findings.dump();
+  EXPECT_EQ(findings[0]["what"], "x < 0.5");
+}
+
 TEST(Stress, NamesOfOtherTypesAreOrdinary) { EXPECT_EQ(found("odd_names"), json::array()); }
 
 TEST(Stress, VariantsAreAttackedToo) {
