@@ -209,8 +209,8 @@ typedef struct lacquer_value {
  * that are not among the `values` have today's; names that this shader has no parameter of are passed over,
  * since parameters leave it with their terms. A number outside of its parameter's range is packed as the
  * nearest one in it, NaN as if it were not given (docs/parameters.md): the warnings "out-of-range" and
- * "not-a-number". "wrong-count" for another number of components, "block-too-small" where `capacity`, in bytes,
- * does not suffice. */
+ * "not-a-number". "wrong-count" for another number of components, "block-too-small" where `capacity`, in
+ * bytes, does not suffice. */
 LACQUER_C int lacquer_shader_pack(const lacquer_shader* shader, const lacquer_value* values, size_t count,
                                   void* block, size_t capacity, lacquer_messages* messages);
 

@@ -131,8 +131,7 @@ bool Graph::setParameter(const std::string& name, const std::vector<double>& val
     return impl_->refuse("wrong-type", fmt::format("{} is given {}", inQuotes(name), value[0]),
                          "it is a bool, 0 or 1", messages);
   }
-  const auto wrong =
-      std::find_if(value.begin(), value.end(), [](double x) { return !graph::fitsFloat(x); });
+  const auto wrong = std::find_if(value.begin(), value.end(), [](double x) { return !graph::fitsFloat(x); });
   if (wrong != value.end()) {
     return impl_->refuse(std::isfinite(*wrong) ? "out-of-range" : "not-finite",
                          fmt::format("{} is given {}", inQuotes(name), *wrong),

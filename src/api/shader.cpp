@@ -59,8 +59,8 @@ static ir::Components packedComponents(const ir::Parameter& parameter, const Sha
     const std::string help =
         number ? fmt::format("it takes {}: {} is packed", packedRangeText(parameter), packed[c])
                : fmt::format("{} is packed, as if it were not given", packed[c]);
-    messages->push_back(toMessage(
-        {number ? "out-of-range" : "not-a-number", Severity::Warning, {}, what, help, {}}));
+    messages->push_back(
+        toMessage({number ? "out-of-range" : "not-a-number", Severity::Warning, {}, what, help, {}}));
     messages = nullptr;
   }
   return packed;

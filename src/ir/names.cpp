@@ -131,7 +131,8 @@ std::string cleaned(std::string_view wanted) {
     if (kept == '_' && !name.empty() && name.back() == '_') continue;
     name += kept;
   }
-  if (name.empty() || digit(name[0]) || prefixed(name) || typed(name)) name = (name.starts_with('_') ? "value" : "value_") + name;
+  if (name.empty() || digit(name[0]) || prefixed(name) || typed(name))
+    name = (name.starts_with('_') ? "value" : "value_") + name;
   while (name.back() == '_') name.pop_back();
   // The helper functions of the C++ header are called min_of, max_of and so on.
   if (name.ends_with("_of")) name += "_value";

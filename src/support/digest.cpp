@@ -79,7 +79,8 @@ Digest digestOf(std::string_view bytes) {
   std::array<uint64_t, 8> state = kStart;
   state[0] ^= 0x01010000U ^ sizeof(Digest);  // no key, one leaf
   size_t at = 0;
-  for (; bytes.size() - at > kDigestBlock; at += kDigestBlock) compress(state, bytes.data() + at, at + kDigestBlock, false);
+  for (; bytes.size() - at > kDigestBlock; at += kDigestBlock)
+    compress(state, bytes.data() + at, at + kDigestBlock, false);
   std::array<char, kDigestBlock> rest{};
   std::copy(bytes.begin() + static_cast<ptrdiff_t>(at), bytes.end(), rest.begin());
   compress(state, rest.data(), bytes.size(), true);
