@@ -1,9 +1,9 @@
-// forward-coat-b7afc6faa1668a6e0322f53b3f2a1f5f
+// forward-coat-366254765f4abdbc42c8bf7f977722c5
 // Lacquer 0.2.0, template forward
 //
 // The types of the module beside this file.
 
-export declare const id: "forward-coat-b7afc6faa1668a6e0322f53b3f2a1f5f";
+export declare const id: "forward-coat-366254765f4abdbc42c8bf7f977722c5";
 
 /** What can be edited. */
 export interface Parameters {

@@ -1,11 +1,11 @@
-// forward-coat-b7afc6faa1668a6e0322f53b3f2a1f5f
+// forward-coat-366254765f4abdbc42c8bf7f977722c5
 // Lacquer 0.2.0, template forward
 //
 // The material's uniform block from its parameters: an ES module. It computes in double what the library's
 // pack() computes, and rounds each component to float once.
 
 /** The shader that this belongs to. */
-export const id = "forward-coat-b7afc6faa1668a6e0322f53b3f2a1f5f";
+export const id = "forward-coat-366254765f4abdbc42c8bf7f977722c5";
 
 /** What can be edited, with glTF's defaults, which belong to no material. */
 export const defaults = Object.freeze({

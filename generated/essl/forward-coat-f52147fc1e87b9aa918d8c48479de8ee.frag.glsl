@@ -1,0 +1,211 @@
+#version 300 es
+// forward-coat-f52147fc1e87b9aa918d8c48479de8ee
+// Lacquer 0.2.0, template forward
+
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp samplerCube;
+
+layout(std140) uniform Frame {
+    mat4 view_projection;
+    vec3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+} frame;
+
+struct Light {
+    vec3 position;
+    float positional;
+    vec3 radiance;
+    float inverse_range_4;
+    vec3 direction;
+    float spot_scale;
+    float spot_offset;
+};
+
+layout(std140) uniform Lights {
+    Light lights[16];
+};
+
+layout(std140) uniform Material {
+    vec3 base_color_factor;
+    float metallic_factor;
+    vec3 base_color_complement;
+    float roughness_factor;
+    vec3 metal_repeated;
+    float coat_factor;
+    vec3 F0;
+    float coat_roughness_factor;
+    float coat_darkening_factor;
+    float alpha2;
+    float alpha2_ratio;
+    float weight_times_ggx_peak;
+    float coat_alpha2;
+    float coat_alpha2_ratio;
+    float coat_weight_times_ggx_peak;
+    float lambert;
+    float least_f0;
+    float half_fresnel;
+    float half_grazing;
+    float undarkened;
+    float inverse_metallic;
+    float inverse_clear;
+    float dielectric_repeated;
+    float white_F0;
+    float half_around;
+} material;
+
+uniform samplerCube environment_specular;
+uniform samplerCube environment_irradiance;
+uniform sampler2D environment_dfg;
+
+in vec3 v_position;
+in vec3 v_normal;
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    // view: glTF 2.0, Appendix B, "Overview"
+    vec3 to_eye = frame.camera_position - v_position;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_part_2 = inversesqrt(to_eye.x * to_eye.x + view_part);
+    vec3 V = to_eye * view_part_2;
+
+    // normal.unit: glTF 2.0, "Meshes"
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit_part);
+
+    // coat.view_cosine: KHR_materials_clearcoat, "Layering"
+    float view_cosine_part = dot(N, to_eye);
+    float signed_NdotV = view_cosine_part * view_part_2;
+    float view_cosine = abs(view_cosine_part) * view_part_2;
+
+    // coat.fresnel: glTF 2.0, Appendix B, "Fresnel"; Schlick 1994
+    float c = 1.0 - view_cosine;
+    float c2 = c * c;
+    float fresnel = 0.04 + 0.96 * (c2 * c2 * abs(c));
+
+    // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float view_cosine2 = view_cosine * view_cosine;
+    float masked_view = sqrt(material.alpha2_ratio + view_cosine2);
+
+    // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float coat_masked_view = sqrt(material.coat_alpha2_ratio + view_cosine2);
+
+    // coat.darkening_direct: KHR_materials_coat, "Darkening Control" (R direct); EXT_materials_clearcoat_darkening
+    float darkening_direct_part = 1.0 - (fresnel + 0.04) * material.half_fresnel;
+
+    // coat.transmission_direct: EXT_materials_clearcoat_color, "Implementation" (the tint is weighted by the coverage)
+    float reflectance = material.coat_factor * fresnel;
+    float refracted = clamp(1.0 - reflectance, 0.0, 1.0);
+    float covered = material.coat_factor * refracted;
+    float transmission_direct_part = refracted - covered;
+
+    // output
+    vec3 light_sum = vec3(0.0);
+    for (int i = 0; i < min(frame.light_count, 16); ++i) {
+        // light_sample: KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles"
+        vec3 to_light = lights[i].position - v_position * lights[i].positional;
+        float distance2 = max(dot(to_light, to_light), 1e-12);
+        float inverse_distance = mix(1.0, inversesqrt(distance2), lights[i].positional);
+        vec3 L = to_light * inverse_distance;
+        float window = clamp(1.0 - distance2 * (distance2 * lights[i].inverse_range_4), 0.0, 1.0);
+        float cone = clamp(lights[i].spot_offset - dot(to_light, lights[i].direction) * inverse_distance * lights[i].spot_scale, 0.0, 1.0);
+        vec3 radiance = lights[i].radiance * (window * (cone * cone) * (inverse_distance * inverse_distance));
+
+        // half: glTF 2.0, Appendix B, "Overview"
+        vec3 sum = V + L;
+        float length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
+
+        // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+        float signed_NdotL = dot(N, to_light) * inverse_distance;
+        float NdotL = clamp(signed_NdotL, 0.0, 1.0);
+        float NdotSum = NdotL + signed_NdotV;
+
+        // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        vec3 planar = sum - N * NdotSum;
+        float planar2 = dot(planar, planar);
+        float NdotSum2 = NdotSum * NdotSum;
+        float spread = planar2 + material.alpha2 * NdotSum2;
+        float facing = 0.0 < NdotSum ? length2 * length2 : 0.0;
+        float denominator = spread * spread;
+
+        // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float NdotL2 = NdotL * NdotL;
+        float masked_light = sqrt(material.alpha2_ratio + NdotL2);
+        float base_sum = NdotL * masked_view + view_cosine * masked_light;
+
+        // base.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float specular = material.weight_times_ggx_peak * facing / (denominator * base_sum + 3e-32);
+
+        // coat.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        float coat_spread = planar2 + material.coat_alpha2 * NdotSum2;
+        float coat_denominator = coat_spread * coat_spread;
+
+        // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float coat_masked_light = sqrt(material.coat_alpha2_ratio + NdotL2);
+        float coat_sum = NdotL * coat_masked_view + view_cosine * coat_masked_light;
+
+        // coat.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float coat_specular = material.coat_weight_times_ggx_peak * facing / (coat_denominator * coat_sum + 3e-32);
+
+        // base.direct: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"
+        float base_c = 1.0 - VdotH;
+        float base_c2 = base_c * base_c;
+        float weight = base_c2 * base_c2 * base_c;
+        float glancing = weight * NdotL;
+        float base_facing = NdotL - glancing;
+        float tinted = base_facing * (material.lambert + material.metallic_factor * specular);
+        float white = specular * (base_facing * material.least_f0 + glancing);
+
+        // coat.light_cosine: KHR_materials_coat, "Darkening Control"
+        float light_cosine = abs(signed_NdotL);
+
+        // coat.darkening_direct: KHR_materials_coat, "Darkening Control" (R direct); EXT_materials_clearcoat_darkening
+        float coat_c = 1.0 - light_cosine;
+        float coat_c2 = coat_c * coat_c;
+        float through = clamp(darkening_direct_part - coat_c2 * coat_c2 * abs(coat_c) * material.half_grazing, 0.0, 1.0);
+        float darkening_direct = material.undarkened + material.coat_darkening_factor * (through * through);
+
+        // coat.transmission_direct: EXT_materials_clearcoat_color, "Implementation" (the tint is weighted by the coverage)
+        float coat_transmission_direct_part = covered * darkening_direct + transmission_direct_part;
+
+        // coat.layer_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        vec3 layer_direct = material.base_color_factor * (tinted * coat_transmission_direct_part) + (white * coat_transmission_direct_part + coat_specular * NdotL * reflectance);
+
+        // output
+        light_sum += layer_direct * radiance;
+    }
+
+    // base.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    vec4 split = textureLod(environment_dfg, vec2(view_cosine, material.roughness_factor), 0.0);
+
+    // base.radiance: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
+    vec3 radiance_part = view_cosine_part * 2.0 * N - to_eye;
+
+    // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"
+    float base_facing_2 = 1.0 - split.y;
+    float lost = clamp(base_facing_2 - split.x, 0.0, 1.0);
+    float base_through = base_facing_2 - lost / 21.0;
+    vec3 bounces = material.inverse_metallic - material.metal_repeated * lost;
+    float dielectric_bounces = material.inverse_clear - material.dielectric_repeated * lost;
+    vec3 base_specular = material.F0 * split.x + split.y;
+    float grey = material.metallic_factor * split.x - base_through / dielectric_bounces;
+    vec3 base_spread = clamp(material.base_color_complement * (grey - base_through / bounces) + (base_facing_2 - material.white_F0 * split.x), 0.0, 1.0);
+    vec3 indirect = base_specular * textureLod(environment_specular, radiance_part, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, v_normal, 0.0).xyz;
+
+    // coat.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    vec4 coat_split = textureLod(environment_dfg, vec2(view_cosine, material.coat_roughness_factor), 0.0);
+
+    // coat.darkening_ibl: KHR_materials_coat, "Darkening Control" (R IBL); EXT_materials_clearcoat_darkening
+    float coat_through = 1.0 - fresnel * material.half_fresnel - material.half_around;
+    float darkening_ibl = material.undarkened + material.coat_darkening_factor * (coat_through * coat_through);
+
+    // output
+    vec3 output_part = textureLod(environment_specular, radiance_part, material.coat_roughness_factor * frame.environment_max_lod).xyz * ((coat_split.x + coat_split.y) * reflectance * frame.environment_intensity);
+
+    out_color = vec4(light_sum + (indirect * ((covered * darkening_ibl + transmission_direct_part) * frame.environment_intensity) + output_part), 1.0);
+}

@@ -1,0 +1,231 @@
+#version 300 es
+// forward-volume-7bdf2965c81f84c1689a07cd6f79c370
+// Lacquer 0.2.0, template forward
+
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp samplerCube;
+
+layout(std140) uniform Frame {
+    mat4 view_projection;
+    vec3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+} frame;
+
+struct Light {
+    vec3 position;
+    float positional;
+    vec3 radiance;
+    float inverse_range_4;
+    vec3 direction;
+    float spot_scale;
+    float spot_offset;
+};
+
+layout(std140) uniform Lights {
+    Light lights[16];
+};
+
+layout(std140) uniform SeeThrough {
+    vec4 scene_u;
+    vec4 scene_v;
+    vec4 scene_w;
+    float scene_max_lod;
+} see_through;
+
+layout(std140) uniform Material {
+    vec3 density;
+    float roughness_factor;
+    vec3 base_color_factor;
+    float thickness_factor;
+    vec3 tint;
+    float alpha2;
+    vec3 front;
+    float ggx_peak;
+    vec3 F0;
+    float alpha2_ratio;
+    vec3 metal_repeated;
+    float weight_times_ggx_peak;
+    float complement_root;
+    float one_minus_transmission_factor;
+    float dielectric;
+    float mixed_F90;
+    float under_facing;
+    float inverse_dielectric_times_0_0857;
+    float first;
+    float metal_first;
+} material;
+
+uniform samplerCube environment_specular;
+uniform samplerCube environment_irradiance;
+uniform sampler2D environment_dfg;
+uniform sampler2D scene_behind;
+
+in vec3 v_position;
+in vec3 v_normal;
+in float v_volume_length;
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    // view: glTF 2.0, Appendix B, "Overview"
+    vec3 to_eye = frame.camera_position - v_position;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    vec3 V = to_eye * inversesqrt(to_eye.x * to_eye.x + view_part);
+
+    // normal.unit: glTF 2.0, "Meshes"
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit_part);
+
+    // volume.length: KHR_materials_volume, "Properties" (thickness is in the mesh's space)
+    float volume_length = min(v_volume_length, 1e30);
+
+    // volume.transmittance: KHR_materials_volume, "Attenuation" (transmittance)
+    vec3 transmittance = exp2(material.density * volume_length);
+
+    // volume.tint: KHR_materials_volume, "Attenuation"
+    vec3 tint = material.tint * transmittance;
+
+    // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+    float signed_NdotV = dot(N, V);
+    float NdotV = abs(signed_NdotV);
+
+    // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float masked_view = sqrt(material.alpha2_ratio + NdotV * NdotV);
+
+    // behind.visibility: KHR_materials_transmission, "Implementation Notes" (V_T)
+    float behind_masked_view = NdotV + material.complement_root * masked_view;
+
+    // output
+    vec3 light_sum = vec3(0.0);
+    for (int i = 0; i < min(frame.light_count, 16); ++i) {
+        // light_sample: KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles"
+        vec3 to_light = lights[i].position - v_position * lights[i].positional;
+        float distance2 = max(dot(to_light, to_light), 1e-12);
+        float inverse_distance = mix(1.0, inversesqrt(distance2), lights[i].positional);
+        vec3 L = to_light * inverse_distance;
+        float window = clamp(1.0 - distance2 * (distance2 * lights[i].inverse_range_4), 0.0, 1.0);
+        float cone = clamp(lights[i].spot_offset - dot(to_light, lights[i].direction) * inverse_distance * lights[i].spot_scale, 0.0, 1.0);
+        vec3 radiance = lights[i].radiance * (window * (cone * cone) * (inverse_distance * inverse_distance));
+
+        // half: glTF 2.0, Appendix B, "Overview"
+        vec3 sum = V + L;
+        float length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
+
+        // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+        float signed_NdotL = dot(N, to_light) * inverse_distance;
+        float NdotL = clamp(signed_NdotL, 0.0, 1.0);
+
+        // behind.cosines: KHR_materials_transmission, "Implementation Notes" (the half vector of transmission)
+        float behind_NdotL = clamp(-signed_NdotL, 0.0, 1.0);
+        float NdotSum = behind_NdotL + signed_NdotV;
+        float straight = signed_NdotL + signed_NdotV;
+        float either = min(abs(signed_NdotL), 1.0);
+
+        // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        vec3 planar = sum - N * straight;
+        float planar2 = dot(planar, planar);
+        float spread = planar2 + material.alpha2 * (straight * straight);
+        float facing = 0.0 < straight ? length2 * length2 : 0.0;
+        float denominator = spread * spread;
+
+        // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float masked_light = sqrt(material.alpha2_ratio + either * either);
+        float base_sum = either * masked_view + NdotV * masked_light;
+
+        // base.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float specular = material.weight_times_ggx_peak * facing / (denominator * base_sum + 3e-32);
+
+        // behind.half: KHR_materials_transmission, "Implementation Notes" (the half vector of transmission)
+        float NdotSum2 = NdotSum * NdotSum;
+        float behind_length2 = planar2 + NdotSum2;
+        float behind_VdotH = clamp(0.5 * sqrt(behind_length2), 0.0, 1.0);
+
+        // behind.schlick: glTF 2.0, Appendix B, "Fresnel"; KHR_materials_specular, "Implementation"
+        float c = 1.0 - behind_VdotH;
+        float c2 = c * c;
+        float weight = c2 * c2 * c;
+        float most = clamp(0.04 + 0.96 * weight, 0.0, 1.0);
+
+        // behind.distribution: KHR_materials_transmission, "Implementation Notes" (D_T)
+        float behind_spread = planar2 + material.alpha2 * NdotSum2;
+        float behind_facing = 0.0 < NdotSum ? behind_length2 * behind_length2 : 0.0;
+        float numerator = behind_facing * material.ggx_peak;
+        float behind_denominator = behind_spread * behind_spread;
+
+        // behind.visibility: KHR_materials_transmission, "Implementation Notes" (V_T)
+        float behind_masked_light = either + material.complement_root * masked_light;
+        float visibility = behind_masked_view * behind_masked_light;
+
+        // behind.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float behind_specular = numerator / (behind_denominator * visibility + 3e-32);
+
+        // base.direct: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"; KHR_materials_specular, "Implementation"
+        float base_c = 1.0 - VdotH;
+        float base_c2 = base_c * base_c;
+        float base_weight = base_c2 * base_c2 * base_c;
+        float glancing = base_weight * NdotL;
+        float base_facing = NdotL - glancing;
+        float refracted = material.under_facing * base_facing;
+        vec3 direct = material.F0 * (base_facing * specular) + material.mixed_F90 * glancing * specular + material.front * refracted;
+
+        // base.through: KHR_materials_transmission, "Transmission BTDF"; KHR_materials_diffuse_transmission, "Material Structure Updates"
+        vec3 through = direct + tint * (behind_specular * (behind_NdotL * (material.dielectric * (1.0 - most))));
+
+        // output
+        light_sum += through * radiance;
+    }
+
+    // base.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    vec4 split = textureLod(environment_dfg, vec2(NdotV, material.roughness_factor), 0.0);
+
+    // dielectric.environment: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"; Karis 2013
+    float dielectric_facing = 1.0 - split.y;
+    float lost = clamp(dielectric_facing - split.x, 0.0, 1.0);
+    float environment_part = 0.04 * split.x + split.y;
+    float most_bounces = 1.000001 - 0.08571429 * lost;
+    float dielectric_most = clamp(environment_part / most_bounces, 0.0, 1.0);
+
+    // volume.exit: KHR_materials_volume, "Refraction" (Snell's law)
+    float sine2 = clamp(1.0 - signed_NdotV * signed_NdotV, 0.0, 1.0);
+    float refracted_cosine = sqrt(1.0 - 0.44444445 * sine2);
+    float along_normal = 0.6666667 * signed_NdotV - refracted_cosine;
+    vec3 exit = v_position + N * (along_normal * volume_length) - V * (0.6666667 * volume_length);
+
+    // clear.lod: KHR_materials_transmission, "Implementation Notes"; Khronos glTF sample viewer (applyIorToRoughness, log2 of the
+    float lod = material.roughness_factor * see_through.scene_max_lod;
+
+    // clear.scene: KHR_materials_transmission, "Implementation Notes"
+    vec4 clear_point = vec4(exit, 1.0);
+    vec2 uv = vec2(dot(see_through.scene_u, clear_point), dot(see_through.scene_v, clear_point)) / max(dot(see_through.scene_w, clear_point), 1e-6);
+
+    // clear.seen: KHR_materials_transmission, "Tinting"
+    vec3 seen = tint * textureLod(scene_behind, uv, lod).xyz;
+
+    // base.transmitted: KHR_materials_transmission, "Transmission BTDF"
+    float under = material.dielectric * (1.0 - dielectric_most);
+    vec3 transmitted = seen * under;
+
+    // base.reflection: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
+    vec3 R = 2.0 * signed_NdotV * N - V;
+
+    // base.irradiance: glTF 2.0, Appendix B, "Diffuse BRDF"
+    vec3 mean = textureLod(environment_irradiance, v_normal, 0.0).xyz;
+
+    // base.body_indirect: glTF 2.0, Appendix B, "Diffuse BRDF"
+    vec3 body_indirect = material.base_color_factor * mean;
+
+    // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"; glTF 2.0,
+    vec3 metal_bounces = material.metal_first - material.metal_repeated * lost;
+    vec3 base_all = environment_part / (material.first - material.inverse_dielectric_times_0_0857 * lost) + (material.base_color_factor * split.x + split.y) / metal_bounces;
+    vec3 once = material.F0 * split.x + material.mixed_F90 * split.y;
+    vec3 indirect_part = once * textureLod(environment_specular, R, material.roughness_factor * frame.environment_max_lod).xyz + clamp(base_all - once, 0.0, 1.0) * mean;
+    vec3 indirect = indirect_part + body_indirect * (material.one_minus_transmission_factor * under);
+
+    // output
+    out_color = vec4(light_sum + indirect * frame.environment_intensity + transmitted, 1.0);
+}

@@ -1,0 +1,50 @@
+#version 450
+// forward-base-7bbfc282403e60074dd319f1503ba03e
+// Lacquer 0.2.0, template forward
+
+layout(std140, binding = 0) uniform Frame {
+    mat4 view_projection;
+    vec3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+} frame;
+
+layout(std140, binding = 3) uniform Object {
+    mat4 model;
+    mat4 normal_matrix;
+} object;
+
+layout(location = 0) in vec3 in_position;
+layout(location = 1) in vec3 in_normal;
+layout(location = 3) in vec2 in_texcoord_0;
+layout(location = 4) in vec2 in_texcoord_1;
+layout(location = 7) in vec4 in_color_0;
+
+layout(location = 0) out vec3 v_position;
+layout(location = 1) out vec3 v_normal;
+layout(location = 2) out vec2 v_uv0;
+layout(location = 3) out vec2 v_uv1;
+layout(location = 4) out vec4 v_COLOR_0;
+
+void main() {
+    // world
+    vec4 world = object.model * vec4(in_position, 1.0);
+
+    // normal
+    vec4 normal_part = object.normal_matrix * vec4(in_normal, 0.0);
+    float normal_part_2 = normal_part.y * normal_part.y + (normal_part.z * normal_part.z + 1e-32);
+    vec3 N = normal_part.xyz * inversesqrt(normal_part.x * normal_part.x + normal_part_2);
+
+    // output
+    gl_Position = frame.view_projection * world;
+
+    // position
+    v_position = world.xyz;
+
+    // normal
+    v_normal = N;
+    v_uv0 = in_texcoord_0;
+    v_uv1 = in_texcoord_1;
+    v_COLOR_0 = in_color_0;
+}

@@ -1,0 +1,191 @@
+#version 450
+// forward-coat-be0e5a0ea4e893e590040d631f4d0d2a
+// Lacquer 0.2.0, template forward
+
+layout(std140, set = 0, binding = 0) uniform Frame {
+    mat4 view_projection;
+    vec3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+} frame;
+
+struct Light {
+    vec3 position;
+    float positional;
+    vec3 radiance;
+    float inverse_range_4;
+    vec3 direction;
+    float spot_scale;
+    float spot_offset;
+};
+
+layout(std140, set = 0, binding = 1) uniform Lights {
+    Light lights[16];
+};
+
+layout(std140, set = 1, binding = 0) uniform Material {
+    vec3 log2_tint;
+    float metallic_factor;
+    vec3 base_color_factor;
+    float roughness_factor;
+    vec3 base_color_complement;
+    float coat_factor;
+    vec3 metal_repeated;
+    float coat_roughness_factor;
+    vec3 F0;
+    float alpha2;
+    float alpha2_ratio;
+    float weight_times_ggx_peak;
+    float coat_alpha2;
+    float coat_alpha2_ratio;
+    float coat_weight_times_ggx_peak;
+    float lambert;
+    float least_f0;
+    float coat_factor_times_0_96;
+    float coat_factor_times_0_04;
+    float inverse_metallic;
+    float inverse_clear;
+    float dielectric_repeated;
+    float white_F0;
+} material;
+
+layout(set = 0, binding = 2) uniform samplerCube environment_specular;
+layout(set = 0, binding = 3) uniform samplerCube environment_irradiance;
+layout(set = 0, binding = 4) uniform sampler2D environment_dfg;
+
+layout(location = 0) in vec3 v_position;
+layout(location = 1) in vec3 v_normal;
+
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    // view: glTF 2.0, Appendix B, "Overview"
+    vec3 to_eye = frame.camera_position - v_position;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_part_2 = inversesqrt(to_eye.x * to_eye.x + view_part);
+    vec3 V = to_eye * view_part_2;
+
+    // normal.unit: glTF 2.0, "Meshes"
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    vec3 N = v_normal * inversesqrt(v_normal.x * v_normal.x + unit_part);
+
+    // coat.view_cosine: KHR_materials_clearcoat, "Layering"
+    float view_cosine_part = dot(N, to_eye);
+    float signed_NdotV = view_cosine_part * view_part_2;
+    float view_cosine = abs(view_cosine_part) * view_part_2;
+
+    // coat.fresnel: glTF 2.0, Appendix B, "Fresnel"; Schlick 1994
+    float c = 1.0 - view_cosine;
+    float c2 = c * c;
+
+    // coat.absorption: KHR_materials_coat, "Colored Absorption"; EXT_materials_clearcoat_color, "View-Dependent Absorption"
+    float view_cosine2 = view_cosine * view_cosine;
+    float cos2_t = 0.5555556 + 0.44444445 * view_cosine2;
+    float path = inversesqrt(cos2_t);
+    vec3 absorption = exp2(material.log2_tint * path);
+
+    // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float masked_view = sqrt(material.alpha2_ratio + view_cosine2);
+
+    // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float coat_masked_view = sqrt(material.coat_alpha2_ratio + view_cosine2);
+
+    // coat.transmission_direct: EXT_materials_clearcoat_color, "Implementation" (the tint is weighted by the coverage)
+    float reflectance = material.coat_factor_times_0_04 + material.coat_factor_times_0_96 * (c2 * c2 * abs(c));
+    float refracted = clamp(1.0 - reflectance, 0.0, 1.0);
+    float covered = material.coat_factor * refracted;
+    vec3 transmission_direct = absorption * covered + (refracted - covered);
+
+    // output
+    vec3 light_sum = vec3(0.0);
+    for (int i = 0; i < frame.light_count; ++i) {
+        // light_sample: KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles"
+        vec3 to_light = lights[i].position - v_position * lights[i].positional;
+        float distance2 = max(dot(to_light, to_light), 1e-12);
+        float inverse_distance = mix(1.0, inversesqrt(distance2), lights[i].positional);
+        vec3 L = to_light * inverse_distance;
+        float window = clamp(1.0 - distance2 * (distance2 * lights[i].inverse_range_4), 0.0, 1.0);
+        float cone = clamp(lights[i].spot_offset - dot(to_light, lights[i].direction) * inverse_distance * lights[i].spot_scale, 0.0, 1.0);
+        vec3 radiance = lights[i].radiance * (window * (cone * cone) * (inverse_distance * inverse_distance));
+
+        // half: glTF 2.0, Appendix B, "Overview"
+        vec3 sum = V + L;
+        float length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
+
+        // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+        float NdotL = clamp(dot(N, to_light) * inverse_distance, 0.0, 1.0);
+        float NdotSum = NdotL + signed_NdotV;
+
+        // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        vec3 planar = sum - N * NdotSum;
+        float planar2 = dot(planar, planar);
+        float NdotSum2 = NdotSum * NdotSum;
+        float spread = planar2 + material.alpha2 * NdotSum2;
+        float facing = 0.0 < NdotSum ? length2 * length2 : 0.0;
+        float denominator = spread * spread;
+
+        // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float NdotL2 = NdotL * NdotL;
+        float masked_light = sqrt(material.alpha2_ratio + NdotL2);
+        float base_sum = NdotL * masked_view + view_cosine * masked_light;
+
+        // base.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float specular = material.weight_times_ggx_peak * facing / (denominator * base_sum + 3e-32);
+
+        // coat.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        float coat_spread = planar2 + material.coat_alpha2 * NdotSum2;
+        float coat_denominator = coat_spread * coat_spread;
+
+        // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float coat_masked_light = sqrt(material.coat_alpha2_ratio + NdotL2);
+        float coat_sum = NdotL * coat_masked_view + view_cosine * coat_masked_light;
+
+        // coat.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float coat_specular = material.coat_weight_times_ggx_peak * facing / (coat_denominator * coat_sum + 3e-32);
+
+        // base.direct: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"
+        float base_c = 1.0 - VdotH;
+        float base_c2 = base_c * base_c;
+        float weight = base_c2 * base_c2 * base_c;
+        float glancing = weight * NdotL;
+        float base_facing = NdotL - glancing;
+        float tinted = base_facing * (material.lambert + material.metallic_factor * specular);
+        float white = specular * (base_facing * material.least_f0 + glancing);
+        vec3 direct = material.base_color_factor * tinted + white;
+
+        // coat.layer_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        vec3 layer_direct = direct * transmission_direct + coat_specular * NdotL * reflectance;
+
+        // output
+        light_sum += layer_direct * radiance;
+    }
+
+    // base.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    vec4 split = textureLod(environment_dfg, vec2(view_cosine, material.roughness_factor), 0.0);
+
+    // base.radiance: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
+    vec3 radiance_part = view_cosine_part * 2.0 * N - to_eye;
+
+    // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"
+    float base_facing_2 = 1.0 - split.y;
+    float lost = clamp(base_facing_2 - split.x, 0.0, 1.0);
+    float through = base_facing_2 - lost / 21.0;
+    vec3 bounces = material.inverse_metallic - material.metal_repeated * lost;
+    float dielectric_bounces = material.inverse_clear - material.dielectric_repeated * lost;
+    vec3 base_specular = material.F0 * split.x + split.y;
+    float grey = material.metallic_factor * split.x - through / dielectric_bounces;
+    vec3 base_spread = clamp(material.base_color_complement * (grey - through / bounces) + (base_facing_2 - material.white_F0 * split.x), 0.0, 1.0);
+    vec3 indirect = base_specular * textureLod(environment_specular, radiance_part, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * textureLod(environment_irradiance, v_normal, 0.0).xyz;
+
+    // coat.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    vec4 coat_split = textureLod(environment_dfg, vec2(view_cosine, material.coat_roughness_factor), 0.0);
+
+    // coat.layer_ibl: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+    vec3 layer_ibl_part = textureLod(environment_specular, radiance_part, material.coat_roughness_factor * frame.environment_max_lod).xyz * ((coat_split.x + coat_split.y) * reflectance);
+    vec3 layer_ibl = indirect * transmission_direct + layer_ibl_part;
+
+    // output
+    out_color = vec4(light_sum + layer_ibl * frame.environment_intensity, 1.0);
+}

@@ -1,0 +1,190 @@
+// forward-coat-32e4429d0b815c45a7890e3413a16a00
+// Lacquer 0.2.0, template forward
+
+struct FrameBlock {
+    column_major float4x4 view_projection;
+    float3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+};
+
+cbuffer Frame : register(b0) {
+    FrameBlock frame;
+};
+
+struct Light {
+    float3 position;
+    float positional;
+    float3 radiance;
+    float inverse_range_4;
+    float3 direction;
+    float spot_scale;
+    float spot_offset;
+};
+
+cbuffer Lights : register(b1) {
+    Light lights[16];
+};
+
+struct MaterialBlock {
+    float3 base_color_factor;
+    float metallic_factor;
+    float3 base_color_complement;
+    float roughness_factor;
+    float3 metal_repeated;
+    float coat_roughness_factor;
+    float3 F0;
+    float alpha2;
+    float alpha2_ratio;
+    float weight_times_ggx_peak;
+    float coat_alpha2;
+    float coat_alpha2_ratio;
+    float coat_weight_times_ggx_peak;
+    float coat_factor_times_0_96;
+    float coat_factor_times_0_04;
+    float lambert;
+    float least_f0;
+    float inverse_metallic;
+    float inverse_clear;
+    float dielectric_repeated;
+    float white_F0;
+};
+
+cbuffer Material : register(b2) {
+    MaterialBlock material;
+};
+
+TextureCube environment_specular : register(t0);
+SamplerState environment_specular_sampler : register(s0);
+TextureCube environment_irradiance : register(t1);
+SamplerState environment_irradiance_sampler : register(s1);
+Texture2D environment_dfg : register(t2);
+SamplerState environment_dfg_sampler : register(s2);
+
+void main(
+    float3 v_position : TEXCOORD0,
+    float3 v_normal : TEXCOORD1,
+    out float4 out_color : SV_Target0) {
+    // view: glTF 2.0, Appendix B, "Overview"
+    float3 to_eye = frame.camera_position - v_position;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float view_part_2 = rsqrt(to_eye.x * to_eye.x + view_part);
+    float3 V = to_eye * view_part_2;
+
+    // normal.unit: glTF 2.0, "Meshes"
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    float3 N = v_normal * rsqrt(v_normal.x * v_normal.x + unit_part);
+
+    // coat.view_cosine: KHR_materials_clearcoat, "Layering"
+    float view_cosine_part = dot(N, to_eye);
+    float signed_NdotV = view_cosine_part * view_part_2;
+    float view_cosine = abs(view_cosine_part) * view_part_2;
+
+    // coat.fresnel: glTF 2.0, Appendix B, "Fresnel"; Schlick 1994
+    float c = 1.0 - view_cosine;
+    float c2 = c * c;
+
+    // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float view_cosine2 = view_cosine * view_cosine;
+    float masked_view = sqrt(material.alpha2_ratio + view_cosine2);
+
+    // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float coat_masked_view = sqrt(material.coat_alpha2_ratio + view_cosine2);
+
+    // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+    float reflectance = material.coat_factor_times_0_04 + material.coat_factor_times_0_96 * (c2 * c2 * abs(c));
+
+    // output
+    float3 light_sum = float3(0.0, 0.0, 0.0);
+    for (int i = 0; i < frame.light_count; ++i) {
+        // light_sample: KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles"
+        float3 to_light = lights[i].position - v_position * lights[i].positional;
+        float distance2 = max(dot(to_light, to_light), 1e-12);
+        float inverse_distance = lerp(1.0, rsqrt(distance2), lights[i].positional);
+        float3 L = to_light * inverse_distance;
+        float window = clamp(1.0 - distance2 * (distance2 * lights[i].inverse_range_4), 0.0, 1.0);
+        float cone = clamp(lights[i].spot_offset - dot(to_light, lights[i].direction) * inverse_distance * lights[i].spot_scale, 0.0, 1.0);
+        float3 radiance = lights[i].radiance * (window * (cone * cone) * (inverse_distance * inverse_distance));
+
+        // half: glTF 2.0, Appendix B, "Overview"
+        float3 sum = V + L;
+        float length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(length2), 0.0, 1.0);
+
+        // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+        float NdotL = clamp(dot(N, to_light) * inverse_distance, 0.0, 1.0);
+        float NdotSum = NdotL + signed_NdotV;
+
+        // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        float3 planar = sum - N * NdotSum;
+        float planar2 = dot(planar, planar);
+        float NdotSum2 = NdotSum * NdotSum;
+        float spread = planar2 + material.alpha2 * NdotSum2;
+        float facing = 0.0 < NdotSum ? length2 * length2 : 0.0;
+        float denominator = spread * spread;
+
+        // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float NdotL2 = NdotL * NdotL;
+        float masked_light = sqrt(material.alpha2_ratio + NdotL2);
+        float base_sum = NdotL * masked_view + view_cosine * masked_light;
+
+        // base.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float specular = material.weight_times_ggx_peak * facing / (denominator * base_sum + 3e-32);
+
+        // coat.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        float coat_spread = planar2 + material.coat_alpha2 * NdotSum2;
+        float coat_denominator = coat_spread * coat_spread;
+
+        // coat.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float coat_masked_light = sqrt(material.coat_alpha2_ratio + NdotL2);
+        float coat_sum = NdotL * coat_masked_view + view_cosine * coat_masked_light;
+
+        // coat.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float coat_specular = material.coat_weight_times_ggx_peak * facing / (coat_denominator * coat_sum + 3e-32);
+
+        // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        float reflected = NdotL * reflectance;
+        float transmitted = clamp(NdotL - reflected, 0.0, 1.0);
+
+        // base.direct: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"
+        float base_c = 1.0 - VdotH;
+        float base_c2 = base_c * base_c;
+        float weight = base_c2 * base_c2 * base_c;
+        float glancing = weight * transmitted;
+        float base_facing = transmitted - glancing;
+        float tinted = base_facing * (material.lambert + material.metallic_factor * specular);
+        float white = specular * (base_facing * material.least_f0 + glancing);
+
+        // coat.layer_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        float3 layer_direct = material.base_color_factor * tinted + (white + coat_specular * reflected);
+
+        // output
+        light_sum += layer_direct * radiance;
+    }
+
+    // base.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    float4 split = environment_dfg.SampleLevel(environment_dfg_sampler, float2(view_cosine, material.roughness_factor), 0.0);
+
+    // base.radiance: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
+    float3 radiance_part = view_cosine_part * 2.0 * N - to_eye;
+
+    // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"
+    float base_facing_2 = 1.0 - split.y;
+    float lost = clamp(base_facing_2 - split.x, 0.0, 1.0);
+    float through = base_facing_2 - lost / 21.0;
+    float3 bounces = material.inverse_metallic - material.metal_repeated * lost;
+    float dielectric_bounces = material.inverse_clear - material.dielectric_repeated * lost;
+    float3 base_specular = material.F0 * split.x + split.y;
+    float grey = material.metallic_factor * split.x - through / dielectric_bounces;
+    float3 base_spread = clamp(material.base_color_complement * (grey - through / bounces) + (base_facing_2 - material.white_F0 * split.x), 0.0, 1.0);
+    float3 indirect = base_specular * environment_specular.SampleLevel(environment_specular_sampler, radiance_part, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * environment_irradiance.SampleLevel(environment_irradiance_sampler, v_normal, 0.0).xyz;
+
+    // coat.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    float4 coat_split = environment_dfg.SampleLevel(environment_dfg_sampler, float2(view_cosine, material.coat_roughness_factor), 0.0);
+
+    // output
+    float3 output_part = environment_specular.SampleLevel(environment_specular_sampler, radiance_part, material.coat_roughness_factor * frame.environment_max_lod).xyz * ((coat_split.x + coat_split.y) * reflectance * frame.environment_intensity);
+
+    out_color = float4(light_sum + (indirect * (clamp(1.0 - reflectance, 0.0, 1.0) * frame.environment_intensity) + output_part), 1.0);
+}

@@ -1,0 +1,243 @@
+// forward-coat-93e6e9ad5db2ffbeef668e0a68ced5df
+// Lacquer 0.2.0, template forward
+
+struct FrameBlock {
+    column_major float4x4 view_projection;
+    float3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+};
+
+cbuffer Frame : register(b0) {
+    FrameBlock frame;
+};
+
+struct Light {
+    float3 position;
+    float positional;
+    float3 radiance;
+    float inverse_range_4;
+    float3 direction;
+    float spot_scale;
+    float spot_offset;
+};
+
+cbuffer Lights : register(b1) {
+    Light lights[16];
+};
+
+struct MaterialBlock {
+    float3 base_color_factor;
+    float metallic_factor;
+    float3 base_color_complement;
+    float roughness_factor;
+    float3 metal_repeated;
+    float coat_roughness_factor;
+    float3 F0;
+    float alpha;
+    float coat_anisotropy_strength;
+    float alpha2;
+    float alpha2_ratio;
+    float weight_times_ggx_peak;
+    float alpha_b2;
+    float coat_factor_times_0_96;
+    float coat_factor_times_0_04;
+    float lambert;
+    float least_f0;
+    float inverse_metallic;
+    float inverse_clear;
+    float dielectric_repeated;
+    float white_F0;
+    float smoothness_times_coat_anisotropy_strength;
+};
+
+cbuffer Material : register(b2) {
+    MaterialBlock material;
+};
+
+TextureCube environment_specular : register(t0);
+SamplerState environment_specular_sampler : register(s0);
+TextureCube environment_irradiance : register(t1);
+SamplerState environment_irradiance_sampler : register(s1);
+Texture2D environment_dfg : register(t2);
+SamplerState environment_dfg_sampler : register(s2);
+Texture2D coat_anisotropy_texture : register(t3);
+SamplerState coat_anisotropy_texture_sampler : register(s3);
+
+void main(
+    float3 v_position : TEXCOORD0,
+    float3 v_normal : TEXCOORD1,
+    float4 v_tangent : TEXCOORD2,
+    float2 v_uv0 : TEXCOORD3,
+    out float4 out_color : SV_Target0) {
+    // view: glTF 2.0, Appendix B, "Overview"
+    float3 to_eye = frame.camera_position - v_position;
+    float view_part = to_eye.y * to_eye.y + (to_eye.z * to_eye.z + 1e-32);
+    float3 V = to_eye * rsqrt(to_eye.x * to_eye.x + view_part);
+
+    // normal.unit: glTF 2.0, "Meshes"
+    float unit_part = v_normal.y * v_normal.y + (v_normal.z * v_normal.z + 1e-32);
+    float3 N = v_normal * rsqrt(v_normal.x * v_normal.x + unit_part);
+
+    // coat.view_cosine: KHR_materials_clearcoat, "Layering"
+    float signed_NdotV = dot(N, V);
+    float view_cosine = abs(signed_NdotV);
+
+    // coat.fresnel: glTF 2.0, Appendix B, "Fresnel"; Schlick 1994
+    float c = 1.0 - view_cosine;
+    float c2 = c * c;
+
+    // coat_anisotropy.texel: glTF 2.0, "Textures"
+    float4 texel = coat_anisotropy_texture.Sample(coat_anisotropy_texture_sampler, v_uv0);
+
+    // coat.anisotropy_texel: KHR_materials_coat, "Anisotropy" (dequantization)
+    float2 d = texel.xy * 2.0 - 1.0;
+    float length2 = dot(d, d);
+    float2 unit = d * rsqrt(length2 + 1e-32);
+    float2 direction = 1e-12 < length2 ? unit : float2(1.0, 0.0);
+
+    // coat.anisotropy_strength: KHR_materials_coat, "Parameter Combinations"
+    float anisotropy_strength = texel.z * material.coat_anisotropy_strength;
+
+    // coat.anisotropy: KHR_materials_coat, "Anisotropy"
+    float3 anisotropy_part = v_tangent.xyz * direction.x + cross(N, v_tangent.xyz) * (v_tangent.w * direction.y);
+    float3 normal_to_both = cross(N, anisotropy_part);
+    float coat_anisotropy_part = normal_to_both.y * normal_to_both.y + (normal_to_both.z * normal_to_both.z + 1e-32);
+    float3 across = normal_to_both * rsqrt(normal_to_both.x * normal_to_both.x + coat_anisotropy_part);
+
+    // coat.anisotropic_alpha: KHR_materials_coat, "Anisotropy" (directionAlphaRoughness)
+    float alpha_t = lerp(material.alpha, 1.0, anisotropy_strength * anisotropy_strength);
+
+    // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+    float view_cosine2 = view_cosine * view_cosine;
+    float masked_view = sqrt(material.alpha2_ratio + view_cosine2);
+
+    // coat.anisotropy_cosines: KHR_materials_coat, "Anisotropy" (D, in h.t and h.b)
+    float BdotV = dot(across, V);
+
+    // coat.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
+    float narrowness = min(material.alpha / alpha_t, 1.0);
+    float narrowness2 = narrowness * narrowness;
+    float narrowness2_complement = 1.0 - narrowness2;
+    float ggx_peak = material.alpha_b2 * narrowness / 3.1415927;
+
+    // coat.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
+    float alpha_t2 = alpha_t * alpha_t;
+    float alpha2_difference = max(alpha_t2 - material.alpha_b2, 0.0);
+    float alpha_t2_complement = 1.0 - alpha_t2;
+    float masked_view2 = alpha_t2 - alpha2_difference * (BdotV * BdotV) + alpha_t2_complement * view_cosine2;
+    float coat_masked_view = sqrt(clamp(masked_view2, 0.0, 1.0));
+
+    // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+    float reflectance = material.coat_factor_times_0_04 + material.coat_factor_times_0_96 * (c2 * c2 * abs(c));
+
+    // output
+    float3 light_sum = float3(0.0, 0.0, 0.0);
+    for (int i = 0; i < frame.light_count; ++i) {
+        // light_sample: KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles"
+        float3 to_light = lights[i].position - v_position * lights[i].positional;
+        float distance2 = max(dot(to_light, to_light), 1e-12);
+        float inverse_distance = lerp(1.0, rsqrt(distance2), lights[i].positional);
+        float3 L = to_light * inverse_distance;
+        float window = clamp(1.0 - distance2 * (distance2 * lights[i].inverse_range_4), 0.0, 1.0);
+        float cone = clamp(lights[i].spot_offset - dot(L, lights[i].direction) * lights[i].spot_scale, 0.0, 1.0);
+        float3 radiance = lights[i].radiance * (window * (cone * cone) * (inverse_distance * inverse_distance));
+
+        // half: glTF 2.0, Appendix B, "Overview"
+        float3 sum = V + L;
+        float half_length2 = dot(sum, sum);
+        float VdotH = clamp(0.5 * sqrt(half_length2), 0.0, 1.0);
+
+        // base.cosines: glTF 2.0, Appendix B, "Specular BRDF"
+        float NdotL = clamp(dot(N, L), 0.0, 1.0);
+        float NdotSum = NdotL + signed_NdotV;
+
+        // base.distribution: glTF 2.0, Appendix B, "Specular BRDF" (D)
+        float3 planar = sum - N * NdotSum;
+        float planar2 = dot(planar, planar);
+        float NdotSum2 = NdotSum * NdotSum;
+        float spread = planar2 + material.alpha2 * NdotSum2;
+        float facing = 0.0 < NdotSum ? half_length2 * half_length2 : 0.0;
+        float denominator = spread * spread;
+
+        // base.visibility: glTF 2.0, Appendix B, "Specular BRDF" (V); Heitz 2014
+        float NdotL2 = NdotL * NdotL;
+        float masked_light = sqrt(material.alpha2_ratio + NdotL2);
+        float base_sum = NdotL * masked_view + view_cosine * masked_light;
+
+        // base.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float specular = material.weight_times_ggx_peak * facing / (denominator * base_sum + 3e-32);
+
+        // coat.anisotropy_cosines: KHR_materials_coat, "Anisotropy" (D, in h.t and h.b)
+        float BdotL = dot(across, L);
+
+        // coat.distribution: KHR_materials_coat, "Anisotropy" (D); Burley 2012
+        float BdotSum = BdotV + BdotL;
+        float coat_spread = narrowness2_complement * (BdotSum * BdotSum) + narrowness2 * planar2 + material.alpha_b2 * NdotSum2;
+        float numerator = facing * ggx_peak;
+        float coat_denominator = coat_spread * coat_spread;
+
+        // coat.visibility: Heitz 2014, "Understanding the Masking-Shadowing Function", section 5.4.1
+        float masked_light2 = alpha_t2 - alpha2_difference * (BdotL * BdotL) + alpha_t2_complement * NdotL2;
+        float coat_masked_light = sqrt(clamp(masked_light2, 0.0, 1.0));
+        float visibility = 2.0 * (NdotL * coat_masked_view + view_cosine * coat_masked_light);
+
+        // coat.specular: glTF 2.0, Appendix B, "Specular BRDF" (V D)
+        float coat_specular = numerator / (coat_denominator * visibility + 3e-32);
+
+        // coat.transmission_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        float reflected = NdotL * reflectance;
+        float transmitted = clamp(NdotL - reflected, 0.0, 1.0);
+
+        // base.direct: glTF 2.0, Appendix B, "Metal BRDF and Dielectric BRDF"
+        float base_c = 1.0 - VdotH;
+        float base_c2 = base_c * base_c;
+        float weight = base_c2 * base_c2 * base_c;
+        float glancing = weight * transmitted;
+        float base_facing = transmitted - glancing;
+        float tinted = base_facing * (material.lambert + material.metallic_factor * specular);
+        float white = specular * (base_facing * material.least_f0 + glancing);
+
+        // coat.layer_direct: KHR_materials_coat, "Layering"; KHR_materials_clearcoat, "Layering"
+        float3 layer_direct = material.base_color_factor * tinted + (white + coat_specular * reflected);
+
+        // output
+        light_sum += layer_direct * radiance;
+    }
+
+    // base.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    float4 split = environment_dfg.SampleLevel(environment_dfg_sampler, float2(view_cosine, material.roughness_factor), 0.0);
+
+    // base.reflection: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
+    float3 R = 2.0 * signed_NdotV * N - V;
+
+    // base.indirect: Fdez-Aguera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting"
+    float base_facing_2 = 1.0 - split.y;
+    float lost = clamp(base_facing_2 - split.x, 0.0, 1.0);
+    float through = base_facing_2 - lost / 21.0;
+    float3 bounces = material.inverse_metallic - material.metal_repeated * lost;
+    float dielectric_bounces = material.inverse_clear - material.dielectric_repeated * lost;
+    float3 base_specular = material.F0 * split.x + split.y;
+    float grey = material.metallic_factor * split.x - through / dielectric_bounces;
+    float3 base_spread = clamp(material.base_color_complement * (grey - through / bounces) + (base_facing_2 - material.white_F0 * split.x), 0.0, 1.0);
+    float3 indirect = base_specular * environment_specular.SampleLevel(environment_specular_sampler, R, material.roughness_factor * frame.environment_max_lod).xyz + base_spread * environment_irradiance.SampleLevel(environment_irradiance_sampler, v_normal, 0.0).xyz;
+
+    // coat.bent_normal: McAuley 2015, "Rendering the World of Far Cry 4"; as in the Khronos sample viewer's anisotropy
+    float3 towards = V - across * BdotV;
+    float bend = material.smoothness_times_coat_anisotropy_strength * texel.z;
+    float straight = 1.0 - bend;
+    float straight2 = straight * straight;
+    float3 bent_normal = lerp(towards, N, straight2 * straight2);
+
+    // coat.reflection: Karis 2013, "Real Shading in Unreal Engine 4" (split sum)
+    float3 reflection = bent_normal * (2.0 * dot(bent_normal, V)) - V * dot(bent_normal, bent_normal);
+
+    // coat.environment_brdf: Karis 2013, "Real Shading in Unreal Engine 4" (split sum); glTF 2.0, Appendix B, "Specular BRDF"
+    float4 coat_split = environment_dfg.SampleLevel(environment_dfg_sampler, float2(view_cosine, material.coat_roughness_factor), 0.0);
+
+    // output
+    float3 output_part = environment_specular.SampleLevel(environment_specular_sampler, reflection, material.coat_roughness_factor * frame.environment_max_lod).xyz * ((coat_split.x + coat_split.y) * reflectance * frame.environment_intensity);
+
+    out_color = float4(light_sum + (indirect * (clamp(1.0 - reflectance, 0.0, 1.0) * frame.environment_intensity) + output_part), 1.0);
+}

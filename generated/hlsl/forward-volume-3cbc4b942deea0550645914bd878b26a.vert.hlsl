@@ -1,0 +1,92 @@
+// forward-volume-3cbc4b942deea0550645914bd878b26a
+// Lacquer 0.2.0, template forward
+
+struct FrameBlock {
+    column_major float4x4 view_projection;
+    float3 camera_position;
+    float environment_intensity;
+    float environment_max_lod;
+    int light_count;
+};
+
+cbuffer Frame : register(b0) {
+    FrameBlock frame;
+};
+
+struct ObjectBlock {
+    column_major float4x4 model;
+    column_major float4x4 normal_matrix;
+};
+
+cbuffer Object : register(b3) {
+    ObjectBlock object;
+};
+
+struct MaterialBlock {
+    float3 density;
+    float roughness_factor;
+    float3 base_color_factor;
+    float f0;
+    float3 tint;
+    float roughness;
+    float3 front;
+    float thickness_factor;
+    float3 F0;
+    float alpha2;
+    float3 metal_repeated;
+    float alpha2_ratio;
+    float weight_times_ggx_peak;
+    float one_minus_f0;
+    float behind_alpha2;
+    float ggx_peak;
+    float behind_alpha2_ratio;
+    float complement_root;
+    float one_minus_transmission_factor;
+    float dielectric;
+    float mixed_F90;
+    float under_facing;
+    float most_mean;
+    float inverse_ior;
+    float inverse_ior2;
+    float most_mean_times_inverse_dielectric;
+    float first;
+    float metal_first;
+};
+
+cbuffer Material : register(b2) {
+    MaterialBlock material;
+};
+
+void main(
+    float3 in_position : POSITION,
+    float3 in_normal : NORMAL,
+    out float3 v_position : TEXCOORD0,
+    out float3 v_normal : TEXCOORD1,
+    out float v_volume_length : TEXCOORD2,
+    out float4 out_position : SV_Position) {
+    // world
+    float4 world = mul(object.model, float4(in_position, 1.0));
+
+    // normal
+    float4 normal_part = mul(object.normal_matrix, float4(in_normal, 0.0));
+    float normal_part_2 = normal_part.y * normal_part.y + (normal_part.z * normal_part.z + 1e-32);
+    float3 N = normal_part.xyz * rsqrt(normal_part.x * normal_part.x + normal_part_2);
+
+    // thickness_scale
+    float4 thickness_scale_part = mul(object.model, float4(1.0, 0.0, 0.0, 0.0));
+    float4 thickness_scale_part_2 = mul(object.model, float4(0.0, 1.0, 0.0, 0.0));
+    float4 thickness_scale_part_3 = mul(object.model, float4(0.0, 0.0, 1.0, 0.0));
+    float thickness_scale_part_4 = length(thickness_scale_part.xyz) + length(thickness_scale_part_2.xyz) + length(thickness_scale_part_3.xyz);
+
+    // output
+    out_position = mul(frame.view_projection, world);
+
+    // position
+    v_position = world.xyz;
+
+    // normal
+    v_normal = N;
+
+    // volume.length: KHR_materials_volume, "Properties" (thickness is in the mesh's space)
+    v_volume_length = material.thickness_factor * (thickness_scale_part_4 / 3.0);
+}
