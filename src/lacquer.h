@@ -24,4 +24,5 @@
 #include "lacquer/generate.h"  // scenes, shaders, runs over files
 #include "lacquer/graph.h"     // the node graph, to look at and to edit
 #include "lacquer/options.h"   // what all calls share: messages, targets, options
+#include "lacquer/targets.h"   // targets of one's own
 #include "lacquer/tools.h"  // what else is known of a material or a shader: colours, pictures, proofs, costs

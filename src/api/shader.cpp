@@ -28,14 +28,19 @@ const std::string& Shader::moduleTypes() const { return impl().text[static_cast<
 const std::string& Shader::moduleText() const { return impl().text[static_cast<size_t>(Target::Js)][1]; }
 const std::string& Shader::interfaceJson() const { return impl().interface; }
 
-static const std::string& textOf(const std::string (&text)[kTargetCount][2], Target target, int stage) {
+const std::string& Shader::fileText(Target target, int file) const {
   static const std::string kNone;
-  const auto row = static_cast<size_t>(target);
-  return row >= kTargetCount || packsBlock(target) ? kNone : text[row][stage];
+  const bool known = !targetName(target).empty() && (file == 0 || file == 1);
+  return known ? impl().text[static_cast<size_t>(target)][file] : kNone;
 }
 
-const std::string& Shader::vertexText(Target target) const { return textOf(impl().text, target, 0); }
-const std::string& Shader::fragmentText(Target target) const { return textOf(impl().text, target, 1); }
+static const std::string& textOf(const Shader& shader, Target target, int stage) {
+  static const std::string kNone;
+  return targetName(target).empty() || packsBlock(target) ? kNone : shader.fileText(target, stage);
+}
+
+const std::string& Shader::vertexText(Target target) const { return textOf(*this, target, 0); }
+const std::string& Shader::fragmentText(Target target) const { return textOf(*this, target, 1); }
 
 size_t Shader::uniformSize() const {
   for (const ir::Block& block : impl().module.blocks) {

@@ -31,9 +31,7 @@ const char* lacquer_shader_text(const lacquer_shader* shader, const char* target
   const Shader& of = shaderOf(shader);
   if (!known || (stage != LACQUER_VERTEX && stage != LACQUER_FRAGMENT)) return give(kNone, size);
   const bool vertex = stage == LACQUER_VERTEX;
-  if (found == lacquer::Target::Js) return give(vertex ? of.moduleTypes() : of.moduleText(), size);
-  if (found == lacquer::Target::Cpp && !vertex) return give(of.headerText(), size);
-  return give(vertex ? of.vertexText(found) : of.fragmentText(found), size);
+  return give(of.fileText(found, vertex ? 0 : 1), size);
 }
 
 const uint32_t* lacquer_shader_spirv(const lacquer_shader* shader, int stage, size_t* count) {

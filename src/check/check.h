@@ -23,14 +23,26 @@ inline constexpr uint32_t kHlslBufferShift = 0;
 inline constexpr uint32_t kHlslTextureShift = 16;
 inline constexpr uint32_t kHlslSamplerShift = 48;
 
-/// Compiles the text of one of the four targets that have one with glslang. `name` is the file name in
-/// diagnostics. For Glsl and Hlsl the result is SPIR-V 1.3 for Vulkan 1.1; GlslGl gives OpenGL SPIR-V, after
-/// the text has passed as a driver's input, too; Essl is only checked (the result is empty). The text must
-/// say
-/// `#version 450` (Glsl, GlslGl) or `#version 300 es` (Essl). HLSL's entry point is `main`; its cbuffers keep
-/// the offsets of HLSL's packing rules, except behind an array: Direct3D goes on in the last element's
-/// register, glslang in the next one. The errors are glslang's messages, one diagnostic each, code "glslang".
-/// Safe to call from several threads.
+/// Some compiler or validator on this machine checks the target's code (targets::Row::checker).
+bool canCheck(Target target);
+/// What helps where nothing does; may be empty.
+std::string_view howToCheck(Target target);
+/// The programs beside what is linked that check the target's code, as they are told from others.
+std::string programsOf(Target target);
+
+/// What is wrong with the text of a stage, by all that checks the target's code. `name` is the file name in
+/// diagnostics.
+Diagnostics checkText(const std::string& text, Target target, Stage stage, const std::string& name);
+/// The same of a stage's SPIR-V for Vulkan: validate() and checkSlots().
+Diagnostics checkWords(const Spirv& words, const std::string& name);
+
+/// Compiles the text of a target that glslang knows. `name` is the file name in diagnostics. For
+/// Checker::Vulkan and Direct3d the result is SPIR-V 1.3 for Vulkan 1.1; OpenGl gives OpenGL SPIR-V, after
+/// the text has passed as a driver's input, too; Es is only checked (the result is empty). The text must
+/// begin with the row's version. HLSL's entry point is `main`; its cbuffers keep the offsets of HLSL's
+/// packing rules, except behind an array: Direct3D goes on in the last element's register, glslang in the
+/// next one. The errors are glslang's messages, one diagnostic each, code "glslang". Safe to call from
+/// several threads.
 Result<Spirv> compile(std::string_view text, Target target, Stage stage, const std::string& name);
 
 /// spirv-val for Vulkan 1.1 (or OpenGL 4.5). An empty list when valid. Code "spirv-val".

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "check/check.h"
+#include "targets/target.h"
 
 namespace lacquer::check {
 namespace {
@@ -145,21 +146,18 @@ Diagnostics errorsOf(std::string_view log, std::string_view text, const std::str
   return list;
 }
 
+bool isGlslang(targets::Checker checker) {
+  return checker == targets::Checker::Vulkan || checker == targets::Checker::OpenGl ||
+         checker == targets::Checker::Es || checker == targets::Checker::Direct3d;
+}
+
 /// The shader must be of the target it is checked as: glslang takes whatever dialect the text announces.
-std::optional<Diagnostic> wrongVersion(std::string_view text, Target target, const std::string& name) {
-  std::string_view wanted;
-  switch (target) {
-    case Target::Glsl:
-    case Target::GlslGl: wanted = "#version 450"; break;
-    case Target::Essl: wanted = "#version 300 es"; break;
-    case Target::Hlsl: return std::nullopt;
-    case Target::Spirv:
-    case Target::Wgsl:
-    case Target::Msl:
-    case Target::Cpp:
-    case Target::Js:
-      return fail(std::string(kCode), {name, 0, 0, {}}, "the target has no text of a stage").value()[0];
-  }
+std::optional<Diagnostic> wrongVersion(std::string_view text, const targets::Row& row,
+                                       const std::string& name) {
+  if (!isGlslang(row.checker))
+    return fail(std::string(kCode), {name, 0, 0, {}}, "glslang does not know the target").value()[0];
+  const std::string_view wanted = row.version;
+  if (wanted.empty()) return std::nullopt;
   size_t at = text.starts_with("#version") ? 0 : text.find("\n#version");
   if (at != std::string_view::npos && text[at] == '\n') ++at;
   Diagnostic diagnostic;
@@ -168,9 +166,8 @@ std::optional<Diagnostic> wrongVersion(std::string_view text, Target target, con
   diagnostic.message = fmt::format("the shader does not start with `{}`", wanted);
   if (at == std::string_view::npos) return diagnostic;
   const std::string_view line = trim(text.substr(at, text.find('\n', at) - at));
-  if (line == wanted || (target != Target::Essl && line == fmt::format("{} core", wanted))) {
-    return std::nullopt;
-  }
+  const bool es = row.checker == targets::Checker::Es;
+  if (line == wanted || (!es && line == fmt::format("{} core", wanted))) return std::nullopt;
   locate(diagnostic, text, at, line.size());
   return diagnostic;
 }
@@ -192,29 +189,20 @@ EShMessages setUpHlsl(glslang::TShader& shader, EShLanguage stage) {
   return static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgReadHlsl | EShMsgHlslOffsets);
 }
 
-/// Not for Essl, which never becomes SPIR-V.
-EShMessages setUp(glslang::TShader& shader, Target target, EShLanguage stage) {
+/// Not for Checker::Es, whose texts never become SPIR-V.
+EShMessages setUp(glslang::TShader& shader, targets::Checker checker, EShLanguage stage) {
   shader.setEntryPoint("main");
-  switch (target) {
-    case Target::Glsl:
-      shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
-      shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
-      shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
-      return static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-    case Target::GlslGl:
-      shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientOpenGL, 100);
-      shader.setEnvClient(glslang::EShClientOpenGL, glslang::EShTargetOpenGL_450);
-      shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
-      return EShMsgSpvRules;
-    case Target::Essl: return EShMsgDefault;
-    case Target::Hlsl: return setUpHlsl(shader, stage);
-    case Target::Spirv:
-    case Target::Wgsl:
-    case Target::Msl:
-    case Target::Cpp:
-    case Target::Js: break;  // wrongVersion() has refused them
+  if (checker == targets::Checker::Direct3d) return setUpHlsl(shader, stage);
+  if (checker == targets::Checker::OpenGl) {
+    shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientOpenGL, 100);
+    shader.setEnvClient(glslang::EShClientOpenGL, glslang::EShTargetOpenGL_450);
+    shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
+    return EShMsgSpvRules;
   }
-  return EShMsgDefault;
+  shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
+  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
+  return static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
 }
 
 /// Parses and links as a driver of OpenGL (ES) does that is given text: what exists only for SPIR-V, such as
@@ -233,13 +221,13 @@ Diagnostics checkAsText(std::string_view text, EShLanguage stage, const std::str
   return {};
 }
 
-Result<Spirv> compileToSpirv(std::string_view text, Target target, EShLanguage stage,
+Result<Spirv> compileToSpirv(std::string_view text, targets::Checker checker, EShLanguage stage,
                              const std::string& name) {
   glslang::TShader shader(stage);
   const char* strings[] = {text.data()};
   const int lengths[] = {static_cast<int>(text.size())};
   shader.setStringsWithLengths(strings, lengths, 1);
-  const EShMessages messages = setUp(shader, target, stage);
+  const EShMessages messages = setUp(shader, checker, stage);
   if (!shader.parse(GetDefaultResources(), 100, false, messages)) {
     return tl::make_unexpected(errorsOf(shader.getInfoLog(), text, name));
   }
@@ -266,17 +254,18 @@ Result<Spirv> compile(std::string_view text, Target target, Stage stage, const s
   // Once per process, by the first caller; the tables live as long as the process.
   static const bool kReady = glslang::InitializeProcess();
   if (!kReady) return fail(std::string(kCode), {name, 0, 0, {}}, "glslang could not be initialized");
-  if (auto wrong = wrongVersion(text, target, name))
-    return tl::make_unexpected(Diagnostics{std::move(*wrong)});
+  const targets::Row& row = targets::row(target);
+  if (auto wrong = wrongVersion(text, row, name)) return tl::make_unexpected(Diagnostics{std::move(*wrong)});
 
   const EShLanguage shader_stage = stage == Stage::Vertex ? EShLangVertex : EShLangFragment;
-  if (target == Target::Essl || target == Target::GlslGl) {
+  const bool es = row.checker == targets::Checker::Es;
+  if (es || row.checker == targets::Checker::OpenGl) {
     if (Diagnostics errors = checkAsText(text, shader_stage, name); !errors.empty()) {
       return tl::make_unexpected(std::move(errors));
     }
   }
-  if (target == Target::Essl) return Spirv{};
-  return compileToSpirv(text, target, shader_stage, name);
+  if (es) return Spirv{};
+  return compileToSpirv(text, row.checker, shader_stage, name);
 }
 
 }  // namespace lacquer::check

@@ -119,7 +119,8 @@ std::string finish(Flags& flags) {
   options.spirv_route =
       flags.spirv_from == "direct" ? lacquer::SpirvRoute::Direct : lacquer::SpirvRoute::Glslang;
   const bool spec = options.parameters == lacquer::Parameters::Spec;
-  if (spec) options.targets = {lacquer::Target::Glsl, lacquer::Target::Spirv};
+  if (spec)
+    std::erase_if(options.targets, [](lacquer::Target one) { return !hasSpecializationConstants(one); });
   if (!flags.targets.empty()) options.targets.clear();
   for (const std::string& name : flags.targets) {
     lacquer::Target target{};

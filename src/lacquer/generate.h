@@ -73,14 +73,17 @@ class Shader {
 public:
   explicit operator bool() const { return impl_ != nullptr; }
 
-  /// Equal for equal code and different for different code: "forward-coat-1f0a9b1c2d3e4f50", a file name's
-  /// stem.
+  /// Equal for equal code and different for different code: "forward-coat-" and 32 hexadecimal digits, a
+  /// file name's stem.
   const std::string& id() const;
   bool hasVertexStage() const;
   /// Empty for a target that was not asked for, that has no text of a stage (Spirv, Cpp, Js) or does not
   /// exist, and where there is no vertex stage.
   const std::string& vertexText(Target target) const;
   const std::string& fragmentText(Target target) const;
+  /// A file of a target as text: of the vertex stage (0) and of the fragment stage (1), or, of what packs a
+  /// block, its types (0) and its code (1). Empty where there is none.
+  const std::string& fileText(Target target, int file) const;
   /// Words in the machine's byte order; empty when Target::Spirv was not asked for.
   const std::vector<uint32_t>& vertexSpirv() const;
   const std::vector<uint32_t>& fragmentSpirv() const;

@@ -14,6 +14,7 @@
 #include "shader/language.h"
 #include "shader/module.h"
 #include "shader/options.h"
+#include "targets/target.h"
 
 namespace lacquer {
 
@@ -61,14 +62,13 @@ std::vector<Key> contentsOf(const Strings& files, uint64_t largest) {
   return contents;
 }
 
-/// The compilers that check the HLSL a second time and the WGSL, where they do.
+/// The programs that check the targets' code.
 std::string compilersOf(const Options& options) {
-  const auto wanted = [&](Target target) {
-    const auto& targets = options.targets;
-    return options.validate && std::find(targets.begin(), targets.end(), target) != targets.end();
-  };
-  std::string compilers = wanted(Target::Hlsl) ? check::dxcIdentity() : "";
-  if (wanted(Target::Wgsl)) compilers += '\n' + check::tintIdentity();
+  std::string compilers;
+  for (const Target target : options.targets) {
+    if (options.validate) compilers += check::programsOf(target) + '\n';
+    compilers += targets::row(target).identity;
+  }
   return compilers;
 }
 

@@ -301,7 +301,7 @@ bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt*
              {},
              fmt::format("nothing here compiles the target {}: its shaders are not validated",
                          targetName(target)),
-             target == Target::Wgsl ? "`lacquer-wgsl-check` on the PATH does (checks/wgsl)" : "",
+             std::string(check::howToCheck(target)),
              {}}},
            {});
   }
@@ -320,8 +320,7 @@ bool Run::mayWrite(const Strings& outputs) { return allGood(clashes(readFiles(),
 
 bool Run::mayName(const Strings& outputs, const std::string& folder) {
   Strings folders{Scratch::below(folder)};
-  for (size_t t = 0; t < kTargetCount; ++t)
-    folders.push_back(fmt::format("{}/{}", folder, targetName(static_cast<Target>(t))));
+  for (const std::string& name : targetNames()) folders.push_back(fmt::format("{}/{}", folder, name));
   Diagnostics wrong = reservedNames(folders, {folder + "/manifest.json"}, outputs);
   if (options_.cache.empty()) return allGood(wrong);
   for (Diagnostic& one : reservedNames({Cache::entriesBelow(options_.cache)}, {}, outputs)) {

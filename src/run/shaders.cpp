@@ -11,6 +11,7 @@
 #include "run/manifest.h"
 #include "shader/interface.h"
 #include "shader/print.h"
+#include "targets/target.h"
 
 namespace lacquer {
 
@@ -23,22 +24,12 @@ struct TargetCode {
   std::array<std::string, 2> bytes;  ///< by stage
 };
 
-std::string bytesOf(const std::vector<uint32_t>& words) {
-  std::string bytes(words.size() * 4, '\0');
-  for (size_t i = 0; i < words.size(); ++i) {
-    for (size_t b = 0; b < 4; ++b) bytes[4 * i + b] = static_cast<char>(words[i] >> (8 * b) & 0xFF);
-  }
-  return bytes;
-}
-
 class Maker {
 public:
   Maker(const Setting& setting, const std::string& folder, const Scratch& scratch, const Receipt* receipt)
       : setting_(setting), folder_(folder), writing_{&scratch, setting.options.sync}, receipt_(receipt) {
-    if (setting.cache != nullptr && setting.options.validate) {
-      dxc_ = check::dxcIdentity();
-      tint_ = check::tintIdentity();
-    }
+    if (setting.cache == nullptr || !setting.options.validate) return;
+    for (const Target target : setting.options.targets) programs_[target] = check::programsOf(target);
   }
 
   MadeShader make(const std::string& id, Distinct& shader) const;
@@ -58,8 +49,7 @@ private:
   const std::string& folder_;
   Writing writing_;
   const Receipt* receipt_;
-  std::string dxc_;   ///< that validates the HLSL, too; empty where there is none
-  std::string tint_;  ///< that validates the WGSL; empty where there is none
+  std::map<Target, std::string> programs_;  ///< that check the code, beside what is linked
 };
 
 /// The base covers this build with its compilers and validators, and the node library; the id covers the
@@ -69,10 +59,11 @@ Key Maker::keyOf(const std::string& id, Target target) const {
   KeyBuilder key;
   key.text("shader").key(setting_.base).text(id).text(targetName(target));
   addOptions(options, {Decides::Code}, key);
-  if (target == Target::Spirv) addOptions(options, {Decides::SpirvCode}, key);
-  if (target == Target::Msl) addOptions(options, {Decides::MslCode}, key);
-  if (target == Target::Hlsl && options.validate) key.text(dxc_);
-  if (target == Target::Wgsl && options.validate) key.text(tint_);
+  const targets::Row& row = targets::row(target);
+  if (row.words) addOptions(options, {Decides::SpirvCode}, key);
+  if (row.argument_buffers) addOptions(options, {Decides::MslCode}, key);
+  if (const auto found = programs_.find(target); found != programs_.end()) key.text(found->second);
+  key.text(row.identity);
   return key.finish();
 }
 
@@ -119,8 +110,7 @@ void Maker::print(const std::string& id, Distinct& shader, const std::vector<Tar
     TargetCode& code = codes[target];
     code.made = true;
     for (int stage = 0; stage < 2; ++stage) {
-      code.bytes[stage] = target == Target::Spirv ? bytesOf(data.spirv[stage])
-                                                  : std::move(data.text[static_cast<size_t>(target)][stage]);
+      code.bytes[stage] = takeBytes(data, target, stage);
     }
     Diagnostics& found = wrong[static_cast<size_t>(target)];
     const size_t before = made.wrong.size();

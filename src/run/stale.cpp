@@ -24,8 +24,9 @@ std::vector<std::string> listedShaders(const std::string& path) {
   for (const auto& [id, shader] : shaders->items()) {
     const json::Json* files = json::member(shader, "files");
     if (!isShaderId(id) || files == nullptr) continue;
-    for (size_t t = 0; t < kTargetCount; ++t) {
-      const auto target = static_cast<Target>(t);
+    for (const std::string& name : targetNames()) {
+      Target target{};
+      findTarget(name, target);
       if (json::member(*files, targetName(target)) == nullptr) continue;
       for (int stage = firstStage(target, true); stage < 2; ++stage)
         listed.push_back(shaderPath(target, id, stage));

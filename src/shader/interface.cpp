@@ -250,10 +250,15 @@ bool isShown(std::string_view member, const Options& options) {
   const auto wanted = [&](Target target) {
     return std::find(options.targets.begin(), options.targets.end(), target) != options.targets.end();
   };
-  if (member == kWebGpu) return wanted(Target::Wgsl);
-  if (member == kMetal) return wanted(Target::Msl) && !options.argument_buffers;
-  if (member == kMetalArgumentBuffers) return wanted(Target::Msl) && options.argument_buffers;
-  return true;
+  const std::string_view name = member.substr(0, member.find(' '));
+  bool of_some = false, shown = false;
+  for (const targets::Row& row : targets::rows()) {
+    if (row.binds != name) continue;
+    of_some = true;
+    const bool with_buffers = name != member;
+    shown |= wanted(row.id) && (!row.argument_buffers || with_buffers == options.argument_buffers);
+  }
+  return shown || !of_some;
 }
 
 std::string interfaceJson(const ir::Module& module, bool has_vertex, const material::Schema* schema,

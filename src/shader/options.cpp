@@ -27,6 +27,17 @@ void checkEnumerator(std::string_view what, Enum value, size_t count, Diagnostic
       fmt::format("they are 0 to {}", count - 1));
 }
 
+/// "glsl, spirv and wgsl": the targets of which a fact holds.
+std::string namesOf(bool targets::Row::*fact) {
+  std::vector<std::string_view> names;
+  for (const targets::Row& row : targets::rows()) {
+    if (row.*fact) names.push_back(row.name);
+  }
+  const std::string_view last = names.back();
+  names.pop_back();
+  return fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
 /// What the library says of the options' names.
 void checkNames(const Options& options, Diagnostics& wrong) {
   const auto language = libraryFor(options);
@@ -62,7 +73,8 @@ void checkNames(const Options& options, Diagnostics& wrong) {
 std::string_view version() { return LACQUER_VERSION; }
 
 std::string_view targetName(Target target) {
-  return static_cast<size_t>(target) < kTargetCount ? targets::row(target).name : std::string_view{};
+  return static_cast<size_t>(target) < targets::rows().size() ? targets::row(target).name
+                                                              : std::string_view{};
 }
 
 Strings targetNames() {
@@ -72,11 +84,11 @@ Strings targetNames() {
 }
 
 bool hasSpecializationConstants(Target target) {
-  return static_cast<size_t>(target) < kTargetCount && targets::row(target).specialization;
+  return static_cast<size_t>(target) < targets::rows().size() && targets::row(target).specialization;
 }
 
 bool findTarget(std::string_view name, Target& target) {
-  const auto rows = targets::rows();
+  const std::deque<targets::Row>& rows = targets::rows();
   const auto it =
       std::find_if(rows.begin(), rows.end(), [&](const targets::Row& row) { return row.name == name; });
   if (it != rows.end()) target = it->id;
@@ -110,14 +122,15 @@ Diagnostics checkOptions(const Options& options) {
   std::set<Target> seen;
   for (const Target target : options.targets) {
     if (targetName(target).empty()) {
-      checkEnumerator("a target", target, kTargetCount, wrong);
+      checkEnumerator("a target", target, targets::rows().size(), wrong);
     } else if (!seen.insert(target).second) {
       add(wrong, "duplicate-target", fmt::format("the target {} is asked for twice", targetName(target)),
           "name each once");
     } else if (options.parameters == Parameters::Spec && !hasSpecializationConstants(target)) {
       add(wrong, "no-specialization-constants",
           fmt::format("the target {} has no specialization constants", targetName(target)),
-          "glsl, spirv, wgsl and msl have them; for the others, parameters are uniform or baked");
+          fmt::format("{} have them; for the others, parameters are uniform or baked",
+                      namesOf(&targets::Row::specialization)));
     }
   }
   return wrong;

@@ -12,7 +12,8 @@
 
 namespace lacquer {
 
-inline constexpr size_t kTargetCount = static_cast<size_t>(Target::Msl) + 1;
+/// Of the targets, those that are registered among them.
+inline constexpr size_t kMostTargets = 32;
 
 /// What inputs may be at most, with the options' changes. Errors: those of setLimit().
 Result<Limits> limitsOf(const Options& options);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cassert>
 #include <optional>
 
 #include "check/check.h"
@@ -15,47 +14,38 @@ namespace lacquer {
 
 std::string shaderPath(Target target, const std::string& id, int stage) {
   const targets::Row& row = targets::row(target);
-  if (target == Target::Cpp) return fmt::format("{}/{}.{}", row.name, id, row.extension);
-  if (target == Target::Js) return fmt::format("{}/{}.{}", row.name, id, stage == 0 ? "d.ts" : row.extension);
-  return fmt::format("{}/{}.{}.{}", row.name, id, stage == 0 ? "vert" : "frag", row.extension);
+  return fmt::format("{}/{}.{}", row.name, id, row.files[static_cast<size_t>(stage)].suffix);
 }
 
 std::string_view fileKind(Target target, int stage) {
-  if (target == Target::Cpp) return "header";
-  if (target == Target::Js) return stage == 0 ? "types" : "module";
-  return stage == 0 ? "vert" : "frag";
+  return targets::row(target).files[static_cast<size_t>(stage)].kind;
 }
 
-bool hasValidator(Target target) {
-  if (target == Target::Wgsl) return check::haveTint();
-  return isShader(target) && target != Target::Msl;
+bool packsBlock(Target target) { return targets::row(target).packer != nullptr; }
+
+int firstStage(Target target, bool has_vertex) {
+  const bool first = packsBlock(target) ? !fileKind(target, 0).empty() : has_vertex;
+  return first ? 0 : 1;
+}
+
+bool hasValidator(Target target) { return check::canCheck(target); }
+
+std::string takeBytes(ShaderData& shader, Target target, int file) {
+  if (!targets::row(target).words) return std::move(shader.text[static_cast<size_t>(target)][file]);
+  std::string bytes;
+  bytes.reserve(shader.spirv[file].size() * 4);
+  for (const uint32_t word : shader.spirv[file]) {
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(word >> shift & 0xFF);
+  }
+  return bytes;
 }
 
 namespace {
 
 constexpr ir::Stage kStages[] = {ir::Stage::Vertex, ir::Stage::Fragment};
+constexpr check::Stage kCheckStages[] = {check::Stage::Vertex, check::Stage::Fragment};
 
 void append(Diagnostics& to, const Diagnostics& from) { to.insert(to.end(), from.begin(), from.end()); }
-
-/// Compiles one text; whatever a compiler says is a bug of ours.
-void checkText(const std::string& text, Target target, int stage, const std::string& name,
-               Diagnostics& wrong) {
-  if (target == Target::Wgsl) {
-    for (Diagnostic& said : check::compileWithTint(text, name)) {
-      if (said.severity == Severity::Error) wrong.push_back(std::move(said));
-    }
-    return;
-  }
-  const auto check_stage = stage == 0 ? check::Stage::Vertex : check::Stage::Fragment;
-  const Result<check::Spirv> words = check::compile(text, target, check_stage, name);
-  if (!words) return append(wrong, words.error());
-  if (target != Target::Essl) {
-    append(wrong, check::validate(*words, target == Target::GlslGl, name));
-    append(wrong, check::checkSlots(*words, target == Target::GlslGl, name));
-  }
-  if (target == Target::Hlsl && check::haveDxc())
-    append(wrong, check::compileWithDxc(text, check_stage, name));
-}
 
 class Printing {
 public:
@@ -64,97 +54,72 @@ public:
 
   void run() {
     for (const Target target : options_.targets) {
-      switch (target) {
-        case Target::Glsl:
-        case Target::GlslGl:
-        case Target::Essl:
-        case Target::Hlsl:
-        case Target::Wgsl: text(legalized(), target); break;
-        case Target::Spirv: spirv(); break;
-        case Target::Msl: msl(); break;
-        case Target::Cpp: header(); break;
-        case Target::Js: esModule(); break;
+      const targets::Row& row = targets::row(target);
+      if (row.packer != nullptr) {
+        pack(row);
+        continue;
       }
+      for (int stage = lacquer::firstStage(target, shader_.has_vertex); stage < 2; ++stage)
+        row.words ? words(row, stage) : text(row, stage);
     }
   }
 
 private:
-  int firstStage() const { return shader_.has_vertex ? 0 : 1; }
-
-  std::string print(const ir::Module& module, Target target, int stage) const {
-    const schedule::Program program = schedule::schedule(module, kStages[stage]);
-    return targets::printText(module, program, target, head());
-  }
-
   std::string head() const {
     return fmt::format("{}\nLacquer {}, template {}", shader_.id, version(), shader_.module.template_name);
   }
 
-  /// Nothing checks it here: the tests compile it.
-  void header() {
-    const StageTimer timer(times_, StageOfRun::Print, Target::Cpp);
-    shader_.text[static_cast<int>(Target::Cpp)][1] = targets::headerText(shader_.module, shader_.id, head());
-  }
+  bool validates(Target target) const { return options_.validate && hasValidator(target); }
 
-  /// As the header.
-  void esModule() {
-    const StageTimer timer(times_, StageOfRun::Print, Target::Js);
-    targets::ModuleText made = targets::moduleText(shader_.module, shader_.id, head());
-    std::string(&text)[2] = shader_.text[static_cast<int>(Target::Js)];
+  /// Nothing checks it here: the tests compile and run it.
+  void pack(const targets::Row& row) {
+    const StageTimer timer(times_, StageOfRun::Print, row.id);
+    targets::PackerText made = row.packer(shader_.module, shader_.id, head());
+    std::string(&text)[2] = shader_.text[static_cast<size_t>(row.id)];
     text[0] = std::move(made.types);
     text[1] = std::move(made.code);
   }
 
-  void text(const ir::Module& module, Target target) {
-    for (int stage = firstStage(); stage < 2; ++stage) {
-      std::string& text = shader_.text[static_cast<int>(target)][stage];
-      {
-        const StageTimer timer(times_, StageOfRun::Print, target);
-        text = print(module, target, stage);
-      }
-      if (!options_.validate || !hasValidator(target)) continue;
-      const StageTimer timer(times_, StageOfRun::Validate, target);
-      checkText(text, target, stage, shaderPath(target, shader_.id, stage), wrongOf(target));
-    }
+  Result<std::string> printed(const targets::Row& row, int stage) {
+    const ir::Module& module = row.dialect != nullptr ? legalized() : shader_.module;
+    return targets::stageText(module, schedule::schedule(module, kStages[stage]), row.id,
+                              {head(), options_.argument_buffers});
   }
 
-  std::vector<uint32_t> words(int stage, const std::string& path) {
-    const StageTimer timer(times_, StageOfRun::Print, Target::Spirv);
+  void text(const targets::Row& row, int stage) {
+    std::string& text = shader_.text[static_cast<size_t>(row.id)][stage];
+    {
+      const StageTimer timer(times_, StageOfRun::Print, row.id);
+      Result<std::string> made = printed(row, stage);
+      if (!made) return append(wrongOf(row.id), made.error());
+      text = std::move(*made);
+    }
+    if (!validates(row.id)) return;
+    const StageTimer timer(times_, StageOfRun::Validate, row.id);
+    append(wrongOf(row.id),
+           check::checkText(text, row.id, kCheckStages[stage], shaderPath(row.id, shader_.id, stage)));
+  }
+
+  std::vector<uint32_t> written(const targets::Row& row, int stage, const std::string& path) {
+    const StageTimer timer(times_, StageOfRun::Print, row.id);
     if (options_.spirv_route == SpirvRoute::Direct) {
       return targets::writeSpirv(shader_.module, schedule::schedule(shader_.module, kStages[stage]),
                                  {options_.debug});
     }
-    const auto check_stage = stage == 0 ? check::Stage::Vertex : check::Stage::Fragment;
-    Result<check::Spirv> made =
-        check::compile(print(legalized(), Target::Glsl, stage), Target::Glsl, check_stage, path);
+    const schedule::Program program = schedule::schedule(legalized(), kStages[stage]);
+    Result<check::Spirv> made = check::compile(targets::printText(legalized(), program, Target::Glsl, head()),
+                                               Target::Glsl, kCheckStages[stage], path);
     if (made) return std::move(*made);
-    append(wrongOf(Target::Spirv), made.error());
+    append(wrongOf(row.id), made.error());
     return {};
   }
 
-  void spirv() {
-    for (int stage = firstStage(); stage < 2; ++stage) {
-      const std::string path = shaderPath(Target::Spirv, shader_.id, stage);
-      shader_.spirv[stage] = words(stage, path);
-      if (!options_.validate) continue;
-      const StageTimer timer(times_, StageOfRun::Validate, Target::Spirv);
-      append(wrongOf(Target::Spirv), check::validate(shader_.spirv[stage], false, path));
-      append(wrongOf(Target::Spirv), check::checkSlots(shader_.spirv[stage], false, path));
-    }
-  }
-
-  /// Of the direct words, however `spirv` gets its own.
-  void msl() {
-    for (int stage = firstStage(); stage < 2; ++stage) {
-      const StageTimer timer(times_, StageOfRun::Print, Target::Msl);
-      const schedule::Program program = schedule::schedule(shader_.module, kStages[stage]);
-      Result<std::string> text = targets::mslText(shader_.module, program, options_.argument_buffers, head());
-      if (text) {
-        shader_.text[static_cast<int>(Target::Msl)][stage] = std::move(*text);
-      } else {
-        append(wrongOf(Target::Msl), text.error());
-      }
-    }
+  void words(const targets::Row& row, int stage) {
+    const std::string path = shaderPath(row.id, shader_.id, stage);
+    shader_.spirv[stage] = written(row, stage, path);
+    if (!validates(row.id)) return;
+    const StageTimer timer(times_, StageOfRun::Validate, row.id);
+    append(wrongOf(row.id), check::checkWords(shader_.spirv[stage], path));
   }
 
   /// Legalized once for all texts.

@@ -16,15 +16,17 @@ struct ShaderData {
   ir::Module module;  ///< placed and bound
   std::string id;
   bool has_vertex = false;
-  /// By target, by stage. Target::Cpp's one file stands with the fragments, as Target::Js's code does; its
-  /// types stand before it.
-  std::string text[kTargetCount][2];
-  std::vector<uint32_t> spirv[2];
+  /// By target, by targets::Row::files.
+  std::string text[kMostTargets][2];
+  std::vector<uint32_t> spirv[2];  ///< of targets::Row::words
   std::string interface;
 };
 
+/// Takes the bytes of a file of the target; SPIR-V's words with their lowest byte first.
+std::string takeBytes(ShaderData& shader, Target target, int file);
+
 /// What is wrong with the code of each target.
-using Wrong = std::array<Diagnostics, kTargetCount>;
+using Wrong = std::array<Diagnostics, kMostTargets>;
 
 /// Prints every target that the options name, and compiles and validates them when asked. Validation failures
 /// go to `wrong`; the code is there all the same.
@@ -37,18 +39,14 @@ std::string shaderPath(Target target, const std::string& id, int stage);
 std::string_view fileKind(Target target, int stage);
 
 /// The target has no stages: it packs the material's block.
-inline bool packsBlock(Target target) { return target == Target::Cpp || target == Target::Js; }
+bool packsBlock(Target target);
 
-/// The first of the stages, 0 or 1, that have a file; the last is 1. Target::Cpp has one file, Target::Js
-/// two.
-inline int firstStage(Target target, bool has_vertex) {
-  return target == Target::Js || (has_vertex && target != Target::Cpp) ? 0 : 1;
-}
+/// The first of the target's files, 0 or 1; the last is 1.
+int firstStage(Target target, bool has_vertex);
 
 /// What is made is a shader: the manifest says whether it was validated.
 inline bool isShader(Target target) { return !packsBlock(target); }
-/// Some compiler or validator on this machine checks the target's code. WGSL's need not be installed, and
-/// Metal's is nowhere.
+/// Some compiler or validator on this machine checks the target's code.
 bool hasValidator(Target target);
 
 }  // namespace lacquer

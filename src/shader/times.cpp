@@ -13,8 +13,8 @@ std::vector<std::pair<std::string, double>> StageTimes::list() const {
   std::vector<std::pair<std::string, double>> rows;
   for (const auto& [stage, name] : kRows) {
     const bool by_target = stage == StageOfRun::Print || stage == StageOfRun::Validate;
-    for (size_t t = 0; t < kTargetCount; ++t) {
-      const int64_t spent = spent_[static_cast<size_t>(stage) * kTargetCount + t].load();
+    for (size_t t = 0; t < kMostTargets; ++t) {
+      const int64_t spent = spent_[static_cast<size_t>(stage) * kMostTargets + t].load();
       if (spent == 0) continue;
       std::string row = name;
       if (by_target) row += " " + std::string(targetName(static_cast<Target>(t)));

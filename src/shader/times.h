@@ -36,9 +36,9 @@ public:
 
 private:
   std::atomic<int64_t>& slot(StageOfRun stage, Target target) {
-    return spent_[static_cast<size_t>(stage) * kTargetCount + static_cast<size_t>(target)];
+    return spent_[static_cast<size_t>(stage) * kMostTargets + static_cast<size_t>(target)];
   }
-  std::array<std::atomic<int64_t>, 10 * kTargetCount> spent_{};
+  std::array<std::atomic<int64_t>, 10 * kMostTargets> spent_{};
 };
 
 /// Counts its own life.

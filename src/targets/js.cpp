@@ -562,9 +562,9 @@ private:
 
 }  // namespace
 
-ModuleText moduleText(const ir::Module& module, std::string_view name, std::string_view head) {
+PackerText moduleText(const ir::Module& module, std::string_view name, std::string_view head) {
   assert(ir::verify(module).empty());
-  return {EsModule(module, name).code(head), EsModule(module, name).types(head)};
+  return {EsModule(module, name).types(head), EsModule(module, name).code(head)};
 }
 
 }  // namespace lacquer::targets

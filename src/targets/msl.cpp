@@ -97,20 +97,20 @@ private:
 
 }  // namespace
 
-Result<std::string> mslText(const ir::Module& module, const schedule::Program& program, bool argument_buffers,
-                            std::string_view head) {
+Result<std::string> mslText(const ir::Module& module, const schedule::Program& program,
+                            const TextOptions& options) {
   spvc_context context = nullptr;
   if (spvc_context_create(&context) != SPVC_SUCCESS)
     return fail("spirv-cross", {}, "SPIRV-Cross cannot be used");
-  Crossing crossing(Context(context, spvc_context_destroy), argument_buffers);
+  Crossing crossing(Context(context, spvc_context_destroy), options.argument_buffers);
   Result<std::string> text = crossing.run(module, program, writeSpirv(module, program, {.relaxed = false}));
   if (!text) return text;
-  return commentText(head) + "\n" + *text;
+  return commentText(options.head) + "\n" + *text;
 }
 
 #else
 
-Result<std::string> mslText(const ir::Module&, const schedule::Program&, bool, std::string_view) {
+Result<std::string> mslText(const ir::Module&, const schedule::Program&, const TextOptions&) {
   return fail("msl-unavailable", {},
               "this program was built without SPIRV-Cross, which makes Metal's language",
               "build it where the library is installed (docs/dependencies.md)");

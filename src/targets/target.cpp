@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cassert>
+#include <utility>
 
 #include "targets/clike.h"
 
@@ -31,44 +32,115 @@ constexpr DeviceLimits kWebGpu = {kColors, {12}, {65536}, {16}, {16}};
 /// a fragment function of the family Mac 2. Of the constant address space 64 KiB are sure.
 constexpr DeviceLimits kMetal = {kColors, {31}, {65536}, {16}, {31}};
 
-constexpr std::array<Row, 9> kRows = {{
-    {Target::Glsl, "glsl", "glsl", true, &kVulkan, "GLSL 4.50 for Vulkan"},
-    {Target::GlslGl, "glsl-gl", "glsl", false, &kOpenGl, "GLSL 4.50 for OpenGL 4.5"},
-    {Target::Essl, "essl", "glsl", false, &kEs, "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
-    {Target::Hlsl, "hlsl", "hlsl", false, &kDirect3d, "HLSL for Shader Model 5 and 6"},
-    {Target::Spirv, "spirv", "spv", true, &kVulkan, "SPIR-V 1.3 for Vulkan 1.1"},
-    {Target::Cpp, "cpp", "h", false, nullptr, "a C++11 header that packs the material's uniform block"},
-    {Target::Js, "js", "js", false, nullptr,
-     "an ES module that packs the material's uniform block, with its types"},
-    {Target::Wgsl, "wgsl", "wgsl", true, &kWebGpu, "WGSL for WebGPU"},
-    {Target::Msl, "msl", "metal", true, &kMetal, "MSL 2.1 for Metal, made of the SPIR-V"},
-}};
+constexpr std::array<File, 2> filesOf(std::string_view vertex, std::string_view fragment) {
+  return {{{"vert", vertex}, {"frag", fragment}}};
+}
+constexpr auto kGlslFiles = filesOf("vert.glsl", "frag.glsl");
+
+const Row kBuiltIn[] = {
+    {.id = Target::Glsl,
+     .name = "glsl",
+     .files = kGlslFiles,
+     .dialect = glslVulkan,
+     .checker = Checker::Vulkan,
+     .version = "#version 450",
+     .specialization = true,
+     .limits = &kVulkan,
+     .prose = "GLSL 4.50 for Vulkan"},
+    {.id = Target::GlslGl,
+     .name = "glsl-gl",
+     .files = kGlslFiles,
+     .dialect = glslOpenGl,
+     .checker = Checker::OpenGl,
+     .version = "#version 450",
+     .limits = &kOpenGl,
+     .prose = "GLSL 4.50 for OpenGL 4.5"},
+    {.id = Target::Essl,
+     .name = "essl",
+     .files = kGlslFiles,
+     .dialect = essl300,
+     .checker = Checker::Es,
+     .version = "#version 300 es",
+     .limits = &kEs,
+     .prose = "ESSL 3.00 for WebGL 2 and OpenGL ES 3.0"},
+    {.id = Target::Hlsl,
+     .name = "hlsl",
+     .files = filesOf("vert.hlsl", "frag.hlsl"),
+     .dialect = hlsl,
+     .checker = Checker::Direct3d,
+     .limits = &kDirect3d,
+     .prose = "HLSL for Shader Model 5 and 6"},
+    {.id = Target::Spirv,
+     .name = "spirv",
+     .files = filesOf("vert.spv", "frag.spv"),
+     .words = true,
+     .checker = Checker::Words,
+     .specialization = true,
+     .limits = &kVulkan,
+     .prose = "SPIR-V 1.3 for Vulkan 1.1"},
+    {.id = Target::Cpp,
+     .name = "cpp",
+     .files = {{{}, {"header", "h"}}},
+     .packer = headerText,
+     .prose = "a C++11 header that packs the material's uniform block"},
+    {.id = Target::Js,
+     .name = "js",
+     .files = {{{"types", "d.ts"}, {"module", "js"}}},
+     .packer = moduleText,
+     .prose = "an ES module that packs the material's uniform block, with its types"},
+    {.id = Target::Wgsl,
+     .name = "wgsl",
+     .files = filesOf("vert.wgsl", "frag.wgsl"),
+     .dialect = wgsl,
+     .checker = Checker::Tint,
+     .specialization = true,
+     .binds = "webgpu",
+     .limits = &kWebGpu,
+     .prose = "WGSL for WebGPU"},
+    {.id = Target::Msl,
+     .name = "msl",
+     .files = filesOf("vert.metal", "frag.metal"),
+     .stage = mslText,
+     .specialization = true,
+     .argument_buffers = true,
+     .binds = "metal",
+     .limits = &kMetal,
+     .prose = "MSL 2.1 for Metal, made of the SPIR-V"},
+};
+
+std::deque<Row>& table() {
+  static std::deque<Row> rows(std::begin(kBuiltIn), std::end(kBuiltIn));
+  return rows;
+}
 
 }  // namespace
 
-std::span<const Row> rows() { return kRows; }
+const std::deque<Row>& rows() { return table(); }
+
+Target addRow(Row row) {
+  row.id = static_cast<Target>(table().size());
+  table().push_back(std::move(row));
+  return table().back().id;
+}
 
 std::string printText(const ir::Module& module, const schedule::Program& program, Target target,
                       std::string_view head) {
   assert(ir::verify(module).empty());
-  switch (target) {
-    case Target::Glsl: return printProgram(glslVulkan(), module, program, head);
-    case Target::GlslGl: return printProgram(glslOpenGl(), module, program, head);
-    case Target::Essl: return printProgram(essl300(), module, program, head);
-    case Target::Hlsl: return printProgram(hlsl(), module, program, head);
-    case Target::Wgsl: return printProgram(wgsl(), module, program, head);
-    case Target::Spirv: break;  // words, not text: writeSpirv
-    case Target::Msl: break;    // not printed: made of the words
-    case Target::Cpp: break;    // no stage: headerText
-    case Target::Js: break;     // no stage: moduleText
-  }
-  assert(false && "not a target with a text");
-  return {};
+  return printProgram(row(target).dialect(), module, program, head);
 }
 
-std::string headerText(const ir::Module& module, std::string_view name, std::string_view head) {
+Result<std::string> stageText(const ir::Module& module, const schedule::Program& program, Target target,
+                              const TextOptions& options) {
+  const Row& of = row(target);
+  Result<std::string> text = of.stage != nullptr
+                                 ? of.stage(module, program, options)
+                                 : Result<std::string>(printText(module, program, target, options.head));
+  return text && of.change ? of.change(*text) : text;
+}
+
+PackerText headerText(const ir::Module& module, std::string_view name, std::string_view head) {
   assert(ir::verify(module).empty());
-  return printHeader(module, name, head);
+  return {{}, printHeader(module, name, head)};
 }
 
 std::string commentText(std::string_view lines) {

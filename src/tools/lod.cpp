@@ -72,15 +72,6 @@ struct Printed {
   std::vector<std::pair<std::string, std::string>> files;  ///< path below the folder, bytes
 };
 
-std::string bytesOf(const std::vector<uint32_t>& words) {
-  std::string bytes;
-  bytes.reserve(words.size() * 4);
-  for (const uint32_t word : words) {
-    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(word >> shift & 0xFF);
-  }
-  return bytes;
-}
-
 class Levels {
 public:
   Levels(const Lod& lod, const Options& options, Messages& messages, const Progress& progress)
@@ -342,9 +333,8 @@ private:
       json::Json& of_target = files[std::string(targetName(target))] = json::Json::object();
       for (int stage = firstStage(target, data.has_vertex); stage < 2; ++stage) {
         std::string path = shaderPath(target, data.id, stage);
-        of_target[target == Target::Cpp ? "header" : stage == 0 ? "vert" : "frag"] = path;
-        made.files.emplace_back(std::move(path),
-                                target == Target::Spirv ? bytesOf(data.spirv[stage]) : data.text[row][stage]);
+        of_target[std::string(fileKind(target, stage))] = path;
+        made.files.emplace_back(std::move(path), takeBytes(data, target, stage));
       }
       if (hasValidator(target)) validated[std::string(targetName(target))] = options_.validate;
     }

@@ -72,7 +72,7 @@ TEST(Header, EveryOperationIsTheLibrarys) {
     const ir::Module module = randomPreshader(seed, 180, preshaderOps());
     ASSERT_TRUE(ir::verify(module).empty());
     const std::string id = fmt::format("random-{}", seed);
-    HeaderCase one{id, targets::headerText(module, id, "a head"), module.blocks[0].size, {}};
+    HeaderCase one{id, targets::headerText(module, id, "a head").code, module.blocks[0].size, {}};
     const std::vector<Member> members = membersOf(one.text);
     const std::vector<uint32_t> used = ir::usedParameters(module);
     ASSERT_EQ(members.size(), used.size());

@@ -126,7 +126,7 @@ std::vector<ModuleCase> exampleCases(const Options& options, int rows) {
 }
 
 ModuleCase randomCase(const std::string& id, const ir::Module& module, uint32_t seed) {
-  const targets::ModuleText text = targets::moduleText(module, id, "a head");
+  const targets::PackerText text = targets::moduleText(module, id, "a head");
   ModuleCase one{id, text.code, text.types, {}, {}};
   std::mt19937 random(seed);
   for (int row = 0; row < 40; ++row) {
