@@ -11,9 +11,9 @@
 
 #include "cost/cost.h"
 #include "lod/estimate.h"
+#include "setting/simplify.h"
 #include "shader/module.h"
 #include "shader/print.h"
-#include "shader/simplify.h"
 
 namespace lacquer::bench {
 

@@ -1,4 +1,4 @@
-# One static library per folder of src/. A folder sees the headers of exactly the folders that it links:
+# One static library per room of src/, a folder in its storey's. A room sees the headers of exactly the rooms that it links:
 # its public include directory holds nothing but a link to itself, so a wrong #include does not build.
 
 add_library(lacquer_warnings INTERFACE)
@@ -19,13 +19,20 @@ target_compile_options(lacquer_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,
 # headers. So a folder's files share their unnamed namespaces.
 option(LACQUER_UNITY "Compile the files of a folder together" ON)
 
-# lacquer_folder(NAME public links... [PRIVATE private links...])
+# lacquer_folder(STOREY/NAME public links... [PRIVATE private links...])
 #
-# Of a folder in LACQUER_ABSENT there are the headers alone, and what calls it is given its functions elsewhere
-# (cmake/web.cmake); files in LACQUER_ABSENT_FILES ("tools/cost.cpp") are left out.
-function(lacquer_folder name)
+# Of a room in LACQUER_ABSENT there are the headers alone, and what calls it is given its functions elsewhere
+# (cmake/web.cmake); files in LACQUER_ABSENT_FILES ("lab/eval/gpu.cpp") are left out.
+function(lacquer_folder folder)
   cmake_parse_arguments(arg "" "" "PRIVATE" ${ARGN})
-  set(source "${PROJECT_SOURCE_DIR}/src/${name}")
+  set(source "${PROJECT_SOURCE_DIR}/src/${folder}")
+  get_filename_component(name "${folder}" NAME)
+  # Arrows between rooms run down, or to the left within a storey: what is linked stands before it in CMakeLists.txt.
+  foreach(linked IN LISTS arg_UNPARSED_ARGUMENTS arg_PRIVATE)
+    if(linked MATCHES "^lacquer_" AND NOT TARGET "${linked}")
+      message(FATAL_ERROR "${folder} links ${linked}, which is no room before it")
+    endif()
+  endforeach()
   file(GLOB files CONFIGURE_DEPENDS "${source}/*.cpp" "${source}/*.h" "${source}/*.def" "${source}/*/*.cpp"
        "${source}/*/*.h")
   set(view "${PROJECT_BINARY_DIR}/include/${name}")

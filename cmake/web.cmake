@@ -3,9 +3,8 @@
 
 # Native only: compilers and validators, GPUs, runs over folders with their cache, attacks, the search for levels. Callers
 # of the first two are linked with web/absent/.
-set(LACQUER_ABSENT check vulkan cost stress cache run lod)
-set(LACQUER_ABSENT_FILES tools/cost.cpp tools/environment.cpp tools/gpu.cpp tools/lod.cpp tools/lod_material.cpp tools/lod_report.cpp
-    tools/stress.cpp tools/view.cpp)
+set(LACQUER_ABSENT check vulkan cost stress cache run lod view)
+set(LACQUER_ABSENT_FILES lab/environment/files.cpp lab/eval/gpu.cpp)
 
 include(headers)
 # What emscripten's standard library of 2022 lacks, and loops without threads, come before the rest.
@@ -32,12 +31,12 @@ function(lacquer_module)
   endforeach()
   target_compile_definitions(lacquer_c PRIVATE LACQUER_NO_CHECK)  # nothing is validated unless it is asked for
   # These hand on, read and report: their time is not worth the bytes.
-  foreach(folder c api graph programs tools)
+  foreach(folder c api graph programs prove)
     target_compile_options(lacquer_${folder} PRIVATE -Os)
   endforeach()
   add_executable(lacquer_wasm ${absent} "${PROJECT_SOURCE_DIR}/web/shim/png.cpp" $<TARGET_OBJECTS:lacquer_c>)
   set_target_properties(lacquer_wasm PROPERTIES OUTPUT_NAME lacquer SUFFIX .wasm)
-  target_link_libraries(lacquer_wasm PRIVATE lacquer_c lacquer_tools lacquer_check lacquer_vulkan stb
+  target_link_libraries(lacquer_wasm PRIVATE lacquer_c lacquer_targets lacquer_check lacquer_vulkan stb
                         lacquer_warnings)
   target_link_options(lacquer_wasm PRIVATE -Os --no-entry "-sEXPORTED_FUNCTIONS=${names}" -sSTANDALONE_WASM=1
                       -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=16777216)

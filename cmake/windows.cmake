@@ -5,12 +5,12 @@ lacquer_headers(PARTS fmt tl nlohmann spirv stb xxhash.h xxh3.h CLI glslang spir
 
 # lacquer_objects(): a target for the objects of all folders, and those of the program.
 function(lacquer_objects)
-  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/cli/*.cpp")
+  file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/faces/cli/*.cpp")
   add_library(lacquer_cli OBJECT ${files})
   set(view "${PROJECT_BINARY_DIR}/include/cli")
   file(MAKE_DIRECTORY "${view}")
   if(NOT EXISTS "${view}/cli")
-    file(CREATE_LINK "${PROJECT_SOURCE_DIR}/src/cli" "${view}/cli" SYMBOLIC COPY_ON_ERROR)
+    file(CREATE_LINK "${PROJECT_SOURCE_DIR}/src/faces/cli" "${view}/cli" SYMBOLIC COPY_ON_ERROR)
   endif()
   target_include_directories(lacquer_cli PRIVATE "${view}")
   target_link_libraries(lacquer_cli PRIVATE lacquer_api lacquer_json CLI11::CLI11 fmt::fmt lacquer_warnings)

@@ -6,7 +6,7 @@
 
 #include "cache/option_key.h"
 #include "run/source_file.h"
-#include "shader/language.h"
+#include "setting/language.h"
 #include "support/cases.h"
 
 namespace lacquer::test {

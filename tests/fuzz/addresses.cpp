@@ -4,7 +4,7 @@
 
 #include "feeds.h"
 #include "run/source_file.h"
-#include "shader/language.h"
+#include "setting/language.h"
 
 namespace lacquer::fuzz {
 

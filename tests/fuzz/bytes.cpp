@@ -8,9 +8,9 @@
 #include "cost/cost.h"
 #include "environment/panorama.h"
 #include "eval/image.h"
+#include "eval/points_file.h"
 #include "feeds.h"
 #include "gltf/geometry.h"
-#include "tools/points.h"
 #include "vulkan/passthrough.h"
 
 namespace lacquer::fuzz {

@@ -4,10 +4,10 @@
 #include "feeds.h"
 #include "graph/graph.h"
 #include "lower/lower.h"
-#include "shader/language.h"
+#include "prove/nodes.h"
+#include "setting/language.h"
 #include "shader/module.h"
 #include "shader/print.h"
-#include "tools/node_proofs.h"
 
 namespace lacquer::fuzz {
 

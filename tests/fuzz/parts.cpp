@@ -8,7 +8,7 @@
 #include "graph/graph.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
-#include "shader/language.h"
+#include "setting/language.h"
 #include "shader/module.h"
 
 namespace lacquer::fuzz {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shader/language.h"
+#include "setting/language.h"
 
 namespace lacquer::fuzz {
 

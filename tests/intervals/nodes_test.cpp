@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lang/library.h"
-#include "tools/node_proofs.h"
+#include "prove/nodes.h"
 
 namespace lacquer::test {
 namespace {

@@ -9,7 +9,7 @@
 #include "eval/evaluate.h"
 #include "intervals/evaluator.h"
 #include "lang/library.h"
-#include "tools/node_proofs.h"
+#include "prove/nodes.h"
 
 namespace lacquer::test {
 namespace {

@@ -10,9 +10,9 @@
 #include "ir/facts.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
+#include "prove/nodes.h"
 #include "support/cases.h"
 #include "support/materials.h"
-#include "tools/node_proofs.h"
 
 namespace lacquer::test {
 namespace {

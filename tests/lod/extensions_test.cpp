@@ -10,9 +10,9 @@
 #include "graph/graph.h"
 #include "lacquer.h"
 #include "lod/estimate.h"
+#include "setting/simplify.h"
 #include "shader/module.h"
 #include "shader/print.h"
-#include "shader/simplify.h"
 #include "support/materials.h"
 
 namespace lacquer::test {

@@ -11,10 +11,10 @@
 
 #include "cost/cost.h"
 #include "lacquer.h"
-#include "shader/language.h"
-#include "shader/options.h"
+#include "lod/material.h"
+#include "setting/language.h"
+#include "setting/options.h"
 #include "support/cases.h"
-#include "tools/lod_material.h"
 
 namespace lacquer::test {
 namespace {

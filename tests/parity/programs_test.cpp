@@ -8,9 +8,9 @@
 #include "parity/subject.h"
 #include "programs/unite.h"
 #include "run/lift.h"
-#include "shader/language.h"
+#include "setting/language.h"
+#include "setting/options.h"
 #include "shader/module.h"
-#include "shader/options.h"
 #include "support/cases.h"
 #include "support/materials.h"
 

@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "eval/gpu.h"
 #include "graph/graph.h"
 #include "lang/library.h"
 #include "lower/lower.h"
 #include "parity/enclosure.h"
 #include "passes/passes.h"
-#include "tools/gpu.h"
 
 namespace lacquer::parity {
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "eval/evaluate.h"
+#include "prove/nodes.h"
 #include "support/materials.h"
-#include "tools/node_proofs.h"
 
 namespace lacquer::physics {
 

@@ -9,8 +9,8 @@
 #include "programs/partitions.h"
 #include "run/program_costs.h"
 #include "run/source_file.h"
-#include "shader/language.h"
-#include "shader/options.h"
+#include "setting/language.h"
+#include "setting/options.h"
 #include "support/cases.h"
 
 namespace lacquer::programs::test {

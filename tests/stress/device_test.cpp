@@ -8,9 +8,9 @@
 
 #include "lacquer.h"
 #include "lang/library.h"
+#include "prove/nodes.h"
+#include "stress/on_device.h"
 #include "support/cases.h"
-#include "tools/node_proofs.h"
-#include "tools/stress_device.h"
 
 namespace lacquer::test {
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "stress/forms.h"
 #include "support/cases.h"
-#include "tools/stress_forms.h"
 
 namespace lacquer::test {
 namespace {

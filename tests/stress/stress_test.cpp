@@ -143,7 +143,7 @@ TEST(Stress, TheLibraryHoldsAtAHundredThousand) {
     }
   }
   EXPECT_EQ(answer["faults"], 0);
-  EXPECT_EQ(reasons.size(), 17U) << "src/stress/known.cpp lists what no longer occurs";
+  EXPECT_EQ(reasons.size(), 17U) << "src/lab/stress/known.cpp lists what no longer occurs";
 }
 
 TEST(Stress, TheExamplesHold) {
@@ -162,7 +162,7 @@ TEST(Stress, TheExamplesHold) {
     // Without tangents no light is measured.
     if (subject.contains("energy")) base = std::max(base, subject["energy"]["base"].get<double>());
   }
-  EXPECT_EQ(surplus.size(), 1U) << "src/stress/known.cpp lists a surplus that no longer occurs";
+  EXPECT_EQ(surplus.size(), 1U) << "src/lab/stress/known.cpp lists a surplus that no longer occurs";
   // The text's Lambert under 1 - F(V.H) gives back more than it got at grazing: nearly all of it where the
   // surface is smooth, besides the mirror's 0.78 at a cosine of 0.05.
   EXPECT_GT(base, 1.6);

@@ -1,4 +1,4 @@
-// In place of src/check/: this build has no compilers and validators of others.
+// In place of src/compile/check/: this build has no compilers and validators of others.
 #include "check/check.h"
 
 #include "targets/target.h"

@@ -1,5 +1,5 @@
-// In place of src/vulkan/ and of tools/gpu.cpp: this build has no devices.
-#include "tools/gpu.h"
+// In place of src/lab/vulkan/ and of lab/eval/gpu.cpp: this build has no devices.
+#include "eval/gpu.h"
 #include "vulkan/run.h"
 
 namespace lacquer {

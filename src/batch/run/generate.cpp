@@ -1,0 +1,174 @@
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "manifest/manifest.h"
+#include "manifest/stale.h"
+#include "run/pipelines.h"
+#include "run/run.h"
+#include "setting/messages.h"
+#include "setting/options.h"
+#include "support/jobs.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+namespace {
+
+/// `path: every input`, as Make and Ninja read it. A name that could be read as something else, a recipe, an
+/// assignment or a member of an archive say, is refused: there is no way to write it that both understand.
+Result<std::string> depfileText(const std::string& target, const std::vector<std::string>& inputs) {
+  constexpr std::string_view kRefused = ":;=|%*?[]()\\\x7f";
+  std::string text;
+  Diagnostics wrong;
+  const auto add = [&](const std::string& path) {
+    for (const char& c : path) {
+      const bool control = static_cast<unsigned char>(c) < 0x20;
+      const bool home = c == '~' && &c == path.data();
+      if (control || home || kRefused.find(c) != std::string_view::npos) {
+        wrong.push_back({"depfile-name",
+                         Severity::Error,
+                         {printable(path), 0, 0, {}},
+                         fmt::format("a depfile cannot hold this name: it has the character {}",
+                                     control ? fmt::format("0x{:02x}", c) : std::string(1, c)),
+                         "rename the file, or leave --depfile out",
+                         {}});
+        return;
+      }
+      if (c == ' ' || c == '#') text += '\\';
+      if (c == '$') text += '$';
+      text += c;
+    }
+  };
+  add(target);
+  text += ":";
+  for (const std::string& input : inputs) {
+    text += " \\\n  ";
+    add(input);
+  }
+  if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  return text + "\n";
+}
+
+/// What generateWith() reads, and how.
+struct Inputs {
+  const Strings& files;
+  const Strings& materials;
+  bool scenes;
+
+  void read(Run& run, const std::function<void(FileResult&)>& each) const {
+    if (scenes)
+      run.readScenes(files, materials, each);
+    else
+      run.readGraphs(files, each);
+  }
+};
+
+/// From the manifest that the run has written.
+void writePipelines(const std::string& manifest, const Options& options, Run& run) {
+  const Result<std::string> text = readFile(manifest, std::numeric_limits<uint64_t>::max());
+  if (!text) return run.wrote(tl::make_unexpected(text.error()));
+  constexpr uint64_t kAny = std::numeric_limits<uint64_t>::max();
+  Limits limits;
+  limits.json = limits.values = kAny;  // it is ours, however many materials there are
+  const Result<Json> json = json::parse(*text, manifest, limits);
+  if (!json) return;  // another process has written it meanwhile
+  run.wrote(writeFile(options.pipelines, pipelinesText(*json), {nullptr, options.sync}));
+}
+
+/// Below the output folder.
+Strings shaderFiles(const Report& report) {
+  Strings paths;
+  for (const ShaderReport& shader : report.shaders) {
+    for (const auto& [path, bytes] : shader.files) paths.push_back(path);
+  }
+  return paths;
+}
+
+/// Reads the inputs, makes what is needed and writes the manifest.
+Report generateWith(const Inputs& inputs, const std::string& folder, const Options& options,
+                    Messages& messages, const Progress& progress) {
+  Run run(options, inputs.files, messages, progress);
+  if (const Result<void> named = hasPath("the output folder", folder); !named) {
+    run.report(named.error(), {});
+    run.result().ok = false;
+    return run.finish();
+  }
+  if (!run.prepare()) return run.finish();
+  const bool shard = !options.shard.empty();
+  const std::string path = shard ? options.shard : folder + "/manifest.json";
+  Strings outputs{path};
+  Result<std::string> depfile;
+  if (!options.depfile.empty()) {
+    outputs.push_back(options.depfile);
+    depfile = depfileText(path, run.inputs());
+    if (!depfile) run.wrote(tl::make_unexpected(depfile.error()));
+  }
+  for (const std::string& one : {options.programs_report, options.pipelines}) {
+    if (!one.empty()) outputs.push_back(one);
+  }
+  Strings named;
+  for (const std::string& one :
+       {options.shard, options.depfile, options.programs_report, options.pipelines}) {
+    if (!one.empty()) named.push_back(one);
+  }
+  if (!run.mayWrite(outputs) || !run.mayName(named, folder) || !depfile) return run.finish();
+  std::optional<Receipt> receipt = inputs.scenes && !shard && Receipt::covers(options)
+                                       ? run.receipt(inputs.files, inputs.materials, folder)
+                                       : std::nullopt;
+  if (receipt && run.find(*receipt)) {
+    const Scratch left_by_killed_runs(folder);
+    return run.finish();
+  }
+  if (!run.open(folder)) return run.finish();
+  // Said once here instead of for every file.
+  if (const Result<bool> usable = makeFolder(folder); !usable) {
+    run.report(usable.error(), {});
+    run.result().ok = false;
+    return run.finish();
+  }
+  const Scratch scratch(folder);
+  const Strings earlier = shard ? Strings() : listedShaders(path);
+  ManifestFile manifest(path, {shard ? nullptr : &scratch, options.sync});
+  inputs.read(run, [&](FileResult& file) {
+    if (!shard) manifest.file(file.text);
+  });
+  if (!run.make(folder, scratch, receipt ? &*receipt : nullptr,
+                [&](const MadeShader& shader) { manifest.shader(shader.id, shader.text); })) {
+    return run.finish();
+  }
+  // A shard stands for its shader: without the one there is not the other.
+  if (!shard || run.result().ok) {
+    const Result<bool> written = manifest.finish();
+    run.wrote(written);
+    if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
+  }
+  run.writeProgramsReport();
+  if (!options.pipelines.empty() && !shard) writePipelines(path, options, run);
+  if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, *depfile, {nullptr, options.sync}));
+  if (receipt) run.keep(*receipt);
+  return run.finish();
+}
+
+}  // namespace
+
+Report generate(const Strings& files, const Strings& materials, const std::string& folder,
+                const Options& options, Messages& messages, const Progress& progress) {
+  Report report;
+  withJobs(options.jobs, [&] {
+    report = generateWith({files, materials, true}, folder, options, messages, progress);
+  });
+  return report;
+}
+
+Report generateGraphs(const Strings& files, const std::string& folder, const Options& options,
+                      Messages& messages, const Progress& progress) {
+  const Strings all_materials;
+  Report report;
+  withJobs(options.jobs, [&] {
+    report = generateWith({files, all_materials, false}, folder, options, messages, progress);
+  });
+  return report;
+}
+
+}  // namespace lacquer

@@ -1,0 +1,367 @@
+#include "run/run.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <set>
+
+#include "cache/fingerprint.h"
+#include "check/check.h"
+#include "setting/options.h"
+#include "shader/print.h"
+#include "support/outputs.h"
+#include "support/relative.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+namespace {
+
+/// So many files are held in memory at once. Enough for every core, few enough that a run over thousands of
+/// files does not grow with their number.
+constexpr size_t kFilesAtOnce = 16;
+constexpr auto kProgressGrain = std::chrono::milliseconds(50);
+
+}  // namespace
+
+Run::Run(const Options& options, const Strings& inputs, Messages& messages,
+         std::function<void(size_t, size_t)> progress)
+    : options_(options),
+      messages_(messages),
+      progress_(std::move(progress)),
+      shown_(std::chrono::steady_clock::now()),
+      said_before_(messages.size()),
+      inputs_(inputs) {
+  if (!options.weights.empty()) inputs_.push_back(options.weights);
+}
+
+bool Run::prepare() {
+  prepared_ = true;
+  for (const std::string& input : inputs_) {
+    if (const Result<void> named = hasPath("an input", input); !named) return allGood(named.error());
+  }
+  if (const Diagnostics wrong = checkOptions(options_); !wrong.empty()) {
+    report(wrong, {});
+    report_.ok = false;
+    return false;
+  }
+  if (!checkPrograms()) return false;
+  KeyBuilder base;
+  base.text(fingerprint()).text(check::toolVersions());
+  for (const std::string& folder : options_.node_directories) {
+    const Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
+    nodes_known_ &= files.has_value();
+    if (!files)
+      continue;  // open() says why, or can read them again: they were as the base has them a moment ago
+    for (const lang::SourceFile& file : *files) {
+      base.text(file.name).text(file.text);
+      node_files_.push_back(file.name);
+    }
+  }
+  base_ = base.finish();
+  if (options_.cache.empty()) return true;
+  Result<std::string> secret;
+  if (!options_.cache_key.empty()) secret = Cache::secretOf(options_.cache_key);
+  if (!secret) {
+    report(secret.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  cache_ = std::make_unique<Cache>(options_.cache, options_.cache_size, std::move(*secret));
+  return true;
+}
+
+bool Run::open(const std::string& folder) {
+  if (!prepared_ && !prepare()) return false;
+  if (const Result<void> placed = hasPlace(folder, inputs_); !placed) return allGood(placed.error());
+  const StageTimer timer(&times_, StageOfRun::Library);
+  const auto library = libraryFor(options_);
+  if (!library) {
+    report(library.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  library_ = *library;
+  if (const Result<void> named = resolveNames(*library_, options_); !named) {
+    report(named.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  if (const auto model = library_->models.of(options_.profile); !model) {
+    report(model.error(), {});
+    report_.ok = false;
+    return false;
+  }
+  setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_, *limitsOf(options_), folder});
+  structures_.emplace(*setting_);
+  return true;
+}
+
+bool Run::checkPrograms() {
+  const bool asked = options_.programs > 0 || !options_.programs_report.empty();
+  if (asked && options_.parameters == Parameters::Baked) {
+    return allGood({{"programs-baked",
+                     Severity::Error,
+                     {},
+                     "materials whose numbers are constants in the code cannot share it",
+                     "leave `baked` out, or --programs and --programs-report",
+                     {}}});
+  }
+  const std::string& report = options_.programs_report;
+  const auto ends = [&](const char* suffix) { return report.ends_with(suffix); };
+  if (!report.empty() && !ends(".json") && !ends(".md") && !ends(".svg")) {
+    return allGood({{"report-format",
+                     Severity::Error,
+                     {printable(report), 0, 0, {}},
+                     "the report's name says no format",
+                     "let it end with .json, .md or .svg",
+                     {}}});
+  }
+  if (options_.weights.empty()) return true;
+  const Limits limits = *limitsOf(options_);
+  const Result<std::string> text = readFile(options_.weights, limits.file);
+  if (!text) return allGood(text.error());
+  Result<programs::Weights> weights = programs::Weights::read(*text, options_.weights, limits);
+  if (!weights) return allGood(weights.error());
+  weights_ = std::move(*weights);
+  return true;
+}
+
+/// A look at all inputs that says nothing.
+void Run::look(const std::vector<std::string>& files, const std::vector<std::string>& only,
+               const std::function<void(const FileResult&)>& each) {
+  for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
+    std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
+    tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) {
+      results[i] = readScene(files[first + i], only, *setting_, *structures_);
+    });
+    for (const FileResult& result : results) each(result);
+  }
+}
+
+/// The first look finds the structures and how much each is used, the second what every material brings to
+/// the program that it shares.
+void Run::mergePrograms(const std::vector<std::string>& files, const std::vector<std::string>& only) {
+  std::vector<ProgramUse> uses;
+  std::set<Key> keys;
+  size_t materials = 0;
+  Examples examples;
+  setting_->examples = &examples;
+  look(files, only, [&](const FileResult& result) {
+    keys.insert(result.structures.begin(), result.structures.end());
+    materials += result.materials.size();
+    for (const MaterialReport& material : result.materials) {
+      const double share = weights_.of(material.file, material.name, material.index);
+      for (const std::string& shader : material.shaders)
+        uses.push_back({shader, share / static_cast<double>(material.shaders.size())});
+    }
+  });
+  setting_->examples = nullptr;
+  report(weights_.unused(options_.weights), {});
+  std::vector<const Structure*> structures;
+  for (const Key& key : keys) {
+    if (const Structure* structure = structures_->known(key)) structures.push_back(structure);
+  }
+  programs_ = std::make_unique<Programs>(structures, examples, uses, materials, *setting_);
+  setting_->programs = programs_.get();
+  if (options_.programs > 0) look(files, only, [](const FileResult&) {});
+  programs_->close();
+  structures_->lookAgain();
+}
+
+void Run::writeProgramsReport() {
+  const std::string& path = options_.programs_report;
+  if (path.empty() || !programs_) return;
+  const programs::Curve& curve = programs_->curve();
+  const std::string text = path.ends_with(".json") ? programs::toJson(curve)
+                           : path.ends_with(".md") ? programs::toMarkdown(curve)
+                                                   : programs::toSvg(curve);
+  wrote(writeFile(path, text, {nullptr, options_.sync}));
+}
+
+std::optional<Receipt> Run::receipt(const Strings& files, const Strings& materials,
+                                    const std::string& folder) {
+  if (cache_ == nullptr || !nodes_known_) return std::nullopt;
+  const StageTimer timer(&times_, StageOfRun::Read);
+  return Receipt(files, materials, folder, options_, base_, *cache_);
+}
+
+bool Run::find(Receipt& receipt) {
+  const StageTimer timer(&times_, StageOfRun::Cache);
+  if (!receipt.find(report_, messages_)) return false;
+  if (progress_) progress_(report_.shaders.size(), report_.shaders.size());
+  return true;
+}
+
+void Run::keep(const Receipt& receipt) {
+  const StageTimer timer(&times_, StageOfRun::Cache);
+  receipt.keep(report_, Messages(messages_.begin() + static_cast<ptrdiff_t>(said_before_), messages_.end()));
+}
+
+void Run::progress(size_t done, bool last) {
+  if (!progress_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (!last && now - shown_ < kProgressGrain) return;
+  shown_ = now;
+  progress_(done, structures_->shaderCount());
+}
+
+void Run::readAll(const std::vector<std::string>& files,
+                  const std::function<FileResult(const std::string&)>& read,
+                  const std::function<void(FileResult&)>& each) {
+  for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
+    std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
+    tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) { results[i] = read(files[first + i]); });
+    for (size_t i = 0; i < results.size(); ++i) {
+      FileResult& result = results[i];
+      report(result.diagnostics, files[first + i]);
+      report_.ok &= result.ok;
+      each(result);
+      report_.materials.insert(report_.materials.end(), std::make_move_iterator(result.materials.begin()),
+                               std::make_move_iterator(result.materials.end()));
+    }
+    progress(0, false);
+  }
+}
+
+void Run::readScenes(const std::vector<std::string>& files, const std::vector<std::string>& only,
+                     const std::function<void(FileResult&)>& each) {
+  if (options_.programs > 0 || !options_.programs_report.empty()) mergePrograms(files, only);
+  std::vector<std::string> seen;
+  readAll(
+      files, [&](const std::string& path) { return readScene(path, only, *setting_, *structures_); },
+      [&](FileResult& result) {
+        seen.insert(seen.end(), result.names.begin(), result.names.end());
+        each(result);
+      });
+  if (programs_) warnOfPrograms();
+  checkNames(only, seen);
+}
+
+/// Of more programs than were asked for.
+void Run::warnOfPrograms() {
+  const size_t made = structures_->shaders().size();
+  if (options_.programs == 0 || made <= options_.programs) return;
+  const size_t lights = programs_->lightSets();
+  report(
+      {{"programs",
+        Severity::Warning,
+        {},
+        fmt::format("there are {} programs, not at most {}", made, options_.programs),
+        lights > 1 ? fmt::format("materials of {} different sets of known lights share none: give --lights "
+                                 "any, or the same counts for all, or --programs {}",
+                                 lights, made)
+                   : fmt::format("the others cannot be made one: give --programs {}", made),
+        {}}},
+      {});
+}
+
+void Run::readGraphs(const std::vector<std::string>& files, const std::function<void(FileResult&)>& each) {
+  readAll(
+      files, [&](const std::string& path) { return readGraph(path, *setting_, *structures_); }, each);
+}
+
+void Run::checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen) {
+  for (const std::string& name : only) {
+    if (std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
+    std::string known;
+    for (size_t i = 0; i < seen.size() && i < 8; ++i)
+      known += fmt::format("{}'{}'", i == 0 ? "" : ", ", seen[i]);
+    if (seen.size() > 8) known += ", …";
+    report({{"no-such-material",
+             Severity::Error,
+             {},
+             fmt::format("no file has a material named '{}'", name),
+             known.empty() ? "the files have no materials" : "there are " + known,
+             {}}},
+           {});
+    report_.ok = false;
+  }
+}
+
+bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt* receipt,
+               const std::function<void(const MadeShader&)>& each) {
+  Strings outputs;
+  for (const auto& [id, shader] : structures_->shaders()) {
+    for (const Target target : options_.targets) {
+      for (int stage = firstStage(target, shader.structure->has_vertex); stage < 2; ++stage) {
+        outputs.push_back(folder + "/" + shaderPath(target, id, stage));
+      }
+    }
+  }
+  if (!mayWrite(outputs)) return false;
+  const std::vector<MadeShader> made = makeShaders(structures_->shaders(), *setting_, folder, scratch,
+                                                   receipt, [&](size_t done) { progress(done, false); });
+  progress(made.size(), true);
+  for (const Target target : options_.targets) {
+    if (!options_.validate || made.empty() || !isShader(target) || hasValidator(target)) continue;
+    report({{"not-validated",
+             Severity::Warning,
+             {},
+             fmt::format("nothing here compiles the target {}: its shaders are not validated",
+                         targetName(target)),
+             std::string(check::howToCheck(target)),
+             {}}},
+           {});
+  }
+  for (const MadeShader& shader : made) {
+    report(shader.wrong, {});
+    report_.ok &= shader.wrong.empty();
+    report_.shaders.push_back({shader.id, shader.files, shader.validated});
+    report_.made += shader.cached ? 0 : 1;
+    report_.written += shader.written;
+    if (!shader.text.empty()) each(shader);
+  }
+  return true;
+}
+
+bool Run::mayWrite(const Strings& outputs) { return allGood(clashes(readFiles(), outputs)); }
+
+bool Run::mayName(const Strings& outputs, const std::string& folder) {
+  Strings folders{Scratch::below(folder)};
+  for (const std::string& name : targetNames()) folders.push_back(fmt::format("{}/{}", folder, name));
+  Diagnostics wrong = reservedNames(folders, {folder + "/manifest.json"}, outputs);
+  if (options_.cache.empty()) return allGood(wrong);
+  for (Diagnostic& one : reservedNames({Cache::entriesBelow(options_.cache)}, {}, outputs)) {
+    one.message = "this file is to be written where the cache's own are";
+    wrong.push_back(std::move(one));
+  }
+  return allGood(wrong);
+}
+
+bool Run::allGood(const Diagnostics& wrong) {
+  if (wrong.empty()) return true;
+  report(wrong, {});
+  report_.ok = false;
+  return false;
+}
+
+void Run::wrote(const Result<bool>& written) {
+  if (written) {
+    report_.written += *written ? 1 : 0;
+    return;
+  }
+  report(written.error(), {});
+  report_.ok = false;
+}
+
+std::vector<std::string> Run::inputs() const {
+  std::vector<std::string> all = inputs_;
+  all.insert(all.end(), node_files_.begin(), node_files_.end());
+  return all;
+}
+
+std::vector<std::string> Run::readFiles() const {
+  std::vector<std::string> all = inputs();
+  if (!options_.cache_key.empty()) all.push_back(options_.cache_key);
+  return all;
+}
+
+Report Run::finish() {
+  if (cache_) report(cache_->problems(), {});
+  report_.times = times_.list();
+  return std::move(report_);
+}
+
+}  // namespace lacquer

@@ -1,0 +1,379 @@
+#include "run/structure.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <set>
+
+#include "cache/option_key.h"
+#include "interface/interface.h"
+#include "lower/lower.h"
+#include "manifest/manifest.h"
+#include "manifest/scene.h"
+#include "run/programs.h"
+#include "run/report_blob.h"
+#include "setting/options.h"
+#include "setting/simplify.h"
+#include "shader/limits.h"
+#include "shader/module.h"
+
+namespace lacquer {
+
+namespace {
+
+constexpr size_t kInterfaceDepth = 3;  ///< manifest, "shaders", the shader's entry
+constexpr size_t kUseDepth = 7;        ///< the material, "uses", the use
+constexpr size_t kTermsDepth = 5;      ///< manifest, "files", the file, "materials", the material
+
+class StructureKey {
+public:
+  StructureKey(KeyBuilder& key, bool values) : key_(key), values_(values) {}
+
+  void operator()(const graph::Literal& literal) {
+    key_.number('l').number(literal.type);
+    for (const double x : literal.value) key_.number(x);
+  }
+  void operator()(const graph::ParameterRef& ref) { key_.number('p').text(ref.name); }
+  void operator()(const graph::TextureRef& ref) { key_.number('t').text(ref.name); }
+  void operator()(const graph::GivenRef& ref) { key_.number('g').text(ref.name); }
+  void operator()(const graph::NodeRef& ref) { key_.number('n').text(ref.node).text(ref.output); }
+
+  void source(const graph::Source& source) {
+    std::visit(*this, source.from);
+    key_.text(source.swizzle);
+  }
+
+  void sources(const std::vector<std::pair<std::string, graph::Source>>& named) {
+    key_.number(named.size());
+    for (const auto& [name, from] : named) {
+      key_.text(name);
+      source(from);
+    }
+  }
+
+  void graph(const graph::Graph& graph) {
+    key_.text(graph.template_name).number(graph.attributes.size());
+    for (const std::string& name : graph.attributes) key_.text(name);
+    key_.number(graph.parameters.size());
+    for (const ir::Parameter& p : graph.parameters) {
+      key_.text(p.name).number(p.type).number(p.range.lo).number(p.range.hi).number(p.range.gap);
+      key_.number(p.animated);
+      for (size_t i = 0; values_ && !p.animated && i < p.value.size(); ++i) key_.number(p.value[i]);
+    }
+    key_.number(graph.textures.size());
+    for (const ir::TextureSlot& t : graph.textures) {
+      key_.text(t.name).number(t.type).number(t.srgb).number(t.environment);
+    }
+    key_.number(graph.nodes.size());
+    for (const graph::Node& node : graph.nodes) {
+      key_.text(node.id).text(node.type).text(node.variant);
+      sources(node.inputs);
+    }
+    sources(graph.outputs);
+    key_.number(graph.skipped.size());
+    for (const graph::Skipped& s : graph.skipped) key_.text(s.term).text(s.reason);
+  }
+
+private:
+  KeyBuilder& key_;
+  bool values_;
+};
+
+void narrow(ir::Range& range, const ir::Range& by) {
+  range.lo = std::max(range.lo, by.lo);
+  range.hi = std::min(range.hi, by.hi);
+  range.gap = std::max(range.gap, by.gap);
+  if (range.lo > 0) range.lo = std::max(range.lo, range.gap);
+}
+
+/// For each parameter the values that its own range and every input or port it goes to accept.
+std::vector<ir::Range> limitsOf(const graph::Graph& graph, const lang::Library& library) {
+  std::vector<ir::Range> limits;
+  for (const ir::Parameter& p : graph.parameters) limits.push_back(p.range);
+  const auto meet = [&](const graph::Source& source, const lang::Param& contract) {
+    const auto* ref = std::get_if<graph::ParameterRef>(&source.from);
+    if (ref == nullptr || !contract.has_range) return;
+    for (size_t i = 0; i < graph.parameters.size(); ++i) {
+      if (graph.parameters[i].name == ref->name) narrow(limits[i], contract.range);
+    }
+  };
+  for (const graph::Node& node : graph.nodes) {
+    const Result<const lang::NodeDecl*> decl = library.node(node.type);
+    if (!decl) continue;
+    for (const auto& [name, source] : node.inputs) {
+      for (const lang::Param& param : (*decl)->params) {
+        if (param.name == name) meet(source, param);
+      }
+    }
+  }
+  const Result<const lang::TemplateDecl*> decl = library.template_(graph.template_name);
+  for (const auto& [name, source] : graph.outputs) {
+    if (!decl) break;
+    for (const lang::PortDecl& port : (*decl)->ports) {
+      if (port.param.name == name) meet(source, port.param);
+    }
+  }
+  return limits;
+}
+
+/// Takes away what belongs to one material.
+graph::Graph withoutMaterial(graph::Graph graph, const std::vector<ir::Range>& limits, bool values) {
+  graph.name.clear();
+  for (size_t i = 0; i < graph.parameters.size(); ++i) {
+    ir::Parameter& p = graph.parameters[i];
+    p.pointer.clear();
+    if (values && !p.animated) continue;
+    const double x = std::min(std::max(0.0, limits[i].lo), limits[i].hi);
+    p.value.fill(0);
+    std::fill_n(p.value.begin(), ir::componentCount(p.type), std::isfinite(x) ? x : 0);
+  }
+  for (ir::TextureSlot& t : graph.textures) {
+    t.texture = -1;
+    t.pointer.clear();
+  }
+  return graph;
+}
+
+template <class Write>
+std::string textAt(size_t depth, Write write) {
+  JsonText json(depth);
+  write(json);
+  return json.take();
+}
+
+void describe(const graph::Graph& graph, Structure& structure) {
+  auto terms = std::make_shared<MaterialTerms>();
+  for (const graph::Node& node : graph.nodes) terms->terms.push_back(node.id);
+  for (const graph::Skipped& s : graph.skipped) terms->skipped.emplace_back(s.term, s.reason);
+  structure.terms = terms;
+}
+
+/// Parameters that are not there because their terms are not.
+std::string absentText(const graph::Graph& graph, const Setting& setting) {
+  std::set<std::string, std::less<>> skipped;
+  for (const graph::Skipped& s : graph.skipped) skipped.insert(s.term);
+  JsonText json(kUseDepth);
+  json.beginObject();
+  if (const Result<const model::Model*> model = setting.library.models.of(setting.options.profile)) {
+    for (const auto& [name, terms] : (*model)->absent(skipped)) {
+      if (graph.findParameter(name)) continue;
+      json.key(name);
+      writeList(terms, json);
+    }
+  }
+  return json.endObject().take();
+}
+
+void renderTerms(Structure& structure) {
+  structure.terms_text =
+      textAt(kTermsDepth, [&](JsonText& json) { writeList(structure.terms->terms, json); });
+  structure.skipped_text =
+      textAt(kTermsDepth, [&](JsonText& json) { writeSkipped(structure.terms->skipped, json); });
+}
+
+void describe(const ir::Module& module, const graph::Graph& graph, const Setting& setting,
+              Structure& structure) {
+  const Language& library = setting.library;
+  structure.module = passes::contentDigest(module);
+  structure.shader = shaderId(module, library, shortened(structure.module, setting.id_bits));
+  structure.has_vertex = hasVertexStage(module);
+  const Result<const material::Schema*> schema = library.models.schema();
+  const Json interface = interfaceOf(module, structure.has_vertex, schema ? *schema : nullptr);
+  for (const auto& [name, value] : interface.items()) {
+    structure.interface.emplace_back(
+        name, textAt(kInterfaceDepth, [&, &v = value](JsonText& json) { json.json(v); }));
+  }
+  if (const Json* inputs = json::member(interface, "inputs")) {
+    for (const Json& input : *inputs) structure.inputs.push_back(input["name"].get<std::string>());
+  }
+  structure.preshader = Preshader(module);
+  const auto place = [](const auto& list, const std::string& name) {
+    const auto it =
+        std::find_if(list.begin(), list.end(), [&](const auto& item) { return item.name == name; });
+    return it == list.end() ? ~uint32_t{0} : static_cast<uint32_t>(it - list.begin());
+  };
+  for (const ir::Parameter& p : module.parameters)
+    structure.parameters.push_back(place(graph.parameters, p.name));
+  // The shader may have another name for a texture; the DAG still has the graph's.
+  std::vector<uint32_t> places(module.textures.size(), ~uint32_t{0});
+  for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
+    if (module.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    if (input.kind == ir::InputKind::Texture) places[input.field] = place(graph.textures, input.name);
+  }
+  for (size_t i = 0; i < places.size(); ++i) {
+    if (places[i] != ~uint32_t{0}) structure.textures.emplace_back(module.textures[i].name, places[i]);
+  }
+}
+
+Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts& lights,
+                            const Setting& setting) {
+  Result<ir::Module> module;
+  {
+    const StageTimer timer(setting.times, StageOfRun::Lower);
+    module = lower::lower(graph, setting.library, loweringOf(setting.options));
+  }
+  if (!module) return module;
+  const StageTimer timer(setting.times, StageOfRun::Passes);
+  return throughPasses(std::move(*module), {lights, {}, setting.options.relaxed});
+}
+
+}  // namespace
+
+void writeList(const std::vector<std::string>& names, JsonText& json) {
+  json.beginArray();
+  for (const std::string& name : names) json.string(name);
+  json.endArray();
+}
+
+void writeSkipped(const std::vector<std::pair<std::string, std::string>>& skipped, JsonText& json) {
+  json.beginObject();
+  for (size_t i = 0; i < skipped.size(); ++i) {
+    // A term that several uses skip is named once, with the last reason.
+    const auto same = [&](const auto& other) { return other.first == skipped[i].first; };
+    if (std::any_of(skipped.begin(), skipped.begin() + static_cast<ptrdiff_t>(i), same)) continue;
+    const auto last = std::find_if(skipped.rbegin(), skipped.rend(), same);
+    json.key(skipped[i].first).string(last->second);
+  }
+  json.endObject();
+}
+
+Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting) {
+  KeyBuilder key;  // none that a thread keeps: the C library ends the process where it has no memory to note
+                   // its destructor
+  const bool baked = setting.options.parameters == Parameters::Baked;
+  key.text("structure").key(setting.base);
+  addOptions(setting.options, {Decides::Module}, key);
+  key.number(lights.any).number(lights.counts.size());
+  for (const auto& [kind, count] : lights.counts) key.text(kind).number(count);
+  // They decide what is said of the shader.
+  for (const Target target : setting.options.targets) key.number(target);
+  StructureKey(key, baked).graph(graph);
+  return setting.keys->of(key.take());
+}
+
+std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
+                                        const Setting& setting, Structure& structure) {
+  structure.limits = limitsOf(graph, setting.library);
+  structure.lights = lights;
+  const bool baked = setting.options.parameters == Parameters::Baked;
+  graph::Graph plain = withoutMaterial(graph, structure.limits, baked);
+  {
+    const StageTimer timer(setting.times, StageOfRun::Graph);
+    structure.diagnostics = graph::check(plain, setting.library);
+  }
+  describe(plain, structure);
+  structure.absent = absentText(plain, setting);
+  renderTerms(structure);
+  if (hasError(structure.diagnostics)) return std::nullopt;
+  Result<ir::Module> module = modulate(plain, lights, setting);
+  if (!module) {
+    structure.diagnostics.insert(structure.diagnostics.end(), module.error().begin(), module.error().end());
+    return std::nullopt;
+  }
+  const Diagnostics over = overLimits(*module, setting.options.targets);
+  structure.diagnostics.insert(structure.diagnostics.end(), over.begin(), over.end());
+  if (hasError(over)) return std::nullopt;
+  structure.graph = graph::toJson(plain);
+  // Places are those in the graph as it comes, which check() may have ordered, but not its parameters and
+  // textures.
+  describe(*module, graph, setting, structure);
+  return std::move(*module);
+}
+
+Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting) {
+  Result<graph::Graph> graph = graph::fromJson(structure.graph, structure.shader, setting.limits);
+  if (!graph) return tl::make_unexpected(graph.error());
+  if (const Diagnostics found = graph::check(*graph, setting.library); hasError(found)) {
+    return tl::make_unexpected(found);
+  }
+  return modulate(*graph, structure.lights, setting);
+}
+
+bool withinLimits(const Structure& structure, const graph::Graph& graph) {
+  for (size_t i = 0; i < graph.parameters.size(); ++i) {
+    const ir::Parameter& p = graph.parameters[i];
+    for (int c = 0; c < ir::componentCount(p.type); ++c) {
+      const double x = p.value[static_cast<size_t>(c)];
+      if (!std::isfinite(x) || !structure.limits[i].contains(x)) return false;
+    }
+  }
+  return true;
+}
+
+void writeBindings(const Structure& structure, const graph::Graph& graph, const material::Material& material,
+                   const programs::Fill* fill, JsonText& json) {
+  json.key("parameters").beginObject();
+  for (const uint32_t i : structure.parameters) {
+    const ir::Parameter& p = graph.parameters[i];
+    const bool own = fill == nullptr || fill->numbers[i].own;
+    json.key(p.name).beginObject().key("value").numbers(
+        {p.value.data(), static_cast<size_t>(ir::componentCount(p.type))});
+    json.key("pointer").string(p.pointer);
+    if (p.animated && own) json.key("animated").boolean(true);
+    if (!own) json.key("stand_in").boolean(true);
+    json.endObject();
+  }
+  json.endObject().key("uniforms").beginObject();
+  const std::vector<ir::Components> packed = structure.preshader.evaluate(
+      [&](uint32_t i) -> const ir::Components& { return graph.parameters[structure.parameters[i]].value; });
+  for (size_t i = 0; i < packed.size(); ++i) {
+    const Preshader::Field& field = structure.preshader.fields()[i];
+    json.key(field.name).numbers({packed[i].data(), static_cast<size_t>(ir::componentCount(field.type))});
+  }
+  json.endObject().key("textures").beginObject();
+  for (const auto& [name, i] : structure.textures) {
+    json.key(name).beginObject().key("texture").integer(graph.textures[i].texture);
+    json.key("pointer").string(graph.textures[i].pointer);
+    if (fill == nullptr || fill->textures[i].own)
+      writeTextureInfo(material, graph.textures[i].pointer, json);
+    else
+      writeStandIn(fill->textures[i], graph.textures[i].srgb, json);
+    json.endObject();
+  }
+  json.endObject();
+}
+
+namespace ir {
+template <class Archive>
+static void fields(Archive& archive, Range& range) {
+  archive(range.lo, range.hi, range.gap);
+}
+}  // namespace ir
+
+namespace passes {
+template <class Archive>
+static void fields(Archive& archive, LightFacts& lights) {
+  archive(lights.any, lights.counts);
+}
+}  // namespace passes
+
+template <class Archive>
+static void fields(Archive& archive, Structure& s) {
+  archive(s.content, s.module, s.diagnostics, s.shader, s.has_vertex, s.absent, s.interface, s.terms,
+          s.preshader, s.parameters, s.textures, s.inputs, s.limits, s.graph, s.lights);
+}
+
+std::string toBlob(const Structure& structure) {
+  BlobWriter blob;
+  blob(structure);
+  return blob.take();
+}
+
+bool fromBlob(std::string_view bytes, Structure& s) {
+  BlobReader blob(bytes);
+  blob(s);
+  renderTerms(s);
+  return blob.complete() && (s.shader.empty() || isShaderId(s.shader)) &&
+         s.preshader.uses(s.parameters.size());
+}
+
+bool fits(const Structure& s, const graph::Graph& graph) {
+  const auto below = [](size_t n) { return [n](uint32_t i) { return i < n; }; };
+  return s.limits.size() == graph.parameters.size() &&
+         std::all_of(s.parameters.begin(), s.parameters.end(), below(graph.parameters.size())) &&
+         std::all_of(s.textures.begin(), s.textures.end(),
+                     [&](const auto& texture) { return texture.second < graph.textures.size(); });
+}
+
+}  // namespace lacquer

@@ -1,0 +1,119 @@
+#include "setting/language.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "model/order.h"
+#include "setting/options.h"
+#include "support/file.h"
+#include "support/stack.h"
+
+namespace lacquer {
+
+Strings profiles(const Options& options) {
+  const auto language = libraryFor(options);
+  if (!language) return {};
+  const auto found = model::profiles(**language);
+  Strings names;
+  if (!found) return names;
+  for (const lang::ProfileDecl* profile : *found) names.emplace_back(profile->name);
+  return names;
+}
+
+Strings liveTerms(const Options& options) {
+  Options named = options;
+  const auto language = libraryFor(options);
+  if (!language || !resolveNames(**language, named)) return {};
+  const Result<const model::Model*> model = (*language)->models.of(named.profile);
+  if (!model) return {};
+  const std::vector<std::string_view> terms = (*model)->liveTerms();
+  return {terms.begin(), terms.end()};
+}
+
+Diagnostics Language::check() const {
+  Diagnostics all = checkAll();
+  if (hasError(all)) return all;
+  const auto profiles = model::profiles(*this);
+  if (!profiles) return profiles.error();
+  const auto add = [&](const Diagnostics& found) {
+    for (const Diagnostic& one : found) {
+      if (std::find(all.begin(), all.end(), one) == all.end()) addBounded(all, one);
+    }
+  };
+  const auto see = [&](std::string_view profile, const std::set<std::string, std::less<>>& lods) {
+    const Result<const model::Model*> model = models.of(profile, lods);
+    if (!model) return add(model.error());
+    for (const auto& [lower, upper] : (*model)->unordered)
+      add({model::unorderedParts(*(*model)->parts[lower].decl, *(*model)->parts[upper].decl)});
+  };
+  for (const lang::ProfileDecl* profile : *profiles) see(profile->name, {});
+  for (const std::string_view lod : names(lang::DeclKind::Lod)) see((*profiles)[0]->name, {std::string(lod)});
+  return all;
+}
+
+Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<std::string> paths;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() == ".node") paths.push_back(it->path().generic_string());
+  }
+  if (error)
+    return fail("file-unreadable", {folder, 0, 0, {}}, "the folder of nodes cannot be read", error.message());
+  std::sort(paths.begin(), paths.end());
+  std::vector<lang::SourceFile> files;
+  for (const std::string& path : paths) {
+    Result<std::string> text = readFile(path);
+    if (!text) return tl::make_unexpected(text.error());
+    files.push_back({path, std::move(*text)});
+  }
+  return files;
+}
+
+Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
+  if (!hasStack())
+    return fail("stack-too-small", {}, "the thread has too little stack",
+                fmt::format("it takes {} KiB: `ulimit -s`, or the size that the thread is made with",
+                            kStackNeeded / 1024));
+  if (options.node_directories.empty()) {
+    static const auto kBuiltIn = std::make_shared<const Language>(lang::Library::embedded());
+    return kBuiltIn;
+  }
+  lang::Library library = lang::Library::embedded();
+  for (const std::string& folder : options.node_directories) {
+    Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
+    if (!files) return tl::make_unexpected(files.error());
+    if (Result<void> added = library.add(std::move(*files)); !added)
+      return tl::make_unexpected(added.error());
+  }
+  return std::make_shared<const Language>(std::move(library));
+}
+
+Result<material::Document> readMaterials(const std::string& path, const Language& language,
+                                         const Options& options, Links links) {
+  const Result<const material::Schema*> schema = language.models.schema();
+  if (!schema) return tl::make_unexpected(schema.error());
+  const Result<Limits> limits = limitsOf(options);
+  if (!limits) return tl::make_unexpected(limits.error());
+  const Result<std::string> bytes = readFile(path, limits->file, links);
+  if (!bytes) return tl::make_unexpected(bytes.error());
+  return material::readText(*bytes, path, **schema, {options.permissive, *limits});
+}
+
+Result<void> resolveNames(const lang::Library& library, Options& options) {
+  if (options.template_name.empty()) {
+    Result<std::string> name = library.defaultTemplate();
+    if (!name) return tl::make_unexpected(std::move(name.error()));
+    options.template_name = std::move(*name);
+  }
+  if (options.profile.empty()) {
+    const auto profiles = model::profiles(library);
+    if (!profiles) return tl::make_unexpected(profiles.error());
+    options.profile = (*profiles)[0]->name;
+  }
+  return {};
+}
+
+}  // namespace lacquer

@@ -1,0 +1,107 @@
+#include "shader/module.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lower/lower.h"
+#include "model/build.h"
+#include "setting/options.h"
+#include "setting/simplify.h"
+
+namespace lacquer {
+
+passes::LightFacts lightsOf(const gltf::Scene& scene) {
+  const auto count = [&](gltf::LightType type) {
+    const auto it = scene.lights.find(type);
+    return it == scene.lights.end() ? 0U : static_cast<uint32_t>(it->second);
+  };
+  return {false,
+          {{"directional", count(gltf::LightType::Directional)},
+           {"point", count(gltf::LightType::Point)},
+           {"spot", count(gltf::LightType::Spot)}}};
+}
+
+Result<graph::Graph> buildGraph(const material::Material& material, const gltf::VertexAttributes& attributes,
+                                const Language& language, const Options& options, Diagnostics& warnings) {
+  const Result<Simplification> simpler = simplificationOf(options.simplify);
+  if (!simpler) return tl::make_unexpected(simpler.error());
+  const Result<const model::Model*> model = language.models.of(options.profile, simpler->lods);
+  if (!model) return tl::make_unexpected(model.error());
+  const Result<const lang::TemplateDecl*> wanted = language.template_(options.template_name);
+  if (!wanted) return tl::make_unexpected(wanted.error());
+  model::BuildOptions build;
+  build.template_name = options.template_name;
+  build.decode_srgb = options.decode_srgb;
+  build.switches = options.switches;
+  build.switches.insert({{"ibl", options.ibl},
+                         {"multiple_scattering", options.multiple_scattering},
+                         {"dfg_table", options.dfg_table}});
+  build.live = {options.live.begin(), options.live.end()};
+  build.without = simpler->without;
+  build.texels = simpler->texels;
+  for (const auto& [name, value] : simpler->switches) build.switches.insert_or_assign(name, value);
+  Result<graph::Graph> graph = model::build(
+      **model, **wanted, withoutTextures(material, *(*model)->schema, *simpler), attributes, build, warnings);
+  if (graph) simplify(*graph, language, *simpler);
+  return graph;
+}
+
+Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
+                            const passes::LightFacts& scene_lights, const AfterPass& after) {
+  Result<ir::Module> module = lower::lower(graph, library, loweringOf(options));
+  if (!module) return module;
+  if (after) after("lower", *module);
+  return throughPasses(std::move(*module), {lightFacts(options, scene_lights), after, options.relaxed});
+}
+
+Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options) {
+  if (Diagnostics wrong = passes::checkLights(module, options.lights); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  passes::runPipeline(module, options);
+  if (Diagnostics wrong = passes::checkPlaces(module); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  return module;
+}
+
+bool hasVertexStage(const ir::Module& module) {
+  return std::any_of(module.outputs.begin(), module.outputs.end(),
+                     [](const ir::Output& o) { return o.stage == ir::Stage::Vertex; });
+}
+
+std::string shaderId(const ir::Module& module, const lang::Library& library) {
+  return shaderId(module, library, passes::contentDigest(module));
+}
+
+/// Its middle is the outermost layer that an extension has brought, or else the innermost of all.
+std::string shaderId(const ir::Module& module, const lang::Library& library, const Digest& digest) {
+  std::vector<ir::ValueId> roots;
+  for (const ir::Output& output : module.outputs) roots.push_back(output.value);
+  const std::vector<ir::ValueId> values = ir::reachable(module.dag, roots);
+  const auto has = [&](std::string_view part) {
+    const std::string prefix = std::string(part) + ".";
+    return std::any_of(values.begin(), values.end(), [&](ir::ValueId id) {
+      return module.dag.terms()[module.dag.termOf(id)].name.starts_with(prefix);
+    });
+  };
+  std::string_view kind = "graph";
+  for (const std::string_view name : library.names(lang::DeclKind::Layers)) {
+    const Result<const lang::LayersDecl*> layers = library.layers(name);
+    if (!layers || (*layers)->parts.empty()) continue;
+    kind = (*layers)->parts[0];
+    for (const std::string_view part : (*layers)->parts) {
+      const Result<const lang::PartDecl*> decl = library.part(part);
+      if (decl && !(*decl)->of.empty() && has(part)) kind = part;
+    }
+  }
+  return fmt::format("{}-{}-{}", module.template_name, kind, passes::contentAddress(digest));
+}
+
+bool isShaderId(std::string_view id) {
+  constexpr size_t kLongest = 255 - std::string_view(".frag.glsl").size();
+  return !id.empty() && id.size() <= kLongest &&
+         id.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+             std::string_view::npos;
+}
+
+}  // namespace lacquer

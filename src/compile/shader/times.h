@@ -1,0 +1,62 @@
+// Where a run's time goes, by stage. Threads add up what each spent.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "setting/options.h"
+
+namespace lacquer {
+
+enum class StageOfRun : uint8_t {
+  Library,
+  Read,
+  Graph,
+  Lower,
+  Passes,
+  Manifest,
+  Print,
+  Validate,
+  Cache,
+  Write
+};
+
+class StageTimes {
+public:
+  /// Print and Validate are counted by target.
+  void add(StageOfRun stage, Target target, std::chrono::nanoseconds spent) {
+    slot(stage, target).fetch_add(spent.count(), std::memory_order_relaxed);
+  }
+  /// Names and seconds, in the order of the stages; those that took no time are left out.
+  std::vector<std::pair<std::string, double>> list() const;
+
+private:
+  std::atomic<int64_t>& slot(StageOfRun stage, Target target) {
+    return spent_[static_cast<size_t>(stage) * kMostTargets + static_cast<size_t>(target)];
+  }
+  std::array<std::atomic<int64_t>, 10 * kMostTargets> spent_{};
+};
+
+/// Counts its own life.
+class StageTimer {
+public:
+  StageTimer(StageTimes* times, StageOfRun stage, Target target = Target::Glsl)
+      : times_(times), stage_(stage), target_(target), begin_(std::chrono::steady_clock::now()) {}
+  ~StageTimer() {
+    if (times_ != nullptr) times_->add(stage_, target_, std::chrono::steady_clock::now() - begin_);
+  }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+private:
+  StageTimes* times_;
+  StageOfRun stage_;
+  Target target_;
+  std::chrono::steady_clock::time_point begin_;
+};
+
+}  // namespace lacquer

@@ -1,0 +1,47 @@
+// What the public classes hold.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "lacquer.h"
+#include "material/material.h"
+#include "setting/language.h"
+#include "shader/module.h"
+#include "shader/preshader.h"
+#include "shader/print.h"
+
+namespace lacquer {
+
+struct Graph::Impl {
+  graph::Graph graph;
+  std::string file;  ///< for messages
+  passes::LightFacts scene_lights;
+
+  /// Checks the options and the graph, lowers it and runs the passes.
+  Result<ir::Module> module(const Options& options, Diagnostics (*check)(const Options&),
+                            const AfterPass& after = {});
+  bool refuse(std::string code, std::string message, std::string help, Messages& messages) const;
+  std::optional<graph::Source> source(std::string_view text, Messages& messages) const;
+};
+
+struct Scene::Impl {
+  material::Document document;
+  std::shared_ptr<const Language> language;  ///< whose declarations the materials follow
+  std::shared_ptr<const std::string> bytes;  ///< the file's, where it was read from memory
+
+  /// A material of that index; null, and "no-such-material", when there is none.
+  const material::Material* material(size_t index, Messages& messages) const;
+};
+
+struct Shader::Impl : ShaderData {
+  Preshader preshader;
+
+  /// Writes the whole of `block`, which has as many bytes as the material's.
+  void pack(const Values& value, std::span<std::byte> block, Messages* messages) const;
+};
+
+/// "empty-handle" where there is nothing behind a handle.
+bool filled(const void* impl, std::string_view what, Messages& messages);
+
+}  // namespace lacquer

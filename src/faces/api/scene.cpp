@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include "api/internal.h"
+#include "eval/of_scene.h"
+#include "setting/language.h"
+#include "setting/messages.h"
+#include "setting/options.h"
+#include "shader/module.h"
+
+namespace lacquer {
+
+namespace {
+
+/// Kept by the library, which the options' folders name; the built-in one's stays.
+struct SchemaOf {
+  std::shared_ptr<const Language> language;
+  const material::Schema* schema = nullptr;
+};
+
+Result<SchemaOf> schemaFor(const Options& options) {
+  const Result<std::shared_ptr<const Language>> language = libraryFor(options);
+  if (!language) return tl::make_unexpected(language.error());
+  const Result<const material::Schema*> schema = (*language)->models.schema();
+  if (!schema) return tl::make_unexpected(schema.error());
+  return SchemaOf{*language, *schema};
+}
+
+}  // namespace
+
+const Scene::Impl& Scene::impl() const {
+  static const Impl kNone;
+  return impl_ ? *impl_ : kNone;
+}
+
+const material::Material* Scene::Impl::material(size_t index, Messages& messages) const {
+  if (index < document.materials.size()) return &document.materials[index];
+  report(fail("no-such-material", {}, fmt::format("there is no material {}", index),
+              fmt::format("the file has {}, counted from 0", document.materials.size()))
+             .value(),
+         document.path, messages);
+  return nullptr;
+}
+
+Scene Scene::load(const std::string& path, const Options& options, Messages& messages) {
+  Scene scene;
+  const Result<SchemaOf> schema = schemaFor(options);
+  if (!schema) return report(schema.error(), path, messages), scene;
+  Result<material::Document> document = readMaterials(path, *schema->language, options);
+  if (!document) {
+    report(document.error(), path, messages);
+    return scene;
+  }
+  report(document->diagnostics, path, messages);
+  scene.impl_ = std::make_shared<Impl>(Impl{std::move(*document), schema->language, {}});
+  return scene;
+}
+
+Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const Options& options,
+                        Messages& messages) {
+  Scene scene;
+  const Result<SchemaOf> schema = schemaFor(options);
+  const Result<Limits> limits = limitsOf(options);
+  if (!schema || !limits) return report(schema ? limits.error() : schema.error(), name, messages), scene;
+  Result<material::Document> document =
+      material::readText(bytes, name, *schema->schema, {options.permissive, *limits});
+  if (!document) {
+    report(document.error(), name, messages);
+    return scene;
+  }
+  report(document->diagnostics, name, messages);
+  scene.impl_ = std::make_shared<Impl>(
+      Impl{std::move(*document), schema->language, std::make_shared<const std::string>(bytes)});
+  return scene;
+}
+
+size_t Scene::materialCount() const { return impl().document.materials.size(); }
+
+const std::string& Scene::materialName(size_t material) const {
+  static const std::string kNone;
+  return material < materialCount() ? impl().document.materials[material].name : kNone;
+}
+
+std::optional<size_t> Scene::findMaterial(const std::optional<std::string>& name, Messages& messages) const {
+  if (!filled(impl_.get(), "scene", messages)) return std::nullopt;
+  Diagnostics warnings;
+  const Result<size_t> found = material::findMaterial(impl().document, name, warnings);
+  report(warnings, {}, messages);
+  if (found) return *found;
+  report(found.error(), {}, messages);
+  return std::nullopt;
+}
+
+std::vector<Attributes> Scene::uses(size_t material) const {
+  std::vector<Attributes> uses;
+  if (material >= materialCount()) return uses;
+  for (const gltf::VertexAttributes& a : impl().document.uses[material]) {
+    uses.push_back({a.normal, a.tangent, a.color0, a.texCoord, a.skin, a.morph, a.instances, a.quantized,
+                    a.application});
+  }
+  return uses;
+}
+
+Graph Scene::graph(size_t material, const Attributes& attributes, const Options& options,
+                   Messages& messages) const {
+  Graph result;
+  if (!filled(impl_.get(), "scene", messages)) return result;
+  const material::Document& document = impl_->document;
+  const material::Material* found = impl_->material(material, messages);
+  if (found == nullptr) return result;
+  const material::Material& m = *found;
+  report(m.diagnostics, document.path, messages);
+  if (lacquer::hasError(m.diagnostics)) return result;
+  if (const Diagnostics wrong = checkReading(options); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return result;
+  }
+  const auto language = libraryFor(options);
+  if (!language) return report(language.error(), {}, messages), result;
+  Diagnostics warnings;
+  gltf::VertexAttributes a{attributes.normal,    attributes.tangent,   attributes.color0,
+                           attributes.texCoord,  attributes.skin,      attributes.morph,
+                           attributes.instances, attributes.quantized, attributes.application};
+  Options named = options;
+  if (const Result<void> resolved = resolveNames(**language, named); !resolved)
+    return report(resolved.error(), document.path, messages), result;
+  Result<graph::Graph> graph = buildGraph(m, a, **language, named, warnings);
+  report(warnings, document.path, messages);
+  if (!graph) return report(graph.error(), {}, messages), result;
+  result.impl_ =
+      std::make_shared<Graph::Impl>(Graph::Impl{std::move(*graph), document.path, lightsOf(document)});
+  return result;
+}
+
+std::string evaluate(const Scene& scene, size_t material, const std::string& points, Engine engine,
+                     const Strings& texels, const Options& options, Messages& messages) {
+  if (!filled(scene.impl_.get(), "scene", messages)) return {};
+  const Scene::Impl& impl = scene.impl();
+  const material::Material* found = impl.material(material, messages);
+  if (found == nullptr) return {};
+  return evaluateOf({*found, *impl.language, impl.document.path, impl.bytes}, points, engine, texels, options,
+                    messages);
+}
+
+std::vector<uint8_t> drawBall(const Scene& scene, size_t material, uint32_t size, const Strings& texels,
+                              const Options& options, Messages& messages) {
+  if (!filled(scene.impl_.get(), "scene", messages)) return {};
+  const Scene::Impl& impl = scene.impl();
+  const material::Material* found = impl.material(material, messages);
+  if (found == nullptr) return {};
+  return drawBallOf({*found, *impl.language, impl.document.path, impl.bytes}, size, texels, options,
+                    messages);
+}
+
+}  // namespace lacquer

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "api/internal.h"
+#include "interface/interface.h"
+#include "setting/messages.h"
+#include "setting/options.h"
+#include "shader/module.h"
+#include "shader/print.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+const Shader::Impl& Shader::impl() const {
+  static const Impl kNone;
+  return impl_ ? *impl_ : kNone;
+}
+
+const std::string& Shader::id() const { return impl().id; }
+bool Shader::hasVertexStage() const { return impl().has_vertex; }
+const std::vector<uint32_t>& Shader::vertexSpirv() const { return impl().spirv[0]; }
+const std::vector<uint32_t>& Shader::fragmentSpirv() const { return impl().spirv[1]; }
+const std::string& Shader::headerText() const { return impl().text[static_cast<size_t>(Target::Cpp)][1]; }
+const std::string& Shader::moduleTypes() const { return impl().text[static_cast<size_t>(Target::Js)][0]; }
+const std::string& Shader::moduleText() const { return impl().text[static_cast<size_t>(Target::Js)][1]; }
+const std::string& Shader::interfaceJson() const { return impl().interface; }
+
+const std::string& Shader::fileText(Target target, int file) const {
+  static const std::string kNone;
+  const bool known = !targetName(target).empty() && (file == 0 || file == 1);
+  return known ? impl().text[static_cast<size_t>(target)][file] : kNone;
+}
+
+static const std::string& textOf(const Shader& shader, Target target, int stage) {
+  static const std::string kNone;
+  return targetName(target).empty() || packsBlock(target) ? kNone : shader.fileText(target, stage);
+}
+
+const std::string& Shader::vertexText(Target target) const { return textOf(*this, target, 0); }
+const std::string& Shader::fragmentText(Target target) const { return textOf(*this, target, 1); }
+
+size_t Shader::uniformSize() const {
+  for (const ir::Block& block : impl().module.blocks) {
+    if (block.role == ir::BlockRole::Material) return block.size;
+  }
+  return 0;
+}
+
+/// The numbers that a parameter is packed with; of the first that is not the one that is given, a warning.
+static ir::Components packedComponents(const ir::Parameter& parameter, const Shader::Values& value,
+                                       Messages* messages) {
+  ir::Components given = parameter.value;
+  const auto count = static_cast<size_t>(ir::componentCount(parameter.type));
+  if (!value || !value(parameter.name, {given.data(), count})) return parameter.value;
+  ir::Components packed = parameter.value;
+  for (size_t c = 0; c < count; ++c) {
+    packed[c] = packedNumber(parameter, given[c], parameter.value[c]);
+    if (packed[c] == given[c] || messages == nullptr) continue;
+    const bool number = !std::isnan(given[c]);
+    const std::string what = fmt::format("'{}' is given {}", printable(parameter.name), given[c]);
+    const std::string help =
+        number ? fmt::format("it takes {}: {} is packed", packedRangeText(parameter), packed[c])
+               : fmt::format("{} is packed, as if it were not given", packed[c]);
+    messages->push_back(
+        toMessage({number ? "out-of-range" : "not-a-number", Severity::Warning, {}, what, help, {}}));
+    messages = nullptr;
+  }
+  return packed;
+}
+
+void Shader::Impl::pack(const Values& value, std::span<std::byte> block, Messages* messages) const {
+  std::vector<ir::Components> parameters;
+  for (const ir::Parameter& parameter : module.parameters)
+    parameters.push_back(packedComponents(parameter, value, messages));
+  std::fill(block.begin(), block.end(), std::byte{0});
+  const std::vector<ir::Components> values =
+      preshader.evaluate([&](uint32_t i) -> const ir::Components& { return parameters[i]; });
+  for (size_t i = 0; i < values.size(); ++i) {
+    const Preshader::Field& field = preshader.fields()[i];
+    for (int c = 0; c < ir::componentCount(field.type); ++c) {
+      const auto x = static_cast<float>(values[i][static_cast<size_t>(c)]);
+      std::memcpy(block.data() + field.offset + size_t{4} * static_cast<size_t>(c), &x, 4);
+    }
+  }
+}
+
+bool Shader::pack(const Values& value, std::span<std::byte> block) const {
+  const size_t size = uniformSize();
+  if (block.size() < size) return false;
+  impl().pack(value, block.first(size), nullptr);
+  return true;
+}
+
+bool Shader::pack(const Values& value, std::span<std::byte> block, Messages& messages) const {
+  const size_t size = uniformSize();
+  if (block.size() < size) {
+    report(fail("block-too-small", {}, fmt::format("the block has {} bytes", block.size()),
+                fmt::format("it takes {}", size))
+               .value(),
+           {}, messages);
+    return false;
+  }
+  impl().pack(value, block.first(size), &messages);
+  return true;
+}
+
+}  // namespace lacquer

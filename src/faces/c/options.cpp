@@ -1,0 +1,201 @@
+// Options from their JSON form, a row for each key.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "c/handles.h"
+#include "json/json.h"
+#include "setting/messages.h"
+#include "support/text.h"
+
+namespace lacquer::c {
+
+namespace {
+
+using json::Json;
+
+lacquer_options defaults() {
+  lacquer_options options;
+#ifdef LACQUER_NO_CHECK
+  options.options.validate = false;
+#endif
+  return options;
+}
+
+/// Each sets a member from a value, and is false for a value of another kind.
+using Set = bool (*)(const Json&, lacquer_options&);
+
+template <bool Options::*Member>
+bool setBool(const Json& value, lacquer_options& to) {
+  if (value.is_boolean()) to.options.*Member = value.get<bool>();
+  return value.is_boolean();
+}
+
+template <std::string Options::*Member>
+bool setText(const Json& value, lacquer_options& to) {
+  if (value.is_string()) to.options.*Member = value.get<std::string>();
+  return value.is_string();
+}
+
+bool readStrings(const Json& value, Strings& to) {
+  const auto text = [](const Json& each) { return each.is_string(); };
+  if (!value.is_array() || !std::all_of(value.begin(), value.end(), text)) return false;
+  to = value.get<Strings>();
+  return true;
+}
+
+template <Strings Options::*Member>
+bool setStrings(const Json& value, lacquer_options& to) {
+  return readStrings(value, to.options.*Member);
+}
+
+bool wholeNumber(const Json& value, uint32_t& to) {
+  if (!value.is_number()) return false;
+  const double x = value.get<double>();
+  if (!(x >= 0 && x <= 4294967295.0) || x != std::floor(x)) return false;
+  to = static_cast<uint32_t>(x);
+  return true;
+}
+
+bool setTargets(const Json& value, lacquer_options& to) {
+  Strings names;
+  if (!readStrings(value, names)) return false;
+  std::vector<Target> targets;
+  for (const std::string& name : names) {
+    Target target{};
+    if (!findTarget(name, target)) return false;
+    targets.push_back(target);
+  }
+  to.options.targets = std::move(targets);
+  return true;
+}
+
+bool setParameters(const Json& value, lacquer_options& to) {
+  constexpr std::pair<std::string_view, Parameters> kNames[] = {
+      {"uniform", Parameters::Uniform}, {"baked", Parameters::Baked}, {"spec", Parameters::Spec}};
+  for (const auto& [name, parameters] : kNames) {
+    if (value != name) continue;
+    to.options.parameters = parameters;
+    return true;
+  }
+  return false;
+}
+
+bool setRoute(const Json& value, lacquer_options& to) {
+  if (value == "direct") to.options.spirv_route = SpirvRoute::Direct;
+  if (value == "glslang") to.options.spirv_route = SpirvRoute::Glslang;
+  return value == "direct" || value == "glslang";
+}
+
+bool setLights(const Json& value, lacquer_options& to) {
+  Lights lights;
+  if (value == "scene") lights.mode = Lights::Mode::Scene;
+  if (value.is_object()) {
+    lights.mode = Lights::Mode::Fixed;
+    for (const auto& [kind, count] : value.items()) {
+      if (!wholeNumber(count, lights.counts[kind])) return false;
+    }
+  } else if (value != "any" && value != "scene") {
+    return false;
+  }
+  to.options.lights = std::move(lights);
+  return true;
+}
+
+bool setSwitches(const Json& value, lacquer_options& to) {
+  if (!value.is_object()) return false;
+  for (const auto& [name, on] : value.items()) {
+    if (!on.is_boolean()) return false;
+    to.options.switches[name] = on.get<bool>();
+  }
+  return true;
+}
+
+struct Row {
+  std::string_view key;
+  std::string_view what;  ///< it must be
+  Set set;
+};
+
+constexpr std::string_view kTruth = "true or false";
+constexpr std::string_view kTexts = "an array of strings";
+constexpr Row kRows[] = {
+    {"profile", "a string", setText<&Options::profile>},
+    {"simplify", kTexts, setStrings<&Options::simplify>},
+    {"template", "a string", setText<&Options::template_name>},
+    {"targets", "an array of names of targets", setTargets},
+    {"parameters", "\"uniform\", \"baked\" or \"spec\"", setParameters},
+    {"lights", "\"any\", \"scene\" or an object of counts", setLights},
+    {"switches", "an object of true and false", setSwitches},
+    {"ibl", kTruth, setBool<&Options::ibl>},
+    {"multiple_scattering", kTruth, setBool<&Options::multiple_scattering>},
+    {"dfg_table", kTruth, setBool<&Options::dfg_table>},
+    {"decode_srgb", kTruth, setBool<&Options::decode_srgb>},
+    {"permissive", kTruth, setBool<&Options::permissive>},
+    {"validate", kTruth, setBool<&Options::validate>},
+    {"spirv_route", "\"direct\" or \"glslang\"", setRoute},
+    {"relaxed", "a number",
+     [](const Json& value, lacquer_options& to) {
+       if (value.is_number()) to.options.relaxed = value.get<double>();
+       return value.is_number();
+     }},
+    {"debug", kTruth, setBool<&Options::debug>},
+    {"live", kTexts, setStrings<&Options::live>},
+    {"node_directories", kTexts, setStrings<&Options::node_directories>},
+    {"jobs", "a whole number",
+     [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.jobs); }},
+    {"limits", kTexts, setStrings<&Options::limits>},
+    {"allow", kTexts, setStrings<&Options::allow>},
+    {"texels", kTexts, [](const Json& value, lacquer_options& to) { return readStrings(value, to.texels); }},
+};
+
+Result<lacquer_options> readOptions(std::string_view text) {
+  lacquer_options options = defaults();
+  if (text.empty()) return options;
+  const Result<Json> json = json::parse(text, "options");
+  if (!json) return tl::make_unexpected(json.error());
+  if (!json->is_object()) {
+    return fail("wrong-type", {"options", 0, 0, {}}, fmt::format("the options are {}", json::describe(*json)),
+                "they must be an object");
+  }
+  for (const auto& [key, value] : json->items()) {
+    const Place place{"options", 0, 0, "/" + key};
+    const auto row = std::find_if(std::begin(kRows), std::end(kRows),
+                                  [&, &name = key](const Row& each) { return each.key == name; });
+    if (row == std::end(kRows)) {
+      std::vector<std::string_view> names;
+      for (const Row& each : kRows) names.push_back(each.key);
+      return fail("unknown-option", place, fmt::format("there is no option {}", quote(key)),
+                  "there are " + listOf(names));
+    }
+    if (!row->set(value, options)) {
+      return fail("wrong-type", place, fmt::format("{} is {}", quote(key), json::describe(value)),
+                  fmt::format("it must be {}", row->what));
+    }
+  }
+  return options;
+}
+
+}  // namespace
+
+const lacquer_options& optionsOf(const lacquer_options* options) {
+  static const lacquer_options kDefaults = defaults();
+  return options == nullptr ? kDefaults : *options;
+}
+
+}  // namespace lacquer::c
+
+using namespace lacquer::c;
+
+lacquer_options* lacquer_options_new(const char* json, size_t size, lacquer_messages* messages) {
+  return guarded(messages, static_cast<lacquer_options*>(nullptr),
+                 [&](lacquer::Messages& to) -> lacquer_options* {
+                   auto options = readOptions(bytesOf(json, size));
+                   if (options) return new lacquer_options(std::move(*options));
+                   lacquer::report(options.error(), "options", to);
+                   return nullptr;
+                 });
+}
+void lacquer_options_free(lacquer_options* options) { delete options; }

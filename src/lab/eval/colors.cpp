@@ -1,0 +1,373 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/evaluate.h"
+#include "eval/gpu.h"
+#include "eval/material.h"
+#include "eval/of_scene.h"
+#include "eval/points_file.h"
+#include "setting/language.h"
+#include "setting/messages.h"
+#include "setting/options.h"
+#include "support/file.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+namespace {
+
+/// The values that the points' file gives to fields of the template's blocks.
+Result<void> bindUniforms(const ir::Module& module, const EvalPoints& points, const std::string& file,
+                          eval::Bindings& bindings) {
+  for (const auto& [name, values] : points.uniforms) {
+    const ir::BlockField* field = nullptr;
+    for (const ir::Block& block : module.blocks) {
+      if (block.role == ir::BlockRole::Material) continue;
+      for (const ir::BlockField& f : block.fields) {
+        for (uint32_t i = 0; i < f.elements(); ++i) {
+          if (block.instance + "." + f.elementName(i) == name) field = &f;
+        }
+      }
+    }
+    const auto wrong = [&, &known = name](std::string code, std::string message, std::string help) {
+      return fail(std::move(code), {file, 0, 0, "/uniforms/" + known}, std::move(message), std::move(help));
+    };
+    if (field == nullptr) {
+      return wrong("unknown-uniform",
+                   fmt::format("the template '{}' has no field '{}'", module.template_name, printable(name)),
+                   "write BLOCK.FIELD as the template names them, BLOCK.FIELD[0] of an array");
+    }
+    const auto width = static_cast<size_t>(ir::componentCount(field->type));
+    if (values.size() != width) {
+      return wrong("wrong-type", fmt::format("'{}' is given {} numbers", name, values.size()),
+                   fmt::format("a {} has {}", ir::typeName(field->type), width));
+    }
+    for (const double x : values) {
+      if (x >= field->range.lo && x <= field->range.hi) continue;
+      return wrong("out-of-range", fmt::format("'{}' is {}", name, x),
+                   fmt::format("it must be in [{}, {}]", field->range.lo, field->range.hi));
+    }
+    eval::Columns& columns = bindings.lights.at(0).contains(name) ? bindings.lights[0] : bindings.columns;
+    columns[name] = eval::Column::constant(values);
+  }
+  return {};
+}
+
+/// The points' light is one of KHR_lights_punctual, and directional.
+constexpr std::string_view kPointLight = "directional";
+
+bool hasPointLight(const ir::Module& module) {
+  return std::any_of(module.light_kinds.begin(), module.light_kinds.end(),
+                     [](const ir::LightKind& kind) { return kind.name == kPointLight; });
+}
+
+/// A template with other lights sees nothing of the points' own: its light is what "uniforms" says.
+void noteLights(const ir::Module& module, const EvalPoints& points, const std::string& file,
+                Messages& messages) {
+  if (!module.sums_lights || hasPointLight(module)) return;
+  for (const ir::Block& block : module.blocks) {
+    if (block.role != ir::BlockRole::Lights) continue;
+    const auto given = points.uniforms.lower_bound(block.instance + ".");
+    if (given != points.uniforms.end() && given->first.starts_with(block.instance + ".")) return;
+    std::string fields;
+    for (const ir::BlockField& field : block.fields)
+      fields += fmt::format("{}\"{}.{}\"", fields.empty() ? "" : ", ", block.instance, field.name);
+    report(
+        {{"light-unused",
+          Severity::Warning,
+          {file, 0, 0, {}},
+          fmt::format("the points' 'l' and 'light' go nowhere: the template '{}' has no kind of light '{}'",
+                      module.template_name, kPointLight),
+          fmt::format("say in \"uniforms\" what its light is: {}", fields),
+          {}}},
+        file, messages);
+  }
+}
+
+/// The points' own values, the environment of each, and what comes from the stages before the fragment's.
+Result<void> bind(EvalMaterial& material, const EvalPoints& points, const std::string& file,
+                  eval::Bindings& bindings) {
+  eval::bindPoints(material.module(), points.points, bindings);
+  if (Result<void> uniforms = bindUniforms(material.module(), points, file, bindings); !uniforms)
+    return uniforms;
+  if (Result<void> block = eval::bindMaterialBlock(material.module(), bindings); !block) return block;
+  if (Result<void> varyings = eval::bindVaryings<float>(material.module(), points.points.size(), bindings);
+      !varyings) {
+    return varyings;
+  }
+  for (const ir::TextureSlot* slot : material.environments()) {
+    bindings.textures[slot->name] = [&points](size_t point, const std::array<double, 3>&, double) {
+      const std::array<double, 3>& e = points.environment[point];
+      return std::array<double, 4>{e[0], e[1], e[2], 1};
+    };
+  }
+  return material.bindTextures({}, bindings);
+}
+
+struct Colors {
+  std::vector<double> rgba;     ///< of each point
+  std::vector<bool> discarded;  ///< by point; empty when the material discards nothing
+  std::string device;           ///< that ran the shader; empty for the CPU
+};
+
+std::string_view nameOf(Engine engine) {
+  switch (engine) {
+    case Engine::Double: return "double";
+    case Engine::Float: return "float";
+    case Engine::Vulkan:
+    case Engine::VulkanGlsl:
+    case Engine::VulkanHlsl: return "vulkan";
+  }
+  return {};  // no enumerator
+}
+
+bool onDevice(Engine engine) { return engine != Engine::Double && engine != Engine::Float; }
+
+FragmentRoute routeOf(Engine engine) {
+  return engine == Engine::VulkanHlsl   ? FragmentRoute::Hlsl
+         : engine == Engine::VulkanGlsl ? FragmentRoute::Glsl
+                                        : FragmentRoute::Direct;
+}
+
+std::string answerOf(const Colors& colors, const std::string& material, const std::string& profile,
+                     Engine engine) {
+  std::string text = fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n",
+                                 json::quotedText(material), nameOf(engine));
+  if (!colors.device.empty()) text += fmt::format("  \"device\": {},\n", json::quotedText(colors.device));
+  text += fmt::format("  \"profile\": \"{}\",\n  \"rgba\": [", profile);
+  for (size_t i = 0; 4 * i < colors.rgba.size(); ++i) {
+    text += i == 0 ? "\n    [" : ",\n    [";
+    // A device leaves no colour where it has dropped the fragment.
+    const bool none = onDevice(engine) && !colors.discarded.empty() && colors.discarded[i];
+    for (size_t c = 0; c < 4; ++c) {
+      const double x = colors.rgba[4 * i + c];
+      if (c > 0) text += ", ";
+      // JSON has no infinity; no input in its range should come here.
+      text += none || !std::isfinite(x)  ? "null"
+              : engine == Engine::Double ? fmt::format("{:.17g}", x)
+                                         : fmt::format("{:.9g}", static_cast<float>(x));
+    }
+    text += "]";
+  }
+  text += "\n  ]";
+  if (!colors.discarded.empty()) {
+    text += ",\n  \"discarded\": [";
+    for (size_t i = 0; i < colors.discarded.size(); ++i)
+      text += fmt::format("{}{}", i == 0 ? "" : ", ", static_cast<bool>(colors.discarded[i]));
+    text += "]";
+  }
+  return text + "\n}\n";
+}
+
+vulkan::Texture environmentOf(const EvalPoints& points) {
+  std::vector<vulkan::Texel> texels;
+  for (const std::array<double, 3>& e : points.environment) {
+    texels.push_back({static_cast<float>(e[0]), static_cast<float>(e[1]), static_cast<float>(e[2]), 1});
+  }
+  vulkan::Texture texture;
+  texture.shape = vulkan::Shape::Cube;
+  texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(std::move(texels));
+  return texture;
+}
+
+vulkan::Texture constantOf(const std::array<double, 4>& value, ir::Type type) {
+  vulkan::Texel texel{};
+  for (size_t i = 0; i < 4; ++i) texel[i] = static_cast<float>(value[i]);
+  vulkan::Texture texture = textureFor(type);
+  texture.nearest = true;
+  texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(1, texel);
+  return texture;
+}
+
+/// Decoded here, as the device's sRGB format would before it filters.
+vulkan::Texture imageOf(const eval::Image& image, const eval::Lookup& lookup) {
+  std::vector<vulkan::Texel> texels(image.size());
+  for (size_t i = 0; i < texels.size(); ++i) texels[i] = image.at(i);
+  for (size_t i = 0; lookup.srgb && i < texels.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      texels[i][c] = static_cast<float>(eval::decodeSrgb(static_cast<double>(texels[i][c])));
+    }
+  }
+  vulkan::Texture texture;
+  texture.width = static_cast<uint32_t>(image.width);
+  texture.height = static_cast<uint32_t>(image.height);
+  texture.s = static_cast<vulkan::Wrap>(lookup.s);
+  texture.t = static_cast<vulkan::Wrap>(lookup.t);
+  texture.nearest = lookup.nearest;
+  texture.texels = std::make_shared<const std::vector<vulkan::Texel>>(std::move(texels));
+  return texture;
+}
+
+GpuTextures gpuTextures(const EvalMaterial& material, const EvalPoints& points) {
+  GpuTextures textures;
+  for (const ir::TextureSlot* slot : material.environments()) textures[slot->name] = environmentOf(points);
+  for (const auto& [name, bound] : material.textures()) {
+    textures[name] =
+        bound.constant ? constantOf(*bound.constant, bound.type) : imageOf(*bound.image, bound.lookup);
+  }
+  return textures;
+}
+
+template <class T>
+Result<Colors> colors(const ir::Module& module, const eval::Bindings& bindings, size_t points) {
+  std::vector<ir::ValueId> roots;
+  ir::ValueId color = ir::kNoValue;
+  ir::ValueId dropped = ir::kNoValue;
+  for (const ir::Output& output : module.outputs) {
+    if (output.kind == ir::OutputKind::Color && output.location == 0) color = output.value;
+    if (output.kind == ir::OutputKind::Discard) dropped = output.value;
+  }
+  roots.push_back(color);
+  if (dropped != ir::kNoValue) roots.push_back(dropped);
+  const auto values = eval::evaluate<T>(module, roots, bindings, points);
+  if (!values) return tl::make_unexpected(values.error());
+  Colors result{{(*values)[0].begin(), (*values)[0].end()}, {}, {}};
+  if (values->size() > 1) {
+    for (const T x : (*values)[1]) result.discarded.push_back(x != 0);
+  }
+  return result;
+}
+
+Result<Colors> colorsOnGpu(const ir::Module& module, const eval::Bindings& bindings,
+                           const GpuTextures& textures, size_t points, FragmentRoute route) {
+  const Result<vulkan::Work> work = gpuWork(module, bindings, textures, points, route);
+  if (!work) return tl::make_unexpected(work.error());
+  const Result<vulkan::Device> device = vulkan::Device::open();
+  if (!device) return tl::make_unexpected(device.error());
+  Result<vulkan::Outcome> outcome = device->run(*work);
+  if (!outcome) return tl::make_unexpected(std::move(outcome.error()));
+  Colors result{{outcome->outputs[0].begin(), outcome->outputs[0].end()}, {}, device->name()};
+  const bool may_discard = std::any_of(module.outputs.begin(), module.outputs.end(),
+                                       [](const auto& o) { return o.kind == ir::OutputKind::Discard; });
+  if (may_discard) result.discarded = std::move(outcome->discarded);
+  return result;
+}
+
+/// How to evaluate, beside the material.
+struct Evaluation {
+  const EvalPoints& points;
+  const std::string& points_file;
+  Engine engine;
+  const Strings& texels;
+  const Options& options;
+};
+
+Result<std::string> evaluateMaterial(const material::Material& found, const Language& library,
+                                     FileImages& images, const Evaluation& how, Messages& messages) {
+  const auto& [points, points_file, engine, texels, options] = how;
+  const std::string& file = images.file();
+  report(found.diagnostics, file, messages);
+  if (lacquer::hasError(found.diagnostics)) return std::string();
+  EvalMaterial evaluated(images, options);
+  if (Result<void> set = evaluated.setTexels(texels); !set)
+    return tl::make_unexpected(std::move(set.error()));
+  if (Result<void> lowered = evaluated.lower(found, library, points.has_environment, {}, messages);
+      !lowered) {
+    return tl::make_unexpected(std::move(lowered.error()));
+  }
+  noteLights(evaluated.module(), points, points_file, messages);
+  // Placed, a module's uniforms are floats: in double it stays as it is, where its light stays.
+  const bool dark =
+      options.lights.mode == Lights::Mode::Fixed && !options.lights.counts.contains(kPointLight);
+  if (engine != Engine::Double || dark) {
+    evaluated.place(hasPointLight(evaluated.module())
+                        ? passes::LightFacts{false, {{std::string(kPointLight), 1}}}
+                        : passes::LightFacts{});
+  }
+  eval::Bindings bindings;
+  const Result<void> bound = bind(evaluated, points, points_file, bindings);
+  report(images.takeNotes(), file, messages);
+  if (!bound) return tl::make_unexpected(bound.error());
+  const size_t count = points.points.size();
+  const ir::Module& module = evaluated.module();
+  const Result<Colors> answer =
+      engine == Engine::Double ? colors<double>(module, bindings, count)
+      : engine == Engine::Float
+          ? colors<float>(module, bindings, count)
+          : colorsOnGpu(module, bindings, gpuTextures(evaluated, points), count, routeOf(engine));
+  if (!answer) return tl::make_unexpected(answer.error());
+  return answerOf(*answer, found.name, evaluated.profile(), engine);
+}
+
+Result<std::string> evaluateFile(const std::string& file, const std::string& material, const Evaluation& how,
+                                 Messages& messages) {
+  const auto library = libraryFor(how.options);
+  if (!library) return tl::make_unexpected(library.error());
+  const Result<material::Document> document = readMaterials(file, **library, how.options);
+  if (!document) return tl::make_unexpected(document.error());
+  report(document->diagnostics, file, messages);
+  Diagnostics warnings;
+  const Result<size_t> place =
+      material::findMaterial(*document, material.empty() ? std::nullopt : std::optional(material), warnings);
+  if (!place) return tl::make_unexpected(place.error());
+  report(warnings, file, messages);
+  FileImages images(file, how.options);
+  return evaluateMaterial(document->materials[*place], **library, images, how, messages);
+}
+
+Diagnostics checkEvaluation(Engine engine, const Options& options) {
+  Diagnostics wrong = checkReading(options);
+  if (nameOf(engine).empty()) {
+    wrong.push_back({"unknown-enumerator",
+                     Severity::Error,
+                     {},
+                     fmt::format("the engine is {}, which is no enumerator", static_cast<int>(engine)),
+                     "they are 0 to 4",
+                     {}});
+  }
+  if (engine == Engine::VulkanHlsl && options.parameters == Parameters::Spec) {
+    wrong.push_back({"no-specialization-constants",
+                     Severity::Error,
+                     {},
+                     "HLSL has no specialization constants",
+                     "let the parameters be uniform or baked, or go by the direct SPIR-V or the GLSL",
+                     {}});
+  }
+  return wrong;
+}
+
+}  // namespace
+
+std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
+                     const std::string& points_name, Engine engine, const std::vector<std::string>& texels,
+                     const Options& options, Messages& messages) {
+  if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return {};
+  }
+  const Limits limits = *limitsOf(options);
+  Result<std::string> text = points;
+  if (points.empty())
+    text = points_name == "-" ? readStandardInput(limits.file) : readFile(points_name, limits.file);
+  const Result<EvalPoints> read =
+      text ? readPoints(*text, points_name, limits) : tl::make_unexpected(text.error());
+  if (!read) {
+    report(read.error(), points_name, messages);
+    return {};
+  }
+  text = evaluateFile(file, material, {*read, points_name, engine, texels, options}, messages);
+  if (text) return std::move(*text);
+  report(text.error(), file, messages);
+  return {};
+}
+
+std::string evaluateOf(const SceneMaterial& of, const std::string& points, Engine engine,
+                       const Strings& texels, const Options& options, Messages& messages) {
+  static const std::string kPoints = "points";
+  if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return {};
+  }
+  const Result<EvalPoints> read = readPoints(points, kPoints, *limitsOf(options));
+  if (!read) return report(read.error(), kPoints, messages), std::string();
+  FileImages images(of.file, options, of.bytes);
+  Result<std::string> text =
+      evaluateMaterial(of.material, of.language, images, {*read, kPoints, engine, texels, options}, messages);
+  if (text) return std::move(*text);
+  report(text.error(), of.file, messages);
+  return {};
+}
+
+}  // namespace lacquer

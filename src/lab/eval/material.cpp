@@ -1,0 +1,312 @@
+#include "eval/material.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "eval/dfg.h"
+#include "lower/lower.h"
+#include "setting/language.h"
+#include "setting/messages.h"
+#include "setting/options.h"
+#include "setting/simplify.h"
+#include "shader/module.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+namespace {
+
+bool isTextureProperty(const material::Schema& schema, const std::string& name) {
+  return std::any_of(schema.properties.begin(), schema.properties.end(),
+                     [&](const material::Property& property) {
+                       return property.decl->kind == material::Kind::Texture && property.decl->name == name;
+                     });
+}
+
+eval::Wrap wrapOf(int gl) {
+  constexpr int kClamp = 33071;
+  constexpr int kMirror = 33648;
+  return gl == kClamp ? eval::Wrap::Clamp : gl == kMirror ? eval::Wrap::Mirror : eval::Wrap::Repeat;
+}
+
+}  // namespace
+
+std::string propertyOf(const ir::TextureSlot& slot) {
+  return slot.pointer.substr(slot.pointer.rfind('/') + 1);
+}
+
+std::array<double, 4> neutralTexel(const ir::TextureSlot& slot) {
+  const std::string property = propertyOf(slot);
+  const auto ends = [&](std::string_view end) {
+    return property.size() >= end.size() &&
+           property.compare(property.size() - end.size(), end.size(), end) == 0;
+  };
+  if (ends("ormalTexture")) return {0.5, 0.5, 1, 1};
+  if (ends("nisotropyTexture")) return {1, 0.5, 1, 1};
+  return {1, 1, 1, 1};
+}
+
+FileImages::FileImages(std::string file, const Options& options, std::shared_ptr<const std::string> bytes)
+    : file_(std::move(file)),
+      bytes_(std::move(bytes)),
+      access_{limitsOf(options).value_or(Limits{}), options.allow} {}
+
+bool FileImages::makeRoom(uint64_t pixels) {
+  while (pixels > access_.limits.images - std::min(held_, access_.limits.images)) {
+    auto oldest = images_.end();
+    for (auto it = images_.begin(); it != images_.end(); ++it) {
+      const bool free = it->second.image.use_count() == 1;
+      if (free && (oldest == images_.end() || it->second.used < oldest->second.used)) oldest = it;
+    }
+    if (oldest == images_.end()) return false;
+    held_ -= oldest->second.pixels;
+    images_.erase(oldest);
+  }
+  return true;
+}
+
+Result<FileImages::Held> FileImages::decode(const gltf::TextureSource& source) {
+  const Result<std::string> bytes = opened_->image(source);
+  if (!bytes) return tl::make_unexpected(bytes.error());
+  const Result<eval::ImageSize> size = eval::sizeOfImage(*bytes, source.place);
+  if (!size) return tl::make_unexpected(size.error());
+  const uint64_t pixels = size->pixels() * (size->wide ? 2 : 1);
+  const bool alone = size->pixels() > access_.limits.image;  // which decoding says
+  if (!alone && !makeRoom(pixels)) {
+    return fail("image-too-large", source.place,
+                fmt::format("the material's images together have more than {} pixels (of 8 bits per channel)",
+                            access_.limits.images),
+                raising("images"));
+  }
+  Result<eval::Image> image = eval::decodeImage(*bytes, access_.limits.image, source.place);
+  if (!image) return tl::make_unexpected(std::move(image.error()));
+  return Held{std::make_shared<const eval::Image>(std::move(*image)), pixels, 0};
+}
+
+/// An image of an extension's that there is another one for.
+void FileImages::passedOver(int texture, const gltf::TextureSource& source) {
+  const std::vector<gltf::Texture::Source>& others = source.texture.sources;
+  if (source.texture.source < 0 || others.empty() || !noted_.insert(texture).second) return;
+  notes_.push_back({"image-fallback",
+                    Severity::Note,
+                    {file_, 0, 0, fmt::format("/textures/{}/extensions/{}", texture, others[0].extension)},
+                    fmt::format("image {} of {} is not decoded here: image {} is looked into",
+                                others[0].image, others[0].extension, source.texture.source),
+                    "an engine may show the other",
+                    {}});
+}
+
+Result<void> FileImages::open() {
+  if (opened_) return {};
+  Result<gltf::TextureFile> opened = bytes_ ? gltf::TextureFile::fromMemory(*bytes_, file_, access_)
+                                            : gltf::TextureFile::open(file_, access_);
+  if (!opened) return tl::make_unexpected(std::move(opened.error()));
+  opened_ = std::move(*opened);
+  return {};
+}
+
+gltf::Geometry FileImages::geometry(size_t material) {
+  if (!open()) return {};
+  return gltf::geometryOf(*opened_, material);
+}
+
+Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
+  if (Result<void> opened = open(); !opened) return tl::make_unexpected(std::move(opened.error()));
+  const Result<gltf::TextureSource> source = opened_->texture(texture);
+  if (!source) return tl::make_unexpected(source.error());
+  passedOver(texture, *source);
+  auto it = images_.find(source->image);
+  if (it == images_.end()) {
+    Result<Held> decoded = decode(*source);
+    if (!decoded) return tl::make_unexpected(std::move(decoded.error()));
+    held_ += decoded->pixels;
+    it = images_.emplace(source->image, std::move(*decoded)).first;
+  }
+  it->second.used = ++uses_;
+  constexpr int kNearest = 9728;
+  const gltf::Texture& of = source->texture;
+  return Loaded{it->second.image, {wrapOf(of.wrapS), wrapOf(of.wrapT), of.magFilter == kNearest, srgb}};
+}
+
+Result<EvalMaterial::Texel> EvalMaterial::parseTexel(const std::string& text) {
+  const auto wrong = [&] {
+    return fail("bad-texel", {}, fmt::format("'{}' is no texel", text),
+                "write SLOT=r,g,b,a with four numbers");
+  };
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) return wrong();
+  Texel texel;
+  texel.slot = text.substr(0, equals);
+  std::istringstream numbers(text.substr(equals + 1));
+  numbers.imbue(std::locale::classic());
+  for (size_t i = 0; i < 4; ++i) {
+    char comma = ',';
+    if (i > 0 && (!(numbers >> comma) || comma != ',')) return wrong();
+    if (!(numbers >> texel.value[i]) || !std::isfinite(texel.value[i])) return wrong();
+  }
+  if (!(numbers >> std::ws).eof()) return wrong();
+  return texel;
+}
+
+Result<void> EvalMaterial::setTexels(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) {
+    Result<Texel> texel = parseTexel(text);
+    if (!texel) return tl::make_unexpected(std::move(texel.error()));
+    texels_.push_back(std::move(*texel));
+  }
+  return {};
+}
+
+Result<void> EvalMaterial::lower(material::Material material, const Language& library, bool environment,
+                                 const std::string& variant, Messages& messages) {
+  // Every use of a texture gets a slot of its own, so that each can be given a texel.
+  for (material::Material::Texture& texture : material.textures) {
+    originals_.push_back(texture.info.texture);
+    texture.info.texture = static_cast<int>(originals_.size()) - 1;
+  }
+  Options options = options_;
+  if (Result<void> named = resolveNames(library, options); !named) return named;
+  profile_ = options.profile;
+  options.ibl = options.ibl && environment;
+  options.decode_srgb = false;
+  Diagnostics warnings;
+  Result<graph::Graph> built =
+      buildGraph(material, {true, tangents_, true, {true, true, true, true}}, library, options, warnings);
+  report(warnings, images_.file(), messages);
+  if (!built) return tl::make_unexpected(std::move(built.error()));
+  graph::Graph graph = std::move(*built);
+  for (graph::Node& node : graph.nodes) {
+    const Result<const lang::NodeDecl*> decl = library.node(node.type);
+    if (decl && !variant.empty() && (*decl)->find(variant) != nullptr) node.variant = variant;
+  }
+  if (Diagnostics wrong = graph::check(graph, library); lacquer::hasError(wrong)) {
+    return tl::make_unexpected(std::move(wrong));
+  }
+  Result<ir::Module> module = lower::lower(graph, library, loweringOf(options, true));
+  if (!module) return tl::make_unexpected(std::move(module.error()));
+  module_ = std::move(*module);
+  return checkTexels(**library.models.schema());
+}
+
+void EvalMaterial::place(const passes::LightFacts& lights) {
+  passes::PipelineOptions pipeline;
+  pipeline.lights = lights;
+  pipeline.relaxed = options_.relaxed;
+  // A shader for fixed counts of lights has none of a kind that is not counted.
+  if (options_.lights.mode == Lights::Mode::Fixed) {
+    if (options_.lights.counts.empty()) pipeline.lights.any = false;
+    for (auto& [kind, count] : pipeline.lights.counts) {
+      const auto fixed = options_.lights.counts.find(kind);
+      count = std::min(count, fixed == options_.lights.counts.end() ? 0U : fixed->second);
+    }
+  }
+  passes::runPipeline(module_, pipeline);
+}
+
+std::vector<const ir::TextureSlot*> EvalMaterial::usedTextures() const {
+  std::vector<ir::ValueId> roots;
+  for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
+  std::vector<bool> used(module_.textures.size(), false);
+  for (const ir::ValueId id : ir::reachable(module_.dag, roots)) {
+    if (module_.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module_.dag.inputOf(id);
+    if (input.kind == ir::InputKind::Texture) used[input.field] = true;
+  }
+  std::vector<const ir::TextureSlot*> slots;
+  for (size_t i = 0; i < used.size(); ++i) {
+    if (used[i]) slots.push_back(&module_.textures[i]);
+  }
+  return slots;
+}
+
+std::vector<const ir::TextureSlot*> EvalMaterial::environments() const {
+  std::vector<const ir::TextureSlot*> slots = usedTextures();
+  std::erase_if(slots, [](const ir::TextureSlot* slot) {
+    return !slot->environment || slot->type != ir::Type::TextureCube;
+  });
+  return slots;
+}
+
+Result<void> EvalMaterial::bindTextures(const Substitute& substitute, eval::Bindings& bindings) {
+  Diagnostics wrong;
+  for (const ir::TextureSlot* slot : usedTextures()) {
+    if (slot->environment && slot->type == ir::Type::TextureCube) continue;
+    Result<BoundTexture> bound = slot->environment ? environmentOf(*slot) : textureOf(*slot, substitute);
+    if (!bound) {
+      wrong.insert(wrong.end(), bound.error().begin(), bound.error().end());
+      continue;
+    }
+    if (bound->constant) {
+      const std::array<double, 4> value = *bound->constant;
+      bindings.textures[slot->name] = [value](size_t, const std::array<double, 3>&, double) { return value; };
+    } else {
+      bindings.textures[slot->name] = eval::makeSampler(bound->image, bound->lookup);
+    }
+    bound->type = slot->type;
+    bound_[slot->name] = std::move(*bound);
+  }
+  if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  return {};
+}
+
+bool EvalMaterial::names(const std::string& name, const ir::TextureSlot& slot) {
+  if (slot.environment) return name == slot.name && slot.type != ir::Type::TextureCube;
+  return name == propertyOf(slot) || name == slot.name;
+}
+
+/// A texel for a texture that this material does not have is not used; a name that no texture has is a
+/// mistake.
+Result<void> EvalMaterial::checkTexels(const material::Schema& schema) const {
+  for (const Texel& texel : texels_) {
+    const bool known = isTextureProperty(schema, texel.slot) ||
+                       std::any_of(module_.textures.begin(), module_.textures.end(),
+                                   [&](const ir::TextureSlot& slot) { return names(texel.slot, slot); });
+    if (known) continue;
+    std::vector<std::string> slots;
+    for (const ir::TextureSlot& slot : module_.textures) {
+      if (!slot.environment) slots.push_back(propertyOf(slot));
+    }
+    return fail("unknown-texture", {}, fmt::format("--texel: there is no texture '{}'", texel.slot),
+                slots.empty() ? "the material has no textures"
+                              : fmt::format("the material has {}", fmt::join(slots, ", ")));
+  }
+  return {};
+}
+
+/// A texture of the template's: a constant that is given, a table of factors, or a depth map in which
+/// nothing stands.
+Result<BoundTexture> EvalMaterial::environmentOf(const ir::TextureSlot& slot) const {
+  for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
+    if (names(it->slot, slot)) return BoundTexture{it->value, {}, {}};
+  }
+  if (const auto table = eval::environmentTable(slot.name); table && slot.type == ir::Type::Texture2D)
+    return BoundTexture{{}, table, {eval::Wrap::Clamp, eval::Wrap::Clamp, false, false}};
+  if (slot.texel) return BoundTexture{*slot.texel, {}, {}};
+  if (slot.type == ir::Type::Texture2DShadow) return BoundTexture{std::array<double, 4>{1, 0, 0, 0}, {}, {}};
+  return fail("image-missing", {},
+              fmt::format("the template '{}' is given a texture '{}' that has no texels here",
+                          module_.template_name, slot.name),
+              fmt::format("give a constant: --texel {}=r,g,b,a", slot.name));
+}
+
+Result<BoundTexture> EvalMaterial::textureOf(const ir::TextureSlot& slot, const Substitute& substitute) {
+  for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
+    if (names(it->slot, slot)) return BoundTexture{it->value, {}, {}};
+  }
+  Result<FileImages::Loaded> loaded = images_.load(originals_[static_cast<size_t>(slot.texture)], slot.srgb);
+  if (loaded) return BoundTexture{{}, loaded->image, loaded->lookup};
+  if (substitute) {
+    if (const std::optional<std::array<double, 4>> value = substitute(slot, loaded.error()))
+      return BoundTexture{value, {}, {}};
+  }
+  for (Diagnostic& d : loaded.error()) {
+    d.message = fmt::format("{} has no image: {}", propertyOf(slot), d.message);
+    if (d.help.empty()) d.help = fmt::format("or give a constant: --texel {}=r,g,b,a", propertyOf(slot));
+  }
+  return tl::make_unexpected(std::move(loaded.error()));
+}
+
+}  // namespace lacquer

@@ -1,0 +1,246 @@
+#include "eval/points_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "json/report.h"
+#include "setting/messages.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+namespace {
+
+using json::Json;
+using json::Path;
+using Vec3 = std::array<double, 3>;
+
+constexpr std::string_view kKeys[] = {"n",
+                                      "t",
+                                      "v",
+                                      "l",
+                                      "uv0",
+                                      "uv1",
+                                      "uv2",
+                                      "uv3",
+                                      "color0",
+                                      "light",
+                                      "env",
+                                      "position",
+                                      "front_facing",
+                                      "inside",
+                                      "surrounding_ior",
+                                      "channel",
+                                      "random"};
+
+/// A direction may be off by the rounding of printed digits, not by more.
+constexpr double kUnitTolerance = 1e-3;
+
+double length(const Vec3& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+
+Vec3 unit(const Vec3& a) {
+  const double l = length(a);
+  return {a[0] / l, a[1] / l, a[2] / l};
+}
+
+/// Some unit vector at right angles to a unit vector.
+Vec3 across(const Vec3& n) {
+  const Vec3 axis = std::abs(n[0]) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const double along = axis[0] * n[0] + axis[1] * n[1] + axis[2] * n[2];
+  return unit({axis[0] - n[0] * along, axis[1] - n[1] * along, axis[2] - n[2] * along});
+}
+
+class PointReader {
+public:
+  PointReader(const std::string& file, Diagnostics& diagnostics) : report_(file, diagnostics) {}
+
+  void read(const Json& json, const Path& path, EvalPoints& to) {
+    eval::Point point;
+    Vec3 environment{};
+    if (!json.is_object()) return report_.wrongType(path, "the point", json, "an object");
+    for (const auto& [key, value] : json.items()) {
+      const Path here(path, key);
+      if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys)) continue;
+      const std::string_view close = closest(key, kKeys);
+      report_.error("unknown-property", here, fmt::format("a point has no {}", quote(key)),
+                    close.empty() ? fmt::format("it has {}", listOf(kKeys))
+                                  : fmt::format("did you mean \"{}\"?", close));
+    }
+    if (vector(json, path, "n", point.n) && !(length(point.n) > 1e-12 && length(point.n) < 1e12)) {
+      report_.error("zero-length", Path(path, "n"), "the normal has no length", "any length does, but for 0");
+      point.n = {0, 0, 1};
+    }
+    point.n = unit(point.n);
+    tangent(json, path, point);
+    direction(json, path, "v", point.n, point.v);
+    direction(json, path, "l", point.n, point.l);
+    constexpr const char* kUv[] = {"uv0", "uv1", "uv2", "uv3"};
+    for (size_t i = 0; i < 4; ++i) vector(json, path, kUv[i], point.uv[i]);
+    color(json, path, point.color0);
+    if (vector(json, path, "light", point.light)) notNegative(path, "light", point.light);
+    if (vector(json, path, "env", environment)) {
+      notNegative(path, "env", environment);
+      to.has_environment = true;
+    }
+    vector(json, path, "position", point.position);
+    flag(json, path, "front_facing", point.front_facing);
+    flag(json, path, "inside", point.inside);
+    number(json, path, "surrounding_ior", point.surrounding_ior);
+    number(json, path, "channel", point.channel);
+    vector(json, path, "random", point.random);
+    to.points.push_back(point);
+    to.environment.push_back(environment);
+  }
+
+private:
+  bool numbers(const Json& json, const Path& path, std::string_view name, std::span<double> to) {
+    const std::string expected = fmt::format("an array of {} numbers", to.size());
+    const bool fits = json.is_array() && json.size() == to.size() &&
+                      std::all_of(json.begin(), json.end(), [](const Json& x) { return x.is_number(); });
+    if (!fits) {
+      report_.wrongType(path, name, json, expected);
+      return false;
+    }
+    for (size_t i = 0; i < to.size(); ++i) {
+      to[i] = json[i].get<double>();
+      if (std::isfinite(to[i])) continue;
+      report_.error("not-finite", Path(path, i), fmt::format("{} is not finite", name));
+      return false;
+    }
+    return true;
+  }
+
+  /// True when the member is there and good.
+  template <size_t N>
+  bool vector(const Json& point, const Path& path, std::string_view name, std::array<double, N>& to) {
+    const Json* json = json::member(point, name);
+    std::array<double, N> value{};
+    if (json == nullptr || !numbers(*json, Path(path, name), name, value)) return false;
+    to = value;
+    return true;
+  }
+
+  void flag(const Json& point, const Path& path, std::string_view name, bool& to) {
+    const Json* json = json::member(point, name);
+    if (json == nullptr) return;
+    if (json->is_boolean())
+      to = json->get<bool>();
+    else
+      report_.wrongType(Path(path, name), name, *json, "true or false");
+  }
+
+  void number(const Json& point, const Path& path, std::string_view name, double& to) {
+    const Json* json = json::member(point, name);
+    if (json == nullptr) return;
+    if (!json->is_number()) return report_.wrongType(Path(path, name), name, *json, "a number");
+    if (const double value = json->get<double>(); std::isfinite(value)) return void(to = value);
+    report_.error("not-finite", Path(path, name), fmt::format("{} is not finite", name));
+  }
+
+  void direction(const Json& point, const Path& path, std::string_view name, const Vec3& missing, Vec3& to) {
+    to = missing;
+    if (!vector(point, path, name, to)) return;
+    const double l = length(to);
+    if (std::abs(l - 1) <= kUnitTolerance) {
+      to = unit(to);
+      return;
+    }
+    report_.error("not-unit", Path(path, name), fmt::format("{} has the length {:.6g}", name, l),
+                  "it must be a unit vector, to a thousandth");
+    to = missing;
+  }
+
+  void tangent(const Json& point, const Path& path, eval::Point& to) {
+    const Vec3 any = across(to.n);
+    to.t = {any[0], any[1], any[2], 1};
+    std::array<double, 4> t{};
+    if (!vector(point, path, "t", t)) return;
+    const Path here(path, "t");
+    if (!(length({t[0], t[1], t[2]}) > 1e-12 && length({t[0], t[1], t[2]}) < 1e12)) {
+      return report_.error("zero-length", here, "the tangent has no length", "any length does, but for 0");
+    }
+    if (std::abs(t[3]) != 1) {
+      return report_.error("out-of-range", Path(here, 3), fmt::format("the tangent's sign is {}", t[3]),
+                           "it must be 1 or -1");
+    }
+    const Vec3 direction = unit({t[0], t[1], t[2]});
+    to.t = {direction[0], direction[1], direction[2], t[3]};
+  }
+
+  /// Three or four numbers; alpha is 1 where it is not given.
+  void color(const Json& point, const Path& path, std::array<double, 4>& to) {
+    const Json* json = json::member(point, "color0");
+    if (json == nullptr) return;
+    const Path here(path, "color0");
+    const size_t count = json->is_array() && json->size() == 3 ? 3 : 4;
+    std::array<double, 4> value{1, 1, 1, 1};
+    if (!numbers(*json, here, "color0", {value.data(), count})) return;
+    for (size_t i = 0; i < count; ++i) {
+      if (value[i] >= 0 && value[i] <= 1) continue;
+      return report_.error("out-of-range", Path(here, i), fmt::format("color0 is {}", value[i]),
+                           "it must be in [0, 1]");
+    }
+    to = value;
+  }
+
+  void notNegative(const Path& path, std::string_view name, Vec3& value) {
+    const Path here(path, name);
+    for (size_t i = 0; i < 3; ++i) {
+      if (value[i] >= 0) continue;
+      report_.error("out-of-range", Path(here, i), fmt::format("{} is {}", name, value[i]),
+                    "it must not be negative");
+      value[i] = 0;
+    }
+  }
+
+  json::Report report_;
+};
+
+/// The object "uniforms" beside "points": a number, or an array of them, by field.
+void readUniforms(const Json& root, json::Report& report, EvalPoints& to) {
+  const Json* uniforms = json::member(root, "uniforms");
+  if (uniforms == nullptr) return;
+  const Path top;
+  const Path path(top, "uniforms");
+  if (!uniforms->is_object()) return report.wrongType(path, "uniforms", *uniforms, "an object");
+  for (const auto& [name, value] : uniforms->items()) {
+    const Json list = value.is_array() ? value : Json::array({value});
+    for (const Json& x : list) {
+      if (x.is_number() && std::isfinite(x.get<double>())) {
+        to.uniforms[name].push_back(x.get<double>());
+        continue;
+      }
+      report.wrongType(Path(path, name), name, value, "a number or an array of finite numbers");
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+Result<EvalPoints> readPoints(std::string_view text, const std::string& file, const Limits& limits) {
+  const Result<Json> root = json::parse(text, file, limits);
+  if (!root) return tl::make_unexpected(root.error());
+  Diagnostics wrong;
+  json::Report report(file, wrong);
+  const Path top;
+  const Path inside(top, "points");
+  const Json* member = json::member(*root, "points");
+  const Json& points = member == nullptr ? *root : *member;
+  const Path& path = member == nullptr ? top : inside;
+  EvalPoints result;
+  if (!points.is_array()) {
+    report.wrongType(path, "the list of points", points, "an array, or an object with \"points\"");
+  } else {
+    PointReader reader(file, wrong);
+    for (size_t i = 0; i < points.size(); ++i) reader.read(points[i], Path(path, i), result);
+  }
+  if (member != nullptr) readUniforms(*root, report, result);
+  if (hasError(wrong)) return tl::make_unexpected(std::move(wrong));
+  return result;
+}
+
+}  // namespace lacquer

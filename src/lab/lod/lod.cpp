@@ -1,0 +1,419 @@
+// `lacquer lod`: levels of detail, looked for, made, measured, written.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cost/cost.h"
+#include "interface/interface.h"
+#include "lacquer/tools.h"
+#include "lod/report.h"
+#include "lod/share.h"
+#include "manifest/manifest.h"
+#include "manifest/stale.h"
+#include "setting/messages.h"
+#include "setting/simplify.h"
+#include "shader/preshader.h"
+#include "shader/print.h"
+#include "support/file.h"
+#include "support/jobs.h"
+#include "support/outputs.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+namespace {
+
+constexpr uint32_t kMostLevels = 16;
+constexpr uint32_t kLeastSize = 16, kMostSize = 512;
+/// The first level is for balls of this many pixels, the last for the least.
+constexpr double kLargest = 256, kSmallest = 32;
+/// Pixels of a ball in the report.
+constexpr uint32_t kShown = 128;
+
+/// Ascending (or descending) numbers within bounds, a level for each.
+Result<void> checkBounds(const char* what, const std::vector<double>& bounds, double most, bool rising) {
+  bool good = bounds.size() < kMostLevels;
+  for (size_t i = 0; i < bounds.size(); ++i) {
+    good = good && bounds[i] > 0 && bounds[i] < most;
+    if (i > 0) good = good && (rising ? bounds[i] > bounds[i - 1] : bounds[i] < bounds[i - 1]);
+  }
+  if (good) return {};
+  return fail("out-of-range", {}, fmt::format("the levels' {} are not as they must be", what),
+              fmt::format("at most {}, above 0 and below {:g}, each {} than the one before", kMostLevels - 1,
+                          most, rising ? "more" : "less"));
+}
+
+Result<void> checkLod(const Lod& lod, const Options& options) {
+  if (Result<void> path = hasPath("the output folder", lod.output); !path) return path;
+  if (Result<void> levels = inRange("the number of levels", lod.levels, 2, kMostLevels, {}); !levels)
+    return levels;
+  if (Result<void> size = inRange("the size of a ball", lod.size, kLeastSize, kMostSize, "pixels"); !size)
+    return size;
+  if (Result<void> errors = checkBounds("errors", lod.errors, 100, true); !errors) return errors;
+  if (Result<void> costs = checkBounds("costs", lod.costs, 1, false); !costs) return costs;
+  if (!lod.errors.empty() && !lod.costs.empty())
+    return fail("wrong-count", {}, "levels are asked for by error and by cost", "name one of them");
+  if (!(lod.radius >= 1e-6 && lod.radius <= 1e6))
+    return fail("out-of-range", {}, fmt::format("the ball's radius is {}", lod.radius),
+                "from 1e-6 to 1e6, in the unit of positions (glTF: meters)");
+  if (!(lod.most_error > 0 && lod.most_error <= 100))
+    return fail("out-of-range", {}, fmt::format("the last level's error is {}", lod.most_error),
+                "it is a colour difference above 0, at most 100");
+  if (options.parameters == Parameters::Spec)
+    return fail("lod-parameters", {}, "levels have one uniform block, and specialization constants have none",
+                "parameters are uniform or baked");
+  return {};
+}
+
+/// A shader of a level, printed.
+struct Printed {
+  json::Json entry;                                        ///< in the manifest
+  std::vector<std::pair<std::string, std::string>> files;  ///< path below the folder, bytes
+};
+
+class Levels {
+public:
+  Levels(const Lod& lod, const Options& options, Messages& messages, const Progress& progress)
+      : lod_(lod), options_(options), messages_(messages), progress_(progress) {}
+
+  Result<std::string> make(const Strings& files, const Strings& materials) {
+    if (Result<void> good = checkLod(lod_, options_); !good)
+      return tl::make_unexpected(std::move(good.error()));
+    if (Diagnostics wrong = checkOptions(options_); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    const auto library = libraryFor(options_);
+    if (!library) return tl::make_unexpected(library.error());
+    language_ = *library;
+    if (Result<void> named = resolveNames(*language_, options_); !named)
+      return tl::make_unexpected(std::move(named.error()));
+    warnWithoutDriver();
+    Strings missing = materials;
+    std::vector<material::Document> documents;
+    for (const std::string& file : files) read(file, materials, missing, documents);
+    if (!missing.empty())
+      return fail("no-such-material", {}, fmt::format("no material is named '{}'", printable(missing[0])),
+                  "`lacquer gen` lists the materials of a file");
+    inputs_ = files;
+    if (Result<void> may = mayWrite(); !may) return tl::make_unexpected(std::move(may.error()));
+    for (size_t f = 0; f < documents.size(); ++f) {
+      FileImages images(documents[f].path, options_);
+      for (const material::Material& material : documents[f].materials)
+        chain(material, documents[f], f, images);
+      const Strings of_images = images.read();
+      inputs_.insert(inputs_.end(), of_images.begin(), of_images.end());
+    }
+    if (chains_.empty()) return fail("nothing-to-show", {}, "there is no material with levels");
+    if (Result<void> written = write(); !written) return tl::make_unexpected(std::move(written.error()));
+    json::Json answer = {{"output", lod_.output}, {"driver", driver_}, {"materials", chainsJson(chains_)}};
+    return answer.dump(2) + "\n";
+  }
+
+private:
+  void warnWithoutDriver() {
+    const std::string reason = cost::unavailable();
+    if (reason.empty()) return;
+    report({{"cost-estimated",
+             Severity::Warning,
+             {},
+             fmt::format("costs are estimated from the operations: {}", reason),
+             "install the Vulkan loader and Mesa's drivers (Debian: libvulkan1, mesa-vulkan-drivers)",
+             {}}},
+           {}, messages_);
+  }
+
+  void read(const std::string& file, const Strings& only, Strings& missing,
+            std::vector<material::Document>& documents) {
+    Result<material::Document> document = readMaterials(file, *language_, options_);
+    if (!document) return report(document.error(), file, messages_);
+    report(document->diagnostics, file, messages_);
+    for (const material::Material& material : document->materials) std::erase(missing, material.name);
+    const auto wanted = [&](const material::Material& material) {
+      return only.empty() || std::find(only.begin(), only.end(), material.name) != only.end();
+    };
+    known_ +=
+        static_cast<size_t>(std::count_if(document->materials.begin(), document->materials.end(), wanted));
+    documents.push_back(std::move(*document));
+    for (material::Material& material : documents.back().materials) {
+      if (!wanted(material)) material.index = -2;  // not asked for; its place in the list stays its number
+    }
+  }
+
+  void chain(const material::Material& material, const material::Document& document, size_t file,
+             FileImages& images) {
+    if (material.index < 0) return;
+    report(material.diagnostics, document.path, messages_);
+    if (!lacquer::hasError(material.diagnostics)) {
+      if (Result<void> made = found(material, document, file, images); !made)
+        report(made.error(), document.path, messages_);
+    }
+    ++done_;
+    if (progress_) progress_(done_, known_);
+  }
+
+  Result<void> found(const material::Material& material, const material::Document& document, size_t file,
+                     FileImages& images) {
+    const auto& uses = document.uses[static_cast<size_t>(material.index)];
+    const gltf::VertexAttributes attributes =
+        uses.empty() ? gltf::VertexAttributes{true, true, false, {true, true, false, false}} : uses[0];
+    const preview::Mesh mesh = meshOf(material, document.path, images);
+    LodMaterial subject({material, attributes, lightsOf(document), images, *language_, options_, lod_.texels,
+                         mesh, lod_.radius},
+                        lod_.size);
+    Result<lod::Tried> exact = subject.open(messages_);
+    if (!exact) return tl::make_unexpected(std::move(exact.error()));
+    LodChain made;
+    made.file = document.path;
+    made.name = material.name;
+    made.index = static_cast<size_t>(material.index);
+    made.triangles = subject.figures({}).on_mesh ? mesh.triangles.size() / 3 : 0;
+    made.radius = subject.radius();
+    search(subject, *exact, made);
+    if (Result<void> good = finish(subject, fmt::format("{}-{}", file, material.index), made); !good)
+      return good;
+    if (!subject.driver().empty()) driver_ = subject.driver();
+    chains_.push_back(std::move(made));
+    return {};
+  }
+
+  /// Before the search, which takes a while: the folder, and the names that are known.
+  Result<void> mayWrite() const {
+    if (Diagnostics wrong = clashes(inputs_, {lod_.output + "/manifest.json", lod_.output + "/report.html"});
+        !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    if (const Result<bool> usable = makeFolder(lod_.output); !usable)
+      return tl::make_unexpected(usable.error());
+    return {};
+  }
+
+  /// The file's own geometry that has the material.
+  preview::Mesh meshOf(const material::Material& material, const std::string& file, FileImages& images) {
+    const gltf::Geometry geometry = images.geometry(static_cast<size_t>(material.index));
+    if (!geometry.left_out.empty()) {
+      report({{"geometry-left-out",
+               Severity::Note,
+               {{}, 0, 0, fmt::format("/materials/{}", material.index)},
+               fmt::format("levels are compared {} of the file's own geometry: {}",
+                           geometry.triangles.empty() ? "without any" : "with a part", geometry.left_out),
+               "the ball is among the pictures in any case",
+               {}}},
+             file, messages_);
+    }
+    preview::Mesh mesh;
+    mesh.triangles = geometry.triangles;
+    for (const gltf::Corner& corner : geometry.corners) {
+      eval::Point& point = mesh.vertices.emplace_back();
+      std::copy(corner.position.begin(), corner.position.end(), point.position.begin());
+      std::copy(corner.normal.begin(), corner.normal.end(), point.n.begin());
+      std::copy(corner.tangent.begin(), corner.tangent.end(), point.t.begin());
+      std::copy(corner.color.begin(), corner.color.end(), point.color0.begin());
+      for (size_t set = 0; set < 4; ++set)
+        std::copy(corner.uv[set].begin(), corner.uv[set].end(), point.uv[set].begin());
+    }
+    const Result<const material::Schema*> schema = language_->models.schema();
+    for (const material::Material::Number& number : material.numbers) {
+      if (schema && (*schema)->properties[number.property].decl->name == "doubleSided")
+        mesh.double_sided = number.value[0] != 0;
+    }
+    return mesh;
+  }
+
+  /// Everything that is worth to be tried, then the best of it with a few numbers fitted.
+  void search(LodMaterial& subject, const lod::Tried& exact, LodChain& made) const {
+    const lod::Measure measure = [&](const std::vector<lod::Words>& sets) { return subject.measure(sets); };
+    const lod::Subject of_word = [](const std::string& word) { return lacquer::subjectOf(word); };
+    lod::Bounds bounds;
+    bounds.most_error = 2 * (lod_.errors.empty() ? lod_.most_error : lod_.errors.back());
+    if (!lod_.costs.empty()) bounds.most_error = 100;
+    const lod::Refit refit = [&](const lod::Words& words) { return subject.fitted(words); };
+    made.tried = lod::search(exact, subject.words(), of_word, bounds, measure, refit);
+    std::vector<lod::Words> fitted;
+    for (const lod::Tried& one : lod::front(made.tried)) {
+      constexpr double kWorthIt = 0.05;
+      if (one.error < kWorthIt) continue;
+      if (std::optional<lod::Words> words = subject.fitted(one.words)) fitted.push_back(std::move(*words));
+    }
+    for (const std::optional<lod::Tried>& one : measure(fitted)) {
+      if (one) made.tried.push_back(*one);
+    }
+    made.best = lod::front(made.tried);
+  }
+
+  std::vector<size_t> chosen(const std::vector<lod::Tried>& best) const {
+    if (!lod_.errors.empty()) return lod::byError(best, lod_.errors);
+    if (!lod_.costs.empty()) return lod::byCost(best, lod_.costs);
+    return lod::byCount(best, lod_.levels, lod_.most_error);
+  }
+
+  /// Level `k` of `count` with the exact one, from the largest size to the smallest by equal factors.
+  static uint32_t screenOf(size_t k, size_t count) {
+    if (k == 0) return 0;
+    const double part = count < 3 ? 1 : static_cast<double>(k - 1) / static_cast<double>(count - 2);
+    return static_cast<uint32_t>(std::lround(kLargest * std::pow(kSmallest / kLargest, part)));
+  }
+
+  /// The levels' shaders with one interface, measured again.
+  Result<void> finish(LodMaterial& subject, const std::string& stem, LodChain& made) {
+    std::vector<ir::Module> modules;
+    for (const size_t place : chosen(made.best)) {
+      LodLevel level;
+      level.words = made.best[place].words;
+      Result<ir::Module> module = subject.module(level.words);
+      if (!module) return tl::make_unexpected(std::move(module.error()));
+      modules.push_back(std::move(*module));
+      made.levels.push_back(std::move(level));
+    }
+    lod::shareInterface(modules);
+    if (Result<void> measured = measureLevels(subject, modules, made); !measured) return measured;
+    uniformsOf(modules[0], made);
+    for (size_t i = 0; i < made.levels.size(); ++i) {
+      LodLevel& level = made.levels[i];
+      level.screen = screenOf(i, made.levels.size());
+      if (Result<void> good = print(std::move(modules[i]), level); !good) return good;
+      if (i == 0) continue;
+      if (Result<void> good = draw(subject, fmt::format("pictures/{}-{}", stem, i), level); !good)
+        return good;
+    }
+    return {};
+  }
+
+  /// A level whose own shader, with the shared block, does not cost less than the one before is none.
+  static Result<void> measureLevels(LodMaterial& subject, std::vector<ir::Module>& modules, LodChain& made) {
+    Result<std::vector<LodFigures>> costs = subject.costs(modules);
+    if (!costs) return tl::make_unexpected(std::move(costs.error()));
+    std::vector<LodLevel> levels;
+    std::vector<ir::Module> kept;
+    for (size_t i = 0; i < made.levels.size(); ++i) {
+      LodLevel& level = made.levels[i];
+      level.figures = (*costs)[i];
+      const LodFigures& found = subject.figures(level.words);
+      level.figures.seen = found.seen;
+      level.figures.on_mesh = found.on_mesh;
+      if (!levels.empty() && level.figures.cost >= levels.back().figures.cost) continue;
+      levels.push_back(std::move(level));
+      kept.push_back(std::move(modules[i]));
+    }
+    made.levels = std::move(levels);
+    modules = std::move(kept);
+    return {};
+  }
+
+  /// What the engine puts into the block, and the textures that it binds, for today's numbers.
+  static void uniformsOf(const ir::Module& module, LodChain& made) {
+    const Preshader preshader(module);
+    const std::vector<ir::Components> values =
+        preshader.evaluate([&](uint32_t i) -> const ir::Components& { return module.parameters[i].value; });
+    made.uniforms = json::Json::object();
+    for (size_t i = 0; i < values.size(); ++i) {
+      const Preshader::Field& field = preshader.fields()[i];
+      const auto count = static_cast<size_t>(ir::componentCount(field.type));
+      if (count == 1)
+        made.uniforms[field.name] = values[i][0];
+      else
+        made.uniforms[field.name] =
+            std::vector<double>(values[i].begin(), values[i].begin() + static_cast<ptrdiff_t>(count));
+    }
+  }
+
+  Result<void> print(ir::Module module, LodLevel& level) {
+    ShaderData data;
+    data.id = shaderId(module, *language_);
+    data.has_vertex = hasVertexStage(module);
+    data.module = std::move(module);
+    level.shader = data.id;
+    if (printed_.contains(data.id)) return {};
+    Wrong wrong;
+    lacquer::print(data, options_, wrong);
+    Printed made;
+    json::Json files = json::Json::object();
+    json::Json validated = json::Json::object();
+    for (const Target target : options_.targets) {
+      const auto row = static_cast<size_t>(target);
+      if (lacquer::hasError(wrong[row])) return tl::make_unexpected(std::move(wrong[row]));
+      json::Json& of_target = files[std::string(targetName(target))] = json::Json::object();
+      for (int stage = firstStage(target, data.has_vertex); stage < 2; ++stage) {
+        std::string path = shaderPath(target, data.id, stage);
+        of_target[std::string(fileKind(target, stage))] = path;
+        made.files.emplace_back(std::move(path), takeBytes(data, target, stage));
+      }
+      if (hasValidator(target)) validated[std::string(targetName(target))] = options_.validate;
+    }
+    made.entry = {{"files", std::move(files)}, {"validated", std::move(validated)}};
+    const Result<const material::Schema*> schema = language_->models.schema();
+    made.entry.update(interfaceOf(data.module, data.has_vertex, schema ? *schema : nullptr));
+    printed_.emplace(data.id, std::move(made));
+    return {};
+  }
+
+  Result<void> draw(const LodMaterial& subject, const std::string& stem, LodLevel& level) {
+    for (const bool used : {false, true}) {
+      const uint32_t size = used ? level.screen : kShown;
+      const bool triangles = atVertices(level.words);
+      const auto exact = subject.shots({}, size, triangles);
+      if (!exact) return tl::make_unexpected(exact.error());
+      const auto simpler = subject.shots(level.words, size, triangles);
+      if (!simpler) return tl::make_unexpected(simpler.error());
+      if (used) subject.compare(*exact, *simpler, level.at_screen, level.at_screen_on_mesh);
+      std::string path = stem + (used ? "-used.png" : ".png");
+      pictures_.emplace_back(path, strip(*exact, *simpler));
+      (used ? level.used : level.pictures) = std::move(path);
+    }
+    return {};
+  }
+
+  std::string manifest() const {
+    json::Json json = {{"lacquer", version()}, {"schema", kManifestSchema}, {"files", json::Json::array()}};
+    json::Json shaders = json::Json::object();
+    for (const auto& [id, one] : printed_) shaders[id] = one.entry;
+    json["shaders"] = std::move(shaders);
+    json["levels"] = chainsJson(chains_);
+    return json.dump(2) + "\n";
+  }
+
+  Result<void> write() const {
+    std::vector<std::pair<std::string, std::string>> files = pictures_;
+    Strings shaders;
+    for (const auto& [id, one] : printed_) {
+      files.insert(files.end(), one.files.begin(), one.files.end());
+      for (const auto& [path, bytes] : one.files) shaders.push_back(path);
+    }
+    files.emplace_back("report.html", lodPage(chains_, driver_, lod_.size, *language_));
+    files.emplace_back("manifest.json", manifest());
+    Strings outputs;
+    for (const auto& [path, bytes] : files) outputs.push_back(lod_.output + "/" + path);
+    if (Diagnostics wrong = clashes(inputs_, outputs); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    const Strings earlier = listedShaders(lod_.output + "/manifest.json");
+    for (const auto& [path, bytes] : files) {
+      const Result<bool> written = writeFile(lod_.output + "/" + path, bytes, {nullptr, options_.sync});
+      if (!written) return tl::make_unexpected(written.error());
+    }
+    removeStale(lod_.output, earlier, shaders, inputs_);
+    return {};
+  }
+
+  const Lod& lod_;
+  Options options_;
+  Messages& messages_;
+  const Progress& progress_;
+  std::shared_ptr<const Language> language_;
+  Strings inputs_;
+  std::vector<LodChain> chains_;
+  std::map<std::string, Printed> printed_;  ///< by shader
+  std::vector<std::pair<std::string, std::string>> pictures_;
+  std::string driver_;
+  size_t done_ = 0, known_ = 0;
+};
+
+}  // namespace
+
+std::string makeLevels(const Lod& lod, const Strings& files, const Strings& materials, const Options& options,
+                       Messages& messages, const Progress& progress) {
+  Result<std::string> made = std::string();
+  withJobs(options.jobs, [&] { made = Levels(lod, options, messages, progress).make(files, materials); });
+  if (made) return std::move(*made);
+  report(made.error(), {}, messages);
+  return {};
+}
+
+}  // namespace lacquer

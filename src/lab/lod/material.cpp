@@ -1,0 +1,482 @@
+#include "lod/material.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cost/cost.h"
+#include "cost/quarter.h"
+#include "lod/estimate.h"
+#include "lod/share.h"
+#include "setting/messages.h"
+#include "setting/simplify.h"
+#include "shader/print.h"
+
+namespace lacquer {
+
+namespace {
+
+/// Interpolants that every device takes, of four numbers each.
+constexpr size_t kMostVaryings = 15;
+
+/// Pixels of the pictures that numbers are fitted to.
+constexpr uint32_t kFitSize = 32;
+
+/// The mean over an image, linear.
+std::array<double, 4> meanOf(const eval::Image& image, bool srgb) {
+  std::array<double, 4> sum{};
+  for (size_t i = 0; i < image.size(); ++i) {
+    const std::array<float, 4> texel = image.at(i);
+    for (size_t c = 0; c < 4; ++c) {
+      const auto x = static_cast<double>(texel[c]);
+      sum[c] += srgb && c < 3 ? eval::decodeSrgb(x) : x;
+    }
+  }
+  for (double& x : sum) x /= static_cast<double>(std::max<size_t>(image.size(), 1));
+  return sum;
+}
+
+Result<cost::Subject> subjectOf(const ir::Module& module, const Options& options) {
+  ShaderData data;
+  data.id = "level";
+  data.has_vertex = hasVertexStage(module);
+  data.module = module;
+  Options spirv = options;
+  spirv.targets = {Target::Spirv};
+  spirv.validate = false;
+  spirv.debug = false;
+  Wrong wrong;
+  print(data, spirv, wrong);
+  for (Diagnostics& of_target : wrong) {
+    if (lacquer::hasError(of_target)) return tl::make_unexpected(std::move(of_target));
+  }
+  return cost::Subject{"level", std::move(data.spirv[0]), std::move(data.spirv[1])};
+}
+
+}  // namespace
+
+LodMaterial::LodMaterial(const Given& given, uint32_t size)
+    : given_(given),
+      size_(size),
+      radius_(preview::extentOf(given.mesh).value_or(preview::Extent{{}, given.radius}).radius),
+      studios_(preview::comparisonStudios(radius_)),
+      ball_(preview::ballOf(48, 22, radius_)) {}
+
+Options LodMaterial::optionsOf(const lod::Words& words) const {
+  Options options = given_.options;
+  options.simplify.insert(options.simplify.end(), words.begin(), words.end());
+  return options;
+}
+
+Result<graph::Graph> LodMaterial::graphOf(const lod::Words& words) const {
+  Diagnostics warnings;
+  Result<graph::Graph> graph =
+      buildGraph(given_.material, given_.attributes, given_.language, optionsOf(words), warnings);
+  if (!graph) return graph;
+  if (Diagnostics wrong = graph::check(*graph, given_.language); lacquer::hasError(wrong))
+    return tl::make_unexpected(std::move(wrong));
+  return graph;
+}
+
+Result<ir::Module> LodMaterial::module(const lod::Words& words) const {
+  const Result<graph::Graph> graph = graphOf(words);
+  if (!graph) return tl::make_unexpected(graph.error());
+  return toModule(*graph, given_.language, optionsOf(words), given_.lights);
+}
+
+Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& words, Messages& messages,
+                                                            const Change& change) const {
+  EvalMaterial evaluated(given_.images, optionsOf(words));
+  if (Result<void> set = evaluated.setTexels(given_.texels); !set)
+    return tl::make_unexpected(std::move(set.error()));
+  if (Result<void> lowered = evaluated.lower(given_.material, given_.language, true, "", messages); !lowered)
+    return tl::make_unexpected(std::move(lowered.error()));
+  evaluated.place({});
+  preview::Look look;
+  for (const ir::TextureSlot* slot : evaluated.environments()) {
+    const bool specular = slot->name.find("irradiance") == std::string::npos;
+    (specular ? look.specular : look.irradiance).push_back(slot->name);
+  }
+  const auto neutral = [](const ir::TextureSlot& slot, const Diagnostics&) { return neutralTexel(slot); };
+  if (Result<void> bound = evaluated.bindTextures(neutral, look.textures); !bound)
+    return tl::make_unexpected(std::move(bound.error()));
+  look.module = evaluated.module();
+  if (change) change(look.module);
+  std::vector<preview::Shading> shadings;
+  for (const preview::Studio& studio : studios_) {
+    Result<preview::Shading> made = preview::Shading::make(look, studio);
+    if (!made) return tl::make_unexpected(std::move(made.error()));
+    shadings.push_back(std::move(*made));
+  }
+  return shadings;
+}
+
+bool atVertices(const lod::Words& words) {
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return word.starts_with("vertex:"); });
+}
+
+Result<std::vector<preview::Shot>> LodMaterial::shots(const lod::Words& words, uint32_t size,
+                                                      bool triangles) const {
+  Messages said_before;
+  const Result<std::vector<preview::Shading>> made = shadings(words, said_before);
+  if (!made) return tl::make_unexpected(made.error());
+  return shotsOf(*made, size, preview::gridOf(size), triangles);
+}
+
+const std::vector<preview::Coverage>& LodMaterial::coverages(const preview::Mesh& mesh, uint32_t size,
+                                                             uint32_t grid) const {
+  const auto [known, fresh] = coverages_.try_emplace({&mesh, size, grid});
+  if (!fresh || mesh.triangles.empty()) return known->second;
+  // Each studio sees the geometry from another side.
+  constexpr double kTurns[] = {0.5, 2.4, -1.7};
+  for (size_t i = 0; i < studios_.size(); ++i) {
+    std::optional<preview::Coverage> seen =
+        preview::coverageOf(mesh, kTurns[i % std::size(kTurns)], size, grid);
+    if (!seen) return known->second = {}, known->second;
+    known->second.push_back(std::move(*seen));
+  }
+  return known->second;
+}
+
+std::vector<preview::Shot> LodMaterial::shotsOf(const std::vector<preview::Shading>& shadings, uint32_t size,
+                                                uint32_t grid, bool triangles) const {
+  std::vector<preview::Shot> shots;
+  const auto meshed = [&](const preview::Mesh& mesh) {
+    const std::vector<preview::Coverage>& seen = coverages(mesh, size, grid);
+    for (size_t i = 0; i < seen.size(); ++i) shots.push_back(preview::shoot(shadings[i], seen[i]));
+  };
+  if (triangles) {
+    meshed(ball_);
+  } else {
+    for (const preview::Shading& shading : shadings)
+      shots.push_back(preview::shoot(shading, radius_, size, grid));
+  }
+  meshed(given_.mesh);
+  return shots;
+}
+
+void LodMaterial::compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
+                          preview::Seen& seen, std::optional<preview::Seen>& on_mesh) const {
+  seen = preview::compareShots(exact, simpler);
+  on_mesh.reset();
+  const auto balls = static_cast<ptrdiff_t>(studios_.size());
+  if (std::ssize(exact) <= balls) return;
+  const auto rest = [&](const std::vector<preview::Shot>& shots) {
+    return std::vector<preview::Shot>(shots.begin() + balls, shots.end());
+  };
+  on_mesh = preview::compareShots(rest(exact), rest(simpler));
+}
+
+/// Which textures have images, and what their means are.
+void LodMaterial::readTextures(EvalMaterial& evaluated) {
+  const auto absent = [&](const ir::TextureSlot& slot, const Diagnostics&) {
+    absent_.insert(propertyOf(slot));
+    return neutralTexel(slot);
+  };
+  eval::Bindings ignored;
+  if (!evaluated.bindTextures(absent, ignored)) return;
+  for (const ir::TextureSlot& slot : evaluated.module().textures) {
+    const auto bound = evaluated.textures().find(slot.name);
+    if (slot.environment || bound == evaluated.textures().end() || absent_.contains(propertyOf(slot)))
+      continue;
+    const BoundTexture& texture = bound->second;
+    const std::array<double, 4> mean =
+        texture.constant ? *texture.constant : meanOf(*texture.image, texture.lookup.srgb);
+    means_.push_back(fmt::format("texel:{}={:.4g},{:.4g},{:.4g},{:.4g}", propertyOf(slot), mean[0], mean[1],
+                                 mean[2], mean[3]));
+  }
+}
+
+Result<lod::Tried> LodMaterial::open(Messages& messages) {
+  Result<graph::Graph> graph = graphOf({});
+  if (!graph) return tl::make_unexpected(std::move(graph.error()));
+  exact_graph_ = graph::toJson(*graph);
+  Result<ir::Module> made = toModule(*graph, given_.language, given_.options, given_.lights);
+  if (!made) return tl::make_unexpected(std::move(made.error()));
+  exact_module_ = std::move(*made);
+  if (!exact_module_->sums_lights)
+    return fail("lod-template", {},
+                fmt::format("the template '{}' shows nothing that is lit", exact_module_->template_name),
+                "levels are compared by lit pictures, as the template `forward` makes them");
+  EvalMaterial evaluated(given_.images, given_.options);
+  if (Result<void> set = evaluated.setTexels(given_.texels); !set)
+    return tl::make_unexpected(std::move(set.error()));
+  if (Result<void> lowered = evaluated.lower(given_.material, given_.language, true, "", messages); !lowered)
+    return tl::make_unexpected(std::move(lowered.error()));
+  readTextures(evaluated);
+  for (const bool triangles : {false, true}) {
+    Result<std::vector<preview::Shot>> shot = shots({}, size_, triangles);
+    if (!shot) return tl::make_unexpected(std::move(shot.error()));
+    exact_[triangles] = std::move(*shot);
+    if (auto small = shotsWith({}, {}, {}, triangles)) small_[triangles] = std::move(*small);
+  }
+  const std::vector<std::optional<lod::Tried>> measured = measure({{}});
+  if (measured[0]) exact_vertex_ = figures({}).vertex_cycles;
+  if (!measured[0]) return fail("cost-unknown", {}, "the material's own shader could not be measured");
+  return *measured[0];
+}
+
+lod::Words LodMaterial::words() const {
+  const Result<graph::Graph> graph = graphOf({});
+  lod::Words all =
+      graph ? possibleWords(*graph, given_.material, given_.language, given_.options) : lod::Words();
+  all.insert(all.end(), means_.begin(), means_.end());
+  lod::Words good;
+  std::set<std::string> seen{exact_graph_};
+  for (const std::string& word : all) {
+    // Without a picture of it nobody knows what a texture is worth.
+    const std::string subject = lacquer::subjectOf(word);
+    const bool unknown = subject.starts_with("texture:") && absent_.contains(subject.substr(8));
+    if (unknown) continue;
+    // What cannot go to the vertices alone may do so beside something else.
+    if (word.starts_with("vertex:")) {
+      good.push_back(word);
+      continue;
+    }
+    const Result<graph::Graph> simpler = graphOf({word});
+    if (simpler && seen.insert(graph::toJson(*simpler)).second) good.push_back(word);
+  }
+  return good;
+}
+
+double LodMaterial::costOf(const LodFigures& figures) const {
+  const uint64_t before = exact_vertex_.value_or(figures.vertex_cycles);
+  const uint64_t more = figures.vertex_cycles - std::min(before, figures.vertex_cycles);
+  return static_cast<double>(figures.cycles) + kVertexShare * static_cast<double>(more);
+}
+
+Result<std::vector<LodFigures>> LodMaterial::costs(const std::vector<ir::Module>& modules) {
+  std::vector<LodFigures> figures(modules.size());
+  if (!cost::unavailable().empty()) {
+    for (size_t i = 0; i < modules.size(); ++i) {
+      const lod::Estimate estimate = lod::estimate(modules[i]);
+      figures[i].instructions = estimate.instructions;
+      figures[i].cycles = estimate.cycles;
+      figures[i].quarter_cycles = estimate.quarter_cycles;
+      figures[i].vertex_cycles = estimate.vertex_cycles;
+      figures[i].cost = costOf(figures[i]);
+    }
+    return figures;
+  }
+  std::vector<cost::Subject> subjects;
+  for (const ir::Module& module : modules) {
+    Result<cost::Subject> subject = subjectOf(module, given_.options);
+    if (!subject) return tl::make_unexpected(std::move(subject.error()));
+    subjects.push_back(std::move(*subject));
+  }
+  const cost::Measurement measured = cost::measure(subjects, cost::kFamilies[0], true);
+  if (!measured.driver.empty()) driver_ = measured.driver;
+  for (size_t i = 0; i < figures.size(); ++i) {
+    const cost::Outcome& outcome = measured.outcomes[i];
+    if (!outcome.statistics) return fail("cost-unknown", {}, "no cost: " + outcome.problem);
+    figures[i].instructions = outcome.statistics->instructions;
+    figures[i].cycles = outcome.statistics->inverse_throughput;
+    figures[i].quarter_cycles = figures[i].cycles + cost::quarterRateCycles(outcome.disassembly);
+    figures[i].vertex_cycles = outcome.statistics->vertex_inverse_throughput;
+    figures[i].cost = costOf(figures[i]);
+  }
+  return figures;
+}
+
+std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lod::Words>& sets) {
+  std::vector<ir::Module> fresh;
+  std::vector<std::pair<std::string, const lod::Words*>> of_fresh;
+  for (const lod::Words& set : sets) {
+    Result<ir::Module> made = module(set);
+    if (!made || !lod::texturesWithin(*made, *exact_module_) || made->varyings.size() > kMostVaryings)
+      continue;
+    std::string id = shaderId(*made, given_.language);
+    const bool known = figures_.contains(id) || std::any_of(of_fresh.begin(), of_fresh.end(),
+                                                            [&](const auto& one) { return one.first == id; });
+    ids_[set] = id;
+    if (known) continue;
+    of_fresh.emplace_back(std::move(id), &set);
+    fresh.push_back(std::move(*made));
+  }
+  Result<std::vector<LodFigures>> costs = this->costs(fresh);
+  for (size_t i = 0; costs && i < fresh.size(); ++i) {
+    const bool triangles = atVertices(*of_fresh[i].second);
+    const auto shot = shots(*of_fresh[i].second, size_, triangles);
+    if (!shot) continue;
+    compare(exact_[triangles], *shot, (*costs)[i].seen, (*costs)[i].on_mesh);
+    figures_.emplace(of_fresh[i].first, (*costs)[i]);
+  }
+  std::vector<std::optional<lod::Tried>> tried(sets.size());
+  for (size_t i = 0; i < sets.size(); ++i) {
+    const auto id = ids_.find(sets[i]);
+    const auto found = id == ids_.end() ? figures_.end() : figures_.find(id->second);
+    if (found == figures_.end()) continue;
+    tried[i] = lod::Tried{sets[i], found->second.cost, found->second.seen.delta_e};
+  }
+  return tried;
+}
+
+// -- fitting --
+
+/// Those that the simpler shader has, may be from 0 to 1, and are neither animated nor 0.
+std::vector<LodMaterial::Parameter> LodMaterial::fittable(const lod::Words& words) const {
+  constexpr size_t kMost = 8;
+  std::vector<Parameter> all;
+  const Result<ir::Module> made = module(words);
+  if (!made) return all;
+  for (const uint32_t index : ir::usedParameters(*made)) {
+    const ir::Parameter& p = made->parameters[index];
+    const bool unit = p.range.lo == 0 && p.range.hi == 1 && p.range.gap == 0;
+    if (!unit || p.animated || p.type == ir::Type::Bool || p.type == ir::Type::Vec2) continue;
+    const auto count = static_cast<size_t>(ir::componentCount(p.type));
+    // Alpha is coverage, which stays as it is.
+    for (size_t c = 0; c < std::min<size_t>(count, 3); ++c) {
+      if (p.value[c] > 0 && all.size() < kMost) all.push_back({p.name, c, count, p.value[c]});
+    }
+  }
+  return all;
+}
+
+std::optional<std::vector<preview::Shot>> LodMaterial::shotsWith(const lod::Words& words,
+                                                                 const std::vector<Parameter>& parameters,
+                                                                 const std::vector<double>& scales,
+                                                                 bool triangles) const {
+  const auto change = [&](ir::Module& module) {
+    for (size_t i = 0; i < parameters.size(); ++i) {
+      for (ir::Parameter& p : module.parameters) {
+        if (p.name == parameters[i].name)
+          p.value[parameters[i].component] = std::min(parameters[i].value * scales[i], 1.0);
+      }
+    }
+  };
+  Messages ignored;
+  const Result<std::vector<preview::Shading>> made = shadings(words, ignored, change);
+  if (!made) return std::nullopt;
+  return shotsOf(*made, kFitSize, 2, triangles);
+}
+
+namespace {
+
+/// The colours of what the ball covers, in CIE L*a*b*, one after the other.
+std::vector<double> labsOf(const std::vector<preview::Shot>& shots) {
+  std::vector<double> labs;
+  for (const preview::Shot& shot : shots) {
+    for (const uint32_t pixel : shot.inside) {
+      const picture::Color lab = picture::labOf(shot.pixels.colors[pixel]);
+      labs.insert(labs.end(), lab.begin(), lab.end());
+    }
+  }
+  return labs;
+}
+
+double squares(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+/// Solves a symmetric system by elimination; rows without a pivot give 0.
+std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<double> b) {
+  const size_t n = b.size();
+  for (size_t i = 0; i < n; ++i) {
+    if (std::abs(a[i][i]) < 1e-12) continue;
+    for (size_t row = 0; row < n; ++row) {
+      if (row == i) continue;
+      const double factor = a[row][i] / a[i][i];
+      for (size_t k = 0; k < n; ++k) a[row][k] -= factor * a[i][k];
+      b[row] -= factor * b[i];
+    }
+  }
+  for (size_t i = 0; i < n; ++i) b[i] = std::abs(a[i][i]) < 1e-12 ? 0 : b[i] / a[i][i];
+  return b;
+}
+
+}  // namespace
+
+/// What the words that scale numbers say of these; 1 where they say nothing.
+std::vector<double> LodMaterial::scalesOf(const lod::Words& words, const std::vector<Parameter>& parameters) {
+  std::vector<double> scales(parameters.size(), 1.0);
+  const Result<Simplification> simpler = simplificationOf(words);
+  for (size_t i = 0; simpler && i < parameters.size(); ++i) {
+    const auto found = simpler->scales.find(parameters[i].name);
+    if (found != simpler->scales.end() && found->second.size() == parameters[i].components)
+      scales[i] = found->second[parameters[i].component];
+  }
+  return scales;
+}
+
+/// Levenberg and Marquardt's least squares over the pictures' colours, with differences for derivatives.
+std::optional<lod::Words> LodMaterial::fitted(const lod::Words& given) const {
+  constexpr int kRounds = 4;
+  constexpr double kStep = 0.02;
+  constexpr double kLeast = 0.2;
+  constexpr double kMost = 3;
+  // Numbers that are fitted already are where this begins.
+  lod::Words words = given;
+  std::erase_if(words, [](const std::string& word) { return word.starts_with("scale:"); });
+  const std::vector<Parameter> parameters = fittable(words);
+  if (parameters.empty()) return std::nullopt;
+  std::vector<double> scales = scalesOf(given, parameters);
+  const bool triangles = atVertices(words);
+  const auto labsWith = [&](const std::vector<double>& with) -> std::vector<double> {
+    const auto shots = shotsWith(words, parameters, with, triangles);
+    return shots ? labsOf(*shots) : std::vector<double>();
+  };
+  const std::vector<double> wanted = labsOf(small_[triangles]);
+  std::vector<double> now = labsWith(scales);
+  if (now.size() != wanted.size()) return std::nullopt;
+  double error = squares(now, wanted);
+  double damping = 1e-2;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::vector<double>> slopes;
+    for (size_t i = 0; i < scales.size(); ++i) {
+      std::vector<double> moved = scales;
+      moved[i] *= parameters[i].value * scales[i] > 0.97 ? 1 - kStep : 1 + kStep;
+      std::vector<double> slope = labsWith(moved);
+      if (slope.size() != now.size()) return std::nullopt;
+      for (size_t k = 0; k < slope.size(); ++k) slope[k] = (slope[k] - now[k]) / (moved[i] - scales[i]);
+      slopes.push_back(std::move(slope));
+    }
+    std::vector<std::vector<double>> normal(scales.size(), std::vector<double>(scales.size(), 0.0));
+    std::vector<double> right(scales.size(), 0.0);
+    for (size_t i = 0; i < scales.size(); ++i) {
+      for (size_t j = 0; j < scales.size(); ++j) {
+        for (size_t k = 0; k < now.size(); ++k) normal[i][j] += slopes[i][k] * slopes[j][k];
+      }
+      for (size_t k = 0; k < now.size(); ++k) right[i] += slopes[i][k] * (wanted[k] - now[k]);
+      normal[i][i] *= 1 + damping;
+    }
+    const std::vector<double> step = solved(normal, right);
+    std::vector<double> next = scales;
+    for (size_t i = 0; i < next.size(); ++i)
+      next[i] = std::clamp(next[i] + step[i], kLeast, std::min(kMost, 1 / parameters[i].value));
+    std::vector<double> then = labsWith(next);
+    const double with = then.size() == now.size() ? squares(then, wanted) : error;
+    if (!(with < error)) {
+      damping *= 10;
+      continue;
+    }
+    const bool done = with > 0.999 * error;
+    scales = next;
+    now = std::move(then);
+    error = with;
+    damping *= 0.3;
+    if (done) break;
+  }
+  lod::Words result = words;
+  for (size_t i = 0; i < parameters.size();) {
+    const size_t first = i;
+    std::vector<double> by(parameters[first].components, 1.0);
+    bool moved = false;
+    for (; i < parameters.size() && parameters[i].name == parameters[first].name; ++i) {
+      by[parameters[i].component] = scales[i];
+      moved |= std::abs(scales[i] - 1) > 0.002;
+    }
+    if (!moved) continue;
+    std::string numbers;
+    for (const double x : by) numbers += fmt::format("{}{:.4g}", numbers.empty() ? "" : ",", x);
+    result.push_back(fmt::format("scale:{}={}", parameters[first].name, numbers));
+  }
+  std::sort(result.begin(), result.end());
+  if (result == given) return std::nullopt;
+  return result;
+}
+
+}  // namespace lacquer

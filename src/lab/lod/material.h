@@ -1,0 +1,123 @@
+// One material while its levels are looked for: simpler shaders of it, measured.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "eval/material.h"
+#include "lod/search.h"
+#include "preview/shot.h"
+
+namespace lacquer {
+
+/// What was measured of a shader.
+struct LodFigures {
+  uint64_t instructions = 0, cycles = 0;  ///< on navi21; cycles of inverse throughput
+  uint64_t quarter_cycles = 0;            ///< the same with roots and the like at a quarter of the rate
+  uint64_t vertex_cycles = 0;             ///< of the vertex stage
+  double cost = 0;                        ///< cycles, and those that the vertices take more (kVertexShare)
+  preview::Seen seen;                     ///< against the exact shader, of all pictures together
+  std::optional<preview::Seen> on_mesh;   ///< of the pictures of the file's own geometry alone
+};
+
+/// Vertices for each pixel that a level is charged for: triangles of four pixels, as there are two triangles
+/// for each vertex. What a level computes more at the vertices than the exact shader counts so much.
+inline constexpr double kVertexShare = 0.125;
+
+/// Whether something is computed at vertices that was not: pictures are of triangles then.
+bool atVertices(const lod::Words& words);
+
+class LodMaterial {
+public:
+  struct Given {
+    const material::Material& material;
+    gltf::VertexAttributes attributes;  ///< of the primitives that use it
+    passes::LightFacts lights;          ///< of the file
+    FileImages& images;
+    const Language& language;
+    const Options& options;  ///< with its names resolved
+    const Strings& texels;
+    const preview::Mesh& mesh;  ///< the file's own geometry; without triangles where there is none
+    double radius;              ///< of the ball where there is no geometry
+  };
+  /// What is given must outlive this. Pictures to search by are `size` pixels wide.
+  LodMaterial(const Given& given, uint32_t size);
+
+  /// Measures the exact shader. What is to be said of the material goes to `messages`.
+  Result<lod::Tried> open(Messages& messages);
+  /// The words that change the material's graph, those for its textures' means among them.
+  lod::Words words() const;
+  /// For lod::search(). A set that makes no shader, or one with other textures, is none.
+  std::vector<std::optional<lod::Tried>> measure(const std::vector<lod::Words>& sets);
+  /// The same words with a few numbers of the material fitted again to the exact pictures; nothing where that
+  /// cannot be, or changes nothing.
+  std::optional<lod::Words> fitted(const lod::Words& words) const;
+
+  /// The shader of a set of words, placed.
+  Result<ir::Module> module(const lod::Words& words) const;
+  /// Pictures by a set of words: of the ball one for each studio, then as many of the file's geometry. With
+  /// `triangles` the ball is one of 1,010 vertices; else it is as round as can be, and has a facet.
+  Result<std::vector<preview::Shot>> shots(const lod::Words& words, uint32_t size, bool triangles) const;
+  /// What two sets of pictures of one size differ by: all of them, and those of the geometry.
+  void compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
+               preview::Seen& seen, std::optional<preview::Seen>& on_mesh) const;
+  /// What was found of a set that was measured.
+  const LodFigures& figures(const lod::Words& words) const { return figures_.at(ids_.at(words)); }
+  /// "Mesa 22.3.6"; empty where the costs are estimates.
+  const std::string& driver() const { return driver_; }
+  size_t measured() const { return figures_.size(); }
+  /// Of the ball in the pictures: the geometry's, where there is one.
+  double radius() const { return radius_; }
+
+  /// Measures modules: cycles and instructions alone.
+  Result<std::vector<LodFigures>> costs(const std::vector<ir::Module>& modules);
+
+private:
+  using Change = std::function<void(ir::Module&)>;
+  /// A component of a number of the material.
+  struct Parameter {
+    std::string name;
+    size_t component = 0, components = 1;
+    double value = 0;
+  };
+
+  Options optionsOf(const lod::Words& words) const;
+  Result<graph::Graph> graphOf(const lod::Words& words) const;
+  Result<std::vector<preview::Shading>> shadings(const lod::Words& words, Messages& messages,
+                                                 const Change& change = {}) const;
+  const std::vector<preview::Coverage>& coverages(const preview::Mesh& mesh, uint32_t size,
+                                                  uint32_t grid) const;
+  std::vector<preview::Shot> shotsOf(const std::vector<preview::Shading>& shadings, uint32_t size,
+                                     uint32_t grid, bool triangles) const;
+  double costOf(const LodFigures& figures) const;
+  static std::vector<double> scalesOf(const lod::Words& words, const std::vector<Parameter>& parameters);
+  std::vector<Parameter> fittable(const lod::Words& words) const;
+  std::optional<std::vector<preview::Shot>> shotsWith(const lod::Words& words,
+                                                      const std::vector<Parameter>& parameters,
+                                                      const std::vector<double>& scales,
+                                                      bool triangles) const;
+  void readTextures(EvalMaterial& evaluated);
+
+  Given given_;
+  uint32_t size_;
+  double radius_;
+  std::vector<preview::Studio> studios_;
+  std::vector<preview::Shot> exact_[2], small_[2];  ///< to compare with; to fit to; the second of triangles
+  preview::Mesh ball_;
+  /// What is seen of a mesh, by size and grid, a view for each studio; none where it cannot be drawn.
+  mutable std::map<std::tuple<const preview::Mesh*, uint32_t, uint32_t>, std::vector<preview::Coverage>>
+      coverages_;
+  std::string exact_graph_;
+  std::optional<ir::Module> exact_module_;
+  lod::Words means_;              ///< words for textures that have images
+  std::set<std::string> absent_;  ///< textures that have none: nothing is known of them
+  std::map<lod::Words, std::string> ids_;
+  std::map<std::string, LodFigures> figures_;  ///< by shader
+  std::string driver_;
+  std::optional<uint64_t> exact_vertex_;  ///< cycles of the exact shader's vertex stage
+};
+
+}  // namespace lacquer

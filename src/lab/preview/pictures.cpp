@@ -1,0 +1,309 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "environment/read.h"
+#include "eval/material.h"
+#include "eval/of_scene.h"
+#include "preview/ball.h"
+#include "preview/setting.h"
+#include "preview/sheet.h"
+#include "setting/language.h"
+#include "setting/messages.h"
+#include "setting/options.h"
+#include "support/file.h"
+#include "support/jobs.h"
+#include "support/outputs.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+namespace {
+
+constexpr uint32_t kLeastBall = 16;  ///< pixels of a ball
+constexpr uint32_t kMostBall = 2048;
+constexpr uint32_t kMostColumns = 100;
+
+/// A material compiled for the studio. `substituted` is the number of images that a neutral colour stands
+/// for.
+Result<preview::Shading> shadingOf(const material::Material& material, const Language& library,
+                                   FileImages& images, const PreviewSetting& of, const Strings& texels,
+                                   const preview::Studio& studio, Messages& messages, size_t& substituted) {
+  EvalMaterial evaluated(images, of.options);
+  if (Result<void> set = evaluated.setTexels(texels); !set)
+    return tl::make_unexpected(std::move(set.error()));
+  if (Result<void> lowered = evaluated.lower(material, library, true, of.variant, messages); !lowered)
+    return tl::make_unexpected(std::move(lowered.error()));
+  if (of.in_float && studio.hasLamps())
+    evaluated.place({false, {{"directional", preview::Studio::kLights}}});
+  else if (of.in_float)
+    evaluated.place({false, {}});
+  preview::Look look;
+  look.in_float = of.in_float;
+  for (const ir::TextureSlot* slot : evaluated.environments()) {
+    const auto holds = [&](const char* word) { return slot->name.find(word) != std::string::npos; };
+    (holds("irradiance") ? look.irradiance
+     : holds("charlie")  ? look.fibres
+                         : look.specular)
+        .push_back(slot->name);
+  }
+  const auto neutral = [&](const ir::TextureSlot& slot, const Diagnostics& why) {
+    ++substituted;
+    for (Diagnostic one : why) {
+      // Absent images are counted; one that is there and not taken is worth a word.
+      if (one.code == "image-missing") continue;
+      one.severity = Severity::Warning;
+      report({one}, images.file(), messages);
+    }
+    return neutralTexel(slot);
+  };
+  const Result<void> bound = evaluated.bindTextures(neutral, look.textures);
+  report(images.takeNotes(), images.file(), messages);
+  if (!bound) return tl::make_unexpected(bound.error());
+  look.module = evaluated.module();
+  return preview::Shading::make(std::move(look), studio);
+}
+
+Diagnostic absentImages(const material::Material& material, const std::string& file, size_t count) {
+  return {
+      "image-missing",
+      Severity::Note,
+      {file, 0, 0, fmt::format("/materials/{}", material.index)},
+      fmt::format("{} image{} absent: a neutral colour stands for each", count, count == 1 ? " is" : "s are"),
+      "or give a constant: --texel SLOT=r,g,b,a",
+      {}};
+}
+
+struct Measured {
+  std::string file, name;
+  preview::Difference difference;
+};
+
+class Previewing {
+public:
+  Previewing(const Preview& preview, const Options& options, Messages& messages,
+             const std::function<void(size_t, size_t)>& progress)
+      : preview_(preview), options_(options), messages_(messages), progress_(progress) {}
+
+  Result<std::string> make(const std::vector<std::string>& files, const std::vector<std::string>& materials) {
+    if (const Result<Limits> limits = limitsOf(options_); !limits) return tl::make_unexpected(limits.error());
+    if (Result<void> set = readSettings(); !set) return tl::make_unexpected(std::move(set.error()));
+    if (Result<void> lit = readEnvironment(); !lit) return tl::make_unexpected(std::move(lit.error()));
+    std::vector<material::Document> documents;
+    if (Result<void> read = readFiles(files, materials, documents); !read)
+      return tl::make_unexpected(std::move(read.error()));
+    Strings inputs = files;
+    if (!preview_.environment.empty()) inputs.push_back(preview_.environment);
+    for (const std::string& folder : options_.node_directories) {
+      const auto nodes = nodeFiles(folder);
+      for (size_t i = 0; nodes && i < nodes->size(); ++i) inputs.push_back((*nodes)[i].name);
+    }
+    if (Diagnostics wrong = clashes(inputs, {preview_.output}); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    if (Result<void> fits = preview::mayLayOut(total_ * settings_.size(), preview_.size); !fits)
+      return tl::make_unexpected(std::move(fits.error()));
+    std::vector<preview::Section> sections;
+    for (const material::Document& document : documents) {
+      preview::Section section{documents.size() > 1 ? document.path : std::string(), {}};
+      FileImages images(document.path, options_);
+      for (const material::Material& material : document.materials) draw(material, images, section);
+      const Strings of_images = images.read();
+      inputs.insert(inputs.end(), of_images.begin(), of_images.end());
+      if (!section.cells.empty()) sections.push_back(std::move(section));
+    }
+    if (sections.empty()) return fail("nothing-to-show", {}, "there is no material to show");
+    std::string title;
+    if (settings_.size() == 2)
+      title = fmt::format("{} | {} | difference", settings_[0].name, settings_[1].name);
+    const Result<preview::Picture> sheet = preview::layOut(sections, title, preview_.size, preview_.columns);
+    if (!sheet) return tl::make_unexpected(sheet.error());
+    if (Diagnostics wrong = clashes(inputs, {preview_.output}); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    if (Result<bool> written = writeFile(preview_.output, sheet->png(), {nullptr, options_.sync}); !written)
+      return tl::make_unexpected(std::move(written.error()));
+    return answer(title);
+  }
+
+private:
+  Result<void> readSettings() {
+    if (Result<void> good = checkNumbers(); !good) return good;
+    if (preview_.compare.empty()) settings_.push_back({"", options_, preview_.in_float, ""});
+    for (const std::string& text : preview_.compare) {
+      Result<PreviewSetting> setting = previewSetting(text, {text, options_, preview_.in_float, ""});
+      if (!setting) return tl::make_unexpected(std::move(setting.error()));
+      settings_.push_back(std::move(*setting));
+    }
+    for (const PreviewSetting& setting : settings_) {
+      if (Diagnostics wrong = checkReading(setting.options); !wrong.empty())
+        return tl::make_unexpected(std::move(wrong));
+      auto library = libraryFor(setting.options);
+      if (!library) return tl::make_unexpected(std::move(library.error()));
+      libraries_.push_back(std::move(*library));
+    }
+    return {};
+  }
+
+  Result<void> readEnvironment() {
+    // Fine enough for a ball: the finest level has a texel for two degrees and a half.
+    constexpr environment::MapOptions kFine{128, 512};
+    if (preview_.environment.empty()) return {};
+    const Result<environment::Panorama> panorama = panoramaOf(preview_.environment, options_, messages_);
+    if (!panorama) return tl::make_unexpected(panorama.error());
+    const environment::LightTree tree(*panorama, environment::treeSizeOf(*panorama, kFine));
+    studio_ = preview::Studio(environment::makeMaps(tree, kFine));
+    return {};
+  }
+
+  Result<void> checkNumbers() const {
+    if (Result<void> path = hasPath("the picture", preview_.output); !path) return path;
+    if (Result<void> size = inRange("the size of a ball", preview_.size, kLeastBall, kMostBall, "pixels");
+        !size)
+      return size;
+    if (preview_.compare.size() == 1 || preview_.compare.size() > 2) {
+      return fail("wrong-count", {}, fmt::format("{} settings are to be compared", preview_.compare.size()),
+                  "name two, or none");
+    }
+    return inRange("the number of columns", preview_.columns, 0, kMostColumns, {});
+  }
+
+  /// The files with those of their materials that are wanted.
+  Result<void> readFiles(const std::vector<std::string>& files, const std::vector<std::string>& only,
+                         std::vector<material::Document>& documents) {
+    std::vector<std::string> missing = only;
+    for (const std::string& file : files) {
+      Result<material::Document> document = readMaterials(file, *libraries_[0], options_);
+      if (!document) {
+        report(document.error(), file, messages_);
+        continue;
+      }
+      report(document->diagnostics, file, messages_);
+      std::erase_if(document->materials, [&](const material::Material& material) {
+        std::erase(missing, material.name);
+        return !only.empty() && std::find(only.begin(), only.end(), material.name) == only.end();
+      });
+      total_ += document->materials.size();
+      documents.push_back(std::move(*document));
+    }
+    if (missing.empty()) return {};
+    return fail("no-such-material", {}, fmt::format("no material is named '{}'", printable(missing[0])),
+                "`lacquer gen` lists the materials of a file");
+  }
+
+  Result<preview::Shading> shading(const material::Material& material, FileImages& images, size_t setting,
+                                   size_t& substituted) {
+    // Warnings about the material are the same for both settings.
+    Messages again;
+    return shadingOf(material, *libraries_[setting], images, settings_[setting], preview_.texels, studio_,
+                     setting == 0 ? messages_ : again, substituted);
+  }
+
+  void draw(const material::Material& material, FileImages& images, preview::Section& section) {
+    report(material.diagnostics, images.file(), messages_);
+    ++done_;
+    if (lacquer::hasError(material.diagnostics)) return;
+    size_t substituted = 0;
+    std::vector<preview::Shading> shadings;
+    for (size_t i = 0; i < settings_.size(); ++i) {
+      substituted = 0;
+      Result<preview::Shading> made = shading(material, images, i, substituted);
+      if (!made) return report(made.error(), images.file(), messages_);
+      shadings.push_back(std::move(*made));
+    }
+    const std::string name =
+        material.name.empty() ? fmt::format("(material {})", material.index) : material.name;
+    preview::Cell cell{name, {}, {}};
+    if (shadings.size() == 2) {
+      preview::Comparison compared =
+          preview::compareBalls(shadings[0], shadings[1], preview_.size, preview::kBackground);
+      cell.lines.push_back(fmt::format("max {:.2g}   mean {:.2g}   shown x {:g}", compared.measured.largest,
+                                       compared.measured.mean, compared.gain));
+      cell.pictures = {std::move(compared.a), std::move(compared.b), std::move(compared.difference)};
+      measured_.push_back({images.file(), name, compared.measured});
+    } else {
+      cell.pictures = {preview::drawBall(shadings[0], preview_.size, preview::kBackground)};
+    }
+    if (substituted > 0) noteAbsent(material, images.file(), substituted, cell);
+    section.cells.push_back(std::move(cell));
+    if (progress_) progress_(done_, total_);
+  }
+
+  void noteAbsent(const material::Material& material, const std::string& file, size_t count,
+                  preview::Cell& cell) {
+    cell.lines.push_back(fmt::format("{} image{} absent", count, count == 1 ? "" : "s"));
+    report({absentImages(material, file, count)}, file, messages_);
+  }
+
+  std::string answer(const std::string& title) const {
+    json::Json json = {{"output", preview_.output}, {"materials", done_}};
+    if (!title.empty()) {
+      json["compared"] = json::Json::array({settings_[0].name, settings_[1].name});
+      json["differences"] = json::Json::array();
+      for (const Measured& m : measured_) {
+        json["differences"].push_back({{"file", m.file},
+                                       {"material", m.name},
+                                       {"max", m.difference.largest},
+                                       {"mean", m.difference.mean},
+                                       {"rms", m.difference.root_mean_square}});
+      }
+    }
+    return json.dump(2) + "\n";
+  }
+
+  const Preview& preview_;
+  const Options& options_;
+  Messages& messages_;
+  const std::function<void(size_t, size_t)>& progress_;
+  preview::Studio studio_;                ///< or what the environment's picture makes of it
+  std::vector<PreviewSetting> settings_;  ///< one, or the two to compare
+  std::vector<std::shared_ptr<const Language>> libraries_;
+  std::vector<Measured> measured_;
+  size_t done_ = 0, total_ = 0;
+};
+
+}  // namespace
+
+std::string drawPreview(const Preview& preview, const std::vector<std::string>& files,
+                        const std::vector<std::string>& materials, const Options& options, Messages& messages,
+                        const std::function<void(size_t done, size_t known)>& progress) {
+  Result<std::string> made = std::string();
+  withJobs(options.jobs,
+           [&] { made = Previewing(preview, options, messages, progress).make(files, materials); });
+  if (made) return std::move(*made);
+  report(made.error(), {}, messages);
+  return {};
+}
+
+static Result<std::vector<uint8_t>> ballOf(const SceneMaterial& of, uint32_t size, const Strings& texels,
+                                           const Options& options, Messages& messages) {
+  if (Diagnostics wrong = checkReading(options); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  if (Result<void> good = inRange("the size of a ball", size, kLeastBall, kMostBall, "pixels"); !good)
+    return tl::make_unexpected(std::move(good.error()));
+  report(of.material.diagnostics, of.file, messages);
+  if (lacquer::hasError(of.material.diagnostics)) return std::vector<uint8_t>();
+  FileImages images(of.file, options, of.bytes);
+  const preview::Studio studio;
+  size_t substituted = 0;
+  const Result<preview::Shading> shading = shadingOf(
+      of.material, of.language, images, {"", options, true, ""}, texels, studio, messages, substituted);
+  if (!shading) return tl::make_unexpected(shading.error());
+  if (substituted > 0) report({absentImages(of.material, of.file, substituted)}, of.file, messages);
+  const preview::Picture picture = preview::drawBall(*shading, size, preview::kBackground);
+  std::vector<uint8_t> rgb;
+  for (uint32_t y = 0; y < size; ++y) {
+    for (uint32_t x = 0; x < size; ++x)
+      rgb.insert(rgb.end(), picture.at(x, y).begin(), picture.at(x, y).end());
+  }
+  return rgb;
+}
+
+std::vector<uint8_t> drawBallOf(const SceneMaterial& of, uint32_t size, const Strings& texels,
+                                const Options& options, Messages& messages) {
+  Result<std::vector<uint8_t>> made = std::vector<uint8_t>();
+  withJobs(options.jobs, [&] { made = ballOf(of, size, texels, options, messages); });
+  if (made) return std::move(*made);
+  report(made.error(), of.file, messages);
+  return {};
+}
+
+}  // namespace lacquer

@@ -1,0 +1,48 @@
+// Whether a colour notices which form of a shader computes it. Values at their thresholds leave terms out, or
+// take cheaper ones: a coat that is clear divides the light, others filter what comes back. A material at the
+// threshold and one a hair beside it must look the same, with every layer that may lie above, and without.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lacquer.h"
+#include "material/material.h"
+#include "setting/language.h"
+
+namespace lacquer {
+
+struct FormFault {
+  std::string layer;      ///< the extension that was laid over the material; empty for none
+  std::string parameter;  ///< "coatColorFactor", "coatNormalTexture.scale"
+  std::vector<double> at, beside;
+  std::string output;  ///< the colour that differs
+  double value = 0;    ///< the largest difference, of the colour or of the brightest light, whichever is more
+  std::vector<std::pair<std::string, std::vector<double>>> input;  ///< where it does, by name
+};
+
+struct Forms {
+  size_t compared = 0;  ///< pairs of shaders, at a threshold and beside it
+  std::vector<FormFault> faults;
+};
+
+/// Of the colour or of the brightest light, whichever is more. The forms of the base's light of the
+/// surroundings guard their divisions in different ways, by 1e-6 and 1e-7 of a light: that makes up
+/// to 3.2e-6. Others stay below 1e-6.
+inline constexpr double kFormsAllowed = 5e-6;
+
+/// `material`: of `file`, or one made up. Every threshold of its extensions and of each layer that it could
+/// have beside them, once with the layer's other numbers away from theirs and once with them there.
+/// Deterministic for a seed. Errors: those of graphs.
+Result<Forms> compareForms(const material::Material& material, const std::string& file,
+                           const Language& library, const Options& options, uint64_t seed,
+                           double allowed = kFormsAllowed);
+
+/// A material with nothing but the extension, what it needs and what it stands in, its numbers drawn in their
+/// ranges. Nothing where there is no such, since it excludes what it needs.
+std::optional<material::Material> materialWith(const material::Schema& schema, uint16_t extension,
+                                               uint64_t seed);
+
+}  // namespace lacquer

@@ -1,0 +1,412 @@
+#include "stress/attack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "eval/material.h"
+#include "prove/nodes.h"
+#include "setting/language.h"
+#include "setting/messages.h"
+#include "setting/options.h"
+#include "stress/forms.h"
+#include "stress/on_device.h"
+#include "support/contain.h"
+#include "support/file.h"
+#include "support/jobs.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+namespace {
+
+using json::Json;
+using stress::Finding;
+using stress::Subject;
+
+constexpr uint64_t kMostSamples = uint64_t{1} << 40;
+
+/// Stand for every node and for every extension of the library.
+constexpr std::string_view kNodes = "nodes", kExtensions = "extensions";
+
+bool ends(const std::string& text, std::string_view end) { return text.ends_with(end); }
+
+/// A sample by the names of its variables.
+Json inputsOf(const Subject& subject, std::span<const double> sample) {
+  Json inputs = Json::object();
+  for (const stress::Variable& variable : subject.space.variables()) {
+    if (variable.components == 1) {
+      inputs[variable.name] = sample[variable.first];
+      continue;
+    }
+    Json& list = inputs[variable.name] = Json::array();
+    for (size_t c = 0; c < static_cast<size_t>(variable.components); ++c)
+      list.push_back(sample[variable.first + c]);
+  }
+  return inputs;
+}
+
+class Stressing {
+public:
+  Stressing(const Stress& stress, const Options& options, Messages& messages,
+            const std::function<void(size_t, size_t)>& progress)
+      : options_(options), messages_(messages), progress_(progress) {
+    plan_ = {stress.samples, stress.seed, stress.mediump};
+    total_ = stress.total;
+    engine_ = stress.engine;
+  }
+
+  Result<std::string> make(const std::vector<std::string>& names) {
+    if (Diagnostics wrong = checkReading(options_); !wrong.empty())
+      return tl::make_unexpected(std::move(wrong));
+    if (Result<void> samples = inRange("the number of samples", plan_.samples, 1, kMostSamples, {}); !samples)
+      return tl::make_unexpected(std::move(samples.error()));
+    if (Result<void> total = inRange("the number of all samples", total_, 0, kMostSamples, {}); !total)
+      return tl::make_unexpected(std::move(total.error()));
+    if (Result<void> opened = openDevice(); !opened) return tl::make_unexpected(std::move(opened.error()));
+    auto library = libraryFor(options_);
+    if (!library) return tl::make_unexpected(std::move(library.error()));
+    library_ = std::move(*library);
+    Diagnostics found = library_->check();
+    if (lacquer::hasError(found)) return tl::make_unexpected(std::move(found));
+    report(found, {}, messages_);
+    if (Result<void> added = addAll(names); !added) return tl::make_unexpected(std::move(added.error()));
+    if (total_ > 0) plan_.samples = (total_ + work_.size() - 1) / std::max<size_t>(work_.size(), 1);
+    Json subjects = Json::array();
+    size_t faults = 0;
+    for (size_t i = 0; i < work_.size(); ++i) {
+      Result<Json> one = work_[i](faults);
+      if (!one) return tl::make_unexpected(std::move(one.error()));
+      subjects.push_back(std::move(*one));
+      if (progress_) progress_(i + 1, work_.size());
+    }
+    Json answer = {{"seed", plan_.seed}, {"samples", plan_.samples}, {"mediump", plan_.half}};
+    if (device_) answer["device"] = device_->name();
+    answer["subjects"] = std::move(subjects);
+    answer["faults"] = faults;
+    return answer.dump(2) + "\n";
+  }
+
+private:
+  Result<void> openDevice() {
+    if (engine_ == Engine::Float) return {};
+    if (engine_ != Engine::Vulkan && engine_ != Engine::VulkanGlsl && engine_ != Engine::VulkanHlsl) {
+      return fail("unknown-enumerator", {},
+                  fmt::format("the engine is {}, which nothing is attacked with", static_cast<int>(engine_)),
+                  "floats on the CPU (1), or a Vulkan device (2 to 4)");
+    }
+    if (plan_.half) {
+      return fail("contradicting-options", {}, "half precision is rounded on the CPU, not on a device",
+                  "leave out one of them");
+    }
+    Result<vulkan::Device> device = vulkan::Device::open();
+    if (!device) return tl::make_unexpected(std::move(device.error()));
+    device_ = std::move(*device);
+    return {};
+  }
+
+  FragmentRoute route() const {
+    return engine_ == Engine::VulkanHlsl   ? FragmentRoute::Hlsl
+           : engine_ == Engine::VulkanGlsl ? FragmentRoute::Glsl
+                                           : FragmentRoute::Direct;
+  }
+
+  Result<void> addAll(const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      Result<void> added;
+      if (ends(name, ".json"))
+        work_.emplace_back([this, name](size_t& faults) { return replay(name, faults); });
+      else if (ends(name, ".gltf") || ends(name, ".glb"))
+        added = addFile(name);
+      else if (name == kNodes && !library_->node(name))
+        added = addNodes();
+      else if (name == kExtensions && !library_->node(name))
+        added = addExtensions({});
+      else if (library_->has(lang::DeclKind::Extension, name))
+        added = addExtensions(name);
+      else
+        added = addNode(name);
+      if (!added) return added;
+    }
+    if (!names.empty()) return {};
+    if (Result<void> added = addNodes(); !added) return added;
+    return addExtensions({});
+  }
+
+  /// Materials that have one extension, at the values where their shaders have other forms. Without a name
+  /// all.
+  Result<void> addExtensions(const std::string& name) {
+    // What is compared are doubles: devices and half precision have nothing to say of it.
+    if (device_ || plan_.half) return {};
+    const Result<const material::Schema*> schema = library_->models.schema();
+    if (!schema) return tl::make_unexpected(schema.error());
+    for (uint16_t i = 1; i < (*schema)->extensions.size(); ++i) {
+      const std::string_view own = (*schema)->extensions[i]->name;
+      if (!name.empty() && own != name) continue;
+      const std::optional<material::Material> material = materialWith(**schema, i, plan_.seed);
+      if (material) addForms(*material, {}, {{"extension", own}});
+    }
+    return {};
+  }
+
+  void addForms(const material::Material& material, const std::string& file, Json about) {
+    work_.emplace_back([this, material, file, about = std::move(about)](size_t& faults) -> Result<Json> {
+      const Result<Forms> forms = compareForms(material, file, *library_, options_, plan_.seed);
+      if (!forms) return tl::make_unexpected(forms.error());
+      return reported(*forms, about, faults);
+    });
+  }
+
+  static Json reported(const Forms& forms, Json about, size_t& faults) {
+    about["forms"] = forms.compared;
+    Json& findings = about["findings"] = Json::array();
+    faults += forms.faults.size();
+    for (const FormFault& fault : forms.faults) {
+      Json one = {{"fault", "form"}, {"what", fault.output}, {"parameter", fault.parameter}};
+      if (!fault.layer.empty()) one["layer"] = fault.layer;
+      one["at"] = Json(fault.at);
+      one["beside"] = Json(fault.beside);
+      if (std::isfinite(fault.value)) one["value"] = fault.value;
+      Json& sample = one["sample"] = Json::object();
+      for (const auto& [variable, value] : fault.input) sample[variable] = Json(value);
+      findings.push_back(std::move(one));
+    }
+    return about;
+  }
+
+  Result<void> addNodes() {
+    for (const std::string_view name : library_->names(lang::DeclKind::Node)) {
+      if (Result<void> added = addNode(std::string(name)); !added) return added;
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<Subject>> nodeSubject(const std::string& name, const std::string& variant) {
+    const Result<const lang::NodeDecl*> found = library_->node(name);
+    if (!found || (*found)->find(variant) == nullptr) {
+      return fail("unknown-node", {}, fmt::format("there is no node '{}'", printable(name)),
+                  "`lacquer nodes` lists them");
+    }
+    const lang::NodeDecl& node = **found;
+    stress::NodeSource source{
+        variant.empty() ? name : name + "." + variant, nodeModule(node, variant).module, {}};
+    for (const lang::Param& result : node.results)
+      source.results.emplace_back(result.name.empty() ? "the result" : std::string(result.name),
+                                  result.range);
+    return stress::nodeSubject(std::move(source));
+  }
+
+  Result<void> addNode(const std::string& name) {
+    const Result<const lang::NodeDecl*> found = library_->node(name);
+    std::vector<std::string> variants = {""};
+    if (found) {
+      for (const lang::Variant& variant : (*found)->variants) variants.emplace_back(variant.name);
+    }
+    for (const std::string& variant : variants) {
+      Result<std::unique_ptr<Subject>> subject = nodeSubject(name, variant);
+      if (!subject) return tl::make_unexpected(std::move(subject.error()));
+      Json about = {{"node", name}};
+      if (!variant.empty()) about["variant"] = variant;
+      add(std::move(*subject), std::move(about));
+    }
+    return {};
+  }
+
+  void add(std::unique_ptr<Subject> subject, Json about) {
+    const std::shared_ptr<const Subject> kept = std::move(subject);
+    work_.emplace_back([this, kept, about = std::move(about)](size_t& faults) -> Result<Json> {
+      if (!device_) return reported(*kept, about, stress::attack(*kept, plan_), faults);
+      const DeviceSubject shown = deviceSubject(*kept, *device_, route());
+      if (!shown.skipped.empty()) return skipped(about, shown.skipped);
+      const Result<stress::Report> report = stress::attackOnDevice(*kept, plan_, shown.show);
+      if (!report) return tl::make_unexpected(report.error());
+      return reported(*kept, about, *report, faults);
+    });
+  }
+
+  Result<std::unique_ptr<Subject>> materialSubject(const std::string& file,
+                                                   const material::Material& material, bool tangents = true) {
+    FileImages images(file, options_);
+    EvalMaterial evaluated(images, options_);
+    if (!tangents) evaluated.leaveOutTangents();
+    if (Result<void> lowered = evaluated.lower(material, *library_, true, {}, messages_); !lowered)
+      return tl::make_unexpected(std::move(lowered.error()));
+    evaluated.place({false, {{"directional", 1}}});
+    const Result<const model::Model*> model = library_->models.of(evaluated.profile());
+    if (!model) return tl::make_unexpected(model.error());
+    return stress::materialSubject(material.name, evaluated.module(), (*model)->layers());
+  }
+
+  Result<material::Document> read(const std::string& file, Links links = Links::Follow) {
+    Result<material::Document> document = readMaterials(file, *library_, options_, links);
+    if (document) report(document->diagnostics, file, messages_);
+    return document;
+  }
+
+  Result<void> addFile(const std::string& file) {
+    const Result<material::Document> document = read(file);
+    if (!document) return tl::make_unexpected(document.error());
+    for (const material::Material& material : document->materials) {
+      report(material.diagnostics, file, messages_);
+      if (lacquer::hasError(material.diagnostics)) continue;
+      Result<std::unique_ptr<Subject>> subject = materialSubject(file, material);
+      if (!subject) return tl::make_unexpected(std::move(subject.error()));
+      Json about = {{"file", file}, {"material", material.index}, {"name", material.name}};
+      add(std::move(*subject), about);
+      if (!device_ && !plan_.half) addForms(material, file, about);
+      // Where frames come of derivatives it is another function.
+      subject = materialSubject(file, material, false);
+      if (!subject) return tl::make_unexpected(std::move(subject.error()));
+      if ((*subject)->lanes == 1) continue;
+      about["tangents"] = false;
+      (*subject)->name += " without tangents";
+      add(std::move(*subject), std::move(about));
+    }
+    return {};
+  }
+
+  static Json skipped(const Json& about, const std::string& why) {
+    Json json = about;
+    json["skipped"] = why;
+    json["findings"] = Json::array();
+    return json;
+  }
+
+  Json reported(const Subject& subject, const Json& about, const stress::Report& report,
+                size_t& faults) const {
+    Json json = about;
+    json["findings"] = Json::array();
+    for (const Finding& finding : report.findings) {
+      if (finding.known.empty()) ++faults;
+      Json one = {
+          {"fault", stress::faultName(finding.fault)}, {"what", finding.what}, {"count", finding.count}};
+      // JSON has neither NaN nor infinity; the fault's name tells.
+      if (std::isfinite(finding.value)) one["value"] = finding.value;
+      if (!finding.known.empty()) one["known"] = finding.known;
+      Json& test = one["case"] = about;
+      test["fault"] = one["fault"];
+      test["what"] = finding.what;
+      Json& samples = test["samples"] = Json::array();
+      const size_t width = subject.space.width();
+      for (size_t i = 0; i + width <= finding.input.size(); i += width)
+        samples.push_back(inputsOf(subject, std::span(finding.input).subspan(i, width)));
+      json["findings"].push_back(std::move(one));
+    }
+    if (report.energy.measured) {
+      json["energy"] = {{"largest", report.energy.largest},
+                        {"base", report.energy.largest_base},
+                        {"asymmetry", report.energy.asymmetry}};
+    }
+    return json;
+  }
+
+  // A case: what a finding's "case" is, in a file.
+
+  Result<std::unique_ptr<Subject>> subjectOf(const Json& test, const std::string& path) {
+    const auto wrong = [&](const char* what) {
+      return fail("bad-case", {path, 0, 0, {}}, what, "docs/stress.md");
+    };
+    if (test.contains("node") && test["node"].is_string()) {
+      const bool variant = test.contains("variant") && test["variant"].is_string();
+      return nodeSubject(test["node"].get<std::string>(), variant ? test["variant"].get<std::string>() : "");
+    }
+    if (!test.contains("file") || !test["file"].is_string() || !test.contains("material") ||
+        !test["material"].is_number_unsigned())
+      return wrong("a case has a \"node\", or a \"file\" and the index of a \"material\"");
+    // A case may come from others: where a file lies elsewhere nobody looks at it.
+    const std::string named = test["file"].get<std::string>();
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    const std::optional<std::string> inside =
+        named.find('\0') == std::string::npos ? resolveBelow(folder, named, options_.allow) : std::nullopt;
+    if (!inside)
+      return fail("case-outside", {path, 0, 0, {}},
+                  fmt::format("{} leads out of the case's folder", quote(named)),
+                  "--allow DIR lets it lie in another folder, too");
+    const Result<material::Document> document = read(*inside, Links::None);
+    if (!document) return tl::make_unexpected(document.error());
+    const auto index = test["material"].get<size_t>();
+    if (index >= document->materials.size()) return wrong("the file has no material of that index");
+    const bool tangents = !test.contains("tangents") || test["tangents"] != false;
+    return materialSubject(*inside, document->materials[index], tangents);
+  }
+
+  Result<std::vector<double>> inputOf(const Subject& subject, const Json& test,
+                                      const std::string& path) const {
+    const auto wrong = [&](std::string what) {
+      return fail("bad-case", {path, 0, 0, {}}, std::move(what), "docs/stress.md");
+    };
+    const size_t width = subject.space.width();
+    const Json* samples = json::member(test, "samples");
+    const size_t least = subject.group;
+    if (samples == nullptr || !samples->is_array() || samples->empty() || samples->size() > 2 * least ||
+        samples->size() % least != 0)
+      return wrong(fmt::format("\"samples\" must hold {} samples, or twice as many for a jump", least));
+    std::vector<double> input(samples->size() * width);
+    for (size_t i = 0; i < samples->size(); ++i) {
+      for (const stress::Variable& variable : subject.space.variables()) {
+        const Json* value = json::member((*samples)[i], variable.name);
+        if (value == nullptr) return wrong(fmt::format("a sample lacks \"{}\"", variable.name));
+        const auto n = static_cast<size_t>(variable.components);
+        for (size_t c = 0; c < n; ++c) {
+          const bool list = value->is_array() && value->size() == n;
+          const Json& number = list ? (*value)[c] : *value;
+          if (!number.is_number() || (!list && n > 1))
+            return wrong(fmt::format("\"{}\" must be {} numbers", variable.name, n));
+          input[i * width + variable.first + c] = number.get<double>();
+        }
+      }
+    }
+    return input;
+  }
+
+  Result<Json> replay(const std::string& path, size_t& faults) {
+    const Result<Limits> limits = limitsOf(options_);
+    if (!limits) return tl::make_unexpected(limits.error());
+    const Result<std::string> text = readFile(path, limits->file);
+    if (!text) return tl::make_unexpected(text.error());
+    const Result<Json> test = json::parse(*text, path, *limits);
+    if (!test) return tl::make_unexpected(test.error());
+    if (!test->is_object())
+      return fail("bad-case", {path, 0, 0, {}}, "a case is an object", "docs/stress.md");
+    Result<std::unique_ptr<Subject>> subject = subjectOf(*test, path);
+    if (!subject) return tl::make_unexpected(std::move(subject.error()));
+    const Result<std::vector<double>> input = inputOf(**subject, *test, path);
+    if (!input) return tl::make_unexpected(input.error());
+    Result<stress::Report> report = stress::replay(**subject, *input);
+    if (device_) {
+      const DeviceSubject shown = deviceSubject(**subject, *device_, route());
+      if (!shown.skipped.empty()) return skipped({{"case", path}}, shown.skipped);
+      report = stress::replayOnDevice(**subject, *input, shown.show);
+      if (!report) return tl::make_unexpected(std::move(report.error()));
+    }
+    Json json = reported(**subject, {{"case", path}}, *report, faults);
+    for (Json& finding : json["findings"]) finding.erase("case");
+    return json;
+  }
+
+  const Options& options_;
+  Messages& messages_;
+  const std::function<void(size_t, size_t)>& progress_;
+  stress::Plan plan_;
+  uint64_t total_ = 0;
+  Engine engine_ = Engine::Float;
+  std::optional<vulkan::Device> device_;
+  std::shared_ptr<const Language> library_;
+  std::vector<std::function<Result<Json>(size_t& faults)>> work_;
+};
+
+}  // namespace
+
+std::string stressNodes(const Stress& stress, const std::vector<std::string>& subjects,
+                        const Options& options, Messages& messages,
+                        const std::function<void(size_t done, size_t known)>& progress) {
+  Result<std::string> made = std::string();
+  withJobs(options.jobs, [&] { made = Stressing(stress, options, messages, progress).make(subjects); });
+  if (made) return std::move(*made);
+  report(made.error(), {}, messages);
+  return {};
+}
+
+}  // namespace lacquer
