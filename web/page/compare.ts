@@ -16,7 +16,7 @@ export function parseOther(value: string): Other | null {
 /** The options under which the other one is made. */
 export function optionsOf(other: Other, options: Options): Options {
   if (other.kind === 'profile') return { ...options, profile: other.name };
-  return other.kind === 'simplify' ? { ...options, simplify: [other.word] } : options;
+  return other.kind === 'simplify' ? { ...options, simplify: [...(options.simplify ?? []), other.word] } : options;
 }
 
 interface Library {

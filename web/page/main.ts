@@ -31,6 +31,8 @@ const kDefaultMaterial = -1;
 interface Figures {
   costs: Costs;
   errors: Errors;
+  /** What its shaders are made with, where `lacquer view` was told. */
+  options: Options;
 }
 
 class Page {
@@ -181,7 +183,7 @@ class Page {
 
   options(): Options {
     const profile = byId<HTMLSelectElement>('profile').value;
-    return { profile, targets: this.viewport.gpu ? ['essl', 'wgsl'] : ['essl'] };
+    return { ...this.figures.options, profile, targets: this.viewport.gpu ? ['essl', 'wgsl'] : ['essl'] };
   }
 
   /** The look of the current material; null, and what is wrong in `messages`, when it has an error. */
@@ -416,6 +418,7 @@ class Page {
     const profiles: { name: string; doc: string }[] = this.nodes.profiles;
     const option = ({ name, doc }: { name: string; doc: string }) => h('option', { value: name, title: doc }, name);
     byId('profile').replaceChildren(...profiles.map(option));
+    byId<HTMLSelectElement>('profile').value = this.figures.options.profile ?? profiles[0].name;
     byId('environment').replaceChildren(...Object.keys(kEnvironments).map((name) => h('option', {}, name)));
     byId('target').replaceChildren(...kTargets.map((name) => h('option', {}, name)));
     byId('new-type').replaceChildren(...this.nodes.nodes.map(({ name, doc }: any) => h('option', { value: name, title: doc }, name)));
@@ -617,7 +620,7 @@ async function start(): Promise<void> {
   const lacquer = await compiler(byId('wasm').textContent!.trim());
   const viewport = new Viewport(byId<HTMLCanvasElement>('viewport'), lacquer.environmentDfg(128), lacquer.environmentSheen(64));
   const json = (id: string) => JSON.parse(byId(id).textContent || '{}');
-  const page = new Page(lacquer, viewport, { costs: json('costs'), errors: json('errors') });
+  const page = new Page(lacquer, viewport, { costs: json('costs'), errors: json('errors'), options: json('options') });
   (window as any).lacquerPage = page;
   const own = embedded('files');
   const samples = embedded('samples');

@@ -50,6 +50,8 @@ for (const sample of kSamples) {
     }, { size: kSmall }));
 }
 
+const kTold = ['--profile', 'physical', '--simplify', 'without:coat.absorption', '--no-multiple-scattering'];
+
 test('the texts on the page are those of `lacquer gen`', () =>
   open(kSamples.map((name) => `examples/${name}.gltf`), async (page) => {
     const manifest = JSON.parse(read('generated/manifest.json'));
@@ -440,6 +442,15 @@ test('it opens from a static server, and its tabs from the keyboard', async () =
     server.close();
   }
 });
+
+test('the options that `lacquer view` is given are those of its shaders', () =>
+  open(['examples/coat.gltf'], async (page) => {
+    assert.equal(await page.inputValue('#profile'), 'physical');
+    const out = join(folder, 'told');
+    lacquer('gen', 'examples/coat.gltf', '-o', out, '-q', '--target', 'essl', '--material', await page.evaluate(() => window.lacquerPage.document.names[0]), ...kTold);
+    const made = Object.keys(JSON.parse(readFileSync(join(out, 'manifest.json'))).shaders);
+    assert.deepEqual([await page.textContent('#id')], made);
+  }, { flags: ['--no-cost', ...kTold] }));
 
 test('its policy lets it run its own script, and ask nobody for anything', async () => {
   const asked = [];

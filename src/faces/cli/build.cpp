@@ -1,5 +1,4 @@
 #include "cli/build.h"
-#include "cli/checks.h"
 
 #include <fmt/format.h>
 
@@ -31,14 +30,6 @@ Strings graphCommand(const std::string& program, const std::string& folder, cons
 }
 
 }  // namespace
-
-void addLimit(CLI::App& app, Options& options) {
-  app.add_option(
-         "--limit", options.limits,
-         "NAME=NUMBER: what an input may be at most, such as images=1G (docs/security.md; may be repeated)")
-      ->check(kLimit)
-      ->allow_extra_args(false);
-}
 
 void printTimes(const Report& report, double wall) {
   double total = 0;

@@ -4,14 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "lacquer.h"
 
 namespace lacquer::cli {
-
-/// --limit.
-void addLimit(CLI::App& app, Options& options);
 
 /// Stages with their time, on stderr. `wall`: seconds from start to end.
 void printTimes(const Report& report, double wall);

@@ -11,20 +11,17 @@
 
 namespace lacquer::cli {
 
-CLI::App* addDfg(CLI::App& app, DfgFlags& flags) {
-  CLI::App* verb = app.add_subcommand(
-      "dfg", "the textures environment_dfg and environment_sheen, for engines that have none");
-  verb->add_option(
+void addDfg(CLI::App& verb, DfgFlags& flags) {
+  verb.add_option(
           "-o,--output", flags.output,
           "the file to write environment_dfg to: .dds (16-bit UNORM), .ktx2 (half floats) or .png (16 bits)")
       ->check(kNotEmpty);
-  verb->add_option("--sheen", flags.sheen, "the same for environment_sheen, beside the other or alone")
+  verb.add_option("--sheen", flags.sheen, "the same for environment_sheen, beside the other or alone")
       ->check(kNotEmpty);
-  verb->add_option("--size", flags.size, "texels in a row and in a column")
+  verb.add_option("--size", flags.size, "texels in a row and in a column")
       ->check(CLI::Range(2, 1024))
       ->check(kWhole)
       ->capture_default_str();
-  return verb;
 }
 
 namespace {

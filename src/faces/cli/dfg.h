@@ -11,7 +11,7 @@ struct DfgFlags {
   uint32_t size = 128;
 };
 
-CLI::App* addDfg(CLI::App& app, DfgFlags& flags);
+void addDfg(CLI::App& verb, DfgFlags& flags);
 
 /// The exit status: 0, or 1 when the file cannot be written.
 int runDfg(const DfgFlags& flags);

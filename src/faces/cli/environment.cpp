@@ -10,37 +10,31 @@
 
 namespace lacquer::cli {
 
-CLI::App* addEnvironment(CLI::App& app, EnvironmentFlags& flags) {
-  CLI::App* verb = app.add_subcommand(
-      "environment", "the cube maps and tables of image-based light, from a picture of the surroundings");
-  verb->add_option("picture", flags.picture, "equirectangular: Radiance HDR (.hdr) or OpenEXR (.exr)")
+void addEnvironment(CLI::App& verb, EnvironmentFlags& flags, OptionFlags& options) {
+  verb.add_option("picture", flags.picture, "equirectangular: Radiance HDR (.hdr) or OpenEXR (.exr)")
       ->required()
       ->check(kNotEmpty);
-  verb->add_option("-o,--output", flags.environment.output, "the folder to write to")
+  verb.add_option("-o,--output", flags.environment.output, "the folder to write to")
       ->required()
       ->check(kNotEmpty);
-  verb->add_option("--size", flags.environment.size, "texels in a row of environment_specular's faces")
+  verb.add_option("--size", flags.environment.size, "texels in a row of environment_specular's faces")
       ->check(CLI::IsMember({32, 64, 128, 256, 512, 1024}))
       ->capture_default_str();
-  verb->add_option("--samples", flags.environment.samples,
-                   "about how many parts of the picture each texel is made of")
+  verb.add_option("--samples", flags.environment.samples,
+                  "about how many parts of the picture each texel is made of")
       ->check(CLI::Range(64, 65536))
       ->check(kWhole)
       ->capture_default_str();
-  verb->add_option("--container", flags.container, "ktx2 or dds")
+  verb.add_option("--container", flags.container, "ktx2 or dds")
       ->check(CLI::IsMember({"ktx2", "dds"}))
       ->capture_default_str();
-  verb->add_option("--texels", flags.texels,
-                   "of the cubes: half (floats) or rgb9e5, which has half the bytes")
+  verb.add_option("--texels", flags.texels, "of the cubes: half (floats) or rgb9e5, which has half the bytes")
       ->check(CLI::IsMember({"half", "rgb9e5"}))
       ->capture_default_str();
-  verb->add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
-      ->check(CLI::Range(0, 1024))
-      ->check(kWhole);
-  verb->add_flag("--json", flags.json, "what was written, as environment.json has it");
-  verb->add_flag("-q,--quiet", flags.quiet, "no table, no progress");
-  addLimit(*verb, flags.options);
-  return verb;
+  addJobs(verb, options);
+  verb.add_flag("--json", flags.json, "what was written, as environment.json has it");
+  verb.add_flag("-q,--quiet", flags.quiet, "no table, no progress");
+  addLimit(verb, options);
 }
 
 namespace {
@@ -58,7 +52,7 @@ void printWritten(const std::string& text, const std::string& folder) {
 
 }  // namespace
 
-int runEnvironment(EnvironmentFlags& flags) {
+int runEnvironment(EnvironmentFlags& flags, const Options& options) {
   flags.environment.dds = flags.container == "dds";
   flags.environment.shared_exponents = flags.texels == "rgb9e5";
   Messages messages;
@@ -68,7 +62,7 @@ int runEnvironment(EnvironmentFlags& flags) {
     const auto progress = [&](size_t done, size_t known) {
       if (done % 64 == 0 || done == known) line(done, known);
     };
-    answer = writeEnvironment(flags.environment, flags.picture, flags.options, messages, progress);
+    answer = writeEnvironment(flags.environment, flags.picture, options, messages, progress);
   }
   print(messages);
   if (flags.json) fmt::print("{}", answer);

@@ -5,21 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "cli/options.h"
 #include "lacquer.h"
 
 namespace lacquer::cli {
 
 struct EvalFlags {
-  Options options;
-  std::string file, material, points, engine = "double", params = "uniform", spirv_from = "direct";
+  std::string file, material, points, engine = "double", spirv_from = "direct";
   std::vector<std::string> texels;
-  bool no_multiple_scattering = false;
-  std::string dfg = "table";
 };
 
-CLI::App* addEval(CLI::App& app, EvalFlags& flags);
+/// The verb's own flags, and those of a material.
+void addEval(CLI::App& verb, EvalFlags& flags, OptionFlags& options);
 
 /// The exit status: 0, 1 for bad input, 2 for bad usage.
-int runEval(EvalFlags& flags);
+int runEval(const EvalFlags& flags, const Options& options);
 
 }  // namespace lacquer::cli

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <functional>
 #include <new>
 #include <optional>
-#include <sstream>
+#include <string_view>
 
 #include "cli/build.h"
 #include "cli/checks.h"
@@ -16,6 +17,7 @@
 #include "cli/environment.h"
 #include "cli/eval.h"
 #include "cli/lod.h"
+#include "cli/options.h"
 #include "cli/preview.h"
 #include "cli/prove.h"
 #include "cli/reserve.h"
@@ -31,8 +33,8 @@ namespace {
 using lacquer::Messages;
 using lacquer::Options;
 using lacquer::cli::kNotEmpty;
-using lacquer::cli::kNumber;
 using lacquer::cli::kWhole;
+using lacquer::cli::OptionFlags;
 using lacquer::cli::print;
 using lacquer::cli::say;
 
@@ -41,16 +43,12 @@ constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 constexpr const char kNoOutput[] =
     "lacquer: error: the standard output cannot be written [output-unwritable]\n";
-constexpr int kMostJobs = 1024;  ///< more threads than that are a mistyped number
 constexpr unsigned kMostPrograms = 1000000;
 
-struct Flags {
-  Options options;
-  std::vector<std::string> files, graphs, materials, targets, switches;
-  std::string output, format = "json", pass, lights = "any", params = "uniform", spirv_from = "direct",
-                      dfg = "table";
-  bool json = false, no_validate = false, no_ibl = false, no_multiple_scattering = false, quiet = false;
-  bool disassembly = false, time = false, replan = false, no_sync = false;
+struct Flags : OptionFlags {
+  std::vector<std::string> files, graphs, materials;
+  std::string output, format = "json", pass;
+  bool json = false, quiet = false, disassembly = false, time = false, replan = false;
   std::string arithmetic = "vulkan";  ///< of `prove`
   std::string ninja, plan_json;
   std::optional<std::string> material;
@@ -66,136 +64,9 @@ const CLI::Validator kPlainSize(
     },
     "");
 
-/// "NAME=on" or "NAME=off", each.
-std::string parseSwitches(const std::vector<std::string>& texts,
-                          std::map<std::string, bool, std::less<>>& switches) {
-  for (const std::string& text : texts) {
-    const size_t equals = text.find('=');
-    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
-    if (equals == 0 || (value != "on" && value != "off"))
-      return fmt::format("--switch: '{}' is neither NAME=on nor NAME=off", lacquer::shown(text));
-    switches[text.substr(0, equals)] = value == "on";
-  }
-  return {};
-}
-
-/// "any", "scene", "none" or "directional:1,point:4".
-std::string parseLights(const std::string& text, lacquer::Lights& lights) {
-  using Mode = lacquer::Lights::Mode;
-  lights.mode = text == "any" ? Mode::Any : text == "scene" ? Mode::Scene : Mode::Fixed;
-  if (lights.mode != Mode::Fixed || text == "none") return {};
-  constexpr unsigned long kMostLights = 4096;  // of a block in the node language
-  std::stringstream parts(text);
-  for (std::string part; std::getline(parts, part, ',');) {
-    const size_t colon = part.find(':');
-    const std::string type = part.substr(0, colon);
-    const std::string number = colon == std::string::npos ? "1" : part.substr(colon + 1);
-    const bool digits = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
-    const unsigned long count = digits && number.size() < 5 ? std::stoul(number) : kMostLights + 1;
-    const bool name = !type.empty() && std::all_of(type.begin(), type.end(), [](char c) {
-      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-    });
-    if (!name || count > kMostLights) {
-      return fmt::format("--lights: '{}' is not KIND:COUNT with a kind of the template's and up to {}",
-                         lacquer::shown(part), kMostLights);
-    }
-    if (!lights.counts.emplace(type, static_cast<uint32_t>(count)).second)
-      return fmt::format("--lights: '{}' is counted twice", type);
-  }
-  return {};
-}
-
-/// What CLI11 cannot know; an empty text when all is well.
-std::string finish(Flags& flags) {
-  Options& options = flags.options;
-  options.validate = !flags.no_validate;
-  options.sync = !flags.no_sync;
-  options.ibl = !flags.no_ibl;
-  options.multiple_scattering = !flags.no_multiple_scattering;
-  options.dfg_table = flags.dfg == "table";
-  options.parameters = flags.params == "baked"  ? lacquer::Parameters::Baked
-                       : flags.params == "spec" ? lacquer::Parameters::Spec
-                                                : lacquer::Parameters::Uniform;
-  options.spirv_route =
-      flags.spirv_from == "direct" ? lacquer::SpirvRoute::Direct : lacquer::SpirvRoute::Glslang;
-  const bool spec = options.parameters == lacquer::Parameters::Spec;
-  if (spec)
-    std::erase_if(options.targets, [](lacquer::Target one) { return !hasSpecializationConstants(one); });
-  if (!flags.targets.empty()) options.targets.clear();
-  for (const std::string& name : flags.targets) {
-    lacquer::Target target{};
-    if (!lacquer::findTarget(name, target)) {
-      return fmt::format("--target: there is no '{}'; targets are {}", lacquer::shown(name),
-                         fmt::join(lacquer::targetNames(), ", "));
-    }
-    if (spec && !lacquer::hasSpecializationConstants(target)) {
-      lacquer::Strings with = lacquer::targetNames();
-      std::erase_if(with, [](const std::string& one) {
-        lacquer::Target id{};
-        return !lacquer::findTarget(one, id) || !lacquer::hasSpecializationConstants(id);
-      });
-      return fmt::format("--target: {} has no specialization constants; --params spec is for {}", name,
-                         fmt::join(with, ", "));
-    }
-    if (std::find(options.targets.begin(), options.targets.end(), target) == options.targets.end()) {
-      options.targets.push_back(target);
-    }
-  }
-  if (std::string wrong = parseSwitches(flags.switches, options.switches); !wrong.empty()) return wrong;
-  return parseLights(flags.lights, options.lights);
-}
-
-void addShared(CLI::App& app, Flags& flags) {
-  app.add_option("--template", flags.options.template_name,
-                 "a template of `lacquer nodes`; without it the default")
-      ->check(kNotEmpty);
-  app.add_option("--profile", flags.options.profile,
-                 "the reading of the specification, one of `lacquer nodes`; without it the default")
-      ->check(kNotEmpty);
-  app.add_option(
-         "--params", flags.params,
-         "uniform: numbers stay editable; baked: they are constants; spec: they are specialization constants")
-      ->check(CLI::IsMember({"uniform", "baked", "spec"}))
-      ->capture_default_str();
-  app.add_option("--lights", flags.lights, "any, scene, none, or fixed counts such as directional:1,point:4")
-      ->check(kNotEmpty)
-      ->capture_default_str();
-  // Options that may be repeated take one argument each time: the next one may be a file.
-  app.add_option("--live", flags.options.live, "terms to keep though today's value would remove them")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("--simplify", flags.options.simplify,
-                 "what is left out or made simpler, such as without:coat.absorption (may be repeated)")
-      ->allow_extra_args(false);
-  app.add_option("--switch", flags.switches,
-                 "NAME=on or NAME=off: a switch of the node library (may be repeated)")
-      ->allow_extra_args(false);
-  app.add_flag("--no-ibl", flags.no_ibl, "no image-based light");
-  app.add_flag("--no-multiple-scattering", flags.no_multiple_scattering,
-               "do not compensate image-based light for multiple scattering");
-  app.add_option("--dfg", flags.dfg,
-                 "the split sum's factors: from the texture environment_dfg, or a fit without one")
-      ->check(CLI::IsMember({"table", "fit"}))
-      ->capture_default_str();
-  app.add_option("--relaxed", flags.options.relaxed,
-                 "the part of a colour, such as 0.01, that half precision may change (docs/intervals.md)")
-      ->check(CLI::Range(0.0, 0.5));
-  app.add_flag("--decode-srgb", flags.options.decode_srgb, "decode colour textures in the shader");
-  app.add_flag("--permissive", flags.options.permissive,
-               "drop an extension that must not be there instead of failing");
-  app.add_option("--nodes", flags.options.node_directories, "a folder with more node files (may be repeated)")
-      ->check(kNotEmpty)
-      ->allow_extra_args(false);
-  lacquer::cli::addLimit(app, flags.options);
-}
-
 /// What `gen` and `plan` have in common.
 void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
-  verb.add_option("--target", flags.targets,
-                  fmt::format("of {}; the first five when absent", fmt::join(lacquer::targetNames(), ", ")))
-      ->delimiter(',')
-      ->allow_extra_args(false);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   verb.add_flag("--msl-argument-buffers", flags.options.argument_buffers,
@@ -205,7 +76,7 @@ void addGeneration(CLI::App& verb, Flags& flags) {
       ->capture_default_str();
   verb.add_flag("--debug", flags.options.debug,
                 "SPIR-V has the names of values and the lines of the nodes (with --spirv-from direct)");
-  verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");
+  lacquer::cli::addTargetFlags(verb, flags);
   verb.add_option(
           "--programs", flags.options.programs,
           "at most so many programs: materials share them, each with its own numbers (docs/builds.md)")
@@ -217,9 +88,7 @@ void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_flag("--model-costs", flags.options.programs_model,
                 "what programs cost by the model, not by a driver: the same on every machine");
   verb.add_flag("--unused", flags.options.unused, "also materials that no primitive uses");
-  verb.add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
-      ->check(CLI::Range(0, kMostJobs))
-      ->check(kWhole);
+  lacquer::cli::addJobs(verb, flags);
   verb.add_option("--cache", flags.options.cache, "a folder that keeps results between runs")
       ->check(kNotEmpty);
   verb.add_option("--cache-size", flags.options.cache_size, "bytes that it may take, such as 500MB (1 GiB)")
@@ -228,11 +97,10 @@ void addGeneration(CLI::App& verb, Flags& flags) {
   verb.add_option("--cache-key", flags.options.cache_key,
                   "a file: entries of the cache count only when they were written with its bytes")
       ->check(kNotEmpty);
-  verb.add_flag("--no-sync", flags.no_sync,
-                "do not wait for the disk: after a power cut files may be broken");
+  lacquer::cli::addSyncFlag(verb, flags);
   verb.add_flag("--time", flags.time, "the time of every stage, on stderr");
   verb.add_flag("-q,--quiet", flags.quiet, "no table, no progress");
-  addShared(verb, flags);
+  lacquer::cli::addMaterialFlags(verb, flags);
 }
 
 void addGen(CLI::App& verb, Flags& flags) {
@@ -275,7 +143,7 @@ void addPlan(CLI::App& verb, Flags& flags) {
 void addLook(CLI::App& verb, Flags& flags) {
   verb.add_option("file", flags.files, "a .gltf or .glb file")->required()->expected(1)->check(kNotEmpty);
   verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
-  addShared(verb, flags);
+  lacquer::cli::addMaterialFlags(verb, flags);
 }
 
 void addGraph(CLI::App& verb, Flags& flags) {
@@ -299,16 +167,26 @@ void addProve(CLI::App& verb, Flags& flags) {
   verb.add_option("--arithmetic", flags.arithmetic, "what operations are taken to compute")
       ->check(CLI::IsMember({"vulkan", "ieee", "mediump"}))
       ->capture_default_str();
-  addShared(verb, flags);
+  lacquer::cli::addMaterialFlags(verb, flags);
 }
 
 void addNodes(CLI::App& verb, Flags& flags, std::string& name) {
   verb.add_option("name", name, "one node");
   verb.add_flag("--json", flags.json, "as JSON");
-  verb.add_option("--nodes", flags.options.node_directories,
-                  "a folder with more node files (may be repeated)")
-      ->check(kNotEmpty)
-      ->allow_extra_args(false);
+  lacquer::cli::addNodeFolders(verb, flags);
+}
+
+void addMerge(CLI::App& verb, Flags& flags) {
+  verb.add_option("shards", flags.files, "what gen wrote, in the order of a run over all files")->required();
+  verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
+}
+
+void addCost(CLI::App& verb, Flags& flags) {
+  verb.add_option("paths", flags.files, "folders that gen wrote, or .spv files")
+      ->required()
+      ->check(kNotEmpty);
+  verb.add_flag("--json", flags.json, "as JSON");
+  verb.add_flag("--disassembly", flags.disassembly, "the GPUs' instructions, too");
 }
 
 void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
@@ -317,24 +195,19 @@ void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   lacquer::cli::addLod(verb, lod);
-  verb.add_option("--target", flags.targets,
-                  fmt::format("of {}; the first five when absent", fmt::join(lacquer::targetNames(), ", ")))
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  verb.add_flag("--no-validate", flags.no_validate, "do not compile and validate what was written");
-  verb.add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
-      ->check(CLI::Range(0, kMostJobs))
-      ->check(kWhole);
-  verb.add_option("--allow", flags.options.allow,
-                  "a folder in which images may lie, beside the file's own (may be repeated)")
-      ->allow_extra_args(false);
-  verb.add_flag("--no-sync", flags.no_sync,
-                "do not wait for the disk: after a power cut files may be broken");
+  lacquer::cli::addTargetFlags(verb, flags);
+  lacquer::cli::addJobs(verb, flags);
+  lacquer::cli::addAllow(verb, flags, "images");
+  lacquer::cli::addSyncFlag(verb, flags);
   verb.add_flag("-q,--quiet", lod.quiet, "no table, no progress");
-  addShared(verb, flags);
+  lacquer::cli::addMaterialFlags(verb, flags);
 }
 
-int gen(Flags& flags) {
+int gen(const Flags& flags) {
+  if (flags.files.empty() && flags.graphs.empty()) {
+    say("gen: name a .gltf or .glb file, or a graph with --graph\n");
+    return kUsage;
+  }
   Messages messages;
   const auto begin = std::chrono::steady_clock::now();
   lacquer::Report report;
@@ -437,6 +310,70 @@ std::string wrongUsage(const CLI::App* app, const CLI::Error& error) {
       app, CLI::Error(error.get_name(), lacquer::shown(error.what()), error.get_exit_code()));
 }
 
+/// What the program can do.
+struct Verb {
+  const char* name;
+  const char* does;
+  std::function<void(CLI::App& verb)> add;
+  std::function<int()> run;
+};
+
+/// The flags of all verbs, of which one is called.
+struct VerbFlags {
+  Flags flags;
+  std::string node;
+  lacquer::cli::EvalFlags eval;
+  lacquer::cli::DfgFlags dfg;
+  lacquer::cli::EnvironmentFlags environment;
+  lacquer::cli::PreviewFlags preview;
+  lacquer::cli::LodFlags lod;
+  lacquer::cli::StressFlags stress;
+  lacquer::cli::ViewFlags view;
+};
+
+/// In the order of the help. `all` must live as long as what is returned.
+std::vector<Verb> verbsOf(VerbFlags& all) {
+  using namespace lacquer::cli;
+  Flags& flags = all.flags;
+  const Options& options = flags.options;
+  return {
+      {"gen", "shaders and manifest.json for the materials of glTF files",
+       [&](CLI::App& verb) { addGen(verb, flags); }, [&] { return gen(flags); }},
+      {"plan", "a Ninja file with one command for each distinct shader",
+       [&](CLI::App& verb) { addPlan(verb, flags); }, [&] { return plan(flags); }},
+      {"merge", "manifest.json from the manifests or shards of several runs",
+       [&](CLI::App& verb) { addMerge(verb, flags); }, [&] { return merge(flags); }},
+      {"graph", "the node graph of a material", [&](CLI::App& verb) { addGraph(verb, flags); },
+       [&] { return graph(flags); }},
+      {"dump", "the DAG of a material, with the rate of every value",
+       [&](CLI::App& verb) { addDump(verb, flags); }, [&] { return dump(flags); }},
+      {"prove", "which operations are safe for all inputs; of the nodes without FILE",
+       [&](CLI::App& verb) { addProve(verb, flags); }, [&] { return prove(flags); }},
+      {"nodes", "the node library: contracts, ranges, sources, variants",
+       [&](CLI::App& verb) { addNodes(verb, flags, all.node); }, [&] { return nodes(flags, all.node); }},
+      {"cost", "what SPIR-V fragment shaders cost on AMD GPUs, by Mesa's compiler",
+       [&](CLI::App& verb) { addCost(verb, flags); }, [&] { return cost(flags); }},
+      {"eval", "the linear colours of a material at points, computed on the CPU or by a GPU",
+       [&](CLI::App& verb) { addEval(verb, all.eval, flags); }, [&] { return runEval(all.eval, options); }},
+      {"dfg", "the textures environment_dfg and environment_sheen, for engines that have none",
+       [&](CLI::App& verb) { addDfg(verb, all.dfg); }, [&] { return runDfg(all.dfg); }},
+      {"environment", "the cube maps and tables of image-based light, from a picture of the surroundings",
+       [&](CLI::App& verb) { addEnvironment(verb, all.environment, flags); },
+       [&] { return runEnvironment(all.environment, options); }},
+      {"preview", "a picture with a lit ball for each material, computed on the CPU",
+       [&](CLI::App& verb) { addPreview(verb, all.preview, flags); },
+       [&] { return runPreview(all.preview, options); }},
+      {"lod", "levels of detail: cheaper shaders whose difference is seen, not feared",
+       [&](CLI::App& verb) { addLevels(verb, flags, all.lod); },
+       [&] { return runLod(all.lod, flags.files, flags.materials, options); }},
+      {"stress", "attacks nodes and materials with the inputs that break shaders",
+       [&](CLI::App& verb) { addStress(verb, all.stress, flags); },
+       [&] { return runStress(all.stress, options); }},
+      {"view", "a page that shows and edits materials, with the compiler inside, as one file",
+       [&](CLI::App& verb) { addView(verb, all.view, flags); }, [&] { return runView(all.view, options); }},
+  };
+}
+
 int run(int argc, char** argv) {
   std::optional<lacquer::cli::Reserve> reserve(std::in_place);  // while CLI11 is at work
   CLI::App app{"Lacquer turns glTF materials into GLSL, HLSL and SPIR-V.", "lacquer"};
@@ -444,69 +381,23 @@ int run(int argc, char** argv) {
   app.set_help_all_flag("--help-all", "the help of every verb");
   app.require_subcommand(1);
   app.failure_message(wrongUsage);
-  Flags flags;
-  flags.arguments.assign(argv, argv + argc);
-  std::string node_name;
+  VerbFlags all;
+  all.flags.arguments.assign(argv, argv + argc);
+  all.view.program = argc > 0 ? argv[0] : "";
 
-  // Options take longer to set up than a small cached run needs for all the rest: those of other verbs are
-  // left out.
-  const auto called = [&](const CLI::App* verb) {
-    return argc < 2 || argv[1][0] == '-' || verb->get_name() == argv[1];
-  };
-  CLI::App* gen_verb = app.add_subcommand("gen", "shaders and manifest.json for the materials of glTF files");
-  if (called(gen_verb)) addGen(*gen_verb, flags);
-  CLI::App* plan_verb = app.add_subcommand("plan", "a Ninja file with one command for each distinct shader");
-  if (called(plan_verb)) addPlan(*plan_verb, flags);
-
-  CLI::App* merge_verb =
-      app.add_subcommand("merge", "manifest.json from the manifests or shards of several runs");
-  merge_verb->add_option("shards", flags.files, "what gen wrote, in the order of a run over all files")
-      ->required();
-  merge_verb->add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
-
-  CLI::App* graph_verb = app.add_subcommand("graph", "the node graph of a material");
-  CLI::App* dump_verb = app.add_subcommand("dump", "the DAG of a material, with the rate of every value");
-  if (called(graph_verb)) addGraph(*graph_verb, flags);
-  if (called(dump_verb)) addDump(*dump_verb, flags);
-  CLI::App* prove_verb =
-      app.add_subcommand("prove", "which operations are safe for all inputs; of the nodes without FILE");
-  if (called(prove_verb)) addProve(*prove_verb, flags);
-  CLI::App* nodes_verb =
-      app.add_subcommand("nodes", "the node library: contracts, ranges, sources, variants");
-  if (called(nodes_verb)) addNodes(*nodes_verb, flags, node_name);
-  CLI::App* cost_verb =
-      app.add_subcommand("cost", "what SPIR-V fragment shaders cost on AMD GPUs, by Mesa's compiler");
-  cost_verb->add_option("paths", flags.files, "folders that gen wrote, or .spv files")
-      ->required()
-      ->check(kNotEmpty);
-  cost_verb->add_flag("--json", flags.json, "as JSON");
-  cost_verb->add_flag("--disassembly", flags.disassembly, "the GPUs' instructions, too");
-
-  lacquer::cli::EvalFlags eval_flags;
-  CLI::App* eval_verb = lacquer::cli::addEval(app, eval_flags);
-  lacquer::cli::DfgFlags dfg_flags;
-  CLI::App* dfg_verb = lacquer::cli::addDfg(app, dfg_flags);
-  lacquer::cli::EnvironmentFlags environment_flags;
-  CLI::App* environment_verb = lacquer::cli::addEnvironment(app, environment_flags);
-  lacquer::cli::PreviewFlags preview_flags;
-  CLI::App* preview_verb = lacquer::cli::addPreview(app, preview_flags);
-  lacquer::cli::LodFlags lod_flags;
-  CLI::App* lod_verb =
-      app.add_subcommand("lod", "levels of detail: cheaper shaders whose difference is seen, not feared");
-  if (called(lod_verb)) addLevels(*lod_verb, flags, lod_flags);
-  lacquer::cli::StressFlags stress_flags;
-  CLI::App* stress_verb = lacquer::cli::addStress(app, stress_flags);
-  lacquer::cli::ViewFlags view_flags;
-  view_flags.program = argc > 0 ? argv[0] : "";
-  CLI::App* view_verb = lacquer::cli::addView(app, view_flags);
-
-  for (CLI::App* verb : app.get_subcommands({}))
-    verb->set_version_flag("--version", std::string(lacquer::version()));
+  const std::vector<Verb> verbs = verbsOf(all);
+  bool known = false;
+  for (const Verb& verb : verbs) {
+    CLI::App* made = app.add_subcommand(verb.name, verb.does);
+    made->set_version_flag("--version", std::string(lacquer::version()));
+    // Options take longer to set up than a small cached run needs for all the rest: those of other verbs are
+    // left out.
+    const bool called = argc > 1 && std::string_view(argv[1]) == verb.name;
+    known |= called;
+    if (called || argc < 2 || argv[1][0] == '-') verb.add(*made);
+  }
   // CLI11 would say only that a verb is missing.
-  const std::vector<CLI::App*> verbs = app.get_subcommands({});
-  const auto named = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
-  if (argc > 1 && argv[1][0] != '\0' && std::none_of(verbs.begin(), verbs.end(), named) &&
-      app.get_option_no_throw(argv[1]) == nullptr) {
+  if (argc > 1 && argv[1][0] != '\0' && !known && app.get_option_no_throw(argv[1]) == nullptr) {
     say("lacquer: there is no '{}'; `lacquer --help` lists what there is\n", lacquer::shown(argv[1]));
     return kUsage;
   }
@@ -516,29 +407,13 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kGood : kUsage;
   }
-  if (const std::string wrong = finish(flags); !wrong.empty()) {
+  if (const std::string wrong = lacquer::cli::finish(all.flags); !wrong.empty()) {
     say("{}\n", wrong);
     return kUsage;
   }
-  if (*gen_verb && flags.files.empty() && flags.graphs.empty()) {
-    say("gen: name a .gltf or .glb file, or a graph with --graph\n");
-    return kUsage;
-  }
-  if (*eval_verb) return lacquer::cli::runEval(eval_flags);
-  if (*dfg_verb) return lacquer::cli::runDfg(dfg_flags);
-  if (*environment_verb) return lacquer::cli::runEnvironment(environment_flags);
-  if (*preview_verb) return lacquer::cli::runPreview(preview_flags);
-  if (*lod_verb) return lacquer::cli::runLod(lod_flags, flags.files, flags.materials, flags.options);
-  if (*stress_verb) return lacquer::cli::runStress(stress_flags);
-  if (*view_verb) return lacquer::cli::runView(view_flags);
-  if (*gen_verb) return gen(flags);
-  if (*plan_verb) return plan(flags);
-  if (*merge_verb) return merge(flags);
-  if (*graph_verb) return graph(flags);
-  if (*prove_verb) return prove(flags);
-  if (*dump_verb) return dump(flags);
-  if (*cost_verb) return cost(flags);
-  return nodes(flags, node_name);
+  const std::string called = app.get_subcommands()[0]->get_name();
+  return std::find_if(verbs.begin(), verbs.end(), [&](const Verb& verb) { return verb.name == called; })
+      ->run();
 }
 
 }  // namespace

@@ -5,21 +5,22 @@
 #include <string>
 #include <vector>
 
+#include "cli/options.h"
 #include "lacquer.h"
 
 namespace lacquer::cli {
 
 struct PreviewFlags {
-  Options options;
   Preview preview;
   std::vector<std::string> files, materials;
-  std::string engine = "float", params = "uniform";
-  bool no_multiple_scattering = false, no_ibl = false, json = false, quiet = false;
+  std::string engine = "float";
+  bool json = false, quiet = false;
 };
 
-CLI::App* addPreview(CLI::App& app, PreviewFlags& flags);
+/// The verb's own flags, and those of a material.
+void addPreview(CLI::App& verb, PreviewFlags& flags, OptionFlags& options);
 
 /// The exit status: 0, 1 for bad input or a material that is missing in the sheet.
-int runPreview(PreviewFlags& flags);
+int runPreview(PreviewFlags& flags, const Options& options);
 
 }  // namespace lacquer::cli

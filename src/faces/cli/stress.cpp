@@ -10,55 +10,40 @@
 
 namespace lacquer::cli {
 
-CLI::App* addStress(CLI::App& app, StressFlags& flags) {
-  CLI::App* verb =
-      app.add_subcommand("stress", "attacks nodes and materials with the inputs that break shaders");
-  verb->add_option("subjects", flags.subjects,
-                   "nodes, extensions, .gltf or .glb files, .json cases; `nodes` is every node of the "
-                   "library, `extensions` "
-                   "every extension; both when absent")
+void addStress(CLI::App& verb, StressFlags& flags, OptionFlags& options) {
+  verb.add_option("subjects", flags.subjects,
+                  "nodes, extensions, .gltf or .glb files, .json cases; `nodes` is every node of the "
+                  "library, `extensions` "
+                  "every extension; both when absent")
       ->check(kNotEmpty);
   CLI::Option* samples =
-      verb->add_option("--samples", flags.stress.samples, "inputs for each node and each material")
+      verb.add_option("--samples", flags.stress.samples, "inputs for each node and each material")
           ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
           ->check(kWhole)
           ->capture_default_str();
-  verb->add_option("--total", flags.stress.total, "inputs for all of them together, the same number for each")
+  verb.add_option("--total", flags.stress.total, "inputs for all of them together, the same number for each")
       ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
       ->check(kWhole)
       ->excludes(samples);
-  verb->add_option(
-          "--profile", flags.options.profile,
-          "the reading of the specification, of materials, one of `lacquer nodes`; without it the default")
-      ->check(kNotEmpty);
-  verb->add_option("--seed", flags.stress.seed, "another one draws other inputs")
+  verb.add_option("--seed", flags.stress.seed, "another one draws other inputs")
       ->check(kWhole)
       ->capture_default_str();
-  verb->add_flag("--mediump", flags.stress.mediump,
-                 "round every operation to half precision and only report what comes of it");
-  verb->add_option("--engine", flags.engine,
-                   "float: on the CPU; vulkan: on the first Vulkan device too, and what differs from the CPU")
+  verb.add_flag("--mediump", flags.stress.mediump,
+                "round every operation to half precision and only report what comes of it");
+  verb.add_option("--engine", flags.engine,
+                  "float: on the CPU; vulkan: on the first Vulkan device too, and what differs from the CPU")
       ->check(CLI::IsMember({"float", "vulkan"}))
       ->capture_default_str();
-  verb->add_option(
+  verb.add_option(
           "--spirv-from", flags.spirv_from,
           "what --engine vulkan runs: direct, or through glslang: its GLSL (glslang), its HLSL (hlsl)")
       ->check(CLI::IsMember({"direct", "glslang", "hlsl"}))
       ->capture_default_str();
-  verb->add_option("--nodes", flags.options.node_directories, "a folder with more node files")
-      ->check(kNotEmpty)
-      ->allow_extra_args(false);
-  verb->add_option("--allow", flags.options.allow,
-                   "a folder in which a case's file and images may lie, beside their own (may be repeated)")
-      ->check(kNotEmpty)
-      ->allow_extra_args(false);
-  verb->add_option("-j,--jobs", flags.options.jobs, "threads; one for each core when absent")
-      ->check(CLI::Range(0, 1024))
-      ->check(kWhole);
-  verb->add_flag("--json", flags.json, "as JSON, with a case for each finding");
-  verb->add_flag("-q,--quiet", flags.quiet, "no progress, and only what was found");
-  addLimit(*verb, flags.options);
-  return verb;
+  addAllow(verb, options, "a case's file and images");
+  addJobs(verb, options);
+  verb.add_flag("--json", flags.json, "as JSON, with a case for each finding");
+  verb.add_flag("-q,--quiet", flags.quiet, "no progress, and only what was found");
+  addMaterialFlags(verb, options);
 }
 
 namespace {
@@ -123,7 +108,7 @@ void printFound(const std::string& text, bool quiet) {
 
 }  // namespace
 
-int runStress(StressFlags& flags) {
+int runStress(StressFlags& flags, const Options& options) {
   if (flags.engine == "vulkan")
     flags.stress.engine = flags.spirv_from == "hlsl"      ? Engine::VulkanHlsl
                           : flags.spirv_from == "glslang" ? Engine::VulkanGlsl
@@ -133,7 +118,7 @@ int runStress(StressFlags& flags) {
   {
     ProgressLine line(terminalWidth() > 0 && !flags.quiet, "subjects");
     const auto progress = [&](size_t done, size_t known) { line(done, known); };
-    answer = stressNodes(flags.stress, flags.subjects, flags.options, messages, progress);
+    answer = stressNodes(flags.stress, flags.subjects, options, messages, progress);
   }
   print(messages);
   if (flags.json) fmt::print("{}", answer);

@@ -5,21 +5,22 @@
 #include <string>
 #include <vector>
 
+#include "cli/options.h"
 #include "lacquer.h"
 
 namespace lacquer::cli {
 
 struct StressFlags {
-  Options options;
   Stress stress;
   std::vector<std::string> subjects;
   std::string engine = "float", spirv_from = "direct";
   bool json = false, quiet = false;
 };
 
-CLI::App* addStress(CLI::App& app, StressFlags& flags);
+/// The verb's own flags, and those of a material.
+void addStress(CLI::App& verb, StressFlags& flags, OptionFlags& options);
 
 /// The exit status: 0, 1 when something was found or the input is bad.
-int runStress(StressFlags& flags);
+int runStress(StressFlags& flags, const Options& options);
 
 }  // namespace lacquer::cli

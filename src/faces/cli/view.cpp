@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "cli/build.h"
+#include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
 
@@ -50,10 +51,9 @@ public:
 
 /// What the files' shaders cost by the driver's compiler; nothing where there is none. What is wrong with a
 /// material the page says itself.
-std::vector<ShaderCost> costsOf(const ViewFlags& flags) {
+std::vector<ShaderCost> costsOf(const ViewFlags& flags, Options options) {
   const Scratch scratch;
   if (flags.files.empty() || scratch.path.empty()) return {};
-  Options options = flags.options;
   options.targets = {Target::Spirv};
   options.validate = false;
   options.sync = false;
@@ -64,29 +64,21 @@ std::vector<ShaderCost> costsOf(const ViewFlags& flags) {
 
 }  // namespace
 
-CLI::App* addView(CLI::App& app, ViewFlags& flags) {
-  const CLI::Validator not_empty(
-      [](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "");
-  CLI::App* verb = app.add_subcommand(
-      "view", "a page that shows and edits materials, with the compiler inside, as one file");
-  verb->add_option("files", flags.files, ".gltf or .glb files")->check(not_empty);
-  verb->add_option("-o,--output", flags.view.output, "the HTML file to write")->required()->check(not_empty);
-  verb->add_option("--page", flags.view.page,
-                   "the page without files, in place of the one that is installed");
-  verb->add_flag("--no-cost", flags.no_cost,
-                 "do not measure what the shaders cost, where Mesa's compiler is there");
-  addLimit(*verb, flags.options);
-  verb->add_option("--allow", flags.options.allow,
-                   "a folder in which buffers and images may lie, beside the file's own (may be repeated)")
-      ->allow_extra_args(false);
-  return verb;
+void addView(CLI::App& verb, ViewFlags& flags, OptionFlags& options) {
+  verb.add_option("files", flags.files, ".gltf or .glb files")->check(kNotEmpty);
+  verb.add_option("-o,--output", flags.view.output, "the HTML file to write")->required()->check(kNotEmpty);
+  verb.add_option("--page", flags.view.page, "the page without files, in place of the one that is installed");
+  verb.add_flag("--no-cost", flags.no_cost,
+                "do not measure what the shaders cost, where Mesa's compiler is there");
+  addAllow(verb, options, "buffers and images");
+  addMaterialFlags(verb, options);
 }
 
-int runView(ViewFlags& flags) {
+int runView(ViewFlags& flags, const Options& options) {
   if (flags.view.page.empty()) flags.view.page = pageOf(flags.program);
-  if (!flags.no_cost) flags.view.costs = costsOf(flags);
+  if (!flags.no_cost) flags.view.costs = costsOf(flags, options);
   Messages messages;
-  const bool written = writeView(flags.view, flags.files, flags.options, messages);
+  const bool written = writeView(flags.view, flags.files, options, messages);
   print(messages);
   if (!written) return 1;
   fmt::print("{} file{} in {}\n", flags.files.size(), flags.files.size() == 1 ? "" : "s",

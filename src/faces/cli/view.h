@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "cli/options.h"
 #include "lacquer.h"
 
 namespace lacquer::cli {
@@ -12,12 +13,12 @@ namespace lacquer::cli {
 struct ViewFlags {
   View view;
   Strings files;
-  Options options;
   std::string program;   ///< the command line's first word
   bool no_cost = false;  ///< measure nothing
 };
 
-CLI::App* addView(CLI::App& app, ViewFlags& flags);
-int runView(ViewFlags& flags);
+/// The verb's own flags, and those of a material.
+void addView(CLI::App& verb, ViewFlags& flags, OptionFlags& options);
+int runView(ViewFlags& flags, const Options& options);
 
 }  // namespace lacquer::cli
