@@ -31,12 +31,12 @@ function(lacquer_module)
   endforeach()
   target_compile_definitions(lacquer_c PRIVATE LACQUER_NO_CHECK)  # nothing is validated unless it is asked for
   # These hand on, read and report: their time is not worth the bytes.
-  foreach(folder c api graph programs prove)
+  foreach(folder c api environment graph manifest programs prove texture)
     target_compile_options(lacquer_${folder} PRIVATE -Os)
   endforeach()
   add_executable(lacquer_wasm ${absent} "${PROJECT_SOURCE_DIR}/web/shim/png.cpp" $<TARGET_OBJECTS:lacquer_c>)
   set_target_properties(lacquer_wasm PROPERTIES OUTPUT_NAME lacquer SUFFIX .wasm)
-  target_link_libraries(lacquer_wasm PRIVATE lacquer_c lacquer_targets lacquer_check lacquer_vulkan stb
+  target_link_libraries(lacquer_wasm PRIVATE lacquer_c lacquer_eval lacquer_targets lacquer_check lacquer_vulkan stb
                         lacquer_warnings)
   target_link_options(lacquer_wasm PRIVATE -Os --no-entry "-sEXPORTED_FUNCTIONS=${names}" -sSTANDALONE_WASM=1
                       -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=16777216)

@@ -21,8 +21,9 @@
 /// Equal input gives equal bytes, whatever the number of threads.
 #pragma once
 
-#include "lacquer/generate.h"  // scenes, shaders, runs over files
-#include "lacquer/graph.h"     // the node graph, to look at and to edit
-#include "lacquer/options.h"   // what all calls share: messages, targets, options
-#include "lacquer/targets.h"   // targets of one's own
+#include "lacquer/generate.h"    // scenes, shaders, runs over files
+#include "lacquer/graph.h"       // the node graph, to look at and to edit
+#include "lacquer/options.h"     // what all calls share: messages, targets, options
+#include "lacquer/reflection.h"  // what a shader is bound to
+#include "lacquer/targets.h"     // targets of one's own
 #include "lacquer/tools.h"  // what else is known of a material or a shader: colours, pictures, proofs, costs

@@ -159,6 +159,12 @@ LACQUER_C lacquer_text* lacquer_graph_json(const lacquer_graph* graph);
 LACQUER_C lacquer_text* lacquer_graph_dot(const lacquer_graph* graph);
 /* A JSON array of the editable numbers: name, type, value, low, high (null: unbounded), or_zero, pointer. */
 LACQUER_C lacquer_text* lacquer_graph_parameters(const lacquer_graph* graph);
+/* Its textures. `slot`, which has room for `capacity` bytes, is given the name and a NUL; `texture` the index
+ * in the file's textures, -1 for none. 0, and nothing given, for an index that does not exist or a name that
+ * is too long. */
+LACQUER_C size_t lacquer_graph_texture_count(const lacquer_graph* graph);
+LACQUER_C int lacquer_graph_texture(const lacquer_graph* graph, size_t index, char* slot, size_t capacity,
+                                    int* texture);
 /* Edits, as those of lacquer::Graph: one that fails leaves the graph as it was. */
 LACQUER_C int lacquer_graph_add_node(lacquer_graph* graph, const char* id, const char* type,
                                      lacquer_messages* messages);
@@ -197,6 +203,71 @@ LACQUER_C const char* lacquer_shader_text(const lacquer_shader* shader, const ch
 LACQUER_C const uint32_t* lacquer_shader_spirv(const lacquer_shader* shader, int stage, size_t* count);
 /* The shader's entry in manifest.json (docs/manifest.md). */
 LACQUER_C const char* lacquer_shader_interface(const lacquer_shader* shader, size_t* size);
+/* What is in it as values, for programs that bind a shader without reading JSON: lacquer/reflection.h says
+ * what the members mean. Each function fills the first `size` bytes of `to`, which is sizeof *to: a later
+ * library may know more members, and an earlier caller is not given them. Texts belong to the handle. 0, and
+ * nothing filled, for an index that does not exist. */
+typedef struct lacquer_binding {
+  uint32_t set, binding; /* of Vulkan */
+  uint32_t flat;         /* OpenGL's binding point or texture unit, HLSL's register */
+  uint32_t wgsl_group, wgsl_binding, wgsl_sampler;
+  uint32_t msl_index, msl_sampler; /* plain bindings */
+  uint32_t msl_argument_buffer, msl_argument_index, msl_argument_sampler;
+  int vertex, fragment; /* 1: the stage reads it */
+} lacquer_binding;
+enum {
+  LACQUER_BLOCK_FRAME = 0,
+  LACQUER_BLOCK_LIGHTS = 1,
+  LACQUER_BLOCK_MATERIAL = 2, /* lacquer_shader_pack() fills it */
+  LACQUER_BLOCK_OBJECT = 3,
+  LACQUER_BLOCK_LIST = 4
+};
+typedef struct lacquer_block {
+  const char* name;
+  const char* structure; /* of an array or a list: its element's type; else empty */
+  const char* list;      /* of a list: its array's name; else empty */
+  int role;
+  lacquer_binding at;
+  uint32_t size;  /* bytes; of an array or a list, of one element */
+  uint32_t array; /* elements; 0 for no array, and for a list */
+  size_t field_count;
+} lacquer_block;
+typedef struct lacquer_field {
+  const char* name;
+  const char* type;       /* "float", "int", "vec2" to "vec4", "mat4" */
+  uint32_t offset;        /* bytes */
+  uint32_t array, stride; /* 0 for no array */
+} lacquer_field;
+enum { LACQUER_TEXTURE_MATERIAL = 0, LACQUER_TEXTURE_ENVIRONMENT = 1, LACQUER_TEXTURE_OBJECT = 2 };
+typedef struct lacquer_texture {
+  const char* name;
+  const char* type;    /* "sampler2D", "samplerCube", ... */
+  const char* sampler; /* its sampler's name in HLSL and WGSL */
+  const char* slot;    /* of the material: what lacquer_graph_texture() calls it; else empty */
+  int role;
+  int srgb;
+  lacquer_binding at;
+} lacquer_texture;
+/* A vertex attribute ("TEXCOORD_0"; without a vertex stage what the fragment stage is given), or a colour. */
+typedef struct lacquer_place {
+  const char* name;
+  const char* type;
+  uint32_t location;
+} lacquer_place;
+LACQUER_C size_t lacquer_shader_block_count(const lacquer_shader* shader);
+LACQUER_C int lacquer_shader_block(const lacquer_shader* shader, size_t index, lacquer_block* to,
+                                   size_t size);
+LACQUER_C int lacquer_shader_field(const lacquer_shader* shader, size_t block, size_t index,
+                                   lacquer_field* to, size_t size);
+LACQUER_C size_t lacquer_shader_texture_count(const lacquer_shader* shader);
+LACQUER_C int lacquer_shader_texture(const lacquer_shader* shader, size_t index, lacquer_texture* to,
+                                     size_t size);
+LACQUER_C size_t lacquer_shader_input_count(const lacquer_shader* shader);
+LACQUER_C int lacquer_shader_input(const lacquer_shader* shader, size_t index, lacquer_place* to,
+                                   size_t size);
+LACQUER_C size_t lacquer_shader_output_count(const lacquer_shader* shader);
+LACQUER_C int lacquer_shader_output(const lacquer_shader* shader, size_t index, lacquer_place* to,
+                                    size_t size);
 /* Bytes of the material's uniform block, a multiple of 16; 0 when there is none. */
 LACQUER_C size_t lacquer_shader_uniform_size(const lacquer_shader* shader);
 /* A parameter's numbers. */

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lacquer/graph.h"
+#include "lacquer/reflection.h"
 
 namespace lacquer {
 
@@ -87,10 +88,12 @@ public:
   /// Words in the machine's byte order; empty when Target::Spirv was not asked for.
   const std::vector<uint32_t>& vertexSpirv() const;
   const std::vector<uint32_t>& fragmentSpirv() const;
-  const std::string& headerText() const;     ///< of Target::Cpp; empty when it was not asked for
-  const std::string& moduleText() const;     ///< of Target::Js: the module; empty when it was not asked for
-  const std::string& moduleTypes() const;    ///< of Target::Js: the types
-  const std::string& interfaceJson() const;  ///< the shader's entry in manifest.json (docs/manifest.md)
+  const std::string& headerText() const;   ///< of Target::Cpp; empty when it was not asked for
+  const std::string& moduleText() const;   ///< of Target::Js: the module; empty when it was not asked for
+  const std::string& moduleTypes() const;  ///< of Target::Js: the types
+  /// What it is given and what it gives: where blocks, textures, inputs and outputs are bound.
+  const Reflection& reflection() const;
+  const std::string& interfaceJson() const;  ///< the same as its entry in manifest.json (docs/manifest.md)
 
   /// Bytes of the material's uniform block, a multiple of 16; 0 when there is none.
   size_t uniformSize() const;

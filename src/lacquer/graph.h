@@ -30,6 +30,15 @@ struct Parameter {
   std::string pointer;  ///< JSON pointer of the glTF property; may be empty
 };
 
+/// A texture of a material. A shader that reads it has its name as ReflectedTexture::slot.
+struct TextureUse {
+  std::string name;     ///< "coat_roughness_texture"
+  std::string type;     ///< "sampler2D"
+  bool srgb = false;    ///< its texels are to be decoded, by the image's format
+  int texture = -1;     ///< index in the file's `textures`; -1 for none
+  std::string pointer;  ///< JSON pointer of the textureInfo; may be empty
+};
+
 /// A node graph: one term of the specification is one node (`lacquer nodes` lists them).
 ///
 /// Edits check what they are told, not what comes of it: names of inputs and ports, types, ranges and cycles
@@ -48,6 +57,8 @@ public:
   std::string toDot() const;
   /// In their order in the JSON form.
   std::vector<Parameter> parameters() const;
+  /// The same, of the textures.
+  std::vector<TextureUse> textures() const;
 
   /// Adds a node of the library's type `type`, not yet connected. "duplicate-name" when there is one of that
   /// id.

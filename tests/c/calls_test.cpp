@@ -68,6 +68,9 @@ TEST_F(CCalls, nothingIsDoneWithoutHandlesAndNothingBreaks) {
   EXPECT_STREQ(lacquer_shader_text(nullptr, "essl", LACQUER_FRAGMENT, nullptr), "");
   EXPECT_EQ(lacquer_shader_spirv(nullptr, LACQUER_FRAGMENT, nullptr), nullptr);
   EXPECT_EQ(lacquer_shader_uniform_size(nullptr), 0u);
+  EXPECT_EQ(lacquer_shader_block_count(nullptr), 0u);
+  EXPECT_EQ(lacquer_shader_texture(nullptr, 0, nullptr, 0), 0);
+  EXPECT_EQ(lacquer_graph_texture_count(nullptr), 0u);
   EXPECT_EQ(lacquer_shader_pack(nullptr, nullptr, 0, nullptr, 0, messages_), 0);
   EXPECT_EQ(messages_.takeCodes(), "empty-handle");
   EXPECT_EQ(lacquer_scene_load(nullptr, nullptr, nullptr), nullptr);

@@ -16,15 +16,16 @@ void have(std::vector<bool>& there, Function function) {
 TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
   std::vector<bool> there;
   const auto all = [&](auto... functions) { (have(there, functions), ...); };
-  all(&version, static_cast<bool (*)(const Messages&)>(&hasError), &targetName, &findTarget, &liveTerms,
-      &profiles, &passNames);
+  all(&version, static_cast<bool (*)(const Messages&)>(&hasError), &targetName, &targetNames, &findTarget,
+      &addTarget, &hasSpecializationConstants, &liveTerms, &profiles, &passNames);
   all(&Scene::load, &Scene::fromMemory, &Scene::materialCount, &Scene::materialName, &Scene::findMaterial,
       &Scene::uses, &Scene::graph);
-  all(&Graph::fromJson, &Graph::toJson, &Graph::toDot, &Graph::parameters, &Graph::addNode,
+  all(&Graph::fromJson, &Graph::toJson, &Graph::toDot, &Graph::parameters, &Graph::textures, &Graph::addNode,
       &Graph::removeNode, &Graph::connect, &Graph::setOutput, &Graph::setParameter, &Graph::setRange,
       &Graph::check, &Graph::generate, &Graph::dump, &Graph::prove);
   all(&Shader::id, &Shader::hasVertexStage, &Shader::vertexText, &Shader::fragmentText, &Shader::vertexSpirv,
-      &Shader::fragmentSpirv, &Shader::headerText, &Shader::interfaceJson, &Shader::uniformSize,
+      &Shader::fragmentSpirv, &Shader::fileText, &Shader::headerText, &Shader::moduleText,
+      &Shader::moduleTypes, &Shader::reflection, &Shader::interfaceJson, &Shader::uniformSize,
       static_cast<bool (Shader::*)(const Shader::Values&, std::span<std::byte>) const>(&Shader::pack),
       static_cast<bool (Shader::*)(const Shader::Values&, std::span<std::byte>, Messages&) const>(
           &Shader::pack));
@@ -34,8 +35,9 @@ TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
       static_cast<std::string (*)(const std::string&, const std::string&, const std::string&,
                                   const std::string&, Engine, const Strings&, const Options&, Messages&)>(
           &evaluate),
-      &drawBall, &drawPreview, &writeView, &stressNodes, &measureCost, &environmentDfg, &writeEnvironmentDfg,
-      &environmentSheen, &writeEnvironmentSheen, &nodesJson, &proveNodesJson);
+      &drawBall, &drawPreview, &writeView, &makeLevels, &stressNodes, &measureCost, &environmentDfg,
+      &writeEnvironmentDfg, &environmentSheen, &writeEnvironmentSheen, &writeEnvironment, &nodesJson,
+      &proveNodesJson);
   for (const bool one : there) EXPECT_TRUE(one);
 }
 

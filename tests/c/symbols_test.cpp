@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -63,6 +64,29 @@ TEST(Symbols, areThoseOfTheHeadersAndNoOthers) {
   EXPECT_EQ(of_c, declaredInC());
   EXPECT_EQ(of_cpp, listedForCpp());
   EXPECT_GT(of_c.size(), 40u);
+}
+
+/// Functions of the C++ headers, without their classes.
+std::set<std::string> declaredInCpp() {
+  const std::regex declaration(
+      R"(^(?:  )?(?:static )?(?!friend |return |explicit )[A-Za-z][\w:<>, ]* [&*]?([a-z]\w+)\()");
+  std::set<std::string> names;
+  for (const auto& header : std::filesystem::directory_iterator(sourceFolder() / "src/lacquer")) {
+    std::istringstream lines(readFile(header.path()));
+    for (std::string line; std::getline(lines, line);) {
+      std::smatch match;
+      if (std::regex_search(line, match, declaration)) names.insert(match[1]);
+    }
+  }
+  return names;
+}
+
+TEST(Symbols, everyFunctionOfTheCppHeadersIsListed) {
+  std::set<std::string> listed;
+  for (const std::string& name : listedForCpp()) listed.insert(name.substr(name.rfind(':') + 1));
+  const std::set<std::string> declared = declaredInCpp();
+  EXPECT_GT(declared.size(), 50u);
+  for (const std::string& name : declared) EXPECT_TRUE(listed.contains(name)) << name;
 }
 
 }  // namespace

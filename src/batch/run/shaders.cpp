@@ -7,7 +7,7 @@
 
 #include "cache/option_key.h"
 #include "check/check.h"
-#include "interface/interface.h"
+#include "interface/entry.h"
 #include "json/text.h"
 #include "manifest/manifest.h"
 #include "shader/print.h"

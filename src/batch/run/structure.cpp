@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cache/option_key.h"
+#include "interface/entry.h"
 #include "interface/interface.h"
 #include "lower/lower.h"
 #include "manifest/manifest.h"
@@ -178,14 +179,13 @@ void describe(const ir::Module& module, const graph::Graph& graph, const Setting
   structure.shader = shaderId(module, library, shortened(structure.module, setting.id_bits));
   structure.has_vertex = hasVertexStage(module);
   const Result<const material::Schema*> schema = library.models.schema();
-  const Json interface = interfaceOf(module, structure.has_vertex, schema ? *schema : nullptr);
-  for (const auto& [name, value] : interface.items()) {
+  const Reflection reflection = reflect(module, structure.has_vertex, schema ? *schema : nullptr);
+  const Json entry = entryOf(reflection);
+  for (const auto& [name, value] : entry.items()) {
     structure.interface.emplace_back(
         name, textAt(kInterfaceDepth, [&, &v = value](JsonText& json) { json.json(v); }));
   }
-  if (const Json* inputs = json::member(interface, "inputs")) {
-    for (const Json& input : *inputs) structure.inputs.push_back(input["name"].get<std::string>());
-  }
+  for (const ShaderInput& input : reflection.inputs) structure.inputs.push_back(input.name);
   structure.preshader = Preshader(module);
   const auto place = [](const auto& list, const std::string& name) {
     const auto it =

@@ -1,92 +1,103 @@
 #include "interface/interface.h"
 
 #include <algorithm>
-#include <optional>
-#include <set>
+#include <array>
+#include <string_view>
 
 #include "analysis/relax.h"
-#include "interface/apis.h"
 #include "interface/proofs.h"
-#include "json/text.h"
 #include "targets/target.h"
 
 namespace lacquer {
 
 namespace {
 
-std::string_view roleName(ir::BlockRole role) {
+constexpr std::array kBothStages = {ir::Stage::Vertex, ir::Stage::Fragment};
+
+/// What the outputs of a stage reach.
+struct Used {
+  std::vector<bool> blocks, textures, attributes, varyings;
+  std::vector<std::string> slots;  ///< by texture: what the graph calls it
+};
+
+Used usedBy(const ir::Module& module, ir::Stage stage) {
+  Used used{std::vector<bool>(module.blocks.size()), std::vector<bool>(module.textures.size()),
+            std::vector<bool>(module.attributes.size()), std::vector<bool>(module.varyings.size()),
+            std::vector<std::string>(module.textures.size())};
+  for (const ir::ValueId id : ir::reachable(module, stage)) {
+    if (const std::optional<uint32_t> block = ir::blockOf(module, id)) used.blocks[*block] = true;
+    if (module.dag[id].op != ir::Op::Input) continue;
+    const ir::Input& input = module.dag.inputOf(id);
+    if (input.kind == ir::InputKind::Texture) {
+      used.textures[input.field] = true;
+      used.slots[input.field] = input.name;
+    }
+    if (input.kind == ir::InputKind::Attribute) used.attributes[input.field] = true;
+    if (input.kind == ir::InputKind::Varying) used.varyings[input.field] = true;
+  }
+  return used;
+}
+
+BlockRole roleOf(ir::BlockRole role) {
   switch (role) {
-    case ir::BlockRole::Frame: return "frame";
-    case ir::BlockRole::Lights: return "lights";
-    case ir::BlockRole::Material: return "material";
-    case ir::BlockRole::Object: return "object";
-    case ir::BlockRole::List: return "list";
+    case ir::BlockRole::Frame: return BlockRole::Frame;
+    case ir::BlockRole::Lights: return BlockRole::Lights;
+    case ir::BlockRole::Material: return BlockRole::Material;
+    case ir::BlockRole::Object: return BlockRole::Object;
+    case ir::BlockRole::List: return BlockRole::List;
   }
-  return "";
+  return BlockRole::Frame;
 }
 
-Json bindingJson(const ir::Binding& binding) {
-  return {{"set", binding.set}, {"binding", binding.binding}, {"flat", binding.flat}};
+BoundResource boundOf(std::string name, const ir::Binding& binding, bool list) {
+  BoundResource bound{
+      std::move(name), {binding.set, binding.binding, binding.flat}, false, false, {}, {}, {}};
+  const targets::WgslBinding wgsl = targets::wgslBinding(binding);
+  bound.wgsl = {wgsl.group, wgsl.binding, wgsl.sampler};
+  const auto msl = [&](bool buffers) {
+    const targets::MslBinding at = targets::mslBinding(binding, buffers, list);
+    return MslPlace{at.buffer, at.index, at.sampler};
+  };
+  bound.msl = msl(false);
+  bound.msl_argument = msl(true);
+  return bound;
 }
 
-Json blockJson(const ir::Module& module, const ir::Block& block) {
-  Json json = {{"block", targets::blockName(block)}, {"role", roleName(block.role)}};
-  if (block.plural()) json["struct"] = block.name;
-  json.update(bindingJson(block.binding));
-  if (block.list) {
-    json["list"] = block.instance + "s";
-    json["stride"] = block.size;
-  }
-  if (block.array != 0) {
-    json["array"] = block.array;
-    json["stride"] = block.size;
-  }
-  if (!block.list) json["size"] = block.array == 0 ? block.size : block.array * block.size;
+UniformBlock blockOf(const ir::Module& module, const ir::Block& block) {
+  UniformBlock made;
+  static_cast<BoundResource&>(made) = boundOf(targets::blockName(block), block.binding, block.list);
+  made.role = roleOf(block.role);
+  if (block.plural()) made.structure = block.name;
+  if (block.list) made.list = block.instance + "s";
+  made.size = block.size;
+  made.array = block.array;
   const bool computed = block.role == ir::BlockRole::Material;
   const targets::PreshaderText preshader =
       computed ? targets::preshaderText(module) : targets::PreshaderText{};
-  if (!preshader.values.empty()) {
-    Json& values = json["values"] = Json::array();
-    for (const auto& [name, type, expression] : preshader.values) {
-      values.push_back({{"name", name}, {"type", ir::typeName(type)}, {"expression", expression}});
-    }
+  for (const auto& [name, type, expression] : preshader.values)
+    made.values.push_back({name, std::string(ir::typeName(type)), expression});
+  for (const ir::BlockField& field : block.fields) {
+    BlockField row{field.name, std::string(ir::typeName(field.type)), field.offset, field.array, 0, {}, {}};
+    if (field.array != 0) row.stride = field.stride();
+    if (!computed) row.meaning = field.prose;
+    made.fields.push_back(std::move(row));
   }
-  Json fields = Json::array();
-  for (uint32_t i = 0; i < block.fields.size(); ++i) {
-    const ir::BlockField& field = block.fields[i];
-    Json row = {{"name", field.name}, {"type", ir::typeName(field.type)}, {"offset", field.offset}};
-    if (field.array != 0) {
-      row["array"] = field.array;
-      row["stride"] = field.stride();
-    }
-    if (computed) {
-      for (size_t p = 0; p < module.preshader.size(); ++p) {
-        if (module.preshader[p].field == i) row["expression"] = preshader.fields[p];
-      }
-    } else if (!field.prose.empty()) {
-      row["meaning"] = field.prose;
-    }
-    fields.push_back(std::move(row));
-  }
-  json["fields"] = std::move(fields);
-  return json;
+  for (size_t p = 0; computed && p < module.preshader.size(); ++p)
+    made.fields[module.preshader[p].field].expression = preshader.fields[p];
+  return made;
 }
 
-/// One row for each component: a SpecId has one number.
-Json specConstantsJson(const ir::Module& module) {
-  Json rows = Json::array();
-  for (const uint32_t index : ir::usedParameters(module)) {
-    const ir::Parameter& p = module.parameters[index];
-    if (p.constant_id < 0) continue;
-    for (int c = 0; c < ir::componentCount(p.type); ++c) {
-      const double x = p.neutral[static_cast<size_t>(c)];
-      Json row = {{"id", p.constant_id + c}, {"name", p.name}, {"component", c}};
-      row["type"] = p.type == ir::Type::Bool ? "bool" : "float";
-      row["default"] = p.type == ir::Type::Bool ? Json(x != 0) : Json(x);
-      rows.push_back(std::move(row));
-    }
-  }
-  return rows;
+ReflectedTexture textureOf(const ir::TextureSlot& slot) {
+  ReflectedTexture made;
+  static_cast<BoundResource&>(made) = boundOf(slot.name, slot.binding, false);
+  made.type = ir::typeName(slot.type);
+  made.sampler = targets::samplerName(slot);
+  const bool object = slot.environment && slot.binding.set == ir::kObjectSet;
+  made.role = object             ? TextureRole::Object
+              : slot.environment ? TextureRole::Environment
+                                 : TextureRole::Material;
+  made.srgb = slot.srgb;
+  return made;
 }
 
 /// What a parameter is, by the declaration of the property that it is named after; empty where there is none.
@@ -102,11 +113,11 @@ std::string proseOf(const material::Schema& schema, std::string_view name) {
   return {};
 }
 
-/// The names of the material block's fields that a parameter has a say in, by the parameter's index. None
-/// where there are so many that the lists would grow with the square of the graph.
-std::vector<Json> fieldsOf(const ir::Module& module) {
+/// The names of the material block's fields that a parameter affects, by the parameter's index. None where
+/// there are so many that the lists would grow with the square of the graph.
+std::vector<Strings> fieldsOf(const ir::Module& module) {
   constexpr size_t kMostFields = 256;
-  std::vector<Json> fields(module.parameters.size(), Json::array());
+  std::vector<Strings> fields(module.parameters.size());
   if (module.preshader.size() > kMostFields) return fields;
   for (const ir::Block& block : module.blocks) {
     if (block.role != ir::BlockRole::Material) continue;
@@ -123,154 +134,112 @@ std::vector<Json> fieldsOf(const ir::Module& module) {
   return fields;
 }
 
-/// What a material's numbers may be, by name.
-Json parametersJson(const ir::Module& module, const material::Schema* schema) {
-  const std::vector<Json> fields = fieldsOf(module);
-  Json rows = Json::array();
+std::vector<ReflectedParameter> parametersOf(const ir::Module& module, const material::Schema* schema) {
+  std::vector<Strings> fields = fieldsOf(module);
+  std::vector<ReflectedParameter> rows;
   for (const uint32_t index : ir::usedParameters(module)) {
     const ir::Parameter& p = module.parameters[index];
-    Json row = {{"name", p.name}, {"type", ir::typeName(p.type)}};
-    const double lo = p.range.gap > 0 ? p.range.gap : p.range.lo;
-    if (!(p.range == ir::Range{})) row["range"] = {lo, p.range.hi};
-    if (p.range.gap > 0) row["or_zero"] = true;
-    row["default"] = componentsJson(p.type, p.neutral);
-    const std::string prose = schema == nullptr ? std::string() : proseOf(*schema, p.name);
-    if (!prose.empty()) row["meaning"] = prose;
-    if (!fields[index].empty()) row["fields"] = fields[index];
+    ReflectedParameter row{p.name, std::string(ir::typeName(p.type)), {}, {}, {}, std::move(fields[index])};
+    row.range = {p.range.gap > 0 ? p.range.gap : p.range.lo, p.range.hi, p.range.gap > 0};
+    const auto count = static_cast<size_t>(ir::componentCount(p.type));
+    row.neutral.assign(p.neutral.begin(), p.neutral.begin() + static_cast<std::ptrdiff_t>(count));
+    if (schema != nullptr) row.meaning = proseOf(*schema, p.name);
     rows.push_back(std::move(row));
   }
   return rows;
 }
 
-/// The blocks that the outputs of both stages reach.
-std::set<uint32_t> usedBlocks(const ir::Module& module) {
-  std::vector<ir::ValueId> roots;
-  for (const ir::Output& output : module.outputs) roots.push_back(output.value);
-  std::set<uint32_t> blocks;
-  for (const ir::ValueId id : ir::reachable(module.dag, roots)) {
-    if (const std::optional<uint32_t> block = ir::blockOf(module, id)) blocks.insert(*block);
+/// One for each component: a SpecId has one number.
+std::vector<SpecConstant> specConstantsOf(const ir::Module& module) {
+  std::vector<SpecConstant> rows;
+  for (const uint32_t index : ir::usedParameters(module)) {
+    const ir::Parameter& p = module.parameters[index];
+    if (p.constant_id < 0) continue;
+    for (uint32_t c = 0; c < static_cast<uint32_t>(ir::componentCount(p.type)); ++c) {
+      rows.push_back(
+          {static_cast<uint32_t>(p.constant_id) + c, p.name, c, p.type == ir::Type::Bool, p.neutral[c]});
+    }
   }
-  return blocks;
+  return rows;
 }
 
-/// The inputs, of any kind, that the outputs of both stages reach.
-std::vector<ir::Input> usedInputs(const ir::Module& module) {
-  std::vector<ir::ValueId> roots;
-  for (const ir::Output& output : module.outputs) roots.push_back(output.value);
-  std::vector<ir::Input> inputs;
-  for (const ir::ValueId id : ir::reachable(module.dag, roots)) {
-    if (module.dag[id].op == ir::Op::Input) inputs.push_back(module.dag.inputOf(id));
-  }
-  return inputs;
+std::vector<std::pair<std::string, size_t>> webgpuLimits(const Reflection& of, size_t varyings) {
+  constexpr size_t kHalfFloats = 8;  // bytes of an rgba16float, and of an rgba8unorm as WebGPU counts
+  std::vector<std::pair<std::string, size_t>> asked;
+  const auto ask = [&](const char* limit, size_t sure, size_t wanted) {
+    if (wanted > sure) asked.emplace_back(limit, wanted);
+  };
+  /// The most of a stage.
+  const auto most = [](const auto& list, const auto& counts) {
+    size_t vertex = 0, fragment = 0;
+    for (const auto& each : list) {
+      vertex += each.vertex && counts(each) ? 1 : 0;
+      fragment += each.fragment && counts(each) ? 1 : 0;
+    }
+    return std::max(vertex, fragment);
+  };
+  const size_t textures = most(of.textures, [](const ReflectedTexture&) { return true; });
+  const auto blocks = [&](bool lists) {
+    return most(of.blocks,
+                [&](const UniformBlock& block) { return (block.role == BlockRole::List) == lists; });
+  };
+  const targets::DeviceLimits& sure = *targets::row(Target::Wgsl).limits;
+  ask("maxColorAttachmentBytesPerSample", 32, kHalfFloats * of.outputs.size());
+  ask("maxSampledTexturesPerShaderStage", sure.textures.sure, textures);
+  ask("maxSamplersPerShaderStage", sure.textures.sure, textures);
+  ask("maxUniformBuffersPerShaderStage", sure.blocks.sure, blocks(false));
+  ask("maxStorageBuffersPerShaderStage", 8, blocks(true));
+  ask("maxInterStageShaderVariables", sure.varyings.sure, varyings);
+  return asked;
 }
 
-/// What is at half precision, and what that is worth.
-Json relaxedJson(const ir::Module& module) {
-  const analysis::RelaxedCost cost = analysis::relaxedCost(module);
-  return {{"bound", module.relaxed_bound}, {"operations", cost.operations},
-          {"of_operations", cost.all},     {"cycles", cost.cycles},
-          {"of_cycles", cost.all_cycles},  {"conversions", cost.conversions}};
+void addInputs(Reflection& to, const ir::Module& module, const std::array<Used, 2>& used, bool has_vertex) {
+  for (size_t i = 0; i < module.attributes.size(); ++i) {
+    const ir::Attribute& a = module.attributes[i];
+    if (used[0].attributes[i] || used[1].attributes[i])
+      to.inputs.push_back({a.name, std::string(ir::typeName(a.type)), a.location});
+  }
+  for (size_t i = 0; !has_vertex && i < module.varyings.size(); ++i) {
+    const ir::Varying& v = module.varyings[i];
+    if (used[0].varyings[i] || used[1].varyings[i])
+      to.inputs.push_back({v.name, std::string(ir::typeName(v.type)), v.location});
+  }
 }
 
 }  // namespace
 
-Json componentsJson(ir::Type type, const ir::Components& components) {
-  const int n = ir::componentCount(type);
-  if (n == 1) return components[0];
-  Json array = Json::array();
-  for (int i = 0; i < n; ++i) array.push_back(components[static_cast<size_t>(i)]);
-  return array;
-}
-
-/// What is shown for every target.
-static Json commonOf(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
-  const std::vector<ir::Input> inputs = usedInputs(module);
-  const auto uses = [&](ir::InputKind kind, uint32_t index) {
-    return std::any_of(inputs.begin(), inputs.end(),
-                       [&](const ir::Input& input) { return input.kind == kind && input.field == index; });
-  };
-  const std::set<uint32_t> blocks = usedBlocks(module);
-  Json json;
-  json["template"] = module.template_name;
-  Json uniforms = Json::array();
-  for (uint32_t i = 0; i < module.blocks.size(); ++i) {
-    const ir::Block& block = module.blocks[i];
-    if (blocks.contains(i)) uniforms.push_back(blockJson(module, block));
+Reflection reflect(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
+  const std::array<Used, 2> used = {usedBy(module, kBothStages[0]), usedBy(module, kBothStages[1])};
+  Reflection made;
+  made.template_name = module.template_name;
+  for (size_t i = 0; i < module.blocks.size(); ++i) {
+    if (!used[0].blocks[i] && !used[1].blocks[i]) continue;
+    UniformBlock& block = made.blocks.emplace_back(blockOf(module, module.blocks[i]));
+    block.vertex = used[0].blocks[i];
+    block.fragment = used[1].blocks[i];
   }
-  json["uniforms"] = std::move(uniforms);
-  json["parameters"] = parametersJson(module, schema);
-  if (module.spec_constants) json["spec_constants"] = specConstantsJson(module);
-  Json textures = Json::array();
-  for (const ir::TextureSlot& slot : module.textures) {
-    Json row = {{"name", slot.name}, {"type", ir::typeName(slot.type)}};
-    row["sampler"] = targets::samplerName(slot);
-    row.update(bindingJson(slot.binding));
-    const bool object = slot.environment && slot.binding.set == ir::kObjectSet;
-    row["role"] = object ? "object" : slot.environment ? "environment" : "material";
-    if (!slot.environment) row["color_space"] = slot.srgb ? "srgb" : "linear";
-    textures.push_back(std::move(row));
+  made.parameters = parametersOf(module, schema);
+  made.has_spec_constants = module.spec_constants;
+  if (module.spec_constants) made.spec_constants = specConstantsOf(module);
+  for (size_t i = 0; i < module.textures.size(); ++i) {
+    ReflectedTexture& texture = made.textures.emplace_back(textureOf(module.textures[i]));
+    texture.vertex = used[0].textures[i];
+    texture.fragment = used[1].textures[i];
+    if (texture.role == TextureRole::Material) texture.slot = used[texture.vertex ? 0 : 1].slots[i];
   }
-  json["textures"] = std::move(textures);
-  Json attributes = Json::array();
-  for (uint32_t i = 0; i < module.attributes.size(); ++i) {
-    const ir::Attribute& a = module.attributes[i];
-    if (!uses(ir::InputKind::Attribute, i)) continue;
-    attributes.push_back({{"name", a.name}, {"type", ir::typeName(a.type)}, {"location", a.location}});
-  }
-  if (!has_vertex) {
-    for (uint32_t i = 0; i < module.varyings.size(); ++i) {
-      const ir::Varying& v = module.varyings[i];
-      if (!uses(ir::InputKind::Varying, i)) continue;
-      attributes.push_back({{"name", v.name}, {"type", ir::typeName(v.type)}, {"location", v.location}});
-    }
-  }
-  json["inputs"] = std::move(attributes);
-  Json outputs = Json::array();
+  addInputs(made, module, used, has_vertex);
   for (const ir::Output& output : module.outputs) {
-    if (output.kind != ir::OutputKind::Color) continue;
-    Json row = {{"name", output.name}, {"type", "vec4"}, {"location", output.location}};
-    if (!output.holds.empty()) row["holds"] = output.holds;
-    outputs.push_back(std::move(row));
+    if (output.kind == ir::OutputKind::Color)
+      made.outputs.push_back({output.name, output.location, output.holds});
   }
-  json["outputs"] = std::move(outputs);
-  json["proofs"] = proofsJson(module);
-  if (module.dag.anyRelaxed()) json["relaxed"] = relaxedJson(module);
-  return json;
-}
-
-Json interfaceOf(const ir::Module& module, bool has_vertex, const material::Schema* schema) {
-  Json json = commonOf(module, has_vertex, schema);
-  json[kWebGpu] = webgpuOf(module);
-  json[kMetal] = metalOf(module, false);
-  json[kMetalArgumentBuffers] = metalOf(module, true);
-  return json;
-}
-
-bool isShown(std::string_view member, const Options& options) {
-  const auto wanted = [&](Target target) {
-    return std::find(options.targets.begin(), options.targets.end(), target) != options.targets.end();
-  };
-  const std::string_view name = member.substr(0, member.find(' '));
-  bool of_some = false, shown = false;
-  for (const targets::Row& row : targets::rows()) {
-    if (row.binds != name) continue;
-    of_some = true;
-    const bool with_buffers = name != member;
-    shown |= wanted(row.id) && (!row.argument_buffers || with_buffers == options.argument_buffers);
+  made.proved = proofsOf(module, made.unproved);
+  if (module.dag.anyRelaxed()) {
+    const analysis::RelaxedCost cost = analysis::relaxedCost(module);
+    made.relaxed = {module.relaxed_bound, cost.operations, cost.all,
+                    cost.cycles,          cost.all_cycles, cost.conversions};
   }
-  return shown || !of_some;
-}
-
-std::string interfaceJson(const ir::Module& module, bool has_vertex, const material::Schema* schema,
-                          const Options& options) {
-  Json shown = commonOf(module, has_vertex, schema);
-  if (isShown(kWebGpu, options)) shown[kWebGpu] = webgpuOf(module);
-  for (const bool buffers : {false, true}) {
-    const std::string_view member = buffers ? kMetalArgumentBuffers : kMetal;
-    if (isShown(member, options)) shown[kMetal] = metalOf(module, buffers);
-  }
-  json::JsonText json;
-  return json.json(shown).take();
+  made.webgpu_limits = webgpuLimits(made, module.varyings.size());
+  return made;
 }
 
 }  // namespace lacquer

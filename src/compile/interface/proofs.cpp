@@ -1,34 +1,21 @@
 #include "interface/proofs.h"
 
-#include <cmath>
+#include <utility>
 
 #include "targets/target.h"
 
 namespace lacquer {
 
-namespace {
-
-Json endJson(double x) { return std::isfinite(x) ? Json(x) : Json(x < 0 ? "-inf" : "inf"); }
-
-}  // namespace
-
-Json rangeJson(const analysis::Range& range) {
-  Json json = Json::array({endJson(range.lo), endJson(range.hi)});
-  // Beside what lies in the range it may be no number.
-  if (range.nan) json.push_back("nan");
-  return json;
-}
-
-Json operationJson(const ir::Dag& dag, const analysis::Proof& proof, const std::string& operand) {
-  const std::string& term = dag.terms()[dag.termOf(proof.id)].name;
-  Json json = {{"term", term}};
-  if (const std::string_view name = dag.nameOf(proof.id); !name.empty()) json["name"] = name;
-  json["operation"] = ir::info(dag[proof.id].op).name;
-  json["rate"] = ir::rateName(dag[proof.id].rate);
-  json["operand"] = operand;
-  json["need"] = proof.need;
-  json["reached"] = rangeJson(proof.reached);
-  return json;
+UnprovedOperation operationOf(const ir::Dag& dag, const analysis::Proof& proof, std::string operand) {
+  return {dag.terms()[dag.termOf(proof.id)].name,
+          std::string(dag.nameOf(proof.id)),
+          std::string(ir::info(dag[proof.id].op).name),
+          std::string(ir::rateName(dag[proof.id].rate)),
+          std::move(operand),
+          std::string(proof.need),
+          proof.reached.lo,
+          proof.reached.hi,
+          proof.reached.nan};
 }
 
 std::vector<std::string> operandTexts(const ir::Module& module, const std::vector<analysis::Proof>& proofs) {
@@ -37,14 +24,13 @@ std::vector<std::string> operandTexts(const ir::Module& module, const std::vecto
   return targets::expressionTexts(module, operands);
 }
 
-Json proofsJson(const ir::Module& module) {
+size_t proofsOf(const ir::Module& module, std::vector<UnprovedOperation>& unproved) {
   std::vector<analysis::Proof> proofs = analysis::prove(module).operations;
   const size_t safe = std::erase_if(proofs, [](const analysis::Proof& proof) { return proof.safe; });
-  const std::vector<std::string> operands = operandTexts(module, proofs);
-  Json unproved = Json::array();
+  std::vector<std::string> operands = operandTexts(module, proofs);
   for (size_t i = 0; i < proofs.size(); ++i)
-    unproved.push_back(operationJson(module.dag, proofs[i], operands[i]));
-  return {{"safe", safe}, {"unproved", std::move(unproved)}};
+    unproved.push_back(operationOf(module.dag, proofs[i], std::move(operands[i])));
+  return safe;
 }
 
 }  // namespace lacquer

@@ -1,26 +1,21 @@
-// What is proved of a module, as JSON.
+// What is proved of a module's operations, as values.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "analysis/prove.h"
-#include "json/json.h"
+#include "lacquer/reflection.h"
 
 namespace lacquer {
-
-using json::Json;
-
-/// [lo, hi], with "nan" behind them for what may be no number.
-Json rangeJson(const analysis::Range& range);
 
 /// What must keep to its domain, for people.
 std::vector<std::string> operandTexts(const ir::Module& module, const std::vector<analysis::Proof>& proofs);
 
 /// `operand`: the text of what must keep to the domain.
-Json operationJson(const ir::Dag& dag, const analysis::Proof& proof, const std::string& operand);
+UnprovedOperation operationOf(const ir::Dag& dag, const analysis::Proof& proof, std::string operand);
 
-/// {"safe": n, "unproved": [...]}: the operations that have a domain.
-Json proofsJson(const ir::Module& module);
+/// How many operations that have a domain are proved to keep to it; the others are appended.
+size_t proofsOf(const ir::Module& module, std::vector<UnprovedOperation>& unproved);
 
 }  // namespace lacquer

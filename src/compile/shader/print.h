@@ -19,7 +19,6 @@ struct ShaderData {
   /// By target, by targets::Row::files.
   std::string text[kMostTargets][2];
   std::vector<uint32_t> spirv[2];  ///< of targets::Row::words
-  std::string interface;
 };
 
 /// Takes the bytes of a file of the target; SPIR-V's words with their lowest byte first.

@@ -6,6 +6,7 @@
 
 #include "api/internal.h"
 #include "graph/text.h"
+#include "interface/entry.h"
 #include "interface/interface.h"
 #include "prove/prove.h"
 #include "setting/language.h"
@@ -57,6 +58,15 @@ Graph Graph::fromJson(std::string_view text, const std::string& name, Messages& 
 
 std::string Graph::toJson() const { return impl_ ? graph::toJson(impl_->graph) : std::string(); }
 std::string Graph::toDot() const { return impl_ ? graph::toDot(impl_->graph) : std::string(); }
+
+std::vector<TextureUse> Graph::textures() const {
+  std::vector<TextureUse> textures;
+  if (!impl_) return textures;
+  for (const ir::TextureSlot& slot : impl_->graph.textures)
+    textures.push_back(
+        {slot.name, std::string(ir::typeName(slot.type)), slot.srgb, slot.texture, slot.pointer});
+  return textures;
+}
 
 std::vector<Parameter> Graph::parameters() const {
   std::vector<Parameter> parameters;
@@ -213,7 +223,8 @@ Shader Graph::generate(const Options& options, Messages& messages) {
   const Result<const material::Schema*> schema = language->models.schema();
   impl->id = shaderId(*module, *language);
   impl->has_vertex = lacquer::hasVertexStage(*module);
-  impl->interface = interfaceJson(*module, impl->has_vertex, schema ? *schema : nullptr, options);
+  impl->reflection = reflect(*module, impl->has_vertex, schema ? *schema : nullptr);
+  impl->entry = entryText(impl->reflection, options);
   impl->preshader = Preshader(*module);
   impl->module = std::move(*module);
   Wrong wrong;

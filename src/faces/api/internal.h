@@ -36,6 +36,8 @@ struct Scene::Impl {
 
 struct Shader::Impl : ShaderData {
   Preshader preshader;
+  Reflection reflection;
+  std::string entry;  ///< the same in the manifest
 
   /// Writes the whole of `block`, which has as many bytes as the material's.
   void pack(const Values& value, std::span<std::byte> block, Messages* messages) const;

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "interface/interface.h"
+#include "interface/entry.h"
 #include "lacquer/tools.h"
 #include "setting/language.h"
 #include "setting/messages.h"
@@ -18,7 +18,9 @@ Json paramJson(const lang::Param& param, std::string_view fallback) {
   Json json = {{"name", param.name.empty() ? fallback : param.name}, {"type", ir::typeName(param.type)}};
   if (param.has_range) json["range"] = limitsJson(param.range);
   if (param.range.gap > 0) json["or_zero"] = true;
-  if (param.default_value) json["default"] = componentsJson(param.type, *param.default_value);
+  if (param.default_value)
+    json["default"] = numbersJson(
+        {param.default_value->begin(), param.default_value->begin() + ir::componentCount(param.type)});
   if (!param.prose.empty()) json["meaning"] = param.prose;
   return json;
 }

@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "api/internal.h"
-#include "interface/interface.h"
 #include "setting/messages.h"
 #include "setting/options.h"
 #include "shader/module.h"
@@ -26,7 +25,8 @@ const std::vector<uint32_t>& Shader::fragmentSpirv() const { return impl().spirv
 const std::string& Shader::headerText() const { return impl().text[static_cast<size_t>(Target::Cpp)][1]; }
 const std::string& Shader::moduleTypes() const { return impl().text[static_cast<size_t>(Target::Js)][0]; }
 const std::string& Shader::moduleText() const { return impl().text[static_cast<size_t>(Target::Js)][1]; }
-const std::string& Shader::interfaceJson() const { return impl().interface; }
+const Reflection& Shader::reflection() const { return impl().reflection; }
+const std::string& Shader::interfaceJson() const { return impl().entry; }
 
 const std::string& Shader::fileText(Target target, int file) const {
   static const std::string kNone;

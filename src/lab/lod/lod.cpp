@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cost/cost.h"
+#include "interface/entry.h"
 #include "interface/interface.h"
 #include "lacquer/tools.h"
 #include "lod/report.h"
@@ -340,7 +341,7 @@ private:
     }
     made.entry = {{"files", std::move(files)}, {"validated", std::move(validated)}};
     const Result<const material::Schema*> schema = language_->models.schema();
-    made.entry.update(interfaceOf(data.module, data.has_vertex, schema ? *schema : nullptr));
+    made.entry.update(shownOf(reflect(data.module, data.has_vertex, schema ? *schema : nullptr), options_));
     printed_.emplace(data.id, std::move(made));
     return {};
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "interface/entry.h"
 #include "interface/proofs.h"
 #include "lacquer/tools.h"
 #include "lower/lower.h"
@@ -17,7 +18,7 @@ namespace {
 Json claimJson(const Claim& claim) {
   return {{"what", claim.what},
           {"need", claim.need},
-          {"reached", rangeJson(claim.reached)},
+          {"reached", rangeJson(claim.reached.lo, claim.reached.hi, claim.reached.nan)},
           {"proved", claim.proved}};
 }
 
@@ -62,13 +63,14 @@ Result<std::string> proveGraph(const graph::Graph& graph, const ir::Module& modu
   const std::vector<std::string> operands = operandTexts(module, proofs.operations);
   Json operations = Json::array();
   for (size_t i = 0; i < operands.size(); ++i) {
-    Json row = operationJson(module.dag, proofs.operations[i], operands[i]);
+    Json row = operationJson(operationOf(module.dag, proofs.operations[i], operands[i]));
     row["safe"] = proofs.operations[i].safe;
     operations.push_back(std::move(row));
   }
   Json outputs = Json::array();
   for (const analysis::OutputRange& range : proofs.outputs) {
-    outputs.push_back({{"name", module.outputs[range.output].name}, {"reached", rangeJson(range.reached)}});
+    outputs.push_back({{"name", module.outputs[range.output].name},
+                       {"reached", rangeJson(range.reached.lo, range.reached.hi, range.reached.nan)}});
   }
   return Json{{"material", graph.name},
               {"shader", shaderId(module, library)},

@@ -1,0 +1,107 @@
+// What a shader is bound to, as values.
+#include <algorithm>
+#include <cstring>
+
+#include "c/handles.h"
+
+using lacquer::BoundResource;
+using lacquer::Reflection;
+using namespace lacquer::c;
+
+namespace {
+
+const Reflection& reflectionOf(const lacquer_shader* shader) { return shaderOf(shader).reflection(); }
+
+lacquer_binding bindingOf(const BoundResource& of) {
+  return {of.at.set,
+          of.at.binding,
+          of.at.flat,
+          of.wgsl.group,
+          of.wgsl.binding,
+          of.wgsl.sampler,
+          of.msl.index,
+          of.msl.sampler,
+          of.msl_argument.argument_buffer,
+          of.msl_argument.index,
+          of.msl_argument.sampler,
+          of.vertex ? 1 : 0,
+          of.fragment ? 1 : 0};
+}
+
+/// As much of `made` as the caller knows.
+template <class Row>
+int fill(const Row& made, Row* to, size_t size) {
+  if (to == nullptr) return 0;
+  std::memcpy(to, &made, std::min(size, sizeof made));
+  return 1;
+}
+
+}  // namespace
+
+size_t lacquer_shader_block_count(const lacquer_shader* shader) { return reflectionOf(shader).blocks.size(); }
+size_t lacquer_shader_texture_count(const lacquer_shader* shader) {
+  return reflectionOf(shader).textures.size();
+}
+size_t lacquer_shader_input_count(const lacquer_shader* shader) { return reflectionOf(shader).inputs.size(); }
+size_t lacquer_shader_output_count(const lacquer_shader* shader) {
+  return reflectionOf(shader).outputs.size();
+}
+
+int lacquer_shader_block(const lacquer_shader* shader, size_t index, lacquer_block* to, size_t size) {
+  const Reflection& all = reflectionOf(shader);
+  if (index >= all.blocks.size()) return 0;
+  const lacquer::UniformBlock& of = all.blocks[index];
+  const lacquer_block made = {of.name.c_str(), of.structure.c_str(),
+                              of.list.c_str(), static_cast<int>(of.role),
+                              bindingOf(of),   of.size,
+                              of.array,        of.fields.size()};
+  return fill(made, to, size);
+}
+
+int lacquer_shader_field(const lacquer_shader* shader, size_t block, size_t index, lacquer_field* to,
+                         size_t size) {
+  const Reflection& all = reflectionOf(shader);
+  if (block >= all.blocks.size() || index >= all.blocks[block].fields.size()) return 0;
+  const lacquer::BlockField& of = all.blocks[block].fields[index];
+  return fill(lacquer_field{of.name.c_str(), of.type.c_str(), of.offset, of.array, of.stride}, to, size);
+}
+
+int lacquer_shader_texture(const lacquer_shader* shader, size_t index, lacquer_texture* to, size_t size) {
+  const Reflection& all = reflectionOf(shader);
+  if (index >= all.textures.size()) return 0;
+  const lacquer::ReflectedTexture& of = all.textures[index];
+  const lacquer_texture made = {of.name.c_str(), of.type.c_str(),           of.sampler.c_str(),
+                                of.slot.c_str(), static_cast<int>(of.role), of.srgb ? 1 : 0,
+                                bindingOf(of)};
+  return fill(made, to, size);
+}
+
+int lacquer_shader_input(const lacquer_shader* shader, size_t index, lacquer_place* to, size_t size) {
+  const Reflection& all = reflectionOf(shader);
+  if (index >= all.inputs.size()) return 0;
+  const lacquer::ShaderInput& of = all.inputs[index];
+  return fill(lacquer_place{of.name.c_str(), of.type.c_str(), of.location}, to, size);
+}
+
+int lacquer_shader_output(const lacquer_shader* shader, size_t index, lacquer_place* to, size_t size) {
+  const Reflection& all = reflectionOf(shader);
+  if (index >= all.outputs.size()) return 0;
+  return fill(lacquer_place{all.outputs[index].name.c_str(), "vec4", all.outputs[index].location}, to, size);
+}
+
+size_t lacquer_graph_texture_count(const lacquer_graph* graph) {
+  return guarded(nullptr, size_t{0}, [&](lacquer::Messages&) { return graphOf(graph).textures().size(); });
+}
+
+int lacquer_graph_texture(const lacquer_graph* graph, size_t index, char* slot, size_t capacity,
+                          int* texture) {
+  return guarded(nullptr, 0, [&](lacquer::Messages&) {
+    const std::vector<lacquer::TextureUse> textures = graphOf(graph).textures();
+    if (index >= textures.size()) return 0;
+    const std::string& name = textures[index].name;
+    if (slot != nullptr && capacity <= name.size()) return 0;
+    if (slot != nullptr) std::memcpy(slot, name.c_str(), name.size() + 1);
+    if (texture != nullptr) *texture = textures[index].texture;
+    return 1;
+  });
+}

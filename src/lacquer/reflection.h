@@ -1,0 +1,142 @@
+/// What a shader is given and what it gives, as values: all that a renderer needs to bind it.
+/// docs/bindings.md says what each field means to an application; the shader's entry in manifest.json is made
+/// of the same. lacquer.h says what holds for every declaration.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lacquer/graph.h"
+
+namespace lacquer {
+
+/// Where the contract has a block or a texture. Vulkan (glsl, spirv) has it at `set` and `binding`; OpenGL
+/// and HLSL at `flat` of its kind: a block's binding point and bN, a texture's unit, tN and sN. ESSL finds it
+/// by name.
+struct BindingPoint {
+  uint32_t set = 0, binding = 0, flat = 0;
+};
+/// Where WGSL has it.
+struct WgslPlace {
+  uint32_t group = 0, binding = 0;
+  uint32_t sampler = 0;  ///< of a texture: the sampler's binding
+};
+/// Where MSL has it: at `index` of the buffers or of the textures and at `sampler` of the samplers, or with
+/// Options::argument_buffers as [[id(index)]] of the buffer `argument_buffer`, the sampler at
+/// [[id(sampler)]].
+struct MslPlace {
+  uint32_t argument_buffer = 0, index = 0, sampler = 0;
+};
+/// What blocks and textures have in common. `vertex`, `fragment`: the stages that read it.
+struct BoundResource {
+  std::string name;
+  BindingPoint at;
+  bool vertex = false, fragment = false;
+  WgslPlace wgsl;
+  MslPlace msl, msl_argument;  ///< plain, and with argument buffers
+};
+
+/// Who fills a block, and when it changes.
+enum class BlockRole : uint8_t {
+  Frame,     ///< the application: camera, environment
+  Lights,    ///< the application: an array of lights
+  Material,  ///< Shader::pack(), once for a material
+  Object,    ///< the application, for each object that is drawn
+  List,      ///< the application: a buffer of any length (clustered light)
+};
+
+struct BlockField {
+  std::string name;
+  std::string type;                ///< "float", "int", "vec2" to "vec4", "mat4"
+  uint32_t offset = 0;             ///< bytes from the beginning of the block, or of one element of an array
+  uint32_t array = 0, stride = 0;  ///< elements and bytes of one; 0 for a field that is no array
+  std::string meaning;             ///< for people; empty in the material's block
+  std::string expression;  ///< of the material's block: what pack() computes, over parameters and values
+};
+/// A step on the way to the fields of the material's block (docs/parameters.md).
+struct PreshaderValue {
+  std::string name, type, expression;
+};
+struct UniformBlock : BoundResource {
+  BlockRole role = BlockRole::Frame;
+  std::string structure;  ///< of an array or a list: the name of its element's type
+  std::string list;       ///< of a list: the name of the array in it
+  uint32_t size = 0;      ///< bytes; of an array or a list, of one element
+  uint32_t array = 0;     ///< elements; 0 for no array, and for a list, which has any number
+  std::vector<PreshaderValue> values;
+  std::vector<BlockField> fields;
+};
+
+enum class TextureRole : uint8_t { Material, Environment, Object };
+struct ReflectedTexture : BoundResource {
+  std::string
+      slot;  ///< of the material: TextureUse::name, which may be another word than its name in the code
+  std::string type;     ///< "sampler2D", "samplerCube", "sampler2DShadow", "sampler2DArray", "sampler3D"
+  std::string sampler;  ///< its sampler's name in HLSL and WGSL
+  TextureRole role = TextureRole::Material;
+  bool srgb = false;  ///< of the material: its texels are to be decoded, by the image's format
+};
+
+/// A vertex attribute; where there is no vertex stage, what the fragment stage is given.
+struct ShaderInput {
+  std::string name;  ///< as glTF spells it: "TEXCOORD_0"
+  std::string type;
+  uint32_t location = 0;
+};
+struct ShaderOutput {
+  std::string name;
+  uint32_t location = 0;
+  Strings holds;  ///< of a colour that packs components of several: their names; else empty
+};
+/// An editable number: what any material of this shader may give it. A material's own is Parameter::value.
+struct ReflectedParameter {
+  std::string name, type;
+  Range range;
+  std::vector<double> neutral;  ///< glTF's default
+  std::string meaning;          ///< for people; may be empty
+  Strings fields;               ///< of the material's block: those that change with it
+};
+/// A component of a parameter as a specialization constant, with Parameters::Spec.
+struct SpecConstant {
+  uint32_t id = 0;
+  std::string name;
+  uint32_t component = 0;
+  bool is_bool = false;
+  double neutral = 0;  ///< of a bool 0 or 1
+};
+
+/// An operation that is not proved to be defined for all inputs (docs/intervals.md).
+struct UnprovedOperation {
+  std::string term, name, operation, rate, operand, need;
+  double low = 0, high = 0;  ///< what the operand may be, for all that is known
+  bool nan = false;          ///< or no number
+};
+/// What half precision comes to (Options::relaxed).
+struct RelaxedFigures {
+  double bound = 0;  ///< of what a colour may change by, as a part of it
+  size_t operations = 0, of_operations = 0;
+  size_t cycles = 0, of_cycles = 0;  ///< with divisions, roots and transcendentals at a quarter rate
+  size_t conversions = 0;            ///< numbers that pass between the two precisions
+};
+
+struct Reflection {
+  std::string template_name;
+  std::vector<UniformBlock> blocks;  ///< those that the shader reads
+  std::vector<ReflectedParameter> parameters;
+  bool has_spec_constants = false;
+  std::vector<SpecConstant> spec_constants;
+  std::vector<ReflectedTexture> textures;
+  std::vector<ShaderInput> inputs;
+  std::vector<ShaderOutput> outputs;
+  size_t proved = 0;  ///< operations that are defined for all inputs
+  std::vector<UnprovedOperation> unproved;
+  std::optional<RelaxedFigures> relaxed;
+  /// What requestDevice() of WebGPU must be asked for beyond its defaults.
+  std::vector<std::pair<std::string, size_t>> webgpu_limits;
+};
+
+}  // namespace lacquer

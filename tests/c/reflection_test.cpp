@@ -1,0 +1,200 @@
+// What a shader is bound to, as values of C++ and of C, is what its entry in the manifest says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "handle.h"
+#include "lacquer.h"
+#include "support/cases.h"
+
+namespace lacquer::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kRoles[] = {"frame", "lights", "material", "object", "list"};
+constexpr const char* kTextureRoles[] = {"material", "environment", "object"};
+
+/// The rows of the entry from values of C++.
+json blocksOf(const Reflection& of) {
+  json rows = json::array();
+  for (const UniformBlock& block : of.blocks) {
+    json fields = json::array();
+    for (const BlockField& field : block.fields)
+      fields.push_back({{"name", field.name}, {"type", field.type}, {"offset", field.offset}});
+    rows.push_back({{"block", block.name},
+                    {"role", kRoles[static_cast<int>(block.role)]},
+                    {"set", block.at.set},
+                    {"binding", block.at.binding},
+                    {"flat", block.at.flat},
+                    {"fields", std::move(fields)}});
+  }
+  return rows;
+}
+
+/// The same from values of C.
+json blocksOf(const lacquer_shader* shader) {
+  json rows = json::array();
+  lacquer_block block;
+  for (size_t b = 0; lacquer_shader_block(shader, b, &block, sizeof block) != 0; ++b) {
+    json fields = json::array();
+    lacquer_field field;
+    for (size_t f = 0; lacquer_shader_field(shader, b, f, &field, sizeof field) != 0; ++f)
+      fields.push_back({{"name", field.name}, {"type", field.type}, {"offset", field.offset}});
+    EXPECT_EQ(fields.size(), block.field_count);
+    rows.push_back({{"block", block.name},
+                    {"role", kRoles[block.role]},
+                    {"set", block.at.set},
+                    {"binding", block.at.binding},
+                    {"flat", block.at.flat},
+                    {"fields", std::move(fields)}});
+  }
+  EXPECT_EQ(rows.size(), lacquer_shader_block_count(shader));
+  return rows;
+}
+
+/// The rows of the entry, with the members that the others have.
+json blocksOf(const json& entry) {
+  json rows = json::array();
+  for (const json& block : entry["uniforms"]) {
+    json fields = json::array();
+    for (const json& field : block["fields"])
+      fields.push_back({{"name", field["name"]}, {"type", field["type"]}, {"offset", field["offset"]}});
+    json row = {{"fields", std::move(fields)}};
+    for (const char* name : {"block", "role", "set", "binding", "flat"}) row[name] = block[name];
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+json texturesOf(const lacquer_shader* shader) {
+  json rows = json::array();
+  lacquer_texture texture;
+  for (size_t t = 0; lacquer_shader_texture(shader, t, &texture, sizeof texture) != 0; ++t) {
+    json row = {{"name", texture.name},       {"type", texture.type},
+                {"sampler", texture.sampler}, {"role", kTextureRoles[texture.role]},
+                {"set", texture.at.set},      {"binding", texture.at.binding},
+                {"flat", texture.at.flat}};
+    if (texture.role == LACQUER_TEXTURE_MATERIAL) row["color_space"] = texture.srgb != 0 ? "srgb" : "linear";
+    rows.push_back(std::move(row));
+  }
+  EXPECT_EQ(rows.size(), lacquer_shader_texture_count(shader));
+  return rows;
+}
+
+using Place = int (*)(const lacquer_shader*, size_t, lacquer_place*, size_t);
+json placesOf(const lacquer_shader* shader, Place place) {
+  json rows = json::array();
+  lacquer_place row;
+  for (size_t i = 0; place(shader, i, &row, sizeof row) != 0; ++i)
+    rows.push_back({{"name", row.name}, {"type", row.type}, {"location", row.location}});
+  return rows;
+}
+
+/// Where the WGSL and the MSL of the entry have a name.
+json rowOf(const json& list, const std::string& name) {
+  for (const json& row : list)
+    if (row["name"] == name) return row;
+  return {};
+}
+
+void expectApis(const lacquer_binding& at, const json& entry, const std::string& name, bool texture) {
+  const json webgpu = rowOf(entry["webgpu"]["bindings"], name);
+  const json metal = rowOf(entry["metal"]["bindings"], name);
+  if (at.vertex == 0 && at.fragment == 0) {
+    EXPECT_TRUE(webgpu.is_null()) << name;
+    return;
+  }
+  EXPECT_EQ(webgpu["group"], at.wgsl_group) << name;
+  EXPECT_EQ(webgpu["binding"], at.wgsl_binding) << name;
+  EXPECT_EQ(metal[texture ? "texture" : "buffer"], at.msl_index) << name;
+  EXPECT_EQ(webgpu["visibility"].size(), static_cast<size_t>(at.vertex + at.fragment)) << name;
+}
+
+TEST(Reflection, IsTheEntryOfTheManifest) {
+  for (const char* file : {"examples/car_paint.gltf", "examples/glass.gltf", "examples/cloth.gltf"}) {
+    SCOPED_TRACE(file);
+    const std::string path = (sourceFolder() / file).string();
+    Messages messages;
+    Options options;
+    options.targets = {Target::Wgsl, Target::Msl, Target::Essl};
+    options.validate = false;
+    Graph graph = Scene::load(path, options, messages).graph(0, kUnusedAttributes, options, messages);
+    const Shader shader = graph.generate(options, messages);
+    ASSERT_TRUE(shader);
+    const json entry = json::parse(shader.interfaceJson());
+    EXPECT_EQ(blocksOf(shader.reflection()), blocksOf(entry));
+
+    const CMessages said;
+    const COptions of_c = optionsFrom(R"({"targets": ["wgsl", "msl", "essl"], "validate": false})", said);
+    const CScene scene(lacquer_scene_load(path.c_str(), of_c.get(), said));
+    const CGraph graph_of_c(lacquer_scene_graph(scene.get(), 0, LACQUER_UNUSED_ATTRIBUTES, of_c.get(), said));
+    const CShader c(lacquer_graph_generate(graph_of_c.get(), of_c.get(), said));
+    ASSERT_NE(c, nullptr);
+    EXPECT_EQ(blocksOf(c.get()), blocksOf(entry));
+    EXPECT_EQ(texturesOf(c.get()), entry["textures"]);
+    EXPECT_EQ(placesOf(c.get(), lacquer_shader_input), entry["inputs"]);
+    EXPECT_EQ(placesOf(c.get(), lacquer_shader_output).size(), entry["outputs"].size());
+    lacquer_block block;
+    for (size_t b = 0; lacquer_shader_block(c.get(), b, &block, sizeof block) != 0; ++b)
+      expectApis(block.at, entry, block.name, false);
+    lacquer_texture texture;
+    for (size_t t = 0; lacquer_shader_texture(c.get(), t, &texture, sizeof texture) != 0; ++t)
+      expectApis(texture.at, entry, texture.name, true);
+  }
+}
+
+/// Each texture that the shader has of the material is one of the graph's, with its index in the file.
+TEST(Reflection, TexturesOfTheMaterialLeadToTheFile) {
+  Messages messages;
+  Options options;
+  options.targets = {};
+  const std::string path = (sourceFolder() / "examples/car_paint.gltf").string();
+  Graph graph = Scene::load(path, options, messages).graph(0, kUnusedAttributes, options, messages);
+  const std::vector<TextureUse> textures = graph.textures();
+  ASSERT_FALSE(textures.empty());
+  size_t found = 0;
+  const Shader shader = graph.generate(options, messages);
+  for (const ReflectedTexture& texture : shader.reflection().textures) {
+    if (texture.role != TextureRole::Material) continue;
+    const auto use = std::find_if(textures.begin(), textures.end(),
+                                  [&](const TextureUse& one) { return one.name == texture.slot; });
+    ASSERT_NE(use, textures.end()) << texture.slot;
+    EXPECT_GE(use->texture, 0);
+    EXPECT_EQ(use->srgb, texture.srgb);
+    EXPECT_NE(use->pointer, "");
+    ++found;
+  }
+  EXPECT_EQ(found, textures.size());
+}
+
+TEST(Reflection, AnEarlierCallerIsNotGivenMoreThanItKnows) {
+  const CMessages said;
+  const std::string path = (sourceFolder() / "examples/coat.gltf").string();
+  const COptions options = optionsFrom(R"({"targets": [], "validate": false})", said);
+  const CScene scene(lacquer_scene_load(path.c_str(), options.get(), said));
+  const CGraph graph(lacquer_scene_graph(scene.get(), 0, LACQUER_UNUSED_ATTRIBUTES, options.get(), said));
+  const CShader shader(lacquer_graph_generate(graph.get(), options.get(), said));
+  ASSERT_NE(shader, nullptr);
+  lacquer_place place;
+  std::memset(&place, 0x5A, sizeof place);
+  const size_t known = offsetof(lacquer_place, location);
+  ASSERT_EQ(lacquer_shader_input(shader.get(), 0, &place, known), 1);
+  EXPECT_STRNE(place.name, "");
+  EXPECT_EQ(place.location, 0x5A5A5A5AU);
+  EXPECT_EQ(lacquer_shader_input(shader.get(), 99, &place, sizeof place), 0);
+
+  ASSERT_GT(lacquer_graph_texture_count(graph.get()), 0u);
+  char slot[64];
+  int texture = -2;
+  EXPECT_EQ(lacquer_graph_texture(graph.get(), 0, slot, sizeof slot, &texture), 1);
+  EXPECT_GE(texture, 0);
+  EXPECT_EQ(lacquer_graph_texture(graph.get(), 0, slot, std::strlen(slot), &texture), 0);
+  EXPECT_EQ(lacquer_graph_texture(graph.get(), 99, slot, sizeof slot, &texture), 0);
+}
+
+}  // namespace
+}  // namespace lacquer::test
