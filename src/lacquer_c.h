@@ -225,7 +225,7 @@ enum {
 typedef struct lacquer_block {
   const char* name;
   const char* structure; /* of an array or a list: its element's type; else empty */
-  const char* list;      /* of a list: its array's name; else empty */
+  const char* list;      /* of a list (a storage buffer of any length): its array's name; else empty */
   int role;
   lacquer_binding at;
   uint32_t size;  /* bytes; of an array or a list, of one element */

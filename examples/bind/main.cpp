@@ -13,7 +13,7 @@ const char* contentsOf(lacquer::BlockRole role) {
     case lacquer::BlockRole::Lights: return "the scene's lights";
     case lacquer::BlockRole::Material: return "what pack() makes, once for a material";
     case lacquer::BlockRole::Object: return "the object's matrices, for each object";
-    case lacquer::BlockRole::List: return "a list of any length";
+    case lacquer::BlockRole::List: return "a list that the template reads";
   }
   return "";
 }
@@ -32,8 +32,8 @@ void bind(const lacquer::Graph& graph, const lacquer::Shader& shader) {
     std::printf("attribute %u: %s, %s\n", input.location, input.name.c_str(), input.type.c_str());
   for (const lacquer::UniformBlock& block : reflection.blocks) {
     const unsigned bytes = block.array > 1 ? block.array * block.size : block.size;
-    std::printf("buffer %u: %s, %u bytes: %s\n", block.at.flat, block.name.c_str(), bytes,
-                contentsOf(block.role));
+    std::printf("%s %u: %s, %u bytes%s: %s\n", block.isList() ? "storage buffer" : "buffer", block.at.flat,
+                block.name.c_str(), bytes, block.isList() ? " each" : "", contentsOf(block.role));
   }
   for (const lacquer::ReflectedTexture& texture : reflection.textures) {
     std::printf("unit %u: %s, ", texture.at.flat, texture.name.c_str());

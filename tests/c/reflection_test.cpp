@@ -27,6 +27,7 @@ json blocksOf(const Reflection& of) {
       fields.push_back({{"name", field.name}, {"type", field.type}, {"offset", field.offset}});
     rows.push_back({{"block", block.name},
                     {"role", kRoles[static_cast<int>(block.role)]},
+                    {"list", block.list},
                     {"set", block.at.set},
                     {"binding", block.at.binding},
                     {"flat", block.at.flat},
@@ -47,6 +48,7 @@ json blocksOf(const lacquer_shader* shader) {
     EXPECT_EQ(fields.size(), block.field_count);
     rows.push_back({{"block", block.name},
                     {"role", kRoles[block.role]},
+                    {"list", block.list},
                     {"set", block.at.set},
                     {"binding", block.at.binding},
                     {"flat", block.at.flat},
@@ -63,7 +65,7 @@ json blocksOf(const json& entry) {
     json fields = json::array();
     for (const json& field : block["fields"])
       fields.push_back({{"name", field["name"]}, {"type", field["type"]}, {"offset", field["offset"]}});
-    json row = {{"fields", std::move(fields)}};
+    json row = {{"list", block.value("list", "")}, {"fields", std::move(fields)}};
     for (const char* name : {"block", "role", "set", "binding", "flat"}) row[name] = block[name];
     rows.push_back(std::move(row));
   }
@@ -114,13 +116,21 @@ void expectApis(const lacquer_binding& at, const json& entry, const std::string&
   EXPECT_EQ(webgpu["visibility"].size(), static_cast<size_t>(at.vertex + at.fragment)) << name;
 }
 
+struct Case {
+  const char* file;
+  const char* template_name = "forward";
+};
+
 TEST(Reflection, IsTheEntryOfTheManifest) {
-  for (const char* file : {"examples/car_paint.gltf", "examples/glass.gltf", "examples/cloth.gltf"}) {
+  for (const auto& [file, template_name] :
+       {Case{"examples/car_paint.gltf"}, Case{"examples/glass.gltf"}, Case{"examples/cloth.gltf"},
+        Case{"examples/coat.gltf", "forward_clustered"}}) {
     SCOPED_TRACE(file);
     const std::string path = (sourceFolder() / file).string();
     Messages messages;
     Options options;
     options.targets = {Target::Wgsl, Target::Msl, Target::Essl};
+    options.template_name = template_name;
     options.validate = false;
     Graph graph = Scene::load(path, options, messages).graph(0, kUnusedAttributes, options, messages);
     const Shader shader = graph.generate(options, messages);
@@ -129,7 +139,9 @@ TEST(Reflection, IsTheEntryOfTheManifest) {
     EXPECT_EQ(blocksOf(shader.reflection()), blocksOf(entry));
 
     const CMessages said;
-    const COptions of_c = optionsFrom(R"({"targets": ["wgsl", "msl", "essl"], "validate": false})", said);
+    const json wanted = {
+        {"targets", {"wgsl", "msl", "essl"}}, {"template", template_name}, {"validate", false}};
+    const COptions of_c = optionsFrom(wanted.dump(), said);
     const CScene scene(lacquer_scene_load(path.c_str(), of_c.get(), said));
     const CGraph graph_of_c(lacquer_scene_graph(scene.get(), 0, LACQUER_UNUSED_ATTRIBUTES, of_c.get(), said));
     const CShader c(lacquer_graph_generate(graph_of_c.get(), of_c.get(), said));
@@ -144,6 +156,33 @@ TEST(Reflection, IsTheEntryOfTheManifest) {
     lacquer_texture texture;
     for (size_t t = 0; lacquer_shader_texture(c.get(), t, &texture, sizeof texture) != 0; ++t)
       expectApis(texture.at, entry, texture.name, true);
+  }
+}
+
+/// The lights of clusters are a storage buffer of any length, whichever role they have.
+TEST(Reflection, ListsOfLightsAreStorageBuffers) {
+  Messages messages;
+  Options options;
+  options.targets = {Target::Wgsl};
+  options.template_name = "forward_clustered";
+  const std::string path = (sourceFolder() / "examples/coat.gltf").string();
+  Graph graph = Scene::load(path, options, messages).graph(0, kUnusedAttributes, options, messages);
+  const Shader shader = graph.generate(options, messages);
+  const std::vector<UniformBlock>& blocks = shader.reflection().blocks;
+  const auto lights = std::find_if(blocks.begin(), blocks.end(),
+                                   [](const UniformBlock& block) { return block.role == BlockRole::Lights; });
+  ASSERT_NE(lights, blocks.end());
+  EXPECT_TRUE(lights->isList());
+  EXPECT_EQ(lights->list, "lights");
+  EXPECT_FALSE(lights->fields.empty());
+  const json entry = json::parse(shader.interfaceJson());
+  const json webgpu = rowOf(entry["webgpu"]["bindings"], lights->name);
+  EXPECT_EQ(webgpu["buffer"]["type"], "read-only-storage");
+  EXPECT_EQ(webgpu["buffer"]["minBindingSize"], lights->size);
+  for (const json& block : entry["uniforms"]) {
+    if (block["role"] != "lights") continue;
+    EXPECT_EQ(block["stride"], lights->size);
+    EXPECT_FALSE(block.contains("size"));
   }
 }
 

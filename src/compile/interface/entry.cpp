@@ -53,7 +53,7 @@ Json blockJson(const UniformBlock& block) {
   Json json = {{"block", block.name}, {"role", roleName(block.role)}};
   if (!block.structure.empty()) json["struct"] = block.structure;
   json.update(placeJson(block.at));
-  const bool list = block.role == BlockRole::List;
+  const bool list = block.isList();
   if (list) {
     json["list"] = block.list;
     json["stride"] = block.size;
@@ -164,7 +164,7 @@ Json webgpuOf(const Reflection& of) {
   };
   for (const UniformBlock& block : of.blocks) {
     const uint32_t size = std::max(block.array, 1U) * block.size;
-    const char* type = block.role == BlockRole::List ? "read-only-storage" : "uniform";
+    const char* type = block.isList() ? "read-only-storage" : "uniform";
     addBound(list, block, row(block.name, block.wgsl.group, block.wgsl.binding),
              {{"buffer", {{"type", type}, {"minBindingSize", size}}}});
   }
