@@ -32,8 +32,9 @@ void bind(const lacquer::Graph& graph, const lacquer::Shader& shader) {
     std::printf("attribute %u: %s, %s\n", input.location, input.name.c_str(), input.type.c_str());
   for (const lacquer::UniformBlock& block : reflection.blocks) {
     const unsigned bytes = block.array > 1 ? block.array * block.size : block.size;
-    std::printf("%s %u: %s, %u bytes%s: %s\n", block.isList() ? "storage buffer" : "buffer", block.at.flat,
-                block.name.c_str(), bytes, block.isList() ? " each" : "", contentsOf(block.role));
+    std::printf("%s %u: %s, %u bytes%s: %s\n", block.list.empty() ? "buffer" : "storage buffer",
+                block.at.flat, block.name.c_str(), bytes, block.list.empty() ? "" : " each",
+                contentsOf(block.role));
   }
   for (const lacquer::ReflectedTexture& texture : reflection.textures) {
     std::printf("unit %u: %s, ", texture.at.flat, texture.name.c_str());

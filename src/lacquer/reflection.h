@@ -43,7 +43,7 @@ struct BoundResource {
 /// Who fills a block, and when it changes.
 enum class BlockRole : uint8_t {
   Frame,     ///< the application: camera, environment
-  Lights,    ///< the application: an array of lights, or a list of them (UniformBlock::isList())
+  Lights,    ///< the application: an array of lights, or a list of them
   Material,  ///< Shader::pack(), once for a material
   Object,    ///< the application, for each object that is drawn
   List,      ///< the application: a list of something else (clustered light)
@@ -64,14 +64,11 @@ struct PreshaderValue {
 struct UniformBlock : BoundResource {
   BlockRole role = BlockRole::Frame;
   std::string structure;  ///< of an array or a list: the name of its element's type
-  std::string list;       ///< of a list: the name of the array in it; else empty
-  uint32_t size = 0;      ///< bytes; of an array or a list, of one element
-  uint32_t array = 0;     ///< elements; 0 for no array, and for a list, which has any number
+  std::string list;    ///< of a list, which is a storage buffer of any length: the array's name; else empty
+  uint32_t size = 0;   ///< bytes; of an array or a list, of one element
+  uint32_t array = 0;  ///< elements; 0 for no array, and for a list, which has any number
   std::vector<PreshaderValue> values;
   std::vector<BlockField> fields;
-
-  /// Whether it is a storage buffer of any length, not a uniform block.
-  bool isList() const { return !list.empty(); }
 };
 
 enum class TextureRole : uint8_t { Material, Environment, Object };

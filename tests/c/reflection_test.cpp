@@ -172,7 +172,6 @@ TEST(Reflection, ListsOfLightsAreStorageBuffers) {
   const auto lights = std::find_if(blocks.begin(), blocks.end(),
                                    [](const UniformBlock& block) { return block.role == BlockRole::Lights; });
   ASSERT_NE(lights, blocks.end());
-  EXPECT_TRUE(lights->isList());
   EXPECT_EQ(lights->list, "lights");
   EXPECT_FALSE(lights->fields.empty());
   const json entry = json::parse(shader.interfaceJson());

@@ -53,7 +53,7 @@ Json blockJson(const UniformBlock& block) {
   Json json = {{"block", block.name}, {"role", roleName(block.role)}};
   if (!block.structure.empty()) json["struct"] = block.structure;
   json.update(placeJson(block.at));
-  const bool list = block.isList();
+  const bool list = !block.list.empty();
   if (list) {
     json["list"] = block.list;
     json["stride"] = block.size;
@@ -164,7 +164,7 @@ Json webgpuOf(const Reflection& of) {
   };
   for (const UniformBlock& block : of.blocks) {
     const uint32_t size = std::max(block.array, 1U) * block.size;
-    const char* type = block.isList() ? "read-only-storage" : "uniform";
+    const char* type = block.list.empty() ? "uniform" : "read-only-storage";
     addBound(list, block, row(block.name, block.wgsl.group, block.wgsl.binding),
              {{"buffer", {{"type", type}, {"minBindingSize", size}}}});
   }

@@ -180,7 +180,7 @@ std::vector<std::pair<std::string, size_t>> webgpuLimits(const Reflection& of, s
   };
   const size_t textures = most(of.textures, [](const ReflectedTexture&) { return true; });
   const auto blocks = [&](bool lists) {
-    return most(of.blocks, [&](const UniformBlock& block) { return block.isList() == lists; });
+    return most(of.blocks, [&](const UniformBlock& block) { return block.list.empty() != lists; });
   };
   const targets::DeviceLimits& sure = *targets::row(Target::Wgsl).limits;
   ask("maxColorAttachmentBytesPerSample", 32, kHalfFloats * of.outputs.size());
