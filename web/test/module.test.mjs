@@ -5,7 +5,7 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
-import { inputs, lacquer, output, read, root, withFolder, withImages } from './native.mjs';
+import { inputs, lacquer, output, read, root, withExamples, withFolder, withImages } from './native.mjs';
 
 const { load, LacquerError, kUnusedAttributes } = await import(join(output, 'package/index.js'));
 const kExtensions = { glsl: 'glsl', 'glsl-gl': 'glsl', essl: 'glsl', hlsl: 'hlsl', wgsl: 'wgsl' };
@@ -71,11 +71,10 @@ for (const file of inputs()) {
   }));
 }
 
-test('packed bytes are those of the values in the manifest', () => {
-  const manifest = JSON.parse(readFileSync(join(root, 'generated/manifest.json'), 'utf8'));
+test('packed bytes are those of the values in the manifest', () => withExamples(['essl'], (folder, manifest) => {
   let compared = 0;
   for (const file of manifest.files) {
-    const scene = library.scene(read(join('generated', file.source)), file.source); // named as seen from the manifest
+    const scene = library.scene(read(join(folder, file.source)), file.source);
     for (const material of file.materials) {
       for (const use of material.uses) {
         const graph = scene.graph(material.index, { targets: ['essl'] }, use.attributes);
@@ -96,7 +95,7 @@ test('packed bytes are those of the values in the manifest', () => {
     scene.free();
   }
   assert.ok(compared > 100);
-});
+}));
 
 test('colours are those of `lacquer eval`', () => {
   const points = [{ v: [0, 0, 1], l: [0, 0.6, 0.8] }, { v: [0, 0.6, 0.8], l: [0.6, 0, 0.8], env: [0.3, 0.4, 0.5] }];

@@ -31,13 +31,30 @@ export function inputs() {
   return found.sort();
 }
 
+/** `use(folder)`; the folder goes when that is done, with its promise where it gives one. */
 export function withFolder(use) {
   const folder = mkdtempSync(join(tmpdir(), 'lacquer-web-'));
+  const clean = () => rmSync(folder, { recursive: true });
+  let result;
   try {
-    return use(folder);
-  } finally {
-    rmSync(folder, { recursive: true });
+    result = use(folder);
+  } catch (error) {
+    clean();
+    throw error;
   }
+  if (result instanceof Promise) return result.finally(clean);
+  clean();
+  return result;
+}
+
+/** A run over the examples for some targets: `use(folder, manifest)`, whose sources are named as seen from the folder. */
+export function withExamples(targets, use) {
+  return withFolder((folder) => {
+    const files = readdirSync(join(root, 'examples')).filter((name) => name.endsWith('.gltf')).sort();
+    const told = ['-q', '--no-validate', '--no-sync', '--target', targets.join(',')];
+    lacquer('gen', ...told, ...files.map((name) => join('examples', name)), '-o', folder);
+    return use(folder, JSON.parse(readFileSync(join(folder, 'manifest.json'), 'utf8')));
+  });
 }
 
 /** A glTF file of examples/ with its images in it, or with those that one material has: a scene from memory reads no others. */

@@ -6,7 +6,7 @@ import { basename, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { hasWebGpu, kPatience, kWebGpu, launch, serve } from './browser.mjs';
-import { glb, lacquer, output, read, realFiles, root } from './native.mjs';
+import { glb, lacquer, output, read, realFiles, root, withExamples } from './native.mjs';
 import {
   begin, downloaded, drop, end, evaluated, evaluatedByProgram, folder, library, middle, open, painted, set, setAll, settled,
 } from './page.mjs';
@@ -52,10 +52,10 @@ for (const sample of kSamples) {
 
 const kTold = ['--profile', 'physical', '--simplify', 'without:coat.absorption', '--no-multiple-scattering'];
 
-test('the texts on the page are those of `lacquer gen`', () =>
+const kExtension = { essl: 'glsl', glsl: 'glsl', 'glsl-gl': 'glsl', hlsl: 'hlsl', wgsl: 'wgsl' };
+
+test('the texts on the page are those of `lacquer gen`', () => withExamples(Object.keys(kExtension), (folder, manifest) =>
   open(kSamples.map((name) => `examples/${name}.gltf`), async (page) => {
-    const manifest = JSON.parse(read('generated/manifest.json'));
-    const kExtension = { essl: 'glsl', glsl: 'glsl', 'glsl-gl': 'glsl', hlsl: 'hlsl', wgsl: 'wgsl' };
     let compared = 0;
     for (const [i, sample] of kSamples.entries()) {
       await page.selectOption('#sample', String(i));
@@ -67,13 +67,13 @@ test('the texts on the page are those of `lacquer gen`', () =>
         for (const [target, extension] of Object.entries(kExtension)) {
           await page.selectOption('#target', target);
           const text = await page.evaluate(() => document.getElementById('code').textContent);
-          assert.equal(text, readFileSync(join(root, 'generated', target, `${id}.frag.${extension}`), 'utf8'));
+          assert.equal(text, readFileSync(join(folder, target, `${id}.frag.${extension}`), 'utf8'));
           ++compared;
         }
       }
     }
     assert.ok(compared > 60);
-  }));
+  })));
 
 test('a slider at its neutral end says that the term has left, and brings it back', () =>
   open(['examples/clearcoat.gltf'], async (page) => {
@@ -285,7 +285,7 @@ test('profiles, simplifications and materials are compared with figures, side by
     assert.ok(await page.isHidden('#comparing'));
   }));
 
-test('costs are those that `lacquer view` measured, errors those of the tables', (t) =>
+test('costs are those that `lacquer view` measured, errors those of the tables', (t) => withExamples(['essl'], (folder) =>
   open(['examples/coat.gltf'], async (page) => {
     await page.click('[data-tab=cost]');
     await page.waitForSelector('#errors-of-terms tr.used');
@@ -300,7 +300,7 @@ test('costs are those that `lacquer view` measured, errors those of the tables',
     }
     assert.match(await page.textContent('#operations'), /\d+ fragment, \d+ light/);
     const sizes = await page.textContent('#sizes');
-    const text = readFileSync(join(root, 'generated/essl', `${id}.frag.glsl`));
+    const text = readFileSync(join(folder, 'essl', `${id}.frag.glsl`));
     assert.ok(sizes.includes(`essl ${text.length},`), sizes);
     await page.selectOption('#material', { label: 'Absorption' });
     const { reference, rational } = JSON.parse(read('bench/error.json')).nodes.coat_absorption;
@@ -310,7 +310,7 @@ test('costs are those that `lacquer view` measured, errors those of the tables',
     await page.click('#errors-of-terms button:text-is("rational")');
     assert.equal(await page.inputValue('#compare'), 'simplify:variant:coat.absorption=rational');
     assert.match(await page.textContent('#figures'), /differ by at most/);
-  }, { flags: [] }));
+  }, { flags: [] })));
 
 /** Two triangles that face +z, under lamps of their own. */
 function lit(lights) {
