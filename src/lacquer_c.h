@@ -187,6 +187,14 @@ LACQUER_C lacquer_shader* lacquer_graph_generate(lacquer_graph* graph, const lac
 /* The values of the code with their rates, after the pass of that name; "" for the last. */
 LACQUER_C lacquer_text* lacquer_graph_dump(lacquer_graph* graph, const char* pass,
                                            const lacquer_options* options, lacquer_messages* messages);
+/* As lacquer_scene_evaluate() and lacquer_scene_preview(), of a graph as it is now. Its textures are those of
+ * the glTF file that it was built from; a graph that was read has none but the options' "texels". */
+LACQUER_C lacquer_text* lacquer_graph_evaluate(const lacquer_graph* graph, const char* points, size_t size,
+                                               int engine, const lacquer_options* options,
+                                               lacquer_messages* messages);
+LACQUER_C int lacquer_graph_preview(const lacquer_graph* graph, uint32_t pixels, uint8_t* rgb,
+                                    size_t capacity, const lacquer_options* options,
+                                    lacquer_messages* messages);
 
 /* ---- shaders */
 

@@ -198,6 +198,42 @@ class Shader(_Handle):
         return bytes(block)
 
 
+@dataclass(frozen=True)
+class Evaluation:
+    """Linear colours: `rgba` has a row of four for each point, NaN where a number is not finite."""
+
+    material: str
+    engine: str
+    profile: Optional[str]  #: of a graph none
+    rgba: NDArray[np.float64]
+    discarded: NDArray[np.bool_]
+
+
+def _plain(value: Any) -> Any:
+    """Arrays as lists, for JSON."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} is no number, text, list or array")
+
+
+Points = Union[Sequence[Mapping[str, Any]], Mapping[str, Any]]
+
+
+def _evaluated(points: Points, call: Callable[[bytes], str]) -> Evaluation:
+    answer = json.loads(call(json.dumps(points, default=_plain).encode()))
+    rgba = np.array(answer["rgba"], dtype=np.float64).reshape(-1, 4)
+    discarded = np.array(answer.get("discarded", [False] * len(rgba)), dtype=bool)
+    return Evaluation(answer["material"], answer["engine"], answer.get("profile"), rgba, discarded)
+
+
+def _drawn(pixels: int, call: Callable[[Any, int], Any]) -> NDArray[np.uint8]:
+    picture = np.zeros((pixels, pixels, 3), dtype=np.uint8)
+    call(picture.ctypes.data_as(ctypes.POINTER(c_uint8)), picture.size)
+    return picture
+
+
 class Graph(_Handle):
     """A node graph: one term of the specification is one node. An edit that fails raises, and leaves it as it was."""
 
@@ -264,29 +300,22 @@ class Graph(_Handle):
         return _taken(_calling(options, messages, lambda said, how: _lib.lacquer_graph_dump(self._at, _text(after),
                                                                                            how, said)))
 
+    def evaluate(self, points: Points, engine: str = "double", options: Optional[Options] = None,
+                 messages: Optional[List[Message]] = None) -> Evaluation:
+        """As Scene.evaluate(), of the graph as it is now."""
+        return _evaluated(points, lambda text: _taken(_calling(
+            options, messages, lambda said, how: _lib.lacquer_graph_evaluate(self._at, text, len(text), _ENGINES[engine],
+                                                                             how, said))))
+
+    def preview(self, pixels: int = 256, options: Optional[Options] = None,
+                messages: Optional[List[Message]] = None) -> NDArray[np.uint8]:
+        """As Scene.preview(), of the graph as it is now."""
+        return _drawn(pixels, lambda at, size: _calling(
+            options, messages, lambda said, how: _lib.lacquer_graph_preview(self._at, pixels, at, size, how, said)))
+
     def _edit(self, messages: Optional[List[Message]], function: Callable[..., int], *texts: str) -> None:
         words = [_text(text) for text in texts]
         _calling(None, messages, lambda said, _: function(self._at, *words, said))
-
-
-@dataclass(frozen=True)
-class Evaluation:
-    """Linear colours: `rgba` has a row of four for each point, NaN where a number is not finite."""
-
-    material: str
-    engine: str
-    profile: str
-    rgba: NDArray[np.float64]
-    discarded: NDArray[np.bool_]
-
-
-def _plain(value: Any) -> Any:
-    """Arrays as lists, for JSON."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, np.generic):
-        return value.item()
-    raise TypeError(f"{type(value).__name__} is no number, text, list or array")
 
 
 class Scene(_Handle):
@@ -340,25 +369,19 @@ class Scene(_Handle):
         return Graph(_calling(options, messages, lambda said, how: _lib.lacquer_scene_graph(self._at, _index(material), bits, how,
                                                                                            said)))
 
-    def evaluate(self, material: int, points: Union[Sequence[Mapping[str, Any]], Mapping[str, Any]],
-                 engine: str = "double", options: Optional[Options] = None,
+    def evaluate(self, material: int, points: Points, engine: str = "double", options: Optional[Options] = None,
                  messages: Optional[List[Message]] = None) -> Evaluation:
         """Linear colours at points (docs/eval.md), whose values may be arrays."""
-        text = json.dumps(points, default=_plain).encode()
-        answer = json.loads(_taken(_calling(options, messages, lambda said, how: _lib.lacquer_scene_evaluate(
-            self._at, _index(material), text, len(text), _ENGINES[engine], how, said))))
-        rgba = np.array(answer["rgba"], dtype=np.float64).reshape(-1, 4)
-        discarded = np.array(answer.get("discarded", [False] * len(rgba)), dtype=bool)
-        return Evaluation(answer["material"], answer["engine"], answer["profile"], rgba, discarded)
+        return _evaluated(points, lambda text: _taken(_calling(
+            options, messages, lambda said, how: _lib.lacquer_scene_evaluate(
+                self._at, _index(material), text, len(text), _ENGINES[engine], how, said))))
 
     def preview(self, material: int = 0, pixels: int = 256, options: Optional[Options] = None,
                 messages: Optional[List[Message]] = None) -> NDArray[np.uint8]:
         """A lit ball: `pixels` rows of `pixels` by 3, sRGB; from 16 to 2048 pixels."""
-        picture = np.zeros((pixels, pixels, 3), dtype=np.uint8)
-        at = picture.ctypes.data_as(ctypes.POINTER(c_uint8))
-        _calling(options, messages, lambda said, how: _lib.lacquer_scene_preview(self._at, _index(material), pixels, at,
-                                                                                picture.size, how, said))
-        return picture
+        return _drawn(pixels, lambda at, size: _calling(
+            options, messages, lambda said, how: _lib.lacquer_scene_preview(self._at, _index(material), pixels, at, size,
+                                                                            how, said)))
 
 
 def version() -> str:

@@ -58,6 +58,8 @@ _FUNCTIONS = {
     "graph_set_parameter": (c_int, c_void_p, c_char_p, POINTER(c_double), c_size_t, c_void_p),
     "graph_set_range": (c_int, c_void_p, c_char_p, c_double, c_double, c_int, c_void_p),
     "graph_check": (c_int, c_void_p, c_void_p, c_void_p),
+    "graph_evaluate": (c_void_p, c_void_p, c_char_p, c_size_t, c_int, c_void_p, c_void_p),
+    "graph_preview": (c_int, c_void_p, c_uint32, POINTER(c_uint8), c_size_t, c_void_p, c_void_p),
     "graph_generate": (c_void_p, c_void_p, c_void_p, c_void_p),
     "graph_dump": (c_void_p, c_void_p, c_char_p, c_void_p, c_void_p),
     "shader_free": (None, c_void_p),

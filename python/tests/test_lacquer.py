@@ -70,6 +70,19 @@ def test_preview_is_a_picture(coat):
     assert (picture[0, 0] == picture[0, 31]).all() and (picture[16, 16] != picture[0, 0]).any()
 
 
+def test_graph_shows_what_its_material_shows(coat):
+    graph = coat.graph(0, attributes=lacquer.ATTRIBUTES[:7])  # what points have: NORMAL to TEXCOORD_3
+    points = [{"v": [0, 0, 1], "l": [0, 0.6, 0.8], "env": [1, 0.5, 0.25]}]
+    answer = graph.evaluate(points)
+    assert answer.profile is None and (answer.rgba == coat.evaluate(0, points).rgba).all()
+    assert (graph.preview(32) == coat.preview(0, 32)).all()
+    parameter = next(p for p in graph.parameters() if p["name"] == "coat_roughness_factor")
+    graph.set_parameter(parameter["name"], 0.75)
+    assert (graph.evaluate(points).rgba != answer.rgba).any()
+    with pytest.raises(lacquer.Error, match="graph-is-built"):
+        graph.evaluate(points, options={"profile": "physical"})
+
+
 def test_pack_takes_values_by_name(coat):
     shader = coat.graph(0).generate({"targets": ["essl"], "validate": False})
     today = shader.pack()

@@ -10,6 +10,7 @@
 namespace lacquer {
 
 class Shader;
+enum class Engine : uint8_t;
 
 /// The numbers that something may be given, each component of a vector for itself; both ends belong to it.
 struct Range {
@@ -51,6 +52,8 @@ public:
 
   /// Reads the JSON form (docs/graph-format.md); `name` stands for the file in messages. Empty on an error.
   static Graph fromJson(std::string_view text, const std::string& name, Messages& messages);
+  /// Reads a file in the JSON form. Of the options, `limits`.
+  static Graph load(const std::string& path, const Options& options, Messages& messages);
   /// The JSON form, which reads back as the same graph; of an empty graph an empty text.
   std::string toJson() const;
   /// The graph for GraphViz: a box for each node; of an empty graph an empty text.
@@ -96,9 +99,15 @@ public:
 
 private:
   friend class Scene;
+  friend std::string evaluate(const Graph&, const std::string&, Engine, const Strings&, const Options&,
+                              Messages&);
+  friend std::vector<uint8_t> drawBall(const Graph&, uint32_t, const Strings&, const Options&, Messages&);
   struct Impl;
   std::shared_ptr<Impl> impl_;
 };
+
+/// Whether a file is taken for a graph, where it may be one: its name ends in ".json".
+bool isGraphFile(std::string_view path);
 
 /// The names that Graph::dump() takes, in order: "lower", then the passes.
 Strings passNames();

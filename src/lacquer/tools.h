@@ -9,6 +9,7 @@
 namespace lacquer {
 
 class Scene;
+class Graph;
 
 /// What computes colours.
 enum class Engine : uint8_t {
@@ -18,7 +19,8 @@ enum class Engine : uint8_t {
   VulkanGlsl,  ///< the same, with the GLSL through glslang
   VulkanHlsl,  ///< the same, with the HLSL through glslang; not for Parameters::Spec
 };
-/// A material's linear forward colours at points, JSON in and out (docs/eval.md); empty on an error.
+/// Linear forward colours at points, JSON in and out (docs/eval.md); empty on an error. Of a material of a
+/// glTF file, or of a graph where the file's name ends in ".json".
 /// `material`: its name, or empty for a file with one. `points`: the text, for which `points_name` stands in
 /// messages. `texels`: "SLOT=r,g,b,a" each, constants instead of images.
 std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
@@ -29,10 +31,19 @@ std::string evaluate(const std::string& file, const std::string& material, const
 /// are in it; "no-such-material" for an index that does not exist.
 std::string evaluate(const Scene& scene, size_t material, const std::string& points, Engine engine,
                      const Strings& texels, const Options& options, Messages& messages);
+/// The same of a graph, for which nothing is built: its template and its terms are what they are, and options
+/// that say otherwise are an error ("graph-is-built"). Textures are those of the glTF file that it was built
+/// from; a graph from a text has none but `texels`.
+std::string evaluate(const Graph& graph, const std::string& points, Engine engine, const Strings& texels,
+                     const Options& options, Messages& messages);
 /// A lit ball of a material of a scene, in float: `size` rows from the top of `size` pixels of three bytes,
 /// sRGB. Empty on an error. Where an image is absent a neutral colour stands for it, with a note. Uses
 /// threads.
 std::vector<uint8_t> drawBall(const Scene& scene, size_t material, uint32_t size, const Strings& texels,
+                              const Options& options, Messages& messages);
+
+/// The same of a graph.
+std::vector<uint8_t> drawBall(const Graph& graph, uint32_t size, const Strings& texels,
                               const Options& options, Messages& messages);
 
 /// A contact sheet (docs/preview.md).
@@ -46,9 +57,9 @@ struct Preview {
   /// A picture of the surroundings, as for writeEnvironment(): the only light then. Empty for the studio.
   std::string environment;
 };
-/// Draws a ball for each material of the files, or for those of the names in `materials` where that is not
-/// empty. Writes the sheet and returns what was measured as JSON; empty on an error. A material that fails is
-/// left out, with messages. Uses threads.
+/// Draws a ball for each material of the files, and for each graph (files whose names end in ".json"), or for
+/// those of the names in `materials` where that is not empty. Writes the sheet and returns what was measured
+/// as JSON; empty on an error. A material that fails is left out, with messages. Uses threads.
 std::string drawPreview(const Preview& preview, const Strings& files, const Strings& materials,
                         const Options& options, Messages& messages, const Progress& progress = {});
 

@@ -247,6 +247,37 @@ TEST_F(CCalls, aMaterialIsEvaluatedAndDrawn) {
   EXPECT_EQ(messages_.takeCodes(), "block-too-small, out-of-range, out-of-range");
 }
 
+TEST_F(CCalls, aGraphIsEvaluatedAndDrawnAsItsMaterial) {
+  const std::string path = (sourceFolder() / "examples/coat.gltf").string();
+  scene_.reset(lacquer_scene_load(path.c_str(), options_.get(), messages_));
+  constexpr uint32_t kAll = 0x7F;  // NORMAL to TEXCOORD_3, which points have
+  const CGraph graph(lacquer_scene_graph(scene_.get(), 0, kAll, options_.get(), messages_));
+  const std::string points = R"([{"v": [0, 0, 1], "l": [0, 0.6, 0.8], "env": [1, 1, 1]}])";
+  const auto of_graph = [&](int engine) {
+    return textOf(CText(lacquer_graph_evaluate(graph.get(), points.data(), points.size(), engine,
+                                               options_.get(), messages_)));
+  };
+  const Json expected = Json::parse(textOf(CText(lacquer_scene_evaluate(
+      scene_.get(), 0, points.data(), points.size(), LACQUER_DOUBLE, options_.get(), messages_))));
+  const Json answer = Json::parse(of_graph(LACQUER_DOUBLE));
+  EXPECT_EQ(answer["rgba"], expected["rgba"]);
+  EXPECT_FALSE(answer.contains("profile"));
+  constexpr uint32_t kPixels = 16;
+  std::vector<uint8_t> of_scene(3 * kPixels * kPixels), rgb(of_scene.size());
+  EXPECT_EQ(lacquer_scene_preview(scene_.get(), 0, kPixels, of_scene.data(), of_scene.size(), options_.get(),
+                                  messages_),
+            1);
+  EXPECT_EQ(lacquer_graph_preview(graph.get(), kPixels, rgb.data(), rgb.size(), options_.get(), messages_),
+            1);
+  EXPECT_EQ(rgb, of_scene);
+  EXPECT_EQ(messages_.takeCodes(), "");
+  EXPECT_EQ(of_graph(77), "");
+  EXPECT_EQ(lacquer_graph_evaluate(nullptr, points.data(), points.size(), 0, nullptr, messages_), nullptr);
+  EXPECT_EQ(lacquer_graph_preview(nullptr, kPixels, rgb.data(), rgb.size(), nullptr, messages_), 0);
+  EXPECT_EQ(lacquer_graph_preview(graph.get(), kPixels, rgb.data(), 5, nullptr, messages_), 0);
+  EXPECT_EQ(messages_.takeCodes(), "unknown-enumerator, empty-handle, empty-handle, block-too-small");
+}
+
 TEST_F(CCalls, aSceneFromMemoryReadsNoFiles) {
   const std::string path = (sourceFolder() / "examples/car_paint.gltf").string();
   const std::string bytes = readFile(path);

@@ -35,9 +35,15 @@ TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
       static_cast<std::string (*)(const std::string&, const std::string&, const std::string&,
                                   const std::string&, Engine, const Strings&, const Options&, Messages&)>(
           &evaluate),
-      &drawBall, &drawPreview, &writeView, &makeLevels, &stressNodes, &measureCost, &environmentDfg,
-      &writeEnvironmentDfg, &environmentSheen, &writeEnvironmentSheen, &writeEnvironment, &nodesJson,
-      &proveNodesJson);
+      static_cast<std::string (*)(const Graph&, const std::string&, Engine, const Strings&, const Options&,
+                                  Messages&)>(&evaluate),
+      static_cast<std::vector<uint8_t> (*)(const Scene&, size_t, uint32_t, const Strings&, const Options&,
+                                           Messages&)>(&drawBall),
+      static_cast<std::vector<uint8_t> (*)(const Graph&, uint32_t, const Strings&, const Options&,
+                                           Messages&)>(&drawBall),
+      &isGraphFile, &Graph::load, &drawPreview, &writeView, &makeLevels, &stressNodes, &measureCost,
+      &environmentDfg, &writeEnvironmentDfg, &environmentSheen, &writeEnvironmentSheen, &writeEnvironment,
+      &nodesJson, &proveNodesJson);
   for (const bool one : there) EXPECT_TRUE(one);
 }
 

@@ -5,6 +5,7 @@ import {
   type Attribute,
   type BindGroupLayoutEntry,
   type Evaluation,
+  type EvaluationOptions,
   type GraphJson,
   type GraphSource,
   type Interface,
@@ -12,7 +13,7 @@ import {
   type Message,
   type Options,
   type Parameter,
-  type Point,
+  type Points,
   type Stage,
   type Target,
   type Values,
@@ -180,6 +181,35 @@ export class Shader extends Handle {
   }
 }
 
+function evaluated(
+  it: Instance,
+  points: Points,
+  options: EvaluationOptions | undefined,
+  messages: Message[],
+  call: (at: number, size: number, engine: number, how: number, said: number) => number,
+): Evaluation {
+  const { engine, ...rest } = options ?? {};
+  return it.withText(JSON.stringify(points), (at, size) =>
+    JSON.parse(it.taken(calling(it, rest, messages, (said, how) => call(at, size, engine === 'float' ? 1 : 0, how, said)))),
+  );
+}
+
+function drawn(
+  it: Instance,
+  pixels: number,
+  options: Options | undefined,
+  messages: Message[],
+  call: (at: number, size: number, how: number, said: number) => number,
+): Uint8ClampedArray {
+  return it.withBytes(3 * pixels * pixels, (at, size) => {
+    calling(it, options, messages, (said, how) => call(at, size, how, said));
+    const rgb = it.bytes(at, size);
+    const rgba = new Uint8ClampedArray(4 * pixels * pixels).fill(255);
+    for (let i = 0; i < pixels * pixels; ++i) rgba.set(rgb.subarray(3 * i, 3 * i + 3), 4 * i);
+    return rgba;
+  });
+}
+
 /** A node graph: one term of the specification is one node. An edit that fails throws, and leaves the graph as it was. */
 export class Graph extends Handle {
   /** @internal */
@@ -238,6 +268,18 @@ export class Graph extends Handle {
     }
     return messages;
   }
+  /** As Scene's, of the graph as it is now. */
+  evaluate(points: Points, options?: EvaluationOptions, messages: Message[] = []): Evaluation {
+    return evaluated(this.it, points, options, messages, (at, size, engine, how, said) =>
+      this.it.call.lacquer_graph_evaluate(this.at, at, size, engine, how, said),
+    );
+  }
+  /** As Scene's, of the graph as it is now. */
+  preview(pixels: number, options?: Options, messages: Message[] = []): Uint8ClampedArray {
+    return drawn(this.it, pixels, options, messages, (at, size, how, said) =>
+      this.it.call.lacquer_graph_preview(this.at, pixels, at, size, how, said),
+    );
+  }
   generate(options?: Options, messages: Message[] = []): Shader {
     const call = (said: number, how: number) => this.it.call.lacquer_graph_generate(this.at, how, said);
     return new Shader(this.it, calling(this.it, options, messages, call));
@@ -288,28 +330,19 @@ export class Scene extends Handle {
   /** Linear colours at points, as `lacquer eval`. */
   evaluate(
     material: number,
-    points: Point[] | { points: Point[]; uniforms?: Record<string, number | number[]> },
-    options?: Options & { engine?: 'double' | 'float' },
+    points: Points,
+    options?: EvaluationOptions,
     messages: Message[] = [],
   ): Evaluation {
-    const { engine, ...rest } = options ?? {};
-    return this.it.withText(JSON.stringify(points), (at, size) => {
-      const call = (said: number, how: number) =>
-        this.it.call.lacquer_scene_evaluate(this.at, material, at, size, engine === 'float' ? 1 : 0, how, said);
-      return JSON.parse(this.it.taken(calling(this.it, rest, messages, call)));
-    });
+    return evaluated(this.it, points, options, messages, (at, size, engine, how, said) =>
+      this.it.call.lacquer_scene_evaluate(this.at, material, at, size, engine, how, said),
+    );
   }
   /** A lit ball of that many pixels on a side, from 16 to 2048: RGBA, for an ImageData. */
   preview(material: number, pixels: number, options?: Options, messages: Message[] = []): Uint8ClampedArray {
-    return this.it.withBytes(3 * pixels * pixels, (at, size) => {
-      calling(this.it, options, messages, (said, how) =>
-        this.it.call.lacquer_scene_preview(this.at, material, pixels, at, size, how, said),
-      );
-      const rgb = this.it.bytes(at, size);
-      const rgba = new Uint8ClampedArray(4 * pixels * pixels).fill(255);
-      for (let i = 0; i < pixels * pixels; ++i) rgba.set(rgb.subarray(3 * i, 3 * i + 3), 4 * i);
-      return rgba;
-    });
+    return drawn(this.it, pixels, options, messages, (at, size, how, said) =>
+      this.it.call.lacquer_scene_preview(this.at, material, pixels, at, size, how, said),
+    );
   }
 }
 

@@ -111,10 +111,14 @@ export interface Point {
   position?: number[];
   front_facing?: boolean;
 }
+export type Points = Point[] | { points: Point[]; uniforms?: Record<string, number | number[]> };
+export type EvaluationOptions = Options & { engine?: 'double' | 'float' };
+
 export interface Evaluation {
   material: string;
   engine: 'double' | 'float';
-  profile: string;
+  /** Of a material; a graph has none. */
+  profile?: string;
   /** Linear; null where the material drops the fragment or the number is not finite. */
   rgba: (number | null)[][];
   discarded?: boolean[];

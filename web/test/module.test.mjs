@@ -116,6 +116,21 @@ test('colours are those of `lacquer eval`', () => {
   });
 });
 
+test('a graph shows what its material shows, and what is edited of it', () => {
+  const scene = library.scene(withImages(read('examples/coat.gltf')), 'examples/coat.gltf');
+  const all = ['NORMAL', 'TANGENT', 'COLOR_0', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3'];
+  const points = [{ v: [0, 0.6, 0.8], l: [0.6, 0, 0.8], env: [0.3, 0.4, 0.5] }];
+  const graph = scene.graph(0, {}, all);
+  assert.deepEqual(graph.evaluate(points).rgba, scene.evaluate(0, points).rgba);
+  assert.deepEqual(graph.preview(32), scene.preview(0, 32));
+  const before = graph.evaluate(points).rgba;
+  graph.setParameter('coat_roughness_factor', 0.75);
+  assert.notDeepEqual(graph.evaluate(points).rgba, before);
+  assert.throws(() => graph.evaluate(points, { profile: 'physical' }), /graph-is-built/);
+  graph.free();
+  scene.free();
+});
+
 test('a ball is drawn', () => {
   const scene = library.scene(read('examples/core.gltf'), 'core.gltf');
   const rgba = scene.preview(0, 32);

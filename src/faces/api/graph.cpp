@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "api/internal.h"
+#include "eval/subject.h"
 #include "graph/text.h"
 #include "interface/entry.h"
 #include "interface/interface.h"
@@ -52,7 +53,15 @@ Graph Graph::fromJson(std::string_view text, const std::string& name, Messages& 
     report(graph.error(), name, messages);
     return result;
   }
-  result.impl_ = std::make_shared<Impl>(Impl{std::move(*graph), name, {}});
+  result.impl_ = std::make_shared<Impl>(Impl{std::move(*graph), name, {}, false, {}});
+  return result;
+}
+
+Graph Graph::load(const std::string& path, const Options& options, Messages& messages) {
+  Graph result;
+  Result<graph::Graph> graph = readGraphFile(path, options);
+  if (!graph) return report(graph.error(), path, messages), result;
+  result.impl_ = std::make_shared<Impl>(Impl{std::move(*graph), path, {}, false, {}});
   return result;
 }
 

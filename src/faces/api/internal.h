@@ -15,8 +15,10 @@ namespace lacquer {
 
 struct Graph::Impl {
   graph::Graph graph;
-  std::string file;  ///< for messages
+  std::string file;  ///< its name, or that of the glTF file that it was built from
   passes::LightFacts scene_lights;
+  bool has_file = false;                     ///< whether the textures are those of the glTF file `file`
+  std::shared_ptr<const std::string> bytes;  ///< the file's, where it was read from memory
 
   /// Checks the options and the graph, lowers it and runs the passes.
   Result<ir::Module> module(const Options& options, Diagnostics (*check)(const Options&),

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "api/internal.h"
-#include "eval/of_scene.h"
+#include "eval/in_memory.h"
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
@@ -126,8 +126,8 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   Result<graph::Graph> graph = buildGraph(m, a, **language, named, warnings);
   report(warnings, document.path, messages);
   if (!graph) return report(graph.error(), {}, messages), result;
-  result.impl_ =
-      std::make_shared<Graph::Impl>(Graph::Impl{std::move(*graph), document.path, lightsOf(document)});
+  result.impl_ = std::make_shared<Graph::Impl>(
+      Graph::Impl{std::move(*graph), document.path, lightsOf(document), true, impl_->bytes});
   return result;
 }
 
@@ -138,6 +138,26 @@ std::string evaluate(const Scene& scene, size_t material, const std::string& poi
   const material::Material* found = impl.material(material, messages);
   if (found == nullptr) return {};
   return evaluateOf({*found, *impl.language, impl.document.path, impl.bytes}, points, engine, texels, options,
+                    messages);
+}
+
+std::string evaluate(const Graph& graph, const std::string& points, Engine engine, const Strings& texels,
+                     const Options& options, Messages& messages) {
+  if (!filled(graph.impl_.get(), "graph", messages)) return {};
+  const auto language = libraryFor(options);
+  if (!language) return report(language.error(), {}, messages), std::string();
+  const Graph::Impl& impl = *graph.impl_;
+  return evaluateOf({impl.graph, **language, impl.file, impl.bytes, impl.has_file}, points, engine, texels,
+                    options, messages);
+}
+
+std::vector<uint8_t> drawBall(const Graph& graph, uint32_t size, const Strings& texels,
+                              const Options& options, Messages& messages) {
+  if (!filled(graph.impl_.get(), "graph", messages)) return {};
+  const auto language = libraryFor(options);
+  if (!language) return report(language.error(), {}, messages), std::vector<uint8_t>();
+  const Graph::Impl& impl = *graph.impl_;
+  return drawBallOf({impl.graph, **language, impl.file, impl.bytes, impl.has_file}, size, texels, options,
                     messages);
 }
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <optional>
 
 #include "c/handles.h"
@@ -99,41 +98,5 @@ lacquer_graph* lacquer_scene_graph(const lacquer_scene* scene, size_t material, 
     lacquer::Graph graph =
         sceneOf(scene).graph(material, attributesOf(attributes), optionsOf(options).options, to);
     return graph ? new lacquer_graph{std::move(graph)} : nullptr;
-  });
-}
-
-lacquer_text* lacquer_scene_evaluate(const lacquer_scene* scene, size_t material, const char* points,
-                                     size_t size, int engine, const lacquer_options* options,
-                                     lacquer_messages* messages) {
-  return guarded(messages, static_cast<lacquer_text*>(nullptr), [&](Messages& to) {
-    if (engine < LACQUER_DOUBLE || engine > LACQUER_VULKAN_HLSL) {
-      sayError(messages, "unknown-enumerator",
-               fmt::format("the engine is {}, which is no enumerator", engine),
-               fmt::format("they are {} to {}", static_cast<int>(LACQUER_DOUBLE),
-                           static_cast<int>(LACQUER_VULKAN_HLSL)));
-      return static_cast<lacquer_text*>(nullptr);
-    }
-    const auto wanted = static_cast<lacquer::Engine>(engine);
-    const lacquer_options& how = optionsOf(options);
-    return textFrom(lacquer::evaluate(sceneOf(scene), material, std::string(bytesOf(points, size)), wanted,
-                                      how.texels, how.options, to));
-  });
-}
-
-int lacquer_scene_preview(const lacquer_scene* scene, size_t material, uint32_t pixels, uint8_t* rgb,
-                          size_t capacity, const lacquer_options* options, lacquer_messages* messages) {
-  return guarded(messages, 0, [&](Messages& to) {
-    const lacquer_options& how = optionsOf(options);
-    const uint64_t needed = uint64_t{3} * pixels * pixels;
-    if (rgb == nullptr || capacity < needed) {
-      sayError(messages, "block-too-small", "there is no room for the picture",
-               "it takes 3 * pixels * pixels bytes");
-      return 0;
-    }
-    const std::vector<uint8_t> drawn =
-        lacquer::drawBall(sceneOf(scene), material, pixels, how.texels, how.options, to);
-    if (drawn.empty() || drawn.size() != needed) return 0;
-    std::copy(drawn.begin(), drawn.end(), rgb);
-    return 1;
   });
 }

@@ -10,7 +10,9 @@
 namespace lacquer::cli {
 
 void addEval(CLI::App& verb, EvalFlags& flags, OptionFlags& options) {
-  verb.add_option("file", flags.file, "a .gltf or .glb file")->required()->check(kNotEmpty);
+  verb.add_option("file", flags.file, "a .gltf or .glb file, or a graph: .json")
+      ->required()
+      ->check(kNotEmpty);
   verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
   verb.add_option("--points", flags.points,
                   "a JSON file with points (docs/eval.md); - for the standard input")

@@ -141,7 +141,10 @@ void addPlan(CLI::App& verb, Flags& flags) {
 
 /// The one material that is looked at.
 void addLook(CLI::App& verb, Flags& flags) {
-  verb.add_option("file", flags.files, "a .gltf or .glb file")->required()->expected(1)->check(kNotEmpty);
+  verb.add_option("file", flags.files, "a .gltf or .glb file, or a graph: .json")
+      ->required()
+      ->expected(1)
+      ->check(kNotEmpty);
   verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
   lacquer::cli::addMaterialFlags(verb, flags);
 }
@@ -160,7 +163,7 @@ void addDump(CLI::App& verb, Flags& flags) {
 }
 
 void addProve(CLI::App& verb, Flags& flags) {
-  verb.add_option("files", flags.files, ".gltf or .glb files")->check(kNotEmpty);
+  verb.add_option("files", flags.files, ".gltf or .glb files, graphs: .json")->check(kNotEmpty);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   verb.add_flag("--json", flags.json, "as JSON, with everything that is proved");
@@ -251,6 +254,8 @@ int merge(const Flags& flags) {
 }
 
 lacquer::Graph onlyGraph(const Flags& flags, Messages& messages) {
+  if (lacquer::isGraphFile(flags.files[0]))
+    return lacquer::Graph::load(flags.files[0], flags.options, messages);
   const lacquer::Scene scene = lacquer::Scene::load(flags.files[0], flags.options, messages);
   if (!scene) return {};
   const std::optional<size_t> material = scene.findMaterial(flags.material, messages);

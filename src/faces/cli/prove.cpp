@@ -78,20 +78,23 @@ bool proveNodes(const ProveFlags& flags, const Options& options, Messages& messa
   return good == all;
 }
 
+bool proveGraph(Graph graph, const ProveFlags& flags, const Options& options, Messages& messages) {
+  const std::string text = graph ? graph.prove(options, messages, flags.precision) : std::string();
+  if (text.empty()) return false;
+  if (flags.json)
+    fmt::print("{}\n", text);
+  else
+    printShader(json::reread(text));
+  return true;
+}
+
 bool proveMaterial(const Scene& scene, size_t material, const ProveFlags& flags, const Options& options,
                    Messages& messages) {
   std::vector<Attributes> uses = scene.uses(material);
   if (uses.empty()) uses.push_back(kUnusedAttributes);
   bool good = true;
   for (const Attributes& attributes : uses) {
-    Graph graph = scene.graph(material, attributes, options, messages);
-    const std::string text = graph ? graph.prove(options, messages, flags.precision) : std::string();
-    good &= !text.empty();
-    if (text.empty()) continue;
-    if (flags.json)
-      fmt::print("{}\n", text);
-    else
-      printShader(json::reread(text));
+    good &= proveGraph(scene.graph(material, attributes, options, messages), flags, options, messages);
   }
   return good;
 }
@@ -104,6 +107,11 @@ bool prove(const std::vector<std::string>& files, const std::vector<std::string>
   bool good = true;
   size_t found = 0;
   for (const std::string& file : files) {
+    if (isGraphFile(file)) {
+      ++found;
+      good &= proveGraph(Graph::load(file, options, messages), flags, options, messages);
+      continue;
+    }
     const Scene scene = Scene::load(file, options, messages);
     good &= static_cast<bool>(scene);
     for (size_t i = 0; scene && i < scene.materialCount(); ++i) {

@@ -5,8 +5,8 @@
 
 #include "eval/evaluate.h"
 #include "eval/gpu.h"
+#include "eval/in_memory.h"
 #include "eval/material.h"
-#include "eval/of_scene.h"
 #include "eval/points_file.h"
 #include "setting/language.h"
 #include "setting/messages.h"
@@ -136,7 +136,8 @@ std::string answerOf(const Colors& colors, const std::string& material, const st
   std::string text = fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n",
                                  json::quotedText(material), nameOf(engine));
   if (!colors.device.empty()) text += fmt::format("  \"device\": {},\n", json::quotedText(colors.device));
-  text += fmt::format("  \"profile\": \"{}\",\n  \"rgba\": [", profile);
+  if (!profile.empty()) text += fmt::format("  \"profile\": \"{}\",\n", profile);
+  text += "  \"rgba\": [";
   for (size_t i = 0; 4 * i < colors.rgba.size(); ++i) {
     text += i == 0 ? "\n    [" : ",\n    [";
     // A device leaves no colour where it has dropped the fragment.
@@ -254,12 +255,12 @@ struct Evaluation {
   const Options& options;
 };
 
-Result<std::string> evaluateMaterial(const material::Material& found, const Language& library,
-                                     FileImages& images, const Evaluation& how, Messages& messages) {
+Result<std::string> evaluateSubject(const EvalSubject& found, const Language& library, FileImages& images,
+                                    const Evaluation& how, Messages& messages) {
   const auto& [points, points_file, engine, texels, options] = how;
   const std::string& file = images.file();
-  report(found.diagnostics, file, messages);
-  if (lacquer::hasError(found.diagnostics)) return std::string();
+  report(found.diagnostics(), file, messages);
+  if (lacquer::hasError(found.diagnostics())) return std::string();
   EvalMaterial evaluated(images, options);
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
@@ -288,13 +289,19 @@ Result<std::string> evaluateMaterial(const material::Material& found, const Lang
           ? colors<float>(module, bindings, count)
           : colorsOnGpu(module, bindings, gpuTextures(evaluated, points), count, routeOf(engine));
   if (!answer) return tl::make_unexpected(answer.error());
-  return answerOf(*answer, found.name, evaluated.profile(), engine);
+  return answerOf(*answer, found.name(), evaluated.profile(), engine);
 }
 
 Result<std::string> evaluateFile(const std::string& file, const std::string& material, const Evaluation& how,
                                  Messages& messages) {
   const auto library = libraryFor(how.options);
   if (!library) return tl::make_unexpected(library.error());
+  if (isGraphFile(file)) {
+    const Result<graph::Graph> graph = readGraphFile(file, how.options);
+    if (!graph) return tl::make_unexpected(graph.error());
+    FileImages none = FileImages::none(file, how.options);
+    return evaluateSubject(*graph, **library, none, how, messages);
+  }
   const Result<material::Document> document = readMaterials(file, **library, how.options);
   if (!document) return tl::make_unexpected(document.error());
   report(document->diagnostics, file, messages);
@@ -304,7 +311,7 @@ Result<std::string> evaluateFile(const std::string& file, const std::string& mat
   if (!place) return tl::make_unexpected(place.error());
   report(warnings, file, messages);
   FileImages images(file, how.options);
-  return evaluateMaterial(document->materials[*place], **library, images, how, messages);
+  return evaluateSubject(document->materials[*place], **library, images, how, messages);
 }
 
 Diagnostics checkEvaluation(Engine engine, const Options& options) {
@@ -353,8 +360,8 @@ std::string evaluate(const std::string& file, const std::string& material, const
   return {};
 }
 
-std::string evaluateOf(const SceneMaterial& of, const std::string& points, Engine engine,
-                       const Strings& texels, const Options& options, Messages& messages) {
+std::string evaluateOf(const InMemory& of, const std::string& points, Engine engine, const Strings& texels,
+                       const Options& options, Messages& messages) {
   static const std::string kPoints = "points";
   if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty()) {
     report(wrong, {}, messages);
@@ -362,9 +369,10 @@ std::string evaluateOf(const SceneMaterial& of, const std::string& points, Engin
   }
   const Result<EvalPoints> read = readPoints(points, kPoints, *limitsOf(options));
   if (!read) return report(read.error(), kPoints, messages), std::string();
-  FileImages images(of.file, options, of.bytes);
+  FileImages images =
+      of.has_file ? FileImages(of.file, options, of.bytes) : FileImages::none(of.file, options);
   Result<std::string> text =
-      evaluateMaterial(of.material, of.language, images, {*read, kPoints, engine, texels, options}, messages);
+      evaluateSubject(of.subject, of.language, images, {*read, kPoints, engine, texels, options}, messages);
   if (text) return std::move(*text);
   report(text.error(), of.file, messages);
   return {};

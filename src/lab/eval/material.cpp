@@ -54,6 +54,12 @@ FileImages::FileImages(std::string file, const Options& options, std::shared_ptr
       bytes_(std::move(bytes)),
       access_{limitsOf(options).value_or(Limits{}), options.allow} {}
 
+FileImages FileImages::none(std::string file, const Options& options) {
+  FileImages images(std::move(file), options);
+  images.none_ = true;
+  return images;
+}
+
 bool FileImages::makeRoom(uint64_t pixels) {
   while (pixels > access_.limits.images - std::min(held_, access_.limits.images)) {
     auto oldest = images_.end();
@@ -101,6 +107,8 @@ void FileImages::passedOver(int texture, const gltf::TextureSource& source) {
 
 Result<void> FileImages::open() {
   if (opened_) return {};
+  if (none_)
+    return fail("image-missing", {file_, 0, 0, {}}, "a graph without its glTF file has no images", {});
   Result<gltf::TextureFile> opened = bytes_ ? gltf::TextureFile::fromMemory(*bytes_, file_, access_)
                                             : gltf::TextureFile::open(file_, access_);
   if (!opened) return tl::make_unexpected(std::move(opened.error()));
@@ -160,21 +168,18 @@ Result<void> EvalMaterial::setTexels(const std::vector<std::string>& texts) {
   return {};
 }
 
-Result<void> EvalMaterial::lower(material::Material material, const Language& library, bool environment,
+Result<void> EvalMaterial::lower(const EvalSubject& subject, const Language& library, bool environment,
                                  const std::string& variant, Messages& messages) {
-  // Every use of a texture gets a slot of its own, so that each can be given a texel.
-  for (material::Material::Texture& texture : material.textures) {
-    originals_.push_back(texture.info.texture);
-    texture.info.texture = static_cast<int>(originals_.size()) - 1;
-  }
   Options options = options_;
-  if (Result<void> named = resolveNames(library, options); !named) return named;
-  profile_ = options.profile;
+  if (!subject.isGraph()) {
+    if (Result<void> named = resolveNames(library, options); !named) return named;
+    profile_ = options.profile;
+  }
   options.ibl = options.ibl && environment;
   options.decode_srgb = false;
   Diagnostics warnings;
-  Result<graph::Graph> built =
-      buildGraph(material, {true, tangents_, true, {true, true, true, true}}, library, options, warnings);
+  Result<graph::Graph> built = subject.graph({true, tangents_, true, {true, true, true, true}}, library,
+                                             options, originals_, warnings);
   report(warnings, images_.file(), messages);
   if (!built) return tl::make_unexpected(std::move(built.error()));
   graph::Graph graph = std::move(*built);

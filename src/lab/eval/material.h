@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "eval/image.h"
+#include "eval/subject.h"
 #include "gltf/geometry.h"
 #include "gltf/texture_source.h"
 #include "lacquer.h"
@@ -24,6 +25,8 @@ class FileImages {
 public:
   /// With `bytes` they are the file's, and `file` only stands for it.
   FileImages(std::string file, const Options& options, std::shared_ptr<const std::string> bytes = {});
+  /// Of what has no images: none is there.
+  static FileImages none(std::string file, const Options& options);
 
   const std::string& file() const { return file_; }
   struct Loaded {
@@ -54,6 +57,7 @@ private:
 
   std::string file_;
   std::shared_ptr<const std::string> bytes_;
+  bool none_ = false;
   gltf::TextureAccess access_;
   std::optional<gltf::TextureFile> opened_;
   std::map<size_t, Held> images_;  ///< by the image's index
@@ -85,10 +89,10 @@ public:
   /// The primitive has no tangents: frames come of derivatives.
   void leaveOutTangents() { tangents_ = false; }
 
-  /// The module of the options' template as lowered, for a primitive with every attribute but what was left
-  /// out: points are given all of them. Nodes that have the variant of that name use it. Errors:
-  /// "unknown-texture", those of a graph.
-  Result<void> lower(material::Material material, const Language& library, bool environment,
+  /// The module of the options' template, or of a graph's own, as lowered; of a material for a primitive with
+  /// every attribute but what was left out: points are given all of them. Nodes that have the variant of that
+  /// name use it. Errors: "unknown-texture", those of a graph and of EvalSubject::graph().
+  Result<void> lower(const EvalSubject& subject, const Language& library, bool environment,
                      const std::string& variant, Messages& messages);
 
   /// The float engine computes what the shader does: values of the material's rate in the preshader, then
@@ -105,7 +109,7 @@ public:
   std::vector<const ir::TextureSlot*> environments() const;
 
   const ir::Module& module() const { return module_; }
-  /// Of the graph that was lowered.
+  /// Of the graph that was built of a material; empty for one that was given.
   const std::string& profile() const { return profile_; }
 
 private:

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "environment/read.h"
+#include "eval/in_memory.h"
 #include "eval/material.h"
-#include "eval/of_scene.h"
 #include "preview/ball.h"
 #include "preview/setting.h"
 #include "preview/sheet.h"
@@ -27,13 +28,13 @@ constexpr uint32_t kMostColumns = 100;
 
 /// A material compiled for the studio. `substituted` is the number of images that a neutral colour stands
 /// for.
-Result<preview::Shading> shadingOf(const material::Material& material, const Language& library,
-                                   FileImages& images, const PreviewSetting& of, const Strings& texels,
+Result<preview::Shading> shadingOf(const EvalSubject& subject, const Language& library, FileImages& images,
+                                   const PreviewSetting& of, const Strings& texels,
                                    const preview::Studio& studio, Messages& messages, size_t& substituted) {
   EvalMaterial evaluated(images, of.options);
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
-  if (Result<void> lowered = evaluated.lower(material, library, true, of.variant, messages); !lowered)
+  if (Result<void> lowered = evaluated.lower(subject, library, true, of.variant, messages); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
   if (of.in_float && studio.hasLamps())
     evaluated.place({false, {{"directional", preview::Studio::kLights}}});
@@ -65,11 +66,11 @@ Result<preview::Shading> shadingOf(const material::Material& material, const Lan
   return preview::Shading::make(std::move(look), studio);
 }
 
-Diagnostic absentImages(const material::Material& material, const std::string& file, size_t count) {
+Diagnostic absentImages(const EvalSubject& subject, const std::string& file, size_t count) {
   return {
       "image-missing",
       Severity::Note,
-      {file, 0, 0, fmt::format("/materials/{}", material.index)},
+      {file, 0, 0, subject.pointer()},
       fmt::format("{} image{} absent: a neutral colour stands for each", count, count == 1 ? " is" : "s are"),
       "or give a constant: --texel SLOT=r,g,b,a",
       {}};
@@ -90,8 +91,8 @@ public:
     if (const Result<Limits> limits = limitsOf(options_); !limits) return tl::make_unexpected(limits.error());
     if (Result<void> set = readSettings(); !set) return tl::make_unexpected(std::move(set.error()));
     if (Result<void> lit = readEnvironment(); !lit) return tl::make_unexpected(std::move(lit.error()));
-    std::vector<material::Document> documents;
-    if (Result<void> read = readFiles(files, materials, documents); !read)
+    std::vector<Input> read_files;
+    if (Result<void> read = readFiles(files, materials, read_files); !read)
       return tl::make_unexpected(std::move(read.error()));
     Strings inputs = files;
     if (!preview_.environment.empty()) inputs.push_back(preview_.environment);
@@ -104,10 +105,12 @@ public:
     if (Result<void> fits = preview::mayLayOut(total_ * settings_.size(), preview_.size); !fits)
       return tl::make_unexpected(std::move(fits.error()));
     std::vector<preview::Section> sections;
-    for (const material::Document& document : documents) {
-      preview::Section section{documents.size() > 1 ? document.path : std::string(), {}};
-      FileImages images(document.path, options_);
-      for (const material::Material& material : document.materials) draw(material, images, section);
+    for (const Input& input : read_files) {
+      preview::Section section{read_files.size() > 1 ? input.path : std::string(), {}};
+      FileImages images =
+          input.graph ? FileImages::none(input.path, options_) : FileImages(input.path, options_);
+      for (const material::Material& material : input.materials) draw(material, images, section);
+      if (input.graph) draw(*input.graph, images, section);
       const Strings of_images = images.read();
       inputs.insert(inputs.end(), of_images.begin(), of_images.end());
       if (!section.cells.empty()) sections.push_back(std::move(section));
@@ -167,11 +170,32 @@ private:
     return inRange("the number of columns", preview_.columns, 0, kMostColumns, {});
   }
 
+  /// A file's materials, or the graph that it is.
+  struct Input {
+    std::string path;
+    std::vector<material::Material> materials;
+    std::optional<graph::Graph> graph;
+  };
+
+  void readGraph(const std::string& file, const std::vector<std::string>& only, Strings& missing,
+                 std::vector<Input>& inputs) {
+    Result<graph::Graph> graph = readGraphFile(file, options_);
+    if (!graph) return report(graph.error(), file, messages_);
+    std::erase(missing, graph->name);
+    if (!only.empty() && std::find(only.begin(), only.end(), graph->name) == only.end()) return;
+    ++total_;
+    inputs.push_back({file, {}, std::move(*graph)});
+  }
+
   /// The files with those of their materials that are wanted.
   Result<void> readFiles(const std::vector<std::string>& files, const std::vector<std::string>& only,
-                         std::vector<material::Document>& documents) {
+                         std::vector<Input>& inputs) {
     std::vector<std::string> missing = only;
     for (const std::string& file : files) {
+      if (isGraphFile(file)) {
+        readGraph(file, only, missing, inputs);
+        continue;
+      }
       Result<material::Document> document = readMaterials(file, *libraries_[0], options_);
       if (!document) {
         report(document.error(), file, messages_);
@@ -183,35 +207,34 @@ private:
         return !only.empty() && std::find(only.begin(), only.end(), material.name) == only.end();
       });
       total_ += document->materials.size();
-      documents.push_back(std::move(*document));
+      inputs.push_back({document->path, std::move(document->materials), {}});
     }
     if (missing.empty()) return {};
     return fail("no-such-material", {}, fmt::format("no material is named '{}'", printable(missing[0])),
                 "`lacquer gen` lists the materials of a file");
   }
 
-  Result<preview::Shading> shading(const material::Material& material, FileImages& images, size_t setting,
+  Result<preview::Shading> shading(const EvalSubject& subject, FileImages& images, size_t setting,
                                    size_t& substituted) {
     // Warnings about the material are the same for both settings.
     Messages again;
-    return shadingOf(material, *libraries_[setting], images, settings_[setting], preview_.texels, studio_,
+    return shadingOf(subject, *libraries_[setting], images, settings_[setting], preview_.texels, studio_,
                      setting == 0 ? messages_ : again, substituted);
   }
 
-  void draw(const material::Material& material, FileImages& images, preview::Section& section) {
-    report(material.diagnostics, images.file(), messages_);
+  void draw(const EvalSubject& subject, FileImages& images, preview::Section& section) {
+    report(subject.diagnostics(), images.file(), messages_);
     ++done_;
-    if (lacquer::hasError(material.diagnostics)) return;
+    if (lacquer::hasError(subject.diagnostics())) return;
     size_t substituted = 0;
     std::vector<preview::Shading> shadings;
     for (size_t i = 0; i < settings_.size(); ++i) {
       substituted = 0;
-      Result<preview::Shading> made = shading(material, images, i, substituted);
+      Result<preview::Shading> made = shading(subject, images, i, substituted);
       if (!made) return report(made.error(), images.file(), messages_);
       shadings.push_back(std::move(*made));
     }
-    const std::string name =
-        material.name.empty() ? fmt::format("(material {})", material.index) : material.name;
+    const std::string name = subject.title();
     preview::Cell cell{name, {}, {}};
     if (shadings.size() == 2) {
       preview::Comparison compared =
@@ -223,15 +246,14 @@ private:
     } else {
       cell.pictures = {preview::drawBall(shadings[0], preview_.size, preview::kBackground)};
     }
-    if (substituted > 0) noteAbsent(material, images.file(), substituted, cell);
+    if (substituted > 0) noteAbsent(subject, images.file(), substituted, cell);
     section.cells.push_back(std::move(cell));
     if (progress_) progress_(done_, total_);
   }
 
-  void noteAbsent(const material::Material& material, const std::string& file, size_t count,
-                  preview::Cell& cell) {
+  void noteAbsent(const EvalSubject& subject, const std::string& file, size_t count, preview::Cell& cell) {
     cell.lines.push_back(fmt::format("{} image{} absent", count, count == 1 ? "" : "s"));
-    report({absentImages(material, file, count)}, file, messages_);
+    report({absentImages(subject, file, count)}, file, messages_);
   }
 
   std::string answer(const std::string& title) const {
@@ -274,20 +296,21 @@ std::string drawPreview(const Preview& preview, const std::vector<std::string>& 
   return {};
 }
 
-static Result<std::vector<uint8_t>> ballOf(const SceneMaterial& of, uint32_t size, const Strings& texels,
+static Result<std::vector<uint8_t>> ballOf(const InMemory& of, uint32_t size, const Strings& texels,
                                            const Options& options, Messages& messages) {
   if (Diagnostics wrong = checkReading(options); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
   if (Result<void> good = inRange("the size of a ball", size, kLeastBall, kMostBall, "pixels"); !good)
     return tl::make_unexpected(std::move(good.error()));
-  report(of.material.diagnostics, of.file, messages);
-  if (lacquer::hasError(of.material.diagnostics)) return std::vector<uint8_t>();
-  FileImages images(of.file, options, of.bytes);
+  report(of.subject.diagnostics(), of.file, messages);
+  if (lacquer::hasError(of.subject.diagnostics())) return std::vector<uint8_t>();
+  FileImages images =
+      of.has_file ? FileImages(of.file, options, of.bytes) : FileImages::none(of.file, options);
   const preview::Studio studio;
   size_t substituted = 0;
-  const Result<preview::Shading> shading = shadingOf(
-      of.material, of.language, images, {"", options, true, ""}, texels, studio, messages, substituted);
+  const Result<preview::Shading> shading = shadingOf(of.subject, of.language, images, {"", options, true, ""},
+                                                     texels, studio, messages, substituted);
   if (!shading) return tl::make_unexpected(shading.error());
-  if (substituted > 0) report({absentImages(of.material, of.file, substituted)}, of.file, messages);
+  if (substituted > 0) report({absentImages(of.subject, of.file, substituted)}, of.file, messages);
   const preview::Picture picture = preview::drawBall(*shading, size, preview::kBackground);
   std::vector<uint8_t> rgb;
   for (uint32_t y = 0; y < size; ++y) {
@@ -297,7 +320,7 @@ static Result<std::vector<uint8_t>> ballOf(const SceneMaterial& of, uint32_t siz
   return rgb;
 }
 
-std::vector<uint8_t> drawBallOf(const SceneMaterial& of, uint32_t size, const Strings& texels,
+std::vector<uint8_t> drawBallOf(const InMemory& of, uint32_t size, const Strings& texels,
                                 const Options& options, Messages& messages) {
   Result<std::vector<uint8_t>> made = std::vector<uint8_t>();
   withJobs(options.jobs, [&] { made = ballOf(of, size, texels, options, messages); });

@@ -1,0 +1,44 @@
+// What instruments look at: a material of a file, or a graph of one's own.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "gltf/geometry.h"
+#include "graph/graph.h"
+#include "lacquer.h"
+#include "material/material.h"
+#include "setting/language.h"
+
+namespace lacquer {
+
+/// One of the two, which must outlive this.
+class EvalSubject {
+public:
+  EvalSubject(const material::Material& material) : of_(&material) {}  // NOLINT: either will do
+  EvalSubject(const graph::Graph& graph) : of_(&graph) {}              // NOLINT
+
+  const std::string& name() const;
+  /// The name for people, where there is none the material's number; and its place in the file.
+  std::string title() const;
+  std::string pointer() const;
+  /// What was said of a material when it was read; of a graph nothing.
+  const Diagnostics& diagnostics() const;
+  bool isGraph() const { return std::holds_alternative<const graph::Graph*>(of_); }
+
+  /// The graph to lower; `originals` is given the file's texture of each slot, which is then the
+  /// slot's. A material's is built for the options' template, profile and switches; a graph is what it is,
+  /// and options that would build it otherwise are an error ("graph-is-built").
+  Result<graph::Graph> graph(const gltf::VertexAttributes& attributes, const Language& library,
+                             const Options& options, std::vector<int>& originals,
+                             Diagnostics& warnings) const;
+
+private:
+  std::variant<const material::Material*, const graph::Graph*> of_;
+};
+
+/// Errors: "file-unreadable" and those of graph::fromJson().
+Result<graph::Graph> readGraphFile(const std::string& path, const Options& options);
+
+}  // namespace lacquer

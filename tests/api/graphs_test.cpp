@@ -1,0 +1,138 @@
+// A graph is a material: what it shows is what the material shows that it was built of, to the last bit.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+
+#include "inputs.h"
+
+namespace lacquer::test {
+namespace {
+
+/// What points are given of vertices: everything.
+const Attributes kAll{true, true, true, {true, true, true, true}, {}, false, false, false, {}};
+
+constexpr const char* kLit = R"([
+  {"n": [0, 0, 1], "v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "uv0": [0.3, 0.7], "env": [0.3, 0.2, 0.1]},
+  {"n": [0, 0, 1], "v": [0.8, 0, 0.6], "l": [0, 0, 1], "env": [1, 0.5, 0.25], "uv0": [-0.4, 1.2]},
+  {"n": [0, 1, 0], "v": [0, 0.6, 0.8], "l": [0, 1, 0], "light": [3, 2, 1], "front_facing": false,
+   "color0": [1, 0.5, 1, 0.25]}])";
+constexpr const char* kDark = R"([{"v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "uv0": [0.3, 0.7]}])";
+
+/// Without the profile, which a graph does not have.
+std::string colorsOf(std::string answer) {
+  const size_t at = answer.find("  \"profile\"");
+  if (at != std::string::npos) answer.erase(at, answer.find('\n', at) + 1 - at);
+  return answer;
+}
+
+TEST(Graphs, HaveTheColorsOfTheirMaterials) {
+  size_t compared = 0;
+  const Options options = quick();
+  for (const std::string& file : examples()) {
+    Messages messages;
+    const Scene scene = Scene::load(file, options, messages);
+    for (size_t i = 0; i < scene.materialCount(); ++i) {
+      SCOPED_TRACE(file + ": " + scene.materialName(i));
+      for (const char* points : {kLit, kDark}) {
+        // For points without an environment a material is built without one.
+        Options built = options;
+        built.ibl = points == kLit;
+        const Graph graph = scene.graph(i, kAll, built, messages);
+        for (const Engine engine : {Engine::Double, Engine::Float}) {
+          const std::string expected = evaluate(scene, i, points, engine, {}, options, messages);
+          EXPECT_NE(expected, "");
+          EXPECT_EQ(evaluate(graph, points, engine, {}, options, messages), colorsOf(expected));
+          ++compared;
+        }
+      }
+    }
+    EXPECT_EQ(errorsOf(messages), "");
+  }
+  EXPECT_GT(compared, 100u);
+}
+
+TEST(Graphs, LookLikeTheirMaterials) {
+  const Options options = quick();
+  Messages messages;
+  for (const std::string& file : examples()) {
+    if (file.find("car_paint") == std::string::npos && file.find("film") == std::string::npos) continue;
+    const Scene scene = Scene::load(file, options, messages);
+    for (size_t i = 0; i < scene.materialCount(); ++i) {
+      const Graph graph = scene.graph(i, kAll, options, messages);
+      const std::vector<uint8_t> expected = drawBall(scene, i, 24, {}, options, messages);
+      EXPECT_EQ(expected.size(), 24u * 24u * 3u);
+      EXPECT_EQ(drawBall(graph, 24, {}, options, messages), expected) << file;
+    }
+  }
+  EXPECT_EQ(errorsOf(messages), "");
+}
+
+/// A value that was edited is seen at once, without glTF.
+TEST(Graphs, ShowWhatWasEdited) {
+  const Options options = quick();
+  Messages messages;
+  Graph graph = paintGraph();
+  ASSERT_FALSE(graph.parameters().empty());
+  const std::string before = evaluate(graph, kDark, Engine::Double, {}, options, messages);
+  const Parameter parameter = graph.parameters()[0];
+  std::vector<double> other = parameter.value;
+  for (double& x : other) x = x > 0.5 ? 0.25 : 0.75;
+  EXPECT_TRUE(graph.setParameter(parameter.name, other, messages));
+  const std::string after = evaluate(graph, kDark, Engine::Double, {}, options, messages);
+  EXPECT_NE(before, "");
+  EXPECT_NE(after, before);
+  EXPECT_TRUE(graph.setParameter(parameter.name, parameter.value, messages));
+  EXPECT_EQ(evaluate(graph, kDark, Engine::Double, {}, options, messages), before);
+  // The text reads back as the same graph.
+  const Graph again = Graph::fromJson(graph.toJson(), "again", messages);
+  EXPECT_EQ(evaluate(again, kDark, Engine::Double, {}, options, messages), before);
+  EXPECT_EQ(errorsOf(messages), "");
+}
+
+TEST(Graphs, SayWhatTheyCannotBeAskedFor) {
+  const Graph graph = paintGraph();
+  const auto errors = [&](auto change) {
+    Options options = quick();
+    change(options);
+    Messages messages;
+    EXPECT_EQ(evaluate(graph, kDark, Engine::Double, {}, options, messages), "");
+    return errorsOf(messages);
+  };
+  EXPECT_EQ(errors([](Options& o) { o.profile = "physical"; }), "graph-is-built");
+  EXPECT_EQ(errors([](Options& o) { o.template_name = "surface"; }), "graph-is-built");
+  EXPECT_EQ(errors([](Options& o) { o.simplify = {"without:coat"}; }), "graph-is-built");
+  EXPECT_EQ(errors([](Options& o) { o.live = {"coat.darkening"}; }), "graph-is-built");
+  EXPECT_EQ(errors([](Options& o) { o.switches["ibl"] = false; }), "graph-is-built");
+  Messages messages;
+  EXPECT_EQ(evaluate(Graph(), kDark, Engine::Double, {}, quick(), messages), "");
+  EXPECT_EQ(errorsOf(messages), "empty-handle");
+}
+
+/// Outside of its file a graph has no images: each is given, or said to be absent.
+TEST(Graphs, FromATextHaveTheTexelsThatTheyAreGiven) {
+  const Options options = quick();
+  Messages messages;
+  for (const std::string& file : examples()) {
+    if (file.find("clearcoat_color") == std::string::npos) continue;
+    const Scene scene = Scene::load(file, options, messages);
+    for (size_t i = 0; i < scene.materialCount(); ++i) {
+      const Graph whole = scene.graph(i, kAll, options, messages);
+      if (whole.textures().empty()) continue;
+      const Graph graph = Graph::fromJson(whole.toJson(), "graph", messages);
+      EXPECT_EQ(errorsOf(messages), "");
+      EXPECT_EQ(evaluate(graph, kDark, Engine::Double, {}, options, messages), "");
+      EXPECT_NE(errorsOf(messages).find("image-missing"), std::string::npos);
+      messages.clear();
+      Strings texels;
+      for (const TextureUse& texture : whole.textures()) texels.push_back(texture.name + "=0.25,0.5,0.75,1");
+      const std::string expected = evaluate(scene, i, kDark, Engine::Double, texels, options, messages);
+      EXPECT_NE(expected, "");
+      EXPECT_EQ(evaluate(graph, kDark, Engine::Double, texels, options, messages), colorsOf(expected));
+      EXPECT_EQ(errorsOf(messages), "");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lacquer::test
