@@ -26,10 +26,17 @@ public:
       case Op::Constant: {
         const ir::Components& c = dag_.constantOf(id);
         Floats out{};
-        for (size_t i = 0; i < 4; ++i) out[i] = static_cast<float>(c[i]);
+        const bool whole = ir::isWhole(ir::partType(v.type));
+        for (size_t i = 0; i < 4; ++i)
+          out[i] = whole ? ir::whole<float>(ir::bits(c[i])) : static_cast<float>(c[i]);
         return spread(out, v.type);
       }
-      case Op::Input: return spread(world_.input(dag_.inputOf(id)), v.type);
+      case Op::Input: {
+        Floats out = world_.input(dag_.inputOf(id));
+        if (ir::isWhole(ir::partType(v.type)))
+          for (float& x : out) x = ir::whole<float>(x < 0 ? ir::int_of(x) : ir::uint_of(x));
+        return spread(out, v.type);
+      }
       case Op::Swizzle: {
         Floats out{};
         for (int c = 0; c < ir::componentCount(v.type); ++c) {
@@ -56,6 +63,7 @@ public:
       }
       case Op::DFdx: return spread(world_.difference(a, 0), v.type);
       case Op::DFdy: return spread(world_.difference(a, 1), v.type);
+      case Op::Column: return a;  // as with a product
       case Op::Interpolate: return a;
       case Op::SumOverLights: {
         const int32_t fixed = module_.light_groups[v.payload].count;

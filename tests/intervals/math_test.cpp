@@ -26,11 +26,12 @@ const RangeMath kReal(Arithmetic::Real);
 /// An operation of ir/facts.def on three inputs, by the analysis of a module of it alone.
 class Applied {
 public:
-  Applied(Op op, Arithmetic arithmetic) : arithmetic_(arithmetic) {
+  Applied(Op op, Arithmetic arithmetic, std::array<ir::Type, 2> types = {ir::Type::Float, ir::Type::Float})
+      : arithmetic_(arithmetic) {
     for (const char* name : {"a", "b", "c"}) {
       inputs_.push_back(module_.dag.input({ir::InputKind::Parameter,
                                            name,
-                                           ir::Type::Float,
+                                           types[*name == 'b' ? 1 : 0],
                                            ir::Rate::Material,
                                            {},
                                            0,
@@ -112,6 +113,60 @@ TEST(IntervalMath, HoldsEveryFloatResult) {
         ASSERT_TRUE(std::isnan(y) ? r.nan : r.contains(y))
             << ir::info(op).name << " of [" << a.lo << ", " << a.hi << "] [" << b.lo << ", " << b.hi << "] ["
             << c.lo << ", " << c.hi << "]: " << y << " is not in [" << r.lo << ", " << r.hi << "]";
+      }
+    }
+  }
+}
+
+/// An integer, often a small one or one at an end.
+double integer(std::mt19937& random, bool without_sign) {
+  const auto bits = static_cast<uint32_t>(random());
+  const uint32_t small = bits % 40;
+  constexpr std::array<uint32_t, 6> kEnds = {0, 1, 0x7fffffff, 0x80000000, 0xfffffffe, 0xffffffff};
+  const uint32_t x = random() % 3 == 0   ? bits
+                     : random() % 2 == 0 ? small - (without_sign ? 0 : 20)
+                                         : kEnds[bits % 6];
+  return ir::whole<double>(x);
+}
+
+TEST(IntervalMath, HoldsEveryIntegerResult) {
+  std::mt19937 random(11);
+  for (const ir::Facts& facts : ir::kFacts) {
+    const Op op = facts.op;
+    if (!ir::ofWholes(ir::info(op).signature)) continue;
+    const bool without_sign =
+        op == Op::UIntDiv || op == Op::UIntLess || op == Op::UIntShiftRight || random() % 2 == 0;
+    const ir::Type type = without_sign && op != Op::IntDiv && op != Op::IntLess && op != Op::IntShiftRight
+                              ? ir::Type::UInt
+                              : ir::Type::Int;
+    const bool shift = ir::info(op).signature == ir::Signature::Shift;
+    const Applied apply(op, Arithmetic::Vulkan, {type, shift ? ir::Type::UInt : type});
+    for (int i = 0; i < 40000; ++i) {
+      const auto range = [&] {
+        const double a = integer(random, type == ir::Type::UInt);
+        const double b = random() % 4 == 0 ? a : integer(random, type == ir::Type::UInt);
+        return Range{std::min(a, b), std::max(a, b), false};
+      };
+      const Range a = range();
+      Range b = range();
+      if (shift) b = {static_cast<double>(random() % 16), static_cast<double>(16 + random() % 16), false};
+      const Range r = apply(a, b, b);
+      for (int k = 0; k < 4; ++k) {
+        const auto within = [&](const Range& in) {
+          const auto width = static_cast<uint64_t>(in.hi - in.lo) + 1;
+          const auto step = k == 0 ? 0 : k == 1 ? width - 1 : random() % width;
+          return in.lo + static_cast<double>(step);
+        };
+        const double x = within(a);
+        const double y = within(b);
+        const double z = ir::foldComponent<double>(op, x, y, 0);
+        const float f =
+            ir::foldComponent<float>(op, ir::whole<float>(ir::bits(x)), ir::whole<float>(ir::bits(y)), 0);
+        const bool test = ir::info(op).signature == ir::Signature::WholeTest;
+        ASSERT_EQ(z, test ? double{f} : ir::int_number<double>(ir::bits(f))) << ir::info(op).name;
+        if (y == 0 && facts.domain == ir::Domain::WholeNonZero) continue;
+        ASSERT_TRUE(r.contains(z)) << ir::info(op).name << " of " << x << " and " << y << ": " << z
+                                   << " is not in [" << r.lo << ", " << r.hi << "]";
       }
     }
   }

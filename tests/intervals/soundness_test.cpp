@@ -8,6 +8,7 @@
 
 #include "intervals/evaluator.h"
 #include "ir/facts.h"
+#include "ir/whole.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
 #include "prove/nodes.h"
@@ -33,7 +34,9 @@ size_t violations(const ir::Module& module, const Intervals& intervals, int samp
     for (const ValueId id : ids) {
       if (ir::isTexture(module.dag[id].type)) continue;
       for (int c = 0; c < std::min(ir::componentCount(module.dag[id].type), 4); ++c) {
-        const float x = values[id][static_cast<size_t>(c)];
+        const float held = values[id][static_cast<size_t>(c)];
+        const bool whole = ir::isWhole(ir::partType(module.dag[id].type));
+        const double x = whole ? ir::int_number<double>(ir::bits(held)) : held;
         const analysis::Range& r = intervals.at(id, c);
         if (std::isnan(x) ? r.nan : r.contains(x)) continue;
         if (++count > 1) continue;
@@ -112,6 +115,9 @@ private:
       case ir::Signature::Select: values_.push_back(dag.make(Op::Select, {comparison(op), a, b})); break;
       case ir::Signature::Logic: values_.push_back(dag.make(Op::Select, {logic(op), a, b})); break;
       case ir::Signature::Special: special(op); break;
+      case ir::Signature::Whole:
+      case ir::Signature::Shift:
+      case ir::Signature::WholeTest: wholes(op); break;
     }
     // x + (k - x) * t and its kin.
     if (pick(6) == 0) values_.push_back(dag.add(a, dag.mul(dag.sub(b, a), of(type))));
@@ -136,14 +142,50 @@ private:
       const int chosen[] = {static_cast<int>(pick(3)), 0, static_cast<int>(pick(3))};
       values_.push_back(dag.swizzle(of(Type::Vec3), chosen));
     } else {
-      ASSERT_EQ(op, Op::ToInt);
-      const auto whole = [&] {
-        const ValueId x = of(Type::Float);
-        return dag.make(op, {dag.make(Op::Clamp, {x, dag.constant(-1e9), dag.constant(1e9)})});
-      };
-      const ValueId less = dag.make(Op::Less, {whole(), whole()});
-      values_.push_back(dag.make(Op::Select, {less, of(Type::Float), of(Type::Float)}));
+      values_.push_back(number(integer(op == Op::ToUInt || op == Op::FromUInt || op == Op::AsInt)));
     }
+  }
+
+  /// An integer that is made of a float, or of one of the other kind.
+  ValueId integer(bool without_sign) {
+    ir::Dag& dag = module_.dag;
+    const double most = pick(2) == 0 ? 100 : 2e9;
+    const ValueId low = dag.constant(without_sign ? 0 : -most);
+    const ValueId x = dag.make(Op::Clamp, {of(Type::Float), low, dag.constant(most)});
+    const ValueId made = dag.make(without_sign ? Op::ToUInt : Op::ToInt, {x});
+    return pick(4) != 0   ? made
+           : without_sign ? dag.make(Op::AsUInt, {integer(false)})
+                          : dag.make(Op::AsInt, {integer(true)});
+  }
+
+  ValueId number(ValueId integer) {
+    return module_.dag.make(module_.dag[integer].type == Type::Int ? Op::FromInt : Op::FromUInt, {integer});
+  }
+
+  /// Some of them in a row, so that intervals meet intervals of integers.
+  void wholes(Op op) {
+    ir::Dag& dag = module_.dag;
+    const bool ints = op == Op::IntDiv || op == Op::IntLess || op == Op::IntShiftRight;
+    const bool uints = op == Op::UIntDiv || op == Op::UIntLess || op == Op::UIntShiftRight;
+    const bool without_sign = uints || (!ints && pick(2) == 0);
+    const Type type = without_sign ? Type::UInt : Type::Int;
+    constexpr Op kTwo[] = {Op::WholeAdd, Op::WholeSub, Op::WholeMul, Op::BitAnd, Op::BitOr, Op::BitXor};
+    ValueId x = integer(without_sign);
+    for (size_t i = pick(3); i > 0; --i) {
+      const ValueId other =
+          pick(2) == 0 ? dag.constant(type, {static_cast<double>(pick(1000)) - 500}) : integer(without_sign);
+      x = dag.make(kTwo[pick(6)], {x, other});
+    }
+    ValueId y = integer(without_sign);
+    if (ir::info(op).signature == ir::Signature::Shift)
+      y = dag.make(Op::BitAnd, {integer(true), dag.uinteger(static_cast<uint32_t>(pick(32)))});
+    if (op == Op::IntDiv || op == Op::UIntDiv) y = dag.make(Op::BitOr, {y, dag.constant(type, {1})});
+    const ValueId args[] = {x, y};
+    const ValueId made = dag.make(op, std::span(args, static_cast<size_t>(ir::info(op).arity)));
+    if (ir::info(op).signature == ir::Signature::WholeTest)
+      values_.push_back(dag.make(Op::Select, {made, of(Type::Float), of(Type::Float)}));
+    else
+      values_.push_back(number(made));
   }
 
   std::mt19937 random_;

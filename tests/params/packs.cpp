@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -12,6 +13,7 @@
 
 #include "ir/facts.h"
 #include "ir/names.h"
+#include "ir/whole.h"
 #include "shader/preshader.h"
 
 namespace lacquer::test {
@@ -48,6 +50,11 @@ public:
     for (const double x : {0.5, -2.0, 1e-7, 3.0, -0.125}) keep(dag().constant(x));
     keep(dag().constant(ir::Type::Vec3, {0.1, 0.2, -0.3}));
     keep(dag().constant(ir::Type::Vec2, {4, 4}));
+    addParameter("whole", ir::Type::Int);
+    addParameter("bits", ir::Type::UInt);
+    addParameter("int_of", ir::Type::UVec3);
+    for (const int32_t i : {3, -7, 0}) keep(dag().integer(i));
+    for (const uint32_t i : {5U, 4000000000U}) keep(dag().uinteger(i));
   }
 
   ir::Module make(int operations) {
@@ -79,7 +86,10 @@ private:
     ir::Parameter parameter{name, type, {}, {-4, 4}, {}};
     parameter.neutral = {0.25, -1, 2, 1e-9};
     module_.parameters.push_back(parameter);
-    keep(dag().input({ir::InputKind::Parameter, name, type, ir::Rate::Material, {}, 0, index}));
+    const ir::ValueId input =
+        dag().input({ir::InputKind::Parameter, name, type, ir::Rate::Material, {}, 0, index});
+    if (!ir::isComposite(type)) return keep(input);
+    for (int i = 0; i < ir::componentCount(type); ++i) keep(dag().component(input, i));
   }
 
   void keep(ir::ValueId id) {
@@ -109,15 +119,33 @@ private:
       case ir::Signature::Compare: types.fill(ir::Type::Float); break;
       case ir::Signature::Logic: types.fill(ir::Type::Bool); break;
       case ir::Signature::Select: types[0] = ir::Type::Bool; break;
+      case ir::Signature::Whole:
+      case ir::Signature::WholeTest:
+      case ir::Signature::Shift: types = integers(op); break;
       case ir::Signature::Reduce2:
       case ir::Signature::Length:
-      case ir::Signature::Same:
-      case ir::Signature::Special: break;
+      case ir::Signature::Same: break;
+      case ir::Signature::Special: types.fill(converted(op)); break;
     }
     std::array<ir::ValueId, 3> operands{};
     const auto count = static_cast<size_t>(ir::info(op).arity);
     for (size_t k = 0; k < count; ++k) operands[k] = pick(types[k]);
     keep(dag().make(op, {operands.data(), count}));
+  }
+
+  std::array<ir::Type, 3> integers(ir::Op op) {
+    using ir::Op;
+    const bool ints = op == Op::IntDiv || op == Op::IntLess || op == Op::IntShiftRight;
+    const bool uints = op == Op::UIntDiv || op == Op::UIntLess || op == Op::UIntShiftRight;
+    const ir::Type type = ints || (!uints && below(2) == 0) ? ir::Type::Int : ir::Type::UInt;
+    const bool shift = ir::info(op).signature == ir::Signature::Shift;
+    return {type, shift ? ir::Type::UInt : type, type};
+  }
+
+  /// Of what a conversion makes something.
+  static ir::Type converted(ir::Op op) {
+    if (op == ir::Op::FromInt || op == ir::Op::AsUInt) return ir::Type::Int;
+    return op == ir::Op::FromUInt || op == ir::Op::AsInt ? ir::Type::UInt : ir::Type::Float;
   }
 
   ir::ValueId construct(ir::Type type) {
@@ -260,7 +288,11 @@ Numbers randomNumbers(const ir::Module& module, std::mt19937& random, bool whole
     std::vector<double>& values = numbers[p.name];
     for (int c = 0; c < ir::componentCount(p.type); ++c) {
       const double x = std::uniform_real_distribution<double>(-4, 4)(random);
-      values.push_back(p.type == ir::Type::Bool ? static_cast<double>(x > 0) : whole ? std::round(x) : x);
+      const ir::Type part = ir::partType(p.type);
+      const double rounded = part == ir::Type::UInt ? std::abs(std::round(x)) : std::round(x);
+      values.push_back(part == ir::Type::Bool       ? static_cast<double>(x > 0)
+                       : whole || ir::isWhole(part) ? rounded
+                                                    : x);
     }
   }
   return numbers;
@@ -280,8 +312,10 @@ std::string evaluated(const ir::Module& module, const Numbers& numbers) {
   for (size_t i = 0; i < values.size(); ++i) {
     const Preshader::Field& field = preshader.fields()[i];
     for (int c = 0; c < ir::componentCount(field.type); ++c) {
-      const auto x = static_cast<float>(values[i][static_cast<size_t>(c)]);
-      std::memcpy(bytes.data() + field.offset + 4 * c, &x, 4);
+      const double number = values[i][static_cast<size_t>(c)];
+      const auto x = static_cast<float>(number);
+      const uint32_t bits = ir::isWhole(field.type) ? ir::bits(number) : std::bit_cast<uint32_t>(x);
+      std::memcpy(bytes.data() + field.offset + 4 * c, &bits, 4);
     }
   }
   return hexOf(bytes);

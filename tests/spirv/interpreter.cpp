@@ -57,6 +57,11 @@ double componentwise(uint32_t code, double a, double b, double c) {
     case GLSLstd450FMax: return a < b ? b : a;
     case GLSLstd450Pow: return std::pow(a, b);
     case GLSLstd450Atan2: return std::atan2(a, b);
+    case GLSLstd450Ceil: return std::ceil(a);
+    case GLSLstd450RoundEven: return std::nearbyint(a);
+    case GLSLstd450Trunc: return std::trunc(a);
+    case GLSLstd450Asin: return std::asin(a);
+    case GLSLstd450Tanh: return std::tanh(a);
     case GLSLstd450Fma: return a * b + c;
     case GLSLstd450FMix: return a * (1 - c) + b * c;
     case GLSLstd450FClamp: return a < b ? b : (c < a ? c : a);
@@ -197,7 +202,9 @@ private:
         p.offset += offsets_.at({p.type, index});
         p.type = type.members.at(index);
       } else {
-        p.offset += index * (type.op == spv::OpTypeArray ? strides_.at(p.type) : 4);
+        constexpr uint32_t kColumn = 16;
+        const uint32_t scalar = type.op == spv::OpTypeMatrix ? kColumn : 4;
+        p.offset += index * (type.op == spv::OpTypeArray ? strides_.at(p.type) : scalar);
         p.type = type.element;
       }
     }
@@ -245,14 +252,45 @@ private:
     return result;
   }
 
+  /// An integer is the number of the signed one with its bits.
+  static uint32_t word(double x) { return static_cast<uint32_t>(static_cast<int32_t>(x)); }
+  static double number(uint32_t x) { return static_cast<int32_t>(x); }
+  template <class F>
+  Cell wholes(const uint32_t* ids, size_t count, const F& f) const {
+    return each(ids, count, [&](double x, double y, double) { return number(f(word(x), word(y))); });
+  }
+
   Cell compute(const Instruction& in) const {
     const uint32_t* a = in.args + 2;
     const size_t count = in.count - 2;
     switch (in.op) {
       case spv::OpExtInst: return extended(a[1], a + 2, count - 2);
       case spv::OpFNegate: return each(a, 1, [](double x, double, double) { return -x; });
-      case spv::OpFAdd:
-      case spv::OpIAdd: return each(a, 2, [](double x, double y, double) { return x + y; });
+      case spv::OpFAdd: return each(a, 2, [](double x, double y, double) { return x + y; });
+      case spv::OpIAdd: return wholes(a, 2, [](uint32_t x, uint32_t y) { return x + y; });
+      case spv::OpISub: return wholes(a, 2, [](uint32_t x, uint32_t y) { return x - y; });
+      case spv::OpIMul: return wholes(a, 2, [](uint32_t x, uint32_t y) { return x * y; });
+      case spv::OpSDiv:
+        return wholes(a, 2, [](uint32_t x, uint32_t y) {
+          return static_cast<uint32_t>(static_cast<int32_t>(x) / static_cast<int32_t>(y));
+        });
+      case spv::OpUDiv: return wholes(a, 2, [](uint32_t x, uint32_t y) { return x / y; });
+      case spv::OpBitwiseAnd: return wholes(a, 2, [](uint32_t x, uint32_t y) { return x & y; });
+      case spv::OpBitwiseOr: return wholes(a, 2, [](uint32_t x, uint32_t y) { return x | y; });
+      case spv::OpBitwiseXor: return wholes(a, 2, [](uint32_t x, uint32_t y) { return x ^ y; });
+      case spv::OpNot: return wholes(a, 1, [](uint32_t x, uint32_t) { return ~x; });
+      case spv::OpShiftLeftLogical: return wholes(a, 2, [](uint32_t x, uint32_t y) { return x << y; });
+      case spv::OpShiftRightLogical: return wholes(a, 2, [](uint32_t x, uint32_t y) { return x >> y; });
+      case spv::OpShiftRightArithmetic:
+        return wholes(
+            a, 2, [](uint32_t x, uint32_t y) { return static_cast<uint32_t>(static_cast<int32_t>(x) >> y); });
+      case spv::OpULessThan: return {double(word(scalar(a[0])) < word(scalar(a[1])))};
+      case spv::OpBitcast: return cell(a[0]);
+      case spv::OpConvertFToS: return each(a, 1, [](double x, double, double) { return std::trunc(x); });
+      case spv::OpConvertFToU:
+        return each(a, 1, [](double x, double, double) { return number(static_cast<uint32_t>(x)); });
+      case spv::OpConvertSToF: return cell(a[0]);
+      case spv::OpConvertUToF: return each(a, 1, [](double x, double, double) { return double(word(x)); });
       case spv::OpFSub: return each(a, 2, [](double x, double y, double) { return x - y; });
       case spv::OpFMul: return each(a, 2, [](double x, double y, double) { return x * y; });
       case spv::OpFDiv: return each(a, 2, [](double x, double y, double) { return x / y; });

@@ -103,7 +103,8 @@ private:
       take(stage_ == Stage::Vertex ? in : b_.varying(fmt::format("a{}", ir::componentCount(type)), in));
       for (int i = 0; i < 2; ++i) take(dag().constant(type, {small(), small(), small(), small()}));
     }
-    take(dag().constant(Type::Int, {2}));
+    for (const int32_t i : {2, -7, 123456789}) take(dag().integer(i));
+    for (const uint32_t i : {3U, 2654435769U}) take(dag().uinteger(i));
     take(dag().boolean(true));
     if (stage_ == Stage::Fragment) {
       take(dag().input({InputKind::FrontFacing, "front", Type::Bool, Rate::Fragment, {}}));
@@ -172,7 +173,7 @@ private:
       return dag().make(Op::Clamp, {operand, dag().constant(lo), dag().constant(hi)});
     };
     const auto positive = [&] { return dag().add(dag().make(Op::Abs, {operand}), dag().constant(0.25)); };
-    if (op == Op::Acos) return bounded(-1, 1);
+    if (op == Op::Acos || op == Op::Asin) return bounded(-1, 1);
     if (op == Op::Exp || op == Op::Exp2 || (op == Op::Pow && index == 1)) return bounded(-4, 3);
     if (op == Op::Mul) return dag().make(Op::Sin, {operand});
     const bool root = op == Op::Sqrt || op == Op::InverseSqrt || op == Op::Log || op == Op::Log2;
@@ -204,19 +205,24 @@ private:
         if (op != Op::Normalize && dag()[operand].rate == Rate::Light) return {};
         return dag().make(op, {harmless(op, 0, operand)});
       }
-      case ir::Signature::Compare: {
-        const Type compared = below(2) == 0 ? Type::Int : Type::Float;
-        return dag().make(op, {pick(pool, compared), pick(pool, compared)});
-      }
+      case ir::Signature::Compare: return dag().make(op, {pick(pool, Type::Float), pick(pool, Type::Float)});
+      case ir::Signature::Whole:
+      case ir::Signature::WholeTest:
+      case ir::Signature::Shift: return wholes(pool, op);
       case ir::Signature::Logic:
         if (op == Op::Not) return dag().make(op, {pick(pool, Type::Bool)});
         return dag().make(op, {pick(pool, Type::Bool), pick(pool, Type::Bool)});
       case ir::Signature::Select: {
-        const Type chosen = below(4) == 0 ? Type::Bool : type;
+        constexpr std::array kOthers = {Type::Bool, Type::Int, Type::UInt};
+        const Type chosen = below(4) == 0 ? any(kOthers) : type;
         return dag().make(op, {pick(pool, Type::Bool), pick(pool, chosen), pick(pool, chosen)});
       }
       case ir::Signature::Special: break;
     }
+    if (op == Op::ToInt || op == Op::ToUInt || op == Op::AsInt || op == Op::AsUInt || op == Op::FromInt ||
+        op == Op::FromUInt)
+      return conversion(pool, op);
+    if (op == Op::Column) return dag().column(pick(pool, Type::Mat4), below(4));
     if (op == Op::MatMul) return dag().make(op, {pick(pool, Type::Mat4), pick(pool, Type::Vec4)});
     if (op == Op::Texture && below(2) == 0) {
       return dag().make(op, {pick(pool, Type::Texture2D), pick(pool, Type::Vec2)});
@@ -232,6 +238,39 @@ private:
       return dag().swizzle(pick(pool, vector), components);
     }
     return construct(pool, vector);
+  }
+
+  /// Integers of the type that the op takes; divisors that are not 0, and counts below 32.
+  ValueId wholes(const Pool& pool, Op op) {
+    const bool ints = op == Op::IntDiv || op == Op::IntLess || op == Op::IntShiftRight;
+    const bool uints = op == Op::UIntDiv || op == Op::UIntLess || op == Op::UIntShiftRight;
+    const Type type = ints || (!uints && below(2) == 0) ? Type::Int : Type::UInt;
+    const ValueId a = pick(pool, type);
+    if (ir::info(op).arity == 1) return dag().make(op, {a});
+    if (ir::info(op).signature == ir::Signature::Shift) {
+      const ValueId count = dag().make(Op::BitAnd, {pick(pool, Type::UInt), dag().uinteger(31)});
+      return dag().make(op, {a, count});
+    }
+    ValueId b = pick(pool, type);
+    if (op == Op::IntDiv) {
+      const ValueId small = dag().make(Op::BitAnd, {b, dag().integer(0xffff)});
+      b = dag().make(Op::BitOr, {small, dag().integer(1)});
+    }
+    if (op == Op::UIntDiv) b = dag().make(Op::BitOr, {b, dag().uinteger(1)});
+    return dag().make(op, {a, b});
+  }
+
+  /// Between floats and integers; what comes of these is small, so that it hides nothing.
+  ValueId conversion(const Pool& pool, Op op) {
+    if (op == Op::ToInt || op == Op::ToUInt) {
+      const ValueId low = dag().constant(op == Op::ToInt ? -2e9 : 0);
+      const ValueId within = dag().make(Op::Clamp, {pick(pool, Type::Float), low, dag().constant(2e9)});
+      return dag().make(op, {within});
+    }
+    if (op == Op::AsInt) return dag().make(op, {pick(pool, Type::UInt)});
+    if (op == Op::AsUInt) return dag().make(op, {pick(pool, Type::Int)});
+    const ValueId number = dag().make(op, {pick(pool, op == Op::FromInt ? Type::Int : Type::UInt)});
+    return dag().mul(number, dag().constant(0x1p-30));
   }
 
   ValueId construct(const Pool& pool, Type type) {

@@ -44,7 +44,7 @@ private:
     const size_t width = wordsOf(v.type);
     if (v.op == Op::Constant) {
       Cell c(dag_.constantOf(id).begin(), dag_.constantOf(id).begin() + static_cast<ptrdiff_t>(width));
-      for (double& x : c) x = static_cast<float>(x);
+      for (double& x : c) x = ir::isWhole(v.type) ? x : static_cast<float>(x);
       return c;
     }
     if (v.op == Op::Input) return input(dag_.inputOf(id));
@@ -58,7 +58,10 @@ private:
     switch (ir::info(v.op).signature) {
       case ir::Signature::Map:
       case ir::Signature::Compare:
-      case ir::Signature::Logic: {
+      case ir::Signature::Logic:
+      case ir::Signature::Whole:
+      case ir::Signature::WholeTest:
+      case ir::Signature::Shift: {
         Cell result(width);
         for (size_t i = 0; i < width; ++i) {
           const auto at = [&](size_t k) {
@@ -100,6 +103,10 @@ private:
       for (size_t column = 0; column < 4; ++column) {
         for (size_t row = 0; row < 4; ++row) result[row] += x[0].at(column * 4 + row) * x[1].at(column);
       }
+    } else if (v.op == Op::Column) {
+      result.assign(x[0].begin() + 4 * v.payload, x[0].begin() + 4 * v.payload + 4);
+    } else if (ir::facts(v.op).kind == ir::Kind::Components) {
+      result = {ir::foldComponent<double>(v.op, x[0][0], 0, 0)};
     } else {
       EXPECT_TRUE(v.op == Op::Texture || v.op == Op::TextureLod) << ir::info(v.op).name;
       const ir::TextureSlot& slot = module_.textures[dag_.inputOf(v.args[0]).field];

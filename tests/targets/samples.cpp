@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cassert>
+#include <functional>
 
 #include "targets/legalize.h"
 
@@ -146,7 +147,7 @@ ir::Module litSample(ir::LightGroup group) {
   b.term("base.lambert", "glTF 2.0, B.3.1");
   const ValueId n_dot_l = dag.make(Op::Dot, {normal, b.field("light.direction")});
   const ValueId facing = b.named(dag.make(Op::Max, {dag.constant(0), n_dot_l}), "n_dot_l");
-  const ValueId ranged = dag.make(Op::Equal, {b.field("light.type"), dag.constant(Type::Int, {1})});
+  const ValueId ranged = dag.make(Op::WholeEqual, {b.field("light.type"), dag.integer(1)});
   const ValueId fade = dag.make(Op::Select, {ranged, b.field("light.range"), dag.constant(1)});
   const ValueId each = dag.mul(dag.mul(base, b.field("light.color")), dag.mul(facing, fade));
   const ValueId sum = b.named(dag.make(Op::SumOverLights, {each}, 0), "direct");
@@ -160,6 +161,49 @@ ir::Module litSample(ir::LightGroup group) {
   b.color("color", dag.construct(Type::Vec4, {light, dag.component(texel, 3)}));
   return b.module;
 }
+
+namespace {
+
+/// Every operation on integers, of variables and of numbers written out.
+void wholes(Builder& b, const std::array<ValueId, 3>& floats,
+            const std::function<void(ValueId, const std::string&)>& take) {
+  ir::Dag& dag = b.dag();
+  const ValueId i = b.named(dag.make(Op::ToInt, {floats[0]}), "number");
+  const ValueId u = b.named(dag.make(Op::ToUInt, {floats[1]}), "bits");
+  for (int k = 0; k < ir::kOpCount; ++k) {
+    const Op op = static_cast<Op>(k);
+    const ir::OpInfo& row = ir::info(op);
+    if (!ir::ofWholes(row.signature)) continue;
+    for (const bool without_sign : {false, true}) {
+      const Type type = without_sign ? Type::UInt : Type::Int;
+      const bool shift = row.signature == ir::Signature::Shift;
+      const std::array<Type, 2> types = {type, shift ? Type::UInt : type};
+      if (!ir::resultType(op, std::span(types).first(static_cast<size_t>(row.arity)))) continue;
+      const ValueId a = without_sign ? u : i;
+      std::vector<ValueId> others = {shift ? dag.make(Op::BitAnd, {u, dag.uinteger(31)})
+                                           : dag.make(Op::BitOr, {a, dag.constant(type, {5})}),
+                                     shift ? dag.uinteger(7) : dag.constant(type, {-3})};
+      if (row.arity == 1) others.resize(1);
+      for (const ValueId other : others) {
+        const std::array<ValueId, 2> operands = {a, other};
+        const ValueId made = dag.make(op, std::span(operands).first(static_cast<size_t>(row.arity)));
+        const std::string name = fmt::format("{}_{}_{}", row.name, ir::typeName(type), dag.isConstant(other));
+        if (row.signature == ir::Signature::WholeTest) {
+          take(dag.make(Op::Select, {made, floats[0], floats[2]}), name);
+        } else {
+          const ValueId named = b.named(made, name);
+          take(dag.make(without_sign ? Op::FromUInt : Op::FromInt, {named}), name + "_number");
+        }
+      }
+    }
+  }
+  const ValueId back = dag.make(Op::AsInt, {dag.make(Op::WholeAdd, {dag.make(Op::AsUInt, {i}), u})});
+  const ValueId chosen =
+      dag.make(Op::Select, {dag.make(Op::Less, {floats[0], floats[1]}), back, dag.integer(INT32_MIN)});
+  take(dag.make(Op::FromInt, {chosen}), "converted");
+}
+
+}  // namespace
 
 ir::Module fixedSample() {
   Builder b;
@@ -209,6 +253,7 @@ ir::Module everyOpSample() {
       }
     }
   }
+  wholes(b, floats, take);
   take(dag.make(Op::Cross, {v3, vectors[2]}), "cross_product");
   take(dag.make(Op::Length, {v3}), "length_of");
   take(dag.make(Op::Dot, {v3, vectors[2]}), "dot_product");

@@ -148,6 +148,12 @@ Range RangeMath::sign(const Range& a) const {
 
 Range RangeMath::floor(const Range& a) const { return {std::floor(a.lo), std::floor(a.hi), a.nan}; }
 
+Range RangeMath::ceil(const Range& a) const { return {std::ceil(a.lo), std::ceil(a.hi), a.nan}; }
+
+Range RangeMath::round(const Range& a) const { return {std::nearbyint(a.lo), std::nearbyint(a.hi), a.nan}; }
+
+Range RangeMath::trunc(const Range& a) const { return {std::trunc(a.lo), std::trunc(a.hi), a.nan}; }
+
 Range RangeMath::fract(const Range& a) const {
   // x - floor(x) may round to 1.
   return {0, 1, a.nan || (float_ && mayBeInfinite(a))};
@@ -220,6 +226,20 @@ Range RangeMath::acos(const Range& a) const {
   // Inherited from atan2(sqrt(1 - x * x), x).
   const double slack = ulps(8192, 4, 10, 4);
   return {-slack, kPi + 4 * slack, a.nan || a.lo < -1 || a.hi > 1};
+}
+
+Range RangeMath::asin(const Range& a) const {
+  // Inherited from atan2(x, sqrt(1 - x * x)).
+  const double slack = ulps(8192, 4, 10, 4);
+  return {-kPi / 2 - 4 * slack, kPi / 2 + 4 * slack, a.nan || a.lo < -1 || a.hi > 1};
+}
+
+Range RangeMath::tanh(const Range& a) const {
+  // Inherited from (exp(x) - exp(-x)) / (exp(x) + exp(-x)): a quotient of differences, which is off by parts
+  // of 1 near 0.
+  const Range r = widened({std::tanh(a.lo), std::tanh(a.hi), a.nan}, ulps(64, 2, 64, 4), ulps(64, 0, 64, 0));
+  const double end = 1 + ulps(64, 1, 64, 4);
+  return {std::max(r.lo, -end), std::min(r.hi, end), r.nan || (float_ && mayBeInfinite(a))};
 }
 
 Range RangeMath::atan2(const Range& a, const Range& b) const {

@@ -47,6 +47,8 @@ public:
   double least() const { return arithmetic_ == Arithmetic::Mediump ? 0x1p-14 : 0x1p-126; }
 
   Range constant(double x) const;
+  /// Numbers that become floats.
+  Range rounded(const Range& a) const { return rounded(a.lo, 0, a.hi, 0, a.nan); }
   /// A stated range, with the slack of float32.
   Range fact(const ir::Interval& stated) const;
   Range whole(bool nan) const;
@@ -56,6 +58,9 @@ public:
   Range sign(const Range& a) const;
   Range floor(const Range& a) const;
   Range fract(const Range& a) const;
+  Range ceil(const Range& a) const;
+  Range round(const Range& a) const;
+  Range trunc(const Range& a) const;
   Range sqrt(const Range& a) const;
   Range inverseSqrt(const Range& a) const;
   Range exp2(const Range& a) const;
@@ -65,6 +70,8 @@ public:
   /// Sine and cosine alike.
   Range wave(const Range& a) const;
   Range acos(const Range& a) const;
+  Range asin(const Range& a) const;
+  Range tanh(const Range& a) const;
   Range add(const Range& a, const Range& b) const;
   Range sub(const Range& a, const Range& b) const { return add(a, neg(b)); }
   Range mul(const Range& a, const Range& b) const;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string_view>
 
+#include "analysis/whole_math.h"
+
 namespace lacquer::analysis {
 
 using ir::Op;
@@ -100,6 +102,7 @@ void Intervals::evaluate(ValueId id) {
     return;
   }
   if (value.op == Op::MatMul) return matMul(id);
+  if (value.op == Op::Column) return static_cast<void>(rangesOf(id).fill(at(value.args[0], 0)));
   if (value.op == Op::Cross || value.op == Op::Construct || value.op == Op::Swizzle ||
       value.op == Op::Normalize) {
     return vectorOp(id);
@@ -138,6 +141,12 @@ ir::Interval vertexRange(const ir::Input& input) {
 }  // namespace
 
 Range Intervals::input(const ir::Input& input) const {
+  const ir::Type part = ir::partType(input.type);
+  if (part == ir::Type::Bool) return {0, 1, false};
+  if (ir::isWhole(part) && input.kind != ir::InputKind::LightIndex) {
+    const Range stated{std::max(input.range.lo, kWholes.lo), input.range.hi, false};
+    return part == ir::Type::UInt ? uintRange(stated) : meet(kWholes, stated);
+  }
   switch (input.kind) {
     case ir::InputKind::FrontFacing: return {0, 1, false};
     case ir::InputKind::LightIndex: return {0, 65535, false};
@@ -179,8 +188,9 @@ void Intervals::varying(ValueId id, const ir::Input& input) {
 void Intervals::matMul(ValueId id) {
   const Range element = at(dag_[id].args[0], 0);
   std::array<Range, 4> terms;
-  for (int c = 0; c < 4; ++c) terms[static_cast<size_t>(c)] = math_.mul(element, at(dag_[id].args[1], c));
-  rangesOf(id).fill(math_.sum(terms));
+  const int width = ir::componentCount(dag_[id].type);
+  for (int c = 0; c < width; ++c) terms[static_cast<size_t>(c)] = math_.mul(element, at(dag_[id].args[1], c));
+  rangesOf(id).fill(math_.sum({terms.data(), static_cast<size_t>(width)}));
 }
 
 void Intervals::vectorOp(ValueId id) {
@@ -231,7 +241,6 @@ Range Intervals::component(ValueId id, int c) const {
   const RangeMath& m = math_;
   const auto x = [&](size_t k) -> const Range& { return at(value.args[k], c); };
   const auto truth = [] { return Range{0, 1, false}; };
-  const auto truncated = [](const Range& a) { return Range{std::trunc(a.lo), std::trunc(a.hi), a.nan}; };
   switch (value.op) {
 #define FACTS(e, kind, domain, scaling, linear, range, slope, vulkan, half, error, operations, work) \
   case Op::e:                                                                                        \
@@ -253,7 +262,8 @@ Range Intervals::stored(ValueId id, int c) const {
 
 Range Intervals::element(const ir::Value& value) const {
   const auto [block, field] = ir::ListField::of(value);
-  return open(module_.blocks[block].fields[field].range);
+  const ir::BlockField& of = module_.blocks[block].fields[field];
+  return of.type == ir::Type::Int ? meet(kWholes, {of.range.lo, of.range.hi, false}) : open(of.range);
 }
 
 Range Intervals::product(ValueId id, int c) const {

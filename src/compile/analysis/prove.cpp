@@ -35,6 +35,15 @@ public:
         out =
             each(id, a, "in [-2^31, 2^31)", [](const Range& x) { return x.lo >= -0x1p31 && x.hi < 0x1p31; });
         return true;
+      case Domain::Natural:
+        out = each(id, a, "in (-1, 2^32)", [](const Range& x) { return x.lo > -1 && x.hi < 0x1p32; });
+        return true;
+      case Domain::WholeNonZero:
+        out = each(id, value.args[1], "!= 0", [](const Range& x) { return !x.contains(0); });
+        return true;
+      case Domain::Count:
+        out = each(id, value.args[1], "in [0, 31]", [](const Range& x) { return x.lo >= 0 && x.hi <= 31; });
+        return true;
       case Domain::Power: out = power(id); return true;
       case Domain::Direction:
         out = each(id, a, "not the zero vector", [](const Range&) { return true; });

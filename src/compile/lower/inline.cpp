@@ -43,8 +43,8 @@ Values Inliner::call(const lang::NodeDecl& node, std::string_view variant, std::
   for (size_t i = 0; i < node.params.size(); ++i) {
     const lang::Param& param = node.params[i];
     const bool given = i < args.size() && args[i] != kNoValue;
-    assert(given || param.default_value);
-    frame.slots[i] = given ? args[i] : dag_.constant(param.type, *param.default_value);
+    assert(given || param.hasDefault());
+    frame.slots[i] = given ? args[i] : lang::defaultOf(dag_, param);
     assert(dag_[frame.slots[i]].type == param.type);
   }
   if (on_call_ && conditional_ == 0) on_call_(node, {frame.slots.data(), node.params.size()});
@@ -56,7 +56,7 @@ Values Inliner::call(const lang::NodeDecl& node, std::string_view variant, std::
   assert(results.size() == node.results.size());
   for (auto it = frame.returns.rbegin(); it != frame.returns.rend(); ++it) {
     for (size_t i = 0; i < results.size(); ++i) {
-      results[i] = dag_.make(Op::Select, {it->path, it->results[i], results[i]});
+      results[i] = dag_.select(it->path, it->results[i], results[i]);
     }
   }
   for (size_t i = 0; i < results.size(); ++i) dag_.name(results[i], node.results[i].name);
@@ -95,14 +95,15 @@ ValueId Inliner::value(const Expr& expr, std::span<const ValueId> slots) {
       const ValueId yes = value(*expr.args[1], slots);
       const ValueId no = value(*expr.args[2], slots);
       --conditional_;
-      return dag_.make(Op::Select, {condition, yes, no});
+      return dag_.select(condition, yes, no);
     }
+    case Expr::Kind::Index:
     case Expr::Kind::Literal:
     case Expr::Kind::Constant:
     case Expr::Kind::Operation:
     case Expr::Kind::Construct:
     case Expr::Kind::Swizzle: {
-      std::array<ValueId, 4> args{};
+      std::array<ValueId, lang::kMostArgs> args{};
       assert(expr.args.size() <= args.size());
       for (size_t i = 0; i < expr.args.size(); ++i) args[i] = value(*expr.args[i], slots);
       if (first_ != kNoValue && expr.kind == Expr::Kind::Operation && expr.builtin->op == Op::SumOverLights)
@@ -110,8 +111,7 @@ ValueId Inliner::value(const Expr& expr, std::span<const ValueId> slots) {
       return lang::makeValue(dag_, expr, {args.data(), expr.args.size()});
     }
     case Expr::Kind::Name:
-    case Expr::Kind::Member:
-    case Expr::Kind::Index: break;
+    case Expr::Kind::Member: break;
   }
   assert(false && "not checked");
   return kNoValue;
@@ -178,7 +178,7 @@ bool Inliner::runIf(const Statement& statement, Frame& frame) {
     ValueId& slot = frame.slots[i];
     if (no_returned) slot = yes[i];
     if (slot == yes[i]) continue;
-    slot = dag_.make(Op::Select, {condition, yes[i], slot});
+    slot = dag_.select(condition, yes[i], slot);
     dag_.name(slot, frame.body.slots[i]);
   }
   return yes_returned && no_returned;

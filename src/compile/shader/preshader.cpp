@@ -16,14 +16,16 @@ using ir::Op;
 double packedNumber(const ir::Parameter& parameter, double x, double otherwise) {
   if (std::isnan(x)) return otherwise;
   if (parameter.type == ir::Type::Bool) return x != 0 ? 1 : 0;
-  const targets::PackedRange range = targets::packedRange(parameter.range);
+  const targets::PackedRange range = targets::packedRange(parameter);
   if (range.or_zero && x == 0) return x;
-  return std::clamp(x, range.low, range.high);
+  const double within = std::clamp(x, range.low, range.high);
+  return range.whole ? std::floor(within + 0.5) : within;
 }
 
 std::string packedRangeText(const ir::Parameter& parameter) {
   if (parameter.type == ir::Type::Bool) return "0 or 1";
-  const targets::PackedRange range = targets::packedRange(parameter.range);
+  const targets::PackedRange range = targets::packedRange(parameter);
+  if (range.whole) return fmt::format("the integers in [{}, {}]", range.low, range.high);
   return fmt::format("[{}, {}]{}", range.low, range.high, range.or_zero ? " or 0" : "");
 }
 
@@ -61,6 +63,8 @@ std::vector<Components> Preshader::evaluate(
       values[s] = constants_[step.payload];
     } else if (step.op == Op::Input) {
       values[s] = value(step.payload);
+      if (ir::partType(step.type) == ir::Type::UInt)
+        for (double& x : values[s]) x = ir::whole<double>(ir::uint_of(x));
     } else {
       std::array<ir::Operand, 4> in{};
       for (size_t k = 0; k < step.count; ++k) in[k] = {steps_[step.args[k]].type, values[step.args[k]]};

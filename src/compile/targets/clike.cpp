@@ -33,6 +33,8 @@ Precedence binaryPrecedence(std::string_view spelling) {
   if (spelling == "<" || spelling == "<=") return Precedence::Relational;
   if (spelling == "==") return Precedence::Equality;
   if (spelling == "&&") return Precedence::And;
+  if (spelling.find_first_of("&|^<>") != std::string_view::npos && spelling != "||")
+    return Precedence::Bitwise;
   assert(spelling == "||");
   return Precedence::Or;
 }
@@ -119,6 +121,8 @@ Expression Printer::compute(ValueId id) const {
   if (value.op == Op::Construct) return construct(id);
   if (value.op == Op::Swizzle) return swizzle(value);
   if (value.op == Op::Element) return element(value);
+  if (value.op == Op::Column)
+    return {dialect_.column(parenthesized(use(value.args[0]), Precedence::Postfix), value.payload)};
   // Implicit derivatives exist in fragments only, and Direct3D has no lookup without a level elsewhere: a
   // vertex samples the first, as GLSL's texture() does there.
   const bool implicit = program_.stage == ir::Stage::Fragment;
@@ -141,10 +145,7 @@ Expression Printer::constant(ValueId id) const {
   const Type type = dag_[id].type;
   const ir::Components& c = dag_.constantOf(id);
   if (type == Type::Bool) return {c[0] != 0 ? "true" : "false"};
-  if (type == Type::Int) {
-    return {fmt::format("{}", static_cast<int32_t>(c[0])),
-            c[0] < 0 ? Precedence::Unary : Precedence::Postfix};
-  }
+  if (ir::isWhole(type)) return dialect_.integer(type, static_cast<int32_t>(c[0]));
   if (type == Type::Float) return dialect_.literal(c[0]);
   assert(ir::isFloatVector(type));
   const std::span numbers(c.data(), static_cast<size_t>(ir::componentCount(type)));
@@ -207,7 +208,6 @@ Expression Printer::construct(ValueId id) const {
 }
 
 Expression Printer::swizzle(const ir::Value& value) const {
-  assert(ir::isFloatVector(dag_[value.args[0]].type));
   std::string picks;
   for (int i = 0; i < ir::componentCount(value.type); ++i)
     picks += "xyzw"[ir::swizzleComponent(value.payload, i)];
@@ -373,6 +373,11 @@ Expression operatorText(std::string_view spelling, std::span<const Expression> o
     return {std::string(spelling) + parenthesized(operands[0], Precedence::Postfix), Precedence::Unary};
   }
   const Precedence precedence = binaryPrecedence(spelling);
+  if (precedence == Precedence::Bitwise) {
+    return {fmt::format("{} {} {}", parenthesized(operands[0], Precedence::Unary), spelling,
+                        parenthesized(operands[1], Precedence::Unary)),
+            precedence};
+  }
   return {fmt::format("{} {} {}", parenthesized(operands[0], precedence), spelling,
                       parenthesized(operands[1], tighter(precedence))),
           precedence};
@@ -432,6 +437,17 @@ std::string Dialect::parameter(const ir::Input& input) const { return input.name
 
 std::string Dialect::swizzle(Type, std::string_view vector, std::string_view picks) const {
   return fmt::format("{}.{}", vector, picks);
+}
+
+std::string Dialect::column(std::string_view matrix, uint32_t index) const {
+  return fmt::format("{}[{}]", matrix, index);
+}
+
+Expression Dialect::integer(Type type, int32_t value) const {
+  if (type == Type::UInt) return {fmt::format("{}u", static_cast<uint32_t>(value))};
+  // Its magnitude is no Int.
+  if (value == std::numeric_limits<int32_t>::min()) return {"-2147483647 - 1", Precedence::Additive};
+  return {fmt::format("{}", value), value < 0 ? Precedence::Unary : Precedence::Postfix};
 }
 
 std::string Dialect::call(Op op, Type, std::string_view arguments) const {

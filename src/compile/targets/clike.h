@@ -20,6 +20,8 @@ enum class Precedence : uint8_t {
   Ternary,
   Or,
   And,
+  Bitwise,  ///< of integers' bits and shifts, which languages rank differently: their operands are Unary at
+            ///< least
   Equality,
   Relational,
   Additive,
@@ -92,6 +94,10 @@ public:
                               std::string_view lod) const = 0;
   /// What a depth map gives for the place `at`, whose third component is compared; `top`: at level 0.
   virtual std::string comparison(std::string_view name, const Expression& at, bool top) const = 0;
+  /// A column of a Mat4.
+  virtual std::string column(std::string_view matrix, uint32_t index) const;
+  /// An integer of a type that is in the DAG.
+  virtual Expression integer(ir::Type type, int32_t value) const;
   /// A call of a function of ops.def.
   virtual std::string call(ir::Op op, ir::Type result, std::string_view arguments) const;
   /// An operator of ops.def before its operand or between its two: operatorText's.

@@ -35,15 +35,16 @@ std::string doubleLiteral(double x) {
 
 class Cpp final : public Dialect {
 public:
+  /// Integers are numbers (ir/whole.h).
   std::string_view type(Type type) const override {
-    return type == Type::Float ? "double" : ir::typeName(type);
+    return type == Type::Float || ir::isWhole(type) ? "double" : ir::typeName(type);
   }
 
   /// Windows has macros of the names min and max.
   std::string_view spelling(Op op) const override {
     if (op == Op::Min) return "min_of";
     if (op == Op::Max) return "max_of";
-    return ir::info(op).glsl;
+    return ofWholes(op) ? ir::info(op).name : ir::info(op).glsl;
   }
 
   std::string_view position() const override { return {}; }
@@ -52,10 +53,12 @@ public:
   Expression literal(double x) const override {
     return {doubleLiteral(x), std::signbit(x) ? Precedence::Unary : Precedence::Postfix};
   }
+  Expression integer(Type, int32_t value) const override { return literal(value); }
 
   /// Members of `p`; vectors are locals.
   std::string parameter(const ir::Input& input) const override {
     const std::string& member = members_.at(input.name);
+    if (input.type == Type::UInt) return fmt::format("whole(uint_of(p.{}))", member);
     return ir::isFloatVector(input.type) ? member : "p." + member;
   }
   void nameParameter(const std::string& name, const std::string& member) { members_[name] = member; }
@@ -63,6 +66,11 @@ public:
 
   std::string swizzle(Type result, std::string_view vector, std::string_view picks) const override {
     if (result == Type::Float) return fmt::format("{}.{}", vector, picks);
+    // Of a vector of integers, which stays the member that it is.
+    if (ir::isWhole(result)) {
+      const std::string member = fmt::format("{}[{}]", vector, std::string_view("xyzw").find(picks[0]));
+      return result == Type::Int ? member : fmt::format("whole(uint_of({}))", member);
+    }
     std::string list;
     for (const char pick : picks) list += fmt::format("{}{}.{}", list.empty() ? "" : ", ", vector, pick);
     return fmt::format("{}({})", type(result), list);
@@ -83,6 +91,7 @@ public:
   }
 
   std::string call(Op op, Type result, std::string_view arguments) const override {
+    if (op == Op::AsInt || op == Op::AsUInt) return std::string(arguments);
     if (!isStandard(op) || result != Type::Float) return Dialect::call(op, result, arguments);
     const std::string_view fold = foldText(op);
     return fmt::format("{}({})", fold.substr(0, fold.find('(')), arguments);
@@ -116,6 +125,7 @@ public:
   }
 
   void print(Text& text) const {
+    if (integers_) wholes(text);
     for (const Op op : scalar_) scalar(text, op);
     for (const Type type : vectors_) vector(text, type);
     for (const Type type : vectors_) store(text, type);
@@ -137,6 +147,7 @@ private:
   void need(ValueId id) {
     const ir::Value& value = dag_[id];
     if (ir::isFloatVector(value.type)) needVector(value.type);
+    integers_ = integers_ || ir::isWhole(value.type);
     Use use{value.op, value.type, {}, value.count};
     for (size_t k = 0; k < value.count; ++k) {
       use.types[k] = dag_[value.args[k]].type;
@@ -152,14 +163,51 @@ private:
       case Signature::Compare:
       case Signature::Logic:
       case Signature::Select: return;  // C++ has them
+      case Signature::Whole:
+      case Signature::WholeTest:
+      case Signature::Shift: scalar_.insert(value.op); return;
     }
   }
 
   /// Vectors are constructed from what they are constructed from.
   void needSpecial(const Use& use) {
     const auto count = static_cast<ptrdiff_t>(use.count);
-    if (use.op == Op::Construct)
+    if (use.op == Op::Construct && !ir::isComposite(use.result))
       constructors_[use.result].insert({use.types.begin(), use.types.begin() + count});
+    if (ofWholes(use.op)) scalar_.insert(use.op);
+  }
+
+  /// Integers in doubles: the number of the Int with the same 32 bits.
+  static void wholes(Text& text) {
+    text.comment("Integers are the numbers of the ints with their 32 bits.");
+    for (const char* line :
+         {"inline std::uint32_t bits(double x) { return "
+          "static_cast<std::uint32_t>(static_cast<std::int32_t>(x)); }",
+          "inline double whole(std::uint32_t x) { return static_cast<std::int32_t>(x); }",
+          "inline std::uint32_t int_of(double x) {",
+          "    if (!(x > -2147483648.0)) return x != x ? 0u : 0x80000000u;",
+          "    return x < 2147483648.0 ? static_cast<std::uint32_t>(static_cast<std::int32_t>(x)) : "
+          "0x7fffffffu;",
+          "}",
+          "inline std::uint32_t uint_of(double x) {",
+          "    return !(x > 0) ? 0u : x < 4294967296.0 ? static_cast<std::uint32_t>(x) : 0xffffffffu;",
+          "}",
+          "inline double int_number(std::uint32_t x) { return static_cast<std::int32_t>(x); }",
+          "inline double uint_number(std::uint32_t x) { return x; }",
+          "inline std::uint32_t int_quotient(std::uint32_t a, std::uint32_t b) {",
+          "    if (b == 0 || b == 0xffffffffu) return b == 0 ? 0u : 0u - a;",
+          "    return static_cast<std::uint32_t>(static_cast<std::int32_t>(a) / "
+          "static_cast<std::int32_t>(b));",
+          "}",
+          "inline std::uint32_t uint_quotient(std::uint32_t a, std::uint32_t b) { return b == 0 ? 0u : a / "
+          "b; }",
+          "inline std::uint32_t int_shifted(std::uint32_t a, std::uint32_t b) {",
+          "    return static_cast<std::uint32_t>(static_cast<std::int32_t>(a) >> b);",
+          "}",
+          "inline bool int_below(std::uint32_t a, std::uint32_t b) {",
+          "    return static_cast<std::int32_t>(a) < static_cast<std::int32_t>(b);",
+          "}"})
+      text.line(line);
   }
 
   void needMap(Use use) {
@@ -178,8 +226,11 @@ private:
     std::string parameters;
     for (int k = 0; k < ir::info(op).arity; ++k)
       parameters += fmt::format("{}T {}", k == 0 ? "" : ", ", "abc"[k]);
-    text.line(fmt::format("template <class T> T {}({}) {{ return {}; }}", dialect_.spelling(op), parameters,
-                          foldText(op)));
+    std::string body(foldText(op));
+    // Doubles alone are integers, too.
+    for (size_t at = body.find("<T>"); at != std::string::npos; at = body.find("<T>")) body.erase(at, 3);
+    text.line(
+        fmt::format("template <class T> T {}({}) {{ return {}; }}", dialect_.spelling(op), parameters, body));
   }
 
   void vector(Text& text, Type type) const {
@@ -278,6 +329,7 @@ private:
   std::set<Type> vectors_;
   std::map<Type, std::set<std::vector<Type>>> constructors_;
   std::set<Op> scalar_;
+  bool integers_ = false;  ///< there are some
   std::set<Use> uses_;
 };
 
@@ -315,8 +367,9 @@ public:
     text_.line("#ifndef " + guard);
     text_.line("#define " + guard);
     text_.blank();
-    for (const char* include : {"cmath", "cstddef", "cstring"})
-      text_.line(fmt::format("#include <{}>", include));
+    std::vector<const char*> includes = {"cmath", "cstddef", "cstring"};
+    if (wholes()) includes.insert(includes.begin() + 2, "cstdint");
+    for (const char* include : includes) text_.line(fmt::format("#include <{}>", include));
     text_.blank();
     text_.line("namespace lacquer_shaders {");
     text_.line(fmt::format("namespace {} {{", name_));
@@ -333,6 +386,13 @@ public:
   }
 
 private:
+  /// Whether there are integers among the numbers.
+  bool wholes() const {
+    const std::vector<ValueId> live = ir::reachable(module_.dag, roots_);
+    return std::any_of(live.begin(), live.end(),
+                       [&](ValueId id) { return ir::isWhole(ir::partType(module_.dag[id].type)); });
+  }
+
   const std::string& memberOf(const ir::Parameter& parameter) const {
     return dialect_.memberOf(parameter.name);
   }
@@ -353,7 +413,7 @@ private:
       const ir::Parameter& p = module_.parameters[index];
       if (p.type == Type::Bool) {
         text_.line(fmt::format("bool {} = {};", memberOf(p), p.neutral[0] != 0));
-      } else if (p.type == Type::Float) {
+      } else if (ir::componentCount(p.type) == 1) {
         text_.line(fmt::format("double {} = {};{}", memberOf(p), doubleLiteral(p.neutral[0]), rangeDoc(p)));
       } else {
         const int width = ir::componentCount(p.type);
@@ -384,7 +444,7 @@ private:
     for (const ir::BlockField& field : block_->fields) {
       padTo(field.offset);
       const int width = ir::componentCount(field.type);
-      text_.line(width == 1 ? fmt::format("float {};", field.name)
+      text_.line(width == 1 ? fmt::format("{} {};", memberType(field.type), field.name)
                             : fmt::format("float {}[{}];", field.name, width));
       cursor += 4 * static_cast<uint32_t>(width);
     }
@@ -396,6 +456,10 @@ private:
           fmt::format("static_assert(offsetof(Block, {}) == {}, \"std140\");", field.name, field.offset));
     }
     text_.line(fmt::format("static_assert(sizeof(Block) == {}, \"std140\");", block_->size));
+  }
+
+  static std::string_view memberType(Type type) {
+    return type == Type::Int ? "std::int32_t" : type == Type::UInt ? "std::uint32_t" : "float";
   }
 
   void helpers(const Helpers& helpers) {
@@ -432,13 +496,15 @@ private:
     for (const uint32_t index : parameters_) {
       const ir::Parameter& p = module_.parameters[index];
       if (p.type == Type::Bool) continue;
-      const PackedRange range = packedRange(p.range);
+      const PackedRange range = packedRange(p);
       for (int i = 0; i < ir::componentCount(p.type); ++i) {
         const std::string component = componentOf(p, i);
-        text_.line(fmt::format("{0}p.{1} = within(p.{1}, {2}, {3}, {4});",
-                               range.or_zero ? fmt::format("if (p.{} != 0) ", component) : "", component,
-                               doubleLiteral(range.low), doubleLiteral(range.high),
-                               doubleLiteral(p.neutral[static_cast<size_t>(i)])));
+        const std::string within =
+            fmt::format("within(p.{}, {}, {}, {})", component, doubleLiteral(range.low),
+                        doubleLiteral(range.high), doubleLiteral(p.neutral[static_cast<size_t>(i)]));
+        text_.line(fmt::format("{}p.{} = {};", range.or_zero ? fmt::format("if (p.{} != 0) ", component) : "",
+                               component,
+                               range.whole ? fmt::format("std::floor({} + 0.5)", within) : within));
       }
     }
     text_.line("return p;");
@@ -523,8 +589,12 @@ private:
     for (const ir::PreshaderField& p : module_.preshader) {
       const ir::BlockField& field = block_->fields[p.field];
       const std::string value = printValue(dialect_, module_, program, p.value);
-      text_.line(field.type == Type::Float ? fmt::format("block.{} = to_float({});", field.name, value)
-                                           : fmt::format("store(block.{}, {});", field.name, value));
+      if (ir::isWhole(field.type))
+        text_.line(fmt::format("block.{} = static_cast<{}>(static_cast<std::int32_t>({}));", field.name,
+                               memberType(field.type), value));
+      else
+        text_.line(field.type == Type::Float ? fmt::format("block.{} = to_float({});", field.name, value)
+                                             : fmt::format("store(block.{}, {});", field.name, value));
     }
     text_.line("return block;");
   }

@@ -244,10 +244,10 @@ private:
     const std::string_view way = program.stage == ir::Stage::Vertex ? "out" : "in";
     for (uint32_t index : program.varyings) {
       const ir::Varying& v = module.varyings[index];
-      assert(ir::isFloating(v.type));
       const std::string layout =
           row_.varying_locations ? fmt::format("layout(location = {}) ", v.location) : "";
-      text.line(fmt::format("{}{} {} {};", layout, way, ir::typeName(v.type), varyingName(v)));
+      text.line(fmt::format("{}{}{} {} {};", layout, ir::isFloating(v.type) ? "" : "flat ", way,
+                            ir::typeName(v.type), varyingName(v)));
     }
   }
 

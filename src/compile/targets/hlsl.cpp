@@ -44,6 +44,17 @@ public:
       case Type::Texture2DShadow: return "Texture2D";  // the sampler compares
       case Type::Texture2DArray: return "Texture2DArray";
       case Type::Texture3D: return "Texture3D";
+      case Type::UInt: return "uint";
+      case Type::IVec2: return "int2";
+      case Type::IVec3: return "int3";
+      case Type::IVec4: return "int4";
+      case Type::UVec2: return "uint2";
+      case Type::UVec3: return "uint3";
+      case Type::UVec4: return "uint4";
+      case Type::BVec2:
+      case Type::BVec3:
+      case Type::BVec4:
+      case Type::Mat3: break;  // the DAG has none but as their parts
     }
     assert(false);
     return {};
@@ -72,6 +83,11 @@ public:
     const std::string place = parenthesized(at, Precedence::Postfix);
     return fmt::format("{0}.{1}({0}_sampler, {2}.xy, {2}.z)", name, top ? "SampleCmpLevelZero" : "SampleCmp",
                        place);
+  }
+
+  /// An index would give a row.
+  std::string column(std::string_view matrix, uint32_t index) const override {
+    return fmt::format("transpose({})[{}]", matrix, index);
   }
 
   std::string call(ir::Op op, Type result, std::string_view arguments) const override {
@@ -138,9 +154,8 @@ private:
     }
     for (uint32_t index : program.varyings) {
       const ir::Varying& v = module.varyings[index];
-      assert(ir::isFloating(v.type));
-      list.push_back(fmt::format("{}{} {} : TEXCOORD{}", vertex ? "out " : "", type(v.type), varyingName(v),
-                                 v.location));
+      list.push_back(fmt::format("{}{}{} {} : TEXCOORD{}", ir::isFloating(v.type) ? "" : "nointerpolation ",
+                                 vertex ? "out " : "", type(v.type), varyingName(v), v.location));
     }
     for (const ir::Output& o : module.outputs) {
       if (vertex && o.kind == ir::OutputKind::Position) {

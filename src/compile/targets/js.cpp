@@ -44,7 +44,7 @@ Expression numberLiteral(double x) {
 /// A constant or a default of a parameter.
 std::string literalOf(Type type, const ir::Components& value) {
   if (type == Type::Bool) return value[0] != 0 ? "true" : "false";
-  if (type == Type::Float) return numberLiteral(value[0]).text;
+  if (ir::componentCount(type) == 1) return numberLiteral(value[0]).text;
   std::string list;
   for (int i = 0; i < ir::componentCount(type); ++i)
     list += (i == 0 ? "" : ", ") + numberLiteral(value[static_cast<size_t>(i)]).text;
@@ -55,11 +55,49 @@ std::string literalOf(Type type, const ir::Components& value) {
 std::string keyOf(const std::string& name) { return name == "__proto__" ? "[\"__proto__\"]" : name; }
 
 /// True when the op is a function of Math that means for all numbers what <cmath>'s does.
-bool isMath(Op op) { return isStandard(op) && op != Op::Exp2 && op != Op::Pow; }
+bool isMath(Op op) { return isStandard(op) && op != Op::Exp2 && op != Op::Pow && op != Op::Round; }
+
+/// An op on integers: JavaScript's own are those of 32 bits, and each is a number (ir/whole.h).
+std::string_view meaningOfWholes(Op op) {
+  constexpr std::pair<Op, std::string_view> kMeanings[] = {
+      {Op::WholeAdd, "(a + b) | 0"},
+      {Op::WholeSub, "(a - b) | 0"},
+      {Op::WholeMul, "Math.imul(a, b)"},
+      {Op::IntDiv, "b === 0 ? 0 : (a / b) | 0"},
+      {Op::UIntDiv, "b === 0 ? 0 : ((a >>> 0) / (b >>> 0)) | 0"},
+      {Op::BitAnd, "a & b"},
+      {Op::BitOr, "a | b"},
+      {Op::BitXor, "a ^ b"},
+      {Op::BitNot, "~a"},
+      {Op::ShiftLeft, "a << b"},
+      {Op::IntShiftRight, "a >> b"},
+      {Op::UIntShiftRight, "(a >>> b) | 0"},
+      {Op::IntLess, "a < b"},
+      {Op::UIntLess, "a >>> 0 < b >>> 0"},
+      {Op::WholeEqual, "a === b"},
+      {Op::ToInt, "Math.min(Math.max(a, -2147483648), 2147483647) | 0"},
+      {Op::ToUInt, "Math.min(Math.max(a, 0), 4294967295) | 0"},
+      {Op::FromInt, "a"},
+      {Op::FromUInt, "a >>> 0"},
+  };
+  for (const auto& [known, text] : kMeanings) {
+    if (known == op) return text;
+  }
+  assert(false && "not an op on integers");
+  return {};
+}
+
+/// What a module calls an op that JavaScript has not.
+std::string_view helperName(Op op) { return ofWholes(op) ? ir::info(op).name : ir::info(op).glsl; }
 
 /// ops.def's words of an op in JavaScript.
 std::string meaning(Op op) {
+  if (ofWholes(op)) return std::string(meaningOfWholes(op));
   if (op == Op::Exp2) return "2 ** a";
+  // Beyond 2 ** 52 numbers are whole.
+  if (op == Op::Round)
+    return "Math.abs(a) < 2 ** 52 ? (a > 0 ? a + 2 ** 52 - 2 ** 52 : a < 0 ? -(2 ** 52 - a - 2 ** 52) : a) : "
+           "a";
   // C++ has 1 where JavaScript has NaN.
   if (op == Op::Pow) return "a === 1 || (a === -1 && Math.abs(b) === Infinity) ? 1 : a ** b";
   std::string text(foldText(op));
@@ -143,8 +181,14 @@ private:
       for (size_t i = 0; i < width; ++i) parts.push_back(constant(value.type, dag.constantOf(id)[i]));
     } else if (value.op == Op::Input) {
       const std::string member = "p." + module_.parameters[dag.inputOf(id).field].name;
+      // An integer as the number of the Int with its bits.
+      const std::string_view bits = ir::isWhole(ir::partType(value.type)) ? " | 0" : "";
+      const Precedence precedence = bits.empty() ? Precedence::Postfix : Precedence::Bitwise;
       for (size_t i = 0; i < width; ++i)
-        parts.push_back(leaf({width == 1 ? member : fmt::format("{}[{}]", member, i)}));
+        parts.push_back(leaf(
+            {fmt::format("{}{}", width == 1 ? member : fmt::format("{}[{}]", member, i), bits), precedence}));
+    } else if (value.op == Op::AsInt || value.op == Op::AsUInt) {
+      parts = parts_.at(value.args[0]);
     } else {
       operation(id, width, parts);
     }
@@ -240,7 +284,7 @@ private:
     if (isOperator(node.op)) return operatorText(spelling, arguments);
     std::string list;
     for (const Expression& argument : arguments) list += (list.empty() ? "" : ", ") + argument.text;
-    if (!isMath(node.op)) return {fmt::format("{}({})", spelling, list)};
+    if (!isMath(node.op)) return {fmt::format("{}({})", helperName(node.op), list)};
     const std::string call = meaning(node.op);
     return {fmt::format("{}({})", call.substr(0, call.find('(')), list)};
   }
@@ -368,7 +412,7 @@ private:
     for (const Op op : scalars.helpers()) {
       std::string list;
       for (int k = 0; k < ir::info(op).arity; ++k) list += fmt::format("{}{}", k == 0 ? "" : ", ", "abc"[k]);
-      text_.line(fmt::format("const {} = ({}) => {};", ir::info(op).glsl, list, meaning(op)));
+      text_.line(fmt::format("const {} = ({}) => {};", helperName(op), list, meaning(op)));
     }
     packed();
     text_.blank();
@@ -388,8 +432,11 @@ private:
     for (const ir::PreshaderField& p : module_.preshader) {
       const ir::BlockField& field = block_->fields[p.field];
       const std::vector<std::string> parts = scalars.components(p.value);
-      for (size_t i = 0; i < parts.size(); ++i)
-        text_.line(fmt::format("put({}, {});", field.offset + 4 * i, parts[i]));
+      if (ir::isWhole(field.type))
+        text_.line(fmt::format("view.setInt32({}, {}, true);", field.offset, parts[0]));
+      else
+        for (size_t i = 0; i < parts.size(); ++i)
+          text_.line(fmt::format("put({}, {});", field.offset + 4 * i, parts[i]));
     }
     text_.line("return bytes;");
     text_.outdent();
@@ -409,9 +456,10 @@ private:
   static std::string packedText(const ir::Parameter& p, const std::string& given, int i) {
     const std::string otherwise = numberLiteral(p.neutral[static_cast<size_t>(i)]).text;
     if (p.type == Type::Bool) return fmt::format("truth({}, {})", given, p.neutral[0] != 0);
-    const PackedRange range = packedRange(p.range);
-    const std::string within = fmt::format("within({}, {}, {}, {})", given, numberLiteral(range.low).text,
-                                           numberLiteral(range.high).text, otherwise);
+    const PackedRange range = packedRange(p);
+    std::string within = fmt::format("within({}, {}, {}, {})", given, numberLiteral(range.low).text,
+                                     numberLiteral(range.high).text, otherwise);
+    if (range.whole) within = fmt::format("Math.floor({} + 0.5)", within);
     return range.or_zero ? fmt::format("{} === 0 ? 0 : {}", given, within) : within;
   }
 
@@ -496,7 +544,7 @@ private:
   /// What a parameter of the type may be given.
   static std::string typeText(Type type) {
     if (type == Type::Bool) return "boolean";
-    if (type == Type::Float) return "number";
+    if (ir::componentCount(type) == 1) return "number";
     std::string list;
     for (int i = 0; i < ir::componentCount(type); ++i) list += i == 0 ? "number" : ", number";
     return fmt::format("readonly [{}] | Float32Array | Float64Array", list);

@@ -19,11 +19,25 @@ std::string_view foldText(Op op) {
 
 bool isStandard(Op op) { return foldText(op).starts_with("std::"); }
 
-bool isOperator(Op op) { return std::isalpha(static_cast<unsigned char>(ir::info(op).glsl.front())) == 0; }
+bool isOperator(Op op) {
+  return !ofWholes(op) && std::isalpha(static_cast<unsigned char>(ir::info(op).glsl.front())) == 0;
+}
 
-PackedRange packedRange(const ir::Range& range) {
+bool ofWholes(Op op) {
+  const std::string_view fold = foldText(op);
+  return ir::ofWholes(ir::info(op).signature) || fold.starts_with("whole<") ||
+         fold.starts_with("int_number<") || fold.starts_with("uint_number<");
+}
+
+PackedRange packedRange(const ir::Parameter& parameter) {
+  const ir::Range& range = parameter.range;
   const double low = range.gap > 0 ? range.gap : range.lo;
-  return {std::max(low, -kLargestFloat), std::min(range.hi, kLargestFloat), range.gap > 0};
+  const ir::Type part = ir::partType(parameter.type);
+  if (part == ir::Type::Int)
+    return {std::max(low, -0x1p31), std::min(range.hi, 0x1p31 - 1), range.gap > 0, true};
+  if (part == ir::Type::UInt)
+    return {std::max(low, 0.0), std::min(range.hi, 0x1p32 - 1), range.gap > 0, true};
+  return {std::max(low, -kLargestFloat), std::min(range.hi, kLargestFloat), range.gap > 0, false};
 }
 
 const ir::Block* materialBlock(const ir::Module& module) {

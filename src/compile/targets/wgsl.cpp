@@ -104,6 +104,17 @@ public:
       case Type::Texture2DShadow: return "texture_depth_2d";
       case Type::Texture2DArray: return "texture_2d_array<f32>";
       case Type::Texture3D: return "texture_3d<f32>";
+      case Type::UInt: return "u32";
+      case Type::IVec2: return "vec2i";
+      case Type::IVec3: return "vec3i";
+      case Type::IVec4: return "vec4i";
+      case Type::UVec2: return "vec2u";
+      case Type::UVec3: return "vec3u";
+      case Type::UVec4: return "vec4u";
+      case Type::BVec2:
+      case Type::BVec3:
+      case Type::BVec4:
+      case Type::Mat3: break;  // the DAG has none but as their parts
     }
     assert(false);
     return {};
@@ -112,7 +123,10 @@ public:
   std::string_view spelling(Op op) const override {
     // Not a switch: the other operations are spelled as in GLSL.
     if (op == Op::InverseSqrt) return "inverseSqrt";
-    if (op == Op::ToInt) return "i32";
+    if (op == Op::ToInt || op == Op::AsInt) return "i32";
+    if (op == Op::ToUInt || op == Op::AsUInt) return "u32";
+    if (op == Op::FromInt || op == Op::FromUInt) return "f32";
+    if (op == Op::Round) return "round";
     if (op == Op::Atan2) return "atan2";
     if (op == Op::DFdx) return "dpdx";
     if (op == Op::DFdy) return "dpdy";
@@ -154,6 +168,13 @@ public:
     const std::string place = parenthesized(at, Precedence::Postfix);
     return fmt::format("textureSampleCompare{0}({1}, {1}_sampler, {2}.xy, {2}.z)", top ? "Level" : "", name,
                        place);
+  }
+
+  /// Typed, for a number without a suffix is of any type.
+  Expression integer(Type type, int32_t value) const override {
+    if (type == Type::UInt) return Dialect::integer(type, value);
+    if (value == std::numeric_limits<int32_t>::min()) return {"i32(-2147483648)"};
+    return {fmt::format("{}i", value), value < 0 ? Precedence::Unary : Precedence::Postfix};
   }
 
   std::string call(Op op, Type result, std::string_view arguments) const override {
@@ -360,8 +381,8 @@ private:
   }
 
   std::string varying(const ir::Varying& v) const {
-    assert(ir::isFloating(v.type));
-    return fmt::format("@location({}) {}: {}", v.location, varyingName(v), type(v.type));
+    return fmt::format("@location({}) {}{}: {}", v.location,
+                       ir::isFloating(v.type) ? "" : "@interpolate(flat) ", varyingName(v), type(v.type));
   }
 
   static void list(Text& text, const std::vector<std::string>& items) {

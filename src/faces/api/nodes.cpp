@@ -21,6 +21,9 @@ Json paramJson(const lang::Param& param, std::string_view fallback) {
   if (param.default_value)
     json["default"] = numbersJson(
         {param.default_value->begin(), param.default_value->begin() + ir::componentCount(param.type)});
+  if (param.matrix_default)
+    json["default"] = numbersJson(
+        {param.matrix_default->begin(), param.matrix_default->begin() + ir::componentCount(param.type)});
   if (!param.prose.empty()) json["meaning"] = param.prose;
   return json;
 }

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
 #include "api/internal.h"
+#include "ir/whole.h"
 #include "setting/messages.h"
 #include "setting/options.h"
 #include "shader/module.h"
@@ -81,7 +83,9 @@ void Shader::Impl::pack(const Values& value, std::span<std::byte> block, Message
   for (size_t i = 0; i < values.size(); ++i) {
     const Preshader::Field& field = preshader.fields()[i];
     for (int c = 0; c < ir::componentCount(field.type); ++c) {
-      const auto x = static_cast<float>(values[i][static_cast<size_t>(c)]);
+      const double number = values[i][static_cast<size_t>(c)];
+      const auto x =
+          ir::isWhole(field.type) ? ir::bits(number) : std::bit_cast<uint32_t>(static_cast<float>(number));
       std::memcpy(block.data() + field.offset + size_t{4} * static_cast<size_t>(c), &x, 4);
     }
   }

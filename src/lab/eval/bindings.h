@@ -12,7 +12,8 @@ namespace lacquer::eval {
 /// The values of one input: one for all points, or one per point. In double; an evaluation in float rounds
 /// them once.
 struct Column {
-  int components = 1;  ///< 1 for Float, Bool (0 or 1) and Int; 2 to 4 for vectors; 16 for Mat4, by columns
+  int components =
+      1;  ///< 1 for a number and a Bool (0 or 1); 2 to 4 for vectors; 9, 16 for matrices, by columns
   bool per_point = false;
   std::vector<double> values;  ///< point by point, the components of a point side by side
 

@@ -7,12 +7,24 @@
 #include <type_traits>
 
 #include "eval/rough.h"
+#include "ir/whole.h"
 
 namespace lacquer::eval {
 
 namespace {
 
+// ops.def's fold column calls these.
+using ir::bits;
+using ir::int_below;
+using ir::int_number;
+using ir::int_of;
+using ir::int_quotient;
+using ir::int_shifted;
 using ir::Op;
+using ir::uint_number;
+using ir::uint_of;
+using ir::uint_quotient;
+using ir::whole;
 
 /// To the nearest half-precision number, ties to even: 11 bits, subnormal numbers below 2^-14, infinite from
 /// 65520.
@@ -99,7 +111,7 @@ public:
     for (first_ = 0; first_ < points_; first_ += kBatch) {
       lanes_ = std::min(points_ - first_, kBatch);
       body();
-      for (size_t r = 0; r < results.size(); ++r) store(program_.results[r], results[r]);
+      for (size_t r = 0; r < results.size(); ++r) store(program_.results[r], program_.types[r], results[r]);
     }
     return results;
   }
@@ -117,10 +129,14 @@ private:
 
   T* at(Register r) { return registers_.data() + r * kBatch; }
 
-  void store(const std::vector<Register>& components, std::vector<T>& result) {
+  void store(const std::vector<Register>& components, ir::Type part, std::vector<T>& result) {
+    const auto number = [part](T x) {
+      if (part == ir::Type::Int) return int_number<T>(bits(x));
+      return part == ir::Type::UInt ? uint_number<T>(bits(x)) : x;
+    };
     for (size_t c = 0; c < components.size(); ++c) {
       const T* from = at(components[c]);
-      for (size_t i = 0; i < lanes_; ++i) result[(first_ + i) * components.size() + c] = from[i];
+      for (size_t i = 0; i < lanes_; ++i) result[(first_ + i) * components.size() + c] = number(from[i]);
     }
   }
 
@@ -137,8 +153,8 @@ private:
         if (group.count == ir::LightGroup::kListed) {
           first_listed_ = at(instruction.args[0]);
           lights_listed_ = at(instruction.args[1]);
-          last =
-              static_cast<size_t>(std::max(T(0), *std::max_element(lights_listed_, lights_listed_ + lanes_)));
+          last = 0;
+          for (size_t i = 0; i < lanes_; ++i) last = std::max(last, countOf(lights_listed_[i]));
         } else {
           last = group.count == ir::LightGroup::kCounted ? bindings_.lights.size()
                                                          : light_ + static_cast<size_t>(group.count);
@@ -154,23 +170,30 @@ private:
     }
   }
 
+  /// A number from outside as a register has it.
+  T taken(const Instruction& instruction, double x) {
+    return instruction.whole ? integer(x) : rounding_.input(static_cast<T>(x));
+  }
+  /// An integer of either kind.
+  static T integer(double x) { return whole<T>(x < 0 ? int_of(x) : uint_of(x)); }
+
   void load(const Column& from, const Instruction& instruction) {
     T* out = at(instruction.outs[0]);
     const auto stride = static_cast<size_t>(from.components);
     const double* source = from.values.data() + instruction.component;
     if (from.per_point) {
-      for (size_t i = 0; i < lanes_; ++i)
-        out[i] = rounding_.input(static_cast<T>(source[(first_ + i) * stride]));
+      for (size_t i = 0; i < lanes_; ++i) out[i] = taken(instruction, source[(first_ + i) * stride]);
     } else {
-      std::fill(out, out + lanes_, rounding_.input(static_cast<T>(*source)));
+      std::fill(out, out + lanes_, taken(instruction, *source));
     }
   }
 
-  /// Turns that are not a point's own look at the nearest element, and nobody looks at them.
-  static size_t elementOf(T number, size_t count) {
-    const T last = static_cast<T>(count - 1);
-    return number > 0 ? static_cast<size_t>(std::min(number, last)) : 0;
+  /// An Int that counts; 0 where it is negative.
+  static size_t countOf(T number) {
+    return static_cast<size_t>(std::max(static_cast<int32_t>(bits(number)), 0));
   }
+  /// Turns that are not a point's own look at the nearest element, and nobody looks at them.
+  static size_t elementOf(T number, size_t count) { return std::min(countOf(number), count - 1); }
 
   void listedLight(const Instruction& instruction) {
     T* out = at(instruction.outs[0]);
@@ -227,10 +250,14 @@ private:
         if constexpr (std::is_same_v<Rounding, WhereRelaxed>) {
           if (instruction.half) return relaxed(instruction);
         }
+        if (instruction.whole) {
+          Exactly exactly;
+          return mapLanes(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_, exactly);
+        }
         return mapLanes(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_, rounding_);
       case Step::Literal:
-        return static_cast<void>(std::fill_n(
-            at(out), lanes_, rounding_.input(static_cast<T>(program_.literals[instruction.payload]))));
+        return static_cast<void>(
+            std::fill_n(at(out), lanes_, taken(instruction, program_.literals[instruction.payload])));
       case Step::Load: return load(*columns_[instruction.payload], instruction);
       case Step::Light: {
         const size_t light = instruction.element >= 0 ? static_cast<size_t>(instruction.element) : light_;
@@ -238,18 +265,19 @@ private:
       }
       case Step::LightIndex:
         for (size_t i = 0; i < lanes_; ++i)
-          at(out)[i] = static_cast<T>(light_) + (first_listed_ == nullptr ? T(0) : first_listed_[i]);
+          at(out)[i] = whole<T>(static_cast<uint32_t>(light_) +
+                                (first_listed_ == nullptr ? 0U : bits(first_listed_[i])));
         return;
       case Step::ListedLight: return listedLight(instruction);
       case Step::Listed: {
         const std::vector<double>& list = program_.lists[instruction.payload];
         for (size_t i = 0; i < lanes_; ++i)
-          at(out)[i] = list.empty() ? T(0) : static_cast<T>(list[elementOf(arg(0)[i], list.size())]);
+          at(out)[i] = integer(list.empty() ? 0.0 : list[elementOf(arg(0)[i], list.size())]);
         return;
       }
       case Step::AddListed:
         for (size_t i = 0; i < lanes_; ++i) {
-          if (static_cast<T>(light_) >= lights_listed_[i]) continue;
+          if (light_ >= countOf(lights_listed_[i])) continue;
           const T sum = arg(0)[i] + arg(1)[i];
           at(out)[i] = rounding_(Op::Add, arg(0)[i], arg(1)[i], sum);
         }

@@ -43,7 +43,10 @@ public:
       if (dag_[id].rate != Rate::Light) value(id);
     }
     if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
-    for (const ValueId root : roots) program_.results.push_back(registers_of_[root]);
+    for (const ValueId root : roots) {
+      program_.results.push_back(registers_of_[root]);
+      program_.types.push_back(ir::partType(dag_[root].type));
+    }
     return std::move(program_);
   }
 
@@ -69,14 +72,17 @@ private:
     Instruction instruction{Step::Map, op};
     std::copy(args.begin(), args.end(), instruction.args.begin());
     instruction.half = half_;
+    instruction.whole = whole_;
     return emit(instruction, uniform);
   }
   Register map(Op op, Register a, Register b) { return map(op, std::array{a, b}); }
 
   Register literal(double x) {
     program_.literals.push_back(x);
-    return emit({Step::Literal, Op::Constant, 0, -1, static_cast<uint32_t>(program_.literals.size() - 1)},
-                true);
+    Instruction instruction{Step::Literal, Op::Constant, 0, -1,
+                            static_cast<uint32_t>(program_.literals.size() - 1)};
+    instruction.whole = whole_;
+    return emit(instruction, true);
   }
 
   void fail(std::string code, std::string message, std::string help) {
@@ -114,7 +120,9 @@ private:
     }
     const auto index = static_cast<uint32_t>(indexOf(program_.columns, input.name));
     for (size_t i = 0; i < components; ++i) {
-      result[i] = emit({Step::Load, Op::Input, static_cast<uint8_t>(i), -1, index}, !per_point);
+      Instruction instruction{Step::Load, Op::Input, static_cast<uint8_t>(i), -1, index};
+      instruction.whole = ir::isWhole(ir::partType(input.type));
+      result[i] = emit(instruction, !per_point);
     }
     return result;
   }
@@ -171,10 +179,11 @@ private:
 
   std::vector<Register> matrixTimesVector(ValueId m, ValueId v) {
     std::vector<Register> result;
-    for (size_t row = 0; row < 4; ++row) {
+    const size_t width = of(v).size();
+    for (size_t row = 0; row < width; ++row) {
       Register sum = map(Op::Mul, of(m)[row], of(v)[0]);
-      for (size_t c = 1; c < 4; ++c) {
-        const Register product = map(Op::Mul, of(m)[c * 4 + row], of(v)[c]);
+      for (size_t c = 1; c < width; ++c) {
+        const Register product = map(Op::Mul, of(m)[c * width + row], of(v)[c]);
         sum = map(Op::Add, sum, product);
       }
       result.push_back(sum);
@@ -292,6 +301,7 @@ private:
   void value(ValueId id) {
     // After an error registers are missing; what is left to find is more unbound inputs.
     half_ = dag_.relaxed(id);
+    whole_ = ir::isWhole(ir::partType(dag_[id].type));
     if (wrong_.empty() || dag_[id].op == Op::Input) registers_of_[id] = made(id);
   }
 
@@ -302,6 +312,11 @@ private:
     if (value.op == Op::Input) return input(dag_.inputOf(id));
     if (value.op == Op::Interpolate) return of(value.args[0]);
     if (value.op == Op::MatMul) return matrixTimesVector(value.args[0], value.args[1]);
+    if (value.op == Op::Column) {
+      const auto width = static_cast<ptrdiff_t>(ir::componentCount(value.type));
+      const auto first = of(value.args[0]).begin() + width * value.payload;
+      return {first, first + width};
+    }
     if (value.op == Op::DFdx) return derivative(value, Step::DerivativeX);
     if (value.op == Op::DFdy) return derivative(value, Step::DerivativeY);
     if (value.op == Op::SumOverLights) return sumOverLights(value);
@@ -318,7 +333,8 @@ private:
   size_t points_;
   Program program_;
   Diagnostics wrong_;
-  bool half_ = false;  ///< what is being compiled is relaxed
+  bool half_ = false;   ///< what is being compiled is relaxed
+  bool whole_ = false;  ///< it is an integer
   std::vector<Virtual> virtuals_;
   std::vector<std::vector<Register>> registers_of_;
 };

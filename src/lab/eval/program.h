@@ -42,7 +42,8 @@ struct Instruction {
   uint32_t payload = 0;
   std::array<Register, 4> outs{kNoRegister, kNoRegister, kNoRegister, kNoRegister};
   std::array<Register, 4> args{kNoRegister, kNoRegister, kNoRegister, kNoRegister};
-  bool half = false;  ///< of a value that the Dag says is relaxed
+  bool half = false;   ///< of a value that the Dag says is relaxed
+  bool whole = false;  ///< of an integer, which nothing rounds (ir/whole.h)
 };
 
 /// Holds for every Bindings that gives the same inputs as those that it was compiled for, each per point or
@@ -56,6 +57,7 @@ struct Program {
   std::vector<ir::LightGroup> light_groups;
   std::vector<std::vector<double>> lists;      ///< of each field that is read, by element
   std::vector<std::vector<Register>> results;  ///< by root, the registers of its components
+  std::vector<ir::Type> types;                 ///< by root, the type of a component
   uint32_t registers = 0;
 };
 

@@ -93,7 +93,8 @@ private:
     number(dag_.relaxed(id));
     number(value.count);
     text(dag_.nameOf(id));
-    if (value.op == Op::Swizzle || value.op == Op::SumOverLights) number(value.payload);
+    if (value.op == Op::Swizzle || value.op == Op::Column || value.op == Op::SumOverLights)
+      number(value.payload);
     if (value.op == Op::Element) {
       const ListField from = ListField::of(value);
       text(module_.blocks[from.block].instance);

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "ir/simplify.h"
+#include "ir/whole.h"
 
 namespace lacquer::ir {
 
@@ -42,8 +43,17 @@ std::optional<Type> mapType(std::span<const Type> operands) {
 }
 
 std::optional<Type> specialType(Op op, std::span<const Type> operands) {
-  if (op == Op::ToInt) return operands[0] == Type::Float ? std::optional(Type::Int) : std::nullopt;
-  if (op == Op::MatMul && operands[0] == Type::Mat4 && operands[1] == Type::Vec4) return Type::Vec4;
+  const auto from = [&](Type type, Type result) {
+    return operands[0] == type ? std::optional(result) : std::nullopt;
+  };
+  if (op == Op::ToInt) return from(Type::Float, Type::Int);
+  if (op == Op::ToUInt) return from(Type::Float, Type::UInt);
+  if (op == Op::FromInt) return from(Type::Int, Type::Float);
+  if (op == Op::FromUInt) return from(Type::UInt, Type::Float);
+  if (op == Op::AsInt) return from(Type::UInt, Type::Int);
+  if (op == Op::AsUInt) return from(Type::Int, Type::UInt);
+  if (op == Op::Column) return isMatrix(operands[0]) ? std::optional(partType(operands[0])) : std::nullopt;
+  if (op == Op::MatMul && isMatrix(operands[0]) && operands[1] == partType(operands[0])) return operands[1];
   const bool lookup =
       operands.size() > 1 && isTexture(operands[0]) && operands[1] == coordinateType(operands[0]);
   if (!lookup) return std::nullopt;
@@ -54,6 +64,17 @@ std::optional<Type> specialType(Op op, std::span<const Type> operands) {
   if (op == Op::Texture) return Type::Vec4;
   if (op == Op::TextureLod && operands[2] == Type::Float) return Type::Vec4;
   return std::nullopt;
+}
+
+/// Integers of one type, which an op may ask for.
+std::optional<Type> wholeType(Op op, std::span<const Type> operands) {
+  const Type type = operands[0];
+  const bool ints = op == Op::IntDiv || op == Op::IntLess || op == Op::IntShiftRight;
+  const bool uints = op == Op::UIntDiv || op == Op::UIntLess || op == Op::UIntShiftRight;
+  if (!isWhole(type) || (ints && type != Type::Int) || (uints && type != Type::UInt)) return std::nullopt;
+  const bool shift = info(op).signature == Signature::Shift;
+  if (operands.size() == 2 && operands[1] != (shift ? Type::UInt : type)) return std::nullopt;
+  return type;
 }
 
 }  // namespace
@@ -80,8 +101,7 @@ std::optional<Type> resultType(Op op, std::span<const Type> operands) {
       if (!isFloating(operands[0])) return std::nullopt;
       return operands[0];
     case Signature::Compare:
-      if (operands[0] != operands[1]) return std::nullopt;
-      if (operands[0] != Type::Float && operands[0] != Type::Int) return std::nullopt;
+      if (operands[0] != Type::Float || operands[1] != Type::Float) return std::nullopt;
       return Type::Bool;
     case Signature::Logic:
       for (const Type t : operands) {
@@ -90,8 +110,11 @@ std::optional<Type> resultType(Op op, std::span<const Type> operands) {
       return Type::Bool;
     case Signature::Select:
       if (operands[0] != Type::Bool || operands[1] != operands[2]) return std::nullopt;
-      if (!isFloating(operands[1]) && operands[1] != Type::Bool) return std::nullopt;
+      if (!isFloating(operands[1]) && operands[1] != Type::Bool && !isWhole(operands[1])) return std::nullopt;
       return operands[1];
+    case Signature::Whole:
+    case Signature::Shift: return wholeType(op, operands);
+    case Signature::WholeTest: return wholeType(op, operands) ? std::optional(Type::Bool) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -123,7 +146,8 @@ namespace {
 /// Commutative ops are looked up in either order but keep the order of their first making, which reads best.
 bool commutes(Op op) {
   return op == Op::Add || op == Op::Mul || op == Op::Min || op == Op::Max || op == Op::Dot ||
-         op == Op::Equal || op == Op::And || op == Op::Or;
+         op == Op::Equal || op == Op::And || op == Op::Or || op == Op::WholeAdd || op == Op::WholeMul ||
+         op == Op::BitAnd || op == Op::BitOr || op == Op::BitXor || op == Op::WholeEqual;
 }
 
 bool sameContent(const Value& a, const Value& b) {
@@ -201,7 +225,8 @@ void Dag::substitute(ValueId id, std::span<const ValueId> operands) {
 }
 
 ValueId Dag::make(Op op, std::span<const ValueId> operands, uint32_t payload) {
-  assert(op != Op::Construct && op != Op::Swizzle && op != Op::Constant && op != Op::Input);
+  assert(op != Op::Construct && op != Op::Swizzle && op != Op::Column && op != Op::Constant &&
+         op != Op::Input);
   std::array<Type, 4> types{};
   for (size_t i = 0; i < operands.size(); ++i) types[i] = values_[operands[i]].type;
   const std::optional<Type> type = resultType(op, {types.data(), operands.size()});
@@ -213,6 +238,7 @@ ValueId Dag::make(Op op, std::span<const ValueId> operands, uint32_t payload) {
 }
 
 ValueId Dag::construct(Type type, std::span<const ValueId> parts) {
+  if (isMatrix(type)) return makeRaw(Op::Construct, type, parts, 0);
   if (const ValueId simpler = Simplifier(*this).construct(type, parts); simpler != kNoValue) return simpler;
   return makeRaw(Op::Construct, type, parts, 0);
 }
@@ -224,11 +250,42 @@ ValueId Dag::swizzle(ValueId value, std::span<const int> components) {
       assume(simpler, *known);
     return simpler;
   }
-  return makeRaw(Op::Swizzle, floatType(static_cast<int>(components.size())), {{value}},
-                 packSwizzle(components));
+  const Type type = vectorType(partType(values_[value].type), static_cast<int>(components.size()));
+  if (isComposite(type)) {
+    std::vector<ValueId> parts;
+    for (const int index : components) parts.push_back(component(value, index));
+    return construct(type, parts);
+  }
+  return makeRaw(Op::Swizzle, type, {{value}}, packSwizzle(components));
 }
 
 ValueId Dag::component(ValueId value, int index) { return swizzle(value, {{index}}); }
+
+ValueId Dag::column(ValueId matrix, uint32_t index) {
+  const Value& value = values_[matrix];
+  assert(isMatrix(value.type));
+  if (value.op == Op::Construct) return value.args[index];
+  return makeRaw(Op::Column, partType(value.type), {{matrix}}, index);
+}
+
+ValueId Dag::select(ValueId condition, ValueId yes, ValueId no) {
+  const Type type = values_[yes].type;
+  if (!isComposite(type)) return make(Op::Select, {condition, yes, no});
+  if (isConstant(condition)) return constantOf(condition)[0] != 0 ? yes : no;
+  std::array<ValueId, 4> parts{};
+  const auto count = static_cast<size_t>(componentCount(type) / componentCount(partType(type)));
+  const auto part = [&](ValueId id, size_t k) {
+    return isMatrix(type) ? column(id, static_cast<uint32_t>(k)) : component(id, static_cast<int>(k));
+  };
+  for (size_t k = 0; k < count; ++k) {
+    const ValueId a = part(yes, k);
+    const ValueId b = part(no, k);
+    parts[k] = make(Op::Select, {condition, a, b});
+  }
+  return construct(type, {parts.data(), count});
+}
+
+ValueId Dag::uinteger(uint32_t i) { return constant(Type::UInt, {whole<double>(i)}); }
 
 ValueId Dag::element(ValueId number, Type type, const ListField& field) {
   assert(values_[number].type == Type::Int);
@@ -243,6 +300,7 @@ ValueId Dag::remake(ValueId id, std::span<const ValueId> operands) {
   const Value value = now;
   if (value.op == Op::Construct) return construct(value.type, operands);
   if (value.op == Op::Element) return element(operands[0], value.type, ListField::of(value));
+  if (value.op == Op::Column) return column(operands[0], value.payload);
   if (value.op != Op::Swizzle) return make(value.op, operands, value.payload);
   std::array<int, 4> picks{};
   const int n = componentCount(value.type);
@@ -254,10 +312,13 @@ ValueId Dag::constant(double x) { return constant(Type::Float, {x}); }
 
 ValueId Dag::constant(Type type, const Components& components) {
   Components key{};
-  // +0 and -0 are one constant: no rule here tells them apart and the text would.
+  // +0 and -0 are one constant: no rule here tells them apart and the text would. A UInt may be given as the
+  // number that it is.
+  const bool unsigned_number = partType(type) == Type::UInt;
   for (int i = 0; i < componentCount(type); ++i) {
     const auto k = static_cast<size_t>(i);
     key[k] = components[k] == 0 ? 0 : components[k];
+    if (unsigned_number && key[k] >= 0x1p31) key[k] -= 0x1p32;
   }
   return intern({Op::Constant, type, Rate::Constant, 0, constantIndex(key), {}});
 }

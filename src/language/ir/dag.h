@@ -23,7 +23,25 @@ enum class Op : uint8_t {
 #undef OP
 };
 
-enum class Signature : uint8_t { Special, Map, Reduce2, Cross, Length, Same, Compare, Logic, Select };
+enum class Signature : uint8_t {
+  Special,
+  Map,
+  Reduce2,
+  Cross,
+  Length,
+  Same,
+  Compare,
+  Logic,
+  Select,
+  Whole,
+  WholeTest,
+  Shift,
+};
+
+/// Whether an op of that signature is one of integers.
+constexpr bool ofWholes(Signature signature) {
+  return signature == Signature::Whole || signature == Signature::WholeTest || signature == Signature::Shift;
+}
 enum class SpirvSet : uint8_t { None, Core, Ext };
 
 /// One row of ops.def without its fold.
@@ -97,11 +115,13 @@ struct Value {
   Rate rate;
   uint8_t count;     ///< number of operands
   uint32_t payload;  ///< Constant: into constants; Input: into inputs; Swizzle: two bits a component, first
-                     ///< lowest; SumOverLights: the light group; Element: ListField::payload()
+                     ///< lowest; SumOverLights: the light group; Element: ListField::payload(); Column: its
+                     ///< number
   std::array<ValueId, 4> args;
   std::span<const ValueId> operands() const { return {args.data(), count}; }
 };
 
+/// An Int and a UInt are the number of the Int with their 32 bits (ir/whole.h), a Bool is 0 or 1.
 using Components = std::array<double, 4>;
 
 /// A field of a list's elements: which one Op::Element reads.
@@ -143,6 +163,10 @@ public:
   /// `components` names positions 0 to 3, one to four of them.
   ValueId swizzle(ValueId value, std::span<const int> components);
   ValueId component(ValueId value, int index);
+  /// A column of a matrix.
+  ValueId column(ValueId matrix, uint32_t index);
+  /// `yes` where the Bool holds, else `no`: two values of one type, of any but textures.
+  ValueId select(ValueId condition, ValueId yes, ValueId no);
   /// What a list's element of that number, an Int, has in a field of that type.
   ValueId element(ValueId number, Type type, const ListField& field);
 
@@ -152,6 +176,8 @@ public:
   ValueId constant(double x);
   ValueId constant(Type type, const Components& components);
   ValueId boolean(bool b) { return constant(Type::Bool, {b ? 1.0 : 0.0}); }
+  ValueId integer(int32_t i) { return constant(Type::Int, {static_cast<double>(i)}); }
+  ValueId uinteger(uint32_t i);
   ValueId input(const Input& input);
 
   bool isConstant(ValueId id) const { return values_[id].op == Op::Constant; }

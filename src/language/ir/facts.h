@@ -18,14 +18,17 @@ enum class Kind : uint8_t {
 /// What the operands must be for the result to be a number.
 enum class Domain : uint8_t {
   Any,
-  NonNegative,  ///< the first operand
-  Positive,     ///< the first operand
-  NonZero,      ///< the second operand
-  Unit,         ///< the first in [-1, 1]
-  Power,        ///< the first not negative, and not 0 with a negative second
-  Direction,    ///< some component is not 0
-  Angle,        ///< not both 0
-  Whole,        ///< in the range of a 32-bit integer
+  NonNegative,   ///< the first operand
+  Positive,      ///< the first operand
+  NonZero,       ///< the second operand
+  Unit,          ///< the first in [-1, 1]
+  Power,         ///< the first not negative, and not 0 with a negative second
+  Direction,     ///< some component is not 0
+  Angle,         ///< not both 0
+  Whole,         ///< in the range of a 32-bit integer
+  Natural,       ///< in the range of an unsigned 32-bit integer
+  WholeNonZero,  ///< the second operand, an integer
+  Count,         ///< the second operand, an integer, in [0, 31]
 };
 
 /// The operands in which a result is linear while the others stay as they are.

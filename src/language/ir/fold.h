@@ -7,10 +7,12 @@
 #include <span>
 
 #include "ir/facts.h"
+#include "ir/whole.h"
 
 namespace lacquer::ir {
 
-/// One component of a Map, Compare, Logic or Select op (Bools are 0 and 1). Other ops return `a`.
+/// One component of an op that works component by component (Bools are 0 and 1, integers their bits). Other
+/// ops return `a`.
 template <class T>
 T foldComponent(Op op, [[maybe_unused]] T a, [[maybe_unused]] T b, [[maybe_unused]] T c) {
   switch (op) {

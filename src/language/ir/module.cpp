@@ -19,7 +19,7 @@ uint32_t layout(std::vector<BlockField>& fields) {
     offset = (offset + alignment - 1) / alignment * alignment;
     field.offset = offset;
     offset += field.stride() * field.elements();
-    assert(field.offset / 16 == (offset - 1) / 16 || field.type == Type::Mat4 || field.array != 0);
+    assert(field.offset / 16 == (offset - 1) / 16 || isMatrix(field.type) || field.array != 0);
   }
   return (offset + 15) / 16 * 16;
 }
@@ -225,11 +225,12 @@ void spell(const Module& module, const Numbers& numbers, ValueId id, std::string
   if (value.op == Op::Constant) {
     const Components& c = dag.constantOf(id);
     if (value.type == Type::Bool) return append(text, c[0] != 0 ? "true" : "false");
-    const bool several = value.type != Type::Float && value.type != Type::Int;
+    const bool several = componentCount(value.type) > 1;
     if (several) text += '(';
     for (int i = 0; i < componentCount(value.type); ++i) {
       if (i > 0) append(text, ", ");
-      appendNumber(text, c[static_cast<size_t>(i)]);
+      const double x = c[static_cast<size_t>(i)];
+      appendNumber(text, partType(value.type) == Type::UInt && x < 0 ? x + 0x1p32 : x);
     }
     if (several) text += ')';
     return;
@@ -245,6 +246,7 @@ void spell(const Module& module, const Numbers& numbers, ValueId id, std::string
     text += '.';
     for (int i = 0; i < componentCount(value.type); ++i) text += "xyzw"[swizzleComponent(value.payload, i)];
   }
+  if (value.op == Op::Column) append(text, "[", fmt::format_int(value.payload).c_str(), "]");
   if (value.op == Op::SumOverLights) append(text, "[", fmt::format_int(value.payload).c_str(), "]");
   if (value.op == Op::Element) {
     const Block& block = module.blocks[ListField::of(value).block];

@@ -58,7 +58,7 @@ struct BlockField {
   Interval range;
   std::string prose;   ///< one line for the documentation
   uint32_t array = 0;  ///< 0, or the number of elements, each a Vec4 or a Mat4
-  Components value{};  ///< what stands for it where nobody says: in evaluations; a Mat4's is the identity
+  Components value{};  ///< what stands for it where nobody says: in evaluations; a matrix's is the identity
 
   uint32_t elements() const { return array == 0 ? 1 : array; }
   /// Bytes of one element.

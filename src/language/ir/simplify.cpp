@@ -72,6 +72,9 @@ ValueId Simplifier::unary(Op op, ValueId a) {
   if (op == Op::Abs && value.op == Op::Neg) return dag_.make(Op::Abs, {value.args[0]});
   if ((op == Op::Abs || op == Op::Normalize) && value.op == op) return a;
   if (op == Op::Not && value.op == Op::Not) return value.args[0];
+  if (op == Op::BitNot && value.op == Op::BitNot) return value.args[0];
+  if ((op == Op::AsInt && value.op == Op::AsUInt) || (op == Op::AsUInt && value.op == Op::AsInt))
+    return value.args[0];
   // What is one object's may be interpolated, so that the vertices compute it.
   if (op == Op::Interpolate && value.rate <= Rate::Frame) return a;
   if ((op == Op::DFdx || op == Op::DFdy) && value.rate < Rate::Vertex) return zero(value.type);
@@ -87,6 +90,52 @@ ValueId Simplifier::binary(Op op, Type type, ValueId a, ValueId b) {
   if (op == Op::Pow) return power(type, a, b);
   if (op == Op::And || op == Op::Or) return logic(op, a, b);
   if (op == Op::Dot) return dot(a, b);
+  if (op == Op::MatMul && is(a, Op::Construct)) return columns(a, b);
+  if (ofWholes(info(op).signature)) return wholes(op, a, b);
+  return kNoValue;
+}
+
+/// A matrix that is made of columns times a vector.
+ValueId Simplifier::columns(ValueId matrix, ValueId vector) {
+  const Value m = dag_[matrix];
+  ValueId sum = kNoValue;
+  for (int k = 0; k < m.count; ++k) {
+    const ValueId part = dag_.mul(m.args[static_cast<size_t>(k)], dag_.component(vector, k));
+    sum = k == 0 ? part : dag_.add(sum, part);
+  }
+  return sum;
+}
+
+ValueId Simplifier::wholes(Op op, ValueId a, ValueId b) {
+  const Type type = dag_[a].type;
+  const bool added = op == Op::WholeAdd || op == Op::BitOr || op == Op::BitXor;
+  const bool moved = info(op).signature == Signature::Shift;
+  if ((added || moved || op == Op::WholeSub) && dag_.isConstant(b, 0)) return a;
+  if (added && dag_.isConstant(a, 0)) return b;
+  const auto zero = [&] { return dag_.constant(type, {}); };
+  if ((op == Op::WholeSub || op == Op::BitXor) && a == b) return zero();
+  if (op == Op::WholeMul || op == Op::BitAnd) {
+    if (dag_.isConstant(a, 0) || dag_.isConstant(b, 0)) return zero();
+    const double neutral = op == Op::WholeMul ? 1 : -1;
+    if (dag_.isConstant(a, neutral)) return b;
+    if (dag_.isConstant(b, neutral)) return a;
+  }
+  if ((op == Op::BitAnd || op == Op::BitOr) && a == b) return a;
+  if (op == Op::WholeEqual && a == b) return dag_.boolean(true);
+  if (op == Op::WholeSub && dag_.isConstant(b) && is(a, op) && dag_.isConstant(dag_[a].args[1])) {
+    const Value inner = dag_[a];
+    return dag_.make(op, {inner.args[0], dag_.make(Op::WholeAdd, {inner.args[1], b})});
+  }
+  // (x + c1) + c2 = x + (c1 + c2), and so on: exact, for integers wrap.
+  const bool gathers = added || op == Op::WholeMul || op == Op::BitAnd;
+  if (gathers && dag_.isConstant(a)) std::swap(a, b);
+  if (gathers && dag_.isConstant(b) && is(a, op)) {
+    const Value inner = dag_[a];
+    for (const size_t k : {size_t{0}, size_t{1}}) {
+      if (dag_.isConstant(inner.args[k]))
+        return dag_.make(op, {inner.args[1 - k], dag_.make(op, {inner.args[k], b})});
+    }
+  }
   return kNoValue;
 }
 
@@ -211,7 +260,7 @@ ValueId Simplifier::construct(Type type, std::span<const ValueId> parts) {
   for (const ValueId part : parts) {
     const Value value = dag_[part];
     for (int i = 0; i < componentCount(value.type); ++i) {
-      const ValueId scalar = value.type == Type::Float ? part : dag_.component(part, i);
+      const ValueId scalar = componentCount(value.type) == 1 ? part : dag_.component(part, i);
       const Value s = dag_[scalar];
       if (s.op == Op::Swizzle)
         picks.push_back({s.args[0], swizzleComponent(s.payload, 0)});
@@ -229,7 +278,8 @@ ValueId Simplifier::construct(Type type, std::span<const ValueId> parts) {
   }
   const bool one =
       std::all_of(picks.begin(), picks.end(), [&](const Pick& p) { return p.source == picks[0].source; });
-  if (one && dag_[picks[0].source].type != Type::Float) {
+  if (one && componentCount(dag_[picks[0].source].type) > 1) {
+    if (isComposite(type)) return kNoValue;
     std::vector<int> order;
     for (const Pick& p : picks) order.push_back(p.index);
     return dag_.swizzle(picks[0].source, order);
@@ -252,7 +302,8 @@ ValueId Simplifier::construct(Type type, std::span<const ValueId> parts) {
 ValueId Simplifier::swizzle(ValueId id, std::span<const int> components) {
   const Value value = dag_[id];
   const auto n = static_cast<int>(components.size());
-  if (value.type == Type::Float) return n == 1 ? id : dag_.construct(floatType(n), {id});
+  const Type type = vectorType(partType(value.type), n);
+  if (componentCount(value.type) == 1) return n == 1 ? id : dag_.construct(type, {id});
   bool identity = n == componentCount(value.type);
   for (int i = 0; i < n; ++i) identity &= components[static_cast<size_t>(i)] == i;
   if (identity) return id;
@@ -262,7 +313,7 @@ ValueId Simplifier::swizzle(ValueId id, std::span<const int> components) {
       c[static_cast<size_t>(i)] =
           dag_.constantOf(id)[static_cast<size_t>(components[static_cast<size_t>(i)])];
     }
-    return dag_.constant(floatType(n), c);
+    return dag_.constant(type, c);
   }
   if (value.op == Op::Swizzle) {
     std::array<int, 4> composed{};
@@ -272,7 +323,7 @@ ValueId Simplifier::swizzle(ValueId id, std::span<const int> components) {
     return dag_.swizzle(value.args[0], {composed.data(), static_cast<size_t>(n)});
   }
   if (value.op != Op::Construct) return kNoValue;
-  if (value.count == 1) return n == 1 ? value.args[0] : dag_.construct(floatType(n), {value.args[0]});
+  if (value.count == 1) return n == 1 ? value.args[0] : dag_.construct(type, {value.args[0]});
   // From a Construct: the part that holds all of it, or one component.
   int first = 0;
   for (int k = 0; k < value.count; ++k) {

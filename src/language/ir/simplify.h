@@ -28,6 +28,8 @@ private:
   ValueId logic(Op op, ValueId a, ValueId b);
   ValueId ternary(Op op, Type type, ValueId a, ValueId b, ValueId c);
   ValueId dot(ValueId a, ValueId b);
+  ValueId columns(ValueId matrix, ValueId vector);
+  ValueId wholes(Op op, ValueId a, ValueId b);
 
   /// The Float under a splat (a one-part Construct, or a constant with equal components), or kNoValue.
   ValueId splatted(ValueId id);

@@ -18,6 +18,17 @@ std::string_view typeName(Type type) {
     case Type::Texture2DShadow: return "sampler2DShadow";
     case Type::Texture2DArray: return "sampler2DArray";
     case Type::Texture3D: return "sampler3D";
+    case Type::UInt: return "uint";
+    case Type::IVec2: return "ivec2";
+    case Type::IVec3: return "ivec3";
+    case Type::IVec4: return "ivec4";
+    case Type::UVec2: return "uvec2";
+    case Type::UVec3: return "uvec3";
+    case Type::UVec4: return "uvec4";
+    case Type::BVec2: return "bvec2";
+    case Type::BVec3: return "bvec3";
+    case Type::BVec4: return "bvec4";
+    case Type::Mat3: return "mat3";
   }
   return "";
 }
@@ -25,6 +36,24 @@ std::string_view typeName(Type type) {
 std::string rangeText(const Range& range) {
   if (range.gap > 0) return fmt::format("[{}, {}] or 0", range.gap, range.hi);
   return fmt::format("[{}, {}]", range.lo, range.hi);
+}
+
+Type partType(Type type) {
+  if (type == Type::Mat3) return Type::Vec3;
+  if (type == Type::Mat4) return Type::Vec4;
+  if (type >= Type::BVec2) return Type::Bool;
+  if (type >= Type::UVec2) return Type::UInt;
+  if (type >= Type::IVec2) return Type::Int;
+  return isFloatVector(type) ? Type::Float : type;
+}
+
+Type vectorType(Type component, int count) {
+  if (count == 1) return component;
+  const auto from = [&](Type two) { return static_cast<Type>(static_cast<int>(two) + count - 2); };
+  if (component == Type::Int) return from(Type::IVec2);
+  if (component == Type::UInt) return from(Type::UVec2);
+  if (component == Type::Bool) return from(Type::BVec2);
+  return from(Type::Vec2);
 }
 
 Type floatType(int components) { return static_cast<Type>(static_cast<int>(Type::Float) + components - 1); }

@@ -22,27 +22,50 @@ enum class Type : uint8_t {
   Texture2DShadow,  ///< a depth map with a sampler that compares
   Texture2DArray,
   Texture3D,
+  UInt,
+  IVec2,
+  IVec3,
+  IVec4,
+  UVec2,
+  UVec3,
+  UVec4,
+  BVec2,
+  BVec3,
+  BVec4,
+  Mat3,
 };
 
 /// All of them, in the order of the enumeration.
 inline constexpr std::array kTypes = {
-    Type::Bool,           Type::Int,      Type::Float,     Type::Vec2,        Type::Vec3,
-    Type::Vec4,           Type::Mat4,     Type::Texture2D, Type::TextureCube, Type::Texture2DShadow,
-    Type::Texture2DArray, Type::Texture3D};
+    Type::Bool,           Type::Int,       Type::Float,     Type::Vec2,        Type::Vec3,
+    Type::Vec4,           Type::Mat4,      Type::Texture2D, Type::TextureCube, Type::Texture2DShadow,
+    Type::Texture2DArray, Type::Texture3D, Type::UInt,      Type::IVec2,       Type::IVec3,
+    Type::IVec4,          Type::UVec2,     Type::UVec3,     Type::UVec4,       Type::BVec2,
+    Type::BVec3,          Type::BVec4,     Type::Mat3};
 
 /// GLSL's name: "bool", "int", "float", "vec2", …, "mat4", "sampler2D", "samplerCube", "sampler2DShadow", ….
 std::string_view typeName(Type type);
 
-/// Number of float components: 1 for Float, 2 to 4 for vectors, 16 for Mat4, 1 for Bool and Int, 0 for
+/// Number of components: 1 for Float, Int, UInt and Bool, 2 to 4 for vectors, 9 and 16 for matrices, 0 for
 /// textures.
 constexpr int componentCount(Type type) {
-  constexpr int kCounts[] = {1, 1, 1, 2, 3, 4, 16, 0, 0, 0, 0, 0};
+  constexpr int kCounts[] = {1, 1, 1, 2, 3, 4, 16, 0, 0, 0, 0, 0, 1, 2, 3, 4, 2, 3, 4, 2, 3, 4, 9};
   return kCounts[static_cast<int>(type)];
 }
 
 inline bool isFloatVector(Type t) { return t == Type::Vec2 || t == Type::Vec3 || t == Type::Vec4; }
 inline bool isFloating(Type t) { return t == Type::Float || isFloatVector(t); }
-inline bool isTexture(Type t) { return t >= Type::Texture2D; }
+inline bool isTexture(Type t) { return t >= Type::Texture2D && t <= Type::Texture3D; }
+/// A 32-bit integer.
+inline bool isWhole(Type t) { return t == Type::Int || t == Type::UInt; }
+inline bool isMatrix(Type t) { return t == Type::Mat3 || t == Type::Mat4; }
+/// A matrix, or a vector of integers or Bools. The DAG has no operations on them: such a value is an input or
+/// a Construct, and what is done with it is done with its columns or components.
+inline bool isComposite(Type t) { return t >= Type::UInt ? t != Type::UInt : t == Type::Mat4; }
+/// Of a vector, the type of a component; of a matrix, of a column; any other type itself.
+Type partType(Type type);
+/// The vector of so many components of a type; for 1, the type.
+Type vectorType(Type component, int count);
 /// What a lookup is given: u and v; a direction; u, v and the value to compare; u, v and the layer; u, v and
 /// w.
 inline Type coordinateType(Type texture) { return texture == Type::Texture2D ? Type::Vec2 : Type::Vec3; }

@@ -6,6 +6,7 @@
 // therefore needs one vector of values and no names.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,10 +44,10 @@ struct Expr {
     Slot,       ///< `slot`: a parameter, a local, or what a template declares
     Constant,   ///< `constant`
     Operation,  ///< `builtin` of args: an operator or a builtin function
-    Construct,  ///< a value of `type` from args: vec3(a, b), float(i)
+    Construct,  ///< a value of `type` from args: vec3(a, b), float(i), mat3(x, y, z)
     Swizzle,    ///< components of args[0]
     Member,     ///< as parsed; the checker makes it a Slot, a Swizzle or a Field
-    Index,      ///< args[0], a Member, at args[1]; as parsed: the checker makes it a Slot
+    Index,      ///< args[0], a vector or a matrix, at args[1]; the checker makes a block's array a Slot
     Field,      ///< result `slot` of args[0], which is a Call
     Call,       ///< of `node`; args in the order of its parameters, null where the default is meant
     Select,     ///< args[0] ? args[1] : args[2]
@@ -54,9 +55,9 @@ struct Expr {
 
   Kind kind = Kind::Literal;
   ir::Type type = ir::Type::Float;  ///< of a Call with several results: of the first
-  bool untyped = false;  ///< an Int made of literals alone, which becomes a Float where one is needed
-  bool counted = false;  ///< an Int that is known when loops are unrolled
-  uint16_t depth = 1;    ///< of the tree
+  bool untyped =
+      false;           ///< an Int made of literals alone, which becomes a Float or a UInt where one is needed
+  uint16_t depth = 1;  ///< of the tree
   uint32_t slot = 0;
   Span span;
   double number = 0;
@@ -103,6 +104,9 @@ struct Statement {
   std::string_view reason;
 };
 
+/// The components of a matrix, column by column.
+using Matrix = std::array<double, 16>;
+
 /// A parameter, a result, or another typed name with a range.
 struct Param {
   ir::Type type = ir::Type::Float;
@@ -110,10 +114,13 @@ struct Param {
   bool has_range = false;
   ir::Range range;
   std::optional<ir::Components> default_value;
+  std::optional<Matrix> matrix_default;  ///< of a matrix, which has too many components for default_value
   std::string_view prose;
   Span span;
   RangeSyntax range_syntax;
   ExprPtr default_syntax;
+
+  bool hasDefault() const { return default_value || matrix_default; }
 };
 
 struct Body {

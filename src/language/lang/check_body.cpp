@@ -156,10 +156,10 @@ void Checker::let(Statement& statement) {
   } else {
     good = typed(value, statement.type, fmt::format("'{}'", statement.name));
   }
-  const bool possible = ir::isFloating(name.type) || name.type == Type::Bool;
+  const bool possible = !ir::isTexture(name.type);
   if ((good || !statement.inferred) && !possible) {
     reporter_.error("wrong-type", statement.name_span, fmt::format("a local cannot be {}", aType(name.type)),
-                    name.type == Type::Int ? "compute with a float" : "use the value where it is needed");
+                    "use the value where it is needed");
     good = false;
   }
   name.broken = statement.inferred ? !good : !possible;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "lang/builtins.h"
 #include "lang/checker.h"
+#include "lang/composites.h"
 #include "lang/parser.h"
 #include "lang/suggest.h"
 
@@ -79,21 +81,36 @@ bool Checker::checkAll(std::vector<ExprPtr>& args) {
   return good;
 }
 
-void Checker::makeFloat(Expr& expr) {
+void Checker::makeTyped(Expr& expr, Type type) {
   if (!expr.untyped) return;
-  expr.untyped = expr.counted = false;
-  expr.type = Type::Float;
-  for (ExprPtr& arg : expr.args) makeFloat(*arg);
+  expr.untyped = false;
+  expr.type = type;
+  for (ExprPtr& arg : expr.args) makeTyped(*arg, type);
 }
 
-/// Of an untyped number that stays an Int.
-bool Checker::keepInt(const Expr& expr) {
-  constexpr double kLargest = 2147483647;
-  if (expr.kind == Expr::Kind::Literal && expr.number > kLargest) {
-    reporter_.error("number-out-of-range", expr.span, fmt::format("'{}' does not fit an int", expr.name));
+namespace {
+
+/// The literal that does not fit; null for none. Hexadecimal digits are the bits of either type.
+const Expr* unfit(const Expr& expr, Type type) {
+  const double largest = type == Type::UInt || expr.name.starts_with("0x") ? 4294967295.0 : 2147483647.0;
+  if (expr.kind == Expr::Kind::Literal) return expr.number > largest ? &expr : nullptr;
+  for (const ExprPtr& arg : expr.args) {
+    if (const Expr* found = unfit(*arg, type)) return found;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool Checker::keepWhole(Expr& expr, Type type) {
+  if (!expr.untyped) return true;
+  if (const Expr* wrong = unfit(expr, type)) {
+    reporter_.error("number-out-of-range", wrong->span,
+                    fmt::format("'{}' does not fit {}", wrong->name, aType(type)));
     return false;
   }
-  return std::all_of(expr.args.begin(), expr.args.end(), [&](const ExprPtr& arg) { return keepInt(*arg); });
+  makeTyped(expr, type);
+  return true;
 }
 
 bool Checker::typed(ExprPtr& expr, Type type, std::string_view what) {
@@ -101,10 +118,7 @@ bool Checker::typed(ExprPtr& expr, Type type, std::string_view what) {
 }
 
 bool Checker::fits(Expr& expr, Type type, std::string_view what) {
-  if (type == Type::Int && expr.untyped) {
-    expr.untyped = false;
-    return keepInt(expr);
-  }
+  if (ir::isWhole(type) && expr.untyped) return keepWhole(expr, type);
   makeFloat(expr);
   if (expr.kind == Expr::Kind::Call && expr.node->results.size() > 1) {
     reporter_.error(
@@ -117,7 +131,11 @@ bool Checker::fits(Expr& expr, Type type, std::string_view what) {
   std::string help;
   if (expr.type == Type::Float && ir::isFloatVector(type))
     help = fmt::format("write {}(...) around it", typeName(type));
-  if (expr.type == Type::Int && type == Type::Float) help = "write float(...) around it";
+  const bool scalars = ir::componentCount(expr.type) == 1 && ir::componentCount(type) == 1;
+  if (scalars && ir::isWhole(expr.type) != ir::isWhole(type))
+    help = fmt::format("write {}(...) around it", typeName(type));
+  if (scalars && ir::isWhole(expr.type) && ir::isWhole(type))
+    help = fmt::format("write {}(...) around it: the same bits", typeName(type));
   reporter_.error("wrong-type", expr.span,
                   fmt::format("{} is {}, and this is {}", what, aType(type), aType(expr.type)),
                   std::move(help));
@@ -149,7 +167,6 @@ bool Checker::name(Expr& expr) {
     expr.kind = Expr::Kind::Slot;
     expr.type = found->type;
     expr.slot = found->slot;
-    expr.counted = found->kind == Name::Kind::Counter;
     return true;
   }
   const auto found = around_.find(expr.name);
@@ -162,7 +179,6 @@ bool Checker::name(Expr& expr) {
     if (expr.constant == nullptr) return false;
     expr.kind = Expr::Kind::Constant;
     expr.type = expr.constant->type;
-    expr.counted = expr.type == Type::Int;
     return true;
   }
   if (found && found->kind == DeclKind::Template) {
@@ -202,14 +218,32 @@ bool Checker::hasMembers(const Expr& expr) {
   return found != nullptr && found->multiple;
 }
 
-/// An element of a block's array: which one is known when the shader is made, so that it is a value like a
-/// field.
+/// An element of a block's array, which is known when the shader is made, so that it is a value like a field;
+/// a component of a vector; or a column of a matrix.
 bool Checker::index(ExprPtr& expr) {
   Expr& base = *expr->args[0];
   if (!hasMembers(base)) {
-    reporter_.error("wrong-index", expr->span, "only a block's arrays have elements",
-                    "components of a vector are `.x` to `.w`");
-    return false;
+    if (!expression(expr->args[0])) return false;
+    makeFloat(base);
+    const bool parts = ir::componentCount(base.type) > 1;
+    if (!parts || !fits(base, base.type, "what has an index")) {
+      if (!parts)
+        reporter_.error("wrong-index", expr->span, fmt::format("{} has no elements", aType(base.type)),
+                        "vectors, matrices and a block's arrays have");
+      return false;
+    }
+    if (!typed(expr->args[1], Type::Int, "the index")) return false;
+    const Expr& number = *expr->args[1];
+    const int count =
+        ir::isMatrix(base.type) ? (base.type == Type::Mat3 ? 3 : 4) : ir::componentCount(base.type);
+    if (number.kind == Expr::Kind::Literal && number.number >= count) {
+      reporter_.error("wrong-index", number.span,
+                      fmt::format("{} has no element {}", aType(base.type), number.name),
+                      fmt::format("it has {}: 0 to {}", count, count - 1));
+      return false;
+    }
+    expr->type = ir::partType(base.type);
+    return true;
   }
   const Member* found = memberOf(base);
   if (found == nullptr) return false;
@@ -274,7 +308,7 @@ bool Checker::swizzle(Expr& expr) {
   constexpr std::array<std::string_view, 3> kSets = {"xyzw", "rgba", "stpq"};
   const Type type = expr.args[0]->type;
   const Span span = spanOf(expr.name);
-  if (!ir::isFloatVector(type)) {
+  if (ir::componentCount(type) == 1 || ir::isMatrix(type) || ir::isTexture(type)) {
     reporter_.error(
         "wrong-swizzle", span, fmt::format("{} has no component '{}'", aType(type), expr.name),
         type == Type::Float ? "a vector is made from a float by vec2(x), vec3(x) or vec4(x)" : "");
@@ -297,50 +331,34 @@ bool Checker::swizzle(Expr& expr) {
     return false;
   }
   expr.kind = Expr::Kind::Swizzle;
-  expr.type = ir::floatType(static_cast<int>(expr.components.size()));
+  expr.type = ir::vectorType(ir::partType(type), static_cast<int>(expr.components.size()));
   return true;
 }
 
-/// Ints. They are counted at generation time and compared; `done` when nothing else is to be checked.
-bool Checker::integers(Expr& expr, bool& done) {
-  const bool ordering = expr.name == "<" || expr.name == "<=" || expr.name == ">" || expr.name == ">=" ||
-                        expr.name == "==" || expr.name == "!=";
-  const bool arithmetic = expr.name == "+" || expr.name == "-" || expr.name == "*";
-  bool all = true, untyped = true, counted = true, some_int = false;
-  for (const ExprPtr& arg : expr.args) {
-    all = all && arg->type == Type::Int;
+/// What numbers without a type are beside typed ones: integers beside integers, else floats. Arithmetic on
+/// nothing but such numbers stays without a type; a quotient is one of floats.
+bool Checker::settle(Expr& expr, std::vector<ExprPtr>& args) {
+  Type whole = Type::Float;
+  bool untyped = true;
+  for (const ExprPtr& arg : args) {
     untyped = untyped && arg->untyped;
-    counted = counted && arg->counted;
-    some_int = some_int || (arg->type == Type::Int && !arg->untyped);
+    if (!arg->untyped && ir::isWhole(ir::partType(arg->type))) whole = ir::partType(arg->type);
   }
-  done = true;
-  if (all && arithmetic && untyped) {
-    expr.untyped = expr.counted = true;
-    expr.type = Type::Int;
-    return true;
-  }
-  if (all && some_int && (arithmetic || ordering)) {
-    for (ExprPtr& arg : expr.args) {
-      if (arg->untyped && !keepInt(*arg)) return false;
-      arg->untyped = false;
+  if (untyped && expr.kind == Expr::Kind::Operation) {
+    constexpr std::string_view kWhole[] = {"+", "-", "*", "%", "&", "|", "^", "~", "<<", ">>"};
+    if (std::find(std::begin(kWhole), std::end(kWhole), expr.name) != std::end(kWhole)) {
+      expr.untyped = true;
+      expr.type = Type::Int;
+      return true;
     }
-    expr.type = ordering ? Type::Bool : Type::Int;
-    expr.counted = counted && arithmetic;
-    if (counted || ordering) return true;
-    reporter_.error("int-arithmetic", expr.span, "ints that come from outside can only be compared",
-                    "compute with floats");
-    return false;
   }
-  if (some_int) {
-    const bool known = std::all_of(expr.args.begin(), expr.args.end(),
-                                   [](const ExprPtr& arg) { return arg->type != Type::Int || arg->counted; });
-    reporter_.error("wrong-type", expr.span,
-                    fmt::format("no operator '{}' takes {}", expr.name, list(expr.args)),
-                    known ? "an int becomes a float by float(...)" : "");
-    return false;
+  for (size_t i = 0; i < args.size(); ++i) {
+    const bool count = i == 1 && (expr.name == "<<" || expr.name == ">>");
+    if (whole == Type::Float)
+      makeFloat(*args[i]);
+    else if (!keepWhole(*args[i], count ? Type::Int : whole))
+      return false;
   }
-  done = false;
-  for (ExprPtr& arg : expr.args) makeFloat(*arg);
   return true;
 }
 
@@ -350,18 +368,22 @@ bool Checker::operation(Expr& expr) {
     if (arg->kind == Expr::Kind::Call && !fits(*arg, arg->type, "an operand")) return false;
   }
   expr.builtin = findOperator(expr.name, static_cast<int>(expr.args.size()));
-  bool done = false;
-  if (!integers(expr, done)) return false;
-  if (done) return true;
+  if (!settle(expr, expr.args)) return false;
+  if (expr.untyped) return true;
   std::array<Type, 2> types{};
   for (size_t i = 0; i < expr.args.size(); ++i) types[i] = expr.args[i]->type;
   if (const auto type = expr.builtin->type(*expr.builtin, {types.data(), expr.args.size()})) {
     expr.type = *type;
     return true;
   }
+  std::string help = fmt::format("it takes {}", expr.builtin->shape);
+  const bool wholes = ir::isWhole(ir::partType(types[0])) || ir::isWhole(ir::partType(types[1]));
+  if (expr.args.size() == 2 && wholes && ir::partType(types[0]) != ir::partType(types[1]))
+    help = fmt::format("write {}(...) around one of them",
+                       ir::isFloating(types[0]) || ir::isFloating(types[1]) ? "float" : typeName(types[0]));
+  if (expr.name == "%" && ir::isFloating(types[0])) help = "write mod(x, y)";
   reporter_.error("wrong-type", expr.span,
-                  fmt::format("no operator '{}' takes {}", expr.name, list(expr.args)),
-                  fmt::format("it takes {}", expr.builtin->shape));
+                  fmt::format("no operator '{}' takes {}", expr.name, list(expr.args)), std::move(help));
   return false;
 }
 
@@ -373,39 +395,39 @@ bool Checker::construct(Expr& expr) {
     return false;
   }
   if (!expr.variant.empty()) return unknown(expr.variant, "variant", {});
-  if (!ir::isFloating(expr.type)) {
+  if (ir::isTexture(expr.type)) {
     reporter_.error("wrong-type", expr.span, fmt::format("a {} cannot be made", type),
-                    "float, vec2, vec3 and vec4 can");
+                    "a texture comes from outside");
     return false;
   }
   if (!checkAll(expr.args)) return false;
-  if (expr.type == Type::Float && expr.args.size() == 1 && expr.args[0]->type == Type::Int) {
-    makeFloat(*expr.args[0]);
-    if (expr.args[0]->type == Type::Float || expr.args[0]->counted) return true;
-    reporter_.error("int-arithmetic", expr.span, "ints that come from outside can only be compared",
-                    "declare it as a float");
-    return false;
-  }
+  const Type part = ir::partType(expr.type);
+  std::vector<Type> types;
   int have = 0;
   for (ExprPtr& arg : expr.args) {
+    if (ir::isWhole(part) && !keepWhole(*arg, part)) return false;
     makeFloat(*arg);
     if (arg->kind == Expr::Kind::Call && !fits(*arg, arg->type, "a part")) return false;
-    if (!ir::isFloating(arg->type)) {
-      reporter_.error(
-          "wrong-type", arg->span,
-          fmt::format("a {} is made from floats and vectors, not from {}", type, aType(arg->type)),
-          arg->type == Type::Int && arg->counted ? "an int becomes a float by float(...)" : "");
-      return false;
-    }
+    types.push_back(arg->type);
     have += ir::componentCount(arg->type);
   }
+  if (constructible(expr.type, types)) return true;
+  for (const ExprPtr& arg : expr.args) {
+    const bool vector = !ir::isMatrix(expr.type) && ir::isMatrix(arg->type);
+    if (!vector && !ir::isTexture(arg->type)) continue;
+    reporter_.error(
+        "wrong-type", arg->span,
+        fmt::format("a {} is made from numbers and vectors, not from {}", type, aType(arg->type)));
+    return false;
+  }
   const int want = ir::componentCount(expr.type);
-  const bool splat = expr.args.size() == 1 && expr.args[0]->type == Type::Float;
-  if (have == want || splat) return true;
   std::string help;
-  if (expr.args.size() == 1 && have > want)
+  if (expr.args.size() == 1 && have > want && want < 4)
     help = fmt::format("choose components: `.{}`",
                        std::string_view("xyzw").substr(0, static_cast<size_t>(want)));
+  if (ir::isMatrix(expr.type))
+    help =
+        "a matrix is made of its columns or components, of another matrix, or of one number for its diagonal";
   reporter_.error(
       "wrong-count", expr.span,
       fmt::format("a {} has {} component{}, and here are {}", type, want, want == 1 ? "" : "s", have),
@@ -419,6 +441,9 @@ bool Checker::select(Expr& expr) {
   const bool no = expression(expr.args[2]);
   if (!condition || !yes || !no) return false;
   for (const size_t i : {1, 2}) {
+    const Type other = expr.args[3 - i]->type;
+    const bool whole = !expr.args[3 - i]->untyped && ir::isWhole(other);
+    if (whole && !keepWhole(*expr.args[i], other)) return false;
     makeFloat(*expr.args[i]);
     if (expr.args[i]->kind == Expr::Kind::Call && !fits(*expr.args[i], expr.args[i]->type, "a choice"))
       return false;
@@ -430,10 +455,10 @@ bool Checker::select(Expr& expr) {
                     "they must be of one type");
     return false;
   }
-  if (ir::isFloating(expr.type) || expr.type == Type::Bool) return true;
+  if (!ir::isTexture(expr.type)) return true;
   reporter_.error("wrong-type", expr.span,
                   fmt::format("'?:' cannot choose between values of type {}", typeName(expr.type)),
-                  "it chooses bools, floats and vectors");
+                  "it chooses everything but textures");
   return false;
 }
 
@@ -458,9 +483,9 @@ bool Checker::function(Expr& expr) {
                                 any->arity == 1 ? "" : "s", expr.args.size()));
     return false;
   }
+  if (!settle(expr, expr.args)) return false;
   std::array<Type, 4> types{};
   for (size_t i = 0; i < expr.args.size(); ++i) {
-    makeFloat(*expr.args[i]);
     if (expr.args[i]->kind == Expr::Kind::Call && !fits(*expr.args[i], expr.args[i]->type, "an operand"))
       return false;
     types[i] = expr.args[i]->type;
@@ -568,7 +593,7 @@ bool Checker::arguments(Expr& expr) {
     ordered[index] = std::move(expr.args[i]);
   }
   for (size_t i = 0; good && i < params.size(); ++i) {
-    if (ordered[i] || params[i].default_value) continue;
+    if (ordered[i] || params[i].hasDefault()) continue;
     reporter_.error("wrong-count", expr.span, fmt::format("'{}' needs '{}'", expr.name, params[i].name),
                     fmt::format("it is {} and has no default", aType(params[i].type)));
     good = false;

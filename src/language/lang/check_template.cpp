@@ -304,9 +304,9 @@ void Checker::parts(TemplateDecl& decl, uint32_t& slots) {
 
 void Checker::attribute(AttributeDecl& decl, uint32_t& slots) {
   if (!decl.fact) {
-    if (!ir::isFloating(decl.type)) {
+    if (!ir::isFloating(decl.type) && !ir::isWhole(ir::partType(decl.type))) {
       reporter_.error("wrong-type", decl.span, fmt::format("an attribute cannot be {}", aType(decl.type)),
-                      "attributes are floats and vectors");
+                      "attributes are numbers and their vectors");
     }
     if (find(decl.name) == nullptr) templateNames(decl);
     decl.slot = slots++;
@@ -489,10 +489,11 @@ void Checker::extendedBlock(BlockDecl& decl, uint32_t& slots) {
 
 void Checker::fields(BlockDecl& decl, Name& instance, uint32_t& slots) {
   for (BlockFieldDecl& field : decl.fields) {
-    const bool good = ir::isFloating(field.type) || field.type == Type::Int || field.type == Type::Mat4;
+    const bool whole = ir::isWhole(ir::partType(field.type));
+    const bool good = ir::isFloating(field.type) || whole || field.type == Type::Mat4;
     if (!good) {
       reporter_.error("wrong-type", field.span, fmt::format("a field cannot be {}", aType(field.type)),
-                      "fields are ints, floats, vectors and matrices");
+                      "fields are numbers, their vectors and mat4");
     }
     for (const Member& member : instance.members) {
       if (member.name != field.name) continue;
@@ -500,12 +501,17 @@ void Checker::fields(BlockDecl& decl, Name& instance, uint32_t& slots) {
     }
     fieldArray(field);
     const bool listed = decl.list || decl.role == BlockRole::List;
-    if (listed && (field.array != 0 || field.type == Type::Mat4)) {
-      reporter_.error("wrong-type", field.span, "a list's elements hold numbers and vectors alone",
+    const bool held = ir::isFloating(field.type) || field.type == Type::Int;
+    if (listed && good && (field.array != 0 || !held)) {
+      reporter_.error("wrong-type", field.span,
+                      "a list's elements hold floats, vectors of them and ints alone",
                       "write a matrix as its rows");
     }
     rangeOf(field);
-    defaultOf(field);
+    if (ir::isMatrix(field.type) && field.default_syntax)
+      reporter_.error("wrong-type", field.span, fmt::format("{} has no default", aType(field.type)));
+    else
+      defaultOf(field);
     field.slot = slots;
     slots += field.elements();
     if (decl.role == BlockRole::Frame && field.type == Type::Int) frame_ints_.push_back(field.slot);
@@ -572,9 +578,9 @@ void Checker::lightKind(LightKindDecl& decl, uint32_t first_property) {
 
 /// Whether a value is of another type than the one it is to have; reports it.
 bool Checker::unlike(const Param& param, const Expr& value, std::string_view what) {
-  if (ir::isFloating(param.type) || param.type == Type::Bool) return false;
+  if (!ir::isTexture(param.type)) return false;
   reporter_.error("wrong-type", value.span, fmt::format("{} cannot be {}", what, aType(param.type)),
-                  "bools, floats and vectors are possible");
+                  "everything but textures is possible");
   return true;
 }
 
@@ -619,9 +625,9 @@ void Checker::given(GivenDecl& decl, uint32_t& slots) {
 void Checker::port(PortDecl& decl, uint32_t& slots) {
   Param& param = decl.param;
   rangeOf(param);
-  if (!ir::isFloating(param.type) && param.type != Type::Bool) {
+  if (ir::isTexture(param.type)) {
     reporter_.error("wrong-type", param.span, fmt::format("a port cannot be {}", aType(param.type)),
-                    "ports are bools, floats and vectors");
+                    "ports are everything but textures");
   }
   if (decl.default_value)
     typed(decl.default_value, param.type, fmt::format("the default of '{}'", param.name));

@@ -16,6 +16,9 @@ using ir::typeName;
 
 namespace {
 
+/// Of a UInt as the DAG has it (ir/whole.h), the number that it is.
+double numberOf(Type type, double x) { return ir::partType(type) == Type::UInt && x < 0 ? x + 0x1p32 : x; }
+
 std::string shown(double x) {
   if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
   return fmt::format("{}", x);
@@ -23,13 +26,16 @@ std::string shown(double x) {
 
 }  // namespace
 
-std::string aType(Type type) { return (type == Type::Int ? "an " : "a ") + std::string(typeName(type)); }
+std::string aType(Type type) {
+  const std::string_view name = typeName(type);
+  return (name[0] == 'i' ? "an " : "a ") + std::string(name);
+}
 
 void Checker::constant(ConstDecl& decl) {
   nameRules(decl.name, decl.span, "constant");
-  if (decl.type == Type::Mat4 || ir::isTexture(decl.type)) {
+  if (ir::isMatrix(decl.type) || ir::isTexture(decl.type)) {
     reporter_.error("wrong-type", decl.span, fmt::format("a constant cannot be {}", aType(decl.type)),
-                    "constants are bools, ints, floats and vectors");
+                    "constants are bools, numbers and vectors");
     return;
   }
   if (const Constant value = constantValue(decl.syntax, decl.type, "the constant")) decl.value = *value;
@@ -80,7 +86,7 @@ std::optional<ir::Interval> Checker::interval(RangeSyntax& syntax, Type type) {
     if (expr->kind == Expr::Kind::Literal && std::isinf(expr->number)) return expr->number;
     const Constant value = constantValue(expr, type, "a bound");
     if (!value) return std::nullopt;
-    return (*value)[0];
+    return numberOf(type, (*value)[0]);
   };
   const std::optional<double> lo = end(syntax.lo);
   const std::optional<double> hi = end(syntax.hi);
@@ -97,12 +103,13 @@ std::optional<ir::Interval> Checker::interval(RangeSyntax& syntax, Type type) {
 
 void Checker::rangeOf(Param& param) {
   if (!param.range_syntax) return;
-  if (!ir::isFloating(param.type) && param.type != Type::Int) {
+  const Type part = ir::partType(param.type);
+  if (!ir::isFloating(param.type) && !ir::isWhole(part)) {
     reporter_.error("wrong-type", param.range_syntax.span, fmt::format("{} has no range", aType(param.type)),
                     "ranges are of numbers and vectors");
     return;
   }
-  if (const auto range = interval(param.range_syntax, param.type == Type::Int ? Type::Int : Type::Float)) {
+  if (const auto range = interval(param.range_syntax, part)) {
     param.has_range = true;
     param.range = {*range, 0};
     if (!param.range_syntax.or_zero) return;
@@ -118,21 +125,35 @@ void Checker::rangeOf(Param& param) {
 
 void Checker::defaultOf(Param& param) {
   if (!param.default_syntax) return;
-  if (param.type == Type::Mat4 || ir::isTexture(param.type)) {
+  if (ir::isTexture(param.type)) {
     reporter_.error("wrong-type", param.span, fmt::format("{} has no default", aType(param.type)));
     return;
   }
+  if (ir::isMatrix(param.type)) return matrixDefault(param);
   param.default_value =
       constantValue(param.default_syntax, param.type, fmt::format("the default of '{}'", param.name));
   if (!param.default_value) return;
   inRange(param, *param.default_value, param.default_syntax->span, "default-out-of-range", "the default");
 }
 
+void Checker::matrixDefault(Param& param) {
+  const std::string what = fmt::format("the default of '{}'", param.name);
+  constants_only_ = true;
+  const bool good = typed(param.default_syntax, param.type, what);
+  constants_only_ = false;
+  if (!good) return;
+  if (!scratch_) scratch_.emplace();
+  param.matrix_default = evaluateMatrix(*scratch_, *param.default_syntax);
+  if (param.matrix_default) return;
+  reporter_.error("not-constant", param.default_syntax->span,
+                  fmt::format("{} does not come to finite numbers", what));
+}
+
 bool Checker::inRange(const Param& param, const ir::Components& value, Span span, std::string_view code,
                       std::string_view what) {
   if (!param.has_range) return true;
   for (int i = 0; i < ir::componentCount(param.type); ++i) {
-    const double x = value[static_cast<size_t>(i)];
+    const double x = numberOf(param.type, value[static_cast<size_t>(i)]);
     if (param.range.contains(x)) continue;
     reporter_.error(code, span,
                     fmt::format("{} {} lies outside {}", what, shown(x), ir::rangeText(param.range)));
@@ -163,9 +184,9 @@ void Checker::node(NodeDecl& decl) {
   }
   for (Param& result : decl.results) {
     rangeOf(result);
-    if (ir::isFloating(result.type) || result.type == Type::Bool) continue;
+    if (!ir::isTexture(result.type)) continue;
     reporter_.error("wrong-type", result.span, fmt::format("a node cannot give {}", aType(result.type)),
-                    "results are bools, floats and vectors");
+                    "results are everything but textures");
   }
   body(decl, {}, decl.span, decl.body);
   for (Variant& variant : decl.variants) body(decl, variant.name, variant.span, variant.body);

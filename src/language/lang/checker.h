@@ -92,6 +92,7 @@ private:
   void rangeOf(Param& param);
   std::optional<ir::Interval> interval(RangeSyntax& syntax, ir::Type type);
   void defaultOf(Param& param);
+  void matrixDefault(Param& param);
   /// Whether a value lies in the declared range; reports it when not. `what` begins the message.
   bool inRange(const Param& param, const ir::Components& value, Span span, std::string_view code,
                std::string_view what);
@@ -160,7 +161,7 @@ private:
   const Member* memberOf(Expr& expr);
   bool swizzle(Expr& expr);
   bool operation(Expr& expr);
-  bool integers(Expr& expr, bool& done);
+  bool settle(Expr& expr, std::vector<ExprPtr>& args);
   bool construct(Expr& expr);
   bool select(Expr& expr);
   bool call(Expr& expr);
@@ -170,9 +171,11 @@ private:
   /// Checks, and makes the expression's type the one that is wanted.
   bool typed(ExprPtr& expr, ir::Type type, std::string_view what);
   bool fits(Expr& expr, ir::Type type, std::string_view what);
-  /// An untyped number becomes a Float.
-  void makeFloat(Expr& expr);
-  bool keepInt(const Expr& expr);
+  /// An untyped number becomes a Float, an Int or a UInt.
+  void makeTyped(Expr& expr, ir::Type type);
+  void makeFloat(Expr& expr) { makeTyped(expr, ir::Type::Float); }
+  /// The same; false where it does not fit, which is reported.
+  bool keepWhole(Expr& expr, ir::Type type);
   bool unknown(std::string_view name, std::string_view what, std::vector<std::string_view> candidates,
                std::string otherwise = {});
   Name* find(std::string_view name);

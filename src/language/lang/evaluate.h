@@ -8,11 +8,19 @@
 
 namespace lacquer::lang {
 
-/// The value of a Literal, Constant, Operation, Construct or Swizzle whose args have these values.
+/// The most operands of an operation or a constructor: the components of a matrix.
+inline constexpr size_t kMostArgs = 16;
+
+/// The value of a Literal, Constant, Operation, Construct, Swizzle or Index whose args have these values.
 ir::ValueId makeValue(ir::Dag& dag, const Expr& expr, std::span<const ir::ValueId> args);
 
 /// The value of a checked expression without slots and calls; nothing when it does not fold to a finite
 /// constant.
 std::optional<ir::Components> evaluateConstant(ir::Dag& scratch, const Expr& expr);
+/// The same of a matrix.
+std::optional<Matrix> evaluateMatrix(ir::Dag& scratch, const Expr& expr);
+
+/// What stands for a parameter that is not given and has a default.
+ir::ValueId defaultOf(ir::Dag& dag, const Param& param);
 
 }  // namespace lacquer::lang

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -23,8 +24,9 @@ constexpr uint32_t kLongestName = 255;
 /// The length of the symbol that the text begins with; 0 for none.
 uint32_t symbolLength(std::string_view text) {
   constexpr std::string_view kSingle = "(){}[],;:?=<>+-*/!.%&|^~";
-  constexpr std::string_view kPairs = "-> :: <= >= == != && || ++ -- += -= *= /=";
-  constexpr std::string_view kSecond = ">:=&|+-";
+  constexpr std::string_view kPairs = "-> :: <= >= == != && || ++ -- += -= *= /= %= &= |= ^= << >>";
+  constexpr std::string_view kSecond = ">:=&|+-<";
+  if (text.starts_with("<<=") || text.starts_with(">>=")) return 3;
   if (text.size() > 1 && kSecond.find(text[1]) != std::string_view::npos &&
       kPairs.find(text.substr(0, 2)) != std::string_view::npos) {
     return 2;
@@ -121,7 +123,33 @@ private:
     tokens_.back().text = tokens_.back().text.substr(0, kLongestName);  // for the messages to come
   }
 
+  /// `0x` and digits: the bits of an integer.
+  void hexadecimal() {
+    uint32_t length = 2;
+    while (std::isxdigit(static_cast<unsigned char>(look(length))) != 0) ++length;
+    const std::string_view digits = text_.substr(at_ + 2, length - 2);
+    const bool without_sign = look(length) == 'u';
+    const uint32_t end = length + (without_sign ? 1 : 0);
+    uint32_t tail = end;
+    while (isNamePart(look(tail))) ++tail;
+    const std::string_view all = text_.substr(at_, tail);
+    uint32_t bits = 0;
+    const bool good =
+        tail == end && !digits.empty() && digits.size() <= 8 &&
+        std::from_chars(digits.data(), digits.data() + digits.size(), bits, 16).ec == std::errc{};
+    if (!good) {
+      reporter_.error("invalid-number", {at_, tail}, fmt::format("'{}' is not a number", printable(all)),
+                      "behind 0x stand one to eight hexadecimal digits, and 'u' for a uint");
+    }
+    add(Token::Kind::Number, tail);
+    Token& token = tokens_.back();
+    token.integer = true;
+    token.without_sign = without_sign;
+    token.number = bits;
+  }
+
   void number() {
+    if (look() == '0' && look(1) == 'x') return hexadecimal();
     uint32_t length = 0;
     bool integer = true;
     while (isDigit(look(length))) ++length;
@@ -136,19 +164,21 @@ private:
       length += 1 + sign;
       while (isDigit(look(length))) ++length;
     }
-    uint32_t tail = length;
+    const bool without_sign = integer && look(length) == 'u' && !isNamePart(look(length + 1));
+    uint32_t tail = length + (without_sign ? 1 : 0);
     while (isNamePart(look(tail))) ++tail;
-    if (tail != length) {
+    if (tail != length && !without_sign) {
       const std::string_view digits = text_.substr(at_, length);
-      reporter_.error(
-          "invalid-number", {at_, tail},
-          fmt::format("'{}' is not a number", printable(text_.substr(at_, tail))),
-          fmt::format("numbers have neither suffix nor base; perhaps '{}' is meant", printable(digits)));
+      reporter_.error("invalid-number", {at_, tail},
+                      fmt::format("'{}' is not a number", printable(text_.substr(at_, tail))),
+                      fmt::format("numbers have no suffix but the 'u' of a uint; perhaps '{}' is meant",
+                                  printable(digits)));
     }
     const std::string_view digits = text_.substr(at_, length);
     add(Token::Kind::Number, tail);
     Token& token = tokens_.back();
     token.integer = integer;
+    token.without_sign = without_sign;
     // Some readers want a digit on both sides of the point.
     std::string padded = digits.starts_with('.') ? "0" : "";
     padded += digits;

@@ -11,7 +11,8 @@ namespace lacquer::lang {
 struct Token {
   enum class Kind : uint8_t { Name, Number, String, Symbol, Doc, End };
   Kind kind = Kind::End;
-  bool integer = false;  ///< Number without point and exponent
+  bool integer = false;       ///< Number without point and exponent
+  bool without_sign = false;  ///< an integer with the suffix `u`
   Span span;
   std::string_view text;     ///< String: between the quotes; Doc: behind `///` and one space
   std::string_view comment;  ///< the `//` comment behind it on its line, the next token's line being another

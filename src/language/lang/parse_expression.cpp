@@ -50,18 +50,9 @@ ExprPtr Parser::conditional() {
 namespace {
 
 int precedence(const Token& token) {
-  constexpr std::array<std::pair<std::string_view, int>, 12> kOperators = {{{"||", 1},
-                                                                            {"&&", 2},
-                                                                            {"==", 3},
-                                                                            {"!=", 3},
-                                                                            {"<", 4},
-                                                                            {"<=", 4},
-                                                                            {">", 4},
-                                                                            {">=", 4},
-                                                                            {"+", 5},
-                                                                            {"-", 5},
-                                                                            {"*", 6},
-                                                                            {"/", 6}}};
+  constexpr std::pair<std::string_view, int> kOperators[] = {
+      {"||", 1}, {"&&", 2}, {"|", 3},  {"^", 4},  {"&", 5}, {"==", 6}, {"!=", 6}, {"<", 7},  {"<=", 7},
+      {">", 7},  {">=", 7}, {"<<", 8}, {">>", 8}, {"+", 9}, {"-", 9},  {"*", 10}, {"/", 10}, {"%", 10}};
   if (token.kind != Token::Kind::Symbol) return 0;
   for (const auto& [spelling, level] : kOperators) {
     if (token.text == spelling) return level;
@@ -76,11 +67,6 @@ ExprPtr Parser::binary(int least) {
   ExprPtr left = unary();
   while (left) {
     const Token& op = token();
-    if (op.is("%") || op.is("&") || op.is("|") || op.is("^")) {
-      syntax(fmt::format("there is no operator '{}'", op.text),
-             op.is("%") ? "write mod(x, y)" : "on bools there are '&&', '||' and '!='");
-      return nullptr;
-    }
     const int level = precedence(op);
     if (level == 0 || level < least) return left;
     ++at_;
@@ -96,7 +82,7 @@ ExprPtr Parser::binary(int least) {
 
 ExprPtr Parser::unary() {
   const Token& op = token();
-  if (!op.is("-") && !op.is("+") && !op.is("!")) return postfix();
+  if (!op.is("-") && !op.is("+") && !op.is("!") && !op.is("~")) return postfix();
   if (nesting_ >= kDeepest) {
     tooDeep();
     return nullptr;
@@ -144,8 +130,8 @@ ExprPtr Parser::primary() {
     ++at_;
     ExprPtr literal = make(Expr::Kind::Literal, begin, first.text);
     literal->number = first.number;
-    literal->untyped = literal->counted = first.integer;
-    literal->type = first.integer ? ir::Type::Int : ir::Type::Float;
+    literal->untyped = first.integer && !first.without_sign;
+    literal->type = first.without_sign ? ir::Type::UInt : first.integer ? ir::Type::Int : ir::Type::Float;
     return literal;
   }
   if (first.is("true") || first.is("false")) {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "lang/parser.h"
@@ -94,7 +96,9 @@ bool Parser::assignment(Statement& out) {
   out.name = target.text;
   out.name_span = target.span;
   const Token& op = token();
-  const bool compound = op.is("+=") || op.is("-=") || op.is("*=") || op.is("/=");
+  constexpr std::string_view kCompound[] = {"+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="};
+  const bool compound = std::any_of(std::begin(kCompound), std::end(kCompound),
+                                    [&](std::string_view spelling) { return op.is(spelling); });
   if (op.is("(") || op.is("::")) {
     return syntax("a call alone does nothing",
                   "everything is pure: name the result, `let x = " + std::string(target.text) + "(...);`");
@@ -125,7 +129,8 @@ bool Parser::assignment(Statement& out) {
     std::vector<ExprPtr> args;
     args.push_back(std::move(self));
     args.push_back(std::move(value));
-    value = make(Expr::Kind::Operation, target.span.offset, op.text.substr(0, 1), std::move(args));
+    value = make(Expr::Kind::Operation, target.span.offset, op.text.substr(0, op.text.size() - 1),
+                 std::move(args));
     if (!value) return false;
   }
   out.values.push_back(std::move(value));

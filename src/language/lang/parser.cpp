@@ -12,7 +12,7 @@
 namespace lacquer::lang {
 
 std::optional<ir::Type> findType(std::string_view name) {
-  constexpr std::string_view kFirstLetters = "bifvms";
+  constexpr std::string_view kFirstLetters = "bifumsv";
   if (name.empty() || kFirstLetters.find(name[0]) == std::string_view::npos) return std::nullopt;
   for (const ir::Type type : ir::kTypes) {
     if (ir::typeName(type) == name) return type;
@@ -136,9 +136,10 @@ bool Parser::type(ir::Type& out, std::string_view what) {
   if (!isType()) {
     const bool unknown = token().kind == Token::Kind::Name && !isReserved(token().text);
     if (unknown) {
-      reporter_.error("unknown-type", token().span, fmt::format("there is no type '{}'", token().text),
-                      "types are bool, int, float, vec2, vec3, vec4, mat4, sampler2D, samplerCube, "
-                      "sampler2DShadow, sampler2DArray and sampler3D");
+      reporter_.error(
+          "unknown-type", token().span, fmt::format("there is no type '{}'", token().text),
+          "types are bool, int, uint and float, their vectors (bvec2, ivec2, uvec2, vec2 and so on), mat3, "
+          "mat4, sampler2D, samplerCube, sampler2DShadow, sampler2DArray and sampler3D");
       return false;
     }
     return syntax(fmt::format("expected {}", what));

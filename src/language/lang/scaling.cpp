@@ -1,6 +1,7 @@
 #include "lang/scaling.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "lang/builtins.h"
 
@@ -49,7 +50,9 @@ Scaling ofExpansion(const Builtin& builtin, std::span<const Scaling> args) {
   const std::string_view name = builtin.name;
   if (name == "+" || name == "radians" || name == "degrees") return args[0];
   if (name == "distance") return either(args[0], args[1]);
-  if (builtin.is_operator) return comparison(args[0], args[1]);  // those that are left compare
+  constexpr std::string_view kComparisons[] = {"<", "<=", ">", ">=", "==", "!="};
+  if (std::find(std::begin(kComparisons), std::end(kComparisons), name) != std::end(kComparisons))
+    return comparison(args[0], args[1]);
   return opaque(args);
 }
 
@@ -128,7 +131,7 @@ private:
     std::vector<Scaling> args;
     for (size_t i = 0; i < expr.node->params.size(); ++i) {
       const bool given = i < expr.args.size() && expr.args[i];
-      args.push_back(given ? value(*expr.args[i]) : scalingOf(*expr.node->params[i].default_value));
+      args.push_back(given ? value(*expr.args[i]) : scalingOf(expr.node->params[i]));
     }
     return nodes_.of(*expr.node, expr.variant, args);
   }
@@ -144,7 +147,13 @@ private:
       case Expr::Kind::Construct: {
         Scaling all = Scaling::Zero;
         for (const ExprPtr& arg : expr.args) all = either(all, value(*arg));
-        return all;
+        // An integer or a truth of a number does not grow with it.
+        const bool number = ir::partType(expr.type) == ir::Type::Float || ir::isMatrix(expr.type);
+        return number || isFree(all) ? all : Scaling::Other;
+      }
+      case Expr::Kind::Index: {
+        const Scaling parts = value(*expr.args[0]);
+        return isFree(value(*expr.args[1])) ? parts : Scaling::Other;
       }
       case Expr::Kind::Select: {
         const Scaling arms = either(value(*expr.args[1]), value(*expr.args[2]));
@@ -157,8 +166,7 @@ private:
                                                 : ofOp(expr.builtin->op, args);
       }
       case Expr::Kind::Name:
-      case Expr::Kind::Member:
-      case Expr::Kind::Index: break;  // the checker has made others of them
+      case Expr::Kind::Member: break;  // the checker has made others of them
     }
     return Scaling::Other;
   }
@@ -178,6 +186,10 @@ Scaling either(Scaling a, Scaling b) {
 Scaling scalingOf(const ir::Components& constant) {
   const bool zero = std::all_of(constant.begin(), constant.end(), [](double x) { return x == 0; });
   return zero ? Scaling::Zero : Scaling::Fixed;
+}
+
+Scaling scalingOf(const Param& param) {
+  return param.default_value ? scalingOf(*param.default_value) : Scaling::Fixed;
 }
 
 const std::vector<Scaling>& ScalingOfNodes::of(const NodeDecl& node, std::string_view variant,

@@ -44,5 +44,7 @@ private:
 
 /// Of a number.
 Scaling scalingOf(const ir::Components& constant);
+/// Of a parameter's default.
+Scaling scalingOf(const Param& param);
 
 }  // namespace lacquer::lang

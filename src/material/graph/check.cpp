@@ -428,7 +428,7 @@ void GraphCheck::nodeInputs(size_t index) {
   if (decl == nullptr) return;
   Names missing;
   for (const lang::Param& param : decl->params) {
-    if (!param.default_value && !connected_.contains(param.name)) missing.push_back(param.name);
+    if (!param.hasDefault() && !connected_.contains(param.name)) missing.push_back(param.name);
   }
   if (missing.empty()) return;
   const std::string what = missing.size() == 1 ? "input" : "inputs";

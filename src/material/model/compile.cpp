@@ -409,7 +409,7 @@ Value Compiler::call(const Expr& expr) {
   for (size_t i = 0; i < expr.args.size(); ++i) argument(out, expr, i);
   for (size_t i = 0; i < out.args.size(); ++i) {
     const lang::Param& param = (*node)->params[i];
-    if (!out.args[i].absent || param.default_value) continue;
+    if (!out.args[i].absent || param.hasDefault()) continue;
     error(expr.span, "wrong-count", fmt::format("'{}' needs '{}'", expr.name, param.name),
           "it has no default");
   }

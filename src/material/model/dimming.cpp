@@ -82,10 +82,10 @@ Scaling Dimming::call(const Value& value, std::string_view path, uint32_t part) 
     const lang::Param& param = value.node->params[i];
     // What comes to nothing is the default.
     Scaling arg = Scaling::Zero;
-    if (param.default_value) arg = lang::scalingOf(*param.default_value);
+    if (param.hasDefault()) arg = lang::scalingOf(param);
     if (!value.args[i].absent) {
       const Scaling given = this->value(value.args[i], {}, part);
-      arg = param.default_value ? either(arg, given) : given;
+      arg = param.hasDefault() ? either(arg, given) : given;
     }
     args.push_back(arg);
   }

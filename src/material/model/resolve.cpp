@@ -272,7 +272,7 @@ Found Resolver::call(const Value& value, const Line& line) {
   node.order = line.order;
   for (size_t i = 0; i < value.args.size(); ++i) {
     node.inputs.push_back(value.args[i].absent ? Found{} : found(value.args[i], line));
-    if (!node.inputs.back() && !value.node->params[i].default_value) return {};
+    if (!node.inputs.back() && !value.node->params[i].hasDefault()) return {};
   }
   nodes_[line.id] = std::move(node);
   Found out;
@@ -663,7 +663,7 @@ std::string Resolver::missing(const Value& value, const Line& line, int depth) {
       return {};
     case Value::Kind::Call:
       for (size_t i = 0; i < value.args.size(); ++i) {
-        if (value.node->params[i].default_value) continue;
+        if (value.node->params[i].hasDefault()) continue;
         if (std::string why = missing(value.args[i], line, depth + 1); !why.empty()) return why;
       }
       return {};

@@ -56,7 +56,7 @@ fn main(
     var direct = vec3f(0.0);
     for (var i = 0; i < min(frame.light_count, 16); i++) {
         let n_dot_l = max(0.0, dot(normal, lights[i].direction));
-        direct += base_color * lights[i].color * (n_dot_l * select(1.0, lights[i].range, lights[i].lacquer_type == 1));
+        direct += base_color * lights[i].color * (n_dot_l * select(1.0, lights[i].range, lights[i].lacquer_type == 1i));
     }
 
     // environment.specular

@@ -32,13 +32,6 @@ constexpr std::array<uint32_t, ir::kOpCount> kOpcodes = opcodes();
 /// What lone_component_ says of a value that is needed whole; below it, 1 + the component.
 constexpr uint8_t kWhole = 0xff;
 
-spv::Op integerComparison(Op op) {
-  if (op == Op::Less) return spv::OpSLessThan;
-  if (op == Op::LessEqual) return spv::OpSLessThanEqual;
-  assert(op == Op::Equal);
-  return spv::OpIEqual;
-}
-
 }  // namespace
 
 Body::Body(const ir::Module& module, const schedule::Program& program, const Interface& interface,
@@ -100,7 +93,7 @@ void Body::findLoneComponents() {
   };
   for (const ValueId id : live_) {
     const ir::Value& v = dag_[id];
-    const bool lone = v.op == Op::Swizzle && v.type == Type::Float;
+    const bool lone = v.op == Op::Swizzle && ir::componentCount(v.type) == 1;
     for (const ValueId operand : v.operands()) {
       use(operand, lone ? static_cast<uint8_t>(1 + ir::swizzleComponent(v.payload, 0)) : kWhole);
     }
@@ -149,7 +142,10 @@ uint32_t Body::make(ValueId id) {
     case Signature::Same:
     case Signature::Compare:
     case Signature::Logic:
-    case Signature::Select: return operation(id);
+    case Signature::Select:
+    case Signature::Whole:
+    case Signature::WholeTest:
+    case Signature::Shift: return operation(id);
   }
   return 0;
 }
@@ -162,6 +158,7 @@ uint32_t Body::special(ValueId id) {
   if (op == Op::Construct) return construct(id);
   if (op == Op::Swizzle) return swizzle(id);
   if (op == Op::Element) return element(id);
+  if (op == Op::Column) return column(id);
   if (ir::readsTexture(op)) return texture(id);
   return operation(id);
 }
@@ -188,9 +185,6 @@ uint32_t Body::operation(ValueId id) {
   if (v.op == Op::Mul && dag_[v.args[0]].type != dag_[v.args[1]].type) {
     what.opcode = spv::OpVectorTimesScalar;
     if (dag_[v.args[0]].type == Type::Float) std::swap(operands[0], operands[1]);
-  }
-  if (ir::info(v.op).signature == Signature::Compare && dag_[v.args[0]].type == Type::Int) {
-    what.opcode = integerComparison(v.op);
   }
   assert((v.op != Op::Dot || dag_[v.args[0]].type != Type::Float) && "legalized");
   return instruction(id, what, operands.data(), v.count);
@@ -234,6 +228,7 @@ uint32_t Body::constant(ValueId id) {
   switch (dag_[id].type) {
     case Type::Bool: return globals_.boolean(c[0] != 0);
     case Type::Int: return globals_.integer(static_cast<int32_t>(c[0]));
+    case Type::UInt: return globals_.uinteger(static_cast<uint32_t>(static_cast<int32_t>(c[0])));
     case Type::Float: return globals_.number(c[0]);
     case Type::Vec2:
     case Type::Vec3:
@@ -243,7 +238,17 @@ uint32_t Body::constant(ValueId id) {
     case Type::TextureCube:
     case Type::Texture2DShadow:
     case Type::Texture2DArray:
-    case Type::Texture3D: break;
+    case Type::Texture3D:
+    case Type::IVec2:
+    case Type::IVec3:
+    case Type::IVec4:
+    case Type::UVec2:
+    case Type::UVec3:
+    case Type::UVec4:
+    case Type::BVec2:
+    case Type::BVec3:
+    case Type::BVec4:
+    case Type::Mat3: break;
   }
   assert(false && "not a type of constants");
   return 0;
@@ -309,6 +314,12 @@ uint32_t Body::element(ValueId id) {
   return instruction(id, {ir::SpirvSet::Core, spv::OpLoad}, &chain, 1);
 }
 
+/// Loads a column of a matrix, which is a field of a block.
+uint32_t Body::column(ValueId id) {
+  const ir::Value& v = dag_[id];
+  return blockField(id, dag_.inputOf(v.args[0]), static_cast<int>(v.payload));
+}
+
 uint32_t Body::construct(ValueId id) {
   const ir::Value& v = dag_[id];
   if (v.count == 1 && dag_[v.args[0]].type == Type::Float) return splat(v.args[0], v.type);
@@ -320,7 +331,7 @@ uint32_t Body::construct(ValueId id) {
 uint32_t Body::swizzle(ValueId id) {
   const ir::Value& v = dag_[id];
   const ValueId from = v.args[0];
-  if (v.type == Type::Float) {
+  if (ir::componentCount(v.type) == 1) {
     const auto component = static_cast<uint32_t>(ir::swizzleComponent(v.payload, 0));
     const bool field = dag_[from].op == Op::Input && dag_.inputOf(from).kind == InputKind::BlockField;
     if (field && lone_component_[from] != kWhole) {

@@ -51,6 +51,7 @@ private:
   uint32_t load(ir::ValueId id, uint32_t variable);
   uint32_t blockField(ir::ValueId id, const ir::Input& input, int component);
   uint32_t element(ir::ValueId id);
+  uint32_t column(ir::ValueId id);
   uint32_t construct(ir::ValueId id);
   uint32_t swizzle(ir::ValueId id);
   uint32_t texture(ir::ValueId id);

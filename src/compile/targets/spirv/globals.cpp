@@ -21,6 +21,17 @@ Kind kindOf(ir::Type type) {
     case ir::Type::Texture2DShadow: return Kind::SampledShadow;
     case ir::Type::Texture2DArray: return Kind::SampledArray;
     case ir::Type::Texture3D: return Kind::Sampled3D;
+    case ir::Type::UInt: return Kind::UInt;
+    case ir::Type::IVec2: return Kind::Int2;
+    case ir::Type::IVec3: return Kind::Int3;
+    case ir::Type::IVec4: return Kind::Int4;
+    case ir::Type::UVec2: return Kind::UInt2;
+    case ir::Type::UVec3: return Kind::UInt3;
+    case ir::Type::UVec4: return Kind::UInt4;
+    case ir::Type::BVec2:
+    case ir::Type::BVec3:
+    case ir::Type::BVec4:
+    case ir::Type::Mat3: break;  // the DAG has none but as their parts
   }
   assert(false && "not a type");
   return Kind::Void;
@@ -61,6 +72,13 @@ uint32_t Globals::type(Kind kind) {
     case Kind::Void: declarations.op(spv::OpTypeVoid, known = newId()); break;
     case Kind::Bool: declarations.op(spv::OpTypeBool, known = newId()); break;
     case Kind::Int: declarations.op(spv::OpTypeInt, known = newId(), 32, 1); break;
+    case Kind::UInt: declarations.op(spv::OpTypeInt, known = newId(), 32, 0); break;
+    case Kind::Int2: vector(Kind::Int, 2); break;
+    case Kind::Int3: vector(Kind::Int, 3); break;
+    case Kind::Int4: vector(Kind::Int, 4); break;
+    case Kind::UInt2: vector(Kind::UInt, 2); break;
+    case Kind::UInt3: vector(Kind::UInt, 3); break;
+    case Kind::UInt4: vector(Kind::UInt, 4); break;
     case Kind::Float: declarations.op(spv::OpTypeFloat, known = newId(), 32); break;
     case Kind::Vec2: vector(Kind::Float, 2); break;
     case Kind::Vec3: vector(Kind::Float, 3); break;
@@ -109,6 +127,8 @@ uint32_t Globals::boolean(bool b) {
 uint32_t Globals::integer(int32_t i) {
   return constant(spv::OpConstant, type(Kind::Int), {static_cast<uint32_t>(i)}, 1);
 }
+
+uint32_t Globals::uinteger(uint32_t i) { return constant(spv::OpConstant, type(Kind::UInt), {i}, 1); }
 
 uint32_t Globals::number(double x) {
   assert(!std::isnan(x));

@@ -14,6 +14,13 @@ enum class Kind : uint8_t {
   Void,
   Bool,
   Int,
+  UInt,
+  Int2,
+  Int3,
+  Int4,
+  UInt2,
+  UInt3,
+  UInt4,
   Float,
   Vec2,
   Vec3,
@@ -57,6 +64,7 @@ public:
 
   uint32_t boolean(bool b);
   uint32_t integer(int32_t i);
+  uint32_t uinteger(uint32_t i);
   /// The float nearest to x; beyond the range of float, the largest.
   uint32_t number(double x);
   /// `components` holds at least as many as the type has.

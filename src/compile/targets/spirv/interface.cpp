@@ -175,6 +175,8 @@ private:
     for (const uint32_t index : program_.varyings) {
       const ir::Varying& v = module_.varyings[index];
       made_.varyings[index] = io(storage, v.type, varyingName(v), spv::DecorationLocation, v.location);
+      if (!ir::isFloating(v.type))
+        globals_.decorations.op(spv::OpDecorate, made_.varyings[index], spv::DecorationFlat);
     }
   }
 
