@@ -155,9 +155,10 @@ struct ConstDecl {
 };
 
 struct NodeDecl {
-  std::string_view name;
-  std::string doc;     ///< its lines joined by newlines, without the source
-  std::string source;  ///< `KHR_materials_coat, "Colored Absorption"`
+  std::string_view name;    ///< of a form with its types: "add<vec3>"
+  std::string_view family;  ///< "add"
+  std::string doc;          ///< its lines joined by newlines, without the source
+  std::string source;       ///< `KHR_materials_coat, "Colored Absorption"`
   std::vector<Param> params;
   std::vector<Param> results;  ///< at least one
   Body body;                   ///< the reference

@@ -510,10 +510,10 @@ bool Checker::function(Expr& expr) {
 }
 
 bool Checker::call(Expr& expr) {
+  // What is built in is meant in bodies; a node of such a name is for graphs.
+  if (findFunction(expr.name) != nullptr) return function(expr);
   const auto found = around_.find(expr.name);
-  const bool node = found && found->kind == DeclKind::Node;
-  if (!node && findFunction(expr.name) != nullptr) return function(expr);
-  if (!node) {
+  if (!found || found->kind != DeclKind::Node) {
     for (ExprPtr& arg : expr.args) expression(arg);
     if (found || find(expr.name) != nullptr) {
       reporter_.error("wrong-type", spanOf(expr.name), fmt::format("'{}' is not a function", expr.name));
@@ -530,14 +530,20 @@ bool Checker::call(Expr& expr) {
                     "constants, literals and builtin functions are possible here");
     return false;
   }
-  if (found->open) {
+  return found->family ? callForm(expr) : callNode(expr, *found) && arguments(expr, false);
+}
+
+bool Checker::callNode(Expr& expr, const Surroundings::Found& found) {
+  if (found.open) {
     reporter_.error("recursion", spanOf(expr.name),
                     fmt::format("'{}' calls itself: {}", expr.name, around_.cycle(expr.name)));
     return false;
   }
-  expr.node = found->node;
+  expr.node = found.node;
   if (expr.node == nullptr) {  // it is wrong itself
-    for (ExprPtr& arg : expr.args) expression(arg);
+    for (ExprPtr& arg : expr.args) {
+      if (arg->kind != Expr::Kind::Slot) expression(arg);
+    }
     return false;
   }
   if (expr.node->find(expr.variant) == nullptr) {
@@ -551,11 +557,87 @@ bool Checker::call(Expr& expr) {
   unties_ |= expr.node->unties;
   deepest_callee_ = std::max(deepest_callee_, expr.node->height);
   expr.type = expr.node->results[0].type;
-  return arguments(expr);
+  return true;
 }
 
-/// Brings the arguments of a call into the order of the parameters.
-bool Checker::arguments(Expr& expr) {
+namespace {
+
+/// How a call fits a form: how many of its numbers without a type are integers there; nothing where it does
+/// not.
+std::optional<size_t> fitOf(const NodeDecl& form, const Expr& call) {
+  std::vector<bool> given(form.params.size(), false);
+  size_t integers = 0;
+  for (size_t i = 0; i < call.args.size(); ++i) {
+    size_t at = i;
+    if (!call.labels[i].empty()) {
+      const auto same = [&](const Param& param) { return param.name == call.labels[i]; };
+      at = static_cast<size_t>(std::find_if(form.params.begin(), form.params.end(), same) -
+                               form.params.begin());
+    }
+    if (at >= form.params.size() || given[at]) return std::nullopt;
+    given[at] = true;
+    const Type wanted = form.params[at].type;
+    const Expr& arg = *call.args[i];
+    const bool number = arg.untyped && (wanted == Type::Float || ir::isWhole(wanted));
+    if (!number && arg.type != wanted) return std::nullopt;
+    integers += number && wanted != Type::Float ? 1 : 0;
+  }
+  for (size_t i = 0; i < given.size(); ++i) {
+    if (!given[i] && !form.params[i].default_syntax) return std::nullopt;
+  }
+  return integers;
+}
+
+std::string signatureOf(const NodeDecl& form) {
+  std::string text = std::string(form.family) + "(";
+  for (const Param& param : form.params)
+    text += fmt::format("{}{} {}", text.back() == '(' ? "" : ", ", typeName(param.type), param.name);
+  return text + ")";
+}
+
+}  // namespace
+
+/// Of the nodes of one name, the one whose parameters have the types of the arguments.
+bool Checker::callForm(Expr& expr) {
+  if (!checkAll(expr.args)) return false;
+  for (const ExprPtr& arg : expr.args) {
+    if (arg->kind == Expr::Kind::Call && !fits(*arg, arg->type, "an argument")) return false;
+  }
+  const std::vector<const NodeDecl*> forms = around_.forms(expr.name);
+  std::vector<const NodeDecl*> best;
+  size_t least = SIZE_MAX;
+  for (const NodeDecl* form : forms) {
+    const std::optional<size_t> integers = fitOf(*form, expr);
+    if (!integers || *integers > least) continue;
+    if (*integers < least) best.clear();
+    least = *integers;
+    best.push_back(form);
+  }
+  if (best.size() != 1) {
+    constexpr size_t kShown = 6;
+    const std::vector<const NodeDecl*>& candidates = best.empty() ? forms : best;
+    std::string all;
+    for (size_t i = 0; i < std::min(candidates.size(), kShown); ++i)
+      all += (i == 0 ? "" : ", ") + signatureOf(*candidates[i]);
+    if (candidates.size() > kShown) all += fmt::format(" and {} more", candidates.size() - kShown);
+    reporter_.error(
+        best.empty() ? "wrong-type" : "ambiguous-call", expr.span,
+        fmt::format("{} of '{}' takes {}", best.empty() ? "no form" : "more than one form", expr.name,
+                    expr.args.empty() ? "nothing" : list(expr.args)),
+        all.empty() ? "" : fmt::format("there {} {}", candidates.size() == 1 ? "is" : "are", all));
+    return false;
+  }
+  const Surroundings::Found found = around_.form(best[0]->name);
+  if (found.open) {
+    reporter_.error("recursion", spanOf(expr.name),
+                    fmt::format("'{}' calls itself: {}", best[0]->name, around_.cycle(best[0]->name)));
+    return false;
+  }
+  return callNode(expr, found) && arguments(expr, true);
+}
+
+/// Brings the arguments of a call, `checked` where their types are known, into the order of the parameters.
+bool Checker::arguments(Expr& expr, bool checked) {
   const std::vector<Param>& params = expr.node->params;
   std::vector<ExprPtr> ordered(params.size());
   bool good = true, named = false;
@@ -589,7 +671,9 @@ bool Checker::arguments(Expr& expr) {
       reporter_.error("wrong-argument", spanOf(label), fmt::format("'{}' is given twice", label));
       return false;
     }
-    good = typed(expr.args[i], params[index].type, fmt::format("'{}'", params[index].name)) && good;
+    const std::string what = fmt::format("'{}'", params[index].name);
+    const Type type = params[index].type;
+    good = (checked ? fits(*expr.args[i], type, what) : typed(expr.args[i], type, what)) && good;
     ordered[index] = std::move(expr.args[i]);
   }
   for (size_t i = 0; good && i < params.size(); ++i) {

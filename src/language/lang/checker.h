@@ -24,9 +24,14 @@ public:
     DeclKind kind = DeclKind::Node;
     const ConstDecl* constant = nullptr;  ///< null as long as it is not checked, or is wrong
     const NodeDecl* node = nullptr;
-    bool open = false;  ///< it is being checked: it uses itself
+    bool open = false;    ///< it is being checked: it uses itself
+    bool family = false;  ///< a name of several nodes: forms()
   };
   virtual std::optional<Found> find(std::string_view name) const = 0;
+  /// The heads of the nodes of that name that parse; each has its parameters and results, unchecked.
+  virtual std::vector<const NodeDecl*> forms(std::string_view family) = 0;
+  /// Checks the node of one of these heads.
+  virtual Found form(std::string_view key) = 0;
   /// All names of that kind, for suggestions.
   virtual std::vector<std::string_view> names(DeclKind kind) const = 0;
   /// How an open declaration came to use itself: "a -> b -> a".
@@ -38,8 +43,7 @@ protected:
 
 class Checker {
 public:
-  Checker(Reporter& reporter, const Surroundings& surroundings)
-      : reporter_(reporter), around_(surroundings) {}
+  Checker(Reporter& reporter, Surroundings& surroundings) : reporter_(reporter), around_(surroundings) {}
 
   // Each is called once, for a declaration that parsed without an error. What is wrong goes to the reporter.
   void constant(ConstDecl& decl);
@@ -166,7 +170,9 @@ private:
   bool select(Expr& expr);
   bool call(Expr& expr);
   bool function(Expr& expr);
-  bool arguments(Expr& expr);
+  bool callForm(Expr& expr);
+  bool callNode(Expr& expr, const Surroundings::Found& found);
+  bool arguments(Expr& expr, bool checked);
   bool checkAll(std::vector<ExprPtr>& args);
   /// Checks, and makes the expression's type the one that is wanted.
   bool typed(ExprPtr& expr, ir::Type type, std::string_view what);
@@ -184,7 +190,7 @@ private:
   }
 
   Reporter& reporter_;
-  const Surroundings& around_;
+  Surroundings& around_;
   std::optional<ir::Dag> scratch_;  ///< for constants; made when the first is met
   std::vector<Name> names_;
   std::deque<std::string> made_names_;                     ///< that no source holds

@@ -12,6 +12,7 @@
 
 #include "lang/checker.h"
 #include "lang/embedded.h"
+#include "lang/forms.h"
 #include "lang/parser.h"
 #include "lang/scan.h"
 #include "lang/suggest.h"
@@ -56,7 +57,11 @@ struct Entry {
   bool good = false;  ///< it and all that it uses
   const File* file = nullptr;
   std::string_view name;
+  std::string key;  ///< of a form of a node: what `name` views
+  TypeBindings bindings;
+  uint32_t name_begin = 0;  ///< where the declared name stands
   uint32_t begin = 0, end = 0, line = 0;
+  std::unique_ptr<NodeDecl> head;  ///< of a form, once it was asked for
   std::vector<Entry*> uses;
   Diagnostics diagnostics;  ///< of itself alone
   std::unique_ptr<ConstDecl> constant;
@@ -90,6 +95,8 @@ public:
   }
 
   std::optional<Found> find(std::string_view name) const override;
+  std::vector<const NodeDecl*> forms(std::string_view family) override;
+  Found form(std::string_view key) override;
   std::vector<std::string_view> names(DeclKind kind) const override;
   std::string cycle(std::string_view name) const override;
 
@@ -107,8 +114,16 @@ private:
   bool basesOf(const Entry& entry, Reporter& reporter, std::vector<TemplateDecl>& bases);
   void collect(Entry& entry, std::unordered_set<const Entry*>& seen, Diagnostics& out);
 
+  bool index(const ScannedDecl& decl, const File& file, uint32_t line, Reporter& reporter);
+  bool indexForms(const ScannedDecl& decl, std::vector<Form> forms, const File& file, uint32_t line,
+                  Reporter& reporter);
+  void twice(std::string_view name, Span span, const Entry& other, Reporter& reporter);
+  void forget(size_t old_entries);
+
   std::array<std::unordered_map<std::string_view, Entry*>, kSpaces> index_;
-  std::vector<const Entry*> open_;
+  std::unordered_map<std::string_view, std::vector<Entry*>>
+      families_;  ///< by name, in the order of the texts
+  std::vector<Entry*> open_;
 };
 
 Diagnostics Library::Impl::scanFrom(size_t first) {
@@ -132,25 +147,13 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
     for (const ScannedDecl& decl : scan(reporter)) {
       line += static_cast<uint32_t>(std::count(counted, decl.name.data(), '\n'));
       counted = decl.name.data();
-      const auto [it, fresh] = index_[spaceOf(decl.kind)].try_emplace(decl.name, nullptr);
-      if (!fresh) {
-        const Entry& other = *it->second;
-        reporter.error(
-            "duplicate-name",
-            {static_cast<uint32_t>(decl.name.data() - file.text.data()),
-             static_cast<uint32_t>(decl.name.size())},
-            fmt::format("'{}' is declared twice", decl.name),
-            fmt::format("the other, {}, is at {}:{}", aKind(other.kind), other.file->name, other.line));
-        continue;
-      }
-      Entry& entry = entries.emplace_back();
-      entry.kind = decl.kind;
-      entry.file = &file;
-      entry.name = decl.name;
-      entry.begin = decl.begin;
-      entry.end = decl.end;
-      entry.line = line;
-      it->second = &entry;
+      const auto after = static_cast<uint32_t>(decl.name.data() + decl.name.size() - file.text.data());
+      std::vector<Form> forms;
+      if (decl.kind == DeclKind::Node) forms = formsOf(reporter, decl.name, after, decl.end);
+      if (forms.empty())
+        index(decl, file, line, reporter);
+      else
+        indexForms(decl, std::move(forms), file, line, reporter);
     }
     Diagnostics found = reporter.take();
     errors.insert(errors.end(), found.begin(), found.end());
@@ -165,12 +168,116 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
     }
     return errors;
   }
-  while (entries.size() > old_entries) {
-    index_[spaceOf(entries.back().kind)].erase(entries.back().name);
-    entries.pop_back();
-  }
+  forget(old_entries);
   while (files.size() > first) files.pop_back();
   return errors;
+}
+
+void Library::Impl::forget(size_t old_entries) {
+  while (entries.size() > old_entries) {
+    const Entry& last = entries.back();
+    index_[spaceOf(last.kind)].erase(last.name);
+    const auto family = last.key.empty()
+                            ? families_.end()
+                            : families_.find(last.file->text.substr(last.name_begin, last.name.find('<')));
+    if (family != families_.end()) {
+      family->second.pop_back();
+      if (family->second.empty()) families_.erase(family);
+    }
+    entries.pop_back();
+  }
+}
+
+void Library::Impl::twice(std::string_view name, Span span, const Entry& other, Reporter& reporter) {
+  reporter.error("duplicate-name", span, fmt::format("'{}' is declared twice", name),
+                 fmt::format("the other, {}, is at {}:{}", aKind(other.kind), other.file->name, other.line));
+}
+
+bool Library::Impl::index(const ScannedDecl& decl, const File& file, uint32_t line, Reporter& reporter) {
+  const Span span{static_cast<uint32_t>(decl.name.data() - file.text.data()),
+                  static_cast<uint32_t>(decl.name.size())};
+  const size_t space = spaceOf(decl.kind);
+  if (const auto family = families_.find(decl.name); space == 0 && family != families_.end()) {
+    twice(decl.name, span, *family->second[0], reporter);
+    return false;
+  }
+  const auto [it, fresh] = index_[space].try_emplace(decl.name, nullptr);
+  if (!fresh) {
+    twice(decl.name, span, *it->second, reporter);
+    return false;
+  }
+  Entry& entry = entries.emplace_back();
+  entry.kind = decl.kind;
+  entry.file = &file;
+  entry.name = decl.name;
+  entry.name_begin = span.offset;
+  entry.begin = decl.begin;
+  entry.end = decl.end;
+  entry.line = line;
+  it->second = &entry;
+  return true;
+}
+
+/// A node for each form, all of one name.
+bool Library::Impl::indexForms(const ScannedDecl& decl, std::vector<Form> forms, const File& file,
+                               uint32_t line, Reporter& reporter) {
+  const Span span{static_cast<uint32_t>(decl.name.data() - file.text.data()),
+                  static_cast<uint32_t>(decl.name.size())};
+  if (const auto other = index_[0].find(decl.name); other != index_[0].end()) {
+    twice(decl.name, span, *other->second, reporter);
+    return false;
+  }
+  for (Form& form : forms) {
+    if (const auto other = index_[0].find(form.key); other != index_[0].end()) {
+      twice(form.key, span, *other->second, reporter);
+      return false;
+    }
+    Entry& entry = entries.emplace_back();
+    entry.file = &file;
+    entry.key = std::move(form.key);
+    entry.name = entry.key;
+    entry.bindings = std::move(form.bindings);
+    entry.name_begin = span.offset;
+    entry.begin = decl.begin;
+    entry.end = decl.end;
+    entry.line = line;
+    index_[0].emplace(entry.name, &entry);
+    families_[decl.name].push_back(&entry);
+  }
+  return true;
+}
+
+std::vector<const NodeDecl*> Library::Impl::forms(std::string_view family) {
+  std::vector<Entry*> all;
+  if (const auto found = families_.find(family); found != families_.end())
+    all = found->second;
+  else if (Entry* one = find(DeclKind::Node, family))
+    all = {one};
+  std::vector<const NodeDecl*> heads;
+  for (Entry* entry : all) {
+    if (!entry->head) {
+      // Its body, which begins behind the first brace that follows its name, is not looked at.
+      const size_t brace = entry->file->text.find('{', entry->name_begin);
+      const auto end = static_cast<uint32_t>(std::min<size_t>(brace, entry->end));
+      Reporter silent(entry->file->name, entry->file->text);
+      entry->head = std::make_unique<NodeDecl>(Parser(silent, entry->begin, end, entry->bindings).nodeHead());
+      entry->head->name = entry->name;
+      if (silent.count() != 0) entry->head->results.clear();
+    }
+    if (!entry->head->results.empty()) heads.push_back(entry->head.get());
+  }
+  return heads;
+}
+
+Surroundings::Found Library::Impl::form(std::string_view key) {
+  Entry* entry = find(DeclKind::Node, key);
+  Found found;
+  found.open = entry->state == Entry::State::Open;
+  if (found.open) return found;
+  demand(*entry);
+  if (!open_.empty()) open_.back()->uses.push_back(entry);
+  found.node = entry->good ? entry->node.get() : nullptr;
+  return found;
 }
 
 Entry* Library::Impl::find(DeclKind kind, std::string_view name) {
@@ -181,7 +288,12 @@ Entry* Library::Impl::find(DeclKind kind, std::string_view name) {
 
 std::optional<Surroundings::Found> Library::Impl::find(std::string_view name) const {
   const auto it = index_[0].find(name);
-  if (it == index_[0].end()) return std::nullopt;
+  if (it == index_[0].end()) {
+    if (!families_.contains(name)) return std::nullopt;
+    Found found;
+    found.family = true;
+    return found;
+  }
   const Entry& entry = *it->second;
   Found found;
   found.kind = entry.kind;
@@ -284,6 +396,8 @@ void Library::Impl::demand(Entry& entry) {
       good = good && used->good;
     }
     check(entry, reporter);
+    // Forms are chosen as it is checked.
+    for (const Entry* used : entry.uses) good = good && used->good;
   }
   entry.good = good && reporter.count() == 0;
   entry.diagnostics = reporter.take();
@@ -292,7 +406,7 @@ void Library::Impl::demand(Entry& entry) {
 }
 
 void Library::Impl::parse(Entry& entry, Reporter& reporter) {
-  Parser parser(reporter, entry.begin, entry.end);
+  Parser parser(reporter, entry.begin, entry.end, entry.bindings);
   const Origin origin{entry.file->name, entry.line};
   switch (entry.kind) {
     case DeclKind::Const:
@@ -302,6 +416,7 @@ void Library::Impl::parse(Entry& entry, Reporter& reporter) {
     case DeclKind::Node:
       entry.node = std::make_unique<NodeDecl>(parser.node());
       entry.node->origin = origin;
+      entry.node->name = entry.name;
       break;
     case DeclKind::Template:
       entry.template_decl = std::make_unique<TemplateDecl>(parser.templateDecl());
@@ -447,6 +562,11 @@ Result<std::string> Library::defaultTemplate() const {
   if (known != nullptr) return std::string(known->name);
   return fail("unknown-template", {}, "no template is named, and none is the default",
               "a template is that which says `default;`");
+}
+
+std::vector<const NodeDecl*> Library::forms(std::string_view family) const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->forms(family);
 }
 
 bool Library::has(DeclKind kind, std::string_view name) const {

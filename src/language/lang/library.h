@@ -39,7 +39,11 @@ public:
   Result<void> add(std::vector<SourceFile> files);
 
   Result<const ConstDecl*> constant(std::string_view name) const;
+  /// A node, of several under one name by its types: "add<vec3>".
   Result<const NodeDecl*> node(std::string_view name) const;
+  /// The nodes of a name: one, or its forms, or none. Each has its parameters and results with their types
+  /// and whether there is a default (`default_syntax`); all else is there once node() has checked it.
+  std::vector<const NodeDecl*> forms(std::string_view family) const;
   Result<const TemplateDecl*> template_(std::string_view name) const;
   Result<const ExtensionDecl*> extension(std::string_view name) const;
   Result<const PartDecl*> part(std::string_view name) const;
@@ -54,7 +58,7 @@ public:
 
   bool has(DeclKind kind, std::string_view name) const;
 
-  /// The declared names of that kind, sorted.
+  /// The declared names of that kind, sorted; of nodes that share a name those with their types.
   std::vector<std::string_view> names(DeclKind kind) const;
 
   /// Parses and checks everything; empty when all is well.

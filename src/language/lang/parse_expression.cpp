@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <utility>
 
 #include "lang/parser.h"
+#include "lang/words.h"
 
 namespace lacquer::lang {
 
@@ -123,6 +124,15 @@ ExprPtr Parser::postfix() {
   return expr;
 }
 
+/// A name as a value. A word that begins a statement is one only where an operator, or an end, follows.
+bool Parser::isValueName() const {
+  const Token& first = token();
+  if (!isName(first)) return false;
+  if (std::find(std::begin(kBodyWords), std::end(kBodyWords), first.text) == std::end(kBodyWords))
+    return true;
+  return token(1).kind == Token::Kind::Symbol && !token(1).is("(") && !token(1).is("{") && !token(1).is("!");
+}
+
 ExprPtr Parser::primary() {
   const Token& first = token();
   const uint32_t begin = first.span.offset;
@@ -155,7 +165,7 @@ ExprPtr Parser::primary() {
     }
     return call(first.text, Expr::Kind::Construct);
   }
-  if (first.kind == Token::Kind::Name && !isReserved(first.text)) {
+  if (isValueName()) {
     ++at_;
     if (is("(") || is("::")) {
       names_called_.push_back(first.text);
@@ -193,7 +203,7 @@ ExprPtr Parser::call(std::string_view name, Expr::Kind kind) {
   accept(")");
   ExprPtr expr = make(kind, begin, name, std::move(args));
   if (!expr) return nullptr;
-  if (kind == Expr::Kind::Construct) expr->type = *findType(name);
+  if (kind == Expr::Kind::Construct) expr->type = *typeOf(name);
   expr->variant = variant;
   expr->labels = std::move(labels);
   return expr;

@@ -47,7 +47,13 @@ bool Parser::statement(std::vector<Statement>& statements) {
   Statement out;
   const uint32_t begin = token().span.offset;
   bool good = false;
-  if (is("let") || isType()) {
+  // A local may be called as a statement begins.
+  constexpr std::string_view kAssigns[] = {"=", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="};
+  const bool assigns = isName(token()) && std::any_of(std::begin(kAssigns), std::end(kAssigns),
+                                                      [&](std::string_view op) { return token(1).is(op); });
+  if (assigns) {
+    good = assignment(out);
+  } else if (is("let") || isType()) {
     good = local(out);
   } else if (is("if")) {
     good = ifStatement(out);
@@ -57,7 +63,7 @@ bool Parser::statement(std::vector<Statement>& statements) {
     good = returnStatement(out);
   } else if (is("assume")) {
     good = assumeStatement(out);
-  } else if (token().kind == Token::Kind::Name && !isReserved(token().text)) {
+  } else if (isName(token()) && !is("else")) {
     good = assignment(out);
   } else {
     return syntax("expected a statement", is("else") ? "'else' follows the '}' of an 'if'" : "");

@@ -21,14 +21,12 @@ std::optional<ir::Type> findType(std::string_view name) {
 }
 
 bool isReserved(std::string_view name) {
-  return std::find(std::begin(kBodyWords), std::end(kBodyWords), name) != std::end(kBodyWords) ||
-         findType(name).has_value() ||
-         std::any_of(std::begin(kDeclWords), std::end(kDeclWords),
-                     [&](const DeclWord& row) { return row.reserved && row.word == name; });
+  return std::find(std::begin(kValueWords), std::end(kValueWords), name) != std::end(kValueWords) ||
+         findType(name).has_value();
 }
 
-Parser::Parser(Reporter& reporter, uint32_t begin, uint32_t end)
-    : reporter_(reporter), tokens_(tokenize(reporter, begin, end)) {
+Parser::Parser(Reporter& reporter, uint32_t begin, uint32_t end, TypeBindings bindings)
+    : reporter_(reporter), bindings_(std::move(bindings)), tokens_(tokenize(reporter, begin, end)) {
   dropStrayDocs();
 }
 
@@ -120,7 +118,9 @@ bool Parser::abort() {
 bool Parser::name(std::string_view& out, Span& span, std::string_view what) {
   const Token& t = token();
   if (t.kind != Token::Kind::Name) return syntax(fmt::format("expected {}", what));
-  if (isReserved(t.text))
+  // The range of what has no name.
+  const bool range = t.is("in") && token(1).is("[");
+  if (!isName(t) || range)
     return syntax(fmt::format("expected {}", what), fmt::format("'{}' is a word of the language", t.text));
   out = t.text;
   span = t.span;
@@ -128,8 +128,16 @@ bool Parser::name(std::string_view& out, Span& span, std::string_view what) {
   return true;
 }
 
-bool Parser::isType() const {
-  return token().kind == Token::Kind::Name && findType(token().text).has_value();
+std::optional<ir::Type> Parser::typeOf(std::string_view word) const {
+  for (const auto& [variable, type] : bindings_) {
+    if (variable == word) return type;
+  }
+  return findType(word);
+}
+
+/// Words of statements and declarations are names where only a name can stand.
+bool Parser::isName(const Token& token) const {
+  return token.kind == Token::Kind::Name && !isReserved(token.text) && !typeOf(token.text);
 }
 
 bool Parser::type(ir::Type& out, std::string_view what) {
@@ -144,7 +152,7 @@ bool Parser::type(ir::Type& out, std::string_view what) {
     }
     return syntax(fmt::format("expected {}", what));
   }
-  out = *findType(token().text);
+  out = *typeOf(token().text);
   ++at_;
   return true;
 }
@@ -273,17 +281,30 @@ void Parser::results(NodeDecl& node) {
   expect(")", "the results");
 }
 
-NodeDecl Parser::node() {
+/// The list behind the name, which the scanner has read (forms.h).
+bool Parser::skipForms() {
+  if (!accept("<")) return true;
+  while (!is(">") && token().kind != Token::Kind::End) ++at_;
+  return expect(">", "the types");
+}
+
+NodeDecl Parser::nodeHead() {
   NodeDecl decl;
   docs(decl.doc, &decl.source);
   accept("node");
-  if (!name(decl.name, decl.span, "the node's name")) return decl;
-  size_t errors = reporter_.count();
+  if (!name(decl.name, decl.span, "the node's name") || !skipForms()) return decl;
+  decl.family = decl.name;
+  const size_t errors = reporter_.count();
   if (!expect("(", "the node's name")) return decl;
   params(decl);
   if (reporter_.count() != errors || !expect(")", "the parameters")) return decl;
-  if (!expect("->", "the parameters")) return decl;
-  results(decl);
+  if (expect("->", "the parameters")) results(decl);
+  return decl;
+}
+
+NodeDecl Parser::node() {
+  const size_t errors = reporter_.count();
+  NodeDecl decl = nodeHead();
   if (reporter_.count() != errors || !body(decl.body.statements)) return decl;
   while (is("variant") || token().kind == Token::Kind::Doc) {
     Variant variant;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lang/ast.h"
+#include "lang/forms.h"
 #include "lang/lexer.h"
 #include "lang/model_decl.h"
 #include "lang/reporter.h"
@@ -21,10 +22,13 @@ class Parser {
 public:
   /// Parses one declaration, which is text[begin, end). What is wrong goes to the reporter; after an error in
   /// a statement it goes on with the next.
-  Parser(Reporter& reporter, uint32_t begin, uint32_t end);
+  /// `bindings`: what names of types stand for in a form of a node.
+  Parser(Reporter& reporter, uint32_t begin, uint32_t end, TypeBindings bindings = {});
 
   ConstDecl constant();
   NodeDecl node();
+  /// The same without its body and variants.
+  NodeDecl nodeHead();
   TemplateDecl templateDecl();
   ExtensionDecl extension();
   PartDecl part();
@@ -106,7 +110,11 @@ private:
   bool expect(std::string_view symbol, std::string_view after);
   bool name(std::string_view& out, Span& span, std::string_view what);
   bool type(ir::Type& out, std::string_view what);
-  bool isType() const;
+  std::optional<ir::Type> typeOf(std::string_view word) const;
+  bool isType() const { return token().kind == Token::Kind::Name && typeOf(token().text).has_value(); }
+  bool isName(const Token& token) const;
+  bool isValueName() const;
+  bool skipForms();
   /// From a token's offset to the last token consumed.
   Span since(uint32_t begin) const;
   bool syntax(std::string message, std::string help = {});
@@ -115,6 +123,7 @@ private:
   bool abort();
 
   Reporter& reporter_;
+  TypeBindings bindings_;
   std::vector<Token> tokens_;
   size_t at_ = 0;
   uint32_t nesting_ = 0;

@@ -12,24 +12,20 @@ struct DeclWord {
   std::string_view word;
   DeclKind kind;
   std::string_view name;  ///< of the kind, in messages
-  bool reserved;          ///< nothing else can be named so
 };
 
 inline constexpr DeclWord kDeclWords[] = {
-    {"const", DeclKind::Const, "constant", true},
-    {"node", DeclKind::Node, "node", true},
-    {"template", DeclKind::Template, "template", true},
-    {"extension", DeclKind::Extension, "extension", false},
-    {"material", DeclKind::Extension, "extension", false},
-    {"part", DeclKind::Part, "part", false},
-    {"profile", DeclKind::Profile, "profile", false},
-    {"lod", DeclKind::Lod, "lod", false},
-    {"layers", DeclKind::Layers, "order of layers", false},
-    {"switch", DeclKind::Switch, "switch", false},
+    {"const", DeclKind::Const, "constant"},          {"node", DeclKind::Node, "node"},
+    {"template", DeclKind::Template, "template"},    {"extension", DeclKind::Extension, "extension"},
+    {"material", DeclKind::Extension, "extension"},  {"part", DeclKind::Part, "part"},
+    {"profile", DeclKind::Profile, "profile"},       {"lod", DeclKind::Lod, "lod"},
+    {"layers", DeclKind::Layers, "order of layers"}, {"switch", DeclKind::Switch, "switch"},
 };
 
-/// Those of a body, which are all reserved.
-inline constexpr std::string_view kBodyWords[] = {"variant", "let", "if",   "else",  "for", "return",
-                                                  "assume",  "in",  "true", "false", "inf"};
+/// Values, which cannot be names. The words of statements and declarations can, where only a name can stand.
+inline constexpr std::string_view kValueWords[] = {"true", "false", "inf"};
+
+/// Those that begin a part of a body: a name only where what follows can stand behind a value.
+inline constexpr std::string_view kBodyWords[] = {"variant", "let", "if", "else", "for", "return", "assume"};
 
 }  // namespace lacquer::lang
