@@ -25,5 +25,6 @@
 #include "lacquer/graph.h"       // the node graph, to look at and to edit
 #include "lacquer/options.h"     // what all calls share: messages, targets, options
 #include "lacquer/reflection.h"  // what a shader is bound to
+#include "lacquer/results.h"     // what the tools find
 #include "lacquer/targets.h"     // targets of one's own
 #include "lacquer/tools.h"  // what else is known of a material or a shader: colours, pictures, proofs, costs

@@ -1,11 +1,11 @@
 /* Lacquer for programs in C, and for every language that can call C: glTF materials to GLSL, HLSL and SPIR-V.
  *
- * The way is scene -> graph -> shader, as in lacquer.h, which says what each of them is. The same functions
- * are those that the WebAssembly module exports (docs/web.md). What holds for all of them:
+ * The way is scene -> graph -> shader, as in lacquer.h, which says what each of them is. The
+ * WebAssembly module exports the same functions (docs/web.md). What holds for all of them:
  *
- * Handles are opaque. What a function named `_new`, `_load`, `_read`, `_graph`, `_generate` or one that gives
- * a lacquer_text returns belongs to the caller, who frees it with the function named `_free` of its type,
- * once, in any order: nothing depends on the handle that it was made from. NULL means that the call failed.
+ * Handles are opaque. One that a function returns belongs to the caller, who frees it with the function named
+ * `_free` of its type, once, in any order: nothing depends on the handle that it was made from. NULL means
+ * that the call failed.
  *
  * NULL may stand for any handle: it may be freed, what it is asked for is empty or 0, a call that needs the
  * object fails with "empty-handle", options are the defaults, and messages are not wanted.
@@ -36,6 +36,8 @@ extern "C" {
 #else
 #define LACQUER_C
 #endif
+/* Not in the WebAssembly module. */
+#define LACQUER_C_NATIVE LACQUER_C
 
 /* Of this interface. A function, a key of the options or a constant may come; none goes or changes its
  * meaning while this number stays. */
@@ -143,6 +145,14 @@ enum {
 LACQUER_C lacquer_text* lacquer_scene_evaluate(const lacquer_scene* scene, size_t material,
                                                const char* points, size_t size, int engine,
                                                const lacquer_options* options, lacquer_messages* messages);
+/* The same as numbers: four doubles for each point into `rgba`, NaN where a device has discarded the
+ * fragment. `discarded` may be NULL; else a byte for each point, 1 where the material discards it.
+ * `capacity`: points that there is room for; with less, "block-too-small". The number of points; 0 on an
+ * error. */
+LACQUER_C_NATIVE size_t lacquer_scene_colors(const lacquer_scene* scene, size_t material, const char* points,
+                                             size_t size, int engine, double* rgba, uint8_t* discarded,
+                                             size_t capacity, const lacquer_options* options,
+                                             lacquer_messages* messages);
 /* Draws a lit ball of `pixels` by `pixels`, from 16 to 2048, into `rgb`: rows from the top, three bytes of
  * sRGB for each pixel. `capacity`, the bytes that there are, is at least 3 * pixels * pixels. */
 LACQUER_C int lacquer_scene_preview(const lacquer_scene* scene, size_t material, uint32_t pixels,
@@ -192,6 +202,9 @@ LACQUER_C lacquer_text* lacquer_graph_dump(lacquer_graph* graph, const char* pas
 LACQUER_C lacquer_text* lacquer_graph_evaluate(const lacquer_graph* graph, const char* points, size_t size,
                                                int engine, const lacquer_options* options,
                                                lacquer_messages* messages);
+LACQUER_C_NATIVE size_t lacquer_graph_colors(const lacquer_graph* graph, const char* points, size_t size,
+                                             int engine, double* rgba, uint8_t* discarded, size_t capacity,
+                                             const lacquer_options* options, lacquer_messages* messages);
 LACQUER_C int lacquer_graph_preview(const lacquer_graph* graph, uint32_t pixels, uint8_t* rgb,
                                     size_t capacity, const lacquer_options* options,
                                     lacquer_messages* messages);
@@ -292,6 +305,111 @@ typedef struct lacquer_value {
  * bytes, does not suffice. */
 LACQUER_C int lacquer_shader_pack(const lacquer_shader* shader, const lacquer_value* values, size_t count,
                                   void* block, size_t capacity, lacquer_messages* messages);
+
+/* ---- what instruments find: proofs, stress tests, levels of detail, sheets of pictures. lacquer/results.h
+ * says what the members mean. Rows are filled as those of reflection; texts belong to the handle. */
+
+enum { LACQUER_PRECISION_VULKAN = 0, LACQUER_PRECISION_IEEE = 1, LACQUER_PRECISION_MEDIUMP = 2 };
+typedef struct lacquer_proofs lacquer_proofs;
+typedef struct lacquer_operation {
+  const char *term, *name, *operation, *rate, *operand, *need;
+  double low, high; /* of the operand */
+  int nan;          /* 1: or it may be NaN */
+  int safe;
+} lacquer_operation;
+typedef struct lacquer_claim {
+  const char *node, *variant; /* of lacquer_nodes_prove(); else empty */
+  const char *what, *need;
+  double low, high;
+  int nan, proved;
+} lacquer_claim;
+typedef struct lacquer_range {
+  const char* name;
+  double low, high;
+  int nan;
+} lacquer_range;
+/* Of a graph's shader: operations, outputs, and as claims the arguments of its nodes. */
+LACQUER_C_NATIVE lacquer_proofs* lacquer_graph_prove(lacquer_graph* graph, int precision,
+                                                     const lacquer_options* options,
+                                                     lacquer_messages* messages);
+/* Of the library's nodes: claims alone. */
+LACQUER_C_NATIVE lacquer_proofs* lacquer_nodes_prove(int precision, const lacquer_options* options,
+                                                     lacquer_messages* messages);
+LACQUER_C_NATIVE void lacquer_proofs_free(lacquer_proofs* proofs);
+LACQUER_C_NATIVE size_t lacquer_proofs_operation_count(const lacquer_proofs* proofs);
+LACQUER_C_NATIVE int lacquer_proofs_operation(const lacquer_proofs* proofs, size_t index,
+                                              lacquer_operation* to, size_t size);
+LACQUER_C_NATIVE size_t lacquer_proofs_claim_count(const lacquer_proofs* proofs);
+LACQUER_C_NATIVE int lacquer_proofs_claim(const lacquer_proofs* proofs, size_t index, lacquer_claim* to,
+                                          size_t size);
+LACQUER_C_NATIVE size_t lacquer_proofs_output_count(const lacquer_proofs* proofs);
+LACQUER_C_NATIVE int lacquer_proofs_output(const lacquer_proofs* proofs, size_t index, lacquer_range* to,
+                                           size_t size);
+
+typedef struct lacquer_stress lacquer_stress;
+typedef struct lacquer_finding {
+  const char *node, *variant, *extension, *file, *name; /* the subject's; those that it has not are empty */
+  size_t material;
+  const char* fault; /* "nan", "infinity", ... */
+  const char *what, *known;
+  const char* test; /* its case, JSON, which `lacquer stress` runs again */
+  uint64_t count;
+  double value;
+} lacquer_finding;
+/* Stress tests nodes, extensions, .gltf and .glb files and .json cases: `count` subjects; none for the whole
+ * library. `samples` and `seed` as the command line has them; `engine` is none but LACQUER_DOUBLE. */
+LACQUER_C_NATIVE lacquer_stress* lacquer_stress_run(const char* const* subjects, size_t count,
+                                                    uint64_t samples, uint64_t seed, int engine,
+                                                    const lacquer_options* options,
+                                                    lacquer_messages* messages);
+LACQUER_C_NATIVE void lacquer_stress_free(lacquer_stress* stress);
+LACQUER_C_NATIVE size_t lacquer_stress_subject_count(const lacquer_stress* stress);
+LACQUER_C_NATIVE size_t lacquer_stress_fault_count(const lacquer_stress* stress);
+LACQUER_C_NATIVE size_t lacquer_stress_finding_count(const lacquer_stress* stress);
+LACQUER_C_NATIVE int lacquer_stress_finding(const lacquer_stress* stress, size_t index, lacquer_finding* to,
+                                            size_t size);
+
+typedef struct lacquer_levels lacquer_levels;
+typedef struct lacquer_level {
+  const char *file, *name; /* the material's */
+  size_t material, level;  /* 0 is the exact shader */
+  const char* shader;      /* its id */
+  const char* simplify;    /* words, a blank between them */
+  uint64_t instructions, cycles, quarter_cycles, vertex_cycles;
+  double cost;
+  double delta_e, delta_e_95, flip, flip_95; /* from the exact shader */
+  uint32_t screen_size;
+} lacquer_level;
+/* Levels of detail of the files' materials: their shaders, a manifest and a report below `folder`; at most
+ * `levels` for each, the last with a mean colour difference of at most `most_error` by pictures of `pixels`
+ * (the command line has 48). The rows are all levels, material by material. */
+LACQUER_C_NATIVE lacquer_levels* lacquer_levels_make(const char* const* files, size_t count,
+                                                     const char* folder, uint32_t levels, double most_error,
+                                                     uint32_t pixels, const lacquer_options* options,
+                                                     lacquer_messages* messages);
+LACQUER_C_NATIVE void lacquer_levels_free(lacquer_levels* levels);
+/* The driver that has measured the costs; empty where they are estimates. */
+LACQUER_C_NATIVE const char* lacquer_levels_driver(const lacquer_levels* levels);
+LACQUER_C_NATIVE size_t lacquer_levels_count(const lacquer_levels* levels);
+LACQUER_C_NATIVE int lacquer_levels_level(const lacquer_levels* levels, size_t index, lacquer_level* to,
+                                          size_t size);
+
+typedef struct lacquer_sheet lacquer_sheet;
+typedef struct lacquer_difference {
+  const char *file, *material;
+  double largest, mean, root_mean_square; /* infinite where a pixel is no number */
+} lacquer_difference;
+/* Writes a PNG file with a ball of `pixels` for each material of the files. `first` and `second` are settings
+ * to put side by side, whose differences are the rows; NULL for none. */
+LACQUER_C_NATIVE lacquer_sheet* lacquer_sheet_draw(const char* const* files, size_t count, const char* output,
+                                                   uint32_t pixels, const char* first, const char* second,
+                                                   const lacquer_options* options,
+                                                   lacquer_messages* messages);
+LACQUER_C_NATIVE void lacquer_sheet_free(lacquer_sheet* sheet);
+LACQUER_C_NATIVE size_t lacquer_sheet_material_count(const lacquer_sheet* sheet);
+LACQUER_C_NATIVE size_t lacquer_sheet_difference_count(const lacquer_sheet* sheet);
+LACQUER_C_NATIVE int lacquer_sheet_difference(const lacquer_sheet* sheet, size_t index,
+                                              lacquer_difference* to, size_t size);
 
 /* ---- the library of nodes, and tables */
 

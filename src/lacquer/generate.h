@@ -13,8 +13,6 @@
 
 namespace lacquer {
 
-enum class Engine : uint8_t;
-
 /// The vertex attributes of a primitive beside POSITION.
 struct Attributes {
   bool normal = true, tangent = false, color0 = false;
@@ -60,8 +58,8 @@ public:
               Messages& messages) const;
 
 private:
-  friend std::string evaluate(const Scene&, size_t, const std::string&, Engine, const Strings&,
-                              const Options&, Messages&);
+  friend std::optional<Evaluation> evaluate(const Scene&, size_t, const std::string&, Engine, const Strings&,
+                                            const Options&, Messages&);
   friend std::vector<uint8_t> drawBall(const Scene&, size_t, uint32_t, const Strings&, const Options&,
                                        Messages&);
   struct Impl;

@@ -6,11 +6,11 @@
 #include <memory>
 
 #include "lacquer/options.h"
+#include "lacquer/results.h"
 
 namespace lacquer {
 
 class Shader;
-enum class Engine : uint8_t;
 
 /// The numbers that something may be given, each component of a vector for itself; both ends belong to it.
 struct Range {
@@ -93,14 +93,14 @@ public:
   /// The DAG with the rate of every value, as a text for people, after the pass of that name, one of
   /// passNames(); "" for the last. Empty on an error: "unknown-pass".
   std::string dump(const Options& options, std::string_view pass, Messages& messages);
-  /// What is proved of the shader for all inputs in their ranges, as JSON (docs/intervals.md). Empty on an
-  /// error.
-  std::string prove(const Options& options, Messages& messages, Precision precision = Precision::Vulkan);
+  /// What is proved of the shader for all inputs in their ranges (docs/intervals.md). Nothing on an error.
+  std::optional<Proofs> prove(const Options& options, Messages& messages,
+                              Precision precision = Precision::Vulkan);
 
 private:
   friend class Scene;
-  friend std::string evaluate(const Graph&, const std::string&, Engine, const Strings&, const Options&,
-                              Messages&);
+  friend std::optional<Evaluation> evaluate(const Graph&, const std::string&, Engine, const Strings&,
+                                            const Options&, Messages&);
   friend std::vector<uint8_t> drawBall(const Graph&, uint32_t, const Strings&, const Options&, Messages&);
   struct Impl;
   std::shared_ptr<Impl> impl_;

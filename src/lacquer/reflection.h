@@ -109,12 +109,6 @@ struct SpecConstant {
   double neutral = 0;  ///< of a bool 0 or 1
 };
 
-/// An operation that is not proved to be defined for all inputs (docs/intervals.md).
-struct UnprovedOperation {
-  std::string term, name, operation, rate, operand, need;
-  double low = 0, high = 0;  ///< what the operand may be, for all that is known
-  bool nan = false;          ///< or no number
-};
 /// What half precision comes to (Options::relaxed).
 struct RelaxedFigures {
   double bound = 0;  ///< of what a colour may change by, as a part of it
@@ -132,8 +126,8 @@ struct Reflection {
   std::vector<ReflectedTexture> textures;
   std::vector<ShaderInput> inputs;
   std::vector<ShaderOutput> outputs;
-  size_t proved = 0;  ///< operations that are defined for all inputs
-  std::vector<UnprovedOperation> unproved;
+  size_t proved = 0;                     ///< operations that are defined for all inputs
+  std::vector<OperationProof> unproved;  ///< the others that have a domain (docs/intervals.md)
   std::optional<RelaxedFigures> relaxed;
   /// What requestDevice() of WebGPU must be asked for beyond its defaults.
   std::vector<std::pair<std::string, size_t>> webgpu_limits;

@@ -5,37 +5,32 @@
 #include <vector>
 
 #include "lacquer/options.h"
+#include "lacquer/results.h"
 
 namespace lacquer {
 
 class Scene;
 class Graph;
 
-/// What computes colours.
-enum class Engine : uint8_t {
-  Double,      ///< on the CPU, the reference
-  Float,       ///< on the CPU, in the shader's precision
-  Vulkan,      ///< the direct SPIR-V on the first Vulkan device
-  VulkanGlsl,  ///< the same, with the GLSL through glslang
-  VulkanHlsl,  ///< the same, with the HLSL through glslang; not for Parameters::Spec
-};
-/// Linear forward colours at points, JSON in and out (docs/eval.md); empty on an error. Of a material of a
+/// Linear forward colours at points, which are JSON (docs/eval.md); nothing on an error. Of a material of a
 /// glTF file, or of a graph where the file's name ends in ".json".
 /// `material`: its name, or empty for a file with one. `points`: the text, for which `points_name` stands in
-/// messages. `texels`: "SLOT=r,g,b,a" each, constants instead of images.
-std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
-                     const std::string& points_name, Engine engine, const Strings& texels,
-                     const Options& options, Messages& messages);
+/// messages; without a text it is the file to read, "-" for the standard input. `texels`: "SLOT=r,g,b,a"
+/// each, constants instead of images.
+std::optional<Evaluation> evaluate(const std::string& file, const std::string& material,
+                                   const std::string& points, const std::string& points_name, Engine engine,
+                                   const Strings& texels, const Options& options, Messages& messages);
 
 /// The same of a material of a scene. `points` is the text itself. A scene from memory has the images that
 /// are in it; "no-such-material" for an index that does not exist.
-std::string evaluate(const Scene& scene, size_t material, const std::string& points, Engine engine,
-                     const Strings& texels, const Options& options, Messages& messages);
+std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const std::string& points,
+                                   Engine engine, const Strings& texels, const Options& options,
+                                   Messages& messages);
 /// The same of a graph, for which nothing is built: its template and its terms are what they are, and options
 /// that say otherwise are an error ("graph-is-built"). Textures are those of the glTF file that it was built
 /// from; a graph from a text has none but `texels`.
-std::string evaluate(const Graph& graph, const std::string& points, Engine engine, const Strings& texels,
-                     const Options& options, Messages& messages);
+std::optional<Evaluation> evaluate(const Graph& graph, const std::string& points, Engine engine,
+                                   const Strings& texels, const Options& options, Messages& messages);
 /// A lit ball of a material of a scene, in float: `size` rows from the top of `size` pixels of three bytes,
 /// sRGB. Empty on an error. Where an image is absent a neutral colour stands for it, with a note. Uses
 /// threads.
@@ -58,10 +53,11 @@ struct Preview {
   std::string environment;
 };
 /// Draws a ball for each material of the files, and for each graph (files whose names end in ".json"), or for
-/// those of the names in `materials` where that is not empty. Writes the sheet and returns what was measured
-/// as JSON; empty on an error. A material that fails is left out, with messages. Uses threads.
-std::string drawPreview(const Preview& preview, const Strings& files, const Strings& materials,
-                        const Options& options, Messages& messages, const Progress& progress = {});
+/// those of the names in `materials` where that is not empty. Writes the sheet; nothing on an error. A
+/// material that fails is left out, with messages. Uses threads.
+std::optional<PreviewSheet> drawPreview(const Preview& preview, const Strings& files,
+                                        const Strings& materials, const Options& options, Messages& messages,
+                                        const Progress& progress = {});
 
 /// Levels of detail (docs/lod.md).
 struct Lod {
@@ -78,10 +74,10 @@ struct Lod {
   Strings texels;     ///< as for evaluate()
 };
 /// Looks for the materials' levels (of those of the names in `materials` where that is not empty), and writes
-/// their shaders, manifest.json and a report with pictures. Returns what was found as JSON; empty on an
-/// error. A material that fails is left out, with messages. Uses threads, and processes for the costs.
-std::string makeLevels(const Lod& lod, const Strings& files, const Strings& materials, const Options& options,
-                       Messages& messages, const Progress& progress = {});
+/// their shaders, manifest.json and a report with pictures. Nothing on an error. A material that fails is
+/// left out, with messages. Uses threads, and processes for the costs.
+std::optional<Levels> makeLevels(const Lod& lod, const Strings& files, const Strings& materials,
+                                 const Options& options, Messages& messages, const Progress& progress = {});
 
 /// How an attack is made (docs/stress.md).
 struct Stress {
@@ -94,9 +90,9 @@ struct Stress {
   Engine engine = Engine::Float;
 };
 /// Attacks nodes (names; "nodes" for every one, as when there are no subjects), the materials of .gltf and
-/// .glb files, and .json cases: what was found, as JSON; empty on an error. Uses threads.
-std::string stressNodes(const Stress& stress, const Strings& subjects, const Options& options,
-                        Messages& messages, const Progress& progress = {});
+/// .glb files, and .json cases; nothing on an error. Uses threads.
+std::optional<StressReport> stressNodes(const Stress& stress, const Strings& subjects, const Options& options,
+                                        Messages& messages, const Progress& progress = {});
 
 /// What a fragment shader costs on a GPU as Mesa's RADV compiles it, which takes no GPU (docs/cost.md).
 struct GpuCost {
@@ -151,17 +147,18 @@ struct Environment {
 };
 /// Reads an equirectangular picture, Radiance HDR or OpenEXR, and writes the cube maps and tables that
 /// templates read (environment_specular, environment_charlie, environment_irradiance, environment_dfg,
-/// environment_sheen) and environment.json, which names them. Returns that JSON; empty on an error:
-/// "environment-unreadable", "image-too-large" and the like. Uses threads.
-std::string writeEnvironment(const Environment& environment, const std::string& picture,
-                             const Options& options, Messages& messages, const Progress& progress = {});
+/// environment_sheen) and environment.json, which names them. Nothing on an error: "environment-unreadable",
+/// "image-too-large" and the like. Uses threads.
+std::optional<EnvironmentMaps> writeEnvironment(const Environment& environment, const std::string& picture,
+                                                const Options& options, Messages& messages,
+                                                const Progress& progress = {});
 
 /// The node library as JSON: contracts, ranges, sources, variants. Of the options, `node_directories`. Empty
 /// on an error.
 std::string nodesJson(const Options& options, Messages& messages);
-/// What is proved of each of its nodes for all inputs in their ranges, as JSON (docs/intervals.md). The same
-/// options. Empty on an error.
-std::string proveNodesJson(const Options& options, Messages& messages,
-                           Precision precision = Precision::Vulkan);
+/// What is proved of each of its nodes for all inputs in their ranges (docs/intervals.md), each variant by
+/// itself. The same options. Nothing on an error.
+std::optional<std::vector<NodeProof>> proveNodes(const Options& options, Messages& messages,
+                                                 Precision precision = Precision::Vulkan);
 
 }  // namespace lacquer

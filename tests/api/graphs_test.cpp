@@ -5,6 +5,7 @@
 #include <string>
 
 #include "inputs.h"
+#include "support/answers.h"
 
 namespace lacquer::test {
 namespace {
@@ -40,9 +41,9 @@ TEST(Graphs, HaveTheColorsOfTheirMaterials) {
         built.ibl = points == kLit;
         const Graph graph = scene.graph(i, kAll, built, messages);
         for (const Engine engine : {Engine::Double, Engine::Float}) {
-          const std::string expected = evaluate(scene, i, points, engine, {}, options, messages);
+          const std::string expected = jsonOf(evaluate(scene, i, points, engine, {}, options, messages));
           EXPECT_NE(expected, "");
-          EXPECT_EQ(evaluate(graph, points, engine, {}, options, messages), colorsOf(expected));
+          EXPECT_EQ(jsonOf(evaluate(graph, points, engine, {}, options, messages)), colorsOf(expected));
           ++compared;
         }
       }
@@ -74,19 +75,19 @@ TEST(Graphs, ShowWhatWasEdited) {
   Messages messages;
   Graph graph = paintGraph();
   ASSERT_FALSE(graph.parameters().empty());
-  const std::string before = evaluate(graph, kDark, Engine::Double, {}, options, messages);
+  const std::string before = jsonOf(evaluate(graph, kDark, Engine::Double, {}, options, messages));
   const Parameter parameter = graph.parameters()[0];
   std::vector<double> other = parameter.value;
   for (double& x : other) x = x > 0.5 ? 0.25 : 0.75;
   EXPECT_TRUE(graph.setParameter(parameter.name, other, messages));
-  const std::string after = evaluate(graph, kDark, Engine::Double, {}, options, messages);
+  const std::string after = jsonOf(evaluate(graph, kDark, Engine::Double, {}, options, messages));
   EXPECT_NE(before, "");
   EXPECT_NE(after, before);
   EXPECT_TRUE(graph.setParameter(parameter.name, parameter.value, messages));
-  EXPECT_EQ(evaluate(graph, kDark, Engine::Double, {}, options, messages), before);
+  EXPECT_EQ(jsonOf(evaluate(graph, kDark, Engine::Double, {}, options, messages)), before);
   // The text reads back as the same graph.
   const Graph again = Graph::fromJson(graph.toJson(), "again", messages);
-  EXPECT_EQ(evaluate(again, kDark, Engine::Double, {}, options, messages), before);
+  EXPECT_EQ(jsonOf(evaluate(again, kDark, Engine::Double, {}, options, messages)), before);
   EXPECT_EQ(errorsOf(messages), "");
 }
 
@@ -96,7 +97,7 @@ TEST(Graphs, SayWhatTheyCannotBeAskedFor) {
     Options options = quick();
     change(options);
     Messages messages;
-    EXPECT_EQ(evaluate(graph, kDark, Engine::Double, {}, options, messages), "");
+    EXPECT_EQ(jsonOf(evaluate(graph, kDark, Engine::Double, {}, options, messages)), "");
     return errorsOf(messages);
   };
   EXPECT_EQ(errors([](Options& o) { o.profile = "physical"; }), "graph-is-built");
@@ -105,7 +106,7 @@ TEST(Graphs, SayWhatTheyCannotBeAskedFor) {
   EXPECT_EQ(errors([](Options& o) { o.live = {"coat.darkening"}; }), "graph-is-built");
   EXPECT_EQ(errors([](Options& o) { o.switches["ibl"] = false; }), "graph-is-built");
   Messages messages;
-  EXPECT_EQ(evaluate(Graph(), kDark, Engine::Double, {}, quick(), messages), "");
+  EXPECT_EQ(jsonOf(evaluate(Graph(), kDark, Engine::Double, {}, quick(), messages)), "");
   EXPECT_EQ(errorsOf(messages), "empty-handle");
 }
 
@@ -121,14 +122,16 @@ TEST(Graphs, FromATextHaveTheTexelsThatTheyAreGiven) {
       if (whole.textures().empty()) continue;
       const Graph graph = Graph::fromJson(whole.toJson(), "graph", messages);
       EXPECT_EQ(errorsOf(messages), "");
-      EXPECT_EQ(evaluate(graph, kDark, Engine::Double, {}, options, messages), "");
+      EXPECT_EQ(jsonOf(evaluate(graph, kDark, Engine::Double, {}, options, messages)), "");
       EXPECT_NE(errorsOf(messages).find("image-missing"), std::string::npos);
       messages.clear();
       Strings texels;
       for (const TextureUse& texture : whole.textures()) texels.push_back(texture.name + "=0.25,0.5,0.75,1");
-      const std::string expected = evaluate(scene, i, kDark, Engine::Double, texels, options, messages);
+      const std::string expected =
+          jsonOf(evaluate(scene, i, kDark, Engine::Double, texels, options, messages));
       EXPECT_NE(expected, "");
-      EXPECT_EQ(evaluate(graph, kDark, Engine::Double, texels, options, messages), colorsOf(expected));
+      EXPECT_EQ(jsonOf(evaluate(graph, kDark, Engine::Double, texels, options, messages)),
+                colorsOf(expected));
       EXPECT_EQ(errorsOf(messages), "");
     }
   }

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "inputs.h"
+#include "support/answers.h"
 
 namespace lacquer::test {
 namespace {
@@ -23,7 +24,7 @@ void prove(const Scene& scene, const Options& options, Claims& claims) {
   for (size_t i = 0; i < scene.materialCount(); ++i) {
     Messages messages;
     Graph graph = scene.graph(i, kUnusedAttributes, options, messages);
-    const std::string proofs = graph.prove(options, messages);
+    const std::string proofs = jsonOf(graph.prove(options, messages));
     ASSERT_EQ(errorsOf(messages), "");
     claims.proved += occurrences(proofs, R"("safe": true)") + occurrences(proofs, R"("proved": true)");
     ++claims.materials;

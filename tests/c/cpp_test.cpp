@@ -30,20 +30,20 @@ TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
       static_cast<bool (Shader::*)(const Shader::Values&, std::span<std::byte>, Messages&) const>(
           &Shader::pack));
   all(&generate, &generateGraphs, &plan, &merge);
-  all(static_cast<std::string (*)(const Scene&, size_t, const std::string&, Engine, const Strings&,
-                                  const Options&, Messages&)>(&evaluate),
-      static_cast<std::string (*)(const std::string&, const std::string&, const std::string&,
-                                  const std::string&, Engine, const Strings&, const Options&, Messages&)>(
-          &evaluate),
-      static_cast<std::string (*)(const Graph&, const std::string&, Engine, const Strings&, const Options&,
-                                  Messages&)>(&evaluate),
+  all(static_cast<std::optional<Evaluation> (*)(const Scene&, size_t, const std::string&, Engine,
+                                                const Strings&, const Options&, Messages&)>(&evaluate),
+      static_cast<std::optional<Evaluation> (*)(const std::string&, const std::string&, const std::string&,
+                                                const std::string&, Engine, const Strings&, const Options&,
+                                                Messages&)>(&evaluate),
+      static_cast<std::optional<Evaluation> (*)(const Graph&, const std::string&, Engine, const Strings&,
+                                                const Options&, Messages&)>(&evaluate),
       static_cast<std::vector<uint8_t> (*)(const Scene&, size_t, uint32_t, const Strings&, const Options&,
                                            Messages&)>(&drawBall),
       static_cast<std::vector<uint8_t> (*)(const Graph&, uint32_t, const Strings&, const Options&,
                                            Messages&)>(&drawBall),
       &isGraphFile, &Graph::load, &drawPreview, &writeView, &makeLevels, &stressNodes, &measureCost,
       &environmentDfg, &writeEnvironmentDfg, &environmentSheen, &writeEnvironmentSheen, &writeEnvironment,
-      &nodesJson, &proveNodesJson);
+      &nodesJson, &proveNodes, &engineName, &faultName);
   for (const bool one : there) EXPECT_TRUE(one);
 }
 

@@ -30,7 +30,7 @@ std::set<std::string> exported() {
 
 std::set<std::string> declaredInC() {
   const std::string text = readFile(sourceFolder() / "src/lacquer_c.h");
-  const std::regex declaration("\nLACQUER_C [^(;]*?(lacquer_[a-z0-9_]+)\\(");
+  const std::regex declaration("\nLACQUER_C(?:_NATIVE)? [^(;]*?(lacquer_[a-z0-9_]+)\\(");
   std::set<std::string> names;
   for (auto it = std::sregex_iterator(text.begin(), text.end(), declaration); it != std::sregex_iterator();
        ++it)

@@ -10,6 +10,7 @@
 #include "lacquer.h"
 #include "preview/studio.h"
 #include "scene.h"
+#include "support/answers.h"
 #include "support/cases.h"
 
 namespace lacquer::test {
@@ -44,7 +45,8 @@ protected:
 
   json write(bool dds, bool shared) {
     Messages messages;
-    const std::string answer = writeEnvironment({out(), 64, 256, dds, shared}, picture(), {}, messages);
+    const std::string answer =
+        jsonOf(writeEnvironment({out(), 64, 256, dds, shared}, picture(), {}, messages));
     EXPECT_TRUE(messages.empty()) << messages[0].text;
     EXPECT_EQ(answer, readFile(out() + "/environment.json"));
     return json::parse(answer);
@@ -151,7 +153,7 @@ TEST_F(Files, WrongArgumentsAreToldBeforeAnythingIsWritten) {
   const auto codeOf = [&](const Environment& environment, const std::string& path,
                           const Options& options = {}) {
     Messages messages;
-    EXPECT_TRUE(writeEnvironment(environment, path, options, messages).empty());
+    EXPECT_FALSE(writeEnvironment(environment, path, options, messages));
     return messages.empty() ? "" : messages[0].code;
   };
   EXPECT_EQ(codeOf({out(), 100, 256}, picture()), "out-of-range");
@@ -189,13 +191,13 @@ TEST_F(Files, ThePreviewIsLitByThem) {
   preview.output = (folder_ / "ball.png").string();
   preview.size = 16;
   const std::string file = (sourceFolder() / "examples/coat.gltf").string();
-  ASSERT_FALSE(drawPreview(preview, {file}, {}, {}, messages).empty());
+  ASSERT_TRUE(drawPreview(preview, {file}, {}, {}, messages));
   const std::string studio_bytes = readFile(preview.output);
   preview.environment = white;
-  ASSERT_FALSE(drawPreview(preview, {file}, {}, {}, messages).empty()) << messages[0].text;
+  ASSERT_TRUE(drawPreview(preview, {file}, {}, {}, messages)) << messages[0].text;
   EXPECT_NE(readFile(preview.output), studio_bytes);
   preview.environment = file;
-  EXPECT_TRUE(drawPreview(preview, {file}, {}, {}, messages).empty());
+  EXPECT_FALSE(drawPreview(preview, {file}, {}, {}, messages));
   EXPECT_EQ(messages.back().code, "environment-unreadable");
 }
 

@@ -20,8 +20,8 @@ size_t unproved(const NodeProof& proof, const std::vector<Claim>& claims, std::s
     ++count;
     if (!tell) continue;
     ADD_FAILURE() << proof.node << (proof.variant.empty() ? "" : "." + proof.variant) << ", " << kind << " "
-                  << claim.what << ": must be " << claim.need << ", may be in [" << claim.reached.lo << ", "
-                  << claim.reached.hi << "]" << (claim.reached.nan ? " or no number" : "");
+                  << claim.what << ": must be " << claim.need << ", may be in [" << claim.reached.low << ", "
+                  << claim.reached.high << "]" << (claim.reached.nan ? " or no number" : "");
   }
   return count;
 }

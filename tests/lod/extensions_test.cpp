@@ -13,6 +13,7 @@
 #include "setting/simplify.h"
 #include "shader/module.h"
 #include "shader/print.h"
+#include "support/answers.h"
 #include "support/materials.h"
 
 namespace lacquer::test {
@@ -133,7 +134,8 @@ constexpr const char* kPoints = R"([
 
 void expectGoodColors(const Made& made, const std::string& what) {
   Messages messages;
-  const std::string answer = evaluate(made.scene, 0, kPoints, Engine::Float, {}, made.options, messages);
+  const std::string answer =
+      jsonOf(evaluate(made.scene, 0, kPoints, Engine::Float, {}, made.options, messages));
   ASSERT_FALSE(answer.empty()) << what << ": " << (messages.empty() ? "" : messages[0].text);
   for (const json& color : json::parse(answer)["rgba"]) {
     for (const json& channel : color) {

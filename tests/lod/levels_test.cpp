@@ -14,6 +14,7 @@
 #include "lod/material.h"
 #include "setting/language.h"
 #include "setting/options.h"
+#include "support/answers.h"
 #include "support/cases.h"
 
 namespace lacquer::test {
@@ -48,7 +49,7 @@ protected:
 
   static json makeIn(const Lod& lod, const std::string& file, const Options& options) {
     Messages messages;
-    const std::string answer = makeLevels(lod, {file}, {}, options, messages);
+    const std::string answer = jsonOf(makeLevels(lod, {file}, {}, options, messages));
     EXPECT_FALSE(hasError(messages)) << messages[0].text;
     return answer.empty() ? json() : json::parse(answer);
   }
@@ -159,7 +160,7 @@ TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
   const auto exact = again.shots({}, 16, atVertices(words));
   const auto simpler = again.shots(words, 16, atVertices(words));
   ASSERT_TRUE(exact && simpler);
-  const preview::Seen seen = preview::compareShots(*exact, *simpler);
+  const SeenDifference seen = preview::compareShots(*exact, *simpler);
   EXPECT_EQ(seen.delta_e, level["error"]["delta_e"]["mean"].get<double>());
   EXPECT_EQ(seen.flip_95, level["error"]["flip"]["p95"].get<double>());
   EXPECT_GT(seen.delta_e, 0);
@@ -321,7 +322,7 @@ TEST_F(Levels, WrongRequestsAreMessages) {
     options.lights = {};
     wrong.make(lod, options);
     Messages messages;
-    EXPECT_TRUE(makeLevels(lod, {work("w0")}, {}, options, messages).empty()) << wrong.code;
+    EXPECT_FALSE(makeLevels(lod, {work("w0")}, {}, options, messages)) << wrong.code;
     const bool said = std::any_of(messages.begin(), messages.end(),
                                   [&](const Message& message) { return message.code == wrong.code; });
     EXPECT_TRUE(said) << wrong.code << ": " << (messages.empty() ? "nothing" : messages[0].text);
@@ -330,7 +331,7 @@ TEST_F(Levels, WrongRequestsAreMessages) {
   Lod lod;
   lod.output = (folder_ / "out").string();
   Messages messages;
-  EXPECT_TRUE(makeLevels(lod, {(folder_ / "absent.gltf").string()}, {}, quick(), messages).empty());
+  EXPECT_FALSE(makeLevels(lod, {(folder_ / "absent.gltf").string()}, {}, quick(), messages));
   EXPECT_TRUE(hasError(messages));
 }
 

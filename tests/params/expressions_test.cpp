@@ -9,6 +9,7 @@
 
 #include "check/check.h"
 #include "lacquer.h"
+#include "support/answers.h"
 
 namespace lacquer::test {
 namespace {
@@ -47,7 +48,7 @@ Lengths lengthsOf(size_t length) {
   const Shader shader = graph.generate(options, messages);
   EXPECT_TRUE(shader);
   return {shader.interfaceJson().size(), shader.headerText().size(), shader.moduleText().size(),
-          graph.prove(options, messages).size()};
+          jsonOf(graph.prove(options, messages)).size()};
 }
 
 TEST(Expressions, GrowWithTheNumberOfOperations) {

@@ -7,6 +7,7 @@
 
 #include "lacquer.h"
 #include "parity/subject.h"
+#include "support/answers.h"
 #include "support/cases.h"
 
 namespace lacquer::parity {
@@ -18,7 +19,8 @@ nlohmann::json colors(const std::string& file, const std::vector<std::string>& t
           {"n": [1, 2, 2], "v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8]}])";
   Options options;
   Messages messages;
-  const std::string answer = evaluate(file, {}, points, "points", engine, texels, options, messages);
+  const std::string answer =
+      test::jsonOf(evaluate(file, {}, points, "points", engine, texels, options, messages));
   for (const Message& message : messages) EXPECT_NE(message.level, Message::Level::Error) << message.text;
   return nlohmann::json::parse(answer, nullptr, false)["rgba"];
 }

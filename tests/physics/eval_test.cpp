@@ -8,6 +8,7 @@
 
 #include "lacquer.h"
 #include "physics/model.h"
+#include "support/answers.h"
 #include "support/cases.h"
 
 namespace lacquer::physics {
@@ -32,8 +33,8 @@ protected:
   static std::string run(const std::string& file, const std::string& points, std::string& text,
                          bool in_float = false, const std::vector<std::string>& texels = {}) {
     Messages messages;
-    const std::string answer = evaluate(file, "", points, "points.json",
-                                        in_float ? Engine::Float : Engine::Double, texels, {}, messages);
+    const std::string answer = test::jsonOf(evaluate(
+        file, "", points, "points.json", in_float ? Engine::Float : Engine::Double, texels, {}, messages));
     text.clear();
     for (const Message& m : messages) {
       if (m.level != Message::Level::Note) text += m.text + "\n";

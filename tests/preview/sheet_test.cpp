@@ -11,6 +11,7 @@
 #include "lacquer.h"
 #include "preview/canvas.h"
 #include "preview/sheet.h"
+#include "support/answers.h"
 #include "support/cases.h"
 #include "support/limits.h"
 
@@ -45,7 +46,7 @@ Made make(const std::vector<std::string>& files, Preview preview, const std::vec
   Made made;
   preview.output = (scratch() / "sheet.png").string();
   fs::remove(preview.output);
-  made.answer = drawPreview(preview, files, only, options, made.messages);
+  made.answer = jsonOf(drawPreview(preview, files, only, options, made.messages));
   if (!fs::exists(preview.output)) return made;
   made.png = readFile(preview.output);
   if (auto image = eval::decodeImage(made.png, Limits{}.image, {})) made.image = std::move(*image);

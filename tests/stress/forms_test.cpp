@@ -17,14 +17,14 @@ Options optionsWith(const std::string& nodes, const std::string& profile) {
 }
 
 /// What was found with every extension, or with the one of that name.
-std::vector<FormFault> faultsOf(const Options& options, std::string_view only, double allowed,
-                                size_t& compared) {
+std::vector<StressFinding> faultsOf(const Options& options, std::string_view only, double allowed,
+                                    size_t& compared) {
   const auto library = libraryFor(options);
   if (!library) throw std::runtime_error(format(library.error().front()));
   const Result<const material::Schema*> found = (*library)->models.schema();
   if (!found) throw std::runtime_error(format(found.error().front()));
   const material::Schema& schema = **found;
-  std::vector<FormFault> faults;
+  std::vector<StressFinding> faults;
   for (uint16_t i = 1; i < schema.extensions.size(); ++i) {
     if (!only.empty() && schema.extensions[i]->name != only) continue;
     const auto material = materialWith(schema, i, 1);
@@ -37,7 +37,7 @@ std::vector<FormFault> faultsOf(const Options& options, std::string_view only, d
   return faults;
 }
 
-std::string shown(const FormFault& fault) {
+std::string shown(const StressFinding& fault) {
   return fmt::format("{} at {}, under {}: {}", fault.parameter, fault.at[0], fault.layer, fault.value);
 }
 
@@ -51,7 +51,7 @@ bool ofCoat(const std::string& parameter) {
 
 TEST_P(OfEveryProfile, NoColourNoticesTheForm) {
   size_t compared = 0;
-  for (const FormFault& fault : faultsOf(optionsWith("forms", GetParam()), {}, 1e-6, compared)) {
+  for (const StressFinding& fault : faultsOf(optionsWith("forms", GetParam()), {}, 1e-6, compared)) {
     if (ofCoat(fault.parameter) || fault.value > kFormsAllowed) ADD_FAILURE() << shown(fault);
   }
   EXPECT_GT(compared, 1000U);
@@ -62,10 +62,10 @@ INSTANTIATE_TEST_SUITE_P(Forms, OfEveryProfile, testing::Values("khr", "openpbr"
 
 TEST(FaultyForms, AreFound) {
   size_t compared = 0;
-  const std::vector<FormFault> faults =
+  const std::vector<StressFinding> faults =
       faultsOf(optionsWith("forms_faulty", "khr"), "EXAMPLE_step", kFormsAllowed, compared);
   ASSERT_FALSE(faults.empty());
-  for (const FormFault& fault : faults) {
+  for (const StressFinding& fault : faults) {
     EXPECT_EQ(fault.parameter, "stepTint") << shown(fault);
     EXPECT_GT(fault.value, 1e-3) << shown(fault);
   }

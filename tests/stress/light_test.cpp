@@ -66,14 +66,14 @@ Report lit(const Subject& subject) {
 
 TEST(Light, TheFurnaceOfALambertianIsItsAlbedo) {
   const Report report = lit(Painted(0.8, 1, 0));
-  EXPECT_NEAR(report.energy.largest, 0.8, 0.001);
-  EXPECT_LT(report.energy.asymmetry, 1e-12);
+  EXPECT_NEAR(report.energy->largest, 0.8, 0.001);
+  EXPECT_LT(report.energy->asymmetry, 1e-12);
   EXPECT_TRUE(report.findings.empty());
 }
 
 TEST(Light, ABaseThatGainsIsReportedAndACoatThatGainsIsAFault) {
   const Report base = lit(Painted(1.1, 0.5, 0));
-  EXPECT_NEAR(base.energy.largest_base, 1.1, 0.001);
+  EXPECT_NEAR(base.energy->largest_base, 1.1, 0.001);
   EXPECT_TRUE(base.findings.empty());
   const Report coat = lit(Painted(0.9, 1.5, 0));
   ASSERT_EQ(coat.findings.size(), 1U);

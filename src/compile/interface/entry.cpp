@@ -214,21 +214,27 @@ Json numbersJson(const std::vector<double>& numbers) {
   return Json(numbers);
 }
 
-Json rangeJson(double low, double high, bool nan) {
-  const auto end = [](double x) { return std::isfinite(x) ? Json(x) : Json(x < 0 ? "-inf" : "inf"); };
-  Json json = Json::array({end(low), end(high)});
-  if (nan) json.push_back("nan");
+Json namedJson(const NamedNumbers& named) {
+  Json json = Json::object();
+  for (const auto& [name, numbers] : named) json[name] = numbersJson(numbers);
   return json;
 }
 
-Json operationJson(const UnprovedOperation& of) {
+Json reachedJson(const Reached& reached) {
+  const auto end = [](double x) { return std::isfinite(x) ? Json(x) : Json(x < 0 ? "-inf" : "inf"); };
+  Json json = Json::array({end(reached.low), end(reached.high)});
+  if (reached.nan) json.push_back("nan");
+  return json;
+}
+
+Json operationJson(const OperationProof& of) {
   Json json = {{"term", of.term}};
   if (!of.name.empty()) json["name"] = of.name;
   json["operation"] = of.operation;
   json["rate"] = of.rate;
   json["operand"] = of.operand;
   json["need"] = of.need;
-  json["reached"] = rangeJson(of.low, of.high, of.nan);
+  json["reached"] = reachedJson(of.reached);
   return json;
 }
 

@@ -25,8 +25,10 @@ std::string entryText(const Reflection& of, const Options& options);
 
 /// A number, or an array of several.
 Json numbersJson(const std::vector<double>& numbers);
-/// [lo, hi], infinite ends as texts, with "nan" behind them for what may be no number.
-Json rangeJson(double low, double high, bool nan);
-Json operationJson(const UnprovedOperation& operation);
+/// An object of these.
+Json namedJson(const NamedNumbers& named);
+/// [low, high], infinite ends as texts, with "nan" behind them for what may be NaN.
+Json reachedJson(const Reached& reached);
+Json operationJson(const OperationProof& operation);
 
 }  // namespace lacquer

@@ -6,16 +6,17 @@
 
 namespace lacquer {
 
-UnprovedOperation operationOf(const ir::Dag& dag, const analysis::Proof& proof, std::string operand) {
+Reached reachedOf(const analysis::Range& range) { return {range.lo, range.hi, range.nan}; }
+
+OperationProof operationOf(const ir::Dag& dag, const analysis::Proof& proof, std::string operand) {
   return {dag.terms()[dag.termOf(proof.id)].name,
           std::string(dag.nameOf(proof.id)),
           std::string(ir::info(dag[proof.id].op).name),
           std::string(ir::rateName(dag[proof.id].rate)),
           std::move(operand),
           std::string(proof.need),
-          proof.reached.lo,
-          proof.reached.hi,
-          proof.reached.nan};
+          reachedOf(proof.reached),
+          proof.safe};
 }
 
 std::vector<std::string> operandTexts(const ir::Module& module, const std::vector<analysis::Proof>& proofs) {
@@ -24,7 +25,7 @@ std::vector<std::string> operandTexts(const ir::Module& module, const std::vecto
   return targets::expressionTexts(module, operands);
 }
 
-size_t proofsOf(const ir::Module& module, std::vector<UnprovedOperation>& unproved) {
+size_t proofsOf(const ir::Module& module, std::vector<OperationProof>& unproved) {
   std::vector<analysis::Proof> proofs = analysis::prove(module).operations;
   const size_t safe = std::erase_if(proofs, [](const analysis::Proof& proof) { return proof.safe; });
   std::vector<std::string> operands = operandTexts(module, proofs);

@@ -262,18 +262,12 @@ std::string Graph::dump(const Options& options, std::string_view pass, Messages&
   return {};
 }
 
-std::string Graph::prove(const Options& options, Messages& messages, Precision precision) {
-  if (!filled(impl_.get(), "graph", messages)) return {};
+std::optional<Proofs> Graph::prove(const Options& options, Messages& messages, Precision precision) {
+  if (!filled(impl_.get(), "graph", messages)) return std::nullopt;
   const Result<ir::Module> module = impl_->module(options, checkReading);
-  if (!module) {
-    report(module.error(), impl_->file, messages);
-    return {};
-  }
-  const Result<std::string> proofs =
-      proveGraph(impl_->graph, *module, **libraryFor(options), options, precision);
-  if (proofs) return *proofs;
-  report(proofs.error(), impl_->file, messages);
-  return {};
+  if (!module) return report(module.error(), impl_->file, messages), std::nullopt;
+  return valueOf(proveGraph(impl_->graph, *module, **libraryFor(options), options, precision), impl_->file,
+                 messages);
 }
 
 }  // namespace lacquer

@@ -131,21 +131,22 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   return result;
 }
 
-std::string evaluate(const Scene& scene, size_t material, const std::string& points, Engine engine,
-                     const Strings& texels, const Options& options, Messages& messages) {
-  if (!filled(scene.impl_.get(), "scene", messages)) return {};
+std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const std::string& points,
+                                   Engine engine, const Strings& texels, const Options& options,
+                                   Messages& messages) {
+  if (!filled(scene.impl_.get(), "scene", messages)) return std::nullopt;
   const Scene::Impl& impl = scene.impl();
   const material::Material* found = impl.material(material, messages);
-  if (found == nullptr) return {};
+  if (found == nullptr) return std::nullopt;
   return evaluateOf({*found, *impl.language, impl.document.path, impl.bytes}, points, engine, texels, options,
                     messages);
 }
 
-std::string evaluate(const Graph& graph, const std::string& points, Engine engine, const Strings& texels,
-                     const Options& options, Messages& messages) {
-  if (!filled(graph.impl_.get(), "graph", messages)) return {};
+std::optional<Evaluation> evaluate(const Graph& graph, const std::string& points, Engine engine,
+                                   const Strings& texels, const Options& options, Messages& messages) {
+  if (!filled(graph.impl_.get(), "graph", messages)) return std::nullopt;
   const auto language = libraryFor(options);
-  if (!language) return report(language.error(), {}, messages), std::string();
+  if (!language) return report(language.error(), {}, messages), std::nullopt;
   const Graph::Impl& impl = *graph.impl_;
   return evaluateOf({impl.graph, **language, impl.file, impl.bytes, impl.has_file}, points, engine, texels,
                     options, messages);

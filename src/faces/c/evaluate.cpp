@@ -1,7 +1,6 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 
+#include "answer/answer.h"
 #include "c/handles.h"
 
 namespace lacquer::c {
@@ -13,14 +12,11 @@ template <class Evaluate>
 lacquer_text* evaluated(int engine, const lacquer_options* options, lacquer_messages* messages,
                         const Evaluate& evaluate) {
   return guarded(messages, static_cast<lacquer_text*>(nullptr), [&](Messages& to) {
-    if (engine < LACQUER_DOUBLE || engine > LACQUER_VULKAN_HLSL) {
-      sayError(messages, "unknown-enumerator",
-               fmt::format("the engine is {}, which is no enumerator", engine),
-               fmt::format("they are {} to {}", static_cast<int>(LACQUER_DOUBLE),
-                           static_cast<int>(LACQUER_VULKAN_HLSL)));
+    if (!isEnumerator(engine, LACQUER_VULKAN_HLSL, "engine", messages))
       return static_cast<lacquer_text*>(nullptr);
-    }
-    return textFrom(evaluate(static_cast<lacquer::Engine>(engine), optionsOf(options), to));
+    const std::optional<Evaluation> found =
+        evaluate(static_cast<lacquer::Engine>(engine), optionsOf(options), to);
+    return found ? textFrom(answerJson(*found)) : nullptr;
   });
 }
 

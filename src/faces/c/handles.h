@@ -1,6 +1,8 @@
 // What the handles of lacquer_c.h hold, and what every call does: no exception leaves it.
 #pragma once
 
+#include <algorithm>
+#include <cstring>
 #include <new>
 #include <string>
 #include <string_view>
@@ -55,6 +57,17 @@ lacquer_text* textFrom(std::string text);
 /// Appends an error, if there is memory for one.
 void sayError(lacquer_messages* messages, const char* code, std::string_view what,
               std::string_view help) noexcept;
+
+/// As much of `made` as the caller knows.
+template <class Row>
+int fill(const Row& made, Row* to, size_t size) {
+  if (to == nullptr) return 0;
+  std::memcpy(to, &made, std::min(size, sizeof made));
+  return 1;
+}
+
+/// False, with a message, for a number that is none of an enumeration's.
+bool isEnumerator(int value, int last, const char* what, lacquer_messages* messages);
 
 /// What `call` returns; where it throws, a message and `failed`. `call` is given the Messages to append to.
 template <class Value, class Call>

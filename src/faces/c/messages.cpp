@@ -1,5 +1,7 @@
-#include "setting/messages.h"
+#include <fmt/format.h>
+
 #include "c/handles.h"
+#include "setting/messages.h"
 
 namespace lacquer::c {
 
@@ -20,6 +22,13 @@ void sayError(lacquer_messages* messages, const char* code, std::string_view wha
   } catch (...) {
     return;  // no memory for the message that there is none
   }
+}
+
+bool isEnumerator(int value, int last, const char* what, lacquer_messages* messages) {
+  if (value >= 0 && value <= last) return true;
+  sayError(messages, "unknown-enumerator", fmt::format("the {} is {}, which is no enumerator", what, value),
+           fmt::format("they are 0 to {}", last));
+  return false;
 }
 
 namespace {

@@ -28,14 +28,6 @@ lacquer_binding bindingOf(const BoundResource& of) {
           of.fragment ? 1 : 0};
 }
 
-/// As much of `made` as the caller knows.
-template <class Row>
-int fill(const Row& made, Row* to, size_t size) {
-  if (to == nullptr) return 0;
-  std::memcpy(to, &made, std::min(size, sizeof made));
-  return 1;
-}
-
 }  // namespace
 
 size_t lacquer_shader_block_count(const lacquer_shader* shader) { return reflectionOf(shader).blocks.size(); }

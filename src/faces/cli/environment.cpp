@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "cli/build.h"
+#include "cli/answer.h"
 #include "cli/checks.h"
-#include "cli/streams.h"
 #include "cli/table.h"
-#include "json/json.h"
 
 namespace lacquer::cli {
 
@@ -39,15 +37,12 @@ void addEnvironment(CLI::App& verb, EnvironmentFlags& flags, OptionFlags& option
 
 namespace {
 
-void printWritten(const std::string& text, const std::string& folder) {
-  const json::Json answer = json::reread(text);
-  for (const auto& [slot, row] : answer["textures"].items()) {
-    fmt::print("{:<24} {:>4} x {:<4} {} level{}, {}\n", slot, row["size"].get<int>(), row["size"].get<int>(),
-               row["levels"].get<int>(), row["levels"].get<int>() == 1 ? "" : "s",
-               row["format"].get<std::string>());
+void printWritten(const EnvironmentMaps& maps) {
+  for (const EnvironmentTexture& of : maps.textures) {
+    fmt::print("{:<24} {:>4} x {:<4} {} level{}, {}\n", of.slot, of.size, of.size, of.levels,
+               of.levels == 1 ? "" : "s", of.format);
   }
-  fmt::print("environment_max_lod is {}; in {}\n", answer["environment_max_lod"].get<int>(),
-             printable(folder));
+  fmt::print("environment_max_lod is {}; in {}\n", maps.max_lod, printable(maps.output));
 }
 
 }  // namespace
@@ -55,19 +50,10 @@ void printWritten(const std::string& text, const std::string& folder) {
 int runEnvironment(EnvironmentFlags& flags, const Options& options) {
   flags.environment.dds = flags.container == "dds";
   flags.environment.shared_exponents = flags.texels == "rgb9e5";
-  Messages messages;
-  std::string answer;
-  {
-    ProgressLine line(terminalWidth() > 0 && !flags.quiet, "rows of texels");
-    const auto progress = [&](size_t done, size_t known) {
-      if (done % 64 == 0 || done == known) line(done, known);
-    };
-    answer = writeEnvironment(flags.environment, flags.picture, options, messages, progress);
-  }
-  print(messages);
-  if (flags.json) fmt::print("{}", answer);
-  if (!answer.empty() && !flags.json && !flags.quiet) printWritten(answer, flags.environment.output);
-  return answer.empty() || hasError(messages) ? 1 : 0;
+  return answerTo({flags.json, flags.quiet, "rows of texels", false, 64}, printWritten,
+                  [&](Messages& messages, const Progress& progress) {
+                    return writeEnvironment(flags.environment, flags.picture, options, messages, progress);
+                  });
 }
 
 }  // namespace lacquer::cli

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "answer/answer.h"
 #include "cli/build.h"
 #include "cli/checks.h"
 #include "cli/streams.h"
@@ -47,11 +48,11 @@ Engine engineOf(const EvalFlags& flags) {
 
 int runEval(const EvalFlags& flags, const Options& options) {
   Messages messages;
-  const std::string answer = evaluate(flags.file, flags.material, {}, flags.points, engineOf(flags),
-                                      flags.texels, options, messages);
+  const std::optional<Evaluation> found = evaluate(flags.file, flags.material, {}, flags.points,
+                                                   engineOf(flags), flags.texels, options, messages);
   print(messages, true);
-  fmt::print("{}", answer);
-  return answer.empty() || hasError(messages) ? 1 : 0;
+  if (found) fmt::print("{}", answerJson(*found));
+  return !found || hasError(messages) ? 1 : 0;
 }
 
 }  // namespace lacquer::cli

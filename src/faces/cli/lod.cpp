@@ -1,12 +1,11 @@
 #include "cli/lod.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "cli/build.h"
+#include "cli/answer.h"
 #include "cli/checks.h"
-#include "cli/streams.h"
 #include "cli/table.h"
-#include "json/json.h"
 
 namespace lacquer::cli {
 
@@ -43,51 +42,34 @@ void addLod(CLI::App& verb, LodFlags& flags) {
 
 namespace {
 
-void printChains(const std::string& text) {
-  const json::Json answer = json::reread(text);
-  for (const auto& chain : answer["materials"]) {
-    fmt::print("\n{}: {}\n", printable(chain["source"].get<std::string>()),
-               printable(chain["name"].get<std::string>()));
+void printLevels(const Levels& levels) {
+  for (const MaterialLevels& material : levels.materials) {
+    fmt::print("\n{}: {}\n", printable(material.file), printable(material.name));
     fmt::print("{:>8} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>7}  what is simpler\n", "cycles", "", "quarter",
                "dE", "dE 95 %", "FLIP", "at size", "pixels");
-    double exact = 0;
-    for (const auto& level : chain["levels"]) {
-      const double cycles = level["cost"]["inverse_throughput"].get<double>();
-      const double counted = level["cost"]["counted"].get<double>();
-      if (exact == 0) exact = counted;
-      std::string words;
-      for (const auto& word : level["simplify"])
-        words += (words.empty() ? "" : " ") + word.get<std::string>();
-      const auto& error = level["error"];
-      const bool screen = level.contains("screen_size");
+    for (const Level& level : material.levels) {
+      const LevelFigures& figures = level.figures;
+      const bool screen = level.screen_size > 0;
       fmt::print(
-          "{:>8} {:>4.0f} % {:>8} {:>8.2f} {:>8.2f} {:>8.3f} {:>8} {:>7}  {}\n", cycles,
-          100 * counted / exact, level["cost"]["quarter_rate"].get<uint64_t>(),
-          error["delta_e"]["mean"].get<double>(), error["delta_e"]["p95"].get<double>(),
-          error["flip"]["mean"].get<double>(),
-          screen ? fmt::format("{:.2f}", level["error_at_screen_size"]["delta_e"]["mean"].get<double>()) : "",
-          screen ? fmt::format("{}", level["screen_size"].get<uint32_t>()) : "",
-          printable(words.empty() ? "nothing" : words));
+          "{:>8} {:>4.0f} % {:>8} {:>8.2f} {:>8.2f} {:>8.3f} {:>8} {:>7}  {}\n", figures.cycles,
+          100 * figures.cost / material.levels[0].figures.cost, figures.quarter_cycles, figures.error.delta_e,
+          figures.error.delta_e_95, figures.error.flip,
+          screen ? fmt::format("{:.2f}", level.error_at_screen_size.delta_e) : "",
+          screen ? fmt::format("{}", level.screen_size) : "",
+          printable(level.simplify.empty() ? "nothing" : fmt::format("{}", fmt::join(level.simplify, " "))));
     }
   }
-  fmt::print("\n{}/report.html has the pictures\n", printable(answer["output"].get<std::string>()));
+  fmt::print("\n{}/report.html has the pictures\n", printable(levels.output));
 }
 
 }  // namespace
 
 int runLod(const LodFlags& flags, const std::vector<std::string>& files,
            const std::vector<std::string>& materials, const Options& options) {
-  Messages messages;
-  std::string answer;
-  {
-    ProgressLine line(terminalWidth() > 0 && !flags.quiet, "materials");
-    const auto progress = [&](size_t done, size_t known) { line(done, known); };
-    answer = makeLevels(flags.lod, files, materials, options, messages, progress);
-  }
-  print(messages);
-  if (flags.json) fmt::print("{}", answer);
-  if (!answer.empty() && !flags.json && !flags.quiet) printChains(answer);
-  return answer.empty() || hasError(messages) ? 1 : 0;
+  return answerTo({flags.json, flags.quiet, "materials"}, printLevels,
+                  [&](Messages& messages, const Progress& progress) {
+                    return makeLevels(flags.lod, files, materials, options, messages, progress);
+                  });
 }
 
 }  // namespace lacquer::cli

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "cli/build.h"
+#include <cmath>
+
+#include "cli/answer.h"
 #include "cli/checks.h"
-#include "cli/streams.h"
 #include "cli/table.h"
-#include "json/json.h"
 
 namespace lacquer::cli {
 
@@ -43,39 +43,27 @@ void addPreview(CLI::App& verb, PreviewFlags& flags, OptionFlags& options) {
 
 namespace {
 
-void printMeasured(const std::string& text) {
-  const json::Json answer = json::reread(text);
-  if (answer.contains("differences")) {
-    fmt::print("{:>12} {:>12} {:>12}  material\n", "max", "mean", "rms");
-    for (const auto& row : answer["differences"]) {
-      // Infinite where one of the two is no number; JSON has none.
-      const auto number = [&](const char* name) {
-        return row[name].is_number() ? fmt::format("{:.3e}", row[name].get<double>())
-                                     : std::string("not finite");
-      };
-      fmt::print("{:>12} {:>12} {:>12}  {}\n", number("max"), number("mean"), number("rms"),
-                 printable(row["material"].get<std::string>()));
-    }
+void printMeasured(const PreviewSheet& sheet) {
+  if (!sheet.compared.empty()) fmt::print("{:>12} {:>12} {:>12}  material\n", "max", "mean", "rms");
+  for (const PreviewDifference& of : sheet.differences) {
+    const auto number = [](double x) {
+      return std::isfinite(x) ? fmt::format("{:.3e}", x) : std::string("not finite");
+    };
+    fmt::print("{:>12} {:>12} {:>12}  {}\n", number(of.largest), number(of.mean), number(of.root_mean_square),
+               printable(of.material));
   }
-  fmt::print("{} materials in {}\n", answer["materials"].get<size_t>(),
-             printable(answer["output"].get<std::string>()));
+  fmt::print("{} materials in {}\n", sheet.materials, printable(sheet.output));
 }
 
 }  // namespace
 
 int runPreview(PreviewFlags& flags, const Options& options) {
   flags.preview.in_float = flags.engine == "float";
-  Messages messages;
-  std::string answer;
-  {
-    ProgressLine line(terminalWidth() > 0 && !flags.quiet, "materials");
-    const auto progress = [&](size_t done, size_t known) { line(done, known); };
-    answer = drawPreview(flags.preview, flags.files, flags.materials, options, messages, progress);
-  }
-  print(messages, true);
-  if (flags.json) fmt::print("{}", answer);
-  if (!answer.empty() && !flags.json && !flags.quiet) printMeasured(answer);
-  return answer.empty() || hasError(messages) ? 1 : 0;
+  return answerTo({flags.json, flags.quiet, "materials", true}, printMeasured,
+                  [&](Messages& messages, const Progress& progress) {
+                    return drawPreview(flags.preview, flags.files, flags.materials, options, messages,
+                                       progress);
+                  });
 }
 
 }  // namespace lacquer::cli

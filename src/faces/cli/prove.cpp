@@ -3,88 +3,80 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "answer/answer.h"
 #include "cli/streams.h"
 #include "cli/table.h"
-#include "json/json.h"
 
 namespace lacquer::cli {
 
 namespace {
 
-using json::Json;
-
-/// A member that is a text, as a terminal may show it: names come from the file.
-std::string textOf(const Json& json, const char* key) { return printable(json[key].get<std::string>()); }
-
-std::string rangeText(const Json& range) {
-  const auto end = [](const Json& x) {
-    return x.is_string() ? x.get<std::string>() : fmt::format("{:.7g}", x.get<double>());
+std::string rangeText(const Reached& reached) {
+  const auto end = [](double x) {
+    return std::isfinite(x) ? fmt::format("{:.7g}", x) : x < 0 ? "-inf" : "inf";
   };
-  return fmt::format("[{}, {}]{}", end(range[0]), end(range[1]), range.size() > 2 ? " or no number" : "");
+  return fmt::format("[{}, {}]{}", end(reached.low), end(reached.high), reached.nan ? " or no number" : "");
 }
 
-void printClaims(const Json& claims, const std::string& where) {
-  for (const Json& claim : claims) {
-    if (claim["proved"].get<bool>()) continue;
-    fmt::print("  {}{}: must be {}, may be {}\n", where, textOf(claim, "what"), textOf(claim, "need"),
-               rangeText(claim["reached"]));
+void printClaims(const std::vector<Claim>& claims, const std::string& where) {
+  for (const Claim& claim : claims) {
+    if (claim.proved) continue;
+    fmt::print("  {}{}: must be {}, may be {}\n", where, printable(claim.what), printable(claim.need),
+               rangeText(claim.reached));
   }
 }
 
-size_t proved(const Json& claims) {
+size_t proved(const std::vector<Claim>& claims) {
   return static_cast<size_t>(
-      std::count_if(claims.begin(), claims.end(), [](const Json& c) { return c["proved"].get<bool>(); }));
+      std::count_if(claims.begin(), claims.end(), [](const Claim& claim) { return claim.proved; }));
 }
 
-void printShader(const Json& json) {
-  const Json& operations = json["operations"];
-  size_t safe = 0;
-  for (const Json& row : operations) safe += row["safe"].get<bool>() ? 1 : 0;
-  const Json& contracts = json["contracts"];
+void printShader(const Proofs& proofs) {
+  const auto safe = std::count_if(proofs.operations.begin(), proofs.operations.end(),
+                                  [](const OperationProof& proof) { return proof.safe; });
   fmt::print("{} ({}): {} of {} operations safe, {} of {} arguments within their nodes' contracts\n",
-             textOf(json, "material"), textOf(json, "shader"), safe, operations.size(), proved(contracts),
-             contracts.size());
-  for (const Json& row : operations) {
-    if (row["safe"].get<bool>()) continue;
-    fmt::print("  {}{}: {} of {}: must be {}, may be {}\n", textOf(row, "term"),
-               row.contains("name") ? "." + textOf(row, "name") : "", textOf(row, "operation"),
-               textOf(row, "operand"), textOf(row, "need"), rangeText(row["reached"]));
+             printable(proofs.material), printable(proofs.shader), safe, proofs.operations.size(),
+             proved(proofs.contracts), proofs.contracts.size());
+  for (const OperationProof& proof : proofs.operations) {
+    if (proof.safe) continue;
+    fmt::print("  {}{}: {} of {}: must be {}, may be {}\n", printable(proof.term),
+               proof.name.empty() ? "" : "." + printable(proof.name), proof.operation,
+               printable(proof.operand), proof.need, rangeText(proof.reached));
   }
-  printClaims(contracts, "argument ");
-  for (const Json& output : json["outputs"]) {
-    fmt::print("  output {} is in {}\n", textOf(output, "name"), rangeText(output["reached"]));
-  }
+  printClaims(proofs.contracts, "argument ");
+  for (const OutputProof& output : proofs.outputs)
+    fmt::print("  output {} is in {}\n", printable(output.name), rangeText(output.reached));
 }
 
 bool proveNodes(const ProveFlags& flags, const Options& options, Messages& messages) {
-  const std::string text = proveNodesJson(options, messages, flags.precision);
-  if (text.empty()) return false;
-  const Json json = json::reread(text);
+  const auto nodes = lacquer::proveNodes(options, messages, flags.precision);
+  if (!nodes) return false;
   size_t good = 0;
   size_t all = 0;
-  for (const Json& node : json["nodes"]) {
-    for (const char* kind : {"operations", "results", "calls"}) {
-      good += proved(node[kind]);
-      all += node[kind].size();
-      const std::string variant = node.contains("variant") ? "." + textOf(node, "variant") : "";
-      if (!flags.json) printClaims(node[kind], textOf(node, "name") + variant + ", ");
+  for (const NodeProof& node : *nodes) {
+    const std::string variant = node.variant.empty() ? "" : "." + printable(node.variant);
+    for (const auto* claims : {&node.operations, &node.results, &node.calls}) {
+      good += proved(*claims);
+      all += claims->size();
+      if (!flags.json) printClaims(*claims, printable(node.node) + variant + ", ");
     }
   }
   if (flags.json)
-    fmt::print("{}\n", text);
+    fmt::print("{}\n", answerJson(*nodes));
   else
-    fmt::print("{} nodes: {} of {} claims proved\n", json["nodes"].size(), good, all);
+    fmt::print("{} nodes: {} of {} claims proved\n", nodes->size(), good, all);
   return good == all;
 }
 
 bool proveGraph(Graph graph, const ProveFlags& flags, const Options& options, Messages& messages) {
-  const std::string text = graph ? graph.prove(options, messages, flags.precision) : std::string();
-  if (text.empty()) return false;
+  const std::optional<Proofs> proofs = graph ? graph.prove(options, messages, flags.precision) : std::nullopt;
+  if (!proofs) return false;
   if (flags.json)
-    fmt::print("{}\n", text);
+    fmt::print("{}\n", answerJson(*proofs));
   else
-    printShader(json::reread(text));
+    printShader(*proofs);
   return true;
 }
 

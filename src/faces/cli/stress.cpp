@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "cli/build.h"
+#include <cmath>
+
+#include "cli/answer.h"
 #include "cli/checks.h"
-#include "cli/streams.h"
-#include "cli/table.h"
 #include "json/json.h"
 
 namespace lacquer::cli {
@@ -48,62 +48,50 @@ void addStress(CLI::App& verb, StressFlags& flags, OptionFlags& options) {
 
 namespace {
 
-using json::Json;
-
-std::string titleOf(const Json& subject) {
-  if (subject.contains("case")) return subject["case"].get<std::string>();
-  if (subject.contains("node")) {
-    const std::string name = subject["node"].get<std::string>();
-    return subject.contains("variant") ? name + "." + subject["variant"].get<std::string>() : name;
-  }
-  if (subject.contains("extension")) return subject["extension"].get<std::string>();
-  return fmt::format("{}: {}{}{}", subject["file"].get<std::string>(), subject["name"].get<std::string>(),
-                     subject.contains("tangents") ? ", without tangents" : "",
-                     subject.contains("forms") ? ", its forms" : "");
+std::string titleOf(const StressSubject& subject) {
+  if (!subject.test.empty()) return subject.test;
+  if (!subject.node.empty())
+    return subject.variant.empty() ? subject.node : subject.node + "." + subject.variant;
+  if (!subject.extension.empty()) return subject.extension;
+  return fmt::format("{}: {}{}{}", subject.file, subject.name, subject.tangents ? "" : ", without tangents",
+                     subject.forms ? ", its forms" : "");
 }
 
 /// A colour that is another at a threshold and beside it.
-void printForm(const Json& finding) {
-  fmt::print("  form        {} at {} = {} and beside it", printable(finding["what"].get<std::string>()),
-             printable(finding["parameter"].get<std::string>()), finding["at"].dump());
-  if (finding.contains("layer")) fmt::print(", under {}", printable(finding["layer"].get<std::string>()));
-  if (finding.contains("value")) fmt::print(": differs by {:.3g}", finding["value"].get<double>());
-  fmt::print("\n    sample: {}\n", printable(finding["sample"].dump()));
+void printForm(const StressFinding& finding, const StressSubject& subject) {
+  fmt::print("  form        {} at {} = {} and beside it", printable(finding.what),
+             printable(finding.parameter), json::Json(finding.at).dump());
+  if (!finding.layer.empty()) fmt::print(", under {}", printable(finding.layer));
+  if (std::isfinite(finding.value)) fmt::print(": differs by {:.3g}", finding.value);
+  fmt::print("\n    sample: {}\n", printable(caseText(finding, subject)));
 }
 
-void printFound(const std::string& text, bool quiet) {
-  const Json answer = json::reread(text);
-  for (const auto& subject : answer["subjects"]) {
-    const bool bare =
-        subject["findings"].empty() && !subject.contains("energy") && !subject.contains("skipped");
-    if (bare || (quiet && subject["findings"].empty())) continue;
+void printFinding(const StressFinding& finding, const StressSubject& subject) {
+  if (finding.fault == Fault::Form) return printForm(finding, subject);
+  fmt::print("  {:<11} {} in {}", faultName(finding.fault), finding.count, printable(finding.what));
+  if (std::isfinite(finding.value)) fmt::print(": {:.9g}", finding.value);
+  if (!finding.known.empty()) fmt::print("  (known: {})", finding.known);
+  fmt::print("\n");
+  if (subject.test.empty() && finding.known.empty())
+    fmt::print("    case: {}\n", printable(caseText(finding, subject)));
+}
+
+void printFound(const StressReport& report, bool quiet) {
+  for (const StressSubject& subject : report.subjects) {
+    const bool nothing = subject.findings.empty();
+    if (nothing && (quiet || (!subject.energy && subject.skipped.empty()))) continue;
     fmt::print("{}\n", printable(titleOf(subject)));
-    if (subject.contains("skipped"))
-      fmt::print("  not on the device: {}\n", printable(subject["skipped"].get<std::string>()));
-    if (subject.contains("energy") && !quiet) {
-      const auto& energy = subject["energy"];
+    if (!subject.skipped.empty()) fmt::print("  not on the device: {}\n", printable(subject.skipped));
+    if (subject.energy && !quiet) {
       fmt::print(
           "  white sky: gives back {:.4f} at most, its base {:.4f}; exchanging light and eye changes "
           "{:.2g}\n",
-          energy["largest"].get<double>(), energy["base"].get<double>(), energy["asymmetry"].get<double>());
+          subject.energy->largest, subject.energy->largest_base, subject.energy->asymmetry);
     }
-    for (const auto& finding : subject["findings"]) {
-      if (finding["fault"] == "form") {
-        printForm(finding);
-        continue;
-      }
-      fmt::print("  {:<11} {} in {}", finding["fault"].get<std::string>(), finding["count"].get<uint64_t>(),
-                 printable(finding["what"].get<std::string>()));
-      if (finding.contains("value")) fmt::print(": {:.9g}", finding["value"].get<double>());
-      if (finding.contains("known")) fmt::print("  (known: {})", finding["known"].get<std::string>());
-      fmt::print("\n");
-      if (finding.contains("case") && !finding.contains("known"))
-        fmt::print("    case: {}\n", printable(finding["case"].dump()));
-    }
+    for (const StressFinding& finding : subject.findings) printFinding(finding, subject);
   }
-  fmt::print("{} subjects, {} samples each, seed {}: {} faults\n", answer["subjects"].size(),
-             answer["samples"].get<uint64_t>(), answer["seed"].get<uint64_t>(),
-             answer["faults"].get<size_t>());
+  fmt::print("{} subjects, {} samples each, seed {}: {} faults\n", report.subjects.size(), report.samples,
+             report.seed, report.faults);
 }
 
 }  // namespace
@@ -113,19 +101,17 @@ int runStress(StressFlags& flags, const Options& options) {
     flags.stress.engine = flags.spirv_from == "hlsl"      ? Engine::VulkanHlsl
                           : flags.spirv_from == "glslang" ? Engine::VulkanGlsl
                                                           : Engine::Vulkan;
-  Messages messages;
-  std::string answer;
-  {
-    ProgressLine line(terminalWidth() > 0 && !flags.quiet, "subjects");
-    const auto progress = [&](size_t done, size_t known) { line(done, known); };
-    answer = stressNodes(flags.stress, flags.subjects, options, messages, progress);
-  }
-  print(messages);
-  if (flags.json) fmt::print("{}", answer);
-  if (!answer.empty() && !flags.json) printFound(answer, flags.quiet);
-  if (answer.empty() || hasError(messages)) return 1;
+  bool faults = false;
+  const int status = answerTo(
+      {flags.json, false, flags.quiet ? nullptr : "subjects"},
+      [&](const StressReport& report) { printFound(report, flags.quiet); },
+      [&](Messages& messages, const Progress& progress) {
+        auto report = stressNodes(flags.stress, flags.subjects, options, messages, progress);
+        faults = report && report->faults > 0;
+        return report;
+      });
   // At half precision something always comes of it: that is a report, not a verdict.
-  return flags.stress.mediump || json::reread(answer)["faults"] == 0 ? 0 : 1;
+  return status == 0 && faults && !flags.stress.mediump ? 1 : status;
 }
 
 }  // namespace lacquer::cli

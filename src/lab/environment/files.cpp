@@ -22,18 +22,12 @@ constexpr uint32_t kLeastFace = 32, kMostFace = 1024;
 constexpr uint32_t kLeastDraws = 64, kMostDraws = 65536;
 constexpr uint32_t kDfgSize = 128, kSheenSize = 64;
 
-struct Written {
-  std::string slot;  ///< what templates call the texture
-  uint32_t size = 0, levels = 1;
-  std::string bytes;
-};
-
 class EnvironmentWriter {
 public:
   EnvironmentWriter(const Environment& environment, const Options& options, Messages& messages)
       : of_(environment), options_(options), messages_(messages) {}
 
-  Result<std::string> write(const std::string& picture, const Progress& progress) {
+  Result<EnvironmentMaps> write(const std::string& picture, const Progress& progress) {
     if (Result<void> good = checkNumbers(); !good) return tl::make_unexpected(good.error());
     const Strings outputs = paths();
     if (Diagnostics wrong = clashes({picture}, outputs); !wrong.empty())
@@ -46,15 +40,14 @@ public:
     const environment::MapOptions how{of_.size, of_.samples};
     const environment::LightTree tree(*panorama, environment::treeSizeOf(*panorama, how));
     const environment::Maps maps = environment::makeMaps(tree, how, progress);
-    const std::vector<Written> files = filesOf(maps);
+    EnvironmentMaps made{of_.output, {}, maps.lastLevel(), maps.harmonics};
+    Strings files = filesOf(maps, made.textures);
+    files.push_back(environmentJson(made));
     for (size_t i = 0; i < files.size(); ++i) {
-      if (Result<bool> done = writeFile(outputs[i], files[i].bytes, {nullptr, options_.sync}); !done)
+      if (Result<bool> done = writeFile(outputs[i], files[i], {nullptr, options_.sync}); !done)
         return tl::make_unexpected(std::move(done.error()));
     }
-    std::string answer = describe(maps, files);
-    if (Result<bool> done = writeFile(outputs.back(), answer, {nullptr, options_.sync}); !done)
-      return tl::make_unexpected(std::move(done.error()));
-    return answer;
+    return made;
   }
 
 private:
@@ -84,43 +77,31 @@ private:
     return paths;
   }
 
-  std::vector<Written> filesOf(const environment::Maps& maps) const {
+  /// The files' bytes; `textures` is given what is in them.
+  Strings filesOf(const environment::Maps& maps, std::vector<EnvironmentTexture>& textures) const {
     const texture::Container container = of_.dds ? texture::Container::Dds : texture::Container::Ktx2;
     const auto texels = of_.shared_exponents ? texture::CubeTexels::Rgb9e5 : texture::CubeTexels::Half;
-    std::vector<Written> files;
+    Strings files;
+    const auto add = [&](const char* type, const char* format, uint32_t size, size_t levels,
+                         std::string bytes) {
+      const char* slot = kSlots[files.size()];
+      textures.push_back({slot, fileName(slot), type, format, size, static_cast<uint32_t>(levels)});
+      files.push_back(std::move(bytes));
+    };
     const auto cube = [&](const std::vector<texture::CubeLevel>& levels) {
-      files.push_back({kSlots[files.size()], levels[0].size, static_cast<uint32_t>(levels.size()),
-                       texture::cubeFile(container, texels, levels)});
+      add("samplerCube", of_.shared_exponents ? "E5B9G9R9_UFLOAT_PACK32" : "R16G16B16A16_SFLOAT",
+          levels[0].size, levels.size(), texture::cubeFile(container, texels, levels));
     };
     cube(maps.specular);
     cube(maps.charlie);
     cube({maps.irradiance});
     const auto table = [&](uint32_t size, const std::vector<float>& values) {
-      files.push_back({kSlots[files.size()], size, 1, texture::tableFile(container, size, values)});
+      add("sampler2D", of_.dds ? "R16G16_UNORM" : "R16G16_SFLOAT", size, 1,
+          texture::tableFile(container, size, values));
     };
     table(kDfgSize, eval::environmentDfgTable(kDfgSize));
     table(kSheenSize, eval::environmentSheenTable(kSheenSize));
     return files;
-  }
-
-  std::string describe(const environment::Maps& maps, const std::vector<Written>& files) const {
-    json::Json json = {{"generator", fmt::format("Lacquer {}", version())},
-                       {"environment_max_lod", maps.lastLevel()}};
-    json::Json& textures = json["textures"] = json::Json::object();
-    for (const Written& file : files) {
-      const bool cube = &file < &files[3];
-      const char* format = cube && of_.shared_exponents ? "E5B9G9R9_UFLOAT_PACK32"
-                           : cube                       ? "R16G16B16A16_SFLOAT"
-                           : of_.dds                    ? "R16G16_UNORM"
-                                                        : "R16G16_SFLOAT";
-      textures[file.slot] = {{"file", fileName(file.slot)},
-                             {"type", cube ? "samplerCube" : "sampler2D"},
-                             {"format", format},
-                             {"size", file.size},
-                             {"levels", file.levels}};
-    }
-    json["irradiance_harmonics"] = maps.harmonics;
-    return json.dump(2) + "\n";
   }
 
   const Environment& of_;
@@ -129,6 +110,21 @@ private:
 };
 
 }  // namespace
+
+std::string environmentJson(const EnvironmentMaps& maps) {
+  json::Json json = {{"generator", fmt::format("Lacquer {}", version())},
+                     {"environment_max_lod", maps.max_lod}};
+  json::Json& textures = json["textures"] = json::Json::object();
+  for (const EnvironmentTexture& texture : maps.textures) {
+    textures[texture.slot] = {{"file", texture.file},
+                              {"type", texture.type},
+                              {"format", texture.format},
+                              {"size", texture.size},
+                              {"levels", texture.levels}};
+  }
+  json["irradiance_harmonics"] = maps.irradiance_harmonics;
+  return json.dump(2) + "\n";
+}
 
 Result<environment::Panorama> panoramaOf(const std::string& path, const Options& options,
                                          Messages& messages) {
@@ -143,14 +139,13 @@ Result<environment::Panorama> panoramaOf(const std::string& path, const Options&
   return panorama;
 }
 
-std::string writeEnvironment(const Environment& environment, const std::string& picture,
-                             const Options& options, Messages& messages, const Progress& progress) {
-  Result<std::string> made = std::string();
+std::optional<EnvironmentMaps> writeEnvironment(const Environment& environment, const std::string& picture,
+                                                const Options& options, Messages& messages,
+                                                const Progress& progress) {
+  Result<EnvironmentMaps> made;
   withJobs(options.jobs,
            [&] { made = EnvironmentWriter(environment, options, messages).write(picture, progress); });
-  if (made) return std::move(*made);
-  report(made.error(), {}, messages);
-  return {};
+  return valueOf(std::move(made), {}, messages);
 }
 
 }  // namespace lacquer

@@ -1,4 +1,4 @@
-// A picture of the surroundings from a file.
+// A picture of the surroundings from a file, and the description of the files that are made of it.
 #pragma once
 
 #include <string>
@@ -10,5 +10,8 @@ namespace lacquer {
 
 /// Warnings are reported. Errors: those of readFile(), environment::readPanorama() and of the limits.
 Result<environment::Panorama> panoramaOf(const std::string& path, const Options& options, Messages& messages);
+
+/// The text of environment.json.
+std::string environmentJson(const EnvironmentMaps& maps);
 
 }  // namespace lacquer

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "eval/evaluate.h"
 #include "eval/gpu.h"
@@ -106,60 +107,20 @@ Result<void> bind(EvalMaterial& material, const EvalPoints& points, const std::s
   return material.bindTextures({}, bindings);
 }
 
-struct Colors {
-  std::vector<double> rgba;     ///< of each point
-  std::vector<bool> discarded;  ///< by point; empty when the material discards nothing
-  std::string device;           ///< that ran the shader; empty for the CPU
-};
+/// The colours alone.
+using Colors = Evaluation;
 
-std::string_view nameOf(Engine engine) {
-  switch (engine) {
-    case Engine::Double: return "double";
-    case Engine::Float: return "float";
-    case Engine::Vulkan:
-    case Engine::VulkanGlsl:
-    case Engine::VulkanHlsl: return "vulkan";
-  }
-  return {};  // no enumerator
+/// `values` holds four for each point.
+template <class T>
+void takeColors(const std::vector<T>& values, Colors& to) {
+  to.rgba.resize(values.size() / 4);
+  for (size_t i = 0; i < values.size(); ++i) to.rgba[i / 4][i % 4] = static_cast<double>(values[i]);
 }
-
-bool onDevice(Engine engine) { return engine != Engine::Double && engine != Engine::Float; }
 
 FragmentRoute routeOf(Engine engine) {
   return engine == Engine::VulkanHlsl   ? FragmentRoute::Hlsl
          : engine == Engine::VulkanGlsl ? FragmentRoute::Glsl
                                         : FragmentRoute::Direct;
-}
-
-std::string answerOf(const Colors& colors, const std::string& material, const std::string& profile,
-                     Engine engine) {
-  std::string text = fmt::format("{{\n  \"material\": {},\n  \"engine\": \"{}\",\n",
-                                 json::quotedText(material), nameOf(engine));
-  if (!colors.device.empty()) text += fmt::format("  \"device\": {},\n", json::quotedText(colors.device));
-  if (!profile.empty()) text += fmt::format("  \"profile\": \"{}\",\n", profile);
-  text += "  \"rgba\": [";
-  for (size_t i = 0; 4 * i < colors.rgba.size(); ++i) {
-    text += i == 0 ? "\n    [" : ",\n    [";
-    // A device leaves no colour where it has dropped the fragment.
-    const bool none = onDevice(engine) && !colors.discarded.empty() && colors.discarded[i];
-    for (size_t c = 0; c < 4; ++c) {
-      const double x = colors.rgba[4 * i + c];
-      if (c > 0) text += ", ";
-      // JSON has no infinity; no input in its range should come here.
-      text += none || !std::isfinite(x)  ? "null"
-              : engine == Engine::Double ? fmt::format("{:.17g}", x)
-                                         : fmt::format("{:.9g}", static_cast<float>(x));
-    }
-    text += "]";
-  }
-  text += "\n  ]";
-  if (!colors.discarded.empty()) {
-    text += ",\n  \"discarded\": [";
-    for (size_t i = 0; i < colors.discarded.size(); ++i)
-      text += fmt::format("{}{}", i == 0 ? "" : ", ", static_cast<bool>(colors.discarded[i]));
-    text += "]";
-  }
-  return text + "\n}\n";
 }
 
 vulkan::Texture environmentOf(const EvalPoints& points) {
@@ -224,7 +185,8 @@ Result<Colors> colors(const ir::Module& module, const eval::Bindings& bindings, 
   if (dropped != ir::kNoValue) roots.push_back(dropped);
   const auto values = eval::evaluate<T>(module, roots, bindings, points);
   if (!values) return tl::make_unexpected(values.error());
-  Colors result{{(*values)[0].begin(), (*values)[0].end()}, {}, {}};
+  Colors result;
+  takeColors((*values)[0], result);
   if (values->size() > 1) {
     for (const T x : (*values)[1]) result.discarded.push_back(x != 0);
   }
@@ -239,15 +201,21 @@ Result<Colors> colorsOnGpu(const ir::Module& module, const eval::Bindings& bindi
   if (!device) return tl::make_unexpected(device.error());
   Result<vulkan::Outcome> outcome = device->run(*work);
   if (!outcome) return tl::make_unexpected(std::move(outcome.error()));
-  Colors result{{outcome->outputs[0].begin(), outcome->outputs[0].end()}, {}, device->name()};
+  Colors result;
+  takeColors(outcome->outputs[0], result);
+  result.device = device->name();
   const bool may_discard = std::any_of(module.outputs.begin(), module.outputs.end(),
                                        [](const auto& o) { return o.kind == ir::OutputKind::Discard; });
-  if (may_discard) result.discarded = std::move(outcome->discarded);
+  if (!may_discard) return result;
+  result.discarded = std::move(outcome->discarded);
+  for (size_t i = 0; i < result.rgba.size(); ++i) {
+    if (result.discarded[i]) result.rgba[i].fill(std::numeric_limits<double>::quiet_NaN());
+  }
   return result;
 }
 
 /// How to evaluate, beside the material.
-struct Evaluation {
+struct Setup {
   const EvalPoints& points;
   const std::string& points_file;
   Engine engine;
@@ -255,12 +223,12 @@ struct Evaluation {
   const Options& options;
 };
 
-Result<std::string> evaluateSubject(const EvalSubject& found, const Language& library, FileImages& images,
-                                    const Evaluation& how, Messages& messages) {
+Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& library, FileImages& images,
+                                   const Setup& how, Messages& messages) {
   const auto& [points, points_file, engine, texels, options] = how;
   const std::string& file = images.file();
   report(found.diagnostics(), file, messages);
-  if (lacquer::hasError(found.diagnostics())) return std::string();
+  if (lacquer::hasError(found.diagnostics())) return tl::make_unexpected(Diagnostics());  // reported
   EvalMaterial evaluated(images, options);
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
@@ -283,17 +251,20 @@ Result<std::string> evaluateSubject(const EvalSubject& found, const Language& li
   if (!bound) return tl::make_unexpected(bound.error());
   const size_t count = points.points.size();
   const ir::Module& module = evaluated.module();
-  const Result<Colors> answer =
+  Result<Colors> answer =
       engine == Engine::Double ? colors<double>(module, bindings, count)
       : engine == Engine::Float
           ? colors<float>(module, bindings, count)
           : colorsOnGpu(module, bindings, gpuTextures(evaluated, points), count, routeOf(engine));
-  if (!answer) return tl::make_unexpected(answer.error());
-  return answerOf(*answer, found.name(), evaluated.profile(), engine);
+  if (!answer) return answer;
+  answer->material = found.name();
+  answer->engine = engine;
+  answer->profile = evaluated.profile();
+  return answer;
 }
 
-Result<std::string> evaluateFile(const std::string& file, const std::string& material, const Evaluation& how,
-                                 Messages& messages) {
+Result<Evaluation> evaluateFile(const std::string& file, const std::string& material, const Setup& how,
+                                Messages& messages) {
   const auto library = libraryFor(how.options);
   if (!library) return tl::make_unexpected(library.error());
   if (isGraphFile(file)) {
@@ -316,7 +287,7 @@ Result<std::string> evaluateFile(const std::string& file, const std::string& mat
 
 Diagnostics checkEvaluation(Engine engine, const Options& options) {
   Diagnostics wrong = checkReading(options);
-  if (nameOf(engine).empty()) {
+  if (engineName(engine).empty()) {
     wrong.push_back({"unknown-enumerator",
                      Severity::Error,
                      {},
@@ -337,45 +308,45 @@ Diagnostics checkEvaluation(Engine engine, const Options& options) {
 
 }  // namespace
 
-std::string evaluate(const std::string& file, const std::string& material, const std::string& points,
-                     const std::string& points_name, Engine engine, const std::vector<std::string>& texels,
-                     const Options& options, Messages& messages) {
-  if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty()) {
-    report(wrong, {}, messages);
-    return {};
+std::string_view engineName(Engine engine) {
+  switch (engine) {
+    case Engine::Double: return "double";
+    case Engine::Float: return "float";
+    case Engine::Vulkan:
+    case Engine::VulkanGlsl:
+    case Engine::VulkanHlsl: return "vulkan";
   }
+  return {};  // no enumerator
+}
+
+std::optional<Evaluation> evaluate(const std::string& file, const std::string& material,
+                                   const std::string& points, const std::string& points_name, Engine engine,
+                                   const Strings& texels, const Options& options, Messages& messages) {
+  if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty())
+    return report(wrong, {}, messages), std::nullopt;
   const Limits limits = *limitsOf(options);
   Result<std::string> text = points;
   if (points.empty())
     text = points_name == "-" ? readStandardInput(limits.file) : readFile(points_name, limits.file);
   const Result<EvalPoints> read =
       text ? readPoints(*text, points_name, limits) : tl::make_unexpected(text.error());
-  if (!read) {
-    report(read.error(), points_name, messages);
-    return {};
-  }
-  text = evaluateFile(file, material, {*read, points_name, engine, texels, options}, messages);
-  if (text) return std::move(*text);
-  report(text.error(), file, messages);
-  return {};
+  if (!read) return report(read.error(), points_name, messages), std::nullopt;
+  return valueOf(evaluateFile(file, material, {*read, points_name, engine, texels, options}, messages), file,
+                 messages);
 }
 
-std::string evaluateOf(const InMemory& of, const std::string& points, Engine engine, const Strings& texels,
-                       const Options& options, Messages& messages) {
+std::optional<Evaluation> evaluateOf(const InMemory& of, const std::string& points, Engine engine,
+                                     const Strings& texels, const Options& options, Messages& messages) {
   static const std::string kPoints = "points";
-  if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty()) {
-    report(wrong, {}, messages);
-    return {};
-  }
+  if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty())
+    return report(wrong, {}, messages), std::nullopt;
   const Result<EvalPoints> read = readPoints(points, kPoints, *limitsOf(options));
-  if (!read) return report(read.error(), kPoints, messages), std::string();
+  if (!read) return report(read.error(), kPoints, messages), std::nullopt;
   FileImages images =
       of.has_file ? FileImages(of.file, options, of.bytes) : FileImages::none(of.file, options);
-  Result<std::string> text =
-      evaluateSubject(of.subject, of.language, images, {*read, kPoints, engine, texels, options}, messages);
-  if (text) return std::move(*text);
-  report(text.error(), of.file, messages);
-  return {};
+  return valueOf(
+      evaluateSubject(of.subject, of.language, images, {*read, kPoints, engine, texels, options}, messages),
+      of.file, messages);
 }
 
 }  // namespace lacquer

@@ -22,8 +22,8 @@ struct InMemory {
 };
 
 /// evaluate() of it.
-std::string evaluateOf(const InMemory& of, const std::string& points, Engine engine, const Strings& texels,
-                       const Options& options, Messages& messages);
+std::optional<Evaluation> evaluateOf(const InMemory& of, const std::string& points, Engine engine,
+                                     const Strings& texels, const Options& options, Messages& messages);
 /// drawBall() of it.
 std::vector<uint8_t> drawBallOf(const InMemory& of, uint32_t size, const Strings& texels,
                                 const Options& options, Messages& messages);

@@ -10,6 +10,7 @@
 #include "lacquer/tools.h"
 #include "lod/report.h"
 #include "lod/share.h"
+#include "manifest/levels.h"
 #include "manifest/manifest.h"
 #include "manifest/stale.h"
 #include "setting/messages.h"
@@ -73,12 +74,12 @@ struct Printed {
   std::vector<std::pair<std::string, std::string>> files;  ///< path below the folder, bytes
 };
 
-class Levels {
+class LevelSearch {
 public:
-  Levels(const Lod& lod, const Options& options, Messages& messages, const Progress& progress)
+  LevelSearch(const Lod& lod, const Options& options, Messages& messages, const Progress& progress)
       : lod_(lod), options_(options), messages_(messages), progress_(progress) {}
 
-  Result<std::string> make(const Strings& files, const Strings& materials) {
+  Result<Levels> make(const Strings& files, const Strings& materials) {
     if (Result<void> good = checkLod(lod_, options_); !good)
       return tl::make_unexpected(std::move(good.error()));
     if (Diagnostics wrong = checkOptions(options_); !wrong.empty())
@@ -106,8 +107,7 @@ public:
     }
     if (chains_.empty()) return fail("nothing-to-show", {}, "there is no material with levels");
     if (Result<void> written = write(); !written) return tl::make_unexpected(std::move(written.error()));
-    json::Json answer = {{"output", lod_.output}, {"driver", driver_}, {"materials", chainsJson(chains_)}};
-    return answer.dump(2) + "\n";
+    return Levels{lod_.output, driver_, found()};
   }
 
 private:
@@ -164,11 +164,11 @@ private:
     Result<lod::Tried> exact = subject.open(messages_);
     if (!exact) return tl::make_unexpected(std::move(exact.error()));
     LodChain made;
-    made.file = document.path;
-    made.name = material.name;
-    made.index = static_cast<size_t>(material.index);
-    made.triangles = subject.figures({}).on_mesh ? mesh.triangles.size() / 3 : 0;
-    made.radius = subject.radius();
+    made.found.file = document.path;
+    made.found.name = material.name;
+    made.found.index = static_cast<size_t>(material.index);
+    made.found.triangles = subject.figures({}).error_on_geometry ? mesh.triangles.size() / 3 : 0;
+    made.found.radius = subject.radius();
     search(subject, *exact, made);
     if (Result<void> good = finish(subject, fmt::format("{}-{}", file, material.index), made); !good)
       return good;
@@ -238,6 +238,7 @@ private:
       if (one) made.tried.push_back(*one);
     }
     made.best = lod::front(made.tried);
+    made.found.measured = made.tried.size();
   }
 
   std::vector<size_t> chosen(const std::vector<lod::Tried>& best) const {
@@ -257,44 +258,45 @@ private:
   Result<void> finish(LodMaterial& subject, const std::string& stem, LodChain& made) {
     std::vector<ir::Module> modules;
     for (const size_t place : chosen(made.best)) {
-      LodLevel level;
-      level.words = made.best[place].words;
-      Result<ir::Module> module = subject.module(level.words);
+      Level level;
+      level.simplify = made.best[place].words;
+      Result<ir::Module> module = subject.module(level.simplify);
       if (!module) return tl::make_unexpected(std::move(module.error()));
       modules.push_back(std::move(*module));
-      made.levels.push_back(std::move(level));
+      made.found.levels.push_back(std::move(level));
     }
     lod::shareInterface(modules);
     if (Result<void> measured = measureLevels(subject, modules, made); !measured) return measured;
     uniformsOf(modules[0], made);
-    for (size_t i = 0; i < made.levels.size(); ++i) {
-      LodLevel& level = made.levels[i];
-      level.screen = screenOf(i, made.levels.size());
+    for (size_t i = 0; i < made.found.levels.size(); ++i) {
+      Level& level = made.found.levels[i];
+      level.screen_size = screenOf(i, made.found.levels.size());
       if (Result<void> good = print(std::move(modules[i]), level); !good) return good;
+      LevelPictures& pictures = made.pictures.emplace_back();
       if (i == 0) continue;
-      if (Result<void> good = draw(subject, fmt::format("pictures/{}-{}", stem, i), level); !good)
-        return good;
+      const std::string path = fmt::format("pictures/{}-{}", stem, i);
+      if (Result<void> good = draw(subject, path, level, pictures); !good) return good;
     }
     return {};
   }
 
   /// A level whose own shader, with the shared block, does not cost less than the one before is none.
   static Result<void> measureLevels(LodMaterial& subject, std::vector<ir::Module>& modules, LodChain& made) {
-    Result<std::vector<LodFigures>> costs = subject.costs(modules);
+    Result<std::vector<LevelFigures>> costs = subject.costs(modules);
     if (!costs) return tl::make_unexpected(std::move(costs.error()));
-    std::vector<LodLevel> levels;
+    std::vector<Level> levels;
     std::vector<ir::Module> kept;
-    for (size_t i = 0; i < made.levels.size(); ++i) {
-      LodLevel& level = made.levels[i];
+    for (size_t i = 0; i < made.found.levels.size(); ++i) {
+      Level& level = made.found.levels[i];
       level.figures = (*costs)[i];
-      const LodFigures& found = subject.figures(level.words);
-      level.figures.seen = found.seen;
-      level.figures.on_mesh = found.on_mesh;
+      const LevelFigures& found = subject.figures(level.simplify);
+      level.figures.error = found.error;
+      level.figures.error_on_geometry = found.error_on_geometry;
       if (!levels.empty() && level.figures.cost >= levels.back().figures.cost) continue;
       levels.push_back(std::move(level));
       kept.push_back(std::move(modules[i]));
     }
-    made.levels = std::move(levels);
+    made.found.levels = std::move(levels);
     modules = std::move(kept);
     return {};
   }
@@ -304,19 +306,15 @@ private:
     const Preshader preshader(module);
     const std::vector<ir::Components> values =
         preshader.evaluate([&](uint32_t i) -> const ir::Components& { return module.parameters[i].value; });
-    made.uniforms = json::Json::object();
     for (size_t i = 0; i < values.size(); ++i) {
       const Preshader::Field& field = preshader.fields()[i];
-      const auto count = static_cast<size_t>(ir::componentCount(field.type));
-      if (count == 1)
-        made.uniforms[field.name] = values[i][0];
-      else
-        made.uniforms[field.name] =
-            std::vector<double>(values[i].begin(), values[i].begin() + static_cast<ptrdiff_t>(count));
+      const auto count = static_cast<ptrdiff_t>(ir::componentCount(field.type));
+      made.found.uniforms.emplace_back(field.name,
+                                       std::vector<double>(values[i].begin(), values[i].begin() + count));
     }
   }
 
-  Result<void> print(ir::Module module, LodLevel& level) {
+  Result<void> print(ir::Module module, Level& level) {
     ShaderData data;
     data.id = shaderId(module, *language_);
     data.has_vertex = hasVertexStage(module);
@@ -346,20 +344,28 @@ private:
     return {};
   }
 
-  Result<void> draw(const LodMaterial& subject, const std::string& stem, LodLevel& level) {
+  Result<void> draw(const LodMaterial& subject, const std::string& stem, Level& level,
+                    LevelPictures& pictures) {
     for (const bool used : {false, true}) {
-      const uint32_t size = used ? level.screen : kShown;
-      const bool triangles = atVertices(level.words);
+      const uint32_t size = used ? level.screen_size : kShown;
+      const bool triangles = atVertices(level.simplify);
       const auto exact = subject.shots({}, size, triangles);
       if (!exact) return tl::make_unexpected(exact.error());
-      const auto simpler = subject.shots(level.words, size, triangles);
+      const auto simpler = subject.shots(level.simplify, size, triangles);
       if (!simpler) return tl::make_unexpected(simpler.error());
-      if (used) subject.compare(*exact, *simpler, level.at_screen, level.at_screen_on_mesh);
+      if (used)
+        subject.compare(*exact, *simpler, level.error_at_screen_size, level.error_on_geometry_at_screen_size);
       std::string path = stem + (used ? "-used.png" : ".png");
       pictures_.emplace_back(path, strip(*exact, *simpler));
-      (used ? level.used : level.pictures) = std::move(path);
+      (used ? pictures.used : pictures.large) = std::move(path);
     }
     return {};
+  }
+
+  std::vector<MaterialLevels> found() const {
+    std::vector<MaterialLevels> all;
+    for (const LodChain& chain : chains_) all.push_back(chain.found);
+    return all;
   }
 
   std::string manifest() const {
@@ -367,7 +373,7 @@ private:
     json::Json shaders = json::Json::object();
     for (const auto& [id, one] : printed_) shaders[id] = one.entry;
     json["shaders"] = std::move(shaders);
-    json["levels"] = chainsJson(chains_);
+    json["levels"] = levelsJson(found());
     return json.dump(2) + "\n";
   }
 
@@ -408,13 +414,12 @@ private:
 
 }  // namespace
 
-std::string makeLevels(const Lod& lod, const Strings& files, const Strings& materials, const Options& options,
-                       Messages& messages, const Progress& progress) {
-  Result<std::string> made = std::string();
-  withJobs(options.jobs, [&] { made = Levels(lod, options, messages, progress).make(files, materials); });
-  if (made) return std::move(*made);
-  report(made.error(), {}, messages);
-  return {};
+std::optional<Levels> makeLevels(const Lod& lod, const Strings& files, const Strings& materials,
+                                 const Options& options, Messages& messages, const Progress& progress) {
+  Result<Levels> made;
+  withJobs(options.jobs,
+           [&] { made = LevelSearch(lod, options, messages, progress).make(files, materials); });
+  return valueOf(std::move(made), {}, messages);
 }
 
 }  // namespace lacquer

@@ -158,7 +158,7 @@ std::vector<preview::Shot> LodMaterial::shotsOf(const std::vector<preview::Shadi
 }
 
 void LodMaterial::compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
-                          preview::Seen& seen, std::optional<preview::Seen>& on_mesh) const {
+                          SeenDifference& seen, std::optional<SeenDifference>& on_mesh) const {
   seen = preview::compareShots(exact, simpler);
   on_mesh.reset();
   const auto balls = static_cast<ptrdiff_t>(studios_.size());
@@ -241,14 +241,14 @@ lod::Words LodMaterial::words() const {
   return good;
 }
 
-double LodMaterial::costOf(const LodFigures& figures) const {
+double LodMaterial::costOf(const LevelFigures& figures) const {
   const uint64_t before = exact_vertex_.value_or(figures.vertex_cycles);
   const uint64_t more = figures.vertex_cycles - std::min(before, figures.vertex_cycles);
   return static_cast<double>(figures.cycles) + kVertexShare * static_cast<double>(more);
 }
 
-Result<std::vector<LodFigures>> LodMaterial::costs(const std::vector<ir::Module>& modules) {
-  std::vector<LodFigures> figures(modules.size());
+Result<std::vector<LevelFigures>> LodMaterial::costs(const std::vector<ir::Module>& modules) {
+  std::vector<LevelFigures> figures(modules.size());
   if (!cost::unavailable().empty()) {
     for (size_t i = 0; i < modules.size(); ++i) {
       const lod::Estimate estimate = lod::estimate(modules[i]);
@@ -295,12 +295,12 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
     of_fresh.emplace_back(std::move(id), &set);
     fresh.push_back(std::move(*made));
   }
-  Result<std::vector<LodFigures>> costs = this->costs(fresh);
+  Result<std::vector<LevelFigures>> costs = this->costs(fresh);
   for (size_t i = 0; costs && i < fresh.size(); ++i) {
     const bool triangles = atVertices(*of_fresh[i].second);
     const auto shot = shots(*of_fresh[i].second, size_, triangles);
     if (!shot) continue;
-    compare(exact_[triangles], *shot, (*costs)[i].seen, (*costs)[i].on_mesh);
+    compare(exact_[triangles], *shot, (*costs)[i].error, (*costs)[i].error_on_geometry);
     figures_.emplace(of_fresh[i].first, (*costs)[i]);
   }
   std::vector<std::optional<lod::Tried>> tried(sets.size());
@@ -308,7 +308,7 @@ std::vector<std::optional<lod::Tried>> LodMaterial::measure(const std::vector<lo
     const auto id = ids_.find(sets[i]);
     const auto found = id == ids_.end() ? figures_.end() : figures_.find(id->second);
     if (found == figures_.end()) continue;
-    tried[i] = lod::Tried{sets[i], found->second.cost, found->second.seen.delta_e};
+    tried[i] = lod::Tried{sets[i], found->second.cost, found->second.error.delta_e};
   }
   return tried;
 }

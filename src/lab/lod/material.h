@@ -13,16 +13,6 @@
 
 namespace lacquer {
 
-/// What was measured of a shader.
-struct LodFigures {
-  uint64_t instructions = 0, cycles = 0;  ///< on navi21; cycles of inverse throughput
-  uint64_t quarter_cycles = 0;            ///< the same with roots and the like at a quarter of the rate
-  uint64_t vertex_cycles = 0;             ///< of the vertex stage
-  double cost = 0;                        ///< cycles, and those that the vertices take more (kVertexShare)
-  preview::Seen seen;                     ///< against the exact shader, of all pictures together
-  std::optional<preview::Seen> on_mesh;   ///< of the pictures of the file's own geometry alone
-};
-
 /// Vertices for each pixel that a level is charged for: triangles of four pixels, as there are two triangles
 /// for each vertex. What a level computes more at the vertices than the exact shader counts so much.
 inline constexpr double kVertexShare = 0.125;
@@ -63,9 +53,9 @@ public:
   Result<std::vector<preview::Shot>> shots(const lod::Words& words, uint32_t size, bool triangles) const;
   /// What two sets of pictures of one size differ by: all of them, and those of the geometry.
   void compare(const std::vector<preview::Shot>& exact, const std::vector<preview::Shot>& simpler,
-               preview::Seen& seen, std::optional<preview::Seen>& on_mesh) const;
+               SeenDifference& seen, std::optional<SeenDifference>& on_mesh) const;
   /// What was found of a set that was measured.
-  const LodFigures& figures(const lod::Words& words) const { return figures_.at(ids_.at(words)); }
+  const LevelFigures& figures(const lod::Words& words) const { return figures_.at(ids_.at(words)); }
   /// "Mesa 22.3.6"; empty where the costs are estimates.
   const std::string& driver() const { return driver_; }
   size_t measured() const { return figures_.size(); }
@@ -73,7 +63,7 @@ public:
   double radius() const { return radius_; }
 
   /// Measures modules: cycles and instructions alone.
-  Result<std::vector<LodFigures>> costs(const std::vector<ir::Module>& modules);
+  Result<std::vector<LevelFigures>> costs(const std::vector<ir::Module>& modules);
 
 private:
   using Change = std::function<void(ir::Module&)>;
@@ -92,7 +82,7 @@ private:
                                                   uint32_t grid) const;
   std::vector<preview::Shot> shotsOf(const std::vector<preview::Shading>& shadings, uint32_t size,
                                      uint32_t grid, bool triangles) const;
-  double costOf(const LodFigures& figures) const;
+  double costOf(const LevelFigures& figures) const;
   static std::vector<double> scalesOf(const lod::Words& words, const std::vector<Parameter>& parameters);
   std::vector<Parameter> fittable(const lod::Words& words) const;
   std::optional<std::vector<preview::Shot>> shotsWith(const lod::Words& words,
@@ -115,7 +105,7 @@ private:
   lod::Words means_;              ///< words for textures that have images
   std::set<std::string> absent_;  ///< textures that have none: nothing is known of them
   std::map<lod::Words, std::string> ids_;
-  std::map<std::string, LodFigures> figures_;  ///< by shader
+  std::map<std::string, LevelFigures> figures_;  ///< by shader
   std::string driver_;
   std::optional<uint64_t> exact_vertex_;  ///< cycles of the exact shader's vertex stage
 };

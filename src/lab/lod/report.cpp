@@ -59,7 +59,8 @@ class Plot {
 public:
   explicit Plot(const LodChain& chain) : chain_(chain) {
     for (const lod::Tried& one : chain.tried) cost_ = std::max(cost_, one.cost);
-    for (const LodLevel& level : chain.levels) error_ = std::max(error_, 1.5 * level.figures.seen.delta_e);
+    for (const Level& level : chain.found.levels)
+      error_ = std::max(error_, 1.5 * level.figures.error.delta_e);
     cost_ *= 1.05;
     error_ = std::max(error_, 0.5);
   }
@@ -80,13 +81,13 @@ public:
       if (one.error <= error_) line += fmt::format("{:.1f},{:.1f} ", x(one.cost), y(one.error));
     }
     text += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"#888\"/>\n", line);
-    for (size_t i = 0; i < chain_.levels.size(); ++i) {
-      const LodFigures& f = chain_.levels[i].figures;
+    for (size_t i = 0; i < chain_.found.levels.size(); ++i) {
+      const LevelFigures& f = chain_.found.levels[i].figures;
       const double cost = static_cast<double>(f.cycles);
       text += fmt::format(
           "<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"5\" fill=\"#c33\"/>"
           "<text x=\"{2:.1f}\" y=\"{3:.1f}\" fill=\"#c33\">{4}</text>\n",
-          x(cost), y(f.seen.delta_e), x(cost) + 8, y(f.seen.delta_e) - 6, i);
+          x(cost), y(f.error.delta_e), x(cost) + 8, y(f.error.delta_e) - 6, i);
     }
     return text + "</svg>\n";
   }
@@ -128,37 +129,37 @@ std::string screenText(uint32_t screen) {
 }
 
 std::string rowOf(const LodChain& chain, size_t i, const lang::Library& library) {
-  const LodLevel& level = chain.levels[i];
-  const LodFigures& f = level.figures;
+  const Level& level = chain.found.levels[i];
+  const LevelFigures& f = level.figures;
   std::string changes;
-  for (const std::string& word : level.words)
+  for (const std::string& word : level.simplify)
     changes += fmt::format("<li title=\"{}\">{}</li>", escaped(word), escaped(described(word, library)));
-  const double part = 100 * f.cost / chain.levels[0].figures.cost;
+  const double part = 100 * f.cost / chain.found.levels[0].figures.cost;
   std::string on_mesh;
-  if (chain.triangles > 0) {
-    const preview::Seen at_size = level.at_screen_on_mesh.value_or(preview::Seen{});
-    on_mesh = fmt::format("<td>{:.2f}</td><td>{:.2f}</td>", f.on_mesh.value_or(preview::Seen{}).delta_e,
-                          at_size.delta_e);
+  if (chain.found.triangles > 0) {
+    const SeenDifference at_size = level.error_on_geometry_at_screen_size.value_or(SeenDifference{});
+    on_mesh = fmt::format("<td>{:.2f}</td><td>{:.2f}</td>",
+                          f.error_on_geometry.value_or(SeenDifference{}).delta_e, at_size.delta_e);
   }
   return fmt::format(
       "<tr><td>{}</td><td>{}</td><td>{} ({:.0f} %)</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} / "
       "{:.2f}</td><td>{:.3f} / "
       "{:.3f}</td><td>{:.2f} / {:.2f}</td>{}<td>{}</td></tr>\n",
-      i, screenText(level.screen), f.cycles, part, f.vertex_cycles, f.quarter_cycles, f.instructions,
-      f.seen.delta_e, f.seen.delta_e_95, f.seen.flip, f.seen.flip_95, level.at_screen.delta_e,
-      level.at_screen.delta_e_95, on_mesh,
+      i, screenText(level.screen_size), f.cycles, part, f.vertex_cycles, f.quarter_cycles, f.instructions,
+      f.error.delta_e, f.error.delta_e_95, f.error.flip, f.error.flip_95, level.error_at_screen_size.delta_e,
+      level.error_at_screen_size.delta_e_95, on_mesh,
       changes.empty() ? std::string("everything") : "<ul>" + changes + "</ul>");
 }
 
 std::string chainHtml(const LodChain& chain, uint32_t size, const lang::Library& library) {
   std::string text = fmt::format(
       "<h2>{}</h2>\n<p class=\"quiet\">{}, material {}; {} shaders were measured on {}</p>\n",
-      escaped(chain.name.empty() ? "(no name)" : chain.name), escaped(chain.file), chain.index,
-      chain.tried.size(),
-      chain.triangles == 0 ? fmt::format("a ball of radius {:.4g}", chain.radius)
-                           : fmt::format("the {} triangles of the file that have the material, and "
-                                         "on a ball of their size (radius {:.4g})",
-                                         chain.triangles, chain.radius));
+      escaped(chain.found.name.empty() ? "(no name)" : chain.found.name), escaped(chain.found.file),
+      chain.found.index, chain.tried.size(),
+      chain.found.triangles == 0 ? fmt::format("a ball of radius {:.4g}", chain.found.radius)
+                                 : fmt::format("the {} triangles of the file that have the material, and "
+                                               "on a ball of their size (radius {:.4g})",
+                                               chain.found.triangles, chain.found.radius));
   text += fmt::format(
       "<table>\n<tr><th>level</th><th>for</th><th>cycles</th><th title=\"of the vertex stage; what it takes "
       "more than that of level 0 "
@@ -166,26 +167,22 @@ std::string chainHtml(const LodChain& chain, uint32_t size, const lang::Library&
       "rate</th><th>instructions</th><th>ΔE at {0}, "
       "mean / 95 %</th><th>FLIP at {0}</th><th>ΔE at its size</th>{1}<th>what is simpler</th></tr>\n",
       size,
-      chain.triangles == 0
+      chain.found.triangles == 0
           ? std::string()
           : fmt::format("<th>ΔE on the geometry alone, at {}</th><th>and at its size</th>", size));
-  for (size_t i = 0; i < chain.levels.size(); ++i) text += rowOf(chain, i, library);
+  for (size_t i = 0; i < chain.found.levels.size(); ++i) text += rowOf(chain, i, library);
   text += "</table>\n" + Plot(chain).svg();
-  for (size_t i = 1; i < chain.levels.size(); ++i) {
-    const LodLevel& level = chain.levels[i];
+  for (size_t i = 1; i < chain.found.levels.size(); ++i) {
+    const Level& level = chain.found.levels[i];
     text += fmt::format(
         "<h3>Level {}</h3>\n<figure><img src=\"{}\" alt=\"\"><figcaption>exact, level {}, FLIP "
         "between them; one row for each studio{}</figcaption></figure>\n",
-        i, escaped(level.pictures), i, chain.triangles == 0 ? "" : ", then the file's own geometry in each");
+        i, escaped(chain.pictures[i].large), i,
+        chain.found.triangles == 0 ? "" : ", then the file's own geometry in each");
     text += fmt::format("<figure><img src=\"{}\" alt=\"\"><figcaption>at {} pixels</figcaption></figure>\n",
-                        escaped(level.used), level.screen);
+                        escaped(chain.pictures[i].used), level.screen_size);
   }
   return text;
-}
-
-json::Json seenJson(const preview::Seen& seen) {
-  return {{"delta_e", {{"mean", seen.delta_e}, {"p95", seen.delta_e_95}}},
-          {"flip", {{"mean", seen.flip}, {"p95", seen.flip_95}}}};
 }
 
 }  // namespace
@@ -223,42 +220,6 @@ std::string lodPage(const std::vector<LodChain>& chains, const std::string& driv
       preview::comparisonStudios(1).size());
   for (const LodChain& chain : chains) text += chainHtml(chain, size, library);
   return text + "</html>\n";
-}
-
-json::Json chainsJson(const std::vector<LodChain>& chains) {
-  json::Json all = json::Json::array();
-  for (const LodChain& chain : chains) {
-    json::Json levels = json::Json::array();
-    for (const LodLevel& level : chain.levels) {
-      const LodFigures& f = level.figures;
-      json::Json row = {{"shader", level.shader},
-                        {"simplify", level.words},
-                        {"cost",
-                         {{"inverse_throughput", f.cycles},
-                          {"quarter_rate", f.quarter_cycles},
-                          {"instructions", f.instructions},
-                          {"vertex_inverse_throughput", f.vertex_cycles},
-                          {"counted", f.cost}}},
-                        {"error", seenJson(f.seen)}};
-      if (f.on_mesh) row["error_on_geometry"] = seenJson(*f.on_mesh);
-      if (level.screen > 0) {
-        row["screen_size"] = level.screen;
-        row["error_at_screen_size"] = seenJson(level.at_screen);
-        if (level.at_screen_on_mesh)
-          row["error_on_geometry_at_screen_size"] = seenJson(*level.at_screen_on_mesh);
-      }
-      levels.push_back(std::move(row));
-    }
-    all.push_back({{"source", chain.file},
-                   {"material", chain.index},
-                   {"name", chain.name},
-                   {"uniforms", chain.uniforms},
-                   {"measured", chain.tried.size()},
-                   {"triangles", chain.triangles},
-                   {"radius", chain.radius},
-                   {"levels", std::move(levels)}});
-  }
-  return all;
 }
 
 }  // namespace lacquer

@@ -76,18 +76,12 @@ Diagnostic absentImages(const EvalSubject& subject, const std::string& file, siz
       {}};
 }
 
-struct Measured {
-  std::string file, name;
-  preview::Difference difference;
-};
-
 class Previewing {
 public:
-  Previewing(const Preview& preview, const Options& options, Messages& messages,
-             const std::function<void(size_t, size_t)>& progress)
+  Previewing(const Preview& preview, const Options& options, Messages& messages, const Progress& progress)
       : preview_(preview), options_(options), messages_(messages), progress_(progress) {}
 
-  Result<std::string> make(const std::vector<std::string>& files, const std::vector<std::string>& materials) {
+  Result<PreviewSheet> make(const Strings& files, const Strings& materials) {
     if (const Result<Limits> limits = limitsOf(options_); !limits) return tl::make_unexpected(limits.error());
     if (Result<void> set = readSettings(); !set) return tl::make_unexpected(std::move(set.error()));
     if (Result<void> lit = readEnvironment(); !lit) return tl::make_unexpected(std::move(lit.error()));
@@ -125,7 +119,10 @@ public:
       return tl::make_unexpected(std::move(wrong));
     if (Result<bool> written = writeFile(preview_.output, sheet->png(), {nullptr, options_.sync}); !written)
       return tl::make_unexpected(std::move(written.error()));
-    return answer(title);
+    sheet_.output = preview_.output;
+    sheet_.materials = done_;
+    if (settings_.size() == 2) sheet_.compared = {settings_[0].name, settings_[1].name};
+    return std::move(sheet_);
   }
 
 private:
@@ -242,7 +239,8 @@ private:
       cell.lines.push_back(fmt::format("max {:.2g}   mean {:.2g}   shown x {:g}", compared.measured.largest,
                                        compared.measured.mean, compared.gain));
       cell.pictures = {std::move(compared.a), std::move(compared.b), std::move(compared.difference)};
-      measured_.push_back({images.file(), name, compared.measured});
+      sheet_.differences.push_back({images.file(), name, compared.measured.largest, compared.measured.mean,
+                                    compared.measured.root_mean_square});
     } else {
       cell.pictures = {preview::drawBall(shadings[0], preview_.size, preview::kBackground)};
     }
@@ -256,44 +254,26 @@ private:
     report({absentImages(subject, file, count)}, file, messages_);
   }
 
-  std::string answer(const std::string& title) const {
-    json::Json json = {{"output", preview_.output}, {"materials", done_}};
-    if (!title.empty()) {
-      json["compared"] = json::Json::array({settings_[0].name, settings_[1].name});
-      json["differences"] = json::Json::array();
-      for (const Measured& m : measured_) {
-        json["differences"].push_back({{"file", m.file},
-                                       {"material", m.name},
-                                       {"max", m.difference.largest},
-                                       {"mean", m.difference.mean},
-                                       {"rms", m.difference.root_mean_square}});
-      }
-    }
-    return json.dump(2) + "\n";
-  }
-
   const Preview& preview_;
   const Options& options_;
   Messages& messages_;
-  const std::function<void(size_t, size_t)>& progress_;
+  const Progress& progress_;
   preview::Studio studio_;                ///< or what the environment's picture makes of it
   std::vector<PreviewSetting> settings_;  ///< one, or the two to compare
   std::vector<std::shared_ptr<const Language>> libraries_;
-  std::vector<Measured> measured_;
+  PreviewSheet sheet_;
   size_t done_ = 0, total_ = 0;
 };
 
 }  // namespace
 
-std::string drawPreview(const Preview& preview, const std::vector<std::string>& files,
-                        const std::vector<std::string>& materials, const Options& options, Messages& messages,
-                        const std::function<void(size_t done, size_t known)>& progress) {
-  Result<std::string> made = std::string();
+std::optional<PreviewSheet> drawPreview(const Preview& preview, const Strings& files,
+                                        const Strings& materials, const Options& options, Messages& messages,
+                                        const Progress& progress) {
+  Result<PreviewSheet> made;
   withJobs(options.jobs,
            [&] { made = Previewing(preview, options, messages, progress).make(files, materials); });
-  if (made) return std::move(*made);
-  report(made.error(), {}, messages);
-  return {};
+  return valueOf(std::move(made), {}, messages);
 }
 
 static Result<std::vector<uint8_t>> ballOf(const InMemory& of, uint32_t size, const Strings& texels,

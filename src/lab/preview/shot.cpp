@@ -158,7 +158,7 @@ Shot shoot(const Shading& shading, const Coverage& coverage) {
   return shot;
 }
 
-Seen compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b) {
+SeenDifference compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b) {
   std::vector<double> delta_e, flips;
   for (size_t i = 0; i < a.size(); ++i) {
     const std::vector<double> map = picture::flip(a[i].pixels, b[i].pixels);
@@ -168,7 +168,7 @@ Seen compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b) {
                                             picture::labOf(b[i].pixels.colors[pixel])));
     }
   }
-  Seen seen;
+  SeenDifference seen;
   seen.delta_e = meanOf(delta_e);
   seen.flip = meanOf(flips);
   seen.delta_e_95 = percentile95(delta_e);

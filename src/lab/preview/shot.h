@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "lacquer/results.h"
 #include "picture/flip.h"
 #include "preview/ball.h"
 #include "preview/mesh.h"
@@ -24,13 +25,8 @@ Shot shoot(const Shading& shading, const Coverage& coverage);
 /// Samples of a pixel along each side that measurements at that size take: small pictures have few pixels.
 inline uint32_t gridOf(uint32_t size) { return size < 48 ? 4 : 2; }
 
-/// How different two of them look: over the pixels that show the ball, the mean and the 95th percentile.
-struct Seen {
-  double delta_e = 0, delta_e_95 = 0;  ///< CIEDE2000
-  double flip = 0, flip_95 = 0;        ///< in [0, 1]
-};
-/// Of pairs of equal size, all of their pixels together.
-Seen compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b);
+/// How different pairs of equal size look, all of their pixels together.
+SeenDifference compareShots(const std::vector<Shot>& a, const std::vector<Shot>& b);
 
 /// The shot before `background`, as sRGB; and where and how much two differ, by FLIP, from black to yellow.
 Picture shown(const Shot& shot);

@@ -27,7 +27,8 @@ ir::Interval loosened(const ir::Interval& range) {
 /// That a value of the exact function lies in a range.
 Claim claimOf(const ir::Module& module, const analysis::Intervals& exact, ValueId value,
               const ir::Interval& range, std::string what, int budget) {
-  Claim claim{std::move(what), rangeText(range), exact.all(value), true};
+  Claim claim{std::move(what), rangeText(range), {}, true};
+  const analysis::Range all = exact.all(value);
   const ir::Interval allowed = loosened(range);
   for (int c = 0; c < ir::componentCount(module.dag[value].type); ++c) {
     const analysis::Range& reached = exact.at(value, c);
@@ -36,7 +37,7 @@ Claim claimOf(const ir::Module& module, const analysis::Intervals& exact, ValueI
     refine.budget = budget;
     claim.proved &= simple || analysis::proveWithin(module, value, c, allowed, refine);
   }
-  if (claim.proved) claim.reached = meet(claim.reached, {range.lo, range.hi, false});
+  claim.reached = reachedOf(claim.proved ? meet(all, {range.lo, range.hi, false}) : all);
   return claim;
 }
 
@@ -62,7 +63,7 @@ ValueId parameterInput(ir::Module& module, const lang::Param& param, ir::Rate ra
 Claim operationClaim(const ir::Module& module, const analysis::Proof& proof, const std::string& operand,
                      Arithmetic arithmetic) {
   Claim claim{fmt::format("{} of {}", ir::info(module.dag[proof.id].op).name, operand),
-              std::string(proof.need), proof.reached, proof.safe};
+              std::string(proof.need), reachedOf(proof.reached), proof.safe};
   if (claim.proved) return claim;
   // One evaluation may not see it; the same on pieces of the ranges may.
   analysis::RefineOptions refine;

@@ -5,25 +5,11 @@
 #include <vector>
 
 #include "analysis/prove.h"
+#include "lacquer/results.h"
 #include "lang/library.h"
 #include "lower/inline.h"
 
 namespace lacquer {
-
-/// One thing to prove.
-struct Claim {
-  std::string what;  ///< "inversesqrt of `max(length2, 1e-30)`", "result", "schlick.F0"
-  std::string need;  ///< "> 0", "in [0, 1]"
-  analysis::Range reached;
-  bool proved = false;
-};
-
-struct NodeProof {
-  std::string node, variant;      ///< variant: empty for the reference
-  std::vector<Claim> operations;  ///< in these floats, on arguments that may pass their ranges by rounding
-  std::vector<Claim> results;     ///< of the exact function
-  std::vector<Claim> calls;       ///< arguments of the nodes that it calls, of the exact function
-};
 
 /// A node by itself: its parameters are inputs in their declared ranges, its results are outputs, in order.
 struct NodeModule {

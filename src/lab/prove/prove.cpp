@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "interface/entry.h"
 #include "interface/proofs.h"
 #include "lacquer/tools.h"
 #include "lower/lower.h"
@@ -14,19 +13,6 @@
 namespace lacquer {
 
 namespace {
-
-Json claimJson(const Claim& claim) {
-  return {{"what", claim.what},
-          {"need", claim.need},
-          {"reached", rangeJson(claim.reached.lo, claim.reached.hi, claim.reached.nan)},
-          {"proved", claim.proved}};
-}
-
-Json claimsJson(const std::vector<Claim>& claims) {
-  Json json = Json::array();
-  for (const Claim& claim : claims) json.push_back(claimJson(claim));
-  return json;
-}
 
 analysis::Arithmetic arithmeticOf(Precision precision) {
   switch (precision) {
@@ -55,50 +41,28 @@ Result<std::vector<Claim>> contractClaims(const graph::Graph& graph, const lang:
 
 }  // namespace
 
-Result<std::string> proveGraph(const graph::Graph& graph, const ir::Module& module,
-                               const lang::Library& library, const Options& options, Precision precision) {
-  const Result<std::vector<Claim>> claims = contractClaims(graph, library, options);
+Result<Proofs> proveGraph(const graph::Graph& graph, const ir::Module& module, const lang::Library& library,
+                          const Options& options, Precision precision) {
+  Result<std::vector<Claim>> claims = contractClaims(graph, library, options);
   if (!claims) return tl::make_unexpected(claims.error());
-  const analysis::Proofs proofs = analysis::prove(module, {arithmeticOf(precision), analysis::kSceneLimit});
-  const std::vector<std::string> operands = operandTexts(module, proofs.operations);
-  Json operations = Json::array();
-  for (size_t i = 0; i < operands.size(); ++i) {
-    Json row = operationJson(operationOf(module.dag, proofs.operations[i], operands[i]));
-    row["safe"] = proofs.operations[i].safe;
-    operations.push_back(std::move(row));
-  }
-  Json outputs = Json::array();
-  for (const analysis::OutputRange& range : proofs.outputs) {
-    outputs.push_back({{"name", module.outputs[range.output].name},
-                       {"reached", rangeJson(range.reached.lo, range.reached.hi, range.reached.nan)}});
-  }
-  return Json{{"material", graph.name},
-              {"shader", shaderId(module, library)},
-              {"operations", std::move(operations)},
-              {"outputs", std::move(outputs)},
-              {"contracts", claimsJson(*claims)}}
-      .dump(2);
+  const analysis::Proofs found = analysis::prove(module, {arithmeticOf(precision), analysis::kSceneLimit});
+  std::vector<std::string> operands = operandTexts(module, found.operations);
+  Proofs proofs{graph.name, shaderId(module, library), {}, {}, std::move(*claims)};
+  for (size_t i = 0; i < operands.size(); ++i)
+    proofs.operations.push_back(operationOf(module.dag, found.operations[i], std::move(operands[i])));
+  for (const analysis::OutputRange& range : found.outputs)
+    proofs.outputs.push_back({module.outputs[range.output].name, reachedOf(range.reached)});
+  return proofs;
 }
 
-std::string proveNodesJson(const Options& options, Messages& messages, Precision precision) {
+std::optional<std::vector<NodeProof>> proveNodes(const Options& options, Messages& messages,
+                                                 Precision precision) {
   const auto library = libraryFor(options);
-  if (!library) {
-    report(library.error(), {}, messages);
-    return {};
-  }
+  if (!library) return report(library.error(), {}, messages), std::nullopt;
   const Diagnostics found = (*library)->check();
   report(found, {}, messages);
-  if (hasError(found)) return {};
-  Json nodes = Json::array();
-  for (const NodeProof& proof : proveNodes(**library, arithmeticOf(precision))) {
-    Json row = {{"name", proof.node}};
-    if (!proof.variant.empty()) row["variant"] = proof.variant;
-    row["operations"] = claimsJson(proof.operations);
-    row["results"] = claimsJson(proof.results);
-    row["calls"] = claimsJson(proof.calls);
-    nodes.push_back(std::move(row));
-  }
-  return Json{{"nodes", std::move(nodes)}}.dump(2);  // a node file may hold any bytes
+  if (hasError(found)) return std::nullopt;
+  return proveNodes(**library, arithmeticOf(precision));
 }
 
 }  // namespace lacquer

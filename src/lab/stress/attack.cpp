@@ -280,21 +280,6 @@ void valueAtHalf(const Subject& subject, Finding& finding) {
 
 }  // namespace
 
-std::string_view faultName(Fault fault) {
-  switch (fault) {
-    case Fault::NaN: return "nan";
-    case Fault::Infinity: return "infinity";
-    case Fault::Negative: return "negative";
-    case Fault::Range: return "range";
-    case Fault::Assume: return "assume";
-    case Fault::Jump: return "jump";
-    case Fault::Reciprocity: return "reciprocity";
-    case Fault::Energy: return "energy";
-    case Fault::Device: return "device";
-  }
-  return {};
-}
-
 bool faultAt(const Root& root, const std::vector<double>& values, size_t sample, Fault& fault,
              double& value) {
   if (root.kind == Root::Kind::Gap) return false;
@@ -419,3 +404,23 @@ Report attack(const Subject& subject, const Plan& plan) {
 }
 
 }  // namespace lacquer::stress
+
+namespace lacquer {
+
+std::string_view faultName(Fault fault) {
+  switch (fault) {
+    case Fault::NaN: return "nan";
+    case Fault::Infinity: return "infinity";
+    case Fault::Negative: return "negative";
+    case Fault::Range: return "range";
+    case Fault::Assume: return "assume";
+    case Fault::Jump: return "jump";
+    case Fault::Reciprocity: return "reciprocity";
+    case Fault::Energy: return "energy";
+    case Fault::Device: return "device";
+    case Fault::Form: return "form";
+  }
+  return {};  // no enumerator
+}
+
+}  // namespace lacquer

@@ -2,26 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "lacquer/results.h"
 #include "stress/subject.h"
 
 namespace lacquer::stress {
-
-enum class Fault : uint8_t {
-  NaN,
-  Infinity,
-  Negative,     ///< below a range that begins at 0
-  Range,        ///< outside of a declared range otherwise
-  Assume,       ///< a value outside of what an `assume` says of it
-  Jump,         ///< a result that jumps where a comparison turns
-  Reciprocity,  ///< a material without its layers that is not the same with light and eye exchanged
-  Energy,       ///< more light than came, beyond what the texts' formulas do
-  Device,       ///< a device's result that no rounding explains
-};
-/// "nan", "infinity", "negative", "range", "assume", "jump", "reciprocity", "energy", "device".
-std::string_view faultName(Fault fault);
 
 struct Finding {
   Fault fault = Fault::NaN;
@@ -33,20 +21,12 @@ struct Finding {
   std::string known;  ///< why it is no mistake of ours; empty when it is
 };
 
-struct Energy {
-  double largest = 0;  ///< of a white sky's light
-  double largest_base =
-      0;  ///< of the same materials without their layers: the base's own gain, as the text has it
-  double asymmetry = 0;  ///< the largest relative difference when light and eye are exchanged
-  bool measured = false;
-};
-
 struct Report {
   std::string name;
   bool is_node = true;
   uint64_t samples = 0;
-  std::vector<Finding> findings;  ///< sorted: by fault, then by root
-  Energy energy;                  ///< materials only
+  std::vector<Finding> findings;       ///< sorted: by fault, then by root
+  std::optional<StressEnergy> energy;  ///< materials only
 };
 
 struct Plan {

@@ -224,11 +224,11 @@ private:
       placeTexels(*subject, *samples);
     }
     place(**second, variable, near, b);
-    const FormFault farther = worst(**first, **second, a, b);
+    const StressFinding farther = worst(**first, **second, a, b);
     if (farther.value <= allowed_) return {};
     const ir::Components nearer = *beside(schema_, threshold, kNearer);
     place(**second, variable, nearer, b);
-    FormFault fault = worst(**first, **second, a, b);
+    StressFinding fault = worst(**first, **second, a, b);
     if (!(fault.value <= std::max(allowed_, kShrinks * farther.value))) {
       fault.layer = layer;
       fault.parameter = property.decl->name;
@@ -328,11 +328,13 @@ private:
     return most;
   }
 
-  static FormFault worst(const Subject& first, const Subject& second, const std::vector<double>& a,
-                         const std::vector<double>& b) {
+  static StressFinding worst(const Subject& first, const Subject& second, const std::vector<double>& a,
+                             const std::vector<double>& b) {
     const stress::Values x = first.evaluate(stress::Arithmetic::Double, a, kSamples);
     const stress::Values y = second.evaluate(stress::Arithmetic::Double, b, kSamples);
-    FormFault fault;
+    StressFinding fault;
+    fault.fault = Fault::Form;
+    fault.samples.resize(1);
     for (size_t r = 0; r < first.roots.size(); ++r) {
       const stress::Root& root = first.roots[r];
       const auto same =
@@ -347,12 +349,12 @@ private:
         const double differs = std::abs(x[r][i] - other[i]) / scale;
         if (differs <= fault.value) continue;
         fault.value = std::isnan(differs) ? HUGE_VAL : differs;
-        fault.output = root.name;
-        fault.input.clear();
+        fault.what = root.name;
+        fault.samples[0].clear();
         for (const stress::Variable& variable : second.space.variables()) {
           const auto from =
               b.begin() + static_cast<ptrdiff_t>(sample * second.space.width() + variable.first);
-          fault.input.emplace_back(variable.name, std::vector<double>(from, from + variable.components));
+          fault.samples[0].emplace_back(variable.name, std::vector<double>(from, from + variable.components));
         }
       }
     }

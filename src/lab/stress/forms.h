@@ -14,18 +14,9 @@
 
 namespace lacquer {
 
-struct FormFault {
-  std::string layer;      ///< the extension that was laid over the material; empty for none
-  std::string parameter;  ///< "coatColorFactor", "coatNormalTexture.scale"
-  std::vector<double> at, beside;
-  std::string output;  ///< the colour that differs
-  double value = 0;    ///< the largest difference, of the colour or of the brightest light, whichever is more
-  std::vector<std::pair<std::string, std::vector<double>>> input;  ///< where it does, by name
-};
-
 struct Forms {
-  size_t compared = 0;  ///< pairs of shaders, at a threshold and beside it
-  std::vector<FormFault> faults;
+  size_t compared = 0;                ///< pairs of shaders, at a threshold and beside it
+  std::vector<StressFinding> faults;  ///< Fault::Form
 };
 
 /// Of the colour or of the brightest light, whichever is more. The forms of the base's light of the

@@ -176,7 +176,7 @@ private:
 
 void measureLight(const Subject& subject, const Plan& plan, Report& report) {
   const Light light(subject);
-  report.energy.measured = true;
+  StressEnergy& energy = report.energy.emplace();
   const auto tell = [&](Fault fault, const char* what, double value, const std::vector<double>& input,
                         std::string_view known = {}) {
     for (const Finding& finding : report.findings) {
@@ -199,8 +199,8 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report) {
       const Vec3 v = view(cosine);
       const double of_base = light.furnace(base, v);
       const double all = layered ? light.furnace(whole, v) : of_base;
-      report.energy.largest = std::max(report.energy.largest, all);
-      report.energy.largest_base = std::max(report.energy.largest_base, of_base);
+      energy.largest = std::max(energy.largest, all);
+      energy.largest_base = std::max(energy.largest_base, of_base);
       // A layer takes from the base what it reflects, so that it can only come nearer to 1. The base gains
       // where the text's Lambert under 1 - F(V.H) does.
       std::vector<double> at = whole;
@@ -221,8 +221,7 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report) {
     Random random(seed);
     const double of_base = light.asymmetry(base, random);
     if (!(of_base <= kReciprocal)) tell(Fault::Reciprocity, "base", of_base, base);
-    report.energy.asymmetry =
-        std::max(report.energy.asymmetry, layered ? light.asymmetry(whole, random) : of_base);
+    energy.asymmetry = std::max(energy.asymmetry, layered ? light.asymmetry(whole, random) : of_base);
   }
 }
 

@@ -34,31 +34,28 @@ constexpr std::string_view kNodes = "nodes", kExtensions = "extensions";
 bool ends(const std::string& text, std::string_view end) { return text.ends_with(end); }
 
 /// A sample by the names of its variables.
-Json inputsOf(const Subject& subject, std::span<const double> sample) {
-  Json inputs = Json::object();
+NamedNumbers inputsOf(const Subject& subject, std::span<const double> sample) {
+  NamedNumbers inputs;
   for (const stress::Variable& variable : subject.space.variables()) {
-    if (variable.components == 1) {
-      inputs[variable.name] = sample[variable.first];
-      continue;
-    }
-    Json& list = inputs[variable.name] = Json::array();
-    for (size_t c = 0; c < static_cast<size_t>(variable.components); ++c)
-      list.push_back(sample[variable.first + c]);
+    const auto numbers = sample.subspan(variable.first, static_cast<size_t>(variable.components));
+    inputs.emplace_back(variable.name, std::vector<double>(numbers.begin(), numbers.end()));
   }
   return inputs;
 }
 
+/// A finding that is no known one.
+bool isFault(const StressFinding& finding) { return finding.known.empty(); }
+
 class Stressing {
 public:
-  Stressing(const Stress& stress, const Options& options, Messages& messages,
-            const std::function<void(size_t, size_t)>& progress)
+  Stressing(const Stress& stress, const Options& options, Messages& messages, const Progress& progress)
       : options_(options), messages_(messages), progress_(progress) {
     plan_ = {stress.samples, stress.seed, stress.mediump};
     total_ = stress.total;
     engine_ = stress.engine;
   }
 
-  Result<std::string> make(const std::vector<std::string>& names) {
+  Result<StressReport> make(const Strings& names) {
     if (Diagnostics wrong = checkReading(options_); !wrong.empty())
       return tl::make_unexpected(std::move(wrong));
     if (Result<void> samples = inRange("the number of samples", plan_.samples, 1, kMostSamples, {}); !samples)
@@ -74,19 +71,16 @@ public:
     report(found, {}, messages_);
     if (Result<void> added = addAll(names); !added) return tl::make_unexpected(std::move(added.error()));
     if (total_ > 0) plan_.samples = (total_ + work_.size() - 1) / std::max<size_t>(work_.size(), 1);
-    Json subjects = Json::array();
-    size_t faults = 0;
+    StressReport made{plan_.seed, plan_.samples, plan_.half, device_ ? device_->name() : std::string(), {},
+                      0};
     for (size_t i = 0; i < work_.size(); ++i) {
-      Result<Json> one = work_[i](faults);
+      Result<StressSubject> one = work_[i]();
       if (!one) return tl::make_unexpected(std::move(one.error()));
-      subjects.push_back(std::move(*one));
+      made.faults += static_cast<size_t>(std::count_if(one->findings.begin(), one->findings.end(), isFault));
+      made.subjects.push_back(std::move(*one));
       if (progress_) progress_(i + 1, work_.size());
     }
-    Json answer = {{"seed", plan_.seed}, {"samples", plan_.samples}, {"mediump", plan_.half}};
-    if (device_) answer["device"] = device_->name();
-    answer["subjects"] = std::move(subjects);
-    answer["faults"] = faults;
-    return answer.dump(2) + "\n";
+    return made;
   }
 
 private:
@@ -117,7 +111,7 @@ private:
     for (const std::string& name : names) {
       Result<void> added;
       if (ends(name, ".json"))
-        work_.emplace_back([this, name](size_t& faults) { return replay(name, faults); });
+        work_.emplace_back([this, name] { return replay(name); });
       else if (ends(name, ".gltf") || ends(name, ".glb"))
         added = addFile(name);
       else if (name == kNodes && !library_->node(name))
@@ -146,34 +140,22 @@ private:
       const std::string_view own = (*schema)->extensions[i]->name;
       if (!name.empty() && own != name) continue;
       const std::optional<material::Material> material = materialWith(**schema, i, plan_.seed);
-      if (material) addForms(*material, {}, {{"extension", own}});
+      if (!material) continue;
+      StressSubject about;
+      about.extension = own;
+      addForms(*material, {}, std::move(about));
     }
     return {};
   }
 
-  void addForms(const material::Material& material, const std::string& file, Json about) {
-    work_.emplace_back([this, material, file, about = std::move(about)](size_t& faults) -> Result<Json> {
-      const Result<Forms> forms = compareForms(material, file, *library_, options_, plan_.seed);
-      if (!forms) return tl::make_unexpected(forms.error());
-      return reported(*forms, about, faults);
+  void addForms(const material::Material& material, const std::string& file, StressSubject about) {
+    work_.emplace_back([this, material, file, about = std::move(about)]() mutable -> Result<StressSubject> {
+      Result<Forms> forms = compareForms(material, file, *library_, options_, plan_.seed);
+      if (!forms) return tl::make_unexpected(std::move(forms.error()));
+      about.forms = forms->compared;
+      about.findings = std::move(forms->faults);
+      return std::move(about);
     });
-  }
-
-  static Json reported(const Forms& forms, Json about, size_t& faults) {
-    about["forms"] = forms.compared;
-    Json& findings = about["findings"] = Json::array();
-    faults += forms.faults.size();
-    for (const FormFault& fault : forms.faults) {
-      Json one = {{"fault", "form"}, {"what", fault.output}, {"parameter", fault.parameter}};
-      if (!fault.layer.empty()) one["layer"] = fault.layer;
-      one["at"] = Json(fault.at);
-      one["beside"] = Json(fault.beside);
-      if (std::isfinite(fault.value)) one["value"] = fault.value;
-      Json& sample = one["sample"] = Json::object();
-      for (const auto& [variable, value] : fault.input) sample[variable] = Json(value);
-      findings.push_back(std::move(one));
-    }
-    return about;
   }
 
   Result<void> addNodes() {
@@ -207,22 +189,24 @@ private:
     for (const std::string& variant : variants) {
       Result<std::unique_ptr<Subject>> subject = nodeSubject(name, variant);
       if (!subject) return tl::make_unexpected(std::move(subject.error()));
-      Json about = {{"node", name}};
-      if (!variant.empty()) about["variant"] = variant;
+      StressSubject about;
+      about.node = name;
+      about.variant = variant;
       add(std::move(*subject), std::move(about));
     }
     return {};
   }
 
-  void add(std::unique_ptr<Subject> subject, Json about) {
+  void add(std::unique_ptr<Subject> subject, StressSubject about) {
     const std::shared_ptr<const Subject> kept = std::move(subject);
-    work_.emplace_back([this, kept, about = std::move(about)](size_t& faults) -> Result<Json> {
-      if (!device_) return reported(*kept, about, stress::attack(*kept, plan_), faults);
-      const DeviceSubject shown = deviceSubject(*kept, *device_, route());
-      if (!shown.skipped.empty()) return skipped(about, shown.skipped);
+    work_.emplace_back([this, kept, about = std::move(about)]() mutable -> Result<StressSubject> {
+      if (!device_) return reported(*kept, stress::attack(*kept, plan_), std::move(about));
+      DeviceSubject shown = deviceSubject(*kept, *device_, route());
+      about.skipped = std::move(shown.skipped);
+      if (!about.skipped.empty()) return std::move(about);
       const Result<stress::Report> report = stress::attackOnDevice(*kept, plan_, shown.show);
       if (!report) return tl::make_unexpected(report.error());
-      return reported(*kept, about, *report, faults);
+      return reported(*kept, *report, std::move(about));
     });
   }
 
@@ -253,53 +237,34 @@ private:
       if (lacquer::hasError(material.diagnostics)) continue;
       Result<std::unique_ptr<Subject>> subject = materialSubject(file, material);
       if (!subject) return tl::make_unexpected(std::move(subject.error()));
-      Json about = {{"file", file}, {"material", material.index}, {"name", material.name}};
+      StressSubject about;
+      about.file = file;
+      about.material = static_cast<size_t>(material.index);
+      about.name = material.name;
       add(std::move(*subject), about);
       if (!device_ && !plan_.half) addForms(material, file, about);
       // Where frames come of derivatives it is another function.
       subject = materialSubject(file, material, false);
       if (!subject) return tl::make_unexpected(std::move(subject.error()));
       if ((*subject)->lanes == 1) continue;
-      about["tangents"] = false;
+      about.tangents = false;
       (*subject)->name += " without tangents";
       add(std::move(*subject), std::move(about));
     }
     return {};
   }
 
-  static Json skipped(const Json& about, const std::string& why) {
-    Json json = about;
-    json["skipped"] = why;
-    json["findings"] = Json::array();
-    return json;
-  }
-
-  Json reported(const Subject& subject, const Json& about, const stress::Report& report,
-                size_t& faults) const {
-    Json json = about;
-    json["findings"] = Json::array();
+  static StressSubject reported(const Subject& subject, const stress::Report& report, StressSubject about) {
+    about.energy = report.energy;
     for (const Finding& finding : report.findings) {
-      if (finding.known.empty()) ++faults;
-      Json one = {
-          {"fault", stress::faultName(finding.fault)}, {"what", finding.what}, {"count", finding.count}};
-      // JSON has neither NaN nor infinity; the fault's name tells.
-      if (std::isfinite(finding.value)) one["value"] = finding.value;
-      if (!finding.known.empty()) one["known"] = finding.known;
-      Json& test = one["case"] = about;
-      test["fault"] = one["fault"];
-      test["what"] = finding.what;
-      Json& samples = test["samples"] = Json::array();
+      StressFinding one{
+          finding.fault, finding.what, finding.count, finding.value, finding.known, {}, {}, {}, {}, {}};
       const size_t width = subject.space.width();
       for (size_t i = 0; i + width <= finding.input.size(); i += width)
-        samples.push_back(inputsOf(subject, std::span(finding.input).subspan(i, width)));
-      json["findings"].push_back(std::move(one));
+        one.samples.push_back(inputsOf(subject, std::span(finding.input).subspan(i, width)));
+      about.findings.push_back(std::move(one));
     }
-    if (report.energy.measured) {
-      json["energy"] = {{"largest", report.energy.largest},
-                        {"base", report.energy.largest_base},
-                        {"asymmetry", report.energy.asymmetry}};
-    }
-    return json;
+    return about;
   }
 
   // A case: what a finding's "case" is, in a file.
@@ -361,7 +326,7 @@ private:
     return input;
   }
 
-  Result<Json> replay(const std::string& path, size_t& faults) {
+  Result<StressSubject> replay(const std::string& path) {
     const Result<Limits> limits = limitsOf(options_);
     if (!limits) return tl::make_unexpected(limits.error());
     const Result<std::string> text = readFile(path, limits->file);
@@ -374,39 +339,35 @@ private:
     if (!subject) return tl::make_unexpected(std::move(subject.error()));
     const Result<std::vector<double>> input = inputOf(**subject, *test, path);
     if (!input) return tl::make_unexpected(input.error());
-    Result<stress::Report> report = stress::replay(**subject, *input);
-    if (device_) {
-      const DeviceSubject shown = deviceSubject(**subject, *device_, route());
-      if (!shown.skipped.empty()) return skipped({{"case", path}}, shown.skipped);
-      report = stress::replayOnDevice(**subject, *input, shown.show);
-      if (!report) return tl::make_unexpected(std::move(report.error()));
-    }
-    Json json = reported(**subject, {{"case", path}}, *report, faults);
-    for (Json& finding : json["findings"]) finding.erase("case");
-    return json;
+    StressSubject about;
+    about.test = path;
+    if (!device_) return reported(**subject, stress::replay(**subject, *input), std::move(about));
+    DeviceSubject shown = deviceSubject(**subject, *device_, route());
+    about.skipped = std::move(shown.skipped);
+    if (!about.skipped.empty()) return about;
+    const Result<stress::Report> report = stress::replayOnDevice(**subject, *input, shown.show);
+    if (!report) return tl::make_unexpected(report.error());
+    return reported(**subject, *report, std::move(about));
   }
 
   const Options& options_;
   Messages& messages_;
-  const std::function<void(size_t, size_t)>& progress_;
+  const Progress& progress_;
   stress::Plan plan_;
   uint64_t total_ = 0;
   Engine engine_ = Engine::Float;
   std::optional<vulkan::Device> device_;
   std::shared_ptr<const Language> library_;
-  std::vector<std::function<Result<Json>(size_t& faults)>> work_;
+  std::vector<std::function<Result<StressSubject>()>> work_;
 };
 
 }  // namespace
 
-std::string stressNodes(const Stress& stress, const std::vector<std::string>& subjects,
-                        const Options& options, Messages& messages,
-                        const std::function<void(size_t done, size_t known)>& progress) {
-  Result<std::string> made = std::string();
+std::optional<StressReport> stressNodes(const Stress& stress, const Strings& subjects, const Options& options,
+                                        Messages& messages, const Progress& progress) {
+  Result<StressReport> made;
   withJobs(options.jobs, [&] { made = Stressing(stress, options, messages, progress).make(subjects); });
-  if (made) return std::move(*made);
-  report(made.error(), {}, messages);
-  return {};
+  return valueOf(std::move(made), {}, messages);
 }
 
 }  // namespace lacquer
