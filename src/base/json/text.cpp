@@ -23,8 +23,20 @@ void JsonText::item() {
     return;
   }
   if (open_.empty()) return;
-  if (!open_.back().empty) out_ += kMarker;
-  open_.back().empty = false;
+  if (!open_.back().broken && out_.size() - open_.back().start > kLongestLine) breakLines();
+  Open& in = open_.back();
+  if (in.broken) {
+    if (!in.empty) out_ += ',';
+    newLine(depth());
+  } else if (!in.empty) {
+    out_ += kMarker;
+  }
+  in.empty = false;
+}
+
+void JsonText::newLine(size_t margin) {
+  out_ += '\n';
+  out_.append(2 * margin, ' ');
 }
 
 JsonText& JsonText::begin(char bracket) {
@@ -35,40 +47,49 @@ JsonText& JsonText::begin(char bracket) {
 }
 
 JsonText& JsonText::end(char bracket) {
-  const Open done = open_.back();
-  open_.pop_back();
-  if (!done.empty) {
-    const std::string_view content = std::string_view(out_).substr(done.start);
-    const bool line = content.size() <= kLongestLine && content.find('\n') == std::string::npos;
-    const std::string margin = line ? "" : "\n" + std::string(2 * (depth() + 1), ' ');
-    separate(done.start, margin, line ? ", " : "," + margin);
-    if (!line) out_.append(margin, 0, margin.size() - 2);
+  Open& done = open_.back();
+  if (!done.broken && out_.size() - done.start > kLongestLine) breakLines();
+  if (done.broken) {
+    newLine(depth() - 1);
+  } else {
+    separate(done.start);
   }
+  open_.pop_back();
   out_ += bracket;
   return *this;
 }
 
-/// Puts `first` before what stands from `start` on, and `between` in place of each marker there. In place,
-/// from the back: what is printed may be hundreds of megabytes.
-void JsonText::separate(size_t start, std::string_view first, std::string_view between) {
-  size_t from = out_.size();
-  const auto begin = out_.begin() + static_cast<ptrdiff_t>(start);
-  const auto markers = static_cast<size_t>(std::count(begin, out_.end(), kMarker));
-  out_.resize(from + markers * (between.size() - 1) + first.size());
-  char* const text = out_.data();
-  size_t to = out_.size();
-  while (from > start) {
-    const size_t found = std::string_view(text + start, from - start).rfind(kMarker);
-    const size_t run = found == std::string_view::npos ? start : start + found + 1;
-    to -= from - run;
-    std::memmove(text + to, text + run, from - run);
-    from = run;
-    if (run == start) break;
-    to -= between.size();
-    between.copy(text + to, between.size());
-    --from;
+/// A blank behind each comma of a container on one line.
+void JsonText::separate(size_t start) {
+  for (size_t at = out_.find(kMarker, start); at != std::string::npos; at = out_.find(kMarker, at + 2))
+    out_.replace(at, 1, ", ");
+}
+
+/// Gives each item of the open containers a line of its own. Those that were broken before are the outermost;
+/// of the others there is no more than a line's length each, but for the last.
+void JsonText::breakLines() {
+  size_t first = open_.size();
+  while (first > 0 && !open_[first - 1].broken) --first;
+  const std::string tail = out_.substr(open_[first].start);
+  const size_t begin = open_[first].start;
+  out_.resize(begin);
+  for (size_t i = first; i < open_.size(); ++i) {
+    Open& in = open_[i];
+    const size_t from = in.start - begin;
+    const size_t to = i + 1 < open_.size() ? open_[i + 1].start - begin : tail.size();
+    in.start = out_.size();
+    in.broken = true;
+    const size_t margin = depth_ + i + 1;
+    if (!in.empty) newLine(margin);
+    for (size_t at = from; at < to; ++at) {
+      if (tail[at] != kMarker) {
+        out_ += tail[at];
+        continue;
+      }
+      out_ += ',';
+      newLine(margin);
+    }
   }
-  first.copy(text + start, first.size());
 }
 
 void JsonText::reserve(size_t items, size_t written) {
@@ -123,6 +144,7 @@ JsonText& JsonText::numbers(std::span<const double> numbers) {
 }
 
 JsonText& JsonText::raw(std::string_view text) {
+  if (!open_.empty() && !open_.back().broken && text.find('\n') != std::string_view::npos) breakLines();
   item();
   out_ += text;
   return *this;

@@ -45,15 +45,18 @@ private:
   JsonText& begin(char bracket);
   JsonText& end(char bracket);
   void item();
-  void separate(size_t start, std::string_view first, std::string_view between);
+  void newLine(size_t margin);
+  void separate(size_t start);
+  void breakLines();
   void quoted(std::string_view text);
 
   struct Open {
     size_t start;  ///< of its content in `out_`
     bool empty = true;
+    bool broken = false;  ///< its items have a line each; those of all around it, too
   };
   size_t depth_;
-  std::string out_;  ///< of open containers: items with a marker between
+  std::string out_;  ///< of open containers on one line: items with a marker between
   std::vector<Open> open_;
   bool after_key_ = false;
 };
