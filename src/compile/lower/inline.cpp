@@ -43,7 +43,7 @@ Values Inliner::call(const lang::NodeDecl& node, std::string_view variant, std::
   for (size_t i = 0; i < node.params.size(); ++i) {
     const lang::Param& param = node.params[i];
     const bool given = i < args.size() && args[i] != kNoValue;
-    assert(given || param.hasDefault());
+    assert(given || param.hasConstantDefault());
     frame.slots[i] = given ? args[i] : lang::defaultOf(dag_, param);
     assert(dag_[frame.slots[i]].type == param.type);
   }

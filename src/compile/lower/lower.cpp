@@ -270,7 +270,7 @@ private:
       for (const lang::Param& param : decl.params) {
         const auto it = std::find_if(node.inputs.begin(), node.inputs.end(),
                                      [&](const auto& input) { return input.first == param.name; });
-        args.push_back(it == node.inputs.end() ? ir::kNoValue : source(it->second));
+        args.push_back(it == node.inputs.end() ? givenFor(param) : source(it->second));
       }
       dag().setTerm(dag().addTerm({node.id, decl.source, std::string(decl.origin.file), decl.origin.line}));
       Values results = inliner_.call(decl, node.variant, args);
@@ -281,6 +281,13 @@ private:
       results_.emplace(id, Lowered{&decl, std::move(results)});
     }
     return {};
+  }
+
+  /// What the template gives for a parameter that nothing is connected to; kNoValue for its constant default.
+  ir::ValueId givenFor(const lang::Param& param) const {
+    const auto found = param.given.empty() ? std::nullopt : template_->find(param.given);
+    if (!found || found->given->results[found->index].type != param.type) return ir::kNoValue;
+    return slots_[found->given->slot + found->index];
   }
 
   /// What a node gives comes from the vertices, in its range: interpolants reach past the ends of triangles.

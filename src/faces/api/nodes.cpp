@@ -24,15 +24,21 @@ Json paramJson(const lang::Param& param, std::string_view fallback) {
   if (param.matrix_default)
     json["default"] = numbersJson(
         {param.matrix_default->begin(), param.matrix_default->begin() + ir::componentCount(param.type)});
+  if (!param.given.empty()) json["given"] = param.given;
+  if (!param.choices.empty()) json["choices"] = param.choices;
+  const lang::Hints& hints = param.hints;
+  if (!hints.label.empty()) json["label"] = hints.label;
+  if (!hints.unit.empty()) json["unit"] = hints.unit;
+  if (hints.has_soft) json["soft"] = {hints.soft.lo, hints.soft.hi};
+  if (hints.color) json["color"] = true;
+  if (hints.advanced) json["advanced"] = true;
   if (!param.prose.empty()) json["meaning"] = param.prose;
   return json;
 }
 
 Json nodeJson(const lang::NodeDecl& node) {
-  Json json = {{"name", node.name},
-               {"doc", node.doc},
-               {"source", node.source},
-               {"file", node.origin.file},
+  Json json = {{"name", node.name},       {"doc", node.doc},           {"source", node.source},
+               {"family", node.family},   {"category", node.category}, {"file", node.origin.file},
                {"line", node.origin.line}};
   Json inputs = Json::array();
   for (const lang::Param& param : node.params) inputs.push_back(paramJson(param, {}));

@@ -107,6 +107,17 @@ struct Statement {
 /// The components of a matrix, column by column.
 using Matrix = std::array<double, 16>;
 
+/// What a tool shows of a parameter; nothing else follows from it.
+struct Hints {
+  std::string_view label;  ///< what it is called for people
+  std::string_view unit;   ///< "degree", "meter"
+  bool has_soft = false;   ///< most values lie in `soft`, which lies in the range
+  ir::Interval soft;
+  bool color = false;     ///< the vector is a colour
+  bool advanced = false;  ///< few need it
+  RangeSyntax soft_syntax;
+};
+
 /// A parameter, a result, or another typed name with a range.
 struct Param {
   ir::Type type = ir::Type::Float;
@@ -115,12 +126,19 @@ struct Param {
   ir::Range range;
   std::optional<ir::Components> default_value;
   std::optional<Matrix> matrix_default;  ///< of a matrix, which has too many components for default_value
+  /// Of a node: what of the template's givens stands for it where a graph connects nothing, "uv0"; empty for
+  /// none.
+  std::string_view given;
+  std::vector<std::string_view> choices;  ///< of an Int: what its values 0, 1, … are called
+  Hints hints;
   std::string_view prose;
   Span span;
   RangeSyntax range_syntax;
   ExprPtr default_syntax;
 
-  bool hasDefault() const { return default_value || matrix_default; }
+  /// Whether something stands for it in a graph, and in a call.
+  bool hasDefault() const { return hasConstantDefault() || !given.empty(); }
+  bool hasConstantDefault() const { return default_value || matrix_default; }
 };
 
 struct Body {
@@ -159,6 +177,7 @@ struct NodeDecl {
   std::string_view family;  ///< "add"
   std::string doc;          ///< its lines joined by newlines, without the source
   std::string source;       ///< `KHR_materials_coat, "Colored Absorption"`
+  std::string category;     ///< where a tool's palette has it: "noise"; empty for none
   std::vector<Param> params;
   std::vector<Param> results;  ///< at least one
   Body body;                   ///< the reference

@@ -268,7 +268,27 @@ bool Checker::index(ExprPtr& expr) {
   return true;
 }
 
+/// `space.world`: the number of a value of a parameter with names for them. False where it is none of these.
+bool Checker::choice(Expr& expr) {
+  const Expr& base = *expr.args[0];
+  if (node_ == nullptr || base.kind != Expr::Kind::Name) return false;
+  const auto param = std::find_if(node_->params.begin(), node_->params.end(),
+                                  [&](const Param& p) { return p.name == base.name && !p.choices.empty(); });
+  if (param == node_->params.end()) return false;
+  const auto found = std::find(param->choices.begin(), param->choices.end(), expr.name);
+  if (found == param->choices.end()) {
+    unknown(expr.name, "value", param->choices, fmt::format("it has {}", fmt::join(param->choices, ", ")));
+  } else {
+    expr.number = static_cast<double>(found - param->choices.begin());
+  }
+  expr.kind = Expr::Kind::Literal;
+  expr.type = Type::Int;
+  expr.args.clear();
+  return true;
+}
+
 bool Checker::member(ExprPtr& expr) {
+  if (choice(*expr)) return true;
   Expr& base = *expr->args[0];
   if (hasMembers(*expr)) {
     const Member* found = memberOf(*expr);
@@ -677,7 +697,7 @@ bool Checker::arguments(Expr& expr, bool checked) {
     ordered[index] = std::move(expr.args[i]);
   }
   for (size_t i = 0; good && i < params.size(); ++i) {
-    if (ordered[i] || params[i].hasDefault()) continue;
+    if (ordered[i] || params[i].hasConstantDefault()) continue;
     reporter_.error("wrong-count", expr.span, fmt::format("'{}' needs '{}'", expr.name, params[i].name),
                     fmt::format("it is {} and has no default", aType(params[i].type)));
     good = false;

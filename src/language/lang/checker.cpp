@@ -162,6 +162,41 @@ bool Checker::inRange(const Param& param, const ir::Components& value, Span span
   return true;
 }
 
+void Checker::choicesOf(Param& param) {
+  if (param.choices.empty()) return;
+  if (param.type != Type::Int || param.range_syntax) {
+    reporter_.error("wrong-type", param.span, "names of values are those of an int without a range");
+    return;
+  }
+  for (size_t i = 0; i < param.choices.size(); ++i) {
+    const auto first = std::find(param.choices.begin(), param.choices.end(), param.choices[i]);
+    if (static_cast<size_t>(first - param.choices.begin()) == i) continue;
+    reporter_.error("duplicate-name", spanOf(param.choices[i]),
+                    fmt::format("there are two values '{}'", param.choices[i]));
+  }
+  param.has_range = true;
+  param.range = {{0, static_cast<double>(param.choices.size()) - 1}, 0};
+}
+
+void Checker::hintsOf(Param& param) {
+  Hints& hints = param.hints;
+  if (hints.color && !ir::isFloatVector(param.type))
+    reporter_.error("wrong-type", param.span, fmt::format("{} is no colour", aType(param.type)));
+  if (!hints.soft_syntax) return;
+  const Type part = ir::partType(param.type);
+  if (part == Type::Bool || ir::isTexture(part) || ir::isMatrix(param.type)) {
+    reporter_.error("wrong-type", hints.soft_syntax.span, fmt::format("{} has no range", aType(param.type)));
+    return;
+  }
+  const auto soft = interval(hints.soft_syntax, part);
+  if (!soft) return;
+  hints.has_soft = true;
+  hints.soft = *soft;
+  if (!param.has_range || (soft->lo >= param.range.lo && soft->hi <= param.range.hi)) return;
+  reporter_.error("wrong-range", hints.soft_syntax.span,
+                  fmt::format("most values do not lie outside of {}", ir::rangeText(param.range)));
+}
+
 void Checker::node(NodeDecl& decl) {
   node_ = &decl;
   if (decl.name == "PI") nameRules(decl.name, decl.span, "node");
@@ -179,8 +214,10 @@ void Checker::node(NodeDecl& decl) {
   twice(decl.results, "result");
   twice(decl.variants, "variant");
   for (Param& param : decl.params) {
+    choicesOf(param);
     rangeOf(param);
     defaultOf(param);
+    hintsOf(param);
   }
   for (Param& result : decl.results) {
     rangeOf(result);

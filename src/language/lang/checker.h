@@ -97,6 +97,8 @@ private:
   std::optional<ir::Interval> interval(RangeSyntax& syntax, ir::Type type);
   void defaultOf(Param& param);
   void matrixDefault(Param& param);
+  void choicesOf(Param& param);
+  void hintsOf(Param& param);
   /// Whether a value lies in the declared range; reports it when not. `what` begins the message.
   bool inRange(const Param& param, const ir::Components& value, Span span, std::string_view code,
                std::string_view what);
@@ -158,6 +160,7 @@ private:
   bool expression(ExprPtr& expr);
   bool name(Expr& expr);
   bool member(ExprPtr& expr);
+  bool choice(Expr& expr);
   bool index(ExprPtr& expr);
   /// `name.member` where the name stands for several values.
   bool hasMembers(const Expr& expr);

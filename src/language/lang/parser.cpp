@@ -162,13 +162,15 @@ Span Parser::since(uint32_t begin) const {
   return {begin, std::max(end.offset + end.length, begin + 1) - begin};
 }
 
-void Parser::docs(std::string& doc, std::string* source) {
-  constexpr std::string_view kSource = "source:";
+void Parser::docs(std::string& doc, std::string* source, std::string* category) {
+  constexpr std::string_view kSource = "source:", kCategory = "category:";
   for (; token().kind == Token::Kind::Doc; ++at_) {
     std::string_view line = token().text;
     if (source != nullptr && trim(line).starts_with(kSource)) {
       const std::string_view text = trim(trim(line).substr(kSource.size()));
       *source += (source->empty() ? "" : "; ") + std::string(text);
+    } else if (category != nullptr && trim(line).starts_with(kCategory)) {
+      *category = trim(trim(line).substr(kCategory.size()));
     } else {
       doc += (doc.empty() ? "" : "\n") + std::string(line);
     }
@@ -248,10 +250,9 @@ void Parser::params(NodeDecl& node) {
   while (!is(")")) {
     Param param = this->param(true);
     if (param.name.empty()) return;
-    if (accept("=")) {
-      param.default_syntax = expression();
-      if (!param.default_syntax) return;
-    }
+    if (accept("of") && !choicesOf(param)) return;
+    if (accept("=") && !byDefault(param)) return;
+    if (!hints(param.hints)) return;
     const bool more = accept(",");
     param.prose = proseBehind();
     node.params.push_back(std::move(param));
@@ -262,6 +263,62 @@ void Parser::params(NodeDecl& node) {
     if (!more && !is(")")) {
       expect(",", "a parameter");
       return;
+    }
+  }
+}
+
+/// `of A, B, C`: names of the values 0, 1 and 2. The list ends where another parameter begins.
+bool Parser::choicesOf(Param& param) {
+  const auto another = [&] { return is(",") && isName(token(1)) && !isName(token(2)) && !token(2).is("["); };
+  do {
+    Span ignored;
+    if (!name(param.choices.emplace_back(), ignored, "the name of a value")) return false;
+  } while (another() && accept(","));
+  return true;
+}
+
+/// `= VALUE`, `= given NAME`, `= given NAME or VALUE`, or of choices `= NAME`.
+bool Parser::byDefault(Param& param) {
+  if (is("given") && token(1).kind == Token::Kind::Name) {
+    ++at_;
+    Span span;
+    if (!dottedName(param.given, span, "the name of what a template gives")) return false;
+    if (!accept("or")) return true;
+  }
+  const auto choice = std::find(param.choices.begin(), param.choices.end(), token().text);
+  if (token().kind == Token::Kind::Name && choice != param.choices.end()) {
+    ++at_;
+    param.default_syntax = make(Expr::Kind::Literal, last().span.offset, last().text);
+    param.default_syntax->untyped = true;
+    param.default_syntax->type = ir::Type::Int;
+    param.default_syntax->number = static_cast<double>(choice - param.choices.begin());
+    return true;
+  }
+  param.default_syntax = expression();
+  return param.default_syntax != nullptr;
+}
+
+/// `label "Scale" unit "meter" soft [0, 10] color advanced`, in any order.
+bool Parser::hints(Hints& hints) {
+  for (;;) {
+    if (accept("color")) {
+      hints.color = true;
+    } else if (accept("advanced")) {
+      hints.advanced = true;
+    } else if (is("label") || is("unit")) {
+      std::string_view& text = is("label") ? hints.label : hints.unit;
+      ++at_;
+      if (!string(text, "what a tool shows, in quotes")) return false;
+    } else if (accept("soft")) {
+      const uint32_t begin = token().span.offset;
+      if (!expect("[", "'soft'")) return false;
+      hints.soft_syntax.lo = expression();
+      if (!hints.soft_syntax.lo || !expect(",", "the lower end")) return false;
+      hints.soft_syntax.hi = expression();
+      if (!hints.soft_syntax.hi || !expect("]", "the upper end")) return false;
+      hints.soft_syntax.span = since(begin);
+    } else {
+      return true;
     }
   }
 }
@@ -290,7 +347,7 @@ bool Parser::skipForms() {
 
 NodeDecl Parser::nodeHead() {
   NodeDecl decl;
-  docs(decl.doc, &decl.source);
+  docs(decl.doc, &decl.source, &decl.category);
   accept("node");
   if (!name(decl.name, decl.span, "the node's name") || !skipForms()) return decl;
   decl.family = decl.name;

@@ -43,12 +43,15 @@ public:
 private:
   // parser.cpp: declarations
   void dropStrayDocs();
-  void docs(std::string& doc, std::string* source);
+  void docs(std::string& doc, std::string* source, std::string* category = nullptr);
   void end();
   Param param(bool named);
   RangeSyntax range();
   ExprPtr bound();
   void params(NodeDecl& node);
+  bool choicesOf(Param& param);
+  bool byDefault(Param& param);
+  bool hints(Hints& hints);
   void results(NodeDecl& node);
   std::string_view proseBehind() const;
   bool templateItem(TemplateDecl& decl);

@@ -141,6 +141,14 @@ private:
   size_t before_ = 0;  ///< of these, what was found by earlier steps: each finds the first in the file first
   size_t left_out_ = 0;  ///< what is wrong beyond these
   size_t suggestions_ = 0;
+  /// Whether something stands for a parameter that nothing is connected to: a constant, or what the template
+  /// gives.
+  bool hasDefault(const lang::Param& param) const {
+    if (param.hasConstantDefault() || param.given.empty() || template_ == nullptr) return param.hasDefault();
+    const auto given = template_->find(param.given);
+    return given && given->given->results[given->index].type == param.type;
+  }
+
   const lang::TemplateDecl* template_ = nullptr;
   Arena arena_;
   NameMap<size_t> parameters_{&arena_}, textures_{&arena_}, nodes_{&arena_};
@@ -428,7 +436,7 @@ void GraphCheck::nodeInputs(size_t index) {
   if (decl == nullptr) return;
   Names missing;
   for (const lang::Param& param : decl->params) {
-    if (!param.hasDefault() && !connected_.contains(param.name)) missing.push_back(param.name);
+    if (!hasDefault(param) && !connected_.contains(param.name)) missing.push_back(param.name);
   }
   if (missing.empty()) return;
   const std::string what = missing.size() == 1 ? "input" : "inputs";

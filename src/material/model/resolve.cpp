@@ -264,6 +264,12 @@ Found Resolver::behind(Found value, std::string_view path) const {
   return value;
 }
 
+/// Whether something stands for a parameter that nothing is connected to: a constant, or what the template
+/// gives.
+bool Resolver::hasDefault(const lang::Param& param) const {
+  return param.hasConstantDefault() || (!param.given.empty() && template_.find(param.given));
+}
+
 Found Resolver::call(const Value& value, const Line& line) {
   Node node;
   node.decl = value.node;
@@ -272,7 +278,7 @@ Found Resolver::call(const Value& value, const Line& line) {
   node.order = line.order;
   for (size_t i = 0; i < value.args.size(); ++i) {
     node.inputs.push_back(value.args[i].absent ? Found{} : found(value.args[i], line));
-    if (!node.inputs.back() && !value.node->params[i].hasDefault()) return {};
+    if (!node.inputs.back() && !hasDefault(value.node->params[i])) return {};
   }
   nodes_[line.id] = std::move(node);
   Found out;
@@ -663,7 +669,7 @@ std::string Resolver::missing(const Value& value, const Line& line, int depth) {
       return {};
     case Value::Kind::Call:
       for (size_t i = 0; i < value.args.size(); ++i) {
-        if (value.node->params[i].hasDefault()) continue;
+        if (hasDefault(value.node->params[i])) continue;
         if (std::string why = missing(value.args[i], line, depth + 1); !why.empty()) return why;
       }
       return {};

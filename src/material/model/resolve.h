@@ -98,6 +98,7 @@ private:
   Found role(const Value& value);
   Found number(const Role& role, const Value& value);
   Found given(const Value& value);
+  bool hasDefault(const lang::Param& param) const;
   /// With `from`, the line that gives it.
   Found below(const Value& value, uint32_t part, uint32_t* from = nullptr);
   Found call(const Value& value, const Line& line);
