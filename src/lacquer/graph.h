@@ -54,6 +54,8 @@ public:
   static Graph fromJson(std::string_view text, const std::string& name, Messages& messages);
   /// Reads a file in the JSON form. Of the options, `limits`.
   static Graph load(const std::string& path, const Options& options, Messages& messages);
+  /// The material's; empty where it has none.
+  const std::string& name() const;
   /// The JSON form, which reads back as the same graph; of an empty graph an empty text.
   std::string toJson() const;
   /// The graph for GraphViz: a box for each node; of an empty graph an empty text.

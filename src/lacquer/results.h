@@ -188,6 +188,7 @@ struct StressEnergy {
 struct StressSubject {
   std::string node, variant;
   std::string extension;
+  std::string graph;            ///< the file of a graph, whose name is in `name`
   std::string file, name;       ///< of a material: its name may be empty
   size_t material = 0;          ///< its index in the file
   bool tangents = true;         ///< false: the material where primitives have no tangents

@@ -11,6 +11,7 @@ namespace lacquer {
 
 class Scene;
 class Graph;
+class Shader;
 
 /// Linear forward colours at points, which are JSON (docs/eval.md); nothing on an error. Of a material of a
 /// glTF file, or of a graph where the file's name ends in ".json".
@@ -111,6 +112,8 @@ struct ShaderCost {
 /// `paths`: SPIR-V files (X.frag.spv with X.vert.spv beside it), folders of such, or folders that generate()
 /// wrote. What cannot be read is left out, with a message. Starts processes.
 std::vector<ShaderCost> measureCost(const Strings& paths, bool disassembly, Messages& messages);
+/// The same of shaders in memory that were generated with Target::Spirv; those without are left out.
+std::vector<ShaderCost> measureCost(const std::vector<Shader>& shaders, bool disassembly, Messages& messages);
 
 /// A page to look at files with (docs/web.md).
 struct View {

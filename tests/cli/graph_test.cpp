@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "command.h"
+#include "support/cases.h"
 
 namespace lacquer::test {
 namespace {
@@ -60,6 +61,105 @@ TEST_F(GraphFiles, areProvedAndDumpedAndReadBack) {
   EXPECT_EQ(place_.run({"graph", "again.json"}).out, again.out);
 }
 
+/// The shader that the material of the file gets, whatever stands for it.
+TEST_F(GraphFiles, areGeneratedAndPlannedBesideMaterials) {
+  const std::vector<std::string> inputs = {"paint.json", example("film.gltf")};
+  const auto with = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), inputs.begin(), inputs.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return place_.run(words);
+  };
+  const auto made = with({"gen"}, {"-o", "made", "--target", "glsl", "--no-validate", "-q"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Json manifest = Json::parse(place_.read("made/manifest.json"));
+  ASSERT_EQ(manifest["files"].size(), 2u);
+  EXPECT_EQ(manifest["files"][0]["materials"][0]["name"], "Darkening");
+  ASSERT_EQ(place_
+                .run({"gen", example("coat.gltf"), "--material", "Darkening", "-o", "own", "--target", "glsl",
+                      "--no-validate", "-q"})
+                .status,
+            0);
+  const Json own = Json::parse(place_.read("own/manifest.json"));
+  EXPECT_EQ(manifest["files"][0]["materials"][0]["uses"][0]["shader"],
+            own["files"][0]["materials"][0]["uses"][0]["shader"]);
+  const auto planned =
+      with({"plan"}, {"--ninja", "build.ninja", "-o", "made", "--target", "glsl", "--no-validate", "-q"});
+  EXPECT_EQ(planned.status, 0) << planned.err;
+  EXPECT_NE(place_.read("build.ninja").find(manifest["files"][0]["materials"][0]["uses"][0]["shader"]),
+            std::string::npos);
+}
+
+TEST_F(GraphFiles, areChosenByName) {
+  const auto chosen = place_.run({"gen", "paint.json", example("film.gltf"), "--material", "Darkening", "-o",
+                                  "chosen", "--target", "glsl", "--no-validate", "-q"});
+  EXPECT_EQ(chosen.status, 0) << chosen.err;
+  const Json manifest = Json::parse(place_.read("chosen/manifest.json"));
+  EXPECT_EQ(manifest["files"][0]["materials"].size(), 1u);
+  EXPECT_EQ(manifest["files"][1]["materials"].size(), 0u);
+  const auto none = place_.run({"gen", "paint.json", "--material", "Other", "-o", "none", "-q"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("no file has a material named 'Other'"), std::string::npos) << none.err;
+}
+
+/// Merged with materials a graph keeps its numbers.
+TEST_F(GraphFiles, shareProgramsWithMaterials) {
+  const auto made =
+      place_.run({"gen", "paint.json", example("coat.gltf"), "-o", "few", "--target", "glsl", "--no-validate",
+                  "--programs", "2", "--model-costs", "--programs-report", "curve.md", "-q"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Json manifest = Json::parse(place_.read("few/manifest.json"));
+  EXPECT_EQ(manifest["shaders"].size(), 2u);
+  const Json& graph = manifest["files"][0]["materials"][0];
+  EXPECT_FALSE(graph.contains("profile"));
+  const Json& use = graph["uses"][0];
+  for (const Json& material : manifest["files"][1]["materials"]) {
+    if (material["name"] != "Darkening") continue;
+    for (const char* own : {"coat_darkening_factor", "base_color_factor"})
+      EXPECT_EQ(use["parameters"][own]["value"], material["uses"][0]["parameters"][own]["value"]);
+  }
+  EXPECT_NE(place_.read("curve.md").find("| 2 |"), std::string::npos);
+}
+
+TEST_F(GraphFiles, haveTheCostOfTheirMaterials) {
+  const auto graph = place_.run({"cost", "paint.json", "--json"});
+  ASSERT_EQ(graph.status, 0) << graph.err;
+  const auto material = place_.run({"cost", example("coat.gltf"), "--material", "Darkening", "--json"});
+  EXPECT_EQ(graph.out, material.out);
+  const Json json = Json::parse(graph.out);
+  ASSERT_EQ(json["shaders"].size(), 1u);
+  EXPECT_GT(json["shaders"][0]["spirv_instructions"], 100);
+  const auto none = place_.run({"cost", "paint.json", "--material", "Other"});
+  EXPECT_EQ(none.status, 1);
+}
+
+TEST_F(GraphFiles, areAttackedAsTheirMaterialsAre) {
+  const auto graph = place_.run({"stress", "paint.json", "--samples", "2000", "--json"});
+  EXPECT_EQ(graph.status, 0) << graph.err;
+  Json found = Json::parse(graph.out)["subjects"];
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0]["graph"], "paint.json");
+  Json file = Json::parse(readFile(example("coat.gltf")));
+  Json only = Json::array();
+  for (const Json& material : file["materials"]) {
+    if (material["name"] == "Darkening") only.push_back(material);
+  }
+  place_.write("one.gltf", Json{{"asset", file["asset"]}, {"materials", only}}.dump());
+  const auto material = place_.run({"stress", "one.gltf", "--samples", "2000", "--json"});
+  const Json subject = Json::parse(material.out)["subjects"][0];
+  EXPECT_EQ(subject["energy"], found[0]["energy"]);
+  EXPECT_EQ(subject["findings"].size(), found[0]["findings"].size());
+  // A finding of a graph is found again.
+  ASSERT_FALSE(found[0]["findings"].empty());
+  place_.write("case.json", found[0]["findings"][0]["case"].dump());
+  const auto again = place_.run({"stress", "case.json", "--json"});
+  EXPECT_EQ(again.status, 1) << "it is still there";
+  EXPECT_EQ(Json::parse(again.out)["subjects"][0]["findings"][0]["what"], found[0]["findings"][0]["what"]);
+  place_.write("case.json", R"({"graph": "../paint.json", "samples": []})");
+  EXPECT_NE(place_.run({"stress", "case.json"}).err.find("[case-outside]"), std::string::npos);
+  place_.write("case.json", R"({"graph": "points.json", "samples": []})");
+  EXPECT_NE(place_.run({"stress", "case.json"}).err.find("[bad-case]"), std::string::npos);
+}
+
 TEST_F(GraphFiles, saySomethingWhereTheyAreWrong) {
   place_.write("cut.json", R"({"lacquer_graph": 1,)");
   place_.write("none.json",
@@ -68,6 +168,9 @@ TEST_F(GraphFiles, saySomethingWhereTheyAreWrong) {
     EXPECT_EQ(place_.run({"eval", file, "--points", "points.json"}).status, 1) << file;
     EXPECT_EQ(place_.run({"preview", file, "-o", "no.png"}).status, 1) << file;
     EXPECT_EQ(place_.run({"prove", file}).status, 1) << file;
+    EXPECT_EQ(place_.run({"cost", file}).status, 1) << file;
+    EXPECT_EQ(place_.run({"stress", file, "--samples", "16"}).status, 1) << file;
+    EXPECT_EQ(place_.run({"gen", file, "-o", "no", "-q"}).status, 1) << file;
     const auto dump = place_.run({"dump", file});
     EXPECT_EQ(dump.status, 1) << file;
     EXPECT_NE(dump.err.find(file), std::string::npos) << dump.err;

@@ -54,14 +54,7 @@ Result<std::string> depfileText(const std::string& target, const std::vector<std
 struct Inputs {
   const Strings& files;
   const Strings& materials;
-  bool scenes;
-
-  void read(Run& run, const std::function<void(FileResult&)>& each) const {
-    if (scenes)
-      run.readScenes(files, materials, each);
-    else
-      run.readGraphs(files, each);
-  }
+  InputKind kind;
 };
 
 /// From the manifest that the run has written.
@@ -113,7 +106,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     if (!one.empty()) named.push_back(one);
   }
   if (!run.mayWrite(outputs) || !run.mayName(named, folder) || !depfile) return run.finish();
-  std::optional<Receipt> receipt = inputs.scenes && !shard && Receipt::covers(options)
+  std::optional<Receipt> receipt = inputs.kind == InputKind::ByName && !shard && Receipt::covers(options)
                                        ? run.receipt(inputs.files, inputs.materials, folder)
                                        : std::nullopt;
   if (receipt && run.find(*receipt)) {
@@ -130,7 +123,7 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   const Scratch scratch(folder);
   const Strings earlier = shard ? Strings() : listedShaders(path);
   ManifestFile manifest(path, {shard ? nullptr : &scratch, options.sync});
-  inputs.read(run, [&](FileResult& file) {
+  run.read(inputs.files, inputs.kind, inputs.materials, [&](FileResult& file) {
     if (!shard) manifest.file(file.text);
   });
   if (!run.make(folder, scratch, receipt ? &*receipt : nullptr,
@@ -156,7 +149,7 @@ Report generate(const Strings& files, const Strings& materials, const std::strin
                 const Options& options, Messages& messages, const Progress& progress) {
   Report report;
   withJobs(options.jobs, [&] {
-    report = generateWith({files, materials, true}, folder, options, messages, progress);
+    report = generateWith({files, materials, InputKind::ByName}, folder, options, messages, progress);
   });
   return report;
 }
@@ -166,7 +159,7 @@ Report generateGraphs(const Strings& files, const std::string& folder, const Opt
   const Strings all_materials;
   Report report;
   withJobs(options.jobs, [&] {
-    report = generateWith({files, all_materials, false}, folder, options, messages, progress);
+    report = generateWith({files, all_materials, InputKind::Graph}, folder, options, messages, progress);
   });
   return report;
 }

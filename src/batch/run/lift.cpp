@@ -68,10 +68,17 @@ bool add(uint16_t extension, const gltf::VertexAttributes& attributes, const gra
 
 void Examples::note(const Key& structure, const material::Material& material,
                     const gltf::VertexAttributes& attributes) {
-  const Key content = contentOf(material, attributes);
+  note(structure, {contentOf(material, attributes), material, attributes, {}});
+}
+
+void Examples::note(const Key& structure, const graph::Graph& graph) {
+  note(structure, {keyOf(graph::toJson(graph)), {}, {}, graph});
+}
+
+void Examples::note(const Key& structure, Example example) {
   const std::lock_guard lock(mutex_);
   const auto [it, fresh] = examples_.try_emplace(structure);
-  if (fresh || content < it->second.content) it->second = {content, material, attributes};
+  if (fresh || example.content < it->second.content) it->second = std::move(example);
 }
 
 const Example* Examples::of(const Key& structure) const {
@@ -91,9 +98,16 @@ void addTo(Lift& lift, const Example& example, const graph::Graph& graph, const 
   }
 }
 
-graph::Graph lifted(const material::Material& material, const gltf::VertexAttributes& attributes,
+Result<graph::Graph> graphOf(const Example& example, const Setting& setting) {
+  if (example.graph) return *example.graph;
+  Diagnostics unsaid;
+  return buildGraph(example.material, example.attributes, setting.library, setting.options, unsaid);
+}
+
+graph::Graph lifted(const material::Material* material, const gltf::VertexAttributes& attributes,
                     const graph::Graph& own, const Lift& lift, const Setting& setting) {
-  material::Material more = material;
+  if (material == nullptr) return own;
+  material::Material more = *material;
   for (const uint16_t extension : lift.extensions) add(extension, attributes, own, setting, more);
   Options options = setting.options;
   options.live.insert(options.live.end(), lift.live.begin(), lift.live.end());

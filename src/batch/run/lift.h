@@ -4,6 +4,7 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "run/structure.h"
@@ -16,11 +17,12 @@ struct Lift {
   std::set<std::string> live;     ///< terms
 };
 
-/// A material that needs a structure.
+/// A material that needs a structure, or a graph that is one.
 struct Example {
-  Key content;  ///< of everything in the material that a graph depends on
+  Key content;  ///< of everything in the material that a graph depends on; of the graph
   material::Material material;
   gltf::VertexAttributes attributes;
+  std::optional<graph::Graph> graph;  ///< where it was not built of a material
 };
 
 /// For every structure of a run the example with the smallest content, whatever the order in which the
@@ -29,10 +31,13 @@ class Examples {
 public:
   void note(const Key& structure, const material::Material& material,
             const gltf::VertexAttributes& attributes);
+  void note(const Key& structure, const graph::Graph& graph);
   /// Null for a structure of which no material came. Not beside note().
   const Example* of(const Key& structure) const;
 
 private:
+  void note(const Key& structure, Example example);
+
   std::mutex mutex_;
   std::map<Key, Example> examples_;
 };
@@ -40,10 +45,13 @@ private:
 /// Adds what a structure has: its example's extensions, and the live terms that are nodes of its graph.
 void addTo(Lift& lift, const Example& example, const graph::Graph& graph, const Setting& setting);
 
+/// The graph of the example as it is without a lift: built anew, or the graph itself.
+Result<graph::Graph> graphOf(const Example& example, const Setting& setting);
+
 /// The material's graph with all of a lift that is neutral for it: an extension that it has not is added
 /// where its defaults leave the graph as it is. `own`: the graph without, which comes back where there is no
-/// other.
-graph::Graph lifted(const material::Material& material, const gltf::VertexAttributes& attributes,
+/// other, and where there is no material (null).
+graph::Graph lifted(const material::Material* material, const gltf::VertexAttributes& attributes,
                     const graph::Graph& own, const Lift& lift, const Setting& setting);
 
 }  // namespace lacquer

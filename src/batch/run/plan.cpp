@@ -295,7 +295,7 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
   }
   const Writing how{nullptr, options.sync};
   ManifestFile manifest(all_materials, how);
-  run.readScenes(files, materials, [&](FileResult& file) { manifest.file(file.text); });
+  run.read(files, InputKind::ByName, materials, [&](FileResult& file) { manifest.file(file.text); });
   NinjaFile ninja(plan, folder, options, run.inputs());
   Strings graphs;
   for (const auto& [id, shader] : run.structures().shaders())

@@ -83,11 +83,10 @@ Result<ir::Module> ProgramCosts::moduleOfGroup(const Places& group) const {
     const OwnProgram& program = all_[item];
     for (size_t i = 0; i < program.graphs.size(); ++i) {
       const Example& example = *program.examples[i];
-      Diagnostics unsaid;
-      const Result<graph::Graph> own =
-          buildGraph(example.material, example.attributes, setting_.library, setting_.options, unsaid);
+      const Result<graph::Graph> own = graphOf(example, setting_);
       if (!own) return tl::make_unexpected(own.error());
-      graph::Graph more = lifted(example.material, example.attributes, *own, lift, setting_);
+      const material::Material* material = example.graph ? nullptr : &example.material;
+      graph::Graph more = lifted(material, example.attributes, *own, lift, setting_);
       if (seen.insert(structureKey(more, first.lights, setting_)).second) graphs.push_back(std::move(more));
     }
   }

@@ -166,7 +166,7 @@ void Programs::look(Group& group, const Key& key, const graph::Graph& graph) con
   if (fresh || graph::toJson(plain) < graph::toJson(it->second)) it->second = std::move(plain);
 }
 
-const programs::Fill* Programs::bring(graph::Graph& graph, const material::Material& material,
+const programs::Fill* Programs::bring(graph::Graph& graph, const material::Material* material,
                                       const gltf::VertexAttributes& attributes,
                                       const passes::LightFacts& lights) const {
   const auto found = groups_.find(structureKey(graph, lights, setting_));

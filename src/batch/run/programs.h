@@ -26,8 +26,9 @@ public:
 
   /// Puts the graph of a material's program in place of its own, and returns what that has beside its own;
   /// null for a material that keeps its program. Until close() it only looks at the graph, and leaves it.
-  /// From several threads at once.
-  const programs::Fill* bring(graph::Graph& graph, const material::Material& material,
+  /// `material`: that the graph was built of; null for a graph that is the input. From several threads at
+  /// once.
+  const programs::Fill* bring(graph::Graph& graph, const material::Material* material,
                               const gltf::VertexAttributes& attributes,
                               const passes::LightFacts& lights) const;
   /// Unites what was looked at. Not beside bring().

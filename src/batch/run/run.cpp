@@ -129,12 +129,12 @@ bool Run::checkPrograms() {
 }
 
 /// A look at all inputs that says nothing.
-void Run::look(const std::vector<std::string>& files, const std::vector<std::string>& only,
+void Run::look(const std::vector<std::string>& files, InputKind kind, const std::vector<std::string>& only,
                const std::function<void(const FileResult&)>& each) {
   for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
     std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
     tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) {
-      results[i] = readScene(files[first + i], only, *setting_, *structures_);
+      results[i] = readInput(files[first + i], kind, only, *setting_, *structures_);
     });
     for (const FileResult& result : results) each(result);
   }
@@ -142,13 +142,14 @@ void Run::look(const std::vector<std::string>& files, const std::vector<std::str
 
 /// The first look finds the structures and how much each is used, the second what every material brings to
 /// the program that it shares.
-void Run::mergePrograms(const std::vector<std::string>& files, const std::vector<std::string>& only) {
+void Run::mergePrograms(const std::vector<std::string>& files, InputKind kind,
+                        const std::vector<std::string>& only) {
   std::vector<ProgramUse> uses;
   std::set<Key> keys;
   size_t materials = 0;
   Examples examples;
   setting_->examples = &examples;
-  look(files, only, [&](const FileResult& result) {
+  look(files, kind, only, [&](const FileResult& result) {
     keys.insert(result.structures.begin(), result.structures.end());
     materials += result.materials.size();
     for (const MaterialReport& material : result.materials) {
@@ -165,7 +166,7 @@ void Run::mergePrograms(const std::vector<std::string>& files, const std::vector
   }
   programs_ = std::make_unique<Programs>(structures, examples, uses, materials, *setting_);
   setting_->programs = programs_.get();
-  if (options_.programs > 0) look(files, only, [](const FileResult&) {});
+  if (options_.programs > 0) look(files, kind, only, [](const FileResult&) {});
   programs_->close();
   structures_->lookAgain();
 }
@@ -225,12 +226,12 @@ void Run::readAll(const std::vector<std::string>& files,
   }
 }
 
-void Run::readScenes(const std::vector<std::string>& files, const std::vector<std::string>& only,
-                     const std::function<void(FileResult&)>& each) {
-  if (options_.programs > 0 || !options_.programs_report.empty()) mergePrograms(files, only);
+void Run::read(const std::vector<std::string>& files, InputKind kind, const std::vector<std::string>& only,
+               const std::function<void(FileResult&)>& each) {
+  if (options_.programs > 0 || !options_.programs_report.empty()) mergePrograms(files, kind, only);
   std::vector<std::string> seen;
   readAll(
-      files, [&](const std::string& path) { return readScene(path, only, *setting_, *structures_); },
+      files, [&](const std::string& path) { return readInput(path, kind, only, *setting_, *structures_); },
       [&](FileResult& result) {
         seen.insert(seen.end(), result.names.begin(), result.names.end());
         each(result);
@@ -255,11 +256,6 @@ void Run::warnOfPrograms() {
                    : fmt::format("the others cannot be made one: give --programs {}", made),
         {}}},
       {});
-}
-
-void Run::readGraphs(const std::vector<std::string>& files, const std::function<void(FileResult&)>& each) {
-  readAll(
-      files, [&](const std::string& path) { return readGraph(path, *setting_, *structures_); }, each);
 }
 
 void Run::checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen) {

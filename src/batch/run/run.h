@@ -28,9 +28,8 @@ public:
   void keep(const Receipt& receipt);
 
   /// Reads the inputs, some at a time, and calls `each` with every result, in order, from this thread.
-  void readScenes(const std::vector<std::string>& files, const std::vector<std::string>& only,
-                  const std::function<void(FileResult&)>& each);
-  void readGraphs(const std::vector<std::string>& files, const std::function<void(FileResult&)>& each);
+  void read(const std::vector<std::string>& files, InputKind kind, const std::vector<std::string>& only,
+            const std::function<void(FileResult&)>& each);
 
   /// Makes and writes what the inputs need; `each` gets every shader in the order of the ids. `receipt` may
   /// be null. False, with nothing written, when a shader's file is an input.
@@ -64,9 +63,10 @@ private:
                const std::function<void(FileResult&)>& each);
   bool checkPrograms();
   void warnOfPrograms();
-  void look(const std::vector<std::string>& files, const std::vector<std::string>& only,
+  void look(const std::vector<std::string>& files, InputKind kind, const std::vector<std::string>& only,
             const std::function<void(const FileResult&)>& each);
-  void mergePrograms(const std::vector<std::string>& files, const std::vector<std::string>& only);
+  void mergePrograms(const std::vector<std::string>& files, InputKind kind,
+                     const std::vector<std::string>& only);
   void checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen);
   void progress(size_t done, bool last);
 

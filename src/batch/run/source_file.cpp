@@ -46,8 +46,7 @@ struct Wanted {
   std::string name;
   int index = 0;
   std::vector<gltf::VertexAttributes> uses;
-  std::string note;         ///< why there is no use
-  bool from_graph = false;  ///< a graph in JSON, which no profile has made
+  std::string note;  ///< why there is no use
 };
 
 struct Done {
@@ -61,10 +60,12 @@ struct Done {
 /// The entries of one material: use() for each use, then finish().
 class MaterialText {
 public:
-  MaterialText(const std::string& file, const material::Material& material, const Setting& setting,
+  /// `material`: null for a graph that is the input.
+  MaterialText(const std::string& file, const material::Material* material, const Setting& setting,
                Structures& structures)
       : file_(file),
-        material_(material),
+        built_of_(material),
+        material_(material == nullptr ? noMaterial() : *material),
         setting_(setting),
         structures_(structures),
         uses_(kMaterialDepth + 1) {
@@ -86,11 +87,16 @@ private:
         diagnostics_.push_back(d);
     }
   }
+  static const material::Material& noMaterial() {
+    static const material::Material kNone;
+    return kNone;
+  }
   std::shared_ptr<const MaterialTerms> terms() const;
   void writeUnfilled(const graph::Graph& graph);
   void writeStandInAttributes(const Structure& structure, const gltf::VertexAttributes& attributes);
 
   const std::string& file_;
+  const material::Material* built_of_;
   const material::Material& material_;
   const Setting& setting_;
   Structures& structures_;
@@ -143,10 +149,15 @@ void MaterialText::writeStandInAttributes(const Structure& structure,
 
 void MaterialText::use(graph::Graph& graph, const passes::LightFacts& lights,
                        const gltf::VertexAttributes& attributes, const Diagnostics& said) {
-  if (setting_.examples != nullptr)
-    setting_.examples->note(structureKey(graph, lights, setting_), material_, attributes);
+  if (setting_.examples != nullptr) {
+    const Key structure = structureKey(graph, lights, setting_);
+    if (built_of_ != nullptr)
+      setting_.examples->note(structure, *built_of_, attributes);
+    else
+      setting_.examples->note(structure, graph);
+  }
   const programs::Fill* fill =
-      setting_.programs == nullptr ? nullptr : setting_.programs->bring(graph, material_, attributes, lights);
+      setting_.programs == nullptr ? nullptr : setting_.programs->bring(graph, built_of_, attributes, lights);
   const Structure& structure = structures_.of(graph, lights);
   met_.push_back(&structure);
   add(said);
@@ -217,7 +228,7 @@ Done MaterialText::finish(const Wanted& wanted) {
   }
   JsonText json(kMaterialDepth);
   json.beginObject().key("index").integer(wanted.index).key("name").string(wanted.name);
-  if (!wanted.from_graph) {
+  if (built_of_ != nullptr) {  // no profile has made a graph
     json.key("profile").string(setting_.options.profile);
     if (const Result<const material::Schema*> schema = setting_.library.models.schema()) {
       writeSurface(material_, **schema, json);
@@ -290,7 +301,7 @@ std::vector<Wanted> SceneFile::wanted(const material::Document& document, FileRe
 }
 
 Done SceneFile::make(const Wanted& wanted) const {
-  MaterialText text(path_, *wanted.material, setting_, structures_);
+  MaterialText text(path_, wanted.material, setting_, structures_);
   if (!hasError(wanted.material->diagnostics)) {
     for (const gltf::VertexAttributes& attributes : wanted.uses) {
       Diagnostics said;
@@ -412,8 +423,6 @@ std::optional<FileResult> cachedFile(const std::string& path, const Key& key, co
   return all ? std::move(result) : std::nullopt;
 }
 
-}  // namespace
-
 FileResult readScene(const std::string& path, const std::vector<std::string>& only, const Setting& setting,
                      Structures& structures) {
   Result<std::string> bytes;
@@ -450,41 +459,47 @@ FileResult readScene(const std::string& path, const std::vector<std::string>& on
 
 /// For whoever wrote the graph, on the screen alone: a manifest would differ from that of the file which the
 /// graph was made of.
-static void addDoubts(const graph::Graph& graph, const std::string& path, const lang::Library& library,
-                      Diagnostics& to) {
+void addDoubts(const graph::Graph& graph, const std::string& path, const lang::Library& library,
+               Diagnostics& to) {
   for (Diagnostic& doubt : graph::doubts(graph, library)) {
     doubt.place.file = path;
     to.push_back(std::move(doubt));
   }
 }
 
-FileResult readGraph(const std::string& path, const Setting& setting, Structures& structures) {
+FileResult readGraph(const std::string& path, const std::vector<std::string>& only, const Setting& setting,
+                     Structures& structures) {
   const Result<std::string> text = readFile(path, setting.limits.file);
   Result<graph::Graph> graph =
       text ? graph::fromJson(*text, path, setting.limits) : tl::make_unexpected(text.error());
   if (!graph) return unreadable(path, setting, graph.error());
-  static const material::Material kNone;
-  MaterialText material(path, kNone, setting, structures);
-  const std::string name = graph->name;
-  material.use(*graph, lightFacts(setting.options, {}), everything(), {});
-  Done done = material.finish({&kNone, name, 0, {}, {}, true});
   FileResult result;
-  result.diagnostics = std::move(done.diagnostics);
-  result.structures = std::move(done.structures);
-  result.ok = done.report.ok;
-  if (result.ok) addDoubts(*graph, path, setting.library, result.diagnostics);
-  result.materials.push_back(std::move(done.report));
   JsonText json(kFileDepth);
-  json.beginObject()
-      .key("source")
-      .string(relativeTo(setting.folder, path))
-      .key("materials")
-      .beginArray()
-      .raw(done.text)
-      .endArray();
-  json.key("diagnostics").beginArray().endArray();
+  json.beginObject().key("source").string(relativeTo(setting.folder, path)).key("materials").beginArray();
+  if (!only.empty()) result.names.push_back(graph->name);
+  if (only.empty() || std::find(only.begin(), only.end(), graph->name) != only.end()) {
+    MaterialText material(path, nullptr, setting, structures);
+    const std::string name = graph->name;
+    material.use(*graph, lightFacts(setting.options, {}), everything(), {});
+    Done done = material.finish({nullptr, name, 0, {}, {}});
+    result.diagnostics = std::move(done.diagnostics);
+    result.structures = std::move(done.structures);
+    result.ok = done.report.ok;
+    if (result.ok) addDoubts(*graph, path, setting.library, result.diagnostics);
+    result.materials.push_back(std::move(done.report));
+    json.raw(done.text);
+  }
+  json.endArray().key("diagnostics").beginArray().endArray();
   result.text = json.endObject().take();
   return result;
+}
+
+}  // namespace
+
+FileResult readInput(const std::string& path, InputKind kind, const std::vector<std::string>& only,
+                     const Setting& setting, Structures& structures) {
+  return kind == InputKind::Graph || isGraphFile(path) ? readGraph(path, only, setting, structures)
+                                                       : readScene(path, only, setting, structures);
 }
 
 }  // namespace lacquer

@@ -14,12 +14,13 @@ struct FileResult {
   bool ok = true;
 };
 
-/// Reads a glTF file and brings every use of its materials to a structure. With a cache, a file that was read
-/// before is not even parsed.
-FileResult readScene(const std::string& path, const std::vector<std::string>& only, const Setting& setting,
-                     Structures& structures);
+/// What a file is taken for.
+enum class InputKind : uint8_t { ByName, Graph };  ///< ByName: a graph where isGraphFile() says so
 
-/// The same for a graph in its JSON form.
-FileResult readGraph(const std::string& path, const Setting& setting, Structures& structures);
+/// Reads a glTF file, and brings every use of its materials to a structure, or a graph, which is a material
+/// with one use. `only`: names of those that are wanted; all where it is empty. With a cache, a glTF file
+/// that was read before is not even parsed.
+FileResult readInput(const std::string& path, InputKind kind, const std::vector<std::string>& only,
+                     const Setting& setting, Structures& structures);
 
 }  // namespace lacquer

@@ -30,6 +30,8 @@ Json subjectJson(const StressSubject& subject) {
   add("node", subject.node);
   add("variant", subject.variant);
   add("extension", subject.extension);
+  add("graph", subject.graph);
+  if (!subject.graph.empty()) json["name"] = subject.name;
   if (!subject.file.empty()) {
     json["file"] = subject.file;
     json["material"] = subject.material;

@@ -65,6 +65,11 @@ Graph Graph::load(const std::string& path, const Options& options, Messages& mes
   return result;
 }
 
+const std::string& Graph::name() const {
+  static const std::string kNone;
+  return impl_ ? impl_->graph.name : kNone;
+}
+
 std::string Graph::toJson() const { return impl_ ? graph::toJson(impl_->graph) : std::string(); }
 std::string Graph::toDot() const { return impl_ ? graph::toDot(impl_->graph) : std::string(); }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "api/internal.h"
+#include "cost/files.h"
 #include "ir/whole.h"
 #include "setting/messages.h"
 #include "setting/options.h"
@@ -109,6 +110,14 @@ bool Shader::pack(const Values& value, std::span<std::byte> block, Messages& mes
   }
   impl().pack(value, block.first(size), &messages);
   return true;
+}
+
+std::vector<ShaderCost> measureCost(const std::vector<Shader>& shaders, bool disassembly,
+                                    Messages& messages) {
+  std::vector<cost::Subject> subjects;
+  for (const Shader& shader : shaders)
+    subjects.push_back({shader.id(), shader.vertexSpirv(), shader.fragmentSpirv()});
+  return measureCostOf(std::move(subjects), disassembly, messages);
 }
 
 }  // namespace lacquer

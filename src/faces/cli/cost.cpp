@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "cli/graphs.h"
+#include "cli/streams.h"
 #include "cli/table.h"
 #include "json/json.h"
 
@@ -69,7 +71,37 @@ void printTable(const std::vector<ShaderCost>& costs) {
   }
 }
 
+bool holdsMaterials(const std::string& path) {
+  return isGraphFile(path) || path.ends_with(".gltf") || path.ends_with(".glb");
+}
+
 }  // namespace
+
+std::vector<ShaderCost> measurePaths(const std::vector<std::string>& paths,
+                                     const std::vector<std::string>& materials, bool disassembly,
+                                     const Options& options, Messages& messages) {
+  std::vector<std::string> made, files;
+  for (const std::string& path : paths) (holdsMaterials(path) ? files : made).push_back(path);
+  std::vector<ShaderCost> costs;
+  if (!made.empty()) costs = measureCost(made, disassembly, messages);
+  if (files.empty()) return costs;
+  Options spirv = options;
+  spirv.targets = {Target::Spirv};
+  spirv.validate = false;
+  std::vector<Shader> shaders;
+  size_t found = 0;
+  const auto each = [&](Graph graph) {
+    Shader shader = graph.generate(spirv, messages);
+    if (!shader) return false;
+    const auto known = [&](const Shader& other) { return other.id() == shader.id(); };
+    if (std::none_of(shaders.begin(), shaders.end(), known)) shaders.push_back(std::move(shader));
+    return true;
+  };
+  if (eachGraph(files, materials, options, messages, each, found) && found == 0 && !materials.empty())
+    say("{}: error: no material of that name [no-such-material]\n", printable(files[0]));
+  for (ShaderCost& cost : measureCost(shaders, disassembly, messages)) costs.push_back(std::move(cost));
+  return costs;
+}
 
 void printCosts(const std::vector<ShaderCost>& costs, bool as_json) {
   if (as_json) return printJson(costs);

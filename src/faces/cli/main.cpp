@@ -104,9 +104,9 @@ void addGeneration(CLI::App& verb, Flags& flags) {
 }
 
 void addGen(CLI::App& verb, Flags& flags) {
-  auto* files = verb.add_option("files", flags.files, ".gltf or .glb files");
+  auto* files = verb.add_option("files", flags.files, ".gltf or .glb files, graphs: .json");
   auto* graphs =
-      verb.add_option("--graph", flags.graphs, "a node graph in JSON instead of glTF files (may be repeated)")
+      verb.add_option("--graph", flags.graphs, "a graph of any name, in place of files (may be repeated)")
           ->allow_extra_args(false)
           ->excludes(files);
   verb.add_option("--depfile", flags.options.depfile,
@@ -114,22 +114,20 @@ void addGen(CLI::App& verb, Flags& flags) {
       ->check(kNotEmpty);
   verb.add_option("--shard", flags.options.shard, "in place of manifest.json: a file for `merge`")
       ->check(kNotEmpty);
-  auto* report = verb.add_option("--programs-report", flags.options.programs_report,
-                                 "a .json, .md or .svg file: what the materials cost with fewer programs")
-                     ->check(kNotEmpty);
+  verb.add_option("--programs-report", flags.options.programs_report,
+                  "a .json, .md or .svg file: what the materials cost with fewer programs")
+      ->check(kNotEmpty);
   verb.add_option("--pipelines", flags.options.pipelines,
                   "a JSON file: the pipelines that an engine can make ahead of time")
       ->check(kNotEmpty);
   addGeneration(verb, flags);
   graphs->excludes(verb.get_option("--material"));
-  graphs->excludes(verb.get_option("--programs"));
-  graphs->excludes(report);
   // A graph is what it is.
   graphs->excludes(verb.get_option("--simplify"));
 }
 
 void addPlan(CLI::App& verb, Flags& flags) {
-  verb.add_option("files", flags.files, ".gltf or .glb files")->required();
+  verb.add_option("files", flags.files, ".gltf or .glb files, graphs: .json")->required();
   verb.add_option("--ninja", flags.ninja, "the Ninja file; what its commands read is put beside it")
       ->required()
       ->check(kNotEmpty);
@@ -185,11 +183,15 @@ void addMerge(CLI::App& verb, Flags& flags) {
 }
 
 void addCost(CLI::App& verb, Flags& flags) {
-  verb.add_option("paths", flags.files, "folders that gen wrote, or .spv files")
+  verb.add_option("paths", flags.files,
+                  "folders that gen wrote, .spv files, .gltf or .glb files, graphs: .json")
       ->required()
       ->check(kNotEmpty);
+  verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
+      ->allow_extra_args(false);
   verb.add_flag("--json", flags.json, "as JSON");
   verb.add_flag("--disassembly", flags.disassembly, "the GPUs' instructions, too");
+  lacquer::cli::addMaterialFlags(verb, flags);
 }
 
 void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
@@ -208,7 +210,7 @@ void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
 
 int gen(const Flags& flags) {
   if (flags.files.empty() && flags.graphs.empty()) {
-    say("gen: name a .gltf or .glb file, or a graph with --graph\n");
+    say("gen: name a .gltf, .glb or .json file, or a graph of another name with --graph\n");
     return kUsage;
   }
   Messages messages;
@@ -303,10 +305,10 @@ int nodes(const Flags& flags, const std::string& name) {
 int cost(const Flags& flags) {
   Messages messages;
   const std::vector<lacquer::ShaderCost> costs =
-      lacquer::measureCost(flags.files, flags.disassembly, messages);
+      lacquer::cli::measurePaths(flags.files, flags.materials, flags.disassembly, flags.options, messages);
   lacquer::cli::printCosts(costs, flags.json);
   print(messages);
-  return hasError(messages) ? kFailed : kGood;
+  return hasError(messages) || (costs.empty() && !flags.materials.empty()) ? kFailed : kGood;
 }
 
 /// As CLI11 says it, of which the words that were given are no more than words.

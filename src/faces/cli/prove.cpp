@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "answer/answer.h"
+#include "cli/graphs.h"
 #include "cli/streams.h"
 #include "cli/table.h"
 
@@ -80,45 +81,17 @@ bool proveGraph(Graph graph, const ProveFlags& flags, const Options& options, Me
   return true;
 }
 
-bool proveMaterial(const Scene& scene, size_t material, const ProveFlags& flags, const Options& options,
-                   Messages& messages) {
-  std::vector<Attributes> uses = scene.uses(material);
-  if (uses.empty()) uses.push_back(kUnusedAttributes);
-  bool good = true;
-  for (const Attributes& attributes : uses) {
-    good &= proveGraph(scene.graph(material, attributes, options, messages), flags, options, messages);
-  }
-  return good;
-}
-
 }  // namespace
 
 bool prove(const std::vector<std::string>& files, const std::vector<std::string>& materials,
            const ProveFlags& flags, const Options& options, Messages& messages) {
   if (files.empty()) return proveNodes(flags, options, messages);
-  bool good = true;
   size_t found = 0;
-  for (const std::string& file : files) {
-    if (isGraphFile(file)) {
-      ++found;
-      good &= proveGraph(Graph::load(file, options, messages), flags, options, messages);
-      continue;
-    }
-    const Scene scene = Scene::load(file, options, messages);
-    good &= static_cast<bool>(scene);
-    for (size_t i = 0; scene && i < scene.materialCount(); ++i) {
-      const bool named =
-          std::find(materials.begin(), materials.end(), scene.materialName(i)) != materials.end();
-      if (!materials.empty() && !named) continue;
-      ++found;
-      good &= proveMaterial(scene, i, flags, options, messages);
-    }
-  }
-  if (found == 0 && good) {
+  const auto each = [&](Graph graph) { return proveGraph(std::move(graph), flags, options, messages); };
+  const bool good = eachGraph(files, materials, options, messages, each, found);
+  if (found == 0 && good)
     say("{}: error: no material of that name [no-such-material]\n", printable(files[0]));
-    return false;
-  }
-  return good;
+  return good && found > 0;
 }
 
 }  // namespace lacquer::cli

@@ -12,9 +12,8 @@ namespace lacquer::cli {
 
 void addStress(CLI::App& verb, StressFlags& flags, OptionFlags& options) {
   verb.add_option("subjects", flags.subjects,
-                  "nodes, extensions, .gltf or .glb files, .json cases; `nodes` is every node of the "
-                  "library, `extensions` "
-                  "every extension; both when absent")
+                  "nodes, extensions, .gltf or .glb files, .json graphs and cases; `nodes` is every node of "
+                  "the library, `extensions` every extension; both when absent")
       ->check(kNotEmpty);
   CLI::Option* samples =
       verb.add_option("--samples", flags.stress.samples, "inputs for each node and each material")
@@ -53,6 +52,7 @@ std::string titleOf(const StressSubject& subject) {
   if (!subject.node.empty())
     return subject.variant.empty() ? subject.node : subject.node + "." + subject.variant;
   if (!subject.extension.empty()) return subject.extension;
+  if (!subject.graph.empty()) return fmt::format("{}: {}", subject.graph, subject.name);
   return fmt::format("{}: {}{}{}", subject.file, subject.name, subject.tangents ? "" : ", without tangents",
                      subject.forms ? ", its forms" : "");
 }

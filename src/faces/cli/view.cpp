@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "cli/build.h"
 #include "cli/checks.h"
+#include "cli/cost.h"
 #include "cli/streams.h"
 #include "cli/table.h"
 
@@ -30,36 +30,12 @@ std::string pageOf(const std::string& program) {
       .string();
 }
 
-/// A folder of nobody else's, which goes with its contents.
-class Scratch {
-public:
-  Scratch() {
-#if defined(__unix__) || defined(__APPLE__)  // elsewhere there is no driver that could be asked for costs
-    std::error_code error;
-    std::string pattern = (fs::temp_directory_path(error) / "lacquer-view-XXXXXX").string();
-    if (!error && mkdtemp(pattern.data()) != nullptr) path = pattern;
-#endif
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  ~Scratch() {
-    std::error_code ignored;
-    if (!path.empty()) fs::remove_all(path, ignored);
-  }
-  std::string path;  ///< empty where there is none
-};
-
 /// What the files' shaders cost by the driver's compiler; nothing where there is none. What is wrong with a
 /// material the page says itself.
-std::vector<ShaderCost> costsOf(const ViewFlags& flags, Options options) {
-  const Scratch scratch;
-  if (flags.files.empty() || scratch.path.empty()) return {};
-  options.targets = {Target::Spirv};
-  options.validate = false;
-  options.sync = false;
+std::vector<ShaderCost> costsOf(const ViewFlags& flags, const Options& options) {
   Messages ignored;
-  if (generate(flags.files, {}, scratch.path, options, ignored).shaders.empty()) return {};
-  return measureCost({scratch.path}, false, ignored);
+  if (flags.files.empty()) return {};
+  return measurePaths(flags.files, {}, false, options, ignored);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Finds the fragment shaders in files and folders, and has them measured.
-#include "cost/cost.h"
+#include "cost/files.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include <set>
 
 #include "json/json.h"
-#include "lacquer/tools.h"
 #include "manifest/check.h"
 #include "setting/messages.h"
 #include "support/contain.h"
@@ -253,12 +252,7 @@ void addPath(const std::string& path, Shaders& shaders, Messages& messages) {
   }
 }
 
-}  // namespace
-
-std::vector<ShaderCost> measureCost(const std::vector<std::string>& paths, bool disassembly,
-                                    Messages& messages) {
-  Shaders shaders;
-  for (const std::string& path : paths) addPath(path, shaders, messages);
+std::vector<ShaderCost> measured(Shaders shaders, bool disassembly, Messages& messages) {
   if (const std::string reason = cost::unavailable(); reason.empty()) {
     if (!shaders.subjects.empty()) measureAll(shaders, disassembly, messages);
   } else {
@@ -272,6 +266,33 @@ std::vector<ShaderCost> measureCost(const std::vector<std::string>& paths, bool 
     report({missing}, {}, messages);
   }
   return std::move(shaders.costs);
+}
+
+}  // namespace
+
+std::vector<ShaderCost> measureCost(const std::vector<std::string>& paths, bool disassembly,
+                                    Messages& messages) {
+  Shaders shaders;
+  for (const std::string& path : paths) addPath(path, shaders, messages);
+  return measured(std::move(shaders), disassembly, messages);
+}
+
+std::vector<ShaderCost> measureCostOf(std::vector<cost::Subject> shaders, bool disassembly,
+                                      Messages& messages) {
+  Shaders all;
+  const auto shared = [](cost::Spirv& words) {
+    return words.empty() ? nullptr : std::make_shared<const cost::Spirv>(std::move(words));
+  };
+  std::map<std::string, cost::FileSubject> known;
+  for (cost::Subject& shader : shaders) {
+    if (shader.fragment.empty()) continue;
+    const size_t instructions = cost::spirvInstructions(shader.fragment);
+    const auto [it, fresh] = known.try_emplace(shader.name);
+    if (fresh) it->second = {shared(shader.vertex), shared(shader.fragment)};
+    all.subjects.push_back(it->second);
+    all.costs.push_back({shader.name, instructions, {}});
+  }
+  return measured(std::move(all), disassembly, messages);
 }
 
 }  // namespace lacquer

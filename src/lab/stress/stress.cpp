@@ -111,7 +111,7 @@ private:
     for (const std::string& name : names) {
       Result<void> added;
       if (ends(name, ".json"))
-        work_.emplace_back([this, name] { return replay(name); });
+        added = addJson(name);
       else if (ends(name, ".gltf") || ends(name, ".glb"))
         added = addFile(name);
       else if (name == kNodes && !library_->node(name))
@@ -210,17 +210,51 @@ private:
     });
   }
 
-  Result<std::unique_ptr<Subject>> materialSubject(const std::string& file,
-                                                   const material::Material& material, bool tangents = true) {
+  Result<std::unique_ptr<Subject>> materialSubject(const std::string& file, const EvalSubject& subject,
+                                                   bool tangents = true) {
     FileImages images(file, options_);
     EvalMaterial evaluated(images, options_);
     if (!tangents) evaluated.leaveOutTangents();
-    if (Result<void> lowered = evaluated.lower(material, *library_, true, {}, messages_); !lowered)
+    if (Result<void> lowered = evaluated.lower(subject, *library_, true, {}, messages_); !lowered)
       return tl::make_unexpected(std::move(lowered.error()));
     evaluated.place({false, {{"directional", 1}}});
-    const Result<const model::Model*> model = library_->models.of(evaluated.profile());
+    Options named = options_;
+    if (Result<void> resolved = resolveNames(*library_, named); !resolved)
+      return tl::make_unexpected(std::move(resolved.error()));
+    const Result<const model::Model*> model = library_->models.of(named.profile);
     if (!model) return tl::make_unexpected(model.error());
-    return stress::materialSubject(material.name, evaluated.module(), (*model)->layers());
+    return stress::materialSubject(subject.name(), evaluated.module(), (*model)->layers());
+  }
+
+  /// A graph, or a case of one input.
+  Result<void> addJson(const std::string& path) {
+    const Result<std::optional<graph::Graph>> graph = graphIn(path);
+    if (!graph) return tl::make_unexpected(graph.error());
+    if (!*graph) {
+      work_.emplace_back([this, path] { return replay(path); });
+      return {};
+    }
+    Result<std::unique_ptr<Subject>> subject = materialSubject(path, **graph);
+    if (!subject) return tl::make_unexpected(std::move(subject.error()));
+    StressSubject about;
+    about.graph = path;
+    about.name = (*graph)->name;
+    add(std::move(*subject), std::move(about));
+    return {};
+  }
+
+  /// The graph that a JSON file is; nothing for one that does not say that it is one.
+  Result<std::optional<graph::Graph>> graphIn(const std::string& path, Links links = Links::Follow) {
+    const Result<Limits> limits = limitsOf(options_);
+    if (!limits) return tl::make_unexpected(limits.error());
+    const Result<std::string> text = readFile(path, limits->file, links);
+    if (!text) return tl::make_unexpected(text.error());
+    const Result<Json> json = json::parse(*text, path, *limits);
+    if (!json) return tl::make_unexpected(json.error());
+    if (json::member(*json, "lacquer_graph") == nullptr) return std::nullopt;
+    Result<graph::Graph> graph = graph::fromJson(*text, path, *limits);
+    if (!graph) return tl::make_unexpected(std::move(graph.error()));
+    return std::move(*graph);
   }
 
   Result<material::Document> read(const std::string& file, Links links = Links::Follow) {
@@ -277,11 +311,12 @@ private:
       const bool variant = test.contains("variant") && test["variant"].is_string();
       return nodeSubject(test["node"].get<std::string>(), variant ? test["variant"].get<std::string>() : "");
     }
-    if (!test.contains("file") || !test["file"].is_string() || !test.contains("material") ||
-        !test["material"].is_number_unsigned())
-      return wrong("a case has a \"node\", or a \"file\" and the index of a \"material\"");
+    const bool is_graph = test.contains("graph") && test["graph"].is_string();
+    if (!is_graph && (!test.contains("file") || !test["file"].is_string() || !test.contains("material") ||
+                      !test["material"].is_number_unsigned()))
+      return wrong("a case has a \"node\", a \"graph\", or a \"file\" and the index of a \"material\"");
     // A case may come from others: where a file lies elsewhere nobody looks at it.
-    const std::string named = test["file"].get<std::string>();
+    const std::string named = test[is_graph ? "graph" : "file"].get<std::string>();
     const std::string folder = std::filesystem::path(path).parent_path().string();
     const std::optional<std::string> inside =
         named.find('\0') == std::string::npos ? resolveBelow(folder, named, options_.allow) : std::nullopt;
@@ -289,6 +324,12 @@ private:
       return fail("case-outside", {path, 0, 0, {}},
                   fmt::format("{} leads out of the case's folder", quote(named)),
                   "--allow DIR lets it lie in another folder, too");
+    if (is_graph) {
+      const Result<std::optional<graph::Graph>> graph = graphIn(*inside, Links::None);
+      if (!graph) return tl::make_unexpected(graph.error());
+      if (!*graph) return wrong("the file of its \"graph\" is none");
+      return materialSubject(*inside, **graph);
+    }
     const Result<material::Document> document = read(*inside, Links::None);
     if (!document) return tl::make_unexpected(document.error());
     const auto index = test["material"].get<size_t>();
