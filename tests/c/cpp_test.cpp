@@ -22,7 +22,7 @@ TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
       &Scene::uses, &Scene::graph);
   all(&Graph::fromJson, &Graph::toJson, &Graph::toDot, &Graph::parameters, &Graph::textures, &Graph::addNode,
       &Graph::removeNode, &Graph::connect, &Graph::setOutput, &Graph::setParameter, &Graph::setRange,
-      &Graph::check, &Graph::generate, &Graph::dump, &Graph::prove);
+      &Graph::name, &Graph::check, &Graph::generate, &Graph::dump, &Graph::prove);
   all(&Shader::id, &Shader::hasVertexStage, &Shader::vertexText, &Shader::fragmentText, &Shader::vertexSpirv,
       &Shader::fragmentSpirv, &Shader::fileText, &Shader::headerText, &Shader::moduleText,
       &Shader::moduleTypes, &Shader::reflection, &Shader::interfaceJson, &Shader::uniformSize,
@@ -41,7 +41,9 @@ TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
                                            Messages&)>(&drawBall),
       static_cast<std::vector<uint8_t> (*)(const Graph&, uint32_t, const Strings&, const Options&,
                                            Messages&)>(&drawBall),
-      &isGraphFile, &Graph::load, &drawPreview, &writeView, &makeLevels, &stressNodes, &measureCost,
+      &isGraphFile, &Graph::load, &drawPreview, &writeView, &makeLevels, &stressNodes,
+      static_cast<std::vector<ShaderCost> (*)(const Strings&, bool, Messages&)>(&measureCost),
+      static_cast<std::vector<ShaderCost> (*)(const std::vector<Shader>&, bool, Messages&)>(&measureCost),
       &environmentDfg, &writeEnvironmentDfg, &environmentSheen, &writeEnvironmentSheen, &writeEnvironment,
       &nodesJson, &proveNodes, &engineName, &faultName);
   for (const bool one : there) EXPECT_TRUE(one);

@@ -160,6 +160,113 @@ TEST_F(GraphFiles, areAttackedAsTheirMaterialsAre) {
   EXPECT_NE(place_.run({"stress", "case.json"}).err.find("[bad-case]"), std::string::npos);
 }
 
+constexpr const char* kRusty = R"({"lacquer_graph": 1, "name": "rusty", "template": "forward",
+  "parameters": {"rust": {"type": "float", "value": 0.25, "range": [0, 1]}},
+  "textures": {"mask": {"type": "sampler2D", "file": "MASK", SAMPLER}},
+  "groups": {"worn": {
+    "inputs": {"color": {"type": "vec3"}, "amount": {"type": "float", "default": 0.5},
+               "image": {"type": "sampler2D", "default": {"texture": "mask"}},
+               "uv": {"type": "vec2", "default": {"given": "uv0"}}},
+    "nodes": [
+      {"id": "texel", "node": "texture_sample", "inputs": {"image": {"input": "image"}, "uv": {"input": "uv"}}},
+      {"id": "glow", "node": "emission", "inputs": {"factor": {"input": "color"},
+       "strength": {"input": "amount"}, "texel": {"node": "texel", "swizzle": "rgb"}}}],
+    "outputs": {"light": {"node": "glow"}, "mask": {"node": "texel", "swizzle": "a"}}}},
+  "nodes": [{"id": "iron", "group": "worn", "inputs": {"color": 1, "amount": {"parameter": "rust"}}}],
+  "outputs": {"emission": {"node": "iron", "output": "light"}}})";
+
+std::string rusty(const std::string& mask,
+                  const std::string& sampler = R"("wrap": "clamp", "filter": "nearest")") {
+  std::string text = kRusty;
+  text.replace(text.find("SAMPLER"), 7, sampler);
+  return text.replace(text.find("MASK"), 4, mask);
+}
+
+/// The first point's emission.
+Json colorOf(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return outcome.status == 0 ? Json::parse(outcome.out)["rgba"][0] : Json();
+}
+
+TEST_F(GraphFiles, haveGroupsAndImagesBesideThem) {
+  const std::string checker = (std::filesystem::path(example("")) / "textures/checker.png").string();
+  std::filesystem::create_directories(place_ / "maps");
+  std::filesystem::copy_file(checker, place_ / "maps/a mask.png");
+  place_.write("rusty.json", rusty("maps/a%20mask.png"));
+  place_.write("at.json", R"([{"uv0": [0.01, 0.01]}, {"uv0": [7, 0.01]}])");
+  const auto by_file = place_.run({"eval", "rusty.json", "--points", "at.json"});
+  const Json color = colorOf(by_file);
+  EXPECT_NE(color,
+            colorOf(place_.run({"eval", "rusty.json", "--points", "at.json", "--texel", "mask=0,0,0,1"})));
+  EXPECT_EQ(place_.run({"preview", "rusty.json", "-o", "ball.png", "--size", "16"}).err, "");
+  EXPECT_EQ(place_.run({"gen", "rusty.json", "-o", "out", "-q"}).status, 0);
+  const Json use = place_.manifest("out")["files"][0]["materials"][0]["uses"][0];
+  EXPECT_EQ(use["textures"]["mask"]["file"], "maps/a%20mask.png");
+  EXPECT_EQ(use["textures"]["mask"]["sampler"]["wrap_t"], "clamp");
+  EXPECT_EQ(use["textures"]["mask"]["sampler"]["mag_filter"], "nearest");
+  EXPECT_EQ(schemaErrors({place_ / "out/manifest.json"}).value_or(""), "");
+  for (const char* verb : {"dump", "prove", "cost", "graph"})
+    EXPECT_EQ(place_.run({verb, "rusty.json"}).status, 0);
+  EXPECT_EQ(place_.run({"stress", "rusty.json", "--samples", "500"}).status, 0);
+  // A data URI is in the graph itself.
+  const auto encoded = place_.shell("base64 -w0 'maps/a mask.png'");
+  place_.write("inside.json", rusty("data:image/png;base64," + encoded.out));
+  EXPECT_EQ(colorOf(place_.run({"eval", "inside.json", "--points", "at.json"})), color);
+}
+
+TEST_F(GraphFiles, readNoImagesElsewhere) {
+  place_.write("at.json", R"([{"uv0": [0.01, 0.01]}])");
+  std::filesystem::create_directories(place_ / "below");
+  std::filesystem::copy_file(std::filesystem::path(example("")) / "textures/checker.png", place_ / "up.png");
+  place_.write("below/rusty.json", rusty("../up.png"));
+  const auto outside = place_.run({"eval", "below/rusty.json", "--points", "at.json"});
+  EXPECT_EQ(outside.status, 1);
+  EXPECT_NE(outside.err.find("below/rusty.json:/textures/mask/file: error: mask has no image: \"../up.png\" "
+                             "leads out of the file's folder [image-outside]"),
+            std::string::npos)
+      << outside.err;
+  EXPECT_EQ(place_.run({"eval", "below/rusty.json", "--points", "at.json", "--allow", "."}).status, 0);
+  place_.write("gone.json", rusty("gone.png"));
+  const auto gone = place_.run({"eval", "gone.json", "--points", "at.json"});
+  EXPECT_EQ(gone.status, 1);
+  EXPECT_NE(gone.err.find("[image-missing]"), std::string::npos) << gone.err;
+  // What stands for it is said.
+  place_.write("gone.json", rusty("gone.png", R"("default": [0.5, 0.25, 1, 1])"));
+  const auto with = place_.run({"eval", "gone.json", "--points", "at.json"});
+  EXPECT_EQ(colorOf(with)[0], 0.125);
+  EXPECT_NE(with.err.find("warning"), std::string::npos) << with.err;
+  EXPECT_NE(with.err.find("its default colour stands for it"), std::string::npos) << with.err;
+}
+
+TEST_F(GraphFiles, haveLevels) {
+  place_.write("rusty.json", rusty("gone.png", R"("default": [0.5, 0.25, 1, 1])"));
+  const auto made = place_.run({"lod", "rusty.json", "-o", "levels", "--levels", "2", "--size", "16",
+                                "--target", "glsl", "--no-validate", "--json", "-q"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Json chain = Json::parse(made.out)["materials"][0];
+  EXPECT_EQ(chain["name"], "rusty");
+  EXPECT_GT(chain["measured"], 1);
+  EXPECT_EQ(place_.manifest("levels")["levels"].size(), 1u);
+  const auto built =
+      place_.run({"lod", "rusty.json", "-o", "levels", "--profile", "physical", "--size", "16", "-q"});
+  EXPECT_EQ(built.status, 1);
+  EXPECT_NE(built.err.find("[graph-is-built]"), std::string::npos) << built.err;
+}
+
+TEST_F(GraphFiles, areMadeSimplerNodeByNode) {
+  const auto gen = [&](const std::string& word, const std::string& out) {
+    return place_.run(
+        {"gen", "paint.json", "-o", out, "--target", "glsl", "--no-validate", "-q", "--simplify", word});
+  };
+  ASSERT_EQ(gen("vertex:base.color", "a").status, 0);
+  ASSERT_EQ(gen("scale:coat_factor=0.5", "b").status, 0);
+  EXPECT_NE(place_.manifest("a")["shaders"].items().begin().key(),
+            place_.manifest("b")["shaders"].items().begin().key());
+  const auto wrong = gen("without:coat.darkening", "c");
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.err.find("[graph-is-built]"), std::string::npos) << wrong.err;
+}
+
 TEST_F(GraphFiles, saySomethingWhereTheyAreWrong) {
   place_.write("cut.json", R"({"lacquer_graph": 1,)");
   place_.write("none.json",

@@ -1,6 +1,10 @@
 // Node graphs through their JSON form and through the public editing functions.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+#include <random>
+
 #include "compare.h"
 #include "output.h"
 #include "support/cases.h"
@@ -113,6 +117,80 @@ TEST_P(Graphs, editsReachTheShader) {
     messages.clear();
     EXPECT_FALSE(graph.check(messages));
     EXPECT_NE(textOf(messages).find("my.glow"), std::string::npos) << textOf(messages);
+  });
+}
+
+/// What a tool may do to a graph that is no edit: other ids, other orders, its own words.
+class Disguise {
+public:
+  explicit Disguise(uint64_t seed) : random_(seed) {}
+
+  Json operator()(Json graph) {
+    ids_.clear();
+    for (Json& node : graph["nodes"]) {
+      ids_[node["id"]] = "n" + std::to_string(random_() % 100000) + ".x" + std::to_string(ids_.size());
+    }
+    for (Json& node : graph["nodes"]) {
+      node["id"] = ids_.at(node["id"]);
+      for (auto& [name, source] : node["inputs"].items()) rename(source);
+      shuffle(node["inputs"]);
+      node["ui"] = {{"x", random_() % 1000}, {"comment", "moved"}};
+    }
+    for (auto& [port, source] : graph["outputs"].items()) rename(source);
+    for (const char* list : {"outputs", "parameters", "textures"}) shuffle(graph[list]);
+    std::shuffle(graph["nodes"].begin(), graph["nodes"].end(), random_);
+    for (auto& [name, parameter] : graph["parameters"].items()) parameter["ui"] = random_() % 9;
+    graph["ui"] = {{"zoom", 2}};
+    // What nobody asks for.
+    graph["nodes"].push_back(
+        {{"id", "unused"}, {"node", "unit_normal"}, {"inputs", {{"normal", {1, 0, 0}}}}});
+    return graph;
+  }
+
+private:
+  void rename(Json& source) const {
+    if (source.is_object() && source.contains("node")) source["node"] = ids_.at(source["node"]);
+  }
+  void shuffle(Json& object) {
+    std::vector<std::pair<std::string, Json>> members;
+    for (auto& [name, value] : object.items()) members.emplace_back(name, value);
+    std::shuffle(members.begin(), members.end(), random_);
+    object = Json::object();
+    for (auto& [name, value] : members) object[name] = std::move(value);
+  }
+
+  std::mt19937_64 random_;
+  std::map<std::string, std::string> ids_;
+};
+
+TEST_P(Graphs, idsOrdersAndToolsOwnWordsAreNotInTheShader) {
+  uint64_t seed = 0;
+  forEach([&](Graph& graph) {
+    const Shader before = made(graph);
+    const std::string text = Disguise(++seed)(Json::parse(graph.toJson())).dump();
+    Messages messages;
+    Graph other = Graph::fromJson(text, "graph.json", messages);
+    ASSERT_TRUE(other) << textOf(messages);
+    EXPECT_TRUE(other.check(messages, options_)) << textOf(messages);
+    const Shader after = made(other);
+    EXPECT_EQ(before.id(), after.id());
+    EXPECT_EQ(codeOf(before), codeOf(after));
+    EXPECT_EQ(before.interfaceJson(), after.interfaceJson());
+    // The names of parameters are an interface.
+    if (before.uniformSize() == 0) return;
+    Json named = Json::parse(graph.toJson());
+    const std::string old = before.reflection().parameters.at(0).name;
+    named["parameters"]["another"] = named["parameters"][old];
+    for (Json& node : named["nodes"]) {
+      for (auto& [name, source] : node["inputs"].items()) {
+        if (source.is_object() && source.value("parameter", "") == old) source["parameter"] = "another";
+      }
+    }
+    for (auto& [name, source] : named["outputs"].items()) {
+      if (source.is_object() && source.value("parameter", "") == old) source["parameter"] = "another";
+    }
+    Graph again = Graph::fromJson(named.dump(), "graph.json", messages);
+    EXPECT_NE(made(again).id(), before.id());
   });
 }
 

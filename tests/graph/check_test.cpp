@@ -51,9 +51,16 @@ TEST(GraphCheck, literalsAreFiniteFloatsVectorsAndBools) {
 TEST(GraphCheck, parametersAndTexturesHaveTypesOfAGraph) {
   Graph graph = litGraph();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  graph.parameters = {{"m", Type::Mat4, {}, {}, {}},
-                      {"m", Type::Float, {nan}, {}, {}},
-                      {"r", Type::Float, {1}, {nan, 1}, {}}};
+  const auto parameter = [&](const char* name, Type type, double value) -> graph::Parameter& {
+    graph::Parameter& made = graph.parameters.emplace_back();
+    made.name = name;
+    made.type = type;
+    made.value = {value};
+    return made;
+  };
+  parameter("m", Type::Mat4, 0);
+  parameter("m", Type::Float, nan);
+  parameter("r", Type::Float, 1).range = {{nan, 1}, 0};
   graph.textures.resize(3);
   graph.textures[0].name = "t";
   graph.textures[1].name = "t";
@@ -64,7 +71,7 @@ TEST(GraphCheck, parametersAndTexturesHaveTypesOfAGraph) {
   graph.add("a", "f0", {{"ior", {graph::ParameterRef{"m"}, {}}}});
   EXPECT_EQ(checked(graph),
             "/parameters/m/type: error: a parameter cannot be a mat4 [wrong-type]\n"
-            "  help: it is a float, vec2, vec3, vec4 or bool\n"
+            "  help: it is a float, an int, a uint, a bool or a vector of them\n"
             "/parameters/m: error: there are two parameters 'm' [duplicate-name]\n"
             "/parameters/m/value: error: the value of 'm' is nan [not-finite]\n"
             "/parameters/r/range: error: [nan, 1] is no range [wrong-range]\n"

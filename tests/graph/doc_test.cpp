@@ -1,4 +1,4 @@
-// docs/graph-format.md: its example is a graph as toJson writes it.
+// docs/graph-format.md: its examples are graphs as toJson writes them.
 #include <gtest/gtest.h>
 
 #include "graph/sample.h"
@@ -7,18 +7,22 @@
 namespace lacquer::test {
 namespace {
 
-TEST(GraphDoc, exampleIsAGraph) {
+TEST(GraphDoc, examplesAreGraphs) {
   constexpr std::string_view kFence = "```json\n";
   const std::string page = readFile(sourceFolder() / "docs/graph-format.md");
-  const size_t begin = page.find(kFence);
-  ASSERT_NE(begin, std::string::npos);
-  const size_t end = page.find("```\n", begin + kFence.size());
-  ASSERT_NE(end, std::string::npos);
-  const std::string example = page.substr(begin + kFence.size(), end - begin - kFence.size());
-  graph::Graph graph = graphOf(example);
-  EXPECT_EQ(toJson(graph), example);
-  EXPECT_EQ(formatAll(graph::check(graph, lang::Library::embedded())), "");
-  EXPECT_EQ(toJson(graph), example) << "its nodes are in order";
+  size_t count = 0;
+  for (size_t begin = page.find(kFence); begin != std::string::npos; begin = page.find(kFence, begin)) {
+    begin += kFence.size();
+    const size_t end = page.find("```\n", begin);
+    ASSERT_NE(end, std::string::npos);
+    const std::string example = page.substr(begin, end - begin);
+    const graph::Graph graph = graphOf(example);
+    EXPECT_EQ(toJson(graph), example);
+    EXPECT_EQ(formatAll(graph::check(graph, lang::Library::embedded())), "");
+    EXPECT_EQ(formatAll(graph::doubts(graph, lang::Library::embedded())), "");
+    ++count;
+  }
+  EXPECT_EQ(count, 2u);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST(GraphEdit, findsWhatIsThere) {
   graph::Graph graph;
   graph.add("a", "f0");
   graph.add("b", "f0");
-  graph.parameters.push_back({"ior", ir::Type::Float, {1.5}, {}, {}});
+  graph.parameters.emplace_back().name = "ior";
   EXPECT_EQ(graph.find("b"), std::optional<size_t>(1));
   EXPECT_EQ(graph.find("a"), std::optional<size_t>(0));
   EXPECT_EQ(graph.find("c"), std::nullopt);

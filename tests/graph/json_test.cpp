@@ -27,6 +27,8 @@ TEST(GraphJson, whatIsWrittenReadsBackTheSame) {
     EXPECT_EQ(read->nodes, graph.nodes) << text;
     EXPECT_EQ(read->outputs, graph.outputs) << text;
     EXPECT_EQ(read->skipped, graph.skipped);
+    EXPECT_EQ(read->groups, graph.groups) << text;
+    EXPECT_EQ(read->ui, graph.ui);
     ASSERT_EQ(read->parameters.size(), graph.parameters.size());
     for (size_t i = 0; i < graph.parameters.size(); ++i) {
       EXPECT_EQ(read->parameters[i].name, graph.parameters[i].name);
@@ -34,6 +36,8 @@ TEST(GraphJson, whatIsWrittenReadsBackTheSame) {
       EXPECT_EQ(read->parameters[i].value, graph.parameters[i].value);
       EXPECT_EQ(read->parameters[i].range, graph.parameters[i].range);
       EXPECT_EQ(read->parameters[i].pointer, graph.parameters[i].pointer);
+      EXPECT_EQ(read->parameters[i].animated, graph.parameters[i].animated);
+      EXPECT_EQ(read->parameters[i].ui, graph.parameters[i].ui);
     }
     ASSERT_EQ(read->textures.size(), graph.textures.size());
     for (size_t i = 0; i < graph.textures.size(); ++i) {
@@ -42,6 +46,11 @@ TEST(GraphJson, whatIsWrittenReadsBackTheSame) {
       EXPECT_EQ(read->textures[i].srgb, graph.textures[i].srgb);
       EXPECT_EQ(read->textures[i].texture, graph.textures[i].texture);
       EXPECT_EQ(read->textures[i].pointer, graph.textures[i].pointer);
+      EXPECT_EQ(read->textures[i].file, graph.textures[i].file);
+      EXPECT_EQ(read->textures[i].wrap, graph.textures[i].wrap);
+      EXPECT_EQ(read->textures[i].nearest, graph.textures[i].nearest);
+      EXPECT_EQ(read->textures[i].color, graph.textures[i].color);
+      EXPECT_EQ(read->textures[i].ui, graph.textures[i].ui);
     }
   }
 }
@@ -143,10 +152,9 @@ TEST(GraphJson, wrongSourcesAlone) {
     const Result<Source> source = graph::sourceFromJson(text);
     return source ? "" : formatAll(source.error());
   };
-  EXPECT_EQ(errors("\"view\""),
-            "error: the source is a string [wrong-type]\n  help: it must be a number, true, false, an array "
-            "of 2 to 4 "
-            "numbers or an object such as {\"given\": \"uv0\"}\n");
+  EXPECT_EQ(errors("null"),
+            "error: the source is null [wrong-type]\n  help: it must be a number, true, false, the name of a "
+            "value, an array of 2 to 4 numbers or an object such as {\"given\": \"uv0\"}\n");
   EXPECT_EQ(errors(R"({"given": "view", "output": "L"})"),
             "/output: error: a given has no \"output\" [wrong-source]\n"
             "  help: write the result behind a dot: {\"given\": \"light_sample.L\"}\n");

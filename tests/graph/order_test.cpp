@@ -74,16 +74,48 @@ TEST(GraphOrder, longChainsAndManyCyclesTakeNoStackAndLittleTime) {
   EXPECT_EQ(graph::sourcesFirst(edges).cycles.size(), 1U);
 }
 
-TEST(GraphOrder, checkSortsTheNodes) {
+std::string inCode(const graph::Graph& graph) {
+  EXPECT_EQ(formatAll(graph::check(graph, sampleLibrary())), "");
+  std::string text;
+  for (const size_t node : graph::codeOrder(graph, sampleLibrary()))
+    text += (text.empty() ? "" : " ") + graph.nodes[node].id;
+  return text;
+}
+
+/// Neither the order of the lists nor what nobody asks for.
+TEST(GraphOrder, codeIsInTheOrderOfPortsInputsAndTerms) {
   graph::Graph graph;
   graph.template_name = "lit";
-  graph.add("late", "weighted", {{"color", ref("early")}});
+  graph.add("late", "weighted", {{"weight", ref("factor")}, {"color", ref("early")}});
+  graph.add("unused", "f0", {{"ior", number(3)}});
   graph.add("other", "f0", {{"ior", number(2)}});
   graph.add("early", "weighted", {{"color", {graph::Literal{ir::Type::Vec3, {1, 1, 1}}, {}}}});
+  graph.add("factor", "f0", {{"ior", number(1.5)}});
   graph.outputs = {{"alpha", ref("other")}, {"emission", ref("late")}};
-  EXPECT_EQ(formatAll(graph::check(graph, sampleLibrary())), "");
-  ASSERT_EQ(graph.nodes.size(), 3U);
-  EXPECT_EQ(graph.nodes[0].id + " " + graph.nodes[1].id + " " + graph.nodes[2].id, "early late other");
+  EXPECT_EQ(inCode(graph), "early factor late other");
+  std::mt19937 random(3);
+  for (int round = 0; round < 20; ++round) {
+    std::shuffle(graph.nodes.begin(), graph.nodes.end(), random);
+    std::shuffle(graph.outputs.begin(), graph.outputs.end(), random);
+    for (graph::Node& node : graph.nodes) std::shuffle(node.inputs.begin(), node.inputs.end(), random);
+    EXPECT_EQ(inCode(graph), "early factor late other");
+  }
+  for (graph::Node& node : graph.nodes) {
+    if (node.id == "other" || node.id == "unused") node.place = 0;
+    if (node.id == "factor") node.place = 1;
+  }
+  EXPECT_EQ(inCode(graph), "other factor early late");
+}
+
+TEST(GraphOrder, longChainsBecomeCodeWithoutAStack) {
+  constexpr size_t kCount = 100000;
+  graph::Graph graph;
+  graph.template_name = "lit";
+  graph.add("n0", "weighted", {{"color", number(1)}});
+  for (size_t i = 1; i < kCount; ++i)
+    graph.add("n" + std::to_string(i), "weighted", {{"color", ref("n" + std::to_string(i - 1))}});
+  graph.outputs = {{"alpha", number(1)}, {"emission", ref("n" + std::to_string(kCount - 1))}};
+  EXPECT_EQ(graph::codeOrder(graph, sampleLibrary()).size(), kCount);
 }
 
 }  // namespace

@@ -21,13 +21,11 @@ public:
     graph.template_name = text();
     for (size_t i = pick(4); i > 0; --i) graph.parameters.push_back(parameter(i));
     for (size_t i = pick(4); i > 0; --i) graph.textures.push_back(texture(i));
-    for (size_t i = pick(6); i > 0; --i) {
-      graph::Node& node = graph.nodes[graph.add(text(), text())];
-      if (pick(2) == 0) node.variant = text();
-      node.inputs = sources();
-    }
+    for (size_t i = pick(3); i > 0; --i) graph.groups.push_back(group(i));
+    graph.nodes = nodes();
     graph.outputs = sources();
     for (size_t i = pick(3); i > 0; --i) graph.skipped.push_back({unique(i), text()});
+    graph.ui = ui();
     return graph;
   }
 
@@ -62,28 +60,85 @@ private:
     return value;
   }
 
-  ir::Parameter parameter(size_t i) {
-    const Type type = valueType();
-    ir::Parameter parameter{unique(i), type, components(type), {}, text()};
-    if (pick(2) == 0) parameter.range.lo = randomDouble(random_);
-    if (pick(2) == 0) parameter.range.hi = randomDouble(random_);
-    if (pick(3) == 0) parameter.range = {{0, parameter.range.hi}, std::abs(randomDouble(random_)) + 1e-300};
+  ir::Range range() {
+    ir::Range range;
+    if (pick(2) == 0) range.lo = randomDouble(random_);
+    if (pick(2) == 0) range.hi = randomDouble(random_);
+    if (pick(3) == 0) range = {{0, range.hi}, std::abs(randomDouble(random_)) + 1e-300};
+    return range;
+  }
+
+  /// Any JSON of a tool's, on one line; often none.
+  std::string ui() {
+    static const std::vector<std::string> kTexts = {
+        "null", "true", "[1,2.5,-3]", R"({"x":12,"y":-7.25,"color":"#ff8000"})",
+        R"({"comment":"a \"word\"\n","collapsed":false,"deep":[[{"":[]}],{}]})"};
+    return pick(3) == 0 ? kTexts[pick(kTexts.size())] : std::string();
+  }
+
+  graph::Parameter parameter(size_t i) {
+    graph::Parameter parameter;
+    parameter.name = unique(i);
+    parameter.type = valueType();
+    parameter.value = components(parameter.type);
+    parameter.range = range();
+    parameter.pointer = text();
+    parameter.animated = pick(4) == 0;
+    parameter.ui = ui();
     return parameter;
   }
 
-  ir::TextureSlot texture(size_t i) {
-    ir::TextureSlot slot;
+  std::vector<graph::Node> nodes() {
+    graph::Graph graph;
+    for (size_t i = pick(6); i > 0; --i) {
+      graph::Node& node = graph.nodes[graph.add(text(), text())];
+      node.group = pick(4) == 0;
+      if (!node.group && pick(2) == 0) node.variant = text();
+      if (!node.group && pick(2) == 0) node.term = text();
+      if (!node.group && pick(2) == 0) node.place = static_cast<uint32_t>(pick(1000));
+      node.at_vertices = !node.group && pick(4) == 0;
+      node.inputs = sources();
+      node.ui = ui();
+    }
+    return graph.nodes;
+  }
+
+  graph::Group group(size_t i) {
+    graph::Group group;
+    group.name = unique(i);
+    for (size_t k = pick(4); k > 0; --k) {
+      graph::GroupInput& input = group.inputs.emplace_back();
+      input.name = unique(k);
+      constexpr std::array kTypes = {Type::Float, Type::Vec3, Type::Bool, Type::Int, Type::Texture2D};
+      input.type = kTypes[pick(kTypes.size())];
+      input.range = range();
+      if (pick(2) == 0) input.by_default = source();
+      input.ui = ui();
+    }
+    group.nodes = nodes();
+    group.outputs = sources();
+    group.ui = ui();
+    return group;
+  }
+
+  graph::Texture texture(size_t i) {
+    graph::Texture slot;
     slot.name = unique(i);
     slot.type = pick(2) == 0 ? Type::Texture2D : Type::TextureCube;
     slot.srgb = pick(2) == 0;
     slot.texture = static_cast<int>(pick(5)) - 1;
     slot.pointer = text();
+    if (pick(3) == 0) slot.file = text();
+    for (graph::Wrap& wrap : slot.wrap) wrap = static_cast<graph::Wrap>(pick(3));
+    slot.nearest = pick(2) == 0;
+    if (pick(3) == 0) slot.color = components(Type::Vec4);
+    slot.ui = ui();
     return slot;
   }
 
   Source source() {
     Source source;
-    switch (pick(5)) {
+    switch (pick(6)) {
       case 0: {
         const Type type = valueType();
         source.from = graph::Literal{type, components(type)};
@@ -92,6 +147,7 @@ private:
       case 1: source.from = graph::ParameterRef{text()}; break;
       case 2: source.from = graph::TextureRef{text()}; break;
       case 3: source.from = graph::GivenRef{text()}; break;
+      case 4: source.from = graph::InputRef{text()}; break;
       default: source.from = graph::NodeRef{text(), pick(2) == 0 ? std::string() : text()}; break;
     }
     if (pick(3) == 0) source.swizzle = pick(2) == 0 ? "xyz" : text();

@@ -165,7 +165,8 @@ class EveryExtension : public testing::TestWithParam<std::string> {};
 std::vector<std::string> cheaperLods(const json& material, const Made& exact) {
   std::vector<std::string> cheaper;
   const std::string graph = graph::toJson(exact.graph);
-  for (const std::string& word : possibleWords(exact.graph, exact.material, *exact.language, exact.options)) {
+  for (const std::string& word :
+       possibleWords(exact.graph, &exact.material, *exact.language, exact.options)) {
     if (!word.starts_with("lod:")) continue;
     const Made simpler = make(material, {word});
     EXPECT_TRUE(simpler.good) << word;

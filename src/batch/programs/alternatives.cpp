@@ -27,6 +27,8 @@ struct Text {
   std::string operator()(const TextureRef& ref) const { return "t" + ref.name; }
   std::string operator()(const graph::GivenRef& ref) const { return "g" + ref.name; }
   std::string operator()(const NodeRef& ref) const { return "n" + ref.node + " " + ref.output; }
+  std::string operator()(const graph::InputRef& ref) const { return "i" + ref.name; }
+  std::string operator()(const graph::Choice& choice) const { return "c" + choice.name; }
 };
 
 constexpr std::string_view kSample = "texture_sample";
@@ -47,7 +49,7 @@ void Keys::add(const Graph& graph) {
   const auto member = static_cast<uint32_t>(ids_.size());
   ids_.emplace_back();
   for (const Node& node : graph.nodes) {
-    std::string text = fmt::format("{}\n{}\n{}", node.id, node.type, node.variant);
+    std::string text = fmt::format("{}\n{}\n{}\n{}", node.id, node.type, node.variant, node.at_vertices);
     std::string image;
     for (const auto& [name, source] : node.inputs) {
       const auto* ref = std::get_if<TextureRef>(&source.from);

@@ -51,6 +51,17 @@ std::optional<ir::Components> constantOf(const lang::Expr& expr) {
   return all;
 }
 
+/// A number that stands for each component of a vector, as that.
+Source widened(Source source, ir::Type type) {
+  auto* literal = std::get_if<Literal>(&source.from);
+  if (literal == nullptr || literal->type != ir::Type::Float || !ir::isFloatVector(type)) return source;
+  const double x = literal->value[0];
+  literal->type = type;
+  std::fill_n(literal->value.begin(), ir::componentCount(type), x);
+  source.swizzle.clear();
+  return source;
+}
+
 class Uniter {
 public:
   Uniter(std::span<const Graph* const> members, const lang::Library& library)
@@ -125,12 +136,12 @@ void Uniter::index() {
 
 void Uniter::parameter(const std::string& name) {
   if (united_.graph.findParameter(name)) return;
-  ir::Parameter made;
+  graph::Parameter made;
   bool found = false;
   for (const Graph* member : members_) {
     const std::optional<size_t> at = member->findParameter(name);
     if (!at) continue;
-    const ir::Parameter& own = member->parameters[*at];
+    const graph::Parameter& own = member->parameters[*at];
     if (!found) {
       made = own;
     } else if (own.type != made.type || !(own.range == made.range)) {
@@ -140,21 +151,20 @@ void Uniter::parameter(const std::string& name) {
     found = true;
   }
   made.pointer.clear();
+  made.ui.clear();
   united_.graph.parameters.push_back(std::move(made));
 }
 
 void Uniter::texture(const std::string& name) {
-  std::vector<ir::TextureSlot>& all = united_.graph.textures;
+  std::vector<graph::Texture>& all = united_.graph.textures;
   const auto named = [&](const ir::TextureSlot& slot) { return slot.name == name; };
-  if (std::any_of(all.begin(), all.end(), named)) return;
+  if (united_.graph.findTexture(name)) return;
   bool found = false;
   for (const Graph* member : members_) {
     const auto it = std::find_if(member->textures.begin(), member->textures.end(), named);
     if (it == member->textures.end()) continue;
     if (!found) {
-      all.push_back(*it);
-      all.back().texture = -1;
-      all.back().pointer.clear();
+      all.push_back(graph::bare(*it));
     } else if (it->srgb != all.back().srgb || it->type != all.back().type) {
       wrong(fmt::format("the texture '{}' has another format in another material", name));
     }
@@ -180,9 +190,7 @@ bool Uniter::byParameter(const Literal& literal, uint32_t member, const std::str
 
 bool Uniter::byTexel(const Literal& literal, uint32_t member, const std::string& slot,
                      const std::string& swizzle) {
-  const std::vector<ir::TextureSlot>& own = members_[member]->textures;
-  if (std::any_of(own.begin(), own.end(), [&](const ir::TextureSlot& t) { return t.name == slot; }))
-    return false;
+  if (members_[member]->findTexture(slot)) return false;
   std::vector<Texel>& texels = texels_[slot];
   texels.resize(members_.size());
   return texels[member].take(literal, swizzle);
@@ -228,7 +236,7 @@ void Uniter::absorb(std::vector<Alternative>& all, const Place& place) {
 /// A parameter for numbers that no member has one for.
 Source Uniter::fresh(const std::vector<const Alternative*>& literals, const Place& place) {
   const std::string name = freeName(place.name, names_);
-  ir::Parameter made;
+  graph::Parameter made;
   made.name = name;
   made.type = place.type;
   made.range = place.range;
@@ -287,6 +295,7 @@ Source Uniter::choose(const Members& first, const Members& others, Source a, Sou
       choices_.name(flag, [&](const std::string& wish) { return freeName(wish, names_); });
   united_.graph.add(id, fmt::format("choose_{}", ir::typeName(type)),
                     graph::Inputs{{"on", {ParameterRef{name}, {}}}, {"first", a}, {"second", b}});
+  united_.graph.nodes.back().term = id;
   ++united_.choices;
   return chosen_[key] = {NodeRef{id, {}}, {}};
 }
@@ -332,7 +341,8 @@ std::string Uniter::build(uint32_t key, const Members& members) {
                                    [&](const auto& input) { return input.first == param.name; });
       given = given || it != own.inputs.end();
       Source by_default{Literal{param.type, param.default_value.value_or(ir::Components{})}, {}};
-      sources.emplace_back(m, it != own.inputs.end() ? it->second : std::move(by_default));
+      sources.emplace_back(m,
+                           it != own.inputs.end() ? widened(it->second, param.type) : std::move(by_default));
     }
     if (!given) continue;
     if (const auto* image = std::get_if<TextureRef>(&sources[0].second.from)) {
@@ -346,7 +356,10 @@ std::string Uniter::build(uint32_t key, const Members& members) {
   }
   std::string id = freeName(first.id, ids_);
   const size_t at = united_.graph.add(id, first.type, std::move(inputs));
-  united_.graph.nodes[at].variant = first.variant;
+  Node& made = united_.graph.nodes[at];
+  made.variant = first.variant;
+  made.at_vertices = first.at_vertices;
+  if (!first.term.empty()) made.term = id;
   return id;
 }
 
@@ -360,7 +373,7 @@ void Uniter::outputs(const lang::TemplateDecl& decl) {
                                    [&](const auto& output) { return output.first == port.param.name; });
       if (it != own.end()) {
         ++given;
-        sources.emplace_back(m, it->second);
+        sources.emplace_back(m, widened(it->second, port.param.type));
         continue;
       }
       const std::optional<ir::Components> value =
@@ -390,7 +403,7 @@ void Uniter::skipped() {
 
 void Uniter::fill() {
   choices_.each([&](const std::string& name, const std::vector<bool>& on) {
-    ir::Parameter flag;
+    graph::Parameter flag;
     flag.name = name;
     flag.type = ir::Type::Bool;
     united_.graph.parameters.push_back(flag);
@@ -409,9 +422,7 @@ void Uniter::fill() {
     }
     for (const ir::TextureSlot& slot : united_.graph.textures) {
       const auto it = texels_.find(slot.name);
-      const auto named = [&](const ir::TextureSlot& t) { return t.name == slot.name; };
-      const auto& textures = members_[m]->textures;
-      const bool own = std::any_of(textures.begin(), textures.end(), named);
+      const bool own = members_[m]->findTexture(slot.name).has_value();
       fill.textures.push_back({own, it == texels_.end() ? Texel().value() : it->second[m].value()});
     }
   }
@@ -431,6 +442,8 @@ Result<United> Uniter::run() {
   if (wrong_.empty()) {
     skipped();
     fill();
+    for (size_t i = 0; i < united_.graph.nodes.size(); ++i)
+      united_.graph.nodes[i].place = static_cast<uint32_t>(i);
     Diagnostics found = graph::check(united_.graph, library_);
     const auto error = std::find_if(found.begin(), found.end(),
                                     [](const Diagnostic& d) { return d.severity == Severity::Error; });
@@ -457,12 +470,9 @@ Graph instance(const United& united, size_t member, const Graph& own) {
     p.pointer = at ? own.parameters[*at].pointer : std::string();
   }
   for (size_t i = 0; i < graph.textures.size(); ++i) {
-    ir::TextureSlot& slot = graph.textures[i];
-    const auto it = std::find_if(own.textures.begin(), own.textures.end(),
-                                 [&](const ir::TextureSlot& t) { return t.name == slot.name; });
-    if (!fill.textures[i].own || it == own.textures.end()) continue;
-    slot.texture = it->texture;
-    slot.pointer = it->pointer;
+    graph::Texture& slot = graph.textures[i];
+    const std::optional<size_t> at = fill.textures[i].own ? own.findTexture(slot.name) : std::nullopt;
+    if (at) slot = own.textures[*at];
   }
   return graph;
 }

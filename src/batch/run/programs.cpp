@@ -154,13 +154,7 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
 
 /// Of the graphs of one structure the one with the smallest text: others may be looked at first next time.
 void Programs::look(Group& group, const Key& key, const graph::Graph& graph) const {
-  graph::Graph plain = graph;
-  plain.name.clear();
-  for (ir::Parameter& p : plain.parameters) p.pointer.clear();
-  for (ir::TextureSlot& slot : plain.textures) {
-    slot.texture = -1;
-    slot.pointer.clear();
-  }
+  graph::Graph plain = graph::bare(graph);
   const std::lock_guard lock(group.mutex);
   const auto [it, fresh] = group.graphs.try_emplace(key);
   if (fresh || graph::toJson(plain) < graph::toJson(it->second)) it->second = std::move(plain);

@@ -17,6 +17,7 @@
 #include "run/report_blob.h"
 #include "setting/language.h"
 #include "setting/options.h"
+#include "setting/simplify.h"
 #include "shader/module.h"
 #include "support/relative.h"
 
@@ -479,9 +480,21 @@ FileResult readGraph(const std::string& path, const std::vector<std::string>& on
   if (!only.empty()) result.names.push_back(graph->name);
   if (only.empty() || std::find(only.begin(), only.end(), graph->name) != only.end()) {
     MaterialText material(path, nullptr, setting, structures);
-    const std::string name = graph->name;
-    material.use(*graph, lightFacts(setting.options, {}), everything(), {});
-    Done done = material.finish({nullptr, name, 0, {}, {}});
+    // Groups are gone when a structure is made: what is wrong in them is said before.
+    const Diagnostics wrong = graph->groups.empty() && setting.options.simplify.empty()
+                                  ? Diagnostics()
+                                  : graph::check(*graph, setting.library, setting.limits.nodes);
+    if (hasError(wrong)) {
+      material.fail(wrong);
+    } else {
+      graph::Graph flat = graph::flattened(*graph, setting.library);
+      if (const Result<void> simpler = simplifyBuilt(flat, setting.library, setting.options.simplify);
+          simpler)
+        material.use(flat, lightFacts(setting.options, {}), everything(), {});
+      else
+        material.fail(simpler.error());
+    }
+    Done done = material.finish({nullptr, graph->name, 0, {}, {}});
     result.diagnostics = std::move(done.diagnostics);
     result.structures = std::move(done.structures);
     result.ok = done.report.ok;

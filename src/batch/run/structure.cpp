@@ -38,6 +38,8 @@ public:
   void operator()(const graph::TextureRef& ref) { key_.number('t').text(ref.name); }
   void operator()(const graph::GivenRef& ref) { key_.number('g').text(ref.name); }
   void operator()(const graph::NodeRef& ref) { key_.number('n').text(ref.node).text(ref.output); }
+  void operator()(const graph::Choice& choice) { key_.number('c').text(choice.name); }
+  void operator()(const graph::InputRef& ref) { key_.number('i').text(ref.name); }  // of no flat graph
 
   void source(const graph::Source& source) {
     std::visit(*this, source.from);
@@ -67,7 +69,8 @@ public:
     }
     key_.number(graph.nodes.size());
     for (const graph::Node& node : graph.nodes) {
-      key_.text(node.id).text(node.type).text(node.variant);
+      key_.text(node.id).text(node.type).text(node.variant).text(node.term).number(node.place);
+      key_.number(node.at_vertices);
       sources(node.inputs);
     }
     sources(graph.outputs);
@@ -119,18 +122,13 @@ std::vector<ir::Range> limitsOf(const graph::Graph& graph, const lang::Library& 
 
 /// Takes away what belongs to one material.
 graph::Graph withoutMaterial(graph::Graph graph, const std::vector<ir::Range>& limits, bool values) {
-  graph.name.clear();
+  graph = graph::bare(std::move(graph));
   for (size_t i = 0; i < graph.parameters.size(); ++i) {
     ir::Parameter& p = graph.parameters[i];
-    p.pointer.clear();
     if (values && !p.animated) continue;
     const double x = std::min(std::max(0.0, limits[i].lo), limits[i].hi);
     p.value.fill(0);
     std::fill_n(p.value.begin(), ir::componentCount(p.type), std::isfinite(x) ? x : 0);
-  }
-  for (ir::TextureSlot& t : graph.textures) {
-    t.texture = -1;
-    t.pointer.clear();
   }
   return graph;
 }
@@ -301,6 +299,19 @@ bool withinLimits(const Structure& structure, const graph::Graph& graph) {
   return true;
 }
 
+/// Of a graph's texture that is a file, and of one that says what is there without an image.
+static void writeImageFile(const graph::Texture& texture, JsonText& json) {
+  if (!texture.file.empty()) {
+    constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror"};
+    const std::string_view filter = texture.nearest ? "nearest" : "linear";
+    json.key("file").string(texture.file).key("sampler").beginObject();
+    json.key("wrap_s").string(kWraps[static_cast<size_t>(texture.wrap[0])]);
+    json.key("wrap_t").string(kWraps[static_cast<size_t>(texture.wrap[1])]);
+    json.key("mag_filter").string(filter).endObject();
+  }
+  if (texture.color) json.key("default").numbers({texture.color->data(), texture.color->size()});
+}
+
 void writeBindings(const Structure& structure, const graph::Graph& graph, const material::Material& material,
                    const programs::Fill* fill, JsonText& json) {
   json.key("parameters").beginObject();
@@ -325,6 +336,7 @@ void writeBindings(const Structure& structure, const graph::Graph& graph, const 
   for (const auto& [name, i] : structure.textures) {
     json.key(name).beginObject().key("texture").integer(graph.textures[i].texture);
     json.key("pointer").string(graph.textures[i].pointer);
+    writeImageFile(graph.textures[i], json);
     if (fill == nullptr || fill->textures[i].own)
       writeTextureInfo(material, graph.textures[i].pointer, json);
     else

@@ -83,6 +83,7 @@ public:
     module_.sums_lights = template_->sums_lights;
     module_.spec_constants = options_.parameters == ParameterMode::Spec;
     slots_.assign(template_->slots, ir::kNoValue);
+    order_ = graph::codeOrder(graph_, library_);
     declareInterface();
     bindGivens();
     bindLightRange();
@@ -141,11 +142,26 @@ private:
       slot.binding = environment.binding;
       textures_[environment.name] = slots_[environment.slot] = addTexture(slot);
     }
-    for (const ir::TextureSlot& texture : graph_.textures) textures_[texture.name] = addTexture(texture);
+    for (const ir::TextureSlot* texture : texturesInOrder()) textures_[texture->name] = addTexture(*texture);
     if (template_->front_facing) {
       slots_[*template_->front_facing] =
           dag().input({ir::InputKind::FrontFacing, "gl_FrontFacing", ir::Type::Bool, ir::Rate::Fragment, {}});
     }
+  }
+
+  /// In the order in which the nodes ask for them: that of the graph's list is nobody's business.
+  std::vector<const ir::TextureSlot*> texturesInOrder() const {
+    std::vector<const ir::TextureSlot*> textures;
+    for (const size_t index : order_) {
+      for (const auto& [name, source] : graph_.nodes[index].inputs) {
+        const auto* ref = std::get_if<graph::TextureRef>(&source.from);
+        const std::optional<size_t> place = ref == nullptr ? std::nullopt : graph_.findTexture(ref->name);
+        if (!place) continue;
+        const ir::TextureSlot* slot = &graph_.textures[*place];
+        if (std::find(textures.begin(), textures.end(), slot) == textures.end()) textures.push_back(slot);
+      }
+    }
+    return textures;
   }
 
   ir::ValueId addTexture(const ir::TextureSlot& slot) {
@@ -262,7 +278,8 @@ private:
   }
 
   Diagnostics nodes() {
-    for (const graph::Node& node : graph_.nodes) {
+    for (const size_t index : order_) {
+      const graph::Node& node = graph_.nodes[index];
       const Result<const lang::NodeDecl*> found = library_.node(node.type);
       if (!found) return found.error();
       const lang::NodeDecl& decl = **found;
@@ -270,17 +287,25 @@ private:
       for (const lang::Param& param : decl.params) {
         const auto it = std::find_if(node.inputs.begin(), node.inputs.end(),
                                      [&](const auto& input) { return input.first == param.name; });
-        args.push_back(it == node.inputs.end() ? givenFor(param) : source(it->second));
+        args.push_back(it == node.inputs.end() ? givenFor(param) : argument(it->second, param));
       }
-      dag().setTerm(dag().addTerm({node.id, decl.source, std::string(decl.origin.file), decl.origin.line}));
+      // What the node is called in the graph is the tool's that made it.
+      const std::string_view term = node.term.empty() ? decl.family : std::string_view(node.term);
+      dag().setTerm(
+          dag().addTerm({std::string(term), decl.source, std::string(decl.origin.file), decl.origin.line}));
       Values results = inliner_.call(decl, node.variant, args);
-      // A single result is called what the node is in the graph.
-      const std::string_view id = node.id;
-      if (results.size() == 1) dag().name(results[0], id.substr(id.rfind('.') + 1));
-      if (options_.at_vertices.contains(node.id)) moveToVertices(decl, id, results);
-      results_.emplace(id, Lowered{&decl, std::move(results)});
+      if (results.size() == 1) dag().name(results[0], term.substr(term.rfind('.') + 1));
+      if (node.at_vertices) moveToVertices(decl, term, results);
+      results_.emplace(node.id, Lowered{&decl, std::move(results)});
     }
     return {};
+  }
+
+  ir::ValueId argument(const graph::Source& source, const lang::Param& param) {
+    const auto* choice = std::get_if<graph::Choice>(&source.from);
+    if (choice == nullptr) return this->source(source, param.type);
+    const auto found = std::find(param.choices.begin(), param.choices.end(), choice->name);
+    return dag().integer(static_cast<int32_t>(found - param.choices.begin()));
   }
 
   /// What the template gives for a parameter that nothing is connected to; kNoValue for its constant default.
@@ -291,21 +316,21 @@ private:
   }
 
   /// What a node gives comes from the vertices, in its range: interpolants reach past the ends of triangles.
-  void moveToVertices(const lang::NodeDecl& decl, std::string_view id, Values& results) {
+  void moveToVertices(const lang::NodeDecl& decl, std::string_view term_name, Values& results) {
     AtVertices at_vertices(dag());
     std::vector<std::optional<ir::ValueId>> lifted;
     for (const ir::ValueId id_of : results) {
       lifted.push_back(ir::isFloating(dag()[id_of].type) ? at_vertices(id_of) : std::nullopt);
       if (!lifted.back()) return;
     }
-    const ir::TermId term = dag().addTerm(
-        {fmt::format("{}.at_vertices", id), decl.source, std::string(decl.origin.file), decl.origin.line});
+    const ir::TermId term = dag().addTerm({fmt::format("{}.at_vertices", term_name), decl.source,
+                                           std::string(decl.origin.file), decl.origin.line});
     std::vector<ir::ValueId> moved(results.begin(), results.end());
     for (size_t i = 0; i < moved.size(); ++i) {
       if (dag()[moved[i]].rate <= ir::Rate::Vertex) continue;
       const ir::Type type = dag()[moved[i]].type;
-      const std::string name =
-          results.size() == 1 ? std::string(id.substr(id.rfind('.') + 1)) : std::string(decl.results[i].name);
+      const std::string name = std::string(results.size() == 1 ? term_name.substr(term_name.rfind('.') + 1)
+                                                               : decl.results[i].name);
       dag().setTerm(term);
       moved[i] = dag().make(ir::Op::Interpolate, {*lifted[i]});
       dag().name(moved[i], name);
@@ -321,9 +346,23 @@ private:
     std::copy(moved.begin(), moved.end(), results.begin());
   }
 
-  ir::ValueId source(const graph::Source& source) {
+  /// As what it goes to wants it: a float for a vector is each of its components, a whole number an int.
+  ir::ValueId source(const graph::Source& source, ir::Type wanted) {
+    if (const auto* literal = std::get_if<graph::Literal>(&source.from);
+        literal != nullptr && source.swizzle.empty() && ir::isWhole(ir::partType(wanted)))
+      return dag().constant(wanted, literal->value);
+    const ir::ValueId value = swizzled(source);
+    const bool wide = ir::isFloatVector(wanted) && dag()[value].type == ir::Type::Float;
+    return wide ? dag().construct(wanted, {value}) : value;
+  }
+
+  ir::ValueId swizzled(const graph::Source& source) {
     const ir::ValueId value = std::visit([this](const auto& from) { return this->from(from); }, source.from);
     if (source.swizzle.empty()) return value;
+    if (dag()[value].type == ir::Type::Float) {
+      const int count = static_cast<int>(source.swizzle.size());
+      return count == 1 ? value : dag().construct(ir::floatType(count), {value});
+    }
     std::array<int, 4> components{};
     const size_t count = source.swizzle.size();
     assert(count <= components.size());
@@ -354,6 +393,16 @@ private:
   }
 
   ir::ValueId from(const graph::TextureRef& reference) { return textures_.at(reference.name); }
+  /// Only a group has inputs, and the graph is flat.
+  static ir::ValueId from(const graph::InputRef& /*reference*/) {
+    assert(false);
+    return ir::kNoValue;
+  }
+  /// Its input knows what it stands for: choiceOf().
+  static ir::ValueId from(const graph::Choice& /*choice*/) {
+    assert(false);
+    return ir::kNoValue;
+  }
   ir::ValueId from(const graph::GivenRef& reference) {
     const auto found = template_->find(reference.name);
     assert(found);
@@ -374,7 +423,7 @@ private:
       const auto it = std::find_if(graph_.outputs.begin(), graph_.outputs.end(),
                                    [&](const auto& output) { return output.first == port.param.name; });
       if (it != graph_.outputs.end())
-        slots_[port.slot] = source(it->second);
+        slots_[port.slot] = source(it->second, port.param.type);
       else
         slots_[port.slot] = inliner_.evaluate(*port.default_value, slots_);
     }
@@ -480,6 +529,7 @@ private:
   Inliner inliner_;
   const lang::TemplateDecl* template_ = nullptr;
   std::vector<ir::ValueId> slots_;
+  std::vector<size_t> order_;  ///< of the graph's nodes
   struct Lowered {
     const lang::NodeDecl* decl;
     Values results;

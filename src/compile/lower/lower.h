@@ -1,9 +1,6 @@
 // From a checked graph and its template to a module: nodes are inlined, one term each.
 #pragma once
 
-#include <set>
-#include <string>
-
 #include "graph/graph.h"
 #include "ir/module.h"
 #include "lang/library.h"
@@ -21,13 +18,12 @@ struct LowerOptions {
   ParameterMode parameters = ParameterMode::Uniform;
   bool evaluable = false;  ///< the kinds of light come with what fills them: ir::LightKind::fill
   OnCall on_call = {};     ///< when given, told of the graph's nodes and of what they and the template call
-  /// Nodes of the graph, by id, that are computed at the vertices and interpolated; those in which there is
-  /// something that vertices do not know are left where they are.
-  std::set<std::string, std::less<>> at_vertices = {};
 };
 
-/// The graph must have passed graph::check() with the same library (asserted where it shows). The result is
-/// verified in debug builds. Errors: only those of the library (a node's body that does not check).
+/// The graph must have passed graph::check() with the same library (asserted where it shows) and be flat.
+/// Nodes in which there is something that vertices do not know stay where they are, whatever the graph says.
+/// The result is verified in debug builds, and the same for graphs that differ in ids, in the order of lists
+/// and in what nobody asks for. Errors: only those of the library (a node's body that does not check).
 Result<ir::Module> lower(const graph::Graph& graph, const lang::Library& library,
                          const LowerOptions& options);
 

@@ -105,11 +105,31 @@ void scale(graph::Graph& graph, const std::string& name, const std::vector<doubl
   }
   ir::Components factors{};
   std::copy(by.begin(), by.end(), factors.begin());
-  graph::Node node{id,
-                   std::string(type),
-                   {},
-                   {{"value", before}, {"scale", {graph::Literal{parameter.type, factors}, {}}}}};
-  graph.nodes.insert(graph.nodes.begin(), std::move(node));
+  graph.add(id, std::string(type),
+            {{"value", before}, {"scale", {graph::Literal{parameter.type, factors}, {}}}});
+  graph.nodes.back().term = id;
+}
+
+/// Every texel of a texture is one: the nodes that look it up are numbers.
+void replaceTexel(graph::Graph& graph, const std::string& slot, const ir::Components& texel) {
+  std::set<std::string, std::less<>> lookups;
+  for (const graph::Node& node : graph.nodes) {
+    const auto is = [&](const auto& input) {
+      const auto* ref = std::get_if<graph::TextureRef>(&input.second.from);
+      return ref != nullptr && ref->name == slot;
+    };
+    if (node.type == "texture_sample" && std::any_of(node.inputs.begin(), node.inputs.end(), is))
+      lookups.insert(node.id);
+  }
+  const auto replace = [&](graph::Source& source) {
+    const auto* ref = std::get_if<graph::NodeRef>(&source.from);
+    if (ref != nullptr && lookups.contains(ref->node)) source.from = graph::Literal{ir::Type::Vec4, texel};
+  };
+  for (graph::Node& node : graph.nodes) {
+    for (auto& [input, source] : node.inputs) replace(source);
+  }
+  for (auto& [port, source] : graph.outputs) replace(source);
+  std::erase_if(graph.nodes, [&](const graph::Node& node) { return lookups.contains(node.id); });
 }
 
 /// A texture of the schema has that name in glTF.
@@ -191,10 +211,7 @@ Diagnostics checkSimplification(const Strings& words, const Language& language) 
 }
 
 lower::LowerOptions loweringOf(const Options& options, bool evaluable) {
-  lower::LowerOptions lowering{parameterMode(options), evaluable};
-  if (const Result<Simplification> simpler = simplificationOf(options.simplify))
-    lowering.at_vertices = simpler->vertices;
-  return lowering;
+  return {parameterMode(options), evaluable, {}};
 }
 
 material::Material withoutTextures(material::Material material, const material::Schema& schema,
@@ -207,6 +224,7 @@ material::Material withoutTextures(material::Material material, const material::
 
 void simplify(graph::Graph& graph, const lang::Library& library, const Simplification& simpler) {
   for (graph::Node& node : graph.nodes) {
+    if (simpler.vertices.contains(node.id)) node.at_vertices = true;
     const auto wanted = simpler.variants.find(node.id);
     if (wanted == simpler.variants.end()) continue;
     const Result<const lang::NodeDecl*> decl = library.node(node.type);
@@ -215,9 +233,63 @@ void simplify(graph::Graph& graph, const lang::Library& library, const Simplific
   for (const auto& [name, by] : simpler.scales) scale(graph, name, by);
 }
 
-Strings possibleWords(const graph::Graph& graph, const material::Material& material, const Language& language,
+Diagnostics asksToBuild(const Options& options) {
+  const std::pair<bool, const char*> asked[] = {{!options.template_name.empty(), "template"},
+                                                {!options.profile.empty(), "profile"},
+                                                {!options.switches.empty(), "switch"},
+                                                {!options.live.empty(), "live"}};
+  Diagnostics wrong;
+  for (const auto& [is, name] : asked) {
+    if (is)
+      wrong.push_back({"graph-is-built",
+                       Severity::Error,
+                       {},
+                       fmt::format("'{}' says how a graph is built, and this is one", name),
+                       "leave it out, or take the glTF file",
+                       {}});
+  }
+  return wrong;
+}
+
+Result<void> simplifyBuilt(graph::Graph& graph, const lang::Library& library, const Strings& words) {
+  const Result<Simplification> simpler = simplificationOf(words);
+  if (!simpler) return tl::make_unexpected(simpler.error());
+  for (const std::string& word : words) {
+    const std::string_view kind = partsOf(word).kind;
+    if (kind == "variant" || kind == "vertex" || kind == "scale" || kind == "texel") continue;
+    return fail("graph-is-built", {},
+                fmt::format("'{}' says how a graph is built, and this is one", printable(word)),
+                "of a graph there are variant:NODE=NAME, vertex:NODE, scale:PARAMETER=x and "
+                "texel:TEXTURE=r,g,b,a");
+  }
+  simplify(graph, library, *simpler);
+  for (const auto& [name, texel] : simpler->texels) {
+    for (const graph::Texture& slot : graph.textures) {
+      if (slot.name == name || slot.pointer.ends_with("/" + name)) replaceTexel(graph, slot.name, texel);
+    }
+  }
+  return {};
+}
+
+/// Those of a graph's nodes.
+static void addNodeWords(const graph::Graph& graph, const lang::Library& library, Strings& words) {
+  for (const graph::Node& node : graph.nodes) {
+    const Result<const lang::NodeDecl*> decl = library.node(node.type);
+    if (!decl) continue;
+    words.push_back(fmt::format("vertex:{}", node.id));
+    if (!node.variant.empty()) continue;
+    for (const lang::Variant& variant : (*decl)->variants)
+      words.push_back(fmt::format("variant:{}={}", node.id, variant.name));
+  }
+}
+
+Strings possibleWords(const graph::Graph& graph, const material::Material* material, const Language& language,
                       const Options& options) {
   Strings words;
+  if (material == nullptr) {
+    addNodeWords(graph, language, words);
+    return words;
+  }
   const Result<const model::Model*> model = language.models.of(options.profile);
   if (!model) return words;
   for (const model::Term& term : (*model)->terms) {
@@ -231,15 +303,8 @@ Strings possibleWords(const graph::Graph& graph, const material::Material& mater
     words.push_back(fmt::format("lod:{}", name));
   for (const auto& [name, value] : switchesOf(language, options))
     words.push_back(fmt::format("switch:{}={}", name, value ? "off" : "on"));
-  for (const graph::Node& node : graph.nodes) {
-    const Result<const lang::NodeDecl*> decl = language.node(node.type);
-    if (!decl) continue;
-    words.push_back(fmt::format("vertex:{}", node.id));
-    if (!node.variant.empty()) continue;
-    for (const lang::Variant& variant : (*decl)->variants)
-      words.push_back(fmt::format("variant:{}={}", node.id, variant.name));
-  }
-  for (const material::Material::Texture& texture : material.textures)
+  addNodeWords(graph, language, words);
+  for (const material::Material::Texture& texture : material->textures)
     words.push_back(fmt::format("drop:{}", (*model)->schema->properties[texture.property].decl->name));
   return words;
 }

@@ -42,7 +42,7 @@ Result<Simplification> simplificationOf(const Strings& words);
 /// textures.
 Diagnostics checkSimplification(const Strings& words, const Language& language);
 
-/// How graphs become modules: the parameters, and what is computed at the vertices.
+/// How graphs become modules.
 lower::LowerOptions loweringOf(const Options& options, bool evaluable = false);
 
 /// The material without the textures that are dropped.
@@ -51,11 +51,18 @@ material::Material withoutTextures(material::Material material, const material::
 /// What concerns nodes and parameters, in a graph that was built for the rest. Nodes and variants that are
 /// not there, and parameters that cannot be scaled, are left alone.
 void simplify(graph::Graph& graph, const lang::Library& library, const Simplification& simpler);
+/// All that can be made simpler in a graph that is there: the same, and its textures' texels. Textures are
+/// named by their slots or as glTF calls them. Errors: "graph-is-built" for what says how a graph is built.
+Result<void> simplifyBuilt(graph::Graph& graph, const lang::Library& library, const Strings& words);
+
+/// What options ask for that can only be asked for of what a graph is built from ("graph-is-built", errors),
+/// but for words that simplify.
+Diagnostics asksToBuild(const Options& options);
 
 /// The words that may change the graph of a material, in a fixed order: every term, part and lod of the
 /// library, every switch the other way, every variant of every node, every texture that is dropped. None has
-/// been tried. `graph` is the material's.
-Strings possibleWords(const graph::Graph& graph, const material::Material& material, const Language& language,
+/// been tried. `graph` is the material's; without one (null) it is a graph of one's own, whose terms stay.
+Strings possibleWords(const graph::Graph& graph, const material::Material* material, const Language& language,
                       const Options& options);
 
 /// What two words cannot both concern: "texture:coatTexture", "node:coat.fresnel"; else the word itself.

@@ -13,6 +13,7 @@
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "setting/simplify.h"
 #include "shader/limits.h"
 #include "shader/module.h"
 #include "shader/print.h"
@@ -53,7 +54,7 @@ Graph Graph::fromJson(std::string_view text, const std::string& name, Messages& 
     report(graph.error(), name, messages);
     return result;
   }
-  result.impl_ = std::make_shared<Impl>(Impl{std::move(*graph), name, {}, false, {}});
+  result.impl_ = std::make_shared<Impl>(Impl{std::move(*graph), name, {}, ImagesOf::Nothing, {}});
   return result;
 }
 
@@ -61,7 +62,7 @@ Graph Graph::load(const std::string& path, const Options& options, Messages& mes
   Graph result;
   Result<graph::Graph> graph = readGraphFile(path, options);
   if (!graph) return report(graph.error(), path, messages), result;
-  result.impl_ = std::make_shared<Impl>(Impl{std::move(*graph), path, {}, false, {}});
+  result.impl_ = std::make_shared<Impl>(Impl{std::move(*graph), path, {}, ImagesOf::Graph, {}});
   return result;
 }
 
@@ -142,7 +143,7 @@ bool Graph::setOutput(const std::string& port, std::string_view source, Messages
 
 bool Graph::setParameter(const std::string& name, const std::vector<double>& value, Messages& messages) {
   if (!filled(impl_.get(), "graph", messages)) return false;
-  std::vector<ir::Parameter>& parameters = impl_->graph.parameters;
+  std::vector<graph::Parameter>& parameters = impl_->graph.parameters;
   const std::optional<size_t> found = impl_->graph.findParameter(name);
   const auto count = found ? static_cast<size_t>(ir::componentCount(parameters[*found].type)) : value.size();
   if (value.size() != count || value.empty() || value.size() > 4) {
@@ -161,7 +162,11 @@ bool Graph::setParameter(const std::string& name, const std::vector<double>& val
                          fmt::format("{} is given {}", inQuotes(name), *wrong),
                          std::string(graph::kFloatHelp), messages);
   }
-  if (!found) parameters.push_back({name, ir::floatType(static_cast<int>(count)), {}, {}, {}});
+  if (!found) {
+    graph::Parameter& fresh = parameters.emplace_back();
+    fresh.name = name;
+    fresh.type = ir::floatType(static_cast<int>(count));
+  }
   std::copy(value.begin(), value.end(), parameters[found.value_or(parameters.size() - 1)].value.begin());
   return true;
 }
@@ -203,22 +208,33 @@ bool Graph::check(Messages& messages, const Options& options) {
     report(library.error(), {}, messages);
     return false;
   }
-  const Diagnostics doubts = graph::doubts(impl_->graph, **library);
-  const Diagnostics found = graph::check(impl_->graph, **library);
+  const Result<Limits> limits = limitsOf(options);
+  const Diagnostics found = limits ? graph::check(impl_->graph, **library, limits->nodes) : limits.error();
   report(found, impl_->file, messages);
   if (lacquer::hasError(found)) return false;
-  report(doubts, impl_->file, messages);
+  report(graph::doubts(impl_->graph, **library), impl_->file, messages);
   return true;
 }
 
+Result<graph::Graph> Graph::Impl::flat(const Options& options, const lang::Library& library) const {
+  const Result<Limits> limits = limitsOf(options);
+  if (!limits) return tl::make_unexpected(limits.error());
+  if (Diagnostics found = graph::check(graph, library, limits->nodes); lacquer::hasError(found))
+    return tl::make_unexpected(std::move(found));
+  graph::Graph flat = graph::flattened(graph, library);
+  if (Result<void> simpler = simplifyBuilt(flat, library, options.simplify); !simpler)
+    return tl::make_unexpected(std::move(simpler.error()));
+  return flat;
+}
+
 Result<ir::Module> Graph::Impl::module(const Options& options, Diagnostics (*check)(const Options&),
-                                       const AfterPass& after) {
+                                       const AfterPass& after) const {
   if (Diagnostics wrong = check(options); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
   const auto library = libraryFor(options);
   if (!library) return tl::make_unexpected(library.error());
-  if (Diagnostics found = graph::check(graph, **library); lacquer::hasError(found))
-    return tl::make_unexpected(std::move(found));
-  return toModule(graph, **library, options, scene_lights, after);
+  const Result<graph::Graph> flat = this->flat(options, **library);
+  if (!flat) return tl::make_unexpected(flat.error());
+  return toModule(*flat, **library, options, scene_lights, after);
 }
 
 Shader Graph::generate(const Options& options, Messages& messages) {
@@ -271,8 +287,9 @@ std::optional<Proofs> Graph::prove(const Options& options, Messages& messages, P
   if (!filled(impl_.get(), "graph", messages)) return std::nullopt;
   const Result<ir::Module> module = impl_->module(options, checkReading);
   if (!module) return report(module.error(), impl_->file, messages), std::nullopt;
-  return valueOf(proveGraph(impl_->graph, *module, **libraryFor(options), options, precision), impl_->file,
-                 messages);
+  const std::shared_ptr<const Language> library = *libraryFor(options);
+  return valueOf(proveGraph(*impl_->flat(options, *library), *module, *library, options, precision),
+                 impl_->file, messages);
 }
 
 }  // namespace lacquer

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "eval/in_memory.h"
 #include "lacquer.h"
 #include "material/material.h"
 #include "setting/language.h"
@@ -17,12 +18,14 @@ struct Graph::Impl {
   graph::Graph graph;
   std::string file;  ///< its name, or that of the glTF file that it was built from
   passes::LightFacts scene_lights;
-  bool has_file = false;                     ///< whether the textures are those of the glTF file `file`
+  ImagesOf images = ImagesOf::Nothing;
   std::shared_ptr<const std::string> bytes;  ///< the file's, where it was read from memory
 
+  /// The checked graph, flat and simplified as the options want it.
+  Result<graph::Graph> flat(const Options& options, const lang::Library& library) const;
   /// Checks the options and the graph, lowers it and runs the passes.
   Result<ir::Module> module(const Options& options, Diagnostics (*check)(const Options&),
-                            const AfterPass& after = {});
+                            const AfterPass& after = {}) const;
   bool refuse(std::string code, std::string message, std::string help, Messages& messages) const;
   std::optional<graph::Source> source(std::string_view text, Messages& messages) const;
 };

@@ -127,7 +127,7 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   report(warnings, document.path, messages);
   if (!graph) return report(graph.error(), {}, messages), result;
   result.impl_ = std::make_shared<Graph::Impl>(
-      Graph::Impl{std::move(*graph), document.path, lightsOf(document), true, impl_->bytes});
+      Graph::Impl{std::move(*graph), document.path, lightsOf(document), ImagesOf::Gltf, impl_->bytes});
   return result;
 }
 
@@ -148,7 +148,7 @@ std::optional<Evaluation> evaluate(const Graph& graph, const std::string& points
   const auto language = libraryFor(options);
   if (!language) return report(language.error(), {}, messages), std::nullopt;
   const Graph::Impl& impl = *graph.impl_;
-  return evaluateOf({impl.graph, **language, impl.file, impl.bytes, impl.has_file}, points, engine, texels,
+  return evaluateOf({impl.graph, **language, impl.file, impl.bytes, impl.images}, points, engine, texels,
                     options, messages);
 }
 
@@ -158,7 +158,7 @@ std::vector<uint8_t> drawBall(const Graph& graph, uint32_t size, const Strings& 
   const auto language = libraryFor(options);
   if (!language) return report(language.error(), {}, messages), std::vector<uint8_t>();
   const Graph::Impl& impl = *graph.impl_;
-  return drawBallOf({impl.graph, **language, impl.file, impl.bytes, impl.has_file}, size, texels, options,
+  return drawBallOf({impl.graph, **language, impl.file, impl.bytes, impl.images}, size, texels, options,
                     messages);
 }
 

@@ -122,8 +122,6 @@ void addGen(CLI::App& verb, Flags& flags) {
       ->check(kNotEmpty);
   addGeneration(verb, flags);
   graphs->excludes(verb.get_option("--material"));
-  // A graph is what it is.
-  graphs->excludes(verb.get_option("--simplify"));
 }
 
 void addPlan(CLI::App& verb, Flags& flags) {

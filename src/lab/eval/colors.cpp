@@ -270,7 +270,7 @@ Result<Evaluation> evaluateFile(const std::string& file, const std::string& mate
   if (isGraphFile(file)) {
     const Result<graph::Graph> graph = readGraphFile(file, how.options);
     if (!graph) return tl::make_unexpected(graph.error());
-    FileImages none = FileImages::none(file, how.options);
+    FileImages none = FileImages::ofGraph(file, how.options);
     return evaluateSubject(*graph, **library, none, how, messages);
   }
   const Result<material::Document> document = readMaterials(file, **library, how.options);
@@ -342,8 +342,7 @@ std::optional<Evaluation> evaluateOf(const InMemory& of, const std::string& poin
     return report(wrong, {}, messages), std::nullopt;
   const Result<EvalPoints> read = readPoints(points, kPoints, *limitsOf(options));
   if (!read) return report(read.error(), kPoints, messages), std::nullopt;
-  FileImages images =
-      of.has_file ? FileImages(of.file, options, of.bytes) : FileImages::none(of.file, options);
+  FileImages images = of.images(options);
   return valueOf(
       evaluateSubject(of.subject, of.language, images, {*read, kPoints, engine, texels, options}, messages),
       of.file, messages);

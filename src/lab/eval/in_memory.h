@@ -6,11 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "eval/material.h"
 #include "eval/subject.h"
 #include "lacquer/tools.h"
 #include "setting/language.h"
 
 namespace lacquer {
+
+/// Where images are: in a glTF file or beside it, beside a graph's, or nowhere but in the texts.
+enum class ImagesOf : uint8_t { Gltf, Graph, Nothing };
 
 /// A material that was read by the language's declarations, or a graph.
 struct InMemory {
@@ -18,7 +22,12 @@ struct InMemory {
   const Language& language;
   const std::string& file;                   ///< its path, or what stands for it
   std::shared_ptr<const std::string> bytes;  ///< the file's, where it was read from memory
-  bool has_file = true;                      ///< whether there is a glTF file, with images
+  ImagesOf images_of = ImagesOf::Gltf;
+
+  FileImages images(const Options& options) const {
+    return images_of == ImagesOf::Gltf ? FileImages(file, options, bytes)
+                                       : FileImages::ofGraph(file, options, images_of == ImagesOf::Nothing);
+  }
 };
 
 /// evaluate() of it.

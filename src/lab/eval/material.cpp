@@ -35,7 +35,7 @@ eval::Wrap wrapOf(int gl) {
 }  // namespace
 
 std::string propertyOf(const ir::TextureSlot& slot) {
-  return slot.pointer.substr(slot.pointer.rfind('/') + 1);
+  return slot.pointer.empty() ? slot.name : slot.pointer.substr(slot.pointer.rfind('/') + 1);
 }
 
 std::array<double, 4> neutralTexel(const ir::TextureSlot& slot) {
@@ -54,9 +54,10 @@ FileImages::FileImages(std::string file, const Options& options, std::shared_ptr
       bytes_(std::move(bytes)),
       access_{limitsOf(options).value_or(Limits{}), options.allow} {}
 
-FileImages FileImages::none(std::string file, const Options& options) {
+FileImages FileImages::ofGraph(std::string file, const Options& options, bool in_memory) {
   FileImages images(std::move(file), options);
-  images.none_ = true;
+  images.of_graph_ = true;
+  images.in_memory_ = in_memory;
   return images;
 }
 
@@ -74,22 +75,35 @@ bool FileImages::makeRoom(uint64_t pixels) {
   return true;
 }
 
-Result<FileImages::Held> FileImages::decode(const gltf::TextureSource& source) {
-  const Result<std::string> bytes = opened_->image(source);
+Result<FileImages::Held> FileImages::decode(const Result<std::string>& bytes, const Place& place) {
   if (!bytes) return tl::make_unexpected(bytes.error());
-  const Result<eval::ImageSize> size = eval::sizeOfImage(*bytes, source.place);
+  const Result<eval::ImageSize> size = eval::sizeOfImage(*bytes, place);
   if (!size) return tl::make_unexpected(size.error());
   const uint64_t pixels = size->pixels() * (size->wide ? 2 : 1);
   const bool alone = size->pixels() > access_.limits.image;  // which decoding says
   if (!alone && !makeRoom(pixels)) {
-    return fail("image-too-large", source.place,
+    return fail("image-too-large", place,
                 fmt::format("the material's images together have more than {} pixels (of 8 bits per channel)",
                             access_.limits.images),
                 raising("images"));
   }
-  Result<eval::Image> image = eval::decodeImage(*bytes, access_.limits.image, source.place);
+  Result<eval::Image> image = eval::decodeImage(*bytes, access_.limits.image, place);
   if (!image) return tl::make_unexpected(std::move(image.error()));
   return Held{std::make_shared<const eval::Image>(std::move(*image)), pixels, 0};
+}
+
+template <class Bytes>
+Result<std::shared_ptr<const eval::Image>> FileImages::image(const std::string& key, const Place& place,
+                                                             Bytes bytes) {
+  auto it = images_.find(key);
+  if (it == images_.end()) {
+    Result<Held> decoded = decode(bytes(), place);
+    if (!decoded) return tl::make_unexpected(std::move(decoded.error()));
+    held_ += decoded->pixels;
+    it = images_.emplace(key, std::move(*decoded)).first;
+  }
+  it->second.used = ++uses_;
+  return it->second.image;
 }
 
 /// An image of an extension's that there is another one for.
@@ -107,8 +121,10 @@ void FileImages::passedOver(int texture, const gltf::TextureSource& source) {
 
 Result<void> FileImages::open() {
   if (opened_) return {};
-  if (none_)
-    return fail("image-missing", {file_, 0, 0, {}}, "a graph without its glTF file has no images", {});
+  if (of_graph_) {
+    opened_ = gltf::TextureFile::beside(file_, access_, in_memory_);
+    return {};
+  }
   Result<gltf::TextureFile> opened = bytes_ ? gltf::TextureFile::fromMemory(*bytes_, file_, access_)
                                             : gltf::TextureFile::open(file_, access_);
   if (!opened) return tl::make_unexpected(std::move(opened.error()));
@@ -117,26 +133,35 @@ Result<void> FileImages::open() {
 }
 
 gltf::Geometry FileImages::geometry(size_t material) {
-  if (!open()) return {};
+  if (of_graph_ || !open()) return {};
   return gltf::geometryOf(*opened_, material);
 }
 
 Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
+  if (of_graph_)
+    return fail("image-missing", {file_, 0, 0, {}}, "a graph without its glTF file has none of its images",
+                {});
   if (Result<void> opened = open(); !opened) return tl::make_unexpected(std::move(opened.error()));
   const Result<gltf::TextureSource> source = opened_->texture(texture);
   if (!source) return tl::make_unexpected(source.error());
   passedOver(texture, *source);
-  auto it = images_.find(source->image);
-  if (it == images_.end()) {
-    Result<Held> decoded = decode(*source);
-    if (!decoded) return tl::make_unexpected(std::move(decoded.error()));
-    held_ += decoded->pixels;
-    it = images_.emplace(source->image, std::move(*decoded)).first;
-  }
-  it->second.used = ++uses_;
+  Result<std::shared_ptr<const eval::Image>> found =
+      image(std::to_string(source->image), source->place, [&] { return opened_->image(*source); });
+  if (!found) return tl::make_unexpected(std::move(found.error()));
   constexpr int kNearest = 9728;
   const gltf::Texture& of = source->texture;
-  return Loaded{it->second.image, {wrapOf(of.wrapS), wrapOf(of.wrapT), of.magFilter == kNearest, srgb}};
+  return Loaded{std::move(*found), {wrapOf(of.wrapS), wrapOf(of.wrapT), of.magFilter == kNearest, srgb}};
+}
+
+Result<FileImages::Loaded> FileImages::load(const graph::Texture& texture) {
+  if (Result<void> opened = open(); !opened) return tl::make_unexpected(std::move(opened.error()));
+  const std::string pointer = fmt::format("/textures/{}/file", texture.name);
+  Result<std::shared_ptr<const eval::Image>> found =
+      image("uri " + texture.file, {file_, 0, 0, pointer},
+            [&] { return opened_->fileBytes(texture.file, pointer); });
+  if (!found) return tl::make_unexpected(std::move(found.error()));
+  const auto wrap = [&](size_t i) { return static_cast<eval::Wrap>(texture.wrap[i]); };
+  return Loaded{std::move(*found), {wrap(0), wrap(1), texture.nearest, texture.srgb}};
 }
 
 Result<EvalMaterial::Texel> EvalMaterial::parseTexel(const std::string& text) {
@@ -301,8 +326,20 @@ Result<BoundTexture> EvalMaterial::textureOf(const ir::TextureSlot& slot, const 
   for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
     if (names(it->slot, slot)) return BoundTexture{it->value, {}, {}};
   }
-  Result<FileImages::Loaded> loaded = images_.load(originals_[static_cast<size_t>(slot.texture)], slot.srgb);
+  const graph::Texture& original = originals_[static_cast<size_t>(slot.texture)];
+  const bool nothing = original.texture < 0 && original.file.empty();
+  if (original.color && nothing) return BoundTexture{*original.color, {}, {}};
+  Result<FileImages::Loaded> loaded =
+      original.file.empty() ? images_.load(original.texture, slot.srgb) : images_.load(original);
   if (loaded) return BoundTexture{{}, loaded->image, loaded->lookup};
+  if (original.color) {
+    for (Diagnostic& d : loaded.error()) {
+      d.severity = Severity::Warning;
+      d.help = "its default colour stands for it";
+      images_.note(std::move(d));
+    }
+    return BoundTexture{*original.color, {}, {}};
+  }
   if (substitute) {
     if (const std::optional<std::array<double, 4>> value = substitute(slot, loaded.error()))
       return BoundTexture{value, {}, {}};

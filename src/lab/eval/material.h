@@ -19,14 +19,14 @@
 
 namespace lacquer {
 
-/// The images behind a file's textures, opened and decoded when first asked for. Those that nobody uses any
-/// more go, the longest unused first, when others need their room.
+/// The images behind a file's textures, or a graph's, opened and decoded when first asked for. Those that
+/// nobody uses any more go, the longest unused first, when others need their room.
 class FileImages {
 public:
   /// With `bytes` they are the file's, and `file` only stands for it.
   FileImages(std::string file, const Options& options, std::shared_ptr<const std::string> bytes = {});
-  /// Of what has no images: none is there.
-  static FileImages none(std::string file, const Options& options);
+  /// Of a graph: there are no textures of glTF's, but images lie beside its file, or with `in_memory` none.
+  static FileImages ofGraph(std::string file, const Options& options, bool in_memory = false);
 
   const std::string& file() const { return file_; }
   struct Loaded {
@@ -36,8 +36,12 @@ public:
   /// Errors: those of gltf::TextureFile and of eval::decodeImage(), and "image-too-large" where the images in
   /// use leave no room.
   Result<Loaded> load(int texture, bool srgb);
-  /// What load() has to say beside its errors, once: images that were passed over for another one.
+  /// The image and the sampler of a graph's texture that is a file.
+  Result<Loaded> load(const graph::Texture& texture);
+  /// What load() has to say beside its errors, once: images that were passed over for another one. And what
+  /// note() was told.
   Diagnostics takeNotes() { return std::exchange(notes_, {}); }
+  void note(Diagnostic note) { notes_.push_back(std::move(note)); }
   /// What the file's primitives of a material look like. Nothing where the file cannot be opened.
   gltf::Geometry geometry(size_t material);
   /// The files that were read for images and buffers.
@@ -51,18 +55,20 @@ private:
   };
 
   Result<void> open();
-  Result<Held> decode(const gltf::TextureSource& source);
+  Result<Held> decode(const Result<std::string>& bytes, const Place& place);
+  template <class Bytes>
+  Result<std::shared_ptr<const eval::Image>> image(const std::string& key, const Place& place, Bytes bytes);
   void passedOver(int texture, const gltf::TextureSource& source);
   bool makeRoom(uint64_t pixels);
 
   std::string file_;
   std::shared_ptr<const std::string> bytes_;
-  bool none_ = false;
+  bool of_graph_ = false, in_memory_ = false;
   gltf::TextureAccess access_;
   std::optional<gltf::TextureFile> opened_;
-  std::map<size_t, Held> images_;  ///< by the image's index
-  uint64_t held_ = 0, uses_ = 0;   ///< pixels; calls of load()
-  std::set<int> noted_;            ///< textures
+  std::map<std::string, Held> images_;  ///< by the image's index or its URI
+  uint64_t held_ = 0, uses_ = 0;        ///< pixels; calls of load()
+  std::set<int> noted_;                 ///< textures
   Diagnostics notes_;
 };
 
@@ -100,7 +106,8 @@ public:
   void place(const passes::LightFacts& lights);
 
   /// Samplers of the textures that the outputs reach, but for the environment's maps; its table of factors is
-  /// one of them. Errors: "image-missing" and the like, one for each texture, where there is no substitute.
+  /// one of them. Errors: "image-missing" and the like, one for each texture, where there is no substitute;
+  /// the images' notes say where a graph's colour stands for an image.
   Result<void> bindTextures(const Substitute& substitute, eval::Bindings& bindings);
   /// What bindTextures() bound, by slot.
   const std::map<std::string, BoundTexture>& textures() const { return bound_; }
@@ -129,13 +136,13 @@ private:
   Options options_;
   std::vector<Texel> texels_;
   bool tangents_ = true;
-  std::vector<int> originals_;  ///< by the slot's texture: the file's
+  std::vector<graph::Texture> originals_;  ///< by the slot's texture: the file's
   ir::Module module_;
   std::string profile_;
   std::map<std::string, BoundTexture> bound_;
 };
 
-/// The last part of the slot's pointer: "coatNormalTexture".
+/// The last part of the slot's pointer, "coatNormalTexture"; without one the slot's name.
 std::string propertyOf(const ir::TextureSlot& slot);
 
 /// What stands for an image that is absent: white, but where white would bend something, a flat normal and an

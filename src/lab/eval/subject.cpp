@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "setting/options.h"
+#include "setting/simplify.h"
 #include "shader/module.h"
 #include "support/file.h"
 
@@ -13,29 +14,14 @@ namespace lacquer {
 namespace {
 
 Result<graph::Graph> graphOf(material::Material material, const gltf::VertexAttributes& attributes,
-                             const Language& library, const Options& options, std::vector<int>& originals,
-                             Diagnostics& warnings) {
+                             const Language& library, const Options& options,
+                             std::vector<graph::Texture>& originals, Diagnostics& warnings) {
   // Every use of a texture gets a slot of its own, so that each can be given a texel.
   for (material::Material::Texture& texture : material.textures) {
-    originals.push_back(texture.info.texture);
+    originals.emplace_back().texture = texture.info.texture;
     texture.info.texture = static_cast<int>(originals.size()) - 1;
   }
   return buildGraph(material, attributes, library, options, warnings);
-}
-
-/// What was asked for of a graph and can only be asked for of what a graph is built from.
-Result<void> checkBuilt(const Options& options) {
-  const std::pair<bool, const char*> asked[] = {{!options.template_name.empty(), "template"},
-                                                {!options.profile.empty(), "profile"},
-                                                {!options.switches.empty(), "switch"},
-                                                {!options.live.empty(), "live"},
-                                                {!options.simplify.empty(), "simplify"}};
-  for (const auto& [is, name] : asked) {
-    if (!is) continue;
-    return fail("graph-is-built", {}, fmt::format("'{}' says how a graph is built, and this is one", name),
-                "leave it out, or take the glTF file");
-  }
-  return {};
 }
 
 }  // namespace
@@ -44,32 +30,48 @@ const std::string& EvalSubject::name() const {
   return std::visit([](const auto* of) -> const std::string& { return of->name; }, of_);
 }
 
+const material::Material* EvalSubject::material() const {
+  const auto* material = std::get_if<const material::Material*>(&of_);
+  return material == nullptr ? nullptr : *material;
+}
+
 std::string EvalSubject::title() const {
   if (!name().empty()) return name();
-  const auto* material = std::get_if<const material::Material*>(&of_);
-  return material != nullptr ? fmt::format("(material {})", (*material)->index) : "(graph)";
+  return isGraph() ? "(graph)" : fmt::format("(material {})", material()->index);
 }
 
 std::string EvalSubject::pointer() const {
-  const auto* material = std::get_if<const material::Material*>(&of_);
-  return material != nullptr ? fmt::format("/materials/{}", (*material)->index) : std::string();
+  return isGraph() ? std::string() : fmt::format("/materials/{}", material()->index);
 }
 
 const Diagnostics& EvalSubject::diagnostics() const {
   static const Diagnostics kNone;
-  const auto* material = std::get_if<const material::Material*>(&of_);
-  return material != nullptr ? (*material)->diagnostics : kNone;
+  return isGraph() ? kNone : material()->diagnostics;
+}
+
+Result<graph::Graph> EvalSubject::built(const gltf::VertexAttributes& attributes, const Language& library,
+                                        const Options& options, Diagnostics& warnings) const {
+  if (!isGraph()) return buildGraph(*material(), attributes, library, options, warnings);
+  const graph::Graph& own = *std::get<const graph::Graph*>(of_);
+  if (Diagnostics wrong = asksToBuild(options); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
+  if (Diagnostics wrong = graph::check(own, library, limitsOf(options).value_or(Limits{}).nodes);
+      lacquer::hasError(wrong))
+    return tl::make_unexpected(std::move(wrong));
+  graph::Graph graph = graph::flattened(own, library);
+  if (Result<void> simpler = simplifyBuilt(graph, library, options.simplify); !simpler)
+    return tl::make_unexpected(std::move(simpler.error()));
+  return graph;
 }
 
 Result<graph::Graph> EvalSubject::graph(const gltf::VertexAttributes& attributes, const Language& library,
-                                        const Options& options, std::vector<int>& originals,
+                                        const Options& options, std::vector<graph::Texture>& originals,
                                         Diagnostics& warnings) const {
-  if (const auto* material = std::get_if<const material::Material*>(&of_))
-    return graphOf(**material, attributes, library, options, originals, warnings);
-  if (Result<void> built = checkBuilt(options); !built) return tl::make_unexpected(std::move(built.error()));
-  graph::Graph graph = *std::get<const graph::Graph*>(of_);
-  for (ir::TextureSlot& slot : graph.textures) {
-    originals.push_back(slot.texture);
+  if (!isGraph()) return graphOf(*material(), attributes, library, options, originals, warnings);
+  Result<graph::Graph> graph = built(attributes, library, options, warnings);
+  if (!graph) return graph;
+  for (graph::Texture& slot : graph->textures) {
+    originals.push_back(slot);
+    slot.file.clear();
     slot.texture = static_cast<int>(originals.size()) - 1;
   }
   return graph;

@@ -25,13 +25,18 @@ public:
   std::string pointer() const;
   /// What was said of a material when it was read; of a graph nothing.
   const Diagnostics& diagnostics() const;
-  bool isGraph() const { return std::holds_alternative<const graph::Graph*>(of_); }
+  /// The material; null for a graph.
+  const material::Material* material() const;
+  bool isGraph() const { return material() == nullptr; }
 
-  /// The graph to lower; `originals` is given the file's texture of each slot, which is then the
-  /// slot's. A material's is built for the options' template, profile and switches; a graph is what it is,
-  /// and options that would build it otherwise are an error ("graph-is-built").
+  /// The graph to lower. A material's is built for the options' template, profile and switches; a graph is
+  /// what it is, checked and flat, and options that would build it otherwise are an error ("graph-is-built").
+  Result<graph::Graph> built(const gltf::VertexAttributes& attributes, const Language& library,
+                             const Options& options, Diagnostics& warnings) const;
+  /// The same with a slot of its own for every use of a texture, whose index is that of the file's texture in
+  /// `originals`.
   Result<graph::Graph> graph(const gltf::VertexAttributes& attributes, const Language& library,
-                             const Options& options, std::vector<int>& originals,
+                             const Options& options, std::vector<graph::Texture>& originals,
                              Diagnostics& warnings) const;
 
 private:

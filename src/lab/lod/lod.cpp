@@ -77,7 +77,7 @@ struct Printed {
 class LevelSearch {
 public:
   LevelSearch(const Lod& lod, const Options& options, Messages& messages, const Progress& progress)
-      : lod_(lod), options_(options), messages_(messages), progress_(progress) {}
+      : lod_(lod), asked_(options), options_(options), messages_(messages), progress_(progress) {}
 
   Result<Levels> make(const Strings& files, const Strings& materials) {
     if (Result<void> good = checkLod(lod_, options_); !good)
@@ -91,17 +91,19 @@ public:
       return tl::make_unexpected(std::move(named.error()));
     warnWithoutDriver();
     Strings missing = materials;
-    std::vector<material::Document> documents;
-    for (const std::string& file : files) read(file, materials, missing, documents);
+    std::vector<Input> read_files;
+    for (const std::string& file : files) read(file, materials, missing, read_files);
     if (!missing.empty())
       return fail("no-such-material", {}, fmt::format("no material is named '{}'", printable(missing[0])),
                   "`lacquer gen` lists the materials of a file");
     inputs_ = files;
     if (Result<void> may = mayWrite(); !may) return tl::make_unexpected(std::move(may.error()));
-    for (size_t f = 0; f < documents.size(); ++f) {
-      FileImages images(documents[f].path, options_);
-      for (const material::Material& material : documents[f].materials)
-        chain(material, documents[f], f, images);
+    for (size_t f = 0; f < read_files.size(); ++f) {
+      const Input& input = read_files[f];
+      FileImages images =
+          input.graph ? FileImages::ofGraph(input.path, options_) : FileImages(input.path, options_);
+      for (const material::Material& material : input.document.materials) chain(material, input, f, images);
+      if (input.graph) chain(*input.graph, input, f, images);
       const Strings of_images = images.read();
       inputs_.insert(inputs_.end(), of_images.begin(), of_images.end());
     }
@@ -123,8 +125,24 @@ private:
            {}, messages_);
   }
 
-  void read(const std::string& file, const Strings& only, Strings& missing,
-            std::vector<material::Document>& documents) {
+  /// A file's materials, or the graph that it is.
+  struct Input {
+    std::string path;
+    material::Document document;
+    std::optional<graph::Graph> graph;
+  };
+
+  void readGraph(const std::string& file, const Strings& only, Strings& missing, std::vector<Input>& inputs) {
+    Result<graph::Graph> graph = readGraphFile(file, options_);
+    if (!graph) return report(graph.error(), file, messages_);
+    std::erase(missing, graph->name);
+    if (!only.empty() && std::find(only.begin(), only.end(), graph->name) == only.end()) return;
+    ++known_;
+    inputs.push_back({file, {}, std::move(*graph)});
+  }
+
+  void read(const std::string& file, const Strings& only, Strings& missing, std::vector<Input>& inputs) {
+    if (isGraphFile(file)) return readGraph(file, only, missing, inputs);
     Result<material::Document> document = readMaterials(file, *language_, options_);
     if (!document) return report(document.error(), file, messages_);
     report(document->diagnostics, file, messages_);
@@ -134,43 +152,48 @@ private:
     };
     known_ +=
         static_cast<size_t>(std::count_if(document->materials.begin(), document->materials.end(), wanted));
-    documents.push_back(std::move(*document));
-    for (material::Material& material : documents.back().materials) {
+    inputs.push_back({document->path, std::move(*document), {}});
+    for (material::Material& material : inputs.back().document.materials) {
       if (!wanted(material)) material.index = -2;  // not asked for; its place in the list stays its number
     }
   }
 
-  void chain(const material::Material& material, const material::Document& document, size_t file,
-             FileImages& images) {
-    if (material.index < 0) return;
-    report(material.diagnostics, document.path, messages_);
-    if (!lacquer::hasError(material.diagnostics)) {
-      if (Result<void> made = found(material, document, file, images); !made)
-        report(made.error(), document.path, messages_);
+  void chain(const EvalSubject& subject, const Input& input, size_t file, FileImages& images) {
+    if (!subject.isGraph() && subject.material()->index < 0) return;
+    report(subject.diagnostics(), input.path, messages_);
+    if (!lacquer::hasError(subject.diagnostics())) {
+      if (Result<void> made = found(subject, input, file, images); !made)
+        report(made.error(), input.path, messages_);
     }
     ++done_;
     if (progress_) progress_(done_, known_);
   }
 
-  Result<void> found(const material::Material& material, const material::Document& document, size_t file,
-                     FileImages& images) {
-    const auto& uses = document.uses[static_cast<size_t>(material.index)];
-    const gltf::VertexAttributes attributes =
-        uses.empty() ? gltf::VertexAttributes{true, true, false, {true, true, false, false}} : uses[0];
-    const preview::Mesh mesh = meshOf(material, document.path, images);
-    LodMaterial subject({material, attributes, lightsOf(document), images, *language_, options_, lod_.texels,
-                         mesh, lod_.radius},
+  Result<void> found(const EvalSubject& of, const Input& input, size_t file, FileImages& images) {
+    gltf::VertexAttributes attributes{true, true, false, {true, true, false, false}};
+    passes::LightFacts lights;
+    preview::Mesh mesh;
+    const material::Material* material = of.material();
+    if (material != nullptr) {
+      const auto& uses = input.document.uses[static_cast<size_t>(material->index)];
+      if (!uses.empty()) attributes = uses[0];
+      lights = lightsOf(input.document);
+      mesh = meshOf(*material, input.path, images);
+    }
+    // The default template and profile are named, which would build a graph.
+    const Options& options = material == nullptr ? asked_ : options_;
+    LodMaterial subject({of, attributes, lights, images, *language_, options, lod_.texels, mesh, lod_.radius},
                         lod_.size);
     Result<lod::Tried> exact = subject.open(messages_);
     if (!exact) return tl::make_unexpected(std::move(exact.error()));
     LodChain made;
-    made.found.file = document.path;
-    made.found.name = material.name;
-    made.found.index = static_cast<size_t>(material.index);
+    made.found.file = input.path;
+    made.found.name = of.name();
+    made.found.index = material == nullptr ? 0 : static_cast<size_t>(material->index);
     made.found.triangles = subject.figures({}).error_on_geometry ? mesh.triangles.size() / 3 : 0;
     made.found.radius = subject.radius();
     search(subject, *exact, made);
-    if (Result<void> good = finish(subject, fmt::format("{}-{}", file, material.index), made); !good)
+    if (Result<void> good = finish(subject, fmt::format("{}-{}", file, made.found.index), made); !good)
       return good;
     if (!subject.driver().empty()) driver_ = subject.driver();
     chains_.push_back(std::move(made));
@@ -400,7 +423,8 @@ private:
   }
 
   const Lod& lod_;
-  Options options_;
+  const Options& asked_;
+  Options options_;  ///< with its names resolved
   Messages& messages_;
   const Progress& progress_;
   std::shared_ptr<const Language> language_;

@@ -72,7 +72,7 @@ Options LodMaterial::optionsOf(const lod::Words& words) const {
 Result<graph::Graph> LodMaterial::graphOf(const lod::Words& words) const {
   Diagnostics warnings;
   Result<graph::Graph> graph =
-      buildGraph(given_.material, given_.attributes, given_.language, optionsOf(words), warnings);
+      given_.subject.built(given_.attributes, given_.language, optionsOf(words), warnings);
   if (!graph) return graph;
   if (Diagnostics wrong = graph::check(*graph, given_.language); lacquer::hasError(wrong))
     return tl::make_unexpected(std::move(wrong));
@@ -90,7 +90,7 @@ Result<std::vector<preview::Shading>> LodMaterial::shadings(const lod::Words& wo
   EvalMaterial evaluated(given_.images, optionsOf(words));
   if (Result<void> set = evaluated.setTexels(given_.texels); !set)
     return tl::make_unexpected(std::move(set.error()));
-  if (Result<void> lowered = evaluated.lower(given_.material, given_.language, true, "", messages); !lowered)
+  if (Result<void> lowered = evaluated.lower(given_.subject, given_.language, true, "", messages); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
   evaluated.place({});
   preview::Look look;
@@ -203,7 +203,7 @@ Result<lod::Tried> LodMaterial::open(Messages& messages) {
   EvalMaterial evaluated(given_.images, given_.options);
   if (Result<void> set = evaluated.setTexels(given_.texels); !set)
     return tl::make_unexpected(std::move(set.error()));
-  if (Result<void> lowered = evaluated.lower(given_.material, given_.language, true, "", messages); !lowered)
+  if (Result<void> lowered = evaluated.lower(given_.subject, given_.language, true, "", messages); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
   readTextures(evaluated);
   for (const bool triangles : {false, true}) {
@@ -220,8 +220,8 @@ Result<lod::Tried> LodMaterial::open(Messages& messages) {
 
 lod::Words LodMaterial::words() const {
   const Result<graph::Graph> graph = graphOf({});
-  lod::Words all =
-      graph ? possibleWords(*graph, given_.material, given_.language, given_.options) : lod::Words();
+  lod::Words all = graph ? possibleWords(*graph, given_.subject.material(), given_.language, given_.options)
+                         : lod::Words();
   all.insert(all.end(), means_.begin(), means_.end());
   lod::Words good;
   std::set<std::string> seen{exact_graph_};

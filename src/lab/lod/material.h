@@ -1,4 +1,4 @@
-// One material while its levels are looked for: simpler shaders of it, measured.
+// One material, or a graph, while its levels are looked for: simpler shaders of it, measured.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ bool atVertices(const lod::Words& words);
 class LodMaterial {
 public:
   struct Given {
-    const material::Material& material;
+    EvalSubject subject;
     gltf::VertexAttributes attributes;  ///< of the primitives that use it
     passes::LightFacts lights;          ///< of the file
     FileImages& images;

@@ -102,7 +102,7 @@ public:
     for (const Input& input : read_files) {
       preview::Section section{read_files.size() > 1 ? input.path : std::string(), {}};
       FileImages images =
-          input.graph ? FileImages::none(input.path, options_) : FileImages(input.path, options_);
+          input.graph ? FileImages::ofGraph(input.path, options_) : FileImages(input.path, options_);
       for (const material::Material& material : input.materials) draw(material, images, section);
       if (input.graph) draw(*input.graph, images, section);
       const Strings of_images = images.read();
@@ -283,8 +283,7 @@ static Result<std::vector<uint8_t>> ballOf(const InMemory& of, uint32_t size, co
     return tl::make_unexpected(std::move(good.error()));
   report(of.subject.diagnostics(), of.file, messages);
   if (lacquer::hasError(of.subject.diagnostics())) return std::vector<uint8_t>();
-  FileImages images =
-      of.has_file ? FileImages(of.file, options, of.bytes) : FileImages::none(of.file, options);
+  FileImages images = of.images(options);
   const preview::Studio studio;
   size_t substituted = 0;
   const Result<preview::Shading> shading = shadingOf(of.subject, of.language, images, {"", options, true, ""},

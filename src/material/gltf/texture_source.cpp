@@ -110,6 +110,14 @@ Result<TextureFile> TextureFile::fromMemory(std::string_view bytes, const std::s
   return file;
 }
 
+TextureFile TextureFile::beside(const std::string& path, const TextureAccess& access, bool in_memory) {
+  TextureFile file;
+  file.path_ = path;
+  file.access_ = access;
+  file.in_memory_ = in_memory;
+  return file;
+}
+
 Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& place) const {
   const auto missing = [&](std::string message, std::string help) {
     return fail("image-missing", place, std::move(message), std::move(help));
@@ -124,8 +132,8 @@ Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& p
     return *bytes;
   }
   if (in_memory_) {
-    return missing(fmt::format("{} is a file, and the scene was read from memory", quote(uri)),
-                   "its images must be in it");
+    return missing(fmt::format("{} is a file, and what names it was read from memory", quote(uri)),
+                   "images must be in it, as data URIs or buffer views");
   }
   const std::string relative = percentDecoded(uri);
   if (hasScheme(uri) || std::filesystem::path(relative).is_absolute() ||

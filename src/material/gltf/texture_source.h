@@ -37,6 +37,9 @@ public:
   static Result<TextureFile> fromMemory(std::string_view bytes, const std::string& name,
                                         const TextureAccess& access);
 
+  /// No glTF file, but one beside which images lie; with `in_memory` none but data URIs.
+  static TextureFile beside(const std::string& path, const TextureAccess& access, bool in_memory);
+
   /// The texture of that index. Errors: "image-missing".
   Result<TextureSource> texture(int index) const;
 
@@ -47,8 +50,10 @@ public:
 
   /// The URIs of buffers and images that lie in files of their own, each once, in the order of the JSON.
   std::vector<std::string> fileUris() const;
-  /// The bytes behind such a URI. Errors: those of image().
-  Result<std::string> fileBytes(const std::string& uri) const { return uriBytes(uri, {path_, 0, 0, {}}); }
+  /// The bytes behind a URI of a file, or a data URI. Errors: those of image().
+  Result<std::string> fileBytes(const std::string& uri, const std::string& pointer = {}) const {
+    return uriBytes(uri, {path_, 0, 0, pointer});
+  }
 
   /// A whole buffer: a file, a data URI or the GLB's own chunk, which only the first buffer may be. Errors:
   /// those of image(), and "image-missing" where the buffers are together larger than a file may be. Each is

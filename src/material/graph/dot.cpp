@@ -66,22 +66,52 @@ public:
       if (t.texture >= 0) label += fmt::format(", texture {}", t.texture);
       leaf("texture", t.name, fmt::format("t{}", i), label, "#fff2cc");
     }
-    for (size_t i = 0; i < graph_.nodes.size(); ++i)
-      ids_.emplace("node " + graph_.nodes[i].id, fmt::format("n{}", i));
-    for (size_t i = 0; i < graph_.nodes.size(); ++i) {
-      const Node& node = graph_.nodes[i];
-      const std::string variant = node.variant.empty() ? "" : fmt::format(", {}", html(node.variant));
-      box(fmt::format("n{}", i), fmt::format("<b>{}</b><br/>{}{}", html(node.id), html(node.type), variant),
-          "#dae8fc", node.inputs);
-    }
+    for (size_t g = 0; g < graph_.groups.size(); ++g) cluster(g);
+    scope_.clear();
+    body(graph_.nodes, "n");
     box("out", fmt::format("<b>{}</b><br/>template", html(graph_.template_name)), "#f8cecc", graph_.outputs);
     return text_ + edges_ + "}\n";
   }
 
 private:
+  /// A group's definition, in a frame.
+  void cluster(size_t index) {
+    const Group& group = graph_.groups[index];
+    text_ += fmt::format("  subgraph {} {{\n  label={};\n", quoted(fmt::format("cluster_{}", index)),
+                         quoted("group " + group.name));
+    scope_ = fmt::format("g{}_", index);
+    for (size_t i = 0; i < group.inputs.size(); ++i) {
+      leaf("input", group.inputs[i].name, fmt::format("{}i{}", scope_, i),
+           fmt::format("{}<br/>{}", html(group.inputs[i].name), ir::typeName(group.inputs[i].type)),
+           "#e1d5e7");
+    }
+    body(group.nodes, scope_ + "n");
+    box(scope_ + "out", fmt::format("<b>{}</b><br/>outputs", html(group.name)), "#f8cecc", group.outputs);
+    text_ += "  }\n";
+  }
+
+  void body(const std::vector<Node>& nodes, const std::string& prefix) {
+    for (size_t i = 0; i < nodes.size(); ++i)
+      ids_.emplace(key("node", nodes[i].id), fmt::format("{}{}", prefix, i));
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      const Node& node = nodes[i];
+      const std::string variant = node.variant.empty() ? "" : fmt::format(", {}", html(node.variant));
+      box(fmt::format("{}{}", prefix, i),
+          fmt::format("<b>{}</b><br/>{}{}{}", html(node.id), node.group ? "group " : "", html(node.type),
+                      variant),
+          "#dae8fc", node.inputs);
+    }
+  }
+
+  /// Nodes and inputs are seen where they stand alone.
+  std::string key(std::string_view kind, std::string_view name) const {
+    const bool here = kind == "node" || kind == "input";
+    return fmt::format("{}{} {}", here ? scope_ : "", kind, name);
+  }
+
   void leaf(std::string_view kind, std::string_view name, const std::string& id, std::string_view label,
             std::string_view color) {
-    ids_.emplace(fmt::format("{} {}", kind, name), id);
+    ids_.emplace(key(kind, name), id);
     text_ += fmt::format("  {} [shape=box, style=\"rounded,filled\", fillcolor=\"{}\", label=<{}>];\n", id,
                          color, label);
   }
@@ -119,6 +149,8 @@ private:
       from = idOf("texture", t->name);
     } else if (const auto* g = std::get_if<GivenRef>(&source.from)) {
       from = idOf("given", g->name);
+    } else if (const auto* i = std::get_if<InputRef>(&source.from)) {
+      from = idOf("input", i->name);
     }
     if (!source.swizzle.empty()) label += "." + source.swizzle;
     edges_ += fmt::format("  {} -> {}", from, to);
@@ -128,7 +160,7 @@ private:
   /// What the template gives has no list in the graph and gets its leaf at the first use. So do names that
   /// the graph lacks, marked as such: a texture may be the template's, a parameter or a node is missing.
   std::string idOf(std::string_view kind, const std::string& name) {
-    const auto it = ids_.find(fmt::format("{} {}", kind, name));
+    const auto it = ids_.find(key(kind, name));
     if (it != ids_.end()) return it->second;
     std::string id = fmt::format("g{}", others_++);
     if (kind == "given")
@@ -142,7 +174,8 @@ private:
 
   const Graph& graph_;
   std::string text_, edges_;
-  std::map<std::string, std::string, std::less<>> ids_;  ///< by kind and name
+  std::string scope_;                                    ///< begins the ids of what is in a group
+  std::map<std::string, std::string, std::less<>> ids_;  ///< by key()
   size_t others_ = 0;
 };
 

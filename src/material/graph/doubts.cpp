@@ -4,132 +4,110 @@
 #include <algorithm>
 #include <string_view>
 
-#include "graph/graph.h"
+#include "graph/check_body.h"
+#include "graph/contracts.h"
 #include "graph/text.h"
-#include "json/path.h"
-#include "support/arena.h"
 #include "support/text.h"
 
 namespace lacquer::graph {
 
 namespace {
 
-using json::Path;
-
-const lang::Param* named(const std::vector<lang::Param>& params, std::string_view name) {
-  const auto it =
-      std::find_if(params.begin(), params.end(), [&](const lang::Param& p) { return p.name == name; });
-  return it == params.end() ? nullptr : &*it;
-}
-
 class Doubts {
 public:
   Doubts(const Graph& graph, const lang::Library& library, bool undeclared)
-      : graph_(graph), library_(library), undeclared_(undeclared) {
-    // A name that stands twice is check()'s to tell.
-    for (const ir::Parameter& parameter : graph.parameters) parameters_.emplace(parameter.name, &parameter);
-    for (const Node& node : graph.nodes) nodes_.emplace(node.id, &node);
-    if (!library.has(lang::DeclKind::Template, graph.template_name)) return;
-    if (const auto found = library.template_(graph.template_name)) template_ = *found;
-  }
+      : graph_(graph), contracts_(graph, library), undeclared_(undeclared) {}
 
   Diagnostics run() {
-    for (size_t i = 0; i < graph_.nodes.size(); ++i) {
-      const Node& node = graph_.nodes[i];
-      const lang::NodeDecl* decl = declOf(node);
-      if (decl == nullptr) continue;
-      for (const auto& [name, source] : node.inputs) {
-        const auto place = [&, index = i, input = std::string_view(name)] {
-          return pointerTo({"nodes", std::to_string(index), "inputs", input});
-        };
-        look(source, named(decl->params, name), place, [&, input = std::string_view(name)] {
-          return fmt::format("'{}' of the node '{}'", printable(input), printable(node.id));
-        });
-      }
+    for (size_t i = 0; i < graph_.groups.size(); ++i) {
+      group(i);
+      nodes(contracts_.body(i));
     }
+    nodes(contracts_.main());
+    const lang::TemplateDecl* decl = contracts_.templateDecl();
     for (const auto& [name, source] : graph_.outputs) {
-      if (template_ == nullptr) break;
+      if (decl == nullptr) break;
       const std::string_view output = name;
-      const auto port = std::find_if(template_->ports.begin(), template_->ports.end(),
+      const auto port = std::find_if(decl->ports.begin(), decl->ports.end(),
                                      [&](const lang::PortDecl& p) { return p.param.name == output; });
-      if (port == template_->ports.end()) continue;
+      if (port == decl->ports.end()) continue;
       look(
-          source, &port->param,
-          [&] {
-            return pointerTo({"outputs", output});
-          },
-          [&] { return fmt::format("the port '{}'", printable(output)); });
+          source, contracts_.main(), &port->param, [&] { return pointerTo("outputs", output); },
+          [&] { return fmt::format("the port {}", inQuotes(output)); });
     }
     shorten(found_);
     return std::move(found_);
   }
 
 private:
-  /// What a source may be: what a parameter may become, what a given or a node is declared to give.
-  struct Given {
-    bool known = false;  ///< to this library; not a literal or a texture, which check() looks at
-    bool has_range = false;
-    ir::Range range;
-  };
-
-  static std::string pointerTo(std::initializer_list<std::string_view> members) {
-    std::string text;
-    const Path root;
-    for (const std::string_view member : members) text += Path(root, member).text();
-    return text;
+  void nodes(const Body& body) {
+    const std::string above = body.group() == nullptr ? "" : pointerTo("groups", body.group()->name);
+    const std::string where =
+        body.group() == nullptr ? "" : fmt::format(" in the group {}", inQuotes(body.group()->name));
+    for (size_t i = 0; i < body.nodes().size(); ++i) {
+      const Node& node = body.nodes()[i];
+      const Contract* contract = contracts_.of(node);
+      if (contract == nullptr) continue;
+      for (const auto& [name, source] : node.inputs) {
+        // What comes from outside of a group is looked at there.
+        if (std::holds_alternative<InputRef>(source.from)) continue;
+        const std::string_view input = name;
+        look(
+            source, body, contract->param(input),
+            [&, index = i] { return fmt::format("{}/nodes/{}{}", above, index, pointerTo("inputs", input)); },
+            [&] { return fmt::format("{} of the node {}{}", inQuotes(input), inQuotes(node.id), where); });
+      }
+    }
   }
 
-  const lang::NodeDecl* declOf(const Node& node) const {
-    if (!library_.has(lang::DeclKind::Node, node.type)) return nullptr;
-    const auto found = library_.node(node.type);
-    return found ? *found : nullptr;
-  }
-
-  Given givenBy(const Source& source) const {
-    const lang::Param* declared = nullptr;
-    if (const auto* parameter = std::get_if<ParameterRef>(&source.from)) {
-      const auto it = parameters_.find(parameter->name);
-      return it == parameters_.end() ? Given{} : Given{true, true, it->second->range};
+  /// An input that says that it takes more than what it goes to.
+  void group(size_t place) {
+    const Group& group = graph_.groups[place];
+    const Contract* contract = contracts_.of(group.name, true);
+    for (size_t i = 0; contract != nullptr && i < group.inputs.size(); ++i) {
+      const GroupInput& input = group.inputs[i];
+      if (input.range == ir::Range{}) continue;
+      const Offer offer{input.type, true, input.range};
+      doubt(
+          offer, &contract->params[i],
+          [&] { return pointerTo("groups", group.name) + pointerTo("inputs", input.name) + "/range"; },
+          [&] {
+            return fmt::format("what {} of the group {} goes to", inQuotes(input.name), inQuotes(group.name));
+          },
+          "give the input a range within it");
     }
-    if (const auto* given = std::get_if<GivenRef>(&source.from)) {
-      const auto found = template_ == nullptr ? std::nullopt : template_->find(given->name);
-      if (found) declared = &found->given->results[found->index];
-    } else if (const auto* node = std::get_if<NodeRef>(&source.from)) {
-      const auto it = nodes_.find(node->node);
-      const lang::NodeDecl* decl = it == nodes_.end() ? nullptr : declOf(*it->second);
-      if (decl != nullptr) declared = named(decl->results, node->output);
-    }
-    if (declared == nullptr) return {};
-    return {true, declared->has_range, declared->range};
   }
 
   template <class Place, class What>
-  void look(const Source& source, const lang::Param* into, Place place, What what) {
-    if (into == nullptr || !into->has_range || !ir::isFloating(into->type)) return;
-    const Given given = givenBy(source);
-    if (!given.known || (!given.has_range && !undeclared_) || !hasRoom(found_)) return;
+  void look(const Source& source, const Body& body, const lang::Param* into, Place place, What what) {
+    // A literal is check()'s to look at.
+    if (into == nullptr || std::holds_alternative<Literal>(source.from)) return;
+    const std::optional<Offer> offer = contracts_.base(source, body);
+    if (!offer || !ir::isFloating(offer->type)) return;
+    doubt(*offer, into, place, what,
+          std::holds_alternative<ParameterRef>(source.from) ? "give the parameter a \"range\" within it"
+                                                            : "put a node with a clamp between");
+  }
+
+  template <class Place, class What>
+  void doubt(const Offer& given, const lang::Param* into, Place place, What what, std::string_view help) {
+    if (!into->has_range || !ir::isFloating(into->type)) return;
+    if ((!given.has_range && !undeclared_) || !hasRoom(found_)) return;
     const ir::Range& to = into->range;
     const bool gap = to.gap > given.range.gap && given.range.lo < to.gap;
     if (given.has_range && given.range.lo >= to.lo && given.range.hi <= to.hi && !gap) return;
-    found_.push_back(
-        {"may-leave-range",
-         Severity::Warning,
-         {{}, 0, 0, place()},
-         fmt::format("{} takes {}, its source may be {}", what(), ir::rangeText(to),
-                     given.has_range ? ir::rangeText(given.range) : "anything"),
-         std::holds_alternative<ParameterRef>(source.from)
-             ? "outside of it colours may be negative or infinite; give the parameter a \"range\" within it"
-             : "outside of it colours may be negative or infinite; put a node with a clamp between",
-         {}});
+    found_.push_back({"may-leave-range",
+                      Severity::Warning,
+                      {{}, 0, 0, place()},
+                      fmt::format("{} takes {}, its source may be {}", what(), ir::rangeText(to),
+                                  given.has_range ? ir::rangeText(given.range) : "anything"),
+                      fmt::format("outside of it colours may be negative or infinite; {}", help),
+                      {}});
   }
 
   const Graph& graph_;
-  const lang::Library& library_;
+  Contracts contracts_;
   bool undeclared_ = false;
-  const lang::TemplateDecl* template_ = nullptr;
-  Arena arena_;
-  NameMap<const ir::Parameter*> parameters_{&arena_};
-  NameMap<const Node*> nodes_{&arena_};
   Diagnostics found_;
 };
 

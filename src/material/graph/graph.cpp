@@ -7,7 +7,9 @@
 namespace lacquer::graph {
 
 size_t Graph::add(std::string id, std::string type) {
-  nodes.push_back({std::move(id), std::move(type), {}, {}});
+  Node& node = nodes.emplace_back();
+  node.id = std::move(id);
+  node.type = std::move(type);
   return nodes.size() - 1;
 }
 
@@ -38,7 +40,40 @@ std::optional<size_t> placeOf(const List& list, Name name, std::string_view want
 std::optional<size_t> Graph::find(std::string_view id) const { return placeOf(nodes, &Node::id, id); }
 
 std::optional<size_t> Graph::findParameter(std::string_view wanted) const {
-  return placeOf(parameters, &ir::Parameter::name, wanted);
+  return placeOf(parameters, &Parameter::name, wanted);
+}
+
+std::optional<size_t> Graph::findTexture(std::string_view wanted) const {
+  return placeOf(textures, &Texture::name, wanted);
+}
+
+std::optional<size_t> Graph::findGroup(std::string_view wanted) const {
+  return placeOf(groups, &Group::name, wanted);
+}
+
+Texture bare(const Texture& texture) {
+  Texture slot;
+  slot.name = texture.name;
+  slot.type = texture.type;
+  slot.srgb = texture.srgb;
+  return slot;
+}
+
+Graph bare(Graph graph) {
+  graph.name.clear();
+  graph.ui.clear();
+  for (Parameter& parameter : graph.parameters) {
+    parameter.pointer.clear();
+    parameter.ui.clear();
+  }
+  for (Texture& texture : graph.textures) texture = bare(texture);
+  for (Node& node : graph.nodes) node.ui.clear();
+  for (Group& group : graph.groups) {
+    group.ui.clear();
+    for (GroupInput& input : group.inputs) input.ui.clear();
+    for (Node& node : group.nodes) node.ui.clear();
+  }
+  return graph;
 }
 
 bool Graph::remove(std::string_view id) {

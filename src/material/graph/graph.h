@@ -2,8 +2,10 @@
 // tool edits: add nodes, connect, set values, check, print.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -50,22 +52,87 @@ struct NodeRef {
   bool operator==(const NodeRef&) const = default;
 };
 
-/// Where an input or a port gets its value from, with an optional swizzle ("rgb", "g") on the way.
+/// An input of the group that the source stands in.
+struct InputRef {
+  std::string name;
+  bool operator==(const InputRef&) const = default;
+};
+
+/// One of the values of an input that have names (lang::Param::choices): "world".
+struct Choice {
+  std::string name;
+  bool operator==(const Choice&) const = default;
+};
+
+/// Where an input or a port gets its value from, with an optional swizzle ("rgb", "g") on the way. A float
+/// goes to every component where a vector is wanted; its only swizzles are "x", "xx" and so on.
 struct Source {
-  std::variant<Literal, ParameterRef, TextureRef, GivenRef, NodeRef> from;
+  std::variant<Literal, ParameterRef, TextureRef, GivenRef, NodeRef, InputRef, Choice> from;
   std::string swizzle;
   bool operator==(const Source&) const = default;
 };
 
 using Inputs = std::vector<std::pair<std::string, Source>>;
 
-/// A use of a library node: one term.
+/// A use of a library node, or of a group.
 struct Node {
-  std::string id;       ///< unique in the graph, dotted: "coat.absorption"
-  std::string type;     ///< the library node's name: "coat_absorption"
+  std::string id;  ///< unique where it stands, dotted: "coat.absorption"
+  /// The library node's name, "coat_absorption", or with `group` the group's. Of a node with several forms it
+  /// is the name of all of them, "add", or of one, "add<vec3>".
+  std::string type;
   std::string variant;  ///< empty for the reference body
   Inputs inputs;        ///< by parameter name; inputs with defaults may be absent
+  bool group = false;
+  bool at_vertices = false;  ///< its results are computed at the vertices and interpolated
+  /// The term of a specification that it is, "coat.absorption": what the code calls it, and its place there,
+  /// before those with larger ones. Without a term the code has the library's name of it: ids never reach it.
+  std::string term{};
+  uint32_t place = kAnyPlace;
+  std::string ui{};  ///< of a tool's, any JSON; may be empty
+
+  static constexpr uint32_t kAnyPlace = ~uint32_t{0};
   bool operator==(const Node&) const = default;
+};
+
+using Outputs = std::vector<std::pair<std::string, Source>>;
+
+/// What an instance of a group may be given.
+struct GroupInput {
+  std::string name;
+  ir::Type type = ir::Type::Float;  ///< of a value or of a texture
+  ir::Range range{};                ///< of each component; without ends: what it goes to says it
+  /// Of the file, not of the instance: a literal, a parameter, a texture or what the template gives. Without
+  /// one each instance has to give it.
+  std::optional<Source> by_default{};
+  std::string ui{};
+  bool operator==(const GroupInput&) const = default;
+};
+
+/// A graph that is used as a node. Its nodes see their group's inputs, the parameters and textures of the
+/// file and what the template gives.
+struct Group {
+  std::string name;
+  std::vector<GroupInput> inputs{};
+  std::vector<Node> nodes{};
+  Outputs outputs{};
+  std::string ui{};
+  bool operator==(const Group&) const = default;
+};
+
+struct Parameter : ir::Parameter {
+  std::string ui{};
+};
+
+enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
+
+struct Texture : ir::TextureSlot {
+  /// A file below the folder of the graph's; empty for glTF's texture, whose sampler says the rest.
+  std::string file{};
+  std::array<Wrap, 2> wrap{};  ///< s and t
+  bool nearest = false;        ///< else linear
+  /// What is there without an image: linear, or encoded where `srgb` says so for its RGB.
+  std::optional<ir::Components> color{};
+  std::string ui{};
 };
 
 /// Why a term that the material could have is not in the graph.
@@ -80,14 +147,16 @@ struct Graph {
   std::string template_name;  ///< "forward"
   /// Of the template's optional attributes, those that the primitive has.
   std::vector<std::string> attributes;
-  std::vector<ir::Parameter> parameters;
-  std::vector<ir::TextureSlot> textures;
-  std::vector<Node> nodes;  ///< in an order in which a node's sources stand before it
-  std::vector<std::pair<std::string, Source>> outputs;  ///< the template's ports
+  std::vector<Parameter> parameters;
+  std::vector<Texture> textures;
+  std::vector<Group> groups;
+  std::vector<Node> nodes;
+  Outputs outputs;  ///< the template's ports
   std::vector<Skipped> skipped;
+  std::string ui;
 
   // Editing. Names and ids are checked by check(), not here. Nodes and parameters are spoken of by their
-  // places in the lists above, which hold until one is removed or check() sorts the nodes.
+  // places in the lists above, which hold until one is removed.
 
   /// Adds a node and returns its place.
   size_t add(std::string id, std::string type);
@@ -107,6 +176,8 @@ struct Graph {
   void connect(size_t node, std::string_view input, Source source);
   std::optional<size_t> find(std::string_view id) const;
   std::optional<size_t> findParameter(std::string_view wanted) const;
+  std::optional<size_t> findTexture(std::string_view wanted) const;
+  std::optional<size_t> findGroup(std::string_view wanted) const;
   /// Removes a node; its users keep dangling edges, which check() reports.
   bool remove(std::string_view id);
   /// Says why a term is not there. A term that several parts have is named once, with the first reason.
@@ -115,17 +186,34 @@ struct Graph {
 
 /// Everything lowering relies on: node types and variants exist, ids are unique, inputs exist, are connected
 /// once and have the right type, references resolve, swizzles fit, literals lie in the contract's range, no
-/// cycles, the template's ports without default are delivered with the right type. Puts nodes into a valid
-/// order when they are not (stable). `place.pointer` of each diagnostic is a JSON pointer into the graph's
-/// JSON form.
-Diagnostics check(Graph& graph, const lang::Library& library);
+/// cycles, no group within itself, the template's ports without default are delivered with the right type,
+/// and that groups make no more than `most` nodes. `place.pointer` of each diagnostic is a JSON pointer into
+/// the graph's JSON form: what is wrong in a group is said once, where it stands in the group.
+Diagnostics check(const Graph& graph, const lang::Library& library, uint64_t most = Limits{}.nodes);
 
 /// Warnings ("may-leave-range") of what check() takes on trust: what is connected and may come to lie outside
 /// of the range of what it goes to, by the range of a parameter or what a node or the template is declared to
 /// give; with `undeclared` also of what is declared to give no range at all. Where there is neither, a
-/// checked graph's colours are finite and not negative. What is wrong in another way is left to check(),
-/// which may order the nodes: places are those before it.
+/// checked graph's colours are finite and not negative. What is wrong in another way is left to check().
 Diagnostics doubts(const Graph& graph, const lang::Library& library, bool undeclared = false);
+
+/// Without what belongs to one material or to a tool: the name, JSON pointers, images, `ui`.
+Graph bare(Graph graph);
+Texture bare(const Texture& texture);
+
+/// What the outputs of each node of a graph are in the flat one, by its path: "coat.f0", "rust", and of a
+/// node in the group that "rust" is an instance of "rust/mix".
+using FlatOutputs = std::map<std::string, std::vector<Source>, std::less<>>;
+
+/// A checked graph with its groups' nodes in their places, whose ids begin with the instance's: "rust.mix",
+/// and with the form of each node as its type. A graph without groups and forms comes back as it is, unless
+/// its outputs are asked for.
+Graph flattened(Graph graph, const lang::Library& library, FlatOutputs* outputs = nullptr);
+
+/// The nodes of a flat, checked graph that its outputs reach, in the order of the code: sources first, by the
+/// terms' places, and where nothing says otherwise in the order in which the template's ports and the nodes'
+/// inputs ask for them. Neither the order of the lists nor ids matter.
+std::vector<size_t> codeOrder(const Graph& graph, const lang::Library& library);
 
 /// The JSON form (docs/graph-format.md), two spaces of indent, stable key order, a final newline.
 std::string toJson(const Graph& graph);

@@ -34,7 +34,8 @@ Result<Json> parse(std::string_view text, const std::string& file, const Limits&
 
 class Reader {
 public:
-  Reader(const std::string& file, Diagnostics& out) : report_(file, out) {}
+  Reader(const std::string& file, const Limits& limits, Diagnostics& out)
+      : report_(file, out), limits_(limits) {}
 
   Graph graph(const Json& json);
   std::optional<Source> source(const Json& json, const Path& path);
@@ -61,15 +62,26 @@ private:
 
   bool version(const Json& json, const Path& path);
   void parameter(std::string_view name, const Json& json, const Path& path);
+  void truths(const Json& json, const Path& path, std::string_view name, ir::Type type, ir::Components& out);
   void parameterValue(const Json& json, const Path& path, std::string_view name, ir::Type type,
                       ir::Components& out);
-  void parameterRange(const Json& json, const Path& path, ir::Parameter& parameter);
-  void parameterOrZero(const Json& json, const Path& path, ir::Parameter& parameter);
+  void range(const Json& json, const Path& path, ir::Range& range);
   void texture(std::string_view name, const Json& json, const Path& path);
-  void node(const Json& json, const Path& path);
+  void textureIndex(const Json& json, const Path& path, Texture& texture);
+  void sampler(const Json& json, const Path& path, Texture& texture);
+  void group(std::string_view name, const Json& json, const Path& path);
+  GroupInput groupInput(std::string_view name, const Json& json, const Path& path);
+  void nodes(const Json& json, const Path& path, std::vector<Node>& to);
+  void node(const Json& json, const Path& path, std::vector<Node>& to);
+  void term(const Json& json, const Path& path, Node& node);
+  void outputs(const Json& json, const Path& path, Outputs& to);
+  bool flag(const Json& json, const Path& path, std::string_view name);
+  std::string ui(const Json& json, const Path& path);
   std::optional<Source> reference(const Json& json, const Path& path);
 
   json::Report report_;
+  const Limits& limits_;
+  uint64_t ui_ = 0;  ///< bytes
   Graph graph_;
 };
 
@@ -142,11 +154,13 @@ bool Reader::numbers(const Json& json, const Path& path, ir::Components& out) {
 std::optional<Source> Reader::source(const Json& json, const Path& path) {
   if (json.is_number()) return Source{Literal{ir::Type::Float, {json.get<double>()}}, {}};
   if (json.is_boolean()) return Source{Literal{ir::Type::Bool, {json.get<bool>() ? 1.0 : 0.0}}, {}};
+  if (json.is_string()) return Source{Choice{std::string(textOf(json, path, "the value"))}, {}};
   if (json.is_object()) return reference(json, path);
   if (!json.is_array()) {
     report_.wrongType(
         path, "the source", json,
-        "a number, true, false, an array of 2 to 4 numbers or an object such as {\"given\": \"uv0\"}");
+        "a number, true, false, the name of a value, an array of 2 to 4 numbers or an object such as "
+        "{\"given\": \"uv0\"}");
     return std::nullopt;
   }
   if (json.size() < 2 || json.size() > 4) {
@@ -161,9 +175,9 @@ std::optional<Source> Reader::source(const Json& json, const Path& path) {
 }
 
 std::optional<Source> Reader::reference(const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 7> kKeys = {"value", "parameter", "texture", "given",
-                                                     "node",  "output",    "swizzle"};
-  constexpr size_t kKinds = 5;
+  constexpr std::array<std::string_view, 8> kKeys = {"value", "parameter", "texture", "given",
+                                                     "node",  "input",     "output",  "swizzle"};
+  constexpr size_t kKinds = 6;
   if (!object(json, path, "a source", kKeys)) return std::nullopt;
   std::vector<std::string_view> kinds;
   for (const std::string_view kind : Keys(kKeys).first(kKinds)) {
@@ -194,6 +208,7 @@ std::optional<Source> Reader::reference(const Json& json, const Path& path) {
     if (kind == "parameter") result.from = ParameterRef{name};
     if (kind == "texture") result.from = TextureRef{name};
     if (kind == "given") result.from = GivenRef{name};
+    if (kind == "input") result.from = InputRef{name};
     if (kind == "node") result.from = NodeRef{name, optionalText(json, path, "output")};
   }
   if (kind != "node" && json::member(json, "output") != nullptr) {
@@ -229,11 +244,11 @@ std::optional<ir::Type> Reader::typeOf(const Json& json, const Path& path, std::
 void Reader::parameterValue(const Json& json, const Path& path, std::string_view name, ir::Type type,
                             ir::Components& out) {
   const int count = ir::componentCount(type);
-  if (type == ir::Type::Bool) {
-    if (!json.is_boolean()) return report_.wrongType(path, name, json, "true or false, for a bool");
-    out[0] = json.get<bool>() ? 1 : 0;
+  if (ir::partType(type) == ir::Type::Bool) {
+    truths(json, path, name, type, out);
   } else if (count == 1) {
-    if (!json.is_number()) return report_.wrongType(path, name, json, "a number, for a float");
+    if (!json.is_number())
+      return report_.wrongType(path, name, json, fmt::format("a number, for {}", article(type)));
     out[0] = json.get<double>();
   } else {
     const std::string expected = fmt::format("an array of {} numbers, for a {}", count, ir::typeName(type));
@@ -247,6 +262,25 @@ void Reader::parameterValue(const Json& json, const Path& path, std::string_view
   }
 }
 
+/// A bool, or those of a vector.
+void Reader::truths(const Json& json, const Path& path, std::string_view name, ir::Type type,
+                    ir::Components& out) {
+  const auto count = static_cast<size_t>(ir::componentCount(type));
+  if (count == 1) {
+    if (!json.is_boolean()) return report_.wrongType(path, name, json, "true or false, for a bool");
+    out[0] = json.get<bool>() ? 1 : 0;
+    return;
+  }
+  const bool fits = json.is_array() && json.size() == count;
+  for (size_t i = 0; fits && i < count; ++i) {
+    if (!json[i].is_boolean())
+      return report_.wrongType(Path(path, i), "the component", json[i], "true or false");
+    out[i] = json[i].get<bool>() ? 1 : 0;
+  }
+  if (!fits)
+    report_.wrongType(path, name, json, fmt::format("an array of {} truths, for {}", count, article(type)));
+}
+
 double Reader::bound(const Json& json, const Path& path, double infinite) {
   if (json.is_null()) return infinite;
   if (json.is_number()) return json.get<double>();
@@ -254,97 +288,230 @@ double Reader::bound(const Json& json, const Path& path, double infinite) {
   return infinite;
 }
 
-void Reader::parameterRange(const Json& json, const Path& path, ir::Parameter& parameter) {
+/// "range" and "or_zero" of a parameter or a group's input.
+void Reader::range(const Json& json, const Path& path, ir::Range& range) {
   constexpr std::string_view kExpected = "an array of the lowest and the highest value";
-  if (!json.is_array()) return report_.wrongType(path, "range", json, kExpected);
-  if (json.size() != 2) {
-    return report_.error("wrong-count", path, fmt::format("range has {}", countOf(json.size(), "element")),
-                         fmt::format("it must be {}", kExpected));
+  if (const Json* ends = json::member(json, "range")) {
+    const Path here(path, "range");
+    const ir::Interval all;
+    if (!ends->is_array()) {
+      report_.wrongType(here, "range", *ends, kExpected);
+    } else if (ends->size() != 2) {
+      report_.error("wrong-count", here, fmt::format("range has {}", countOf(ends->size(), "element")),
+                    fmt::format("it must be {}", kExpected));
+    } else {
+      range = {{bound((*ends)[0], Path(here, size_t{0}), all.lo),
+                bound((*ends)[1], Path(here, size_t{1}), all.hi)},
+               0};
+    }
   }
-  const ir::Interval all;
-  parameter.range = {
-      {bound(json[0], Path(path, size_t{0}), all.lo), bound(json[1], Path(path, size_t{1}), all.hi)}, 0};
-}
-
-/// 0 beside a range that begins above it.
-void Reader::parameterOrZero(const Json& json, const Path& path, ir::Parameter& parameter) {
-  if (!json.is_boolean()) return report_.wrongType(path, "or_zero", json, "true or false");
-  if (!json.get<bool>()) return;
-  if (!(parameter.range.lo > 0)) {
-    return report_.error("wrong-range", path, "\"or_zero\" stands beside a range that does not begin above 0",
+  const Json* zero = json::member(json, "or_zero");
+  if (zero == nullptr || !flag(json, path, "or_zero")) return;
+  if (!(range.lo > 0)) {
+    return report_.error("wrong-range", Path(path, "or_zero"),
+                         "\"or_zero\" stands beside a range that does not begin above 0",
                          "leave it out: the range says by itself whether it holds 0");
   }
-  parameter.range = {{0, parameter.range.hi}, parameter.range.lo};
+  range = {{0, range.hi}, range.lo};
 }
 
 void Reader::parameter(std::string_view name, const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 7> kKeys = {"type",    "value",   "range",   "or_zero",
-                                                     "pointer", "default", "animated"};
+  constexpr std::array<std::string_view, 8> kKeys = {"type",    "value",   "range",    "or_zero",
+                                                     "pointer", "default", "animated", "ui"};
   if (!object(json, path, "a parameter", kKeys)) return;
-  ir::Parameter parameter;
+  Parameter parameter;
   parameter.name = name;
   const std::optional<ir::Type> known =
-      typeOf(json, path, "parameter", valueType, "it is a float, vec2, vec3, vec4 or bool");
+      typeOf(json, path, "parameter", valueType, "it is a float, an int, a uint, a bool or a vector of them");
   parameter.type = known.value_or(ir::Type::Float);
   const Json* value = required(json, path, "the parameter", "value");
   if (value != nullptr && known)
     parameterValue(*value, Path(path, "value"), "value", parameter.type, parameter.value);
-  if (const Json* range = json::member(json, "range")) parameterRange(*range, Path(path, "range"), parameter);
-  if (const Json* zero = json::member(json, "or_zero"))
-    parameterOrZero(*zero, Path(path, "or_zero"), parameter);
+  range(json, path, parameter.range);
   parameter.pointer = optionalText(json, path, "pointer");
   if (const Json* by_default = json::member(json, "default"); by_default != nullptr && known)
     parameterValue(*by_default, Path(path, "default"), "default", parameter.type, parameter.neutral);
-  if (const Json* animated = json::member(json, "animated")) {
-    parameter.animated = *animated == true;
-    if (!animated->is_boolean())
-      report_.wrongType(Path(path, "animated"), "animated", *animated, "true or false");
-  }
+  parameter.animated = flag(json, path, "animated");
+  parameter.ui = ui(json, path);
   graph_.parameters.push_back(std::move(parameter));
 }
 
+/// A member that is true; false where it is absent.
+bool Reader::flag(const Json& json, const Path& path, std::string_view name) {
+  const Json* found = json::member(json, name);
+  if (found == nullptr) return false;
+  if (!found->is_boolean()) report_.wrongType(Path(path, name), name, *found, "true or false");
+  return *found == true;
+}
+
+/// What a tool keeps there: any JSON, on one line.
+std::string Reader::ui(const Json& json, const Path& path) {
+  const Json* found = json::member(json, "ui");
+  if (found == nullptr) return {};
+  std::string text = found->dump();
+  if (ui_ <= limits_.ui && text.size() > limits_.ui - ui_) {
+    report_.error("ui-too-large", Path(path, "ui"),
+                  fmt::format("with this the graph's \"ui\" has more than {} bytes", limits_.ui),
+                  raising("ui"));
+  }
+  ui_ += text.size();
+  return text;
+}
+
+void Reader::textureIndex(const Json& json, const Path& path, Texture& texture) {
+  constexpr std::string_view kExpected = "a whole number, the index of a glTF texture";
+  const std::optional<double> whole = report_.wholeNumber(path, "texture", json, kExpected);
+  if (whole && *whole >= 0 && *whole < std::numeric_limits<int>::max()) {
+    texture.texture = static_cast<int>(*whole);
+  } else if (whole) {
+    report_.error("index-out-of-range", path, fmt::format("texture {} is out of range", *whole),
+                  fmt::format("it must be {}", kExpected));
+  }
+}
+
+/// How an image that is a file is looked up.
+void Reader::sampler(const Json& json, const Path& path, Texture& texture) {
+  constexpr std::array<std::string_view, 3> kWraps = {"repeat", "clamp", "mirror"};
+  constexpr std::array<std::string_view, 2> kFilters = {"linear", "nearest"};
+  const auto word = [&](const Json& value, const Path& at, std::string_view name, Keys words) -> size_t {
+    const std::string expected = listOf(words, "or");
+    if (!value.is_string()) return report_.wrongType(at, name, value, expected), 0;
+    const auto found = std::find(words.begin(), words.end(), value.text());
+    if (found != words.end()) return static_cast<size_t>(found - words.begin());
+    report_.error(fmt::format("unknown-{}", name), at, fmt::format("no {} is {}", name, quote(value.text())),
+                  fmt::format("it is {}", expected));
+    return 0;
+  };
+  if (const Json* wrap = json::member(json, "wrap")) {
+    const Path here(path, "wrap");
+    if (wrap->is_array() && wrap->size() != 2) {
+      report_.error("wrong-count", here, fmt::format("wrap has {}", countOf(wrap->size(), "element")),
+                    "it is a word for both directions, or an array of the words for s and t");
+    }
+    for (size_t i = 0; i < 2 && !(wrap->is_array() && wrap->size() != 2); ++i) {
+      texture.wrap[i] = static_cast<Wrap>(wrap->is_array() ? word((*wrap)[i], Path(here, i), "wrap", kWraps)
+                                                           : word(*wrap, here, "wrap", kWraps));
+      if (!wrap->is_array()) texture.wrap[1] = texture.wrap[0];
+      if (!wrap->is_array()) break;
+    }
+  }
+  if (const Json* filter = json::member(json, "filter"))
+    texture.nearest = word(*filter, Path(path, "filter"), "filter", kFilters) == 1;
+}
+
 void Reader::texture(std::string_view name, const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 4> kKeys = {"type", "srgb", "texture", "pointer"};
+  constexpr std::array<std::string_view, 9> kKeys = {"type",   "srgb",    "texture", "file", "wrap",
+                                                     "filter", "default", "pointer", "ui"};
   if (!object(json, path, "a texture", kKeys)) return;
-  ir::TextureSlot slot;
+  Texture slot;
   slot.name = name;
   const std::optional<ir::Type> known =
       typeOf(json, path, "texture", textureType, "it is a sampler2D or a samplerCube");
   slot.type = known.value_or(ir::Type::Texture2D);
-  if (const Json* srgb = json::member(json, "srgb")) {
-    if (srgb->is_boolean())
-      slot.srgb = srgb->get<bool>();
-    else
-      report_.wrongType(Path(path, "srgb"), "srgb", *srgb, "true or false");
-  }
-  if (const Json* index = json::member(json, "texture")) {
-    const Path here(path, "texture");
-    constexpr std::string_view kExpected = "a whole number, the index of a glTF texture";
-    const std::optional<double> whole = report_.wholeNumber(here, "texture", *index, kExpected);
-    if (whole && *whole >= 0 && *whole < std::numeric_limits<int>::max()) {
-      slot.texture = static_cast<int>(*whole);
-    } else if (whole) {
-      report_.error("index-out-of-range", here, fmt::format("texture {} is out of range", *whole),
-                    fmt::format("it must be {}", kExpected));
-    }
-  }
+  slot.srgb = flag(json, path, "srgb");
+  if (const Json* index = json::member(json, "texture")) textureIndex(*index, Path(path, "texture"), slot);
+  slot.file = optionalText(json, path, "file");
+  sampler(json, path, slot);
+  if (const Json* color = json::member(json, "default"))
+    parameterValue(*color, Path(path, "default"), "default", ir::Type::Vec4, slot.color.emplace());
   slot.pointer = optionalText(json, path, "pointer");
+  slot.ui = ui(json, path);
   graph_.textures.push_back(std::move(slot));
+}
+
+// -- groups --
+
+GroupInput Reader::groupInput(std::string_view name, const Json& json, const Path& path) {
+  constexpr std::array<std::string_view, 5> kKeys = {"type", "default", "range", "or_zero", "ui"};
+  GroupInput input;
+  input.name = name;
+  if (!object(json, path, "an input", kKeys)) return input;
+  const std::optional<ir::Type> known =
+      typeOf(json, path, "input", inputType,
+             "it is a float, an int, a uint, a bool, a vector of them, a matrix or a texture");
+  input.type = known.value_or(ir::Type::Float);
+  if (const Json* value = json::member(json, "default"))
+    input.by_default = source(*value, Path(path, "default"));
+  range(json, path, input.range);
+  input.ui = ui(json, path);
+  return input;
+}
+
+void Reader::group(std::string_view name, const Json& json, const Path& path) {
+  constexpr std::array<std::string_view, 4> kKeys = {"inputs", "nodes", "outputs", "ui"};
+  if (!object(json, path, "a group", kKeys)) return;
+  Group group;
+  group.name = name;
+  eachMember(json, path, "inputs", [&](const std::string& input, const Json& value, const Path& here) {
+    group.inputs.push_back(groupInput(input, value, here));
+  });
+  nodes(json, path, group.nodes);
+  outputs(json, path, group.outputs);
+  group.ui = ui(json, path);
+  graph_.groups.push_back(std::move(group));
 }
 
 // -- nodes --
 
-void Reader::node(const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 4> kKeys = {"id", "node", "variant", "inputs"};
+void Reader::term(const Json& json, const Path& path, Node& node) {
+  node.term = optionalText(json, path, "term");
+  const Json* place = json::member(json, "place");
+  if (place == nullptr) return;
+  const Path here(path, "place");
+  constexpr std::string_view kExpected = "a whole number from 0 on";
+  const std::optional<double> whole = report_.wholeNumber(here, "place", *place, kExpected);
+  if (whole && *whole >= 0 && *whole < Node::kAnyPlace) {
+    node.place = static_cast<uint32_t>(*whole);
+  } else if (whole) {
+    report_.error("index-out-of-range", here, fmt::format("place {} is out of range", *whole),
+                  fmt::format("it must be {}", kExpected));
+  }
+}
+
+void Reader::node(const Json& json, const Path& path, std::vector<Node>& to) {
+  constexpr std::array<std::string_view, 9> kKeys = {"id",   "node",  "group",  "variant", "stage",
+                                                     "term", "place", "inputs", "ui"};
   if (!object(json, path, "a node", kKeys)) return;
   Node node;
   node.id = requiredText(json, path, "the node", "id");
-  node.type = requiredText(json, path, "the node", "node");
+  node.group = json::member(json, "group") != nullptr;
+  if (node.group && json::member(json, "node") != nullptr)
+    report_.error("wrong-node", path, "the node is one of the library's and a group at once",
+                  "it has one of \"node\" and \"group\"");
+  node.type = requiredText(json, path, "the node", node.group ? "group" : "node");
   node.variant = optionalText(json, path, "variant");
+  if (const Json* stage = json::member(json, "stage")) {
+    node.at_vertices = *stage == "vertex";
+    if (!node.at_vertices)
+      report_.error("unknown-stage", Path(path, "stage"),
+                    "a node is computed at the fragments or at the vertices",
+                    "write \"vertex\", or leave \"stage\" out");
+  }
+  for (const std::string_view of_library : {"variant", "stage", "term", "place"}) {
+    if (!node.group || json::member(json, of_library) == nullptr) continue;
+    report_.error("unknown-key", Path(path, of_library), fmt::format("a group has no \"{}\"", of_library),
+                  "the nodes in it may have one");
+  }
+  term(json, path, node);
   eachMember(json, path, "inputs", [&](const std::string& name, const Json& value, const Path& here) {
     if (std::optional<Source> from = source(value, here)) node.inputs.emplace_back(name, std::move(*from));
   });
-  graph_.nodes.push_back(std::move(node));
+  node.ui = ui(json, path);
+  to.push_back(std::move(node));
+}
+
+void Reader::nodes(const Json& json, const Path& path, std::vector<Node>& to) {
+  const Json* list = json::member(json, "nodes");
+  if (list == nullptr) return;
+  const Path here(path, "nodes");
+  if (!list->is_array()) return report_.wrongType(here, "nodes", *list, "an array");
+  for (size_t i = 0; i < list->size(); ++i) node((*list)[i], Path(here, i), to);
+}
+
+void Reader::outputs(const Json& json, const Path& path, Outputs& to) {
+  eachMember(json, path, "outputs", [&](const std::string& port, const Json& value, const Path& here) {
+    if (std::optional<Source> from = source(value, here)) to.emplace_back(port, std::move(*from));
+  });
 }
 
 bool Reader::version(const Json& json, const Path& path) {
@@ -371,9 +538,9 @@ bool Reader::version(const Json& json, const Path& path) {
 }
 
 Graph Reader::graph(const Json& json) {
-  constexpr std::array<std::string_view, 9> kKeys = {"lacquer_graph", "name",       "template",
-                                                     "attributes",    "parameters", "textures",
-                                                     "nodes",         "outputs",    "skipped"};
+  constexpr std::array<std::string_view, 11> kKeys = {"lacquer_graph", "name",     "template", "attributes",
+                                                      "parameters",    "textures", "groups",   "nodes",
+                                                      "outputs",       "skipped",  "ui"};
   const Path root;
   if (!version(json, root)) return {};
   object(json, root, "the graph", kKeys);
@@ -391,19 +558,43 @@ Graph Reader::graph(const Json& json) {
   eachMember(json, root, "textures", [&](const std::string& name, const Json& value, const Path& here) {
     texture(name, value, here);
   });
-  if (const Json* nodes = json::member(json, "nodes")) {
-    const Path here(root, "nodes");
-    if (!nodes->is_array()) report_.wrongType(here, "nodes", *nodes, "an array");
-    for (size_t i = 0; nodes->is_array() && i < nodes->size(); ++i) node((*nodes)[i], Path(here, i));
-  }
+  eachMember(json, root, "groups",
+             [&](const std::string& name, const Json& value, const Path& here) { group(name, value, here); });
+  nodes(json, root, graph_.nodes);
   required(json, root, "the graph", "outputs");
-  eachMember(json, root, "outputs", [&](const std::string& port, const Json& value, const Path& here) {
-    if (std::optional<Source> from = source(value, here)) graph_.outputs.emplace_back(port, std::move(*from));
-  });
+  outputs(json, root, graph_.outputs);
   eachMember(json, root, "skipped", [&](const std::string& term, const Json& value, const Path& here) {
     graph_.skipped.push_back({term, textOf(value, here, "the reason")});
   });
+  graph_.ui = ui(json, root);
   return std::move(graph_);
+}
+
+/// Lists that are longer than a graph's may be.
+Result<void> checkSizes(const Json& json, const std::string& file, const Limits& limits) {
+  const auto tooLarge = [&](const Json* items, const std::string& pointer, std::string_view list) {
+    return fail("graph-too-large", {file, 0, 0, pointer},
+                fmt::format("the graph has {} {}, more than {}", items->size(), list, limits.nodes),
+                raising("nodes"));
+  };
+  for (const std::string_view list : {"nodes", "parameters", "textures", "groups"}) {
+    const Json* items = json::member(json, list);
+    if (items != nullptr && items->size() > limits.nodes)
+      return tooLarge(items, fmt::format("/{}", list), list);
+  }
+  const Json* groups = json::member(json, "groups");
+  if (groups == nullptr || !groups->is_object()) return {};
+  const Path root;
+  const Path of_groups(root, "groups");
+  for (const auto& [name, group] : groups->items()) {
+    for (const std::string_view list : {"inputs", "nodes"}) {
+      const Json* items = json::member(group, list);
+      if (items == nullptr || items->size() <= limits.nodes) continue;
+      const Path here(of_groups, name);
+      return tooLarge(items, Path(here, list).text(), list);
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -411,15 +602,10 @@ Graph Reader::graph(const Json& json) {
 Result<Graph> fromJson(std::string_view text, const std::string& name, const Limits& limits) {
   const Result<Json> json = parse(text, name, limits);
   if (!json) return tl::make_unexpected(json.error());
-  for (const std::string_view list : {"nodes", "parameters", "textures"}) {
-    const Json* items = json::member(*json, list);
-    if (items == nullptr || items->size() <= limits.nodes) continue;
-    return fail("graph-too-large", {name, 0, 0, fmt::format("/{}", list)},
-                fmt::format("the graph has {} {}, more than {}", items->size(), list, limits.nodes),
-                raising("nodes"));
-  }
+  if (Result<void> sized = checkSizes(*json, name, limits); !sized)
+    return tl::make_unexpected(std::move(sized.error()));
   Diagnostics wrong;
-  Graph graph = Reader(name, wrong).graph(*json);
+  Graph graph = Reader(name, limits, wrong).graph(*json);
   if (wrong.empty()) return graph;
   shorten(wrong);
   return tl::make_unexpected(std::move(wrong));
@@ -427,10 +613,11 @@ Result<Graph> fromJson(std::string_view text, const std::string& name, const Lim
 
 Result<Source> sourceFromJson(std::string_view text) {
   const std::string file;
-  const Result<Json> json = parse(text, file, {});
+  const Limits limits;
+  const Result<Json> json = parse(text, file, limits);
   if (!json) return tl::make_unexpected(json.error());
   Diagnostics wrong;
-  const std::optional<Source> source = Reader(file, wrong).source(*json, Path());
+  const std::optional<Source> source = Reader(file, limits, wrong).source(*json, Path());
   if (source && wrong.empty()) return *source;
   return tl::make_unexpected(std::move(wrong));
 }

@@ -20,12 +20,14 @@ std::string number(double x) {
 }
 
 std::string value(ir::Type type, const ir::Components& components) {
-  if (type == ir::Type::Bool) return components[0] != 0 ? "true" : "false";
-  if (!ir::isFloatVector(type)) return number(components[0]);
+  const bool truths = ir::partType(type) == ir::Type::Bool;
+  const auto one = [&](int i) {
+    const double x = components[static_cast<size_t>(i)];
+    return truths ? x != 0 ? "true" : "false" : number(x);
+  };
+  if (ir::componentCount(type) == 1) return one(0);
   std::string text = "[";
-  for (int i = 0; i < ir::componentCount(type); ++i) {
-    text += (i == 0 ? "" : ", ") + number(components[static_cast<size_t>(i)]);
-  }
+  for (int i = 0; i < ir::componentCount(type); ++i) text += (i == 0 ? "" : ", ") + one(i);
   return text + "]";
 }
 
@@ -41,6 +43,10 @@ std::string source(const Source& source) {
       return "\"texture\": " + json::quotedText(ref.name);
     }
     std::string operator()(const GivenRef& ref) const { return "\"given\": " + json::quotedText(ref.name); }
+    std::string operator()(const Choice& choice) const {
+      return "\"value\": " + json::quotedText(choice.name);
+    }
+    std::string operator()(const InputRef& ref) const { return "\"input\": " + json::quotedText(ref.name); }
     std::string operator()(const NodeRef& ref) const {
       const std::string node = "\"node\": " + json::quotedText(ref.node);
       return ref.output.empty() ? node : node + ", \"output\": " + json::quotedText(ref.output);
@@ -50,6 +56,7 @@ std::string source(const Source& source) {
       literal != nullptr && source.swizzle.empty()) {
     return value(literal->type, literal->value);
   }
+  if (const auto* choice = std::get_if<Choice>(&source.from)) return json::quotedText(choice->name);
   std::string text = "{" + std::visit(Members{}, source.from);
   if (!source.swizzle.empty()) text += ", \"swizzle\": " + json::quotedText(source.swizzle);
   return text + "}";
@@ -75,44 +82,90 @@ std::string sources(size_t indent, const std::vector<std::pair<std::string, Sour
   return block("{}", indent, items);
 }
 
-std::string parameter(const ir::Parameter& parameter) {
-  std::string text = fmt::format("{{\"type\": \"{}\", \"value\": {}", ir::typeName(parameter.type),
-                                 value(parameter.type, parameter.value));
-  const ir::Range& range = parameter.range;
+/// Behind other members, each with a comma before it; nothing for all numbers.
+std::string rangeMembers(const ir::Range& range) {
+  std::string text;
   if (!(range == ir::Range{})) {
     text +=
         fmt::format(", \"range\": [{}, {}]", number(range.gap > 0 ? range.gap : range.lo), number(range.hi));
   }
   if (range.gap > 0) text += ", \"or_zero\": true";
+  return text;
+}
+
+std::string uiMember(const std::string& ui) { return ui.empty() ? ui : ", \"ui\": " + ui; }
+
+std::string parameter(const Parameter& parameter) {
+  std::string text = fmt::format("{{\"type\": \"{}\", \"value\": {}", ir::typeName(parameter.type),
+                                 value(parameter.type, parameter.value));
+  text += rangeMembers(parameter.range);
   if (!parameter.pointer.empty()) text += ", " + member("pointer", json::quotedText(parameter.pointer));
   if (parameter.neutral != ir::Components{})
     text += fmt::format(", \"default\": {}", value(parameter.type, parameter.neutral));
   if (parameter.animated) text += ", \"animated\": true";
-  return text + "}";
+  return text + uiMember(parameter.ui) + "}";
 }
 
-std::string texture(const ir::TextureSlot& slot) {
+std::string texture(const Texture& slot) {
+  constexpr std::string_view kWraps[] = {"\"repeat\"", "\"clamp\"", "\"mirror\""};
+  const auto wrap = [&](size_t i) { return kWraps[static_cast<size_t>(slot.wrap[i])]; };
   std::string text = fmt::format("{{\"type\": \"{}\", \"srgb\": {}", ir::typeName(slot.type), slot.srgb);
   if (slot.texture != -1) text += fmt::format(", \"texture\": {}", slot.texture);
+  if (!slot.file.empty()) text += ", " + member("file", json::quotedText(slot.file));
+  if (slot.wrap[0] != slot.wrap[1])
+    text += fmt::format(", \"wrap\": [{}, {}]", wrap(0), wrap(1));
+  else if (slot.wrap[0] != Wrap::Repeat)
+    text += fmt::format(", \"wrap\": {}", wrap(0));
+  if (slot.nearest) text += ", \"filter\": \"nearest\"";
+  if (slot.color) text += ", " + member("default", value(ir::Type::Vec4, *slot.color));
   if (!slot.pointer.empty()) text += ", " + member("pointer", json::quotedText(slot.pointer));
-  return text + "}";
+  return text + uiMember(slot.ui) + "}";
 }
 
-std::string node(const Node& node) {
+std::string node(const Node& node, size_t indent) {
   std::vector<std::string> items = {member("id", json::quotedText(node.id)),
-                                    member("node", json::quotedText(node.type))};
+                                    member(node.group ? "group" : "node", json::quotedText(node.type))};
   if (!node.variant.empty()) items.push_back(member("variant", json::quotedText(node.variant)));
-  items.push_back(member("inputs", sources(6, node.inputs)));
+  if (node.at_vertices) items.push_back(member("stage", "\"vertex\""));
+  // What says how it becomes code is on one line.
+  std::string code;
+  if (!node.term.empty()) code = member("term", json::quotedText(node.term));
+  if (node.place != Node::kAnyPlace)
+    code += fmt::format("{}\"place\": {}", code.empty() ? "" : ", ", node.place);
+  if (!code.empty()) items.push_back(std::move(code));
+  items.push_back(member("inputs", sources(indent + 2, node.inputs)));
+  if (!node.ui.empty()) items.push_back(member("ui", node.ui));
+  return block("{}", indent, items);
+}
+
+std::string nodeList(const std::vector<Node>& nodes, size_t indent) {
+  std::vector<std::string> items;
+  items.reserve(nodes.size());
+  for (const Node& one : nodes) items.push_back(node(one, indent + 2));
+  return block("[]", indent, items);
+}
+
+std::string group(const Group& group) {
+  std::vector<std::string> inputs;
+  for (const GroupInput& input : group.inputs) {
+    std::string text = fmt::format("{{\"type\": \"{}\"", ir::typeName(input.type));
+    if (input.by_default) text += ", " + member("default", source(*input.by_default));
+    inputs.push_back(member(input.name, text + rangeMembers(input.range) + uiMember(input.ui) + "}"));
+  }
+  std::vector<std::string> items = {member("inputs", block("{}", 6, inputs)),
+                                    member("nodes", nodeList(group.nodes, 6)),
+                                    member("outputs", sources(6, group.outputs))};
+  if (!group.ui.empty()) items.push_back(member("ui", group.ui));
   return block("{}", 4, items);
 }
 
 }  // namespace
 
 std::string toJson(const Graph& graph) {
-  std::vector<std::string> parameters, textures, nodes, skipped;
-  for (const ir::Parameter& p : graph.parameters) parameters.push_back(member(p.name, parameter(p)));
-  for (const ir::TextureSlot& t : graph.textures) textures.push_back(member(t.name, texture(t)));
-  for (const Node& n : graph.nodes) nodes.push_back(node(n));
+  std::vector<std::string> parameters, textures, groups, skipped;
+  for (const Parameter& p : graph.parameters) parameters.push_back(member(p.name, parameter(p)));
+  for (const Texture& t : graph.textures) textures.push_back(member(t.name, texture(t)));
+  for (const Group& g : graph.groups) groups.push_back(member(g.name, group(g)));
   for (const Skipped& s : graph.skipped) skipped.push_back(member(s.term, json::quotedText(s.reason)));
   std::vector<std::string> items = {
       member("lacquer_graph", "1"),
@@ -120,10 +173,12 @@ std::string toJson(const Graph& graph) {
       member("template", json::quotedText(graph.template_name)),
       member("parameters", block("{}", 2, parameters)),
       member("textures", block("{}", 2, textures)),
-      member("nodes", block("[]", 2, nodes)),
+      member("nodes", nodeList(graph.nodes, 2)),
       member("outputs", sources(2, graph.outputs)),
       member("skipped", block("{}", 2, skipped)),
   };
+  if (!graph.groups.empty()) items.insert(items.end() - 3, member("groups", block("{}", 2, groups)));
+  if (!graph.ui.empty()) items.push_back(member("ui", graph.ui));
   if (!graph.attributes.empty()) {
     std::string list;
     for (const std::string& name : graph.attributes)

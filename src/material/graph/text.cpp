@@ -27,11 +27,25 @@ std::optional<Type> oneOf(std::string_view name, std::initializer_list<Type> typ
 bool fitsFloat(double x) { return std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max()); }
 
 std::optional<Type> valueType(std::string_view name) {
-  return oneOf(name, {Type::Float, Type::Vec2, Type::Vec3, Type::Vec4, Type::Bool});
+  return oneOf(name, {Type::Float, Type::Vec2, Type::Vec3, Type::Vec4, Type::Bool, Type::BVec2, Type::BVec3,
+                      Type::BVec4, Type::Int, Type::IVec2, Type::IVec3, Type::IVec4, Type::UInt, Type::UVec2,
+                      Type::UVec3, Type::UVec4});
 }
 
 std::optional<Type> textureType(std::string_view name) {
   return oneOf(name, {Type::Texture2D, Type::TextureCube});
+}
+
+std::optional<Type> inputType(std::string_view name) {
+  for (const Type type : ir::kTypes) {
+    if (ir::typeName(type) == name) return type;
+  }
+  return std::nullopt;
+}
+
+std::string article(Type type) {
+  const std::string_view name = ir::typeName(type);
+  return (name[0] == 'i' ? "an " : "a ") + std::string(name);
 }
 
 bool isName(std::string_view text) {

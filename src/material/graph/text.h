@@ -14,6 +14,10 @@ namespace lacquer::graph {
 /// type.
 std::optional<ir::Type> valueType(std::string_view name);
 std::optional<ir::Type> textureType(std::string_view name);
+/// Of any value, matrices among them, or of a texture.
+std::optional<ir::Type> inputType(std::string_view name);
+/// "a float", "an int".
+std::string article(ir::Type type);
 
 /// Shaders compute with 32-bit floats: in one a larger number would be infinite. False for what is no number,
 /// too.
@@ -22,6 +26,8 @@ inline constexpr std::string_view kFloatHelp = "it must fit a 32-bit float: at m
 
 /// Letters, digits and underscores, a letter or an underscore first.
 bool isName(std::string_view text);
+inline constexpr std::string_view kNameHelp =
+    "a name has letters, digits and underscores, and begins with no digit";
 
 /// Names joined by dots: a node's id.
 bool isDottedName(std::string_view text);

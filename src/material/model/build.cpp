@@ -78,8 +78,14 @@ void Writer::mark(const Found& value) {
 Source Writer::editable(std::string name, ir::Type type, ir::Components value, const ir::Range& range,
                         const std::string& pointer, const ir::Components& neutral, bool animated) {
   if (!graph_.findParameter(name)) {
-    graph_.parameters.push_back({name, type, value, range, pointer, neutral});
-    graph_.parameters.back().animated = animated;
+    graph::Parameter& parameter = graph_.parameters.emplace_back();
+    parameter.name = name;
+    parameter.type = type;
+    parameter.value = value;
+    parameter.range = range;
+    parameter.pointer = pointer;
+    parameter.neutral = neutral;
+    parameter.animated = animated;
   }
   return {graph::ParameterRef{std::move(name)}, {}};
 }
@@ -150,7 +156,7 @@ Source Writer::texel(uint16_t property) {
   for (const auto& [known, source] : texels_) {
     if (known == key) return source;
   }
-  ir::TextureSlot texture;
+  graph::Texture texture;
   texture.name = slot + "_texture";
   texture.srgb = row.decl->srgb && !options_.decode_srgb;
   texture.texture = info.texture;
@@ -269,6 +275,11 @@ void Writer::run(const lang::TemplateDecl& template_decl) {
   if (!resolver_.wrong().empty()) return;
   writeOrdered();
   for (const auto& [name, value] : ports) graph_.outputs.emplace_back(name, source(value));
+  // A line is a term, which the code tells, in the order of the layers.
+  for (size_t i = 0; i < graph_.nodes.size(); ++i) {
+    graph_.nodes[i].term = graph_.nodes[i].id;
+    graph_.nodes[i].place = static_cast<uint32_t>(i);
+  }
   notTaken();
 }
 
