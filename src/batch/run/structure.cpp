@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cache/option_key.h"
+#include "graph/edit.h"
 #include "interface/entry.h"
 #include "interface/interface.h"
 #include "lower/lower.h"
@@ -82,43 +83,6 @@ private:
   KeyBuilder& key_;
   bool values_;
 };
-
-void narrow(ir::Range& range, const ir::Range& by) {
-  range.lo = std::max(range.lo, by.lo);
-  range.hi = std::min(range.hi, by.hi);
-  range.gap = std::max(range.gap, by.gap);
-  if (range.lo > 0) range.lo = std::max(range.lo, range.gap);
-}
-
-/// For each parameter the values that its own range and every input or port it goes to accept.
-std::vector<ir::Range> limitsOf(const graph::Graph& graph, const lang::Library& library) {
-  std::vector<ir::Range> limits;
-  for (const ir::Parameter& p : graph.parameters) limits.push_back(p.range);
-  const auto meet = [&](const graph::Source& source, const lang::Param& contract) {
-    const auto* ref = std::get_if<graph::ParameterRef>(&source.from);
-    if (ref == nullptr || !contract.has_range) return;
-    for (size_t i = 0; i < graph.parameters.size(); ++i) {
-      if (graph.parameters[i].name == ref->name) narrow(limits[i], contract.range);
-    }
-  };
-  for (const graph::Node& node : graph.nodes) {
-    const Result<const lang::NodeDecl*> decl = library.node(node.type);
-    if (!decl) continue;
-    for (const auto& [name, source] : node.inputs) {
-      for (const lang::Param& param : (*decl)->params) {
-        if (param.name == name) meet(source, param);
-      }
-    }
-  }
-  const Result<const lang::TemplateDecl*> decl = library.template_(graph.template_name);
-  for (const auto& [name, source] : graph.outputs) {
-    if (!decl) break;
-    for (const lang::PortDecl& port : (*decl)->ports) {
-      if (port.param.name == name) meet(source, port.param);
-    }
-  }
-  return limits;
-}
 
 /// Takes away what belongs to one material.
 graph::Graph withoutMaterial(graph::Graph graph, const std::vector<ir::Range>& limits, bool values) {
@@ -252,7 +216,7 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
 
 std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
                                         const Setting& setting, Structure& structure) {
-  structure.limits = limitsOf(graph, setting.library);
+  structure.limits = graph::parameterLimits(graph, setting.library);
   structure.lights = lights;
   const bool baked = setting.options.parameters == Parameters::Baked;
   graph::Graph plain = withoutMaterial(graph, structure.limits, baked);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "graph/check_body.h"
+#include "graph/edit.h"
 #include "graph/text.h"
 #include "json/path.h"
 #include "support/limits.h"
@@ -28,6 +29,18 @@ public:
   GraphCheck(const Graph& graph, const lang::Library& library, uint64_t most)
       : graph_(graph), library_(library), most_(most), contracts_(graph, library) {}
   Diagnostics run();
+  // For one edit.
+  Diagnostics node(const Group* group, size_t node, const std::string* input);
+  Diagnostics output(const Group* group, size_t output);
+  Diagnostics input(size_t group, size_t input);
+  Diagnostics whole(size_t group);
+  Diagnostics uses(size_t parameter);
+  Diagnostics only(void (GraphCheck::*part)(size_t), size_t index) {
+    (this->*part)(index);
+    return findings_.take();
+  }
+  void parameter(size_t index);
+  void texture(size_t index);
 
 private:
   /// A value that differs with the light or the vertex, or is of the fragment, and the given that brought it:
@@ -43,8 +56,8 @@ private:
   }
   void templateDecl();
   bool rangeOf(const ir::Range& range, std::string_view name, const Spot& spot, std::string pointer);
-  void parameter(size_t index);
-  void textures();
+  const Body& place(const Group* group) const;
+  BodyCheck bodyOf(const Group* group);
   void group(size_t index);
   void groupInput(size_t index, size_t input);
   void nesting();
@@ -129,56 +142,54 @@ void GraphCheck::parameter(size_t index) {
   }
 }
 
-void GraphCheck::textures() {
+void GraphCheck::texture(size_t i) {
   const auto isEnvironment = [&](std::string_view name) {
     const lang::TemplateDecl* decl = contracts_.templateDecl();
     return decl != nullptr && std::any_of(decl->environments.begin(), decl->environments.end(),
                                           [&](const lang::EnvironmentDecl& e) { return e.name == name; });
   };
-  for (size_t i = 0; i < graph_.textures.size(); ++i) {
-    const Texture& t = graph_.textures[i];
-    const Spot spot{Section::Textures, i};
-    const auto at = [&t](std::string_view member = {}) {
-      return pointerTo("textures", t.name) + std::string(member);
-    };
-    if (!isName(t.name)) {
-      error(spot, at(), "wrong-name", fmt::format("{} cannot be the name of a texture", inQuotes(t.name)),
-            std::string(kNameHelp));
-    }
-    if (isEnvironment(t.name)) {
-      error(spot, at(), "duplicate-name",
-            fmt::format("{} is a texture that the template {} gives", inQuotes(t.name),
-                        inQuotes(graph_.template_name)),
-            "give the material's texture another name");
-    }
-    if (graph_.findTexture(t.name) != i) {
-      error(spot, at(), "duplicate-name", fmt::format("there are two textures {}", inQuotes(t.name)));
-    }
-    if (!ir::isTexture(t.type)) {
-      error(spot, at("/type"), "wrong-type", fmt::format("a texture cannot be {}", article(t.type)),
-            "it is a sampler2D or a samplerCube");
-    }
-    if (t.texture < -1) {
-      error(spot, at("/texture"), "out-of-range", fmt::format("there is no texture {}", t.texture),
-            "it is the index of a glTF texture, or -1 for none");
-    }
-    if (t.texture >= 0 && !t.file.empty()) {
-      error(spot, at("/file"), "wrong-texture",
-            fmt::format("{} is a file and a texture of glTF's at once", inQuotes(t.name)),
-            "leave one of \"file\" and \"texture\" out");
-    }
-    for (const double x : t.color.value_or(ir::Components{})) {
-      if (fitsFloat(x)) continue;
-      error(spot, at("/default"), "out-of-range",
-            fmt::format("the default of {} has the component {}", inQuotes(t.name), x),
-            std::string(kFloatHelp));
-      break;
-    }
-    if (t.environment) {
-      error(spot, at(), "wrong-texture",
-            fmt::format("{} is marked as a texture of the environment", inQuotes(t.name)),
-            "those are the template's: a source names them without an entry here");
-    }
+  const Texture& t = graph_.textures[i];
+  const Spot spot{Section::Textures, i};
+  const auto at = [&t](std::string_view member = {}) {
+    return pointerTo("textures", t.name) + std::string(member);
+  };
+  if (!isName(t.name)) {
+    error(spot, at(), "wrong-name", fmt::format("{} cannot be the name of a texture", inQuotes(t.name)),
+          std::string(kNameHelp));
+  }
+  if (isEnvironment(t.name)) {
+    error(spot, at(), "duplicate-name",
+          fmt::format("{} is a texture that the template {} gives", inQuotes(t.name),
+                      inQuotes(graph_.template_name)),
+          "give the material's texture another name");
+  }
+  if (graph_.findTexture(t.name) != i) {
+    error(spot, at(), "duplicate-name", fmt::format("there are two textures {}", inQuotes(t.name)));
+  }
+  if (!ir::isTexture(t.type)) {
+    error(spot, at("/type"), "wrong-type", fmt::format("a texture cannot be {}", article(t.type)),
+          "it is a sampler2D or a samplerCube");
+  }
+  if (t.texture < -1) {
+    error(spot, at("/texture"), "out-of-range", fmt::format("there is no texture {}", t.texture),
+          "it is the index of a glTF texture, or -1 for none");
+  }
+  if (t.texture >= 0 && !t.file.empty()) {
+    error(spot, at("/file"), "wrong-texture",
+          fmt::format("{} is a file and a texture of glTF's at once", inQuotes(t.name)),
+          "leave one of \"file\" and \"texture\" out");
+  }
+  for (const double x : t.color.value_or(ir::Components{})) {
+    if (fitsFloat(x)) continue;
+    error(spot, at("/default"), "out-of-range",
+          fmt::format("the default of {} has the component {}", inQuotes(t.name), x),
+          std::string(kFloatHelp));
+    break;
+  }
+  if (t.environment) {
+    error(spot, at(), "wrong-texture",
+          fmt::format("{} is marked as a texture of the environment", inQuotes(t.name)),
+          "those are the template's: a source names them without an entry here");
   }
 }
 
@@ -278,7 +289,10 @@ void GraphCheck::rates() {
   const bool nested = !graph_.groups.empty();
   const Graph flat = nested ? flattened(graph_, library_) : Graph();
   const Graph& graph = nested ? flat : graph_;
-  const Body body(graph, nullptr);
+  const std::optional<Contracts> of_flat(nested ? std::optional<Contracts>(std::in_place, flat, library_)
+                                                : std::nullopt);
+  const Contracts& contracts = of_flat ? *of_flat : contracts_;
+  const Body& body = contracts.main();
   std::vector<Tied> nodes(graph.nodes.size());
   for (const size_t index : orderOf(body).order) {
     Tied& tied = nodes[index];
@@ -289,7 +303,7 @@ void GraphCheck::rates() {
       if (tied.vertex.empty()) tied.vertex = from.vertex;
       if (tied.fragment.empty()) tied.fragment = from.fragment;
     }
-    tied.ties &= static_cast<Ties>(~contracts_.of(graph.nodes[index])->decl->unties);
+    tied.ties &= static_cast<Ties>(~contracts.of(body.nodes()[index])->decl->unties);
   }
   Names summed;
   for (const lang::PortDecl& port : contracts_.templateDecl()->ports) {
@@ -334,7 +348,7 @@ Diagnostics GraphCheck::run() {
   bodies.emplace_back(graph_, library_, contracts_, contracts_.main(), findings_);
   templateDecl();
   for (size_t i = 0; i < graph_.parameters.size(); ++i) parameter(i);
-  textures();
+  for (size_t i = 0; i < graph_.textures.size(); ++i) texture(i);
   for (size_t i = 0; i < graph_.groups.size(); ++i) group(i);
   Connected libraries;  // what is wrong within the library is said once, however many nodes use it
   for (BodyCheck& body : bodies) body.heads(libraries);
@@ -348,10 +362,144 @@ Diagnostics GraphCheck::run() {
   return findings_.take();
 }
 
+// -- parts --
+
+const Body& GraphCheck::place(const Group* group) const {
+  return group == nullptr ? contracts_.main()
+                          : contracts_.body(static_cast<size_t>(group - graph_.groups.data()));
+}
+
+BodyCheck GraphCheck::bodyOf(const Group* group) {
+  return {graph_, library_, contracts_, place(group), findings_};
+}
+
+Diagnostics GraphCheck::whole(size_t group) {
+  this->group(group);
+  BodyCheck body = bodyOf(&graph_.groups[group]);
+  Connected libraries;
+  body.heads(libraries);
+  body.defaults();
+  body.connections();
+  body.cycles();
+  return findings_.take();
+}
+
+Diagnostics GraphCheck::node(const Group* group, size_t node, const std::string* input) {
+  BodyCheck body = bodyOf(group);
+  const std::vector<Node>& nodes = group == nullptr ? graph_.nodes : group->nodes;
+  Connected libraries;
+  // Of an edit of one input, what else is wrong with a node that is known was there before.
+  if (input == nullptr || input->empty() || contracts_.of(nodes[node]) == nullptr) body.head(node, libraries);
+  for (size_t i = 0; i < nodes[node].inputs.size(); ++i) {
+    if (input == nullptr || nodes[node].inputs[i].first == *input) body.input(node, i);
+  }
+  body.cycles(&node);
+  return findings_.take();
+}
+
+Diagnostics GraphCheck::uses(size_t parameter) {
+  this->parameter(parameter);
+  if (!findings_.empty()) return findings_.take();
+  const auto is = [&](const Source& source) {
+    const auto* ref = std::get_if<ParameterRef>(&source.from);
+    return ref != nullptr && ref->name == graph_.parameters[parameter].name;
+  };
+  const auto in = [&](const Body& body) {
+    BodyCheck check(graph_, library_, contracts_, body, findings_);
+    for (size_t i = 0; body.group() != nullptr && i < body.group()->inputs.size(); ++i) {
+      const std::optional<Source>& source = body.group()->inputs[i].by_default;
+      if (source && is(*source)) check.byDefault(i);
+    }
+    for (size_t i = 0; i < body.nodes().size(); ++i) {
+      for (size_t k = 0; k < body.nodes()[i].inputs.size(); ++k) {
+        if (is(body.nodes()[i].inputs[k].second)) check.input(i, k);
+      }
+    }
+    for (size_t i = 0; i < body.outputs().size(); ++i) {
+      if (is(body.outputs()[i].second)) check.output(i);
+    }
+  };
+  for (size_t i = 0; i < graph_.groups.size(); ++i) in(contracts_.body(i));
+  in(contracts_.main());
+  return findings_.take();
+}
+
+Diagnostics GraphCheck::input(size_t group, size_t input) {
+  groupInput(group, input);
+  bodyOf(&graph_.groups[group]).byDefault(input);
+  return findings_.take();
+}
+
+Diagnostics GraphCheck::output(const Group* group, size_t output) {
+  bodyOf(group).output(output);
+  return findings_.take();
+}
+
 }  // namespace
 
 Diagnostics check(const Graph& graph, const lang::Library& library, uint64_t most) {
   return GraphCheck(graph, library, most).run();
+}
+
+Diagnostics checkNode(const Graph& graph, const lang::Library& library, const Group* group, size_t node,
+                      const std::string* input) {
+  return GraphCheck(graph, library, Limits{}.nodes).node(group, node, input);
+}
+
+Diagnostics checkOutput(const Graph& graph, const lang::Library& library, const Group* group, size_t output) {
+  return GraphCheck(graph, library, Limits{}.nodes).output(group, output);
+}
+
+Diagnostics checkParameter(const Graph& graph, const lang::Library& library, size_t parameter, bool uses) {
+  GraphCheck check(graph, library, Limits{}.nodes);
+  return uses ? check.uses(parameter) : check.only(&GraphCheck::parameter, parameter);
+}
+
+Diagnostics checkTexture(const Graph& graph, const lang::Library& library, size_t texture) {
+  return GraphCheck(graph, library, Limits{}.nodes).only(&GraphCheck::texture, texture);
+}
+
+Diagnostics checkInput(const Graph& graph, const lang::Library& library, size_t group, size_t input) {
+  return GraphCheck(graph, library, Limits{}.nodes).input(group, input);
+}
+
+Diagnostics checkGroup(const Graph& graph, const lang::Library& library, size_t group) {
+  return GraphCheck(graph, library, Limits{}.nodes).whole(group);
+}
+
+std::vector<ir::Range> parameterLimits(const Graph& graph, const lang::Library& library) {
+  const Contracts contracts(graph, library);
+  std::vector<ir::Range> limits;
+  for (const Parameter& p : graph.parameters) limits.push_back(p.range);
+  const auto meet = [&](const Source& source, const lang::Param* into) {
+    const auto* ref = std::get_if<ParameterRef>(&source.from);
+    const Parameter* found = ref == nullptr ? nullptr : contracts.parameter(ref->name);
+    if (found != nullptr && into != nullptr && into->has_range)
+      narrow(limits[static_cast<size_t>(found - graph.parameters.data())], into->range);
+  };
+  const auto body = [&](const Body& one) {
+    for (size_t i = 0; i < one.nodes().size(); ++i) {
+      const Contract* contract = contracts.of(one.nodes()[i]);
+      for (const auto& [name, source] : one.nodes()[i].inputs)
+        meet(source, contract == nullptr ? nullptr : contract->param(name));
+    }
+  };
+  for (size_t g = 0; g < graph.groups.size(); ++g) {
+    body(contracts.body(g));
+    const Contract* contract = contracts.of(graph.groups[g].name, true);
+    for (size_t i = 0; contract != nullptr && i < graph.groups[g].inputs.size(); ++i) {
+      const GroupInput& input = graph.groups[g].inputs[i];
+      if (input.by_default) meet(*input.by_default, &contract->params[i]);
+    }
+  }
+  body(contracts.main());
+  const lang::TemplateDecl* decl = contracts.templateDecl();
+  for (const auto& [name, source] : graph.outputs) {
+    for (size_t i = 0; decl != nullptr && i < decl->ports.size(); ++i) {
+      if (decl->ports[i].param.name == name) meet(source, &decl->ports[i].param);
+    }
+  }
+  return limits;
 }
 
 }  // namespace lacquer::graph

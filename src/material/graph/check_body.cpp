@@ -77,7 +77,7 @@ void BodyCheck::heads(Connected& libraries) {
 void BodyCheck::head(size_t index, Connected& libraries) {
   const Node& node = body_.nodes()[index];
   const Spot spot = spotOf(Section::Nodes, index);
-  const Contract* contract = contracts_.of(node);
+  const Contract* contract = contracts_.of(body_.nodes()[index]);
   if (node.group) {
     if (!graph_.findGroup(node.type)) {
       findings_.error(spot, nodePointer(index, "group"), "unknown-group",
@@ -132,37 +132,38 @@ void BodyCheck::variant(size_t index, const lang::NodeDecl& decl) {
 
 void BodyCheck::connections() {
   for (size_t i = 0; i < body_.nodes().size(); ++i) inputs(i);
-  if (body_.group() == nullptr)
-    ports();
-  else
-    groupOutputs();
+  outputs();
+}
+
+void BodyCheck::input(size_t index, size_t input) {
+  const Node& node = body_.nodes()[index];
+  const auto& [name, source] = node.inputs[input];
+  const Contract* contract = contracts_.of(body_.nodes()[index]);
+  Sink sink{spotOf(Section::Nodes, index, input + 1), name,
+            contract == nullptr ? nullptr : contract->param(name)};
+  if (contract != nullptr && sink.contract == nullptr) {
+    Names names;
+    for (const lang::Param& param : contract->params) names.push_back(param.name);
+    error(sink, "unknown-input",
+          fmt::format("the {} {} has no input {}", node.group ? "group" : "node", inQuotes(node.type),
+                      inQuotes(name)),
+          findings_.suggest(
+              name, [&] { return names; }, names.empty() ? "it has none" : "it has " + shortList(names)));
+  }
+  value(source, sink);
 }
 
 void BodyCheck::inputs(size_t index) {
   const Node& node = body_.nodes()[index];
-  const Contract* contract = contracts_.of(node);
-  const std::string_view what = node.group ? "group" : "node";
-  const auto params = [&] {
-    Names names;
-    for (const lang::Param& param : contract->params) names.push_back(param.name);
-    return names;
-  };
+  const Contract* contract = contracts_.of(body_.nodes()[index]);
   connected_.clear();
   for (size_t i = 0; i < node.inputs.size(); ++i) {
-    const auto& [name, source] = node.inputs[i];
-    Sink sink{spotOf(Section::Nodes, index, i + 1), name, nullptr};
-    if (!connected_.insert(name)) {
-      error(sink, "duplicate-name", textOf(sink) + " is connected twice", "remove one of the two");
+    if (connected_.insert(node.inputs[i].first)) {
+      input(index, i);
       continue;
     }
-    sink.contract = contract == nullptr ? nullptr : contract->param(name);
-    if (contract != nullptr && sink.contract == nullptr) {
-      const Names names = params();
-      error(sink, "unknown-input",
-            fmt::format("the {} {} has no input {}", what, inQuotes(node.type), inQuotes(name)),
-            findings_.suggest(name, params, names.empty() ? "it has none" : "it has " + shortList(names)));
-    }
-    value(source, sink);
+    const Sink sink{spotOf(Section::Nodes, index, i + 1), node.inputs[i].first, nullptr};
+    error(sink, "duplicate-name", textOf(sink) + " is connected twice", "remove one of the two");
   }
   if (contract == nullptr) return;
   Names missing;
@@ -177,30 +178,47 @@ void BodyCheck::inputs(size_t index) {
                               missing.size() == 1 ? "this input has" : "these inputs have"));
 }
 
-void BodyCheck::ports() {
-  connected_.clear();
-  const lang::TemplateDecl* decl = contracts_.templateDecl();
-  Names names;
-  for (size_t i = 0; decl != nullptr && i < decl->ports.size(); ++i)
-    names.push_back(decl->ports[i].param.name);
-  for (size_t i = 0; i < graph_.outputs.size(); ++i) {
-    const auto& [name, source] = graph_.outputs[i];
-    Sink sink{spotOf(Section::Outputs, i), name, nullptr};
-    if (!connected_.insert(name)) {
-      error(sink, "duplicate-name", textOf(sink) + " is connected twice", "remove one of the two");
-      continue;
+void BodyCheck::output(size_t index) {
+  const auto& [name, source] = body_.outputs()[index];
+  Sink sink{spotOf(Section::Outputs, index), name, nullptr};
+  if (body_.group() != nullptr) {
+    if (!isName(name)) {
+      error(sink, "wrong-name", fmt::format("{} cannot be the name of an output", inQuotes(name)),
+            std::string(kNameHelp));
     }
-    const auto port = std::find(names.begin(), names.end(), std::string_view(name));
-    if (port != names.end()) {
-      sink.contract = &decl->ports[static_cast<size_t>(port - names.begin())].param;
-    } else if (decl != nullptr) {
+    const std::optional<Type> type = typeOf(source, sink);
+    if (!type || !ir::isTexture(*type)) return;
+    return error(sink, "wrong-type", fmt::format("{} is {}", textOf(sink), article(*type)),
+                 "a group gives values; a texture goes into a group, not out of it");
+  }
+  if (const lang::TemplateDecl* decl = contracts_.templateDecl()) {
+    const std::string_view wanted = name;
+    const auto port = std::find_if(decl->ports.begin(), decl->ports.end(),
+                                   [&](const lang::PortDecl& one) { return one.param.name == wanted; });
+    if (port != decl->ports.end()) {
+      sink.contract = &port->param;
+    } else {
+      const Names names = namesOf(decl->ports, [](const lang::PortDecl& one) { return one.param.name; })();
       error(sink, "unknown-port",
             fmt::format("the template {} has no port {}", inQuotes(graph_.template_name), inQuotes(name)),
             findings_.suggest(
                 name, [&] { return names; }, names.empty() ? "it has none" : "it has " + shortList(names)));
     }
-    value(source, sink);
   }
+  value(source, sink);
+}
+
+void BodyCheck::outputs() {
+  connected_.clear();
+  for (size_t i = 0; i < body_.outputs().size(); ++i) {
+    if (connected_.insert(body_.outputs()[i].first)) {
+      output(i);
+      continue;
+    }
+    const Sink sink{spotOf(Section::Outputs, i), body_.outputs()[i].first, nullptr};
+    error(sink, "duplicate-name", textOf(sink) + " is connected twice", "remove one of the two");
+  }
+  const lang::TemplateDecl* decl = body_.group() == nullptr ? contracts_.templateDecl() : nullptr;
   for (size_t i = 0; decl != nullptr && i < decl->ports.size(); ++i) {
     const lang::PortDecl& port = decl->ports[i];
     if (port.default_value || connected_.contains(port.param.name)) continue;
@@ -211,49 +229,29 @@ void BodyCheck::ports() {
   }
 }
 
-void BodyCheck::groupOutputs() {
-  connected_.clear();
-  for (size_t i = 0; i < body_.outputs().size(); ++i) {
-    const auto& [name, source] = body_.outputs()[i];
-    const Sink sink{spotOf(Section::Outputs, i), name, nullptr};
-    if (!isName(name)) {
-      error(sink, "wrong-name", fmt::format("{} cannot be the name of an output", inQuotes(name)),
-            std::string(kNameHelp));
-    }
-    if (!connected_.insert(name)) {
-      error(sink, "duplicate-name", textOf(sink) + " is connected twice", "remove one of the two");
-      continue;
-    }
-    const std::optional<Type> type = typeOf(source, sink);
-    if (type && ir::isTexture(*type)) {
-      error(sink, "wrong-type", fmt::format("{} is {}", textOf(sink), article(*type)),
-            "a group gives values; a texture goes into a group, not out of it");
-    }
+void BodyCheck::byDefault(size_t index) {
+  const Group& group = *body_.group();
+  const GroupInput& input = group.inputs[index];
+  if (!input.by_default) return;
+  lang::Param contract;
+  contract.type = input.type;
+  contract.name = input.name;
+  if (const Contract* whole = contracts_.of(group.name, true)) {
+    contract.has_range = whole->params[index].has_range;
+    contract.range = whole->params[index].range;
   }
+  const Sink sink{spotOf(Section::Parameters, index), input.name, &contract};
+  const auto& from = input.by_default->from;
+  if (std::holds_alternative<NodeRef>(from) || std::holds_alternative<InputRef>(from)) {
+    return error(sink, "wrong-source",
+                 fmt::format("the default of {} comes from within the group", textOf(sink)),
+                 "it is a number, a parameter, a texture or what the template gives");
+  }
+  value(*input.by_default, sink);
 }
 
 void BodyCheck::defaults() {
-  const Group& group = *body_.group();
-  for (size_t i = 0; i < group.inputs.size(); ++i) {
-    const GroupInput& input = group.inputs[i];
-    if (!input.by_default) continue;
-    lang::Param contract;
-    contract.type = input.type;
-    contract.name = input.name;
-    const Contract* whole = contracts_.of(group.name, true);
-    if (whole != nullptr) {
-      contract.has_range = whole->params[i].has_range;
-      contract.range = whole->params[i].range;
-    }
-    const Sink sink{spotOf(Section::Parameters, i), input.name, &contract};
-    const auto& from = input.by_default->from;
-    if (std::holds_alternative<NodeRef>(from) || std::holds_alternative<InputRef>(from)) {
-      error(sink, "wrong-source", fmt::format("the default of {} comes from within the group", textOf(sink)),
-            "it is a number, a parameter, a texture or what the template gives");
-      continue;
-    }
-    value(*input.by_default, sink);
-  }
+  for (size_t i = 0; i < body_.group()->inputs.size(); ++i) byDefault(i);
 }
 
 // -- sources --
@@ -506,10 +504,12 @@ void BodyCheck::wrongSwizzle(Type type, const std::string& swizzle, const Sink& 
 
 // -- order --
 
-void BodyCheck::cycles() {
+void BodyCheck::cycles(const size_t* node) {
   const std::vector<Node>& nodes = body_.nodes();
   const Order order = orderOf(body_);
   for (const Cycle& cycle : order.cycles) {
+    const auto& of_cycle = cycle.nodes;
+    if (node != nullptr && std::find(of_cycle.begin(), of_cycle.end(), *node) == of_cycle.end()) continue;
     constexpr size_t kMost = 16;
     std::string path;
     for (size_t k = 0; k < cycle.nodes.size(); ++k) {

@@ -104,9 +104,20 @@ public:
   void heads(Connected& libraries);
   /// What nodes and outputs are connected to.
   void connections();
-  void cycles();
+  void cycles() { cycles(nullptr); }
+  /// Those alone that a node is in.
+  void cycles(const size_t* node);
   /// The defaults of a group's inputs.
   void defaults();
+
+  // For one edit of the body.
+  void head(size_t index, Connected& libraries);
+  /// An input of a node, by its place among those that are connected.
+  void input(size_t index, size_t input);
+  /// A port or an output of a group, by its place.
+  void output(size_t index);
+  /// The default of an input of a group.
+  void byDefault(size_t index);
 
 private:
   /// Where a value goes: an input of a node, a port of the template, an output of a group.
@@ -127,11 +138,9 @@ private:
   std::string inGroup() const;
   void error(const Sink& sink, std::string_view code, std::string message, std::string help = {});
 
-  void head(size_t index, Connected& libraries);
   void variant(size_t index, const lang::NodeDecl& decl);
   void inputs(size_t index);
-  void ports();
-  void groupOutputs();
+  void outputs();
 
   void value(const Source& source, const Sink& sink);
   void range(const Source& source, const Sink& sink);

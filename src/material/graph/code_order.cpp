@@ -50,7 +50,7 @@ private:
   std::vector<size_t> sourcesOf(size_t index) const {
     const Node& node = graph_.nodes[index];
     std::vector<size_t> nodes;
-    const Contract* contract = contracts_.of(node);
+    const Contract* contract = contracts_.of(body_.nodes()[index]);
     for (size_t i = 0; contract != nullptr && i < contract->params.size(); ++i) {
       for (const auto& [name, source] : node.inputs) {
         if (name == contract->params[i].name) add(source, nodes);

@@ -58,6 +58,13 @@ std::optional<Type> swizzled(Type type, std::string_view swizzle) {
   return ir::floatType(static_cast<int>(picked.size()));
 }
 
+void narrow(ir::Range& range, const ir::Range& by) {
+  range.lo = std::max(range.lo, by.lo);
+  range.hi = std::min(range.hi, by.hi);
+  range.gap = std::max(range.gap, by.gap);
+  if (range.lo > 0) range.lo = std::max(range.lo, range.gap);
+}
+
 bool fits(const Literal& literal, Type to) {
   if (fits(literal.type, to)) return true;
   const Type part = ir::partType(to);
@@ -78,13 +85,6 @@ namespace {
 template <class List>
 void index(const List& list, NameMap<size_t>& places) {
   for (size_t i = 0; i < list.size(); ++i) places.emplace(list[i].name, i);
-}
-
-void narrow(ir::Range& range, const ir::Range& by) {
-  range.lo = std::max(range.lo, by.lo);
-  range.hi = std::min(range.hi, by.hi);
-  range.gap = std::max(range.gap, by.gap);
-  if (range.lo > 0) range.lo = std::max(range.lo, range.gap);
 }
 
 Offer ofParam(const lang::Param& param) { return {param.type, param.has_range, param.range}; }

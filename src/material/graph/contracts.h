@@ -111,8 +111,16 @@ private:
   NameMap<size_t> groups_{&arena_}, parameters_{&arena_}, textures_{&arena_};
 };
 
+/// Leaves of a range what lies in another one, too.
+void narrow(ir::Range& range, const ir::Range& by);
+
 /// The type and range behind a swizzle; nothing where the swizzle does not fit.
 std::optional<ir::Type> swizzled(ir::Type type, std::string_view swizzle);
+
+/// One swizzle behind another.
+std::string swizzleBehind(const std::string& first, const std::string& second);
+/// A float for each component of a vector of that type.
+Source widened(Source source, ir::Type type);
 
 /// Whether a value of a type can stand where another is wanted: it has it, or is a float for a vector.
 bool fits(ir::Type from, ir::Type to);

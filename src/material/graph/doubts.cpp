@@ -46,7 +46,7 @@ private:
         body.group() == nullptr ? "" : fmt::format(" in the group {}", inQuotes(body.group()->name));
     for (size_t i = 0; i < body.nodes().size(); ++i) {
       const Node& node = body.nodes()[i];
-      const Contract* contract = contracts_.of(node);
+      const Contract* contract = contracts_.of(body.nodes()[i]);
       if (contract == nullptr) continue;
       for (const auto& [name, source] : node.inputs) {
         // What comes from outside of a group is looked at there.

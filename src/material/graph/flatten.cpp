@@ -9,15 +9,20 @@
 
 namespace lacquer::graph {
 
-namespace {
-
-/// One swizzle behind another.
-std::string behind(const std::string& first, const std::string& second) {
+std::string swizzleBehind(const std::string& first, const std::string& second) {
   if (first.empty() || second.empty()) return first.empty() ? second : first;
   std::string all;
   for (const char component : swizzleComponents(second)) all += first[static_cast<size_t>(component)];
   return all;
 }
+
+Source widened(Source source, ir::Type type) {
+  source.swizzle = swizzleBehind(source.swizzle.empty() ? "x" : source.swizzle,
+                                 std::string(static_cast<size_t>(ir::componentCount(type)), 'x'));
+  return source;
+}
+
+namespace {
 
 class Flattening {
 public:
@@ -106,7 +111,7 @@ private:
       if (!node.group) return {NodeRef{scope.ids[place], ref->output}, source.swizzle};
       found = &scope.outputs[place][*contracts_.of(node)->result(ref->output)];
     }
-    return found == nullptr ? source : Source{found->from, behind(found->swizzle, source.swizzle)};
+    return found == nullptr ? source : Source{found->from, swizzleBehind(found->swizzle, source.swizzle)};
   }
 
   /// A float stands for every component where the group has a vector.
@@ -114,9 +119,7 @@ private:
     Source made = flat(source, scope);
     const std::optional<Offer> offer = contracts_.offer(source, scope.body);
     if (!ir::isFloatVector(wanted) || !offer || offer->type != ir::Type::Float) return made;
-    made.swizzle = behind(made.swizzle.empty() ? "x" : made.swizzle,
-                          std::string(static_cast<size_t>(ir::componentCount(wanted)), 'x'));
-    return made;
+    return widened(std::move(made), wanted);
   }
 
   const Graph& graph_;

@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "graph/graph.h"
+#include "graph/json_parts.h"
 #include "graph/text.h"
 #include "json/json.h"
 #include "json/path.h"
@@ -39,6 +39,15 @@ public:
 
   Graph graph(const Json& json);
   std::optional<Source> source(const Json& json, const Path& path);
+  void node(const Json& json, const Path& path, std::vector<Node>& to);
+  void parameter(std::string_view name, const Json& json, const Path& path);
+  void texture(std::string_view name, const Json& json, const Path& path);
+  void group(std::string_view name, const Json& json, const Path& path);
+  GroupInput groupInput(std::string_view name, const Json& json, const Path& path);
+  void parameterValue(const Json& json, const Path& path, std::string_view name, ir::Type type,
+                      ir::Components& out);
+  /// What the last of these have read.
+  Graph& made() { return graph_; }
 
 private:
   using Keys = std::span<const std::string_view>;
@@ -61,18 +70,11 @@ private:
                                  std::optional<ir::Type> (*find)(std::string_view), std::string_view help);
 
   bool version(const Json& json, const Path& path);
-  void parameter(std::string_view name, const Json& json, const Path& path);
   void truths(const Json& json, const Path& path, std::string_view name, ir::Type type, ir::Components& out);
-  void parameterValue(const Json& json, const Path& path, std::string_view name, ir::Type type,
-                      ir::Components& out);
   void range(const Json& json, const Path& path, ir::Range& range);
-  void texture(std::string_view name, const Json& json, const Path& path);
   void textureIndex(const Json& json, const Path& path, Texture& texture);
   void sampler(const Json& json, const Path& path, Texture& texture);
-  void group(std::string_view name, const Json& json, const Path& path);
-  GroupInput groupInput(std::string_view name, const Json& json, const Path& path);
   void nodes(const Json& json, const Path& path, std::vector<Node>& to);
-  void node(const Json& json, const Path& path, std::vector<Node>& to);
   void term(const Json& json, const Path& path, Node& node);
   void outputs(const Json& json, const Path& path, Outputs& to);
   bool flag(const Json& json, const Path& path, std::string_view name);
@@ -611,15 +613,93 @@ Result<Graph> fromJson(std::string_view text, const std::string& name, const Lim
   return tl::make_unexpected(std::move(wrong));
 }
 
-Result<Source> sourceFromJson(std::string_view text) {
+namespace {
+
+/// What `read(reader, path)` makes, unless there is something wrong.
+template <class Read>
+auto readPart(std::string_view at, const Limits& limits, Read read)
+    -> Result<std::decay_t<decltype(*read(std::declval<Reader&>(), std::declval<const Path&>()))>> {
   const std::string file;
-  const Limits limits;
-  const Result<Json> json = parse(text, file, limits);
-  if (!json) return tl::make_unexpected(json.error());
   Diagnostics wrong;
-  const std::optional<Source> source = Reader(file, limits, wrong).source(*json, Path());
-  if (source && wrong.empty()) return *source;
+  Reader reader(file, limits, wrong);
+  auto made = read(reader, Path());
+  if (made && wrong.empty()) return std::move(*made);
+  for (Diagnostic& one : wrong) one.place.pointer.insert(0, at);
+  shorten(wrong);
   return tl::make_unexpected(std::move(wrong));
+}
+
+template <class List>
+auto lastOf(List& list) {
+  return list.empty() ? std::nullopt : std::optional(std::move(list.back()));
+}
+
+}  // namespace
+
+Result<Node> readNode(const Json& json, std::string_view at, const Limits& limits) {
+  return readPart(at, limits, [&](Reader& reader, const Path& path) {
+    reader.node(json, path, reader.made().nodes);
+    return lastOf(reader.made().nodes);
+  });
+}
+
+Result<Source> readSource(const Json& json, std::string_view at, const Limits& limits) {
+  return readPart(at, limits, [&](Reader& reader, const Path& path) { return reader.source(json, path); });
+}
+
+Result<Parameter> readParameter(std::string_view name, const Json& json, std::string_view at,
+                                const Limits& limits) {
+  return readPart(at, limits, [&](Reader& reader, const Path& path) {
+    reader.parameter(name, json, path);
+    return lastOf(reader.made().parameters);
+  });
+}
+
+Result<Texture> readTexture(std::string_view name, const Json& json, std::string_view at,
+                            const Limits& limits) {
+  return readPart(at, limits, [&](Reader& reader, const Path& path) {
+    reader.texture(name, json, path);
+    return lastOf(reader.made().textures);
+  });
+}
+
+Result<Group> readGroup(std::string_view name, const Json& json, std::string_view at, const Limits& limits) {
+  return readPart(at, limits, [&](Reader& reader, const Path& path) {
+    reader.group(name, json, path);
+    return lastOf(reader.made().groups);
+  });
+}
+
+Result<GroupInput> readInput(std::string_view name, const Json& json, std::string_view at,
+                             const Limits& limits) {
+  return readPart(at, limits, [&](Reader& reader, const Path& path) {
+    return std::optional(reader.groupInput(name, json, path));
+  });
+}
+
+Result<ir::Components> readValue(ir::Type type, const Json& json, std::string_view at, const Limits& limits) {
+  return readPart(at, limits, [&](Reader& reader, const Path& path) {
+    std::optional<ir::Components> made{std::in_place};
+    reader.parameterValue(json, path, "value", type, *made);
+    return made;
+  });
+}
+
+Result<Graph> readGraph(const Json& json, std::string_view at, const Limits& limits) {
+  if (Result<void> sized = checkSizes(json, {}, limits); !sized) {
+    for (Diagnostic& one : sized.error()) one.place.pointer.insert(0, at);
+    return tl::make_unexpected(std::move(sized.error()));
+  }
+  return readPart(at, limits, [&](Reader& reader, const Path&) { return std::optional(reader.graph(json)); });
+}
+
+Result<Json> parseEdit(std::string_view text, const Limits& limits) { return parse(text, {}, limits); }
+
+Result<Source> sourceFromJson(std::string_view text) {
+  const Limits limits;
+  const Result<Json> json = parse(text, {}, limits);
+  if (!json) return tl::make_unexpected(json.error());
+  return readSource(*json, {}, limits);
 }
 
 }  // namespace lacquer::graph

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "graph/graph.h"
+#include "graph/json_parts.h"
 #include "json/value.h"
 
 namespace lacquer::graph {
@@ -145,13 +145,15 @@ std::string nodeList(const std::vector<Node>& nodes, size_t indent) {
   return block("[]", indent, items);
 }
 
+std::string groupInput(const GroupInput& input) {
+  std::string text = fmt::format("{{\"type\": \"{}\"", ir::typeName(input.type));
+  if (input.by_default) text += ", " + member("default", source(*input.by_default));
+  return text + rangeMembers(input.range) + uiMember(input.ui) + "}";
+}
+
 std::string group(const Group& group) {
   std::vector<std::string> inputs;
-  for (const GroupInput& input : group.inputs) {
-    std::string text = fmt::format("{{\"type\": \"{}\"", ir::typeName(input.type));
-    if (input.by_default) text += ", " + member("default", source(*input.by_default));
-    inputs.push_back(member(input.name, text + rangeMembers(input.range) + uiMember(input.ui) + "}"));
-  }
+  for (const GroupInput& input : group.inputs) inputs.push_back(member(input.name, groupInput(input)));
   std::vector<std::string> items = {member("inputs", block("{}", 6, inputs)),
                                     member("nodes", nodeList(group.nodes, 6)),
                                     member("outputs", sources(6, group.outputs))};
@@ -160,6 +162,31 @@ std::string group(const Group& group) {
 }
 
 }  // namespace
+
+std::string textOf(const Node& node) { return graph::node(node, 0); }
+std::string textOf(const Source& source) { return graph::source(source); }
+std::string textOf(const Parameter& parameter) { return graph::parameter(parameter); }
+std::string textOf(const Texture& texture) { return graph::texture(texture); }
+std::string textOf(const Group& group) { return graph::group(group); }
+std::string textOf(const GroupInput& input) { return groupInput(input); }
+
+std::string valueText(ir::Type type, const ir::Components& components) { return value(type, components); }
+
+uint64_t uiSize(const Graph& graph) {
+  uint64_t size = graph.ui.size();
+  const auto add = [&](const auto& list) {
+    for (const auto& part : list) size += part.ui.size();
+  };
+  add(graph.parameters);
+  add(graph.textures);
+  add(graph.groups);
+  add(graph.nodes);
+  for (const Group& group : graph.groups) {
+    add(group.inputs);
+    add(group.nodes);
+  }
+  return size;
+}
 
 std::string toJson(const Graph& graph) {
   std::vector<std::string> parameters, textures, groups, skipped;
