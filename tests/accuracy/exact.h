@@ -1,6 +1,7 @@
 // What physics says of a coat over a Lambertian base, in two ways that share nothing with nodes/: by
-// quadrature for a smooth coat, by a random walk for a rough one. Both take the coat's own reflection away
-// and give the rest relative to the bare base, which is what a coat's transmission stands for.
+// quadrature for a smooth coat, by random walks for a rough one (layers.h). Both take the coat's own
+// reflection away and give the rest relative to the bare base, which is what a coat's transmission stands
+// for.
 #pragma once
 
 #include <cstddef>

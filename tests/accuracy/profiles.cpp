@@ -47,7 +47,7 @@ std::array<double, 3> tilted(double cosine) { return {std::sqrt(1 - cosine * cos
 
 }  // namespace
 
-bool isImmersed(const std::string& profile) { return profile == "physical"; }
+bool isImmersed(const std::string& profile) { return profile == "physical" || profile == "openpbr"; }
 
 std::vector<double> transmissions(const std::string& profile, Light light, std::span<const Query> queries,
                                   const Body& body) {
