@@ -130,8 +130,15 @@ struct Options {
   /// part of the colour, or of the light where that is more: fragment operations have it as far as ranges and
   /// propagated errors prove that (docs/intervals.md). At most 0.5; 0 for none.
   double relaxed = 0;
-  bool debug = false;        ///< SPIR-V has the names of values and the lines of the nodes (Direct)
-  Strings live;              ///< terms kept though today's value would remove them, of liveTerms()
+  /// How hard fragment stages are searched for cheaper forms (docs/optimize.md): 0 not at all, 1 among those
+  /// that are equal but for rounding, 2 longer, and among approximations, too.
+  uint32_t optimize = 0;
+  /// Of level 2: what approximations may change of a colour, as a part of the light. At most 0.5; 0 for none.
+  double optimize_error = 0;
+  std::string
+      optimize_for;    ///< the family of GPUs whose cycles count, of optimizeFamilies(); empty for the first
+  bool debug = false;  ///< SPIR-V has the names of values and the lines of the nodes (Direct)
+  Strings live;        ///< terms kept though today's value would remove them, of liveTerms()
   Strings node_directories;  ///< folders with more node files (*.node) beside the built-in library
   uint32_t jobs = 0;         ///< threads, at most 1024; 0 for one on each core
   std::string cache;         ///< folder that keeps results between runs (docs/builds.md); empty for none
@@ -149,13 +156,17 @@ struct Options {
   uint32_t programs = 0;
   std::string weights;          ///< a file: how much of the picture each material takes, for `programs`
   std::string programs_report;  ///< of generate(): a .json, .md or .svg file with what programs cost
-  bool programs_model = false;  ///< their costs by the model, which is the same on every machine
-  std::string pipelines;        ///< of generate(): a JSON file with the pipelines to make ahead of time
+  /// What programs, and the forms that `optimize` finds, cost by the model, which is the same on every
+  /// machine; else a driver is asked where there is one.
+  bool programs_model = false;
+  std::string pipelines;  ///< of generate(): a JSON file with the pipelines to make ahead of time
 };
 
 /// The terms that Options::live can keep, of the options' library and profile: "coat.darkening", in
 /// alphabetical order. Empty where the library has an error.
 Strings liveTerms(const Options& options = {});
+/// What Options::optimize_for may name: "navi21" first.
+Strings optimizeFamilies();
 /// The profiles of the options' library, the default one first. Empty where the library has an error.
 Strings profiles(const Options& options = {});
 

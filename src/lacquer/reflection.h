@@ -117,6 +117,15 @@ struct RelaxedFigures {
   size_t conversions = 0;            ///< numbers that pass between the two precisions
 };
 
+/// What a search for cheaper forms has found (Options::optimize).
+struct OptimizedFigures {
+  uint32_t level = 0;
+  std::string family;                ///< whose cycles count
+  std::string by;                    ///< who counted them: a driver, or "model"
+  double cycles = 0, of_cycles = 0;  ///< of the fragment stage with it and without
+  double error_growth = 1;           ///< by which bounds of rounding errors have grown, at most
+};
+
 struct Reflection {
   std::string template_name;
   std::vector<UniformBlock> blocks;  ///< those that the shader reads
@@ -129,6 +138,7 @@ struct Reflection {
   size_t proved = 0;                     ///< operations that are defined for all inputs
   std::vector<OperationProof> unproved;  ///< the others that have a domain (docs/intervals.md)
   std::optional<RelaxedFigures> relaxed;
+  std::optional<OptimizedFigures> optimized;
   /// What requestDevice() of WebGPU must be asked for beyond its defaults.
   std::vector<std::pair<std::string, size_t>> webgpu_limits;
 };

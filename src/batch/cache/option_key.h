@@ -25,9 +25,9 @@ template <class Each>
 void eachOption(const Options& options, Each each) {
   const auto& [profile, simplify, template_name, targets, parameters, lights, switches, ibl,
                multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, spirv_route,
-               relaxed, debug, live, node_directories, jobs, cache, cache_size, depfile, shard, limits, allow,
-               cache_key, argument_buffers, sync, programs, weights, programs_report, programs_model,
-               pipelines] = options;
+               relaxed, optimize, optimize_error, optimize_for, debug, live, node_directories, jobs, cache,
+               cache_size, depfile, shard, limits, allow, cache_key, argument_buffers, sync, programs,
+               weights, programs_report, programs_model, pipelines] = options;
   each(Decides::Graph, profile);
   each(Decides::Graph, simplify);
   each(Decides::Graph, template_name);
@@ -44,6 +44,9 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Graph, unused);
   each(Decides::SpirvCode, spirv_route);
   each(Decides::Module, relaxed);
+  each(Decides::Module, optimize);
+  each(Decides::Module, optimize_error);
+  each(Decides::Module, optimize_for);
   each(Decides::SpirvCode, debug);
   each(Decides::Graph, live);
   // What is in them goes into every key; the depfile has their names.

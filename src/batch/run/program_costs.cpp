@@ -6,6 +6,7 @@
 #include <future>
 #include <set>
 
+#include "cost/choose.h"
 #include "cost/cost.h"
 #include "lod/estimate.h"
 #include "shader/module.h"
@@ -94,7 +95,8 @@ Result<ir::Module> ProgramCosts::moduleOfGroup(const Places& group) const {
   for (const graph::Graph& graph : graphs) members.push_back(&graph);
   const Result<programs::United> united = programs::unite(members, setting_.library);
   if (!united) return tl::make_unexpected(united.error());
-  return toModule(united->graph, setting_.library, setting_.options, first.lights);
+  return toModule(united->graph, setting_.library, setting_.options, first.lights, {},
+                  cost::chooserOf(setting_.options));
 }
 
 Program ProgramCosts::byModel(const ir::Module& module) {

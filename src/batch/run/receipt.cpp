@@ -72,9 +72,10 @@ std::string compilersOf(const Options& options) {
   return compilers;
 }
 
-/// What decides which structures share a program is a driver's word.
+/// What decides which structures share a program, and which form of a shader is taken, is a driver's word.
 bool asksDriver(const Options& options) {
-  return (options.programs > 0 || !options.programs_report.empty()) && !options.programs_model;
+  return (options.programs > 0 || !options.programs_report.empty() || options.optimize > 0) &&
+         !options.programs_model;
 }
 
 Strings inputsOf(Strings files, const Options& options) {

@@ -6,6 +6,8 @@
 #include <set>
 
 #include "cache/option_key.h"
+#include "cost/choose.h"
+#include "cost/cost.h"
 #include "graph/edit.h"
 #include "interface/entry.h"
 #include "interface/interface.h"
@@ -177,7 +179,9 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
   }
   if (!module) return module;
   const StageTimer timer(setting.times, StageOfRun::Passes);
-  return throughPasses(std::move(*module), {lights, {}, setting.options.relaxed});
+  return throughPasses(
+      std::move(*module),
+      {lights, {}, setting.options.relaxed, optimization(setting.options), cost::chooserOf(setting.options)});
 }
 
 }  // namespace
@@ -208,6 +212,8 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
   addOptions(setting.options, {Decides::Module}, key);
   key.number(lights.any).number(lights.counts.size());
   for (const auto& [kind, count] : lights.counts) key.text(kind).number(count);
+  // Of the forms that a search finds a driver takes one.
+  if (cost::choosesByDriver(setting.options)) key.text(cost::driverIdentity());
   // They decide what is said of the shader.
   for (const Target target : setting.options.targets) key.number(target);
   StructureKey(key, baked).graph(graph);

@@ -135,6 +135,14 @@ Json commonOf(const Reflection& of) {
                        {"of_cycles", of.relaxed->of_cycles},
                        {"conversions", of.relaxed->conversions}};
   }
+  if (of.optimized) {
+    json["optimized"] = {{"level", of.optimized->level},
+                         {"family", of.optimized->family},
+                         {"by", of.optimized->by},
+                         {"cycles", of.optimized->cycles},
+                         {"of_cycles", of.optimized->of_cycles},
+                         {"error_growth", of.optimized->error_growth}};
+  }
   return json;
 }
 

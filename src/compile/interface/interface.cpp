@@ -237,6 +237,10 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
     made.relaxed = {module.relaxed_bound, cost.operations, cost.all,
                     cost.cycles,          cost.all_cycles, cost.conversions};
   }
+  if (module.optimized) {
+    const ir::Optimized& of = *module.optimized;
+    made.optimized = {static_cast<uint32_t>(of.level), of.family, of.by, of.cycles, of.plain, of.growth};
+  }
   made.webgpu_limits = webgpuLimits(made, module.varyings.size());
   return made;
 }

@@ -1,5 +1,6 @@
 #include "passes/pipeline.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 
@@ -14,6 +15,9 @@ struct Pass {
   PassInfo info;
   void (*run)(ir::Module&, const PipelineOptions&);
 };
+
+/// `--optimize`: the search, and who chooses of what it has found.
+void optimizeFragment(ir::Module& module, const PipelineOptions& options);
 
 constexpr std::array kPasses{
     Pass{{"lights",
@@ -31,6 +35,9 @@ constexpr std::array kPasses{
           "moves affine functions of interpolated values to the vertex shader, where that costs no "
           "interpolants"},
          [](ir::Module& m, const PipelineOptions&) { hoistToVertex(m); }},
+    Pass{{"optimize",
+          "with `--optimize`: puts the cheapest of equal forms in the place of the fragment stage"},
+         [](ir::Module& m, const PipelineOptions& o) { optimizeFragment(m, o); }},
     Pass{{"place",
           "splits the DAG at its rates: material values become fields of the `Material` block, interpolated "
           "ones varyings"},
@@ -48,17 +55,43 @@ constexpr auto kInfos = [] {
   return infos;
 }();
 
+void runFrom(size_t first, ir::Module& module, const PipelineOptions& options) {
+  for (size_t i = first; i < kPasses.size(); ++i) {
+    kPasses[i].run(module, options);
+    assert(ir::verify(module).empty());
+    if (options.after) options.after(kPasses[i].info.name, module);
+  }
+}
+
+void optimizeFragment(ir::Module& module, const PipelineOptions& options) {
+  if (options.optimize.level == 0) return;
+  std::vector<optimize::Candidate> found = optimize::search(module, options.optimize);
+  const optimize::Family& family =
+      options.optimize.family != nullptr ? *options.optimize.family : optimize::families()[0];
+  Choice choice{found.size() - 1, "model", found.front().outcome.cycles, found.back().outcome.cycles};
+  if (options.choose) {
+    const auto here = std::find_if(kPasses.begin(), kPasses.end(),
+                                   [](const Pass& pass) { return pass.info.name == "optimize"; });
+    PipelineOptions silent = options;
+    silent.after = nullptr;
+    std::vector<ir::Module> forms;
+    for (const optimize::Candidate& candidate : found) {
+      forms.push_back(candidate.module);
+      runFrom(static_cast<size_t>(here - kPasses.begin()) + 1, forms.back(), silent);
+    }
+    if (std::optional<Choice> other = options.choose(forms)) choice = std::move(*other);
+  }
+  const double growth = found[choice.index].outcome.growth;
+  if (choice.index > 0) module = std::move(found[choice.index].module);
+  module.optimized = {
+      options.optimize.level, std::string(family.name), choice.by, choice.plain, choice.cycles, growth};
+}
+
 }  // namespace
 
 std::span<const PassInfo> passes() { return kInfos; }
 
-void runPipeline(ir::Module& module, const PipelineOptions& options) {
-  for (const Pass& pass : kPasses) {
-    pass.run(module, options);
-    assert(ir::verify(module).empty());
-    if (options.after) options.after(pass.info.name, module);
-  }
-}
+void runPipeline(ir::Module& module, const PipelineOptions& options) { runFrom(0, module, options); }
 
 Digest contentDigest(const ir::Module& module) { return digestOf(ir::canonical(module)); }
 

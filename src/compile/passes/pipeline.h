@@ -2,20 +2,34 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "optimize/optimize.h"
 #include "passes/passes.h"
 #include "support/digest.h"
 
 namespace lacquer::passes {
+
+/// Which of some forms of a module is taken.
+struct Choice {
+  size_t index = 0;
+  std::string by;                ///< who chose it
+  double plain = 0, cycles = 0;  ///< of the first, and of the one that is taken
+};
+/// Given forms of a module that went through all passes, the plain one first. Nothing where it has no
+/// opinion.
+using Choose = std::function<std::optional<Choice>(std::span<const ir::Module> forms)>;
 
 struct PipelineOptions {
   LightFacts lights;
   /// Called with each pass's name and what it left.
   std::function<void(std::string_view pass, const ir::Module&)> after;
   double relaxed = 0;  ///< Options::relaxed
+  optimize::Settings optimize{};
+  Choose choose{};  ///< of what `optimize` finds; the model where there is none
 };
 
 /// Runs every pass on a lowered module; afterwards it is ready for a target's legalize pass and schedule().

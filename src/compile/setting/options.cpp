@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "optimize/cost.h"
 #include "setting/language.h"
 #include "setting/simplify.h"
 #include "targets/target.h"
@@ -77,6 +78,12 @@ std::string_view targetName(Target target) {
                                                               : std::string_view{};
 }
 
+Strings optimizeFamilies() {
+  Strings names;
+  for (const optimize::Family& family : optimize::families()) names.emplace_back(family.name);
+  return names;
+}
+
 Strings targetNames() {
   Strings names;
   for (const targets::Row& row : targets::rows()) names.emplace_back(row.name);
@@ -111,6 +118,23 @@ Diagnostics checkReading(const Options& options) {
   if (!(options.relaxed >= 0 && options.relaxed <= 0.5)) {
     add(wrong, "out-of-range", fmt::format("Options::relaxed is {}", options.relaxed),
         "it must be from 0 to 0.5");
+  }
+  if (options.optimize > 2) {
+    add(wrong, "out-of-range", fmt::format("Options::optimize is {}", options.optimize),
+        "it must be from 0 to 2");
+  }
+  if (!(options.optimize_error >= 0 && options.optimize_error <= 0.5)) {
+    add(wrong, "out-of-range", fmt::format("Options::optimize_error is {}", options.optimize_error),
+        "it must be from 0 to 0.5");
+  }
+  if (options.optimize_error > 0 && options.optimize != 2) {
+    add(wrong, "no-approximations",
+        fmt::format("an error of {} is allowed, and nothing is approximated", options.optimize_error),
+        "ask for level 2, or for no error");
+  }
+  if (!options.optimize_for.empty() && optimize::findFamily(options.optimize_for) == nullptr) {
+    add(wrong, "unknown-family", fmt::format("there is no family of GPUs '{}'", options.optimize_for),
+        fmt::format("there are {}", fmt::join(optimizeFamilies(), ", ")));
   }
   checkEnumerator("Lights::mode", options.lights.mode, 3, wrong);
   return wrong;
@@ -155,6 +179,11 @@ passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& 
     case Lights::Mode::Fixed: break;
   }
   return {false, options.lights.counts};
+}
+
+optimize::Settings optimization(const Options& options) {
+  return {static_cast<int>(options.optimize), options.optimize_error,
+          optimize::findFamily(options.optimize_for)};
 }
 
 lower::ParameterMode parameterMode(const Options& options) {

@@ -6,6 +6,7 @@
 
 #include "lacquer/options.h"
 #include "lower/lower.h"
+#include "optimize/optimize.h"
 #include "passes/passes.h"
 #include "support/diagnostic.h"
 #include "support/limits.h"
@@ -31,6 +32,8 @@ Result<void> hasPath(std::string_view what, const std::string& path);
 
 /// `scene`: what is known of the lights where the options ask for the file's.
 passes::LightFacts lightFacts(const Options& options, const passes::LightFacts& scene);
+/// What the options ask of the search; the family null where none is named.
+optimize::Settings optimization(const Options& options);
 lower::ParameterMode parameterMode(const Options& options);
 
 }  // namespace lacquer

@@ -48,11 +48,13 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
 }
 
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
-                            const passes::LightFacts& scene_lights, const AfterPass& after) {
+                            const passes::LightFacts& scene_lights, const AfterPass& after,
+                            const passes::Choose& choose) {
   Result<ir::Module> module = lower::lower(graph, library, loweringOf(options));
   if (!module) return module;
   if (after) after("lower", *module);
-  return throughPasses(std::move(*module), {lightFacts(options, scene_lights), after, options.relaxed});
+  return throughPasses(std::move(*module), {lightFacts(options, scene_lights), after, options.relaxed,
+                                            optimization(options), choose});
 }
 
 Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOptions& options) {

@@ -20,7 +20,8 @@ using AfterPass = std::function<void(std::string_view pass, const ir::Module&)>;
 
 /// A checked graph to a placed module.
 Result<ir::Module> toModule(const graph::Graph& graph, const lang::Library& library, const Options& options,
-                            const passes::LightFacts& scene_lights, const AfterPass& after = {});
+                            const passes::LightFacts& scene_lights, const AfterPass& after = {},
+                            const passes::Choose& choose = {});
 
 /// The passes over a lowered module. Errors: "unknown-light", where the template does not have the lights;
 /// "slot-clash".

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "api/internal.h"
+#include "cost/choose.h"
 #include "eval/subject.h"
 #include "graph/text.h"
 #include "interface/entry.h"
@@ -234,7 +235,7 @@ Result<ir::Module> Graph::Impl::module(const Options& options, Diagnostics (*che
   if (!library) return tl::make_unexpected(library.error());
   const Result<graph::Graph> flat = this->flat(options, **library);
   if (!flat) return tl::make_unexpected(flat.error());
-  return toModule(*flat, **library, options, scene_lights, after);
+  return toModule(*flat, **library, options, scene_lights, after, cost::chooserOf(options));
 }
 
 Shader Graph::generate(const Options& options, Messages& messages) {

@@ -141,6 +141,14 @@ constexpr Row kRows[] = {
        if (value.is_number()) to.options.relaxed = value.get<double>();
        return value.is_number();
      }},
+    {"optimize", "a whole number",
+     [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.optimize); }},
+    {"optimize_error", "a number",
+     [](const Json& value, lacquer_options& to) {
+       if (value.is_number()) to.options.optimize_error = value.get<double>();
+       return value.is_number();
+     }},
+    {"optimize_for", "a string", setText<&Options::optimize_for>},
     {"debug", kTruth, setBool<&Options::debug>},
     {"live", kTexts, setStrings<&Options::live>},
     {"node_directories", kTexts, setStrings<&Options::node_directories>},

@@ -86,7 +86,8 @@ void addGeneration(CLI::App& verb, Flags& flags) {
                   "a JSON file: how much of the picture each material takes, for --programs")
       ->check(kNotEmpty);
   verb.add_flag("--model-costs", flags.options.programs_model,
-                "what programs cost by the model, not by a driver: the same on every machine");
+                "what programs and the forms of --optimize cost by the model, not by a driver: the same on "
+                "every machine");
   verb.add_flag("--unused", flags.options.unused, "also materials that no primitive uses");
   lacquer::cli::addJobs(verb, flags);
   verb.add_option("--cache", flags.options.cache, "a folder that keeps results between runs")

@@ -117,6 +117,15 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
   verb.add_option("--relaxed", flags.options.relaxed,
                   "the part of a colour, such as 0.01, that half precision may change (docs/intervals.md)")
       ->check(CLI::Range(0.0, 0.5));
+  verb.add_option("--optimize", flags.options.optimize,
+                  "how hard fragment stages are searched for cheaper forms, 0 to 2 (docs/optimize.md)")
+      ->check(CLI::Range(0, 2))
+      ->check(kWhole);
+  verb.add_option("--error", flags.options.optimize_error,
+                  "the part of the light that approximations of --optimize 2 may change, such as 0.001")
+      ->check(CLI::Range(0.0, 0.5));
+  verb.add_option("--optimize-for", flags.options.optimize_for, "the GPUs whose cycles --optimize counts")
+      ->check(CLI::IsMember(optimizeFamilies()));
   verb.add_flag("--decode-srgb", flags.options.decode_srgb, "decode colour textures in the shader");
   verb.add_flag("--permissive", flags.options.permissive,
                 "drop an extension that must not be there instead of failing");

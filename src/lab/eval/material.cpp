@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "cost/choose.h"
 #include "eval/dfg.h"
 #include "lower/lower.h"
 #include "setting/language.h"
@@ -225,6 +226,8 @@ void EvalMaterial::place(const passes::LightFacts& lights) {
   passes::PipelineOptions pipeline;
   pipeline.lights = lights;
   pipeline.relaxed = options_.relaxed;
+  pipeline.optimize = optimization(options_);
+  pipeline.choose = cost::chooserOf(options_);
   // A shader for fixed counts of lights has none of a kind that is not counted.
   if (options_.lights.mode == Lights::Mode::Fixed) {
     if (options_.lights.counts.empty()) pipeline.lights.any = false;

@@ -161,6 +161,15 @@ struct LightCount {
   uint32_t block = 0, field = 0;
 };
 
+/// What the search for cheaper forms has found (optimize/optimize.h).
+struct Optimized {
+  int level = 0;
+  std::string family;            ///< whose cycles count
+  std::string by;                ///< who counted them: a driver's name and version, or "model"
+  double plain = 0, cycles = 0;  ///< of the fragment stage without and with it
+  double growth = 1;             ///< by which bounds of rounding errors have grown, at most
+};
+
 struct Module {
   std::string template_name;
   Dag dag;
@@ -177,7 +186,8 @@ struct Module {
   std::optional<LightLists> light_lists;
   uint32_t material_textures = 0;  ///< the flat number of the material's first texture
   double relaxed_bound = 0;        ///< what its relaxed operations may change of a colour (analysis/relax.h)
-  bool sums_lights = false;        ///< an output of the template is a sum over the lights
+  std::optional<Optimized> optimized{};
+  bool sums_lights = false;  ///< an output of the template is a sum over the lights
   bool spec_constants =
       false;  ///< parameters are specialization constants: only the animated ones are in a material block
 };
