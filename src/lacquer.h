@@ -21,6 +21,7 @@
 /// Equal input gives equal bytes, whatever the number of threads.
 #pragma once
 
+#include "lacquer/contract.h"    // what a file is drawn with, as values
 #include "lacquer/generate.h"    // scenes, shaders, runs over files
 #include "lacquer/graph.h"       // the node graph, to look at and to edit
 #include "lacquer/options.h"     // what all calls share: messages, targets, options

@@ -132,6 +132,147 @@ LACQUER_C uint32_t lacquer_scene_use(const lacquer_scene* scene, size_t material
 LACQUER_C lacquer_graph* lacquer_scene_graph(const lacquer_scene* scene, size_t material, uint32_t attributes,
                                              const lacquer_options* options, lacquer_messages* messages);
 
+/* ---- contracts: all that a file is drawn with */
+
+/* The whole file, its shaders included; materials whose graphs have one structure share a shader, which is
+ * made once. What fails is left out, with messages, and the rest is there. lacquer/contract.h says what the
+ * members mean, docs/manifest.md what they are for. Functions that fill a struct do it as those of a shader.
+ */
+typedef struct lacquer_contract lacquer_contract;
+LACQUER_C lacquer_contract* lacquer_scene_contract(const lacquer_scene* scene, const lacquer_options* options,
+                                                   lacquer_messages* messages);
+LACQUER_C void lacquer_contract_free(lacquer_contract* contract);
+/* 1 when no material and no shader failed. */
+LACQUER_C int lacquer_contract_ok(const lacquer_contract* contract);
+/* manifest.json as the program writes it for the file, which it names `source`. */
+LACQUER_C lacquer_text* lacquer_contract_manifest(const lacquer_contract* contract, const char* source);
+
+LACQUER_C size_t lacquer_contract_shader_count(const lacquer_contract* contract);
+/* A handle of the caller's. */
+LACQUER_C lacquer_shader* lacquer_contract_shader(const lacquer_contract* contract, size_t index);
+
+enum { LACQUER_ALPHA_OPAQUE = 0, LACQUER_ALPHA_MASK = 1, LACQUER_ALPHA_BLEND = 2 };
+/* In their order in a frame. */
+enum {
+  LACQUER_PASS_OPAQUE = 0,
+  LACQUER_PASS_MASKED = 1,
+  LACQUER_PASS_LOOKS_THROUGH = 2, /* the shader reads scene_behind */
+  LACQUER_PASS_BLENDED = 3
+};
+enum {
+  LACQUER_FACTOR_ZERO = 0,
+  LACQUER_FACTOR_ONE = 1,
+  LACQUER_FACTOR_SOURCE_ALPHA = 2,
+  LACQUER_FACTOR_ONE_MINUS_SOURCE_ALPHA = 3
+};
+typedef struct lacquer_material {
+  const char* name;
+  int index; /* in the file; -1 for the default material */
+  int alpha_mode;
+  double alpha_cutoff;
+  int blends; /* 0: no blending, and the factors mean nothing */
+  int source_color, destination_color, source_alpha, destination_alpha;
+  int double_sided;
+  int pass;
+  int depth_write;
+  size_t use_count;
+} lacquer_material;
+/* The file's materials, and last the default one where a primitive has it. */
+LACQUER_C size_t lacquer_contract_material_count(const lacquer_contract* contract);
+LACQUER_C int lacquer_contract_material(const lacquer_contract* contract, size_t place, lacquer_material* to,
+                                        size_t size);
+typedef struct lacquer_use {
+  uint32_t attributes; /* LACQUER_NORMAL, ... */
+  size_t shader;
+  const char* structure; /* as lacquer_graph_structure() */
+  const void* block;     /* what the material's uniform block holds: `block_size` bytes */
+  size_t block_size;
+  size_t parameter_count, texture_count, stand_in_attribute_count;
+} lacquer_use;
+typedef struct lacquer_parameter {
+  const char* name;
+  const double* numbers;
+  size_t count;
+  const char* pointer;
+  int animated, stand_in;
+} lacquer_parameter;
+typedef struct lacquer_used_texture {
+  const char* slot;  /* the name of the shader's texture */
+  int texture;       /* -1 for a stand-in */
+  int texcoord;      /* -1 for a stand-in */
+  int has_transform; /* 0: the next three mean nothing */
+  double offset[2], rotation, scale[2];
+  int srgb;
+  int stand_in; /* 1: what is bound has one texel, this one */
+  double texel[4];
+} lacquer_used_texture;
+LACQUER_C int lacquer_contract_use(const lacquer_contract* contract, size_t place, size_t use,
+                                   lacquer_use* to, size_t size);
+LACQUER_C int lacquer_contract_parameter(const lacquer_contract* contract, size_t place, size_t use,
+                                         size_t index, lacquer_parameter* to, size_t size);
+LACQUER_C int lacquer_contract_used_texture(const lacquer_contract* contract, size_t place, size_t use,
+                                            size_t index, lacquer_used_texture* to, size_t size);
+/* Of a shader that materials share: what it reads of the vertices and the primitive has not. Empty for an
+ * index that does not exist. */
+LACQUER_C const char* lacquer_contract_stand_in_attribute(const lacquer_contract* contract, size_t place,
+                                                          size_t use, size_t index);
+
+typedef struct lacquer_primitive {
+  size_t mesh, primitive;
+  int material; /* the index in the file; -1 for the default one */
+  size_t place; /* of that material; LACQUER_NONE where there is none */
+  size_t use;   /* LACQUER_NONE after an error */
+  size_t attribute_count, target_count, variant_count;
+} lacquer_primitive;
+typedef struct lacquer_attribute {
+  const char* semantic;
+  const char* type;           /* "VEC3"; may be empty */
+  const char* component_type; /* "FLOAT"; may be empty */
+  int normalized;
+} lacquer_attribute;
+LACQUER_C size_t lacquer_contract_primitive_count(const lacquer_contract* contract);
+LACQUER_C int lacquer_contract_primitive(const lacquer_contract* contract, size_t index,
+                                         lacquer_primitive* to, size_t size);
+/* With a variant, an index into lacquer_contract_variant(): material, place and use are those that it
+ * chooses. */
+LACQUER_C int lacquer_contract_variant_primitive(const lacquer_contract* contract, size_t index,
+                                                 size_t variant, lacquer_primitive* to, size_t size);
+LACQUER_C int lacquer_contract_attribute(const lacquer_contract* contract, size_t primitive, size_t index,
+                                         lacquer_attribute* to, size_t size);
+LACQUER_C size_t lacquer_contract_variant_count(const lacquer_contract* contract);
+LACQUER_C const char* lacquer_contract_variant(const lacquer_contract* contract, size_t index, size_t* size);
+
+enum { LACQUER_WRAP_REPEAT = 0, LACQUER_WRAP_CLAMP = 1, LACQUER_WRAP_MIRROR = 2 };
+enum {
+  LACQUER_FILTER_OPEN = 0, /* the file leaves it to the engine */
+  LACQUER_FILTER_NEAREST = 1,
+  LACQUER_FILTER_LINEAR = 2,
+  LACQUER_FILTER_NEAREST_MIPMAP_NEAREST = 3,
+  LACQUER_FILTER_LINEAR_MIPMAP_NEAREST = 4,
+  LACQUER_FILTER_NEAREST_MIPMAP_LINEAR = 5,
+  LACQUER_FILTER_LINEAR_MIPMAP_LINEAR = 6
+};
+typedef struct lacquer_file_texture {
+  size_t image_count; /* the one to prefer first */
+  int wrap_s, wrap_t, mag_filter, min_filter;
+} lacquer_file_texture;
+typedef struct lacquer_image {
+  const char* uri; /* relative to the file; else empty */
+  int buffer_view; /* else -1 */
+  int data_uri;    /* 1: in neither of both */
+  const char* mime_type;
+} lacquer_image;
+LACQUER_C size_t lacquer_contract_texture_count(const lacquer_contract* contract);
+LACQUER_C int lacquer_contract_texture(const lacquer_contract* contract, size_t index,
+                                       lacquer_file_texture* to, size_t size);
+/* An index into the images; LACQUER_NONE for one that does not exist. `extension`, where it is not NULL, is
+ * given that which names the image; empty for the texture's own. */
+LACQUER_C size_t lacquer_contract_texture_image(const lacquer_contract* contract, size_t texture,
+                                                size_t index, const char** extension);
+LACQUER_C size_t lacquer_contract_image_count(const lacquer_contract* contract);
+LACQUER_C int lacquer_contract_image(const lacquer_contract* contract, size_t index, lacquer_image* to,
+                                     size_t size);
+
 /* ---- what computes colours on the processor, or on a device (native builds alone) */
 
 enum {
@@ -192,6 +333,10 @@ LACQUER_C int lacquer_graph_set_range(lacquer_graph* graph, const char* paramete
 /* Types, ranges, names, cycles: 1 when there is no error. It may change the order of the nodes. */
 LACQUER_C int lacquer_graph_check(lacquer_graph* graph, const lacquer_options* options,
                                   lacquer_messages* messages);
+/* The address of its structure, 64 digits: graphs of one structure have one shader, so that one of them is
+ * generated and packs the blocks of all. */
+LACQUER_C lacquer_text* lacquer_graph_structure(const lacquer_graph* graph, const lacquer_options* options,
+                                                lacquer_messages* messages);
 LACQUER_C lacquer_shader* lacquer_graph_generate(lacquer_graph* graph, const lacquer_options* options,
                                                  lacquer_messages* messages);
 /* The values of the code with their rates, after the pass of that name; "" for the last. */

@@ -13,6 +13,8 @@
 
 namespace lacquer {
 
+struct Contract;
+
 /// The vertex attributes of a primitive beside POSITION.
 struct Attributes {
   bool normal = true, tangent = false, color0 = false;
@@ -62,6 +64,7 @@ private:
                                             const Options&, Messages&);
   friend std::vector<uint8_t> drawBall(const Scene&, size_t, uint32_t, const Strings&, const Options&,
                                        Messages&);
+  friend Contract contract(const Scene&, const Strings&, const Options&, Messages&, const Progress&);
   struct Impl;
   const Impl& impl() const;
   std::shared_ptr<Impl> impl_;
@@ -109,6 +112,7 @@ public:
 
 private:
   friend class Graph;
+  friend struct ShaderMaker;
   struct Impl;
   const Impl& impl() const;
   std::shared_ptr<Impl> impl_;

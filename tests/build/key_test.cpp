@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <functional>
 
-#include "cache/option_key.h"
 #include "run/source_file.h"
 #include "setting/language.h"
+#include "setting/option_key.h"
 #include "support/cases.h"
 
 namespace lacquer::test {

@@ -98,6 +98,11 @@ TEST_F(Contract, MaterialsSayWhatStandsAroundTheShader) {
   EXPECT_EQ(material(1)["double_sided"], false);
   EXPECT_FALSE(material(1).contains("alpha_cutoff"));
   EXPECT_EQ(file()["default_material"]["alpha_mode"], "OPAQUE");
+  EXPECT_EQ(material(0)["pass"], "masked");
+  EXPECT_EQ(material(1)["pass"], "blended");
+  EXPECT_EQ(file()["default_material"]["pass"], "opaque");
+  EXPECT_EQ(material(0)["depth_write"], true);
+  EXPECT_EQ(material(1)["depth_write"], false);
 }
 
 TEST_F(Contract, TexturesHaveImagesAndSamplers) {

@@ -7,9 +7,9 @@
 #include <functional>
 #include <map>
 
-#include "cache/option_key.h"
 #include "command.h"
 #include "lacquer.h"
+#include "setting/option_key.h"
 #include "support/cases.h"
 
 namespace lacquer::test {

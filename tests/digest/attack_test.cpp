@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "cache/key.h"
 #include "support/cases.h"
+#include "support/key.h"
 
 namespace lacquer::test {
 namespace {

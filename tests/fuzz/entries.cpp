@@ -10,7 +10,7 @@
 
 #include "cache/cache.h"
 #include "feeds.h"
-#include "run/structure.h"
+#include "structures/structure.h"
 #include "support/file.h"
 
 namespace lacquer::fuzz {

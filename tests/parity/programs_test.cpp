@@ -135,7 +135,7 @@ TEST(ParityPrograms, WhatIsNeutralDoesNotShow) {
       const gltf::VertexAttributes attributes{true, true, true, {true, true, true, true}};
       Diagnostics unsaid;
       NamedGraph own{material.name, *buildGraph(material, attributes, *language, options, unsaid)};
-      NamedGraph more{material.name + ", lifted", lifted(material, attributes, own.graph, all, setting)};
+      NamedGraph more{material.name + ", lifted", lifted(&material, attributes, own.graph, all, setting)};
       ASSERT_FALSE(hasError(graph::check(own.graph, library()))) << material.name;
       ASSERT_FALSE(hasError(graph::check(more.graph, library()))) << material.name;
       added += more.graph.nodes.size() - own.graph.nodes.size();

@@ -25,7 +25,7 @@ public:
     EXPECT_TRUE(resolveNames(*language_, options_));
     setting_.emplace(Setting{options_, *language_, {}, nullptr, nullptr, {}, "."});
     structures_.emplace(*setting_);
-    setting_->examples = &examples_;
+    setting_->sharing = &examples_;
     const FileResult result = readInput(path, InputKind::ByName, {}, *setting_, *structures_);
     std::map<std::string, OwnProgram> own;
     for (const Key& key : result.structures) {

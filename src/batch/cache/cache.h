@@ -17,8 +17,8 @@
 #include <string>
 #include <string_view>
 
-#include "cache/key.h"
 #include "support/file.h"
+#include "support/key.h"
 
 namespace lacquer {
 

@@ -66,13 +66,12 @@ bool add(uint16_t extension, const gltf::VertexAttributes& attributes, const gra
 
 }  // namespace
 
-void Examples::note(const Key& structure, const material::Material& material,
+void Examples::note(const Key& structure, const graph::Graph& graph, const material::Material* material,
                     const gltf::VertexAttributes& attributes) {
-  note(structure, {contentOf(material, attributes), material, attributes, {}});
-}
-
-void Examples::note(const Key& structure, const graph::Graph& graph) {
-  note(structure, {keyOf(graph::toJson(graph)), {}, {}, graph});
+  if (material == nullptr)
+    note(structure, {keyOf(graph::toJson(graph)), {}, {}, graph});
+  else
+    note(structure, {contentOf(*material, attributes), *material, attributes, {}});
 }
 
 void Examples::note(const Key& structure, Example example) {

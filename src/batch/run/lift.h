@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "run/structure.h"
+#include "structures/structure.h"
 
 namespace lacquer {
 
@@ -26,12 +26,17 @@ struct Example {
 };
 
 /// For every structure of a run the example with the smallest content, whatever the order in which the
-/// materials come. May be used from several threads at once.
-class Examples {
+/// materials come. Materials keep their programs. May be used from several threads at once.
+class Examples : public Sharing {
 public:
-  void note(const Key& structure, const material::Material& material,
-            const gltf::VertexAttributes& attributes);
-  void note(const Key& structure, const graph::Graph& graph);
+  void note(const Key& structure, const graph::Graph& graph, const material::Material* material,
+            const gltf::VertexAttributes& attributes) override;
+  Share bring(graph::Graph&, const material::Material*, const gltf::VertexAttributes&,
+              const passes::LightFacts&) override {
+    return {};
+  }
+  bool closed() const override { return false; }
+  const Key& digest() const override { return digest_; }
   /// Null for a structure of which no material came. Not beside note().
   const Example* of(const Key& structure) const;
 
@@ -40,6 +45,7 @@ private:
 
   std::mutex mutex_;
   std::map<Key, Example> examples_;
+  Key digest_;
 };
 
 /// Adds what a structure has: its example's extensions, and the live terms that are nodes of its graph.

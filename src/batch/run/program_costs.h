@@ -7,7 +7,7 @@
 #include "programs/merging.h"
 #include "programs/unite.h"
 #include "run/lift.h"
-#include "run/structure.h"
+#include "structures/structure.h"
 
 namespace lacquer {
 

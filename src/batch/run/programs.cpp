@@ -1,10 +1,15 @@
 #include "run/programs.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
 
 #include "run/program_costs.h"
+#include "structures/describe.h"
+#include "support/file.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -135,7 +140,8 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
     const auto group = std::make_shared<Group>();
     group->lift = costs.liftOf(places);
     for (const uint32_t item : places) {
-      for (const Structure* structure : all[item].structures) groups_[structure->key] = group;
+      for (const Structure* structure : all[item].structures)
+        members_[structure->key] = {group, structure->looks_through};
     }
   }
   curve_.materials = materials;
@@ -160,28 +166,28 @@ void Programs::look(Group& group, const Key& key, const graph::Graph& graph) con
   if (fresh || graph::toJson(plain) < graph::toJson(it->second)) it->second = std::move(plain);
 }
 
-const programs::Fill* Programs::bring(graph::Graph& graph, const material::Material* material,
-                                      const gltf::VertexAttributes& attributes,
-                                      const passes::LightFacts& lights) const {
-  const auto found = groups_.find(structureKey(graph, lights, setting_));
-  if (found == groups_.end()) return nullptr;
-  Group& group = *found->second;
+Sharing::Share Programs::bring(graph::Graph& graph, const material::Material* material,
+                               const gltf::VertexAttributes& attributes, const passes::LightFacts& lights) {
+  const auto found = members_.find(structureKey(graph, lights, setting_));
+  if (found == members_.end()) return {};
+  Group& group = *found->second.group;
   const graph::Graph own = lifted(material, attributes, graph, group.lift, setting_);
   const Key key = structureKey(own, lights, setting_);
   if (!closed_) {
     look(group, key, own);
-    return nullptr;
+    return {};
   }
   const auto place = group.places.find(key);
-  if (place == group.places.end()) return nullptr;
+  if (place == group.places.end()) return {};
   graph = programs::instance(group.united, place->second, own);
-  return &group.united.fills[place->second];
+  return {&group.united.fills[place->second], found->second.looks_through};
 }
 
 void Programs::close() {
   KeyBuilder digest;
   std::set<Group*> done;
-  for (const auto& [structure, group] : groups_) {
+  for (const auto& [structure, member] : members_) {
+    const std::shared_ptr<Group>& group = member.group;
     digest.key(structure);
     if (!done.insert(group.get()).second) continue;
     // In the order of the texts: keys would bring in the versions of the tools.
@@ -201,9 +207,76 @@ void Programs::close() {
   closed_ = true;
 }
 
-void writeStandIn(const programs::TextureFill& fill, bool srgb, JsonText& json) {
-  json.key("stand_in").beginObject().key("texel").numbers({fill.texel.data(), fill.texel.size()});
-  json.key("color_space").string(srgb ? "srgb" : "linear").endObject();
+std::unique_ptr<Programs> sharePrograms(Setting& setting, Structures& structures,
+                                        const std::function<void(Uses&)>& look) {
+  Examples examples;
+  Uses uses;
+  setting.sharing = &examples;
+  look(uses);
+  setting.sharing = nullptr;
+  std::vector<const Structure*> met;
+  for (const Key& key : uses.structures()) {
+    if (const Structure* structure = structures.known(key)) met.push_back(structure);
+  }
+  auto programs = std::make_unique<Programs>(met, examples, uses.uses(), uses.materials(), setting);
+  setting.sharing = programs.get();
+  Uses again;
+  if (setting.options.programs > 0) look(again);
+  programs->close();
+  structures.lookAgain();
+  return programs;
+}
+
+Diagnostics wrongOfPrograms(const Options& options) {
+  const bool asked = options.programs > 0 || !options.programs_report.empty();
+  if (asked && options.parameters == Parameters::Baked) {
+    return {{"programs-baked",
+             Severity::Error,
+             {},
+             "materials whose numbers are constants in the code cannot share it",
+             "leave `baked` out, or --programs and --programs-report",
+             {}}};
+  }
+  const std::string& report = options.programs_report;
+  const auto ends = [&](const char* suffix) { return report.ends_with(suffix); };
+  if (report.empty() || ends(".json") || ends(".md") || ends(".svg")) return {};
+  return {{"report-format",
+           Severity::Error,
+           {printable(report), 0, 0, {}},
+           "the report's name says no format",
+           "let it end with .json, .md or .svg",
+           {}}};
+}
+
+Result<programs::Weights> weightsOf(const Options& options, const Limits& limits) {
+  if (options.weights.empty()) return programs::Weights();
+  const Result<std::string> text = readFile(options.weights, limits.file);
+  if (!text) return tl::make_unexpected(text.error());
+  return programs::Weights::read(*text, options.weights, limits);
+}
+
+Result<std::unique_ptr<Sharing>> shareDocument(const material::Document& document,
+                                               const std::vector<std::string>& only, Setting& setting,
+                                               Structures& structures, Diagnostics& said) {
+  if (Diagnostics wrong = wrongOfPrograms(setting.options); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  Result<programs::Weights> weights = weightsOf(setting.options, setting.limits);
+  if (!weights) return tl::make_unexpected(weights.error());
+  const passes::LightFacts lights = lightFacts(setting.options, lightsOf(document));
+  const std::vector<Wanted> wanted = wantedOf(document, only, setting.options);
+  std::unique_ptr<Sharing> sharing = sharePrograms(setting, structures, [&](Uses& uses) {
+    std::vector<Described> described(wanted.size());
+    tbb::parallel_for(size_t{0}, wanted.size(), [&](size_t i) {
+      described[i] = describe(wanted[i], document.path, lights, setting, structures);
+    });
+    for (size_t i = 0; i < wanted.size(); ++i) {
+      for (const Key& key : described[i].structures) uses.structure(key);
+      const auto index = static_cast<size_t>(std::max(wanted[i].index, 0));
+      uses.material(described[i].shaders, weights->of(document.path, wanted[i].name, index));
+    }
+  });
+  said = weights->unused(setting.options.weights);
+  return sharing;
 }
 
 }  // namespace lacquer

@@ -1,13 +1,15 @@
 // The programs of a run with --programs: which structures share one, and what each brings to it.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <set>
 
 #include "programs/curve.h"
 #include "programs/unite.h"
 #include "programs/weights.h"
 #include "run/lift.h"
-#include "run/structures.h"
+#include "structures/structures.h"
 
 namespace lacquer {
 
@@ -17,26 +19,43 @@ struct ProgramUse {
   double weight = 0;
 };
 
-class Programs {
+/// What a look at all inputs has found.
+class Uses {
+public:
+  void structure(const Key& key) { structures_.insert(key); }
+  /// The ids of its shaders, by use, and the material's share of the picture.
+  void material(const std::vector<std::string>& shaders, double share) {
+    ++materials_;
+    for (const std::string& shader : shaders)
+      uses_.push_back({shader, share / static_cast<double>(shaders.size())});
+  }
+  const std::set<Key>& structures() const { return structures_; }
+  const std::vector<ProgramUse>& uses() const { return uses_; }
+  size_t materials() const { return materials_; }
+
+private:
+  std::set<Key> structures_;
+  std::vector<ProgramUse> uses_;
+  size_t materials_ = 0;
+};
+
+class Programs : public Sharing {
 public:
   /// `structures`: those that the run has met, with their examples; `uses`: of every material. Decides which
   /// of them share a program, as the options say.
   Programs(const std::vector<const Structure*>& structures, const Examples& examples,
            const std::vector<ProgramUse>& uses, size_t materials, const Setting& setting);
 
-  /// Puts the graph of a material's program in place of its own, and returns what that has beside its own;
-  /// null for a material that keeps its program. Until close() it only looks at the graph, and leaves it.
-  /// `material`: that the graph was built of; null for a graph that is the input. From several threads at
-  /// once.
-  const programs::Fill* bring(graph::Graph& graph, const material::Material* material,
-                              const gltf::VertexAttributes& attributes,
-                              const passes::LightFacts& lights) const;
+  void note(const Key&, const graph::Graph&, const material::Material*,
+            const gltf::VertexAttributes&) override {}
+  /// Until close() it only looks at the graph, and leaves it. From several threads at once.
+  Share bring(graph::Graph& graph, const material::Material* material,
+              const gltf::VertexAttributes& attributes, const passes::LightFacts& lights) override;
   /// Unites what was looked at. Not beside bring().
   void close();
 
-  bool closed() const { return closed_; }
-  /// Of everything that it decides.
-  const Key& digest() const { return digest_; }
+  bool closed() const override { return closed_; }
+  const Key& digest() const override { return digest_; }
   const programs::Curve& curve() const { return curve_; }
   /// Different known lights: materials share programs only within one of these.
   size_t lightSets() const { return light_sets_; }
@@ -53,14 +72,32 @@ private:
   void look(Group& group, const Key& key, const graph::Graph& graph) const;
 
   const Setting& setting_;
-  std::map<Key, std::shared_ptr<Group>> groups_;  ///< by the structure of a material's own graph
+  struct Member {
+    std::shared_ptr<Group> group;
+    bool looks_through = false;  ///< its own shader does
+  };
+  std::map<Key, Member> members_;  ///< by the structure of a material's own graph
   bool closed_ = false;
   Key digest_;
   programs::Curve curve_;
   size_t light_sets_ = 0;
 };
 
-/// A texture that a material has not: what it binds.
-void writeStandIn(const programs::TextureFill& fill, bool srgb, JsonText& json);
+/// What is wrong with the options that ask for programs: "programs-baked", "report-format".
+Diagnostics wrongOfPrograms(const Options& options);
+/// Of the options' file; every material counts the same where they name none.
+Result<programs::Weights> weightsOf(const Options& options, const Limits& limits);
+
+/// The programs of all materials, as the options ask for them; the setting and the structures are then such
+/// that describe() brings materials to them. `look`: describes all materials, and says what it finds. It is
+/// called once, or twice: the first look finds the structures and how much each is used, the second what
+/// every material brings to the program that it shares.
+std::unique_ptr<Programs> sharePrograms(Setting& setting, Structures& structures,
+                                        const std::function<void(Uses&)>& look);
+/// The same for the materials of one document, or for those of the names in `only` where there are some.
+/// Warnings go to `said`. Uses threads.
+Result<std::unique_ptr<Sharing>> shareDocument(const material::Document& document,
+                                               const std::vector<std::string>& only, Setting& setting,
+                                               Structures& structures, Diagnostics& said);
 
 }  // namespace lacquer

@@ -7,11 +7,11 @@
 #include <functional>
 #include <span>
 
-#include "cache/option_key.h"
 #include "check/check.h"
 #include "cost/cost.h"
 #include "run/report_blob.h"
 #include "setting/language.h"
+#include "setting/option_key.h"
 #include "setting/options.h"
 #include "shader/module.h"
 #include "targets/target.h"

@@ -6,14 +6,10 @@
 #include <vector>
 
 #include "lacquer.h"
+#include "structures/structure.h"
 #include "support/blob.h"
 
 namespace lacquer {
-
-template <class Archive>
-void fields(Archive& archive, MaterialTerms& t) {
-  archive(t.terms, t.skipped);
-}
 
 /// The materials of one file, without its name. Terms that they share are written once.
 void writeMaterials(std::span<const MaterialReport> materials, BlobWriter& blob);

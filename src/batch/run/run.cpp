@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <set>
 
-#include "cache/fingerprint.h"
 #include "check/check.h"
 #include "setting/options.h"
 #include "shader/print.h"
+#include "structures/contract.h"
 #include "support/outputs.h"
 #include "support/relative.h"
 #include "support/text.h"
@@ -47,19 +47,7 @@ bool Run::prepare() {
     return false;
   }
   if (!checkPrograms()) return false;
-  KeyBuilder base;
-  base.text(fingerprint()).text(check::toolVersions());
-  for (const std::string& folder : options_.node_directories) {
-    const Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
-    nodes_known_ &= files.has_value();
-    if (!files)
-      continue;  // open() says why, or can read them again: they were as the base has them a moment ago
-    for (const lang::SourceFile& file : *files) {
-      base.text(file.name).text(file.text);
-      node_files_.push_back(file.name);
-    }
-  }
-  base_ = base.finish();
+  base_ = baseOf(options_, &node_files_, &nodes_known_);
   if (options_.cache.empty()) return true;
   Result<std::string> secret;
   if (!options_.cache_key.empty()) secret = Cache::secretOf(options_.cache_key);
@@ -99,76 +87,29 @@ bool Run::open(const std::string& folder) {
 }
 
 bool Run::checkPrograms() {
-  const bool asked = options_.programs > 0 || !options_.programs_report.empty();
-  if (asked && options_.parameters == Parameters::Baked) {
-    return allGood({{"programs-baked",
-                     Severity::Error,
-                     {},
-                     "materials whose numbers are constants in the code cannot share it",
-                     "leave `baked` out, or --programs and --programs-report",
-                     {}}});
-  }
-  const std::string& report = options_.programs_report;
-  const auto ends = [&](const char* suffix) { return report.ends_with(suffix); };
-  if (!report.empty() && !ends(".json") && !ends(".md") && !ends(".svg")) {
-    return allGood({{"report-format",
-                     Severity::Error,
-                     {printable(report), 0, 0, {}},
-                     "the report's name says no format",
-                     "let it end with .json, .md or .svg",
-                     {}}});
-  }
-  if (options_.weights.empty()) return true;
-  const Limits limits = *limitsOf(options_);
-  const Result<std::string> text = readFile(options_.weights, limits.file);
-  if (!text) return allGood(text.error());
-  Result<programs::Weights> weights = programs::Weights::read(*text, options_.weights, limits);
+  if (const Diagnostics wrong = wrongOfPrograms(options_); !wrong.empty()) return allGood(wrong);
+  Result<programs::Weights> weights = weightsOf(options_, *limitsOf(options_));
   if (!weights) return allGood(weights.error());
   weights_ = std::move(*weights);
   return true;
 }
 
-/// A look at all inputs that says nothing.
-void Run::look(const std::vector<std::string>& files, InputKind kind, const std::vector<std::string>& only,
-               const std::function<void(const FileResult&)>& each) {
-  for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
-    std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
-    tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) {
-      results[i] = readInput(files[first + i], kind, only, *setting_, *structures_);
-    });
-    for (const FileResult& result : results) each(result);
-  }
-}
-
-/// The first look finds the structures and how much each is used, the second what every material brings to
-/// the program that it shares.
 void Run::mergePrograms(const std::vector<std::string>& files, InputKind kind,
                         const std::vector<std::string>& only) {
-  std::vector<ProgramUse> uses;
-  std::set<Key> keys;
-  size_t materials = 0;
-  Examples examples;
-  setting_->examples = &examples;
-  look(files, kind, only, [&](const FileResult& result) {
-    keys.insert(result.structures.begin(), result.structures.end());
-    materials += result.materials.size();
-    for (const MaterialReport& material : result.materials) {
-      const double share = weights_.of(material.file, material.name, material.index);
-      for (const std::string& shader : material.shaders)
-        uses.push_back({shader, share / static_cast<double>(material.shaders.size())});
+  programs_ = sharePrograms(*setting_, *structures_, [&](Uses& uses) {
+    for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
+      std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
+      tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) {
+        results[i] = readInput(files[first + i], kind, only, *setting_, *structures_);
+      });
+      for (const FileResult& result : results) {
+        for (const Key& key : result.structures) uses.structure(key);
+        for (const MaterialReport& material : result.materials)
+          uses.material(material.shaders, weights_.of(material.file, material.name, material.index));
+      }
     }
   });
-  setting_->examples = nullptr;
   report(weights_.unused(options_.weights), {});
-  std::vector<const Structure*> structures;
-  for (const Key& key : keys) {
-    if (const Structure* structure = structures_->known(key)) structures.push_back(structure);
-  }
-  programs_ = std::make_unique<Programs>(structures, examples, uses, materials, *setting_);
-  setting_->programs = programs_.get();
-  if (options_.programs > 0) look(files, kind, only, [](const FileResult&) {});
-  programs_->close();
-  structures_->lookAgain();
 }
 
 void Run::writeProgramsReport() {

@@ -63,8 +63,6 @@ private:
                const std::function<void(FileResult&)>& each);
   bool checkPrograms();
   void warnOfPrograms();
-  void look(const std::vector<std::string>& files, InputKind kind, const std::vector<std::string>& only,
-            const std::function<void(const FileResult&)>& each);
   void mergePrograms(const std::vector<std::string>& files, InputKind kind,
                      const std::vector<std::string>& only);
   void checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen);

@@ -2,44 +2,27 @@
 
 #include <tbb/parallel_for.h>
 
-#include <array>
 #include <atomic>
 
-#include "cache/option_key.h"
-#include "check/check.h"
 #include "interface/entry.h"
-#include "json/text.h"
-#include "manifest/manifest.h"
-#include "shader/print.h"
-#include "targets/target.h"
+#include "structures/code.h"
 
 namespace lacquer {
 
 namespace {
 
-/// The bytes of one target's files, and whether they have been found valid.
-struct TargetCode {
-  bool made = false;
-  bool validated = false;
-  std::array<std::string, 2> bytes;  ///< by stage
-};
-
 class Maker {
 public:
   Maker(const Setting& setting, const std::string& folder, const Scratch& scratch, const Receipt* receipt)
-      : setting_(setting), folder_(folder), writing_{&scratch, setting.options.sync}, receipt_(receipt) {
-    if (setting.cache == nullptr || !setting.options.validate) return;
-    for (const Target target : setting.options.targets) programs_[target] = check::programsOf(target);
-  }
+      : setting_(setting),
+        folder_(folder),
+        writing_{&scratch, setting.options.sync},
+        receipt_(receipt),
+        coder_(setting) {}
 
   MadeShader make(const std::string& id, Distinct& shader) const;
 
 private:
-  Key keyOf(const std::string& id, Target target) const;
-  TargetCode load(const Key& key) const;
-  void save(const Key& key, const TargetCode& code) const;
-  void print(const std::string& id, Distinct& shader, const std::vector<Target>& targets,
-             std::map<Target, TargetCode>& codes, MadeShader& made) const;
   void write(const std::string& id, const Structure& structure, const std::map<Target, TargetCode>& codes,
              MadeShader& made) const;
   std::string entry(const std::string& id, const Structure& structure,
@@ -49,80 +32,8 @@ private:
   const std::string& folder_;
   Writing writing_;
   const Receipt* receipt_;
-  std::map<Target, std::string> programs_;  ///< that check the code, beside what is linked
+  Coder coder_;
 };
-
-/// The base covers this build with its compilers and validators, and the node library; the id covers the
-/// module.
-Key Maker::keyOf(const std::string& id, Target target) const {
-  const Options& options = setting_.options;
-  KeyBuilder key;
-  key.text("shader").key(setting_.base).text(id).text(targetName(target));
-  addOptions(options, {Decides::Code}, key);
-  const targets::Row& row = targets::row(target);
-  if (row.words) addOptions(options, {Decides::SpirvCode}, key);
-  if (row.argument_buffers) addOptions(options, {Decides::MslCode}, key);
-  if (const auto found = programs_.find(target); found != programs_.end()) key.text(found->second);
-  key.text(row.identity);
-  return key.finish();
-}
-
-TargetCode Maker::load(const Key& key) const {
-  if (setting_.cache == nullptr) return {};
-  const StageTimer timer(setting_.times, StageOfRun::Cache);
-  const std::optional<std::string> bytes = setting_.cache->get(key);
-  if (!bytes) return {};
-  BlobReader blob(*bytes);
-  TargetCode code;
-  blob(code.validated, code.bytes);
-  code.made = blob.complete();
-  return code;
-}
-
-void Maker::save(const Key& key, const TargetCode& code) const {
-  if (setting_.cache == nullptr) return;
-  const StageTimer timer(setting_.times, StageOfRun::Cache);
-  BlobWriter blob;
-  blob(code.validated, code.bytes);
-  setting_.cache->put(key, blob.take());
-}
-
-void Maker::print(const std::string& id, Distinct& shader, const std::vector<Target>& targets,
-                  std::map<Target, TargetCode>& codes, MadeShader& made) const {
-  if (!shader.module) {
-    Result<ir::Module> module = moduleOf(*shader.structure, setting_);
-    if (!module) {
-      made.wrong = module.error();
-      return;
-    }
-    shader.module = std::move(*module);
-  }
-  ShaderData data;
-  data.id = id;
-  data.has_vertex = shader.structure->has_vertex;
-  data.module = std::move(*shader.module);
-  shader.module.reset();
-  Options options = setting_.options;
-  options.targets = targets;
-  Wrong wrong;
-  lacquer::print(data, options, wrong, setting_.times);
-  for (const Target target : targets) {
-    TargetCode& code = codes[target];
-    code.made = true;
-    for (int stage = 0; stage < 2; ++stage) {
-      code.bytes[stage] = takeBytes(data, target, stage);
-    }
-    Diagnostics& found = wrong[static_cast<size_t>(target)];
-    const size_t before = made.wrong.size();
-    code.validated = options.validate && hasValidator(target) && found.empty();
-    for (Diagnostic& w : found) {
-      if (!w.place.file.empty()) w.place.file = folder_ + "/" + w.place.file;
-      made.wrong.push_back(std::move(w));
-    }
-    // What is not valid is our bug, and is said again in every run.
-    if (made.wrong.size() == before) save(keyOf(id, target), code);
-  }
-}
 
 void Maker::write(const std::string& id, const Structure& structure,
                   const std::map<Target, TargetCode>& codes, MadeShader& made) const {
@@ -143,19 +54,12 @@ void Maker::write(const std::string& id, const Structure& structure,
 
 std::string Maker::entry(const std::string& id, const Structure& structure,
                          const std::map<Target, TargetCode>& codes) const {
+  std::vector<std::pair<Target, bool>> validated;
+  for (const Target target : setting_.options.targets)
+    validated.emplace_back(target, codes.at(target).validated);
   JsonText json(2);
-  json.beginObject().key("files").beginObject();
-  for (const Target target : setting_.options.targets) {
-    json.key(targetName(target)).beginObject();
-    for (int stage = firstStage(target, structure.has_vertex); stage < 2; ++stage)
-      json.key(fileKind(target, stage)).string(shaderPath(target, id, stage));
-    json.endObject();
-  }
-  json.endObject().key("validated").beginObject();
-  for (const Target target : setting_.options.targets) {
-    if (isShader(target)) json.key(targetName(target)).boolean(codes.at(target).validated);
-  }
-  json.endObject();
+  json.beginObject();
+  writeCode(id, structure.has_vertex, validated, json);
   for (const auto& [name, text] : structure.interface) {
     if (isShown(name, setting_.options)) json.key(name.substr(0, name.find(' '))).raw(text);
   }
@@ -165,34 +69,30 @@ std::string Maker::entry(const std::string& id, const Structure& structure,
 MadeShader Maker::make(const std::string& id, Distinct& shader) const {
   MadeShader made;
   made.id = id;
-  std::map<Target, TargetCode> codes;
   if (const ShaderReport* left = receipt_ == nullptr ? nullptr : receipt_->untouched(id)) {
     made.cached = true;
     made.validated = left->validated;
     made.files = left->files;
-    for (const Target target : setting_.options.targets) {
+    std::map<Target, TargetCode> codes;
+    for (const Target target : setting_.options.targets)
       codes[target].validated = left->validated && hasValidator(target);
-    }
     made.text = entry(id, *shader.structure, codes);
     shader.module.reset();
     return made;
   }
-  std::vector<Target> missing;
-  for (const Target target : setting_.options.targets) {
-    codes[target] = load(keyOf(id, target));
-    if (!codes[target].made) missing.push_back(target);
-  }
-  made.cached = missing.empty();
-  if (!made.cached) print(id, shader, missing, codes, made);
+  ShaderCode code = coder_.code(id, shader);
   shader.module.reset();
-  made.validated = setting_.options.validate;
-  for (const auto& [target, code] : codes) {
-    if (!code.made) return made;
-    // Of what nothing here compiles the manifest says so.
-    made.validated &= code.validated || !hasValidator(target);
+  made.cached = code.cached;
+  for (Diagnostic& wrong : code.wrong) {
+    if (!wrong.place.file.empty()) wrong.place.file = folder_ + "/" + wrong.place.file;
+    made.wrong.push_back(std::move(wrong));
   }
-  write(id, *shader.structure, codes, made);
-  made.text = entry(id, *shader.structure, codes);
+  made.validated = setting_.options.validate;
+  if (!code.complete()) return made;
+  // Of what nothing here compiles the manifest says so.
+  for (const auto& [target, one] : code.targets) made.validated &= one.validated || !hasValidator(target);
+  write(id, *shader.structure, code.targets, made);
+  made.text = entry(id, *shader.structure, code.targets);
   return made;
 }
 

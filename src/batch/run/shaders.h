@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "run/receipt.h"
-#include "run/structures.h"
+#include "structures/structures.h"
 
 namespace lacquer {
 

@@ -1,7 +1,7 @@
 // One input file of a run: its materials' entries in the manifest, and the structures that they need.
 #pragma once
 
-#include "run/structures.h"
+#include "structures/structures.h"
 
 namespace lacquer {
 

@@ -12,30 +12,29 @@ Json diagnosticJson(const Diagnostic& d) {
   return json;
 }
 
-ManifestFile::ManifestFile(const std::string& path, const Writing& how) : file_(path, how) {
+ManifestText::ManifestText(std::function<void(std::string_view)> append) : append_(std::move(append)) {
   JsonText name(1);
-  file_.append("{\n  \"lacquer\": " + name.string(version()).take() +
-               ",\n  \"schema\": " + std::to_string(kManifestSchema) + ",\n  \"files\": [");
+  append_("{\n  \"lacquer\": " + name.string(version()).take() +
+          ",\n  \"schema\": " + std::to_string(kManifestSchema) + ",\n  \"files\": [");
 }
 
-void ManifestFile::file(std::string_view entry) {
-  file_.append(files_++ == 0 ? "\n    " : ",\n    ");
-  file_.append(entry);
+void ManifestText::file(std::string_view entry) {
+  append_(files_++ == 0 ? "\n    " : ",\n    ");
+  append_(entry);
 }
 
-void ManifestFile::shader(std::string_view id, std::string_view entry) {
-  if (shaders_ == 0) file_.append(files_ == 0 ? "],\n  \"shaders\": {" : "\n  ],\n  \"shaders\": {");
-  file_.append(shaders_++ == 0 ? "\n    " : ",\n    ");
-  file_.append(JsonText().string(id).take() + ": ");
-  file_.append(entry);
+void ManifestText::shader(std::string_view id, std::string_view entry) {
+  if (shaders_ == 0) append_(files_ == 0 ? "],\n  \"shaders\": {" : "\n  ],\n  \"shaders\": {");
+  append_(shaders_++ == 0 ? "\n    " : ",\n    ");
+  append_(JsonText().string(id).take() + ": ");
+  append_(entry);
 }
 
-Result<bool> ManifestFile::finish() {
+void ManifestText::end() {
   if (shaders_ == 0)
-    file_.append(files_ == 0 ? "],\n  \"shaders\": {}\n}\n" : "\n  ],\n  \"shaders\": {}\n}\n");
+    append_(files_ == 0 ? "],\n  \"shaders\": {}\n}\n" : "\n  ],\n  \"shaders\": {}\n}\n");
   else
-    file_.append("\n  }\n}\n");
-  return file_.finish();
+    append_("\n  }\n}\n");
 }
 
 }  // namespace lacquer

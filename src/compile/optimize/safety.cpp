@@ -19,7 +19,10 @@ bool within(const Range& x, ir::Domain domain) {
     case ir::Domain::Power: return !x.nan && x.lo > 0;
     case ir::Domain::Direction:
     case ir::Domain::Angle:
-    case ir::Domain::Whole: return false;
+    case ir::Domain::Whole:
+    case ir::Domain::Natural:
+    case ir::Domain::WholeNonZero:
+    case ir::Domain::Count: return false;  // of operations that are opaque
   }
   return false;
 }

@@ -71,6 +71,11 @@ bool hasVertexStage(const ir::Module& module) {
                      [](const ir::Output& o) { return o.stage == ir::Stage::Vertex; });
 }
 
+bool looksThrough(const ir::Module& module) {
+  return std::any_of(module.textures.begin(), module.textures.end(),
+                     [](const auto& texture) { return texture.name == "scene_behind"; });
+}
+
 std::string shaderId(const ir::Module& module, const lang::Library& library) {
   return shaderId(module, library, passes::contentDigest(module));
 }

@@ -30,6 +30,9 @@ Result<ir::Module> throughPasses(ir::Module module, const passes::PipelineOption
 /// True when the module has something to draw with at vertices.
 bool hasVertexStage(const ir::Module& module);
 
+/// True when it reads scene_behind: a picture of what was drawn before it.
+bool looksThrough(const ir::Module& module);
+
 /// "forward-coat-" and 32 hexadecimal digits.
 std::string shaderId(const ir::Module& module, const lang::Library& library);
 /// The same where passes::contentDigest() is known.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "ir/fold.h"
 #include "targets/packer.h"
@@ -47,6 +48,7 @@ Preshader::Preshader(const ir::Module& module) {
   }
   for (const ir::Block& block : module.blocks) {
     if (block.role != ir::BlockRole::Material) continue;
+    size_ = block.size;
     for (const ir::PreshaderField& p : module.preshader) {
       const ir::BlockField& field = block.fields[p.field];
       fields_.push_back({field.name, field.type, field.offset, step_of[p.value]});
@@ -80,11 +82,29 @@ std::vector<Components> Preshader::evaluate(
   return out;
 }
 
+void Preshader::write(std::span<const Components> values, std::span<std::byte> block) const {
+  std::fill(block.begin(), block.end(), std::byte{0});
+  for (size_t i = 0; i < fields_.size(); ++i) {
+    for (int c = 0; c < ir::componentCount(fields_[i].type); ++c) {
+      const double number = values[i][static_cast<size_t>(c)];
+      const uint32_t x = ir::isWhole(fields_[i].type) ? ir::bits(number)
+                                                      : std::bit_cast<uint32_t>(static_cast<float>(number));
+      std::memcpy(block.data() + fields_[i].offset + size_t{4} * static_cast<size_t>(c), &x, 4);
+    }
+  }
+}
+
 bool Preshader::sound() const {
   for (size_t s = 0; s < steps_.size(); ++s) {
     if (!sound(steps_[s], s)) return false;
   }
-  return std::all_of(fields_.begin(), fields_.end(), [&](const Field& f) { return f.value < steps_.size(); });
+  // What D3D takes, and no other platform takes more (targets::DeviceLimits).
+  constexpr uint32_t kMostBytes = 65536;
+  if (size_ > kMostBytes) return false;
+  return std::all_of(fields_.begin(), fields_.end(), [&](const Field& f) {
+    return f.value < steps_.size() && f.offset < size_ &&
+           size_ - f.offset >= 4U * static_cast<uint32_t>(ir::componentCount(f.type));
+  });
 }
 
 /// True when evaluate() can take a step, the one of that number, whatever it comes to.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,11 @@ public:
   std::vector<ir::Components> evaluate(
       const std::function<const ir::Components&(uint32_t parameter)>& value) const;
 
+  /// Bytes of the material's block; 0 where there is none.
+  uint32_t blockSize() const { return size_; }
+  /// Writes evaluate()'s values as floats into a block of so many bytes, and zeros between them.
+  void write(std::span<const ir::Components> values, std::span<std::byte> block) const;
+
   /// True when it asks for no parameter but the first so many.
   bool uses(size_t parameters) const;
 
@@ -75,7 +81,7 @@ private:
   /// For the cache.
   template <class Archive>
   friend void fields(Archive& archive, Preshader& p) {
-    archive(p.steps_, p.constants_, p.fields_);
+    archive(p.steps_, p.constants_, p.fields_, p.size_);
     // A reader refuses what evaluate() could not take.
     if constexpr (requires { archive.refuse(); }) {
       if (!p.sound()) archive.refuse();
@@ -87,6 +93,7 @@ private:
   std::vector<Step> steps_;
   std::vector<ir::Components> constants_;
   std::vector<Field> fields_;
+  uint32_t size_ = 0;
 };
 
 }  // namespace lacquer

@@ -40,6 +40,17 @@ std::string takeBytes(ShaderData& shader, Target target, int file) {
   return bytes;
 }
 
+void putBytes(std::string bytes, ShaderData& shader, Target target, int file) {
+  if (!targets::row(target).words) {
+    shader.text[static_cast<size_t>(target)][file] = std::move(bytes);
+    return;
+  }
+  std::vector<uint32_t>& words = shader.spirv[file];
+  words.assign(bytes.size() / 4, 0);
+  for (size_t i = 0; i < 4 * words.size(); ++i)
+    words[i / 4] |= static_cast<uint32_t>(static_cast<unsigned char>(bytes[i])) << 8 * (i % 4);
+}
+
 namespace {
 
 constexpr ir::Stage kStages[] = {ir::Stage::Vertex, ir::Stage::Fragment};

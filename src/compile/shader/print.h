@@ -23,6 +23,8 @@ struct ShaderData {
 
 /// Takes the bytes of a file of the target; SPIR-V's words with their lowest byte first.
 std::string takeBytes(ShaderData& shader, Target target, int file);
+/// Puts them back.
+void putBytes(std::string bytes, ShaderData& shader, Target target, int file);
 
 /// What is wrong with the code of each target.
 using Wrong = std::array<Diagnostics, kMostTargets>;

@@ -18,6 +18,7 @@
 #include "shader/limits.h"
 #include "shader/module.h"
 #include "shader/print.h"
+#include "structures/contract.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -238,6 +239,18 @@ Result<ir::Module> Graph::Impl::module(const Options& options, Diagnostics (*che
   return toModule(*flat, **library, options, scene_lights, after, cost::chooserOf(options));
 }
 
+std::string Graph::structure(const Options& options, Messages& messages) const {
+  if (!filled(impl_.get(), "graph", messages)) return {};
+  if (const Diagnostics wrong = checkOptions(options); !wrong.empty()) {
+    report(wrong, {}, messages);
+    return {};
+  }
+  const auto library = libraryFor(options);
+  if (!library) return report(library.error(), {}, messages), std::string();
+  const Setting setting{options, **library, baseOf(options)};
+  return structureKey(impl_->graph, lightFacts(options, impl_->scene_lights), setting).text();
+}
+
 Shader Graph::generate(const Options& options, Messages& messages) {
   Shader shader;
   if (!filled(impl_.get(), "graph", messages)) return shader;
@@ -249,20 +262,16 @@ Shader Graph::generate(const Options& options, Messages& messages) {
   const Diagnostics over = overLimits(*module, options.targets);
   report(over, impl_->file, messages);
   if (lacquer::hasError(over)) return shader;
-  auto impl = std::make_shared<Shader::Impl>();
   const std::shared_ptr<const Language> language = *libraryFor(options);
   const Result<const material::Schema*> schema = language->models.schema();
-  impl->id = shaderId(*module, *language);
-  impl->has_vertex = lacquer::hasVertexStage(*module);
-  impl->reflection = reflect(*module, impl->has_vertex, schema ? *schema : nullptr);
-  impl->entry = entryText(impl->reflection, options);
-  impl->preshader = Preshader(*module);
-  impl->module = std::move(*module);
+  ShaderData data;
+  data.id = shaderId(*module, *language);
+  data.has_vertex = lacquer::hasVertexStage(*module);
+  data.module = std::move(*module);
   Wrong wrong;
-  print(*impl, options, wrong);
+  print(data, options, wrong);
   for (const Diagnostics& of_target : wrong) report(of_target, impl_->file, messages);
-  shader.impl_ = std::move(impl);
-  return shader;
+  return ShaderMaker::make(std::move(data), schema ? *schema : nullptr, options);
 }
 
 std::string Graph::dump(const Options& options, std::string_view pass, Messages& messages) {

@@ -48,6 +48,11 @@ struct Shader::Impl : ShaderData {
   void pack(const Values& value, std::span<std::byte> block, Messages* messages) const;
 };
 
+struct ShaderMaker {
+  /// A shader of what was printed. `schema`: whose prose says what the parameters are; may be null.
+  static Shader make(ShaderData data, const material::Schema* schema, const Options& options);
+};
+
 /// "empty-handle" where there is nothing behind a handle.
 bool filled(const void* impl, std::string_view what, Messages& messages);
 

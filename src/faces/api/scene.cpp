@@ -2,6 +2,7 @@
 
 #include "api/internal.h"
 #include "eval/in_memory.h"
+#include "setting/attributes.h"
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
@@ -93,10 +94,7 @@ std::optional<size_t> Scene::findMaterial(const std::optional<std::string>& name
 std::vector<Attributes> Scene::uses(size_t material) const {
   std::vector<Attributes> uses;
   if (material >= materialCount()) return uses;
-  for (const gltf::VertexAttributes& a : impl().document.uses[material]) {
-    uses.push_back({a.normal, a.tangent, a.color0, a.texCoord, a.skin, a.morph, a.instances, a.quantized,
-                    a.application});
-  }
+  for (const gltf::VertexAttributes& a : impl().document.uses[material]) uses.push_back(toPublic(a));
   return uses;
 }
 
@@ -117,13 +115,10 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   const auto language = libraryFor(options);
   if (!language) return report(language.error(), {}, messages), result;
   Diagnostics warnings;
-  gltf::VertexAttributes a{attributes.normal,    attributes.tangent,   attributes.color0,
-                           attributes.texCoord,  attributes.skin,      attributes.morph,
-                           attributes.instances, attributes.quantized, attributes.application};
   Options named = options;
   if (const Result<void> resolved = resolveNames(**language, named); !resolved)
     return report(resolved.error(), document.path, messages), result;
-  Result<graph::Graph> graph = buildGraph(m, a, **language, named, warnings);
+  Result<graph::Graph> graph = buildGraph(m, fromPublic(attributes), **language, named, warnings);
   report(warnings, document.path, messages);
   if (!graph) return report(graph.error(), {}, messages), result;
   result.impl_ = std::make_shared<Graph::Impl>(

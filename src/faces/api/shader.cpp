@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
 #include "api/internal.h"
 #include "cost/files.h"
-#include "ir/whole.h"
+#include "interface/entry.h"
+#include "interface/interface.h"
 #include "setting/messages.h"
 #include "setting/options.h"
 #include "shader/module.h"
@@ -19,6 +19,17 @@ namespace lacquer {
 const Shader::Impl& Shader::impl() const {
   static const Impl kNone;
   return impl_ ? *impl_ : kNone;
+}
+
+Shader ShaderMaker::make(ShaderData data, const material::Schema* schema, const Options& options) {
+  Shader shader;
+  auto impl = std::make_shared<Shader::Impl>();
+  static_cast<ShaderData&>(*impl) = std::move(data);
+  impl->reflection = reflect(impl->module, impl->has_vertex, schema);
+  impl->entry = entryText(impl->reflection, options);
+  impl->preshader = Preshader(impl->module);
+  shader.impl_ = std::move(impl);
+  return shader;
 }
 
 const std::string& Shader::id() const { return impl().id; }
@@ -78,18 +89,8 @@ void Shader::Impl::pack(const Values& value, std::span<std::byte> block, Message
   std::vector<ir::Components> parameters;
   for (const ir::Parameter& parameter : module.parameters)
     parameters.push_back(packedComponents(parameter, value, messages));
-  std::fill(block.begin(), block.end(), std::byte{0});
-  const std::vector<ir::Components> values =
-      preshader.evaluate([&](uint32_t i) -> const ir::Components& { return parameters[i]; });
-  for (size_t i = 0; i < values.size(); ++i) {
-    const Preshader::Field& field = preshader.fields()[i];
-    for (int c = 0; c < ir::componentCount(field.type); ++c) {
-      const double number = values[i][static_cast<size_t>(c)];
-      const auto x =
-          ir::isWhole(field.type) ? ir::bits(number) : std::bit_cast<uint32_t>(static_cast<float>(number));
-      std::memcpy(block.data() + field.offset + size_t{4} * static_cast<size_t>(c), &x, 4);
-    }
-  }
+  preshader.write(preshader.evaluate([&](uint32_t i) -> const ir::Components& { return parameters[i]; }),
+                  block);
 }
 
 bool Shader::pack(const Values& value, std::span<std::byte> block) const {

@@ -110,6 +110,13 @@ int lacquer_graph_check(lacquer_graph* graph, const lacquer_options* options, la
                  [&](Messages& to) { return editable(graph).check(to, optionsOf(options).options) ? 1 : 0; });
 }
 
+lacquer_text* lacquer_graph_structure(const lacquer_graph* graph, const lacquer_options* options,
+                                      lacquer_messages* messages) {
+  return guarded(messages, static_cast<lacquer_text*>(nullptr), [&](Messages& to) {
+    return textFrom(graphOf(graph).structure(optionsOf(options).options, to));
+  });
+}
+
 lacquer_shader* lacquer_graph_generate(lacquer_graph* graph, const lacquer_options* options,
                                        lacquer_messages* messages) {
   return guarded(messages, static_cast<lacquer_shader*>(nullptr), [&](Messages& to) -> lacquer_shader* {

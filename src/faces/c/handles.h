@@ -30,6 +30,9 @@ struct lacquer_graph {
 struct lacquer_shader {
   lacquer::Shader shader;
 };
+struct lacquer_contract {
+  lacquer::Contract contract;
+};
 
 namespace lacquer::c {
 
@@ -53,6 +56,17 @@ inline std::string_view bytesOf(const char* bytes, size_t size) {
 const char* give(const std::string& text, size_t* size) noexcept;
 /// A new handle; null for an empty text, which means that the call failed.
 lacquer_text* textFrom(std::string text);
+
+/// As much of a row as the caller knows.
+template <class Row>
+int fillRow(const Row& made, Row* to, size_t size) {
+  if (to == nullptr) return 0;
+  std::memcpy(to, &made, std::min(size, sizeof made));
+  return 1;
+}
+
+/// LACQUER_NORMAL and so on.
+uint32_t bitsOf(const Attributes& attributes);
 
 /// Appends an error, if there is memory for one.
 void sayError(lacquer_messages* messages, const char* code, std::string_view what,

@@ -156,6 +156,11 @@ constexpr Row kRows[] = {
      [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.jobs); }},
     {"limits", kTexts, setStrings<&Options::limits>},
     {"allow", kTexts, setStrings<&Options::allow>},
+    {"unused", kTruth, setBool<&Options::unused>},
+    {"cache", "a string", setText<&Options::cache>},
+    {"programs", "a whole number",
+     [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.programs); }},
+    {"programs_model", kTruth, setBool<&Options::programs_model>},
     {"texels", kTexts, [](const Json& value, lacquer_options& to) { return readStrings(value, to.texels); }},
 };
 

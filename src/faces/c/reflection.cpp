@@ -47,7 +47,7 @@ int lacquer_shader_block(const lacquer_shader* shader, size_t index, lacquer_blo
                               of.list.c_str(), static_cast<int>(of.role),
                               bindingOf(of),   of.size,
                               of.array,        of.fields.size()};
-  return fill(made, to, size);
+  return fillRow(made, to, size);
 }
 
 int lacquer_shader_field(const lacquer_shader* shader, size_t block, size_t index, lacquer_field* to,
@@ -55,7 +55,7 @@ int lacquer_shader_field(const lacquer_shader* shader, size_t block, size_t inde
   const Reflection& all = reflectionOf(shader);
   if (block >= all.blocks.size() || index >= all.blocks[block].fields.size()) return 0;
   const lacquer::BlockField& of = all.blocks[block].fields[index];
-  return fill(lacquer_field{of.name.c_str(), of.type.c_str(), of.offset, of.array, of.stride}, to, size);
+  return fillRow(lacquer_field{of.name.c_str(), of.type.c_str(), of.offset, of.array, of.stride}, to, size);
 }
 
 int lacquer_shader_texture(const lacquer_shader* shader, size_t index, lacquer_texture* to, size_t size) {
@@ -65,20 +65,21 @@ int lacquer_shader_texture(const lacquer_shader* shader, size_t index, lacquer_t
   const lacquer_texture made = {of.name.c_str(), of.type.c_str(),           of.sampler.c_str(),
                                 of.slot.c_str(), static_cast<int>(of.role), of.srgb ? 1 : 0,
                                 bindingOf(of)};
-  return fill(made, to, size);
+  return fillRow(made, to, size);
 }
 
 int lacquer_shader_input(const lacquer_shader* shader, size_t index, lacquer_place* to, size_t size) {
   const Reflection& all = reflectionOf(shader);
   if (index >= all.inputs.size()) return 0;
   const lacquer::ShaderInput& of = all.inputs[index];
-  return fill(lacquer_place{of.name.c_str(), of.type.c_str(), of.location}, to, size);
+  return fillRow(lacquer_place{of.name.c_str(), of.type.c_str(), of.location}, to, size);
 }
 
 int lacquer_shader_output(const lacquer_shader* shader, size_t index, lacquer_place* to, size_t size) {
   const Reflection& all = reflectionOf(shader);
   if (index >= all.outputs.size()) return 0;
-  return fill(lacquer_place{all.outputs[index].name.c_str(), "vec4", all.outputs[index].location}, to, size);
+  return fillRow(lacquer_place{all.outputs[index].name.c_str(), "vec4", all.outputs[index].location}, to,
+                 size);
 }
 
 size_t lacquer_graph_texture_count(const lacquer_graph* graph) {

@@ -9,8 +9,6 @@ const Scene& sceneOf(const lacquer_scene* scene) {
   return scene == nullptr ? kNone : scene->scene;
 }
 
-namespace {
-
 uint32_t bitsOf(const Attributes& attributes) {
   uint32_t bits = 0;
   const auto add = [&](bool there, int bit) { bits |= there ? static_cast<uint32_t>(bit) : 0U; };
@@ -26,6 +24,8 @@ uint32_t bitsOf(const Attributes& attributes) {
   add(attributes.quantized, LACQUER_QUANTIZED);
   return bits;
 }
+
+namespace {
 
 Attributes attributesOf(uint32_t bits) {
   const auto has = [bits](int bit) { return (bits & static_cast<uint32_t>(bit)) != 0; };

@@ -9,7 +9,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "run/structure.h"
+#include "structures/structure.h"
 
 namespace lacquer {
 

@@ -1,4 +1,4 @@
-#include "cache/option_key.h"
+#include "setting/option_key.h"
 
 #include <algorithm>
 

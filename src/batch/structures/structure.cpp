@@ -1,21 +1,18 @@
-#include "run/structure.h"
+#include "structures/structure.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <set>
 
-#include "cache/option_key.h"
 #include "cost/choose.h"
 #include "cost/cost.h"
 #include "graph/edit.h"
 #include "interface/entry.h"
 #include "interface/interface.h"
 #include "lower/lower.h"
-#include "manifest/manifest.h"
-#include "manifest/scene.h"
-#include "run/programs.h"
-#include "run/report_blob.h"
+#include "manifest/values.h"
+#include "setting/option_key.h"
 #include "setting/options.h"
 #include "setting/simplify.h"
 #include "shader/limits.h"
@@ -26,8 +23,6 @@ namespace lacquer {
 namespace {
 
 constexpr size_t kInterfaceDepth = 3;  ///< manifest, "shaders", the shader's entry
-constexpr size_t kUseDepth = 7;        ///< the material, "uses", the use
-constexpr size_t kTermsDepth = 5;      ///< manifest, "files", the file, "materials", the material
 
 class StructureKey {
 public:
@@ -113,27 +108,23 @@ void describe(const graph::Graph& graph, Structure& structure) {
   structure.terms = terms;
 }
 
-/// Parameters that are not there because their terms are not.
-std::string absentText(const graph::Graph& graph, const Setting& setting) {
+StructureFacts factsOf(const graph::Graph& graph, const Setting& setting) {
+  StructureFacts facts;
   std::set<std::string, std::less<>> skipped;
   for (const graph::Skipped& s : graph.skipped) skipped.insert(s.term);
-  JsonText json(kUseDepth);
-  json.beginObject();
   if (const Result<const model::Model*> model = setting.library.models.of(setting.options.profile)) {
     for (const auto& [name, terms] : (*model)->absent(skipped)) {
-      if (graph.findParameter(name)) continue;
-      json.key(name);
-      writeList(terms, json);
+      if (!graph.findParameter(name)) facts.absent_parameters.emplace_back(name, terms);
     }
   }
-  return json.endObject().take();
-}
-
-void renderTerms(Structure& structure) {
-  structure.terms_text =
-      textAt(kTermsDepth, [&](JsonText& json) { writeList(structure.terms->terms, json); });
-  structure.skipped_text =
-      textAt(kTermsDepth, [&](JsonText& json) { writeSkipped(structure.terms->skipped, json); });
+  const Result<const lang::TemplateDecl*> decl = setting.library.template_(graph.template_name);
+  for (size_t i = 0; decl && i < (*decl)->ports.size(); ++i) {
+    const std::string_view name = (*decl)->ports[i].param.name;
+    const bool filled = std::any_of(graph.outputs.begin(), graph.outputs.end(),
+                                    [&](const auto& output) { return output.first == name; });
+    if (!filled) facts.unfilled_ports.emplace_back(name);
+  }
+  return facts;
 }
 
 void describe(const ir::Module& module, const graph::Graph& graph, const Setting& setting,
@@ -142,6 +133,7 @@ void describe(const ir::Module& module, const graph::Graph& graph, const Setting
   structure.module = passes::contentDigest(module);
   structure.shader = shaderId(module, library, shortened(structure.module, setting.id_bits));
   structure.has_vertex = hasVertexStage(module);
+  structure.looks_through = looksThrough(module);
   const Result<const material::Schema*> schema = library.models.schema();
   const Reflection reflection = reflect(module, structure.has_vertex, schema ? *schema : nullptr);
   const Json entry = entryOf(reflection);
@@ -186,24 +178,6 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
 
 }  // namespace
 
-void writeList(const std::vector<std::string>& names, JsonText& json) {
-  json.beginArray();
-  for (const std::string& name : names) json.string(name);
-  json.endArray();
-}
-
-void writeSkipped(const std::vector<std::pair<std::string, std::string>>& skipped, JsonText& json) {
-  json.beginObject();
-  for (size_t i = 0; i < skipped.size(); ++i) {
-    // A term that several uses skip is named once, with the last reason.
-    const auto same = [&](const auto& other) { return other.first == skipped[i].first; };
-    if (std::any_of(skipped.begin(), skipped.begin() + static_cast<ptrdiff_t>(i), same)) continue;
-    const auto last = std::find_if(skipped.rbegin(), skipped.rend(), same);
-    json.key(skipped[i].first).string(last->second);
-  }
-  json.endObject();
-}
-
 Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting) {
   KeyBuilder key;  // none that a thread keeps: the C library ends the process where it has no memory to note
                    // its destructor
@@ -231,8 +205,8 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
     structure.diagnostics = graph::check(plain, setting.library);
   }
   describe(plain, structure);
-  structure.absent = absentText(plain, setting);
-  renderTerms(structure);
+  structure.facts = std::make_shared<StructureFacts>(factsOf(plain, setting));
+  structure.texts = textsOf(*structure.terms, *structure.facts);
   if (hasError(structure.diagnostics)) return std::nullopt;
   Result<ir::Module> module = modulate(plain, lights, setting);
   if (!module) {
@@ -269,51 +243,49 @@ bool withinLimits(const Structure& structure, const graph::Graph& graph) {
   return true;
 }
 
-/// Of a graph's texture that is a file, and of one that says what is there without an image.
-static void writeImageFile(const graph::Texture& texture, JsonText& json) {
-  if (!texture.file.empty()) {
-    constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror"};
-    const std::string_view filter = texture.nearest ? "nearest" : "linear";
-    json.key("file").string(texture.file).key("sampler").beginObject();
-    json.key("wrap_s").string(kWraps[static_cast<size_t>(texture.wrap[0])]);
-    json.key("wrap_t").string(kWraps[static_cast<size_t>(texture.wrap[1])]);
-    json.key("mag_filter").string(filter).endObject();
-  }
-  if (texture.color) json.key("default").numbers({texture.color->data(), texture.color->size()});
+static std::vector<double> numbersOf(const ir::Components& of, ir::Type type) {
+  return {of.begin(), of.begin() + ir::componentCount(type)};
 }
 
-void writeBindings(const Structure& structure, const graph::Graph& graph, const material::Material& material,
-                   const programs::Fill* fill, JsonText& json) {
-  json.key("parameters").beginObject();
+/// Of a graph's texture that is a file.
+static TextureSampler samplerOf(const graph::Texture& texture) {
+  constexpr Wrap kWraps[] = {Wrap::Repeat, Wrap::Clamp, Wrap::Mirror};
+  TextureSampler sampler;
+  sampler.wrap_s = kWraps[static_cast<size_t>(texture.wrap[0])];
+  sampler.wrap_t = kWraps[static_cast<size_t>(texture.wrap[1])];
+  sampler.mag_filter = texture.nearest ? Filter::Nearest : Filter::Linear;
+  return sampler;
+}
+
+ContractUse useOf(const Structure& structure, const graph::Graph& graph, const material::Material& material,
+                  const programs::Fill* fill) {
+  ContractUse use;
+  use.facts = structure.facts;
+  use.structure = structure.key.text();
+  use.shares_program = fill != nullptr;
   for (const uint32_t i : structure.parameters) {
     const ir::Parameter& p = graph.parameters[i];
     const bool own = fill == nullptr || fill->numbers[i].own;
-    json.key(p.name).beginObject().key("value").numbers(
-        {p.value.data(), static_cast<size_t>(ir::componentCount(p.type))});
-    json.key("pointer").string(p.pointer);
-    if (p.animated && own) json.key("animated").boolean(true);
-    if (!own) json.key("stand_in").boolean(true);
-    json.endObject();
+    use.parameters.push_back({p.name, numbersOf(p.value, p.type), p.pointer, p.animated && own, !own});
   }
-  json.endObject().key("uniforms").beginObject();
+  const std::vector<Preshader::Field>& fields = structure.preshader.fields();
   const std::vector<ir::Components> packed = structure.preshader.evaluate(
       [&](uint32_t i) -> const ir::Components& { return graph.parameters[structure.parameters[i]].value; });
-  for (size_t i = 0; i < packed.size(); ++i) {
-    const Preshader::Field& field = structure.preshader.fields()[i];
-    json.key(field.name).numbers({packed[i].data(), static_cast<size_t>(ir::componentCount(field.type))});
-  }
-  json.endObject().key("textures").beginObject();
+  for (size_t i = 0; i < packed.size(); ++i)
+    use.uniforms.emplace_back(fields[i].name, numbersOf(packed[i], fields[i].type));
+  use.block.resize(structure.preshader.blockSize());
+  structure.preshader.write(packed, use.block);
   for (const auto& [name, i] : structure.textures) {
-    json.key(name).beginObject().key("texture").integer(graph.textures[i].texture);
-    json.key("pointer").string(graph.textures[i].pointer);
-    writeImageFile(graph.textures[i], json);
+    const graph::Texture& slot = graph.textures[i];
+    UsedTexture texture{name, slot.texture, slot.pointer, {}, {}, slot.srgb, {}, slot.file, {}, slot.color};
+    if (!slot.file.empty()) texture.sampler = samplerOf(slot);
     if (fill == nullptr || fill->textures[i].own)
-      writeTextureInfo(material, graph.textures[i].pointer, json);
+      addTextureInfo(material, texture);
     else
-      writeStandIn(fill->textures[i], graph.textures[i].srgb, json);
-    json.endObject();
+      texture.stand_in = fill->textures[i].texel;
+    use.textures.push_back(std::move(texture));
   }
-  json.endObject();
+  return use;
 }
 
 namespace ir {
@@ -331,9 +303,14 @@ static void fields(Archive& archive, LightFacts& lights) {
 }  // namespace passes
 
 template <class Archive>
+static void fields(Archive& archive, StructureFacts& f) {
+  archive(f.absent_parameters, f.unfilled_ports);
+}
+
+template <class Archive>
 static void fields(Archive& archive, Structure& s) {
-  archive(s.content, s.module, s.diagnostics, s.shader, s.has_vertex, s.absent, s.interface, s.terms,
-          s.preshader, s.parameters, s.textures, s.inputs, s.limits, s.graph, s.lights);
+  archive(s.content, s.module, s.diagnostics, s.shader, s.has_vertex, s.looks_through, s.facts, s.interface,
+          s.terms, s.preshader, s.parameters, s.textures, s.inputs, s.limits, s.graph, s.lights);
 }
 
 std::string toBlob(const Structure& structure) {
@@ -345,9 +322,9 @@ std::string toBlob(const Structure& structure) {
 bool fromBlob(std::string_view bytes, Structure& s) {
   BlobReader blob(bytes);
   blob(s);
-  renderTerms(s);
-  return blob.complete() && (s.shader.empty() || isShaderId(s.shader)) &&
-         s.preshader.uses(s.parameters.size());
+  if (!blob.complete()) return false;
+  s.texts = textsOf(*s.terms, *s.facts);
+  return (s.shader.empty() || isShaderId(s.shader)) && s.preshader.uses(s.parameters.size());
 }
 
 bool fits(const Structure& s, const graph::Graph& graph) {

@@ -8,18 +8,23 @@
 #include <unordered_map>
 
 #include "cache/cache.h"
-#include "json/text.h"
 #include "lacquer.h"
+#include "manifest/entries.h"
 #include "programs/unite.h"
 #include "shader/module.h"
 #include "shader/preshader.h"
 #include "shader/times.h"
 #include "support/blob.h"
+#include "support/key.h"
 
 namespace lacquer {
 
 using json::Json;
-using json::JsonText;
+
+template <class Archive>
+void fields(Archive& archive, MaterialTerms& t) {
+  archive(t.terms, t.skipped);
+}
 
 /// What is the same for every material of one structure.
 struct Structure {
@@ -29,11 +34,12 @@ struct Structure {
   Diagnostics diagnostics;  ///< of the structure, whatever the numbers are
   std::string shader;       ///< id; empty when none can be made
   bool has_vertex = false;
+  bool looks_through = false;  ///< the shader reads what is drawn behind it
   std::vector<std::pair<std::string, std::string>>
       interface;  ///< members of the shader's entry in the manifest
   std::shared_ptr<const MaterialTerms> terms;
-  std::string terms_text, skipped_text;  ///< as in a material's entry in the manifest
-  std::string absent;  ///< as in a use's: parameters that are not there, and what would bring them back
+  std::shared_ptr<const StructureFacts> facts;
+  StructureTexts texts;  ///< of both
   Preshader preshader;
   std::vector<uint32_t> parameters;                        ///< of the module, as places in the graph's list
   std::vector<std::pair<std::string, uint32_t>> textures;  ///< the module's material textures, the same way
@@ -44,8 +50,28 @@ struct Structure {
   passes::LightFacts lights;
 };
 
-class Programs;
-class Examples;
+/// What materials of different structures share, where the options ask for it.
+class Sharing {
+public:
+  virtual ~Sharing() = default;
+  /// A material's share in a program: what it has beside its own, and whether its own shader would look
+  /// through it.
+  struct Share {
+    const programs::Fill* fill = nullptr;  ///< null for a material that keeps its program
+    bool looks_through = false;
+  };
+  /// Takes note of a graph that needs a structure. `material`: that the graph was built of, here and in
+  /// bring(); null for a graph that is the input.
+  virtual void note(const Key& structure, const graph::Graph& graph, const material::Material* material,
+                    const gltf::VertexAttributes& attributes) = 0;
+  /// Puts the graph of a material's program in place of its own.
+  virtual Share bring(graph::Graph& graph, const material::Material* material,
+                      const gltf::VertexAttributes& attributes, const passes::LightFacts& lights) = 0;
+  /// Results are of use to another run.
+  virtual bool closed() const = 0;
+  /// Of everything that it decides.
+  virtual const Key& digest() const = 0;
+};
 
 /// Everything that the code depends on beside the graph: this build, the node library, options.
 struct Setting {
@@ -55,9 +81,8 @@ struct Setting {
   Cache* cache = nullptr;
   StageTimes* times = nullptr;
   Limits limits = {};
-  std::string folder = {};             ///< that the manifest lies in: sources are relative to it
-  const Programs* programs = nullptr;  ///< that materials share, once it is known
-  Examples* examples = nullptr;        ///< takes note of the materials, before that
+  std::string folder = {};     ///< that the manifest lies in: sources are relative to it
+  Sharing* sharing = nullptr;  ///< null where every structure has a program of its own
   std::shared_ptr<Keys> keys = std::make_shared<Keys>();
   size_t id_bits = Keys::kAll;  ///< of a module's digest; fewer are for tests, in which ids meet
 };
@@ -81,16 +106,13 @@ bool fromBlob(std::string_view bytes, Structure& structure);
 /// whatever the cache says.
 bool fits(const Structure& structure, const graph::Graph& graph);
 
-/// The members "parameters", "uniforms" and "textures" of a use of a material, whose textureInfos are looked
-/// up by the graph's pointers.
-/// `fill`: of a graph that several structures share, what this one has not itself; null for its own graph.
-void writeBindings(const Structure& structure, const graph::Graph& graph, const material::Material& material,
-                   const programs::Fill* fill, JsonText& json);
+/// What a use of a material says of its structure: parameters, uniforms, textures. TextureInfos are looked up
+/// by the graph's pointers. `fill`: of a graph that several structures share, what this one has not itself;
+/// null for its own graph.
+ContractUse useOf(const Structure& structure, const graph::Graph& graph, const material::Material& material,
+                  const programs::Fill* fill);
 
 /// True when the values of the graph's parameters are such that the structure's check holds for it.
 bool withinLimits(const Structure& structure, const graph::Graph& graph);
-
-void writeList(const std::vector<std::string>& names, JsonText& json);
-void writeSkipped(const std::vector<std::pair<std::string, std::string>>& skipped, JsonText& json);
 
 }  // namespace lacquer

@@ -1,4 +1,4 @@
-#include "cache/key.h"
+#include "support/key.h"
 
 namespace lacquer {
 

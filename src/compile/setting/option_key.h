@@ -3,8 +3,8 @@
 
 #include <initializer_list>
 
-#include "cache/key.h"
 #include "lacquer/options.h"
+#include "support/key.h"
 
 namespace lacquer {
 

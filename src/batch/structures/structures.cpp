@@ -1,4 +1,4 @@
-#include "run/structures.h"
+#include "structures/structures.h"
 
 #include <fmt/format.h>
 

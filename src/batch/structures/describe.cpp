@@ -1,0 +1,248 @@
+#include "structures/describe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "manifest/values.h"
+#include "setting/attributes.h"
+#include "setting/simplify.h"
+#include "shader/module.h"
+
+namespace lacquer {
+
+namespace {
+
+/// The values of one material: use() for each use, then finish().
+class Describer {
+public:
+  Describer(const Wanted& wanted, const std::string& file, const passes::LightFacts& lights,
+            const Setting& setting, Structures& structures)
+      : wanted_(wanted),
+        material_(wanted.material == nullptr ? noMaterial() : *wanted.material),
+        file_(file),
+        lights_(lights),
+        setting_(setting),
+        structures_(structures) {}
+
+  void use(const gltf::VertexAttributes& attributes);
+  /// `said`: what building the graph has reported.
+  void use(graph::Graph& graph, const gltf::VertexAttributes& attributes, const Diagnostics& said);
+  /// No graph could be made.
+  void fail(const Diagnostics& why) { add(why); }
+  Described finish();
+
+private:
+  static const material::Material& noMaterial() {
+    static const material::Material kNone;
+    return kNone;
+  }
+  void add(const Diagnostics& found) {
+    for (const Diagnostic& d : found) {
+      // Several uses of one material usually say the same things.
+      if (std::find(diagnostics_.begin(), diagnostics_.end(), d) == diagnostics_.end())
+        diagnostics_.push_back(d);
+    }
+  }
+  std::shared_ptr<const MaterialTerms> terms() const;
+
+  const Wanted& wanted_;
+  const material::Material& material_;
+  const std::string& file_;
+  const passes::LightFacts& lights_;
+  const Setting& setting_;
+  Structures& structures_;
+  Described made_;
+  Diagnostics diagnostics_;
+  std::vector<const Structure*> met_;  ///< failed ones among them
+  bool looks_through_ = false;
+};
+
+/// What is no constant though constants are asked for.
+Diagnostics animated(const Structure& structure, const graph::Graph& graph) {
+  Diagnostics notes;
+  for (const uint32_t i : structure.parameters) {
+    const ir::Parameter& p = graph.parameters[i];
+    if (!p.animated) continue;
+    notes.push_back({"animated-parameter",
+                     Severity::Note,
+                     {{}, 0, 0, p.pointer},
+                     fmt::format("{} is animated: it stays in the Material block", p.name),
+                     "what changes at run time is no constant",
+                     {}});
+  }
+  return notes;
+}
+
+/// Of a shader that materials share: what it reads of the vertices and this primitive does not have.
+Strings standIns(const Structure& structure, const gltf::VertexAttributes& attributes) {
+  const Strings own = attributes.names();
+  Strings missing;
+  for (const std::string& name : structure.inputs) {
+    if (name != "POSITION" && std::find(own.begin(), own.end(), name) == own.end()) missing.push_back(name);
+  }
+  return missing;
+}
+
+void Describer::use(const gltf::VertexAttributes& attributes) {
+  Diagnostics said;
+  Result<graph::Graph> graph;
+  {
+    const StageTimer timer(setting_.times, StageOfRun::Graph);
+    graph = buildGraph(material_, attributes, setting_.library, setting_.options, said);
+  }
+  if (graph)
+    use(*graph, attributes, said);
+  else
+    fail(graph.error());
+}
+
+void Describer::use(graph::Graph& graph, const gltf::VertexAttributes& attributes, const Diagnostics& said) {
+  Sharing::Share share;
+  if (setting_.sharing != nullptr) {
+    setting_.sharing->note(structureKey(graph, lights_, setting_), graph, wanted_.material, attributes);
+    share = setting_.sharing->bring(graph, wanted_.material, attributes, lights_);
+  }
+  const Structure& structure = structures_.of(graph, lights_);
+  met_.push_back(&structure);
+  add(said);
+  if (structure.shader.empty() || !withinLimits(structure, graph)) {
+    const Diagnostics found = graph::check(graph, setting_.library);
+    add(found);
+    if (hasError(found)) return;
+  }
+  add(structure.diagnostics);
+  if (structure.shader.empty()) return;
+  if (setting_.options.parameters != Parameters::Uniform) add(animated(structure, graph));
+  looks_through_ |= share.fill != nullptr ? share.looks_through : structure.looks_through;
+  ContractUse use = useOf(structure, graph, material_, share.fill);
+  use.attributes = toPublic(attributes);
+  if (use.shares_program) use.stand_in_attributes = standIns(structure, attributes);
+  made_.values.uses.push_back(std::move(use));
+  made_.shaders.push_back(structure.shader);
+  made_.met.push_back(&structure);
+  made_.uses.push_back(attributes);
+}
+
+/// Of all uses, each once.
+std::shared_ptr<const MaterialTerms> Describer::terms() const {
+  if (met_.empty()) return std::make_shared<MaterialTerms>();
+  if (std::all_of(met_.begin(), met_.end(), [&](const Structure* s) { return s->terms == met_[0]->terms; })) {
+    return met_[0]->terms;
+  }
+  auto all = std::make_shared<MaterialTerms>();
+  for (const Structure* structure : met_) {
+    for (const std::string& term : structure->terms->terms) {
+      if (std::find(all->terms.begin(), all->terms.end(), term) == all->terms.end())
+        all->terms.push_back(term);
+    }
+    for (const auto& skipped : structure->terms->skipped) {
+      const auto it = std::find_if(all->skipped.begin(), all->skipped.end(),
+                                   [&](const auto& other) { return other.first == skipped.first; });
+      if (it == all->skipped.end())
+        all->skipped.push_back(skipped);
+      else
+        it->second = skipped.second;
+    }
+  }
+  return all;
+}
+
+Described Describer::finish() {
+  const Diagnostics of_uses = std::exchange(diagnostics_, material_.diagnostics);
+  if (!wanted_.note.empty()) {
+    diagnostics_.push_back({"unused-material",
+                            Severity::Note,
+                            {file_, 0, 0, fmt::format("/materials/{}", wanted_.index)},
+                            wanted_.note,
+                            "--unused generates it all the same",
+                            {}});
+  }
+  add(of_uses);
+  made_.diagnostics = std::move(diagnostics_);
+  made_.ok = !hasError(made_.diagnostics);
+  for (const Structure* structure : met_) {
+    if (std::find(made_.structures.begin(), made_.structures.end(), structure->key) == made_.structures.end())
+      made_.structures.push_back(structure->key);
+  }
+  ContractMaterial& values = made_.values;
+  values.index = wanted_.index;
+  values.name = wanted_.name;
+  values.terms = terms();
+  values.ignored = material_.ignored;
+  if (!met_.empty() && values.terms == met_[0]->terms) made_.terms_texts = &met_[0]->texts;
+  if (wanted_.material != nullptr) {
+    if (const Result<const material::Schema*> schema = setting_.library.models.schema()) {
+      values.state = stateOf(material_, **schema, looks_through_);
+      values.extensions = extensionsOf(material_, **schema);
+    }
+  }
+  return std::move(made_);
+}
+
+}  // namespace
+
+gltf::VertexAttributes everything() {
+  gltf::VertexAttributes a;
+  a.normal = true;
+  a.tangent = true;
+  a.texCoord = {true, true, false, false};
+  return a;
+}
+
+std::vector<Wanted> wantedOf(const material::Document& document, const std::vector<std::string>& only,
+                             const Options& options) {
+  // A file of materials alone, without a primitive: every material is wanted.
+  const bool no_primitives =
+      document.defaultUses.empty() &&
+      std::all_of(document.uses.begin(), document.uses.end(), [](const auto& uses) { return uses.empty(); });
+  std::vector<Wanted> all;
+  for (size_t i = 0; i < document.materials.size(); ++i) {
+    const material::Material& material = document.materials[i];
+    const bool named = std::find(only.begin(), only.end(), material.name) != only.end();
+    if (!only.empty() && !named) continue;
+    Wanted one{&material, material.name, static_cast<int>(i), document.uses[i], {}};
+    if (one.uses.empty() && (no_primitives || named || options.unused)) one.uses.push_back(everything());
+    if (one.uses.empty()) one.note = "no primitive uses this material";
+    all.push_back(std::move(one));
+  }
+  if (!document.defaultUses.empty() && only.empty()) {
+    static const material::Material kDefault;
+    all.push_back({&kDefault, {}, -1, document.defaultUses, {}});
+  }
+  return all;
+}
+
+Described describe(const Wanted& wanted, const std::string& file, const passes::LightFacts& lights,
+                   const Setting& setting, Structures& structures) {
+  Describer describer(wanted, file, lights, setting, structures);
+  if (!hasError(wanted.material->diagnostics)) {
+    for (const gltf::VertexAttributes& attributes : wanted.uses) describer.use(attributes);
+  }
+  return describer.finish();
+}
+
+Described describeGraph(const graph::Graph& graph, const std::string& file, const Setting& setting,
+                        Structures& structures) {
+  const Wanted wanted{nullptr, graph.name, 0, {}, {}};
+  const passes::LightFacts lights = lightFacts(setting.options, {});
+  Describer describer(wanted, file, lights, setting, structures);
+  // Groups are gone when a structure is made: what is wrong in them is said before.
+  const bool plain = graph.groups.empty() && setting.options.simplify.empty();
+  graph::Graph checked = graph;
+  const Diagnostics wrong =
+      plain ? Diagnostics() : graph::check(checked, setting.library, setting.limits.nodes);
+  if (hasError(wrong)) {
+    describer.fail(wrong);
+    return describer.finish();
+  }
+  graph::Graph flat = graph::flattened(checked, setting.library);
+  if (const Result<void> simpler = simplifyBuilt(flat, setting.library, setting.options.simplify); simpler)
+    describer.use(flat, everything(), {});
+  else
+    describer.fail(simpler.error());
+  return describer.finish();
+}
+
+}  // namespace lacquer

@@ -1,0 +1,29 @@
+// What a manifest says of a file and its materials, as the public values.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "lacquer/contract.h"
+#include "material/material.h"
+
+namespace lacquer {
+
+/// For each material by its index, -1 for the default one: the attribute sets of its uses.
+using UsesOf = std::map<int, std::vector<gltf::VertexAttributes>>;
+
+std::vector<ContractPrimitive> primitivesOf(const gltf::Scene& scene, const UsesOf& uses);
+std::vector<ContractTexture> texturesOf(const gltf::Scene& scene);
+std::vector<ContractImage> imagesOf(const gltf::Scene& scene);
+
+/// `looks_through`: a shader of the material alone reads what is drawn behind it.
+DrawState stateOf(const material::Material& material, const material::Schema& schema, bool looks_through);
+
+/// Those that have an effect on the material, each with its status.
+std::vector<std::pair<std::string, std::string>> extensionsOf(const material::Material& material,
+                                                              const material::Schema& schema);
+
+/// Fills in what the material says of a texture's textureInfo; nothing where it has none of that pointer.
+void addTextureInfo(const material::Material& material, UsedTexture& texture);
+
+}  // namespace lacquer
