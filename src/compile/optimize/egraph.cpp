@@ -191,19 +191,18 @@ Ref EGraph::add(Node node, const Facts* known) {
   if (known != nullptr) {
     fresh.facts = *known;
   } else if (!node.opaque() && ir::componentCount(node.type) <= 4) {
-    std::array<Known, 4> natural{}, lit{};
+    std::array<Known, 4> real{}, lit{};
     for (size_t k = 0; k < node.count; ++k) {
       const Class& operand = classes_[node.args[k]];
-      natural[k] = {operand.type, &operand.facts.natural};
+      real[k] = {operand.type, &operand.facts.real};
       lit[k] = {operand.type, &operand.facts.lit};
     }
-    fresh.facts.natural =
-        rangesOf(math_, node, {natural.data(), node.count}, constants_, least_lights_, most_lights_);
+    fresh.facts.real = rangesOf(real_, node, {real.data(), node.count}, constants_, least_lights_, most_lights_);
     fresh.facts.lit =
         rangesOf(math_, node, {lit.data(), node.count}, constants_, least_lights_, most_lights_);
   } else {
-    fresh.facts.natural.fill(math_.whole(true));
-    fresh.facts.lit = fresh.facts.natural;
+    fresh.facts.real.fill(real_.whole(true));
+    fresh.facts.lit.fill(math_.whole(true));
   }
   const auto id = static_cast<NodeId>(nodes_.size());
   const auto made = static_cast<Ref>(classes_.size());
@@ -237,7 +236,7 @@ bool EGraph::merge(Ref a, Ref b) {
   if (into.origin == ir::kNoValue || (from.origin != ir::kNoValue && from.origin < into.origin))
     into.origin = from.origin;
   for (size_t c = 0; c < 4; ++c) {
-    into.facts.natural[c] = meet(into.facts.natural[c], from.facts.natural[c]);
+    into.facts.real[c] = meet(into.facts.real[c], from.facts.real[c]);
     into.facts.lit[c] = meet(into.facts.lit[c], from.facts.lit[c]);
   }
   into.nodes.insert(into.nodes.end(), from.nodes.begin(), from.nodes.end());

@@ -17,8 +17,8 @@ using NodeId = uint32_t;
 
 /// What is known of the numbers that a class stands for.
 struct Facts {
-  Ranges natural{};  ///< with inputs in their ranges; scenes within analysis::kSceneLimit
-  Ranges lit{};      ///< the same with light of at most 1 (analysis/relax.h)
+  Ranges real{};  ///< in real arithmetic: what rules ask
+  Ranges lit{};   ///< in float32, with light of at most 1 (analysis/relax.h): what errors are measured by
 };
 
 struct Class {
@@ -37,6 +37,7 @@ public:
   EGraph(Constants& constants, double least_lights, double most_lights, size_t limit)
       : constants_(constants),
         math_(analysis::Arithmetic::Vulkan),
+        real_(analysis::Arithmetic::Real),
         least_lights_(least_lights),
         most_lights_(most_lights),
         limit_(limit) {}
@@ -74,10 +75,10 @@ public:
   const Constants& constants() const { return constants_; }
   const analysis::RangeMath& math() const { return math_; }
 
-  /// Of a component, with inputs in their ranges.
+  /// Of a component, in real arithmetic.
   const Range& range(Ref id, int c) const {
     const Class& of = (*this)[id];
-    return optimize::component(of.facts.natural, of.type, c);
+    return optimize::component(of.facts.real, of.type, c);
   }
   int width(Ref id) const { return ir::componentCount((*this)[id].type); }
   /// True when every component of the class is that number.
@@ -92,7 +93,7 @@ private:
   std::optional<ir::Type> typeOf(const Node& node) const;
 
   Constants& constants_;
-  analysis::RangeMath math_;
+  analysis::RangeMath math_, real_;
   double least_lights_, most_lights_;
   size_t limit_;
   std::vector<Node> nodes_;

@@ -21,6 +21,12 @@ constexpr double kGain = 1e-6;
 
 }  // namespace
 
+double planCost(Counter& counter, const Plan& plan, const Constants& constants, const Family& family) {
+  const Tally tally = counter.count(plan, constants);
+  const double cost = cyclesOf(tally, family) + kLoad * tally[static_cast<size_t>(Count::Loads)];
+  return cost + kNode * static_cast<double>(plan.nodes.size());
+}
+
 Extractor::Extractor(const EGraph& graph, const ir::Module& module, const Family& family,
                      std::vector<Ref> roots, std::vector<NodeId> start)
     : graph_(graph), family_(family), counter_(module), roots_(std::move(roots)), choice_(std::move(start)) {
@@ -39,7 +45,7 @@ Extractor::Extractor(const EGraph& graph, const ir::Module& module, const Family
     price();
     build(choice_, current_);
   }
-  current_.cost = costOf(current_);
+  current_.cost = planCost(counter_, current_.plan, graph_.constants(), family_);
   choice_.assign(graph.classCount(), kNoNode);
   for (size_t i = 0; i < current_.classes.size(); ++i) choice_[current_.classes[i]] = current_.nodes[i];
   best_ = current_;
@@ -104,13 +110,6 @@ bool Extractor::build(const std::vector<NodeId>& choice, Selection& into) {
     into.plan.roots.push_back(marks_[graph_.find(root)].place);
   }
   return true;
-}
-
-double Extractor::costOf(const Selection& selection) {
-  const Tally tally = counter_.count(selection.plan, graph_.constants());
-  double cost = cyclesOf(tally, family_);
-  cost += kLoad * tally[static_cast<size_t>(Count::Loads)];
-  return cost + kNode * static_cast<double>(selection.plan.nodes.size());
 }
 
 /// About what a node adds to a plan.
@@ -181,11 +180,10 @@ bool Extractor::pass(const Effort& effort, const std::function<bool(const Select
     const Node& now = graph_.node(choice_[id]);
     double kept = own_[choice_[id]];
     for (const Ref operand : now.operands()) kept += prices_[graph_.find(operand)].whole;
-    // A form that is dearer by itself may free others; not by more than a few operations.
-    constexpr double kSlack = 14;
+    // A form that is dearer by itself may free others.
     for (const NodeId node : graph_[id].nodes) {
       if (node == choice_[id] || trials_ >= effort.trials) continue;
-      if (!(priceOf(graph_.node(node), own_[node]) <= kept + kSlack)) continue;
+      if (!(priceOf(graph_.node(node), own_[node]) <= kept + effort.slack)) continue;
       if (!attempt(id, node, current_.cost - kGain, allowed)) continue;
       if (current_.cost < best_.cost - kGain) best_ = current_;
       price();
@@ -204,7 +202,7 @@ bool Extractor::attempt(Ref id, NodeId node, double limit,
   choice_[id] = node;
   ++trials_;
   bool taken = build(choice_, trial_);
-  if (taken) trial_.cost = costOf(trial_);
+  if (taken) trial_.cost = planCost(counter_, trial_.plan, graph_.constants(), family_);
   taken = taken && trial_.cost <= limit && allowed(trial_);
   if (!taken) {
     choice_[id] = before;
@@ -223,7 +221,7 @@ void Extractor::improve(const Effort& effort, const std::function<bool(const Sel
   }
 }
 
-void Extractor::wander(size_t trials, double heat, uint64_t seed,
+void Extractor::wander(size_t trials, double heat, double slack, uint64_t seed,
                        const std::function<bool(const Selection&)>& allowed) {
   uint64_t state = seed * 2 + 1;
   const auto drawn = [&] {
@@ -240,9 +238,8 @@ void Extractor::wander(size_t trials, double heat, uint64_t seed,
     if (nodes.size() < 2 || graph_[id].rate <= Rate::Material) continue;
     const NodeId node = nodes[drawn() % nodes.size()];
     if (node == choice_[id]) continue;
-    constexpr double kSlack = 14;
     if (!(priceOf(graph_.node(node), own_[node]) <=
-          kSlack + priceOf(graph_.node(choice_[id]), own_[choice_[id]])))
+          slack + priceOf(graph_.node(choice_[id]), own_[choice_[id]])))
       continue;
     // The heat falls to nothing at the end. A half of the steps up is refused for each unit of it.
     const double now = heat * static_cast<double>(end - trials_) / static_cast<double>(trials);

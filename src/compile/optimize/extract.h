@@ -11,6 +11,9 @@
 
 namespace lacquer::optimize {
 
+/// The cycles of a plan by the model; of equally fast plans the short one is a little cheaper.
+double planCost(Counter& counter, const Plan& plan, const Constants& constants, const Family& family);
+
 /// A plan with the class of each node, and the node that it is in the graph.
 struct Selection {
   Plan plan;
@@ -22,6 +25,7 @@ struct Selection {
 struct Effort {
   int passes = 4;         ///< over all classes of the plan
   size_t trials = 60000;  ///< plans that are counted, at most
+  double slack = 2;       ///< by how many cycles a form may be dearer by itself and be tried
 };
 
 class Extractor {
@@ -36,9 +40,9 @@ public:
   const Selection& selection() const { return best_; }
   /// Looks for a cheaper one; each that is taken must be `allowed`.
   void improve(const Effort& effort, const std::function<bool(const Selection&)>& allowed);
-  /// Exchanges forms at random, dearer ones, too, the less the longer: `heat` in cycles. The best plan that
+  /// Exchanges forms at random, dearer ones, too, the less the longer: `heat` and `slack` in cycles. The best plan that
   /// is met on the way is kept. The same seed takes the same way.
-  void wander(size_t trials, double heat, uint64_t seed,
+  void wander(size_t trials, double heat, double slack, uint64_t seed,
               const std::function<bool(const Selection&)>& allowed);
   /// Where it is now.
   const Selection& current() const { return current_; }
@@ -52,7 +56,6 @@ private:
   };
 
   bool build(const std::vector<NodeId>& choice, Selection& into);
-  double costOf(const Selection& selection);
   double ownPrice(const Node& node) const;
   void price();
   double priceOf(const Node& node, double own) const;

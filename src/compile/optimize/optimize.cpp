@@ -42,8 +42,10 @@ class ModuleFacts {
 public:
   explicit ModuleFacts(const ir::Module& module)
       : dag_(module.dag),
+        real_(module, {analysis::Arithmetic::Real, analysis::kSceneLimit}),
         natural_(module, {analysis::Arithmetic::Vulkan, analysis::kSceneLimit}),
         lit_(module, {analysis::Arithmetic::Vulkan, analysis::kSceneLimit}) {
+    real_.run();
     natural_.run();
     for (const ValueId light : analysis::lightsOf(module)) {
       Ranges ranges;
@@ -53,20 +55,21 @@ public:
     lit_.run();
   }
 
-  Facts of(ValueId id) const {
-    Facts facts;
-    for (int c = 0; c < 4; ++c) {
-      const int component = std::min(c, std::max(ir::componentCount(dag_[id].type), 1) - 1);
-      facts.natural[static_cast<size_t>(c)] = natural_.at(id, component);
-      facts.lit[static_cast<size_t>(c)] = lit_.at(id, component);
-    }
-    return facts;
-  }
-  bool known(ValueId id) const { return natural_.known(id) && lit_.known(id); }
+  Facts of(ValueId id) const { return {all(real_, id), all(lit_, id)}; }
+  /// In float32, with light as bright as it may be.
+  Ranges natural(ValueId id) const { return all(natural_, id); }
+  bool known(ValueId id) const { return natural_.known(id) && lit_.known(id) && real_.known(id); }
 
 private:
+  Ranges all(const Intervals& intervals, ValueId id) const {
+    Ranges ranges;
+    const int width = std::max(ir::componentCount(dag_[id].type), 1);
+    for (int c = 0; c < 4; ++c) ranges[static_cast<size_t>(c)] = intervals.at(id, std::min(c, width - 1));
+    return ranges;
+  }
+
   const ir::Dag& dag_;
-  Intervals natural_, lit_;
+  Intervals real_, natural_, lit_;
 };
 
 /// A plan with what is known of its nodes.
@@ -133,23 +136,26 @@ struct Proved {
 /// How much a level looks at.
 struct Plenty {
   size_t nodes;    ///< of a graph
-  int rounds;      ///< graphs, each from what the one before it has found
-  size_t wander;   ///< plans on the way of chance through each of them
-  double heat;     ///< of that way, in cycles
+  int ways;        ///< from the plain form
+  int steps;       ///< of a way: graphs, each from where the one before it has ended
+  size_t wander;   ///< plans by chance in each of them
   size_t matches;  ///< of one rule in a round of its graph
 };
+constexpr Plenty kPlenty[] = {{12000, 1, 8, 1000, 12000}, {16000, 8, 8, 3000, 12000}};
 
-Plenty plentyOf(int level) {
-  if (level >= 2) return {60000, 10, 20000, 1, 30000};
-  return {24000, 3, 1500, 0.5, 12000};
-}
+/// What differs from one graph to the next, so that they do not all end in the same place.
+struct Taste {
+  double slack, heat;
+  unsigned left_out;  ///< rules of a hundred
+};
+constexpr Taste kTastes[] = {{2, 0.5, 0}, {2, 0.5, 0}, {8, 1, 30}, {0, 0.5, 0}, {14, 0.5, 0}, {2, 2, 50}};
 
 class Search {
 public:
   Search(const ir::Module& module, const Settings& settings)
       : module_(module),
         family_(settings.family != nullptr ? *settings.family : families()[0]),
-        plenty_(plentyOf(settings.level)) {
+        plenty_(kPlenty[settings.level >= 2 ? 1 : 0]) {
     std::tie(least_lights_, most_lights_) = lightCounts(module);
     const ModuleFacts facts(module);
     plain_.plan = planOf(module, constants_);
@@ -157,56 +163,64 @@ public:
       const bool known = origin != ir::kNoValue && facts.known(origin);
       plain_.known.push_back(known);
       plain_.facts.push_back(known ? facts.of(origin) : Facts{});
+      natural_.push_back(known ? facts.natural(origin) : Ranges{});
     }
-    fill(plain_);
+    fill();
   }
 
   std::vector<Candidate> run() {
     std::vector<Candidate> all;
     all.push_back({module_, {}});
     const Proved proved(module_);
-    Found from = plain_;
-    double best = 0;
-    for (int i = 0; i < plenty_.rounds; ++i) {
-      const Step step = this->step(from, static_cast<uint64_t>(i));
-      if (i == 0) best = outcome_.plain = step.before;
-      from = step.last;
-      if (!(step.best_cost < best - kGain)) continue;
-      best = step.best_cost;
-      ir::Module made = module_;
-      replaceFragment(made, step.best.plan, constants_);
-      // What the plan's ranges promise the module's must keep.
-      if (!Proved(made).keeps(proved)) break;
-      all.push_back({std::move(made), {outcome_.plain, best, step.growth}});
+    Counter counter(module_);
+    const double plain = planCost(counter, plain_.plan, constants_, family_);
+    double best = plain;
+    for (int way = 0; way < plenty_.ways; ++way) {
+      Found from = plain_;
+      for (int i = 0; i < plenty_.steps; ++i) {
+        const Step step = this->step(from, static_cast<uint64_t>(way * plenty_.steps + i));
+        from = step.last;
+        if (!(step.best_cost < best - kGain)) continue;
+        ir::Module made = module_;
+        replaceFragment(made, step.best.plan, constants_);
+        // What the plan's ranges promise the module's must keep.
+        if (!Proved(made).keeps(proved)) continue;
+        best = step.best_cost;
+        all.push_back({std::move(made), {plain, best, step.growth}});
+      }
     }
-    all.front().outcome = {outcome_.plain, outcome_.plain, 1};
+    all.front().outcome = {plain, plain, 1};
+    // The last ones are the best by the model.
+    if (all.size() > kMostCandidates)
+      all.erase(all.begin() + 1, all.end() - static_cast<ptrdiff_t>(kMostCandidates - 1));
     return all;
   }
 
 private:
   static constexpr double kGain = 0.01;  // less is a matter of how many operations there are
+  static constexpr size_t kMostCandidates = 12;
 
   struct Step {
     Found best, last;
-    double before = 0, best_cost = 0, growth = 1;
+    double best_cost = 0, growth = 1;
   };
 
   /// What the analyses have no value for follows from the operands.
-  void fill(Found& found) const {
-    const analysis::RangeMath math(analysis::Arithmetic::Vulkan);
-    for (Ref at = 0; at < found.plan.nodes.size(); ++at) {
-      if (found.known[at]) continue;
-      const Node& node = found.plan.nodes[at];
-      std::array<Known, 4> natural{}, lit{};
-      for (size_t k = 0; k < node.count; ++k) {
-        const ir::Type type = found.plan.nodes[node.args[k]].type;
-        natural[k] = {type, &found.facts[node.args[k]].natural};
-        lit[k] = {type, &found.facts[node.args[k]].lit};
-      }
-      found.facts[at].natural =
-          rangesOf(math, node, {natural.data(), node.count}, constants_, least_lights_, most_lights_);
-      found.facts[at].lit =
-          rangesOf(math, node, {lit.data(), node.count}, constants_, least_lights_, most_lights_);
+  void fill() {
+    const analysis::RangeMath floats(analysis::Arithmetic::Vulkan);
+    const analysis::RangeMath reals(analysis::Arithmetic::Real);
+    for (Ref at = 0; at < plain_.plan.nodes.size(); ++at) {
+      if (plain_.known[at]) continue;
+      const Node& node = plain_.plan.nodes[at];
+      const auto ranges = [&](const analysis::RangeMath& math, auto of) {
+        std::array<Known, 4> operands{};
+        for (size_t k = 0; k < node.count; ++k)
+          operands[k] = {plain_.plan.nodes[node.args[k]].type, &of(node.args[k])};
+        return rangesOf(math, node, {operands.data(), node.count}, constants_, least_lights_, most_lights_);
+      };
+      natural_[at] = ranges(floats, [&](Ref k) -> const Ranges& { return natural_[k]; });
+      plain_.facts[at].real = ranges(reals, [&](Ref k) -> const Ranges& { return plain_.facts[k].real; });
+      plain_.facts[at].lit = ranges(floats, [&](Ref k) -> const Ranges& { return plain_.facts[k].lit; });
     }
   }
 
@@ -219,19 +233,20 @@ private:
   }
 
   /// One graph, and the way through it.
-  Step step(const Found& from, uint64_t seed_number) {
+  Step step(const Found& from, uint64_t number) {
     EGraph graph(constants_, least_lights_, most_lights_, plenty_.nodes);
     std::map<ValueId, Ref> origins;
     std::vector<Ref> plain_classes = seed(graph, plain_, origins);
     std::vector<Ref> classes = seed(graph, from, origins);
-    saturate(graph, {4, plenty_.matches});
+    const Taste& taste = kTastes[number % std::size(kTastes)];
+    saturate(graph, {4, plenty_.matches, taste.left_out, number});
     for (Ref& id : classes) id = graph.find(id);
     for (Ref& id : plain_classes) id = graph.find(id);
     std::vector<Ref> roots;
     for (const Ref root : plain_.plan.roots) roots.push_back(plain_classes[root]);
 
     const Bounds bounds = boundsOf(plain_.plan, plain_classes, graph, most_lights_);
-    Safety safety(graph, module_.dag, plain_.plan, plain_classes, plain_.facts,
+    Safety safety(graph, module_.dag, plain_.plan, plain_classes, natural_,
                   nodesOf(graph, plain_.plan, plain_classes), least_lights_, most_lights_);
     Points points(graph, plain_.plan, plain_classes);
     const auto growthOf = [&](const Selection& selection) {
@@ -244,12 +259,11 @@ private:
     };
     Extractor extractor(graph, module_, family_, roots, nodesOf(graph, from.plan, classes));
     Step step;
-    step.before = extractor.selection().cost;
-    extractor.improve({}, allowed);
-    if (plenty_.wander > 0) {
-      extractor.wander(plenty_.wander, plenty_.heat, seed_number + 1, allowed);
-      extractor.improve({}, allowed);
-    }
+    Effort effort;
+    effort.slack = taste.slack;
+    extractor.improve(effort, allowed);
+    extractor.wander(plenty_.wander, taste.heat, taste.slack, number + 1, allowed);
+    extractor.improve(effort, allowed);
     step.best = foundOf(graph, extractor.selection());
     step.best_cost = extractor.selection().cost;
     step.last = foundOf(graph, extractor.current());
@@ -263,7 +277,7 @@ private:
   Constants constants_;
   double least_lights_ = 0, most_lights_ = 1;
   Found plain_;
-  Outcome outcome_;
+  std::vector<Ranges> natural_;  ///< of the plain plan's nodes
 };
 
 }  // namespace

@@ -44,7 +44,7 @@ void Points::draw(const Node& node, Ref id, Values& values) const {
     const double length = drawn(seed, p, 11) < 0.5 ? 1 : 0.1 + 4 * drawn(seed, p, 12);
     for (int c = 0; c < width; ++c) {
       const auto k = static_cast<size_t>(c);
-      const Range& range = optimize::component(of.facts.natural, of.type, c);
+      const Range& range = optimize::component(of.facts.real, of.type, c);
       const double u = drawn(seed, p, 20 + k);
       const double pick = drawn(seed, p, 30 + k);
       double x = 0;

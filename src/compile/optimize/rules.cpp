@@ -142,11 +142,19 @@ struct Found {
   Letters letters;
 };
 
+/// Whether a growth has a rule.
+bool has(const Growth& growth, uint64_t rule) {
+  uint64_t x = (growth.seed * 0x9E3779B97F4A7C15U) ^ ((rule + 1) * 0xC2B2AE3D27D4EB4FU);
+  x = (x ^ x >> 29U) * 0x165667B19E3779F9U;
+  return (x ^ x >> 32U) % 100 >= growth.left_out;
+}
+
 void applyTexts(EGraph& graph, const std::vector<std::vector<NodeId>>& nodes, const Growth& growth) {
   std::vector<Found> all;
   const std::span<const Rule> texts = rules();
   for (uint32_t r = 0; r < texts.size(); ++r) {
     const Rule& rule = texts[r];
+    if (!has(growth, r)) continue;
     size_t count = 0;
     const Op op = rule.from.terms[rule.from.root].op;
     for (const NodeId id : nodes[static_cast<size_t>(op)]) {

@@ -21,6 +21,9 @@ std::span<const CodedRule> codedRules();
 struct Growth {
   int rounds = 4;
   size_t matches = 3000;  ///< that one rule may have in a round
+  /// Of a hundred rules that many are left out, by a draw: what is left goes further with as many nodes.
+  unsigned left_out = 0;
+  uint64_t seed = 0;
 };
 
 /// Applies the rules until nothing is new, the graph is full, or the rounds are over. The same graph gives

@@ -30,7 +30,7 @@ bool within(const Range& x, ir::Domain domain) {
 }  // namespace
 
 Safety::Safety(const EGraph& graph, const ir::Dag& dag, const Plan& plain, std::span<const Ref> classes,
-               std::span<const Facts> facts, std::span<const NodeId> nodes, double least_lights,
+               std::span<const Ranges> ranges, std::span<const NodeId> nodes, double least_lights,
                double most_lights)
     : graph_(graph),
       dag_(dag),
@@ -38,7 +38,7 @@ Safety::Safety(const EGraph& graph, const ir::Dag& dag, const Plan& plain, std::
       most_lights_(most_lights),
       plain_nodes_(nodes.begin(), nodes.end()),
       plain_ranges_(graph.classCount(), nullptr) {
-  for (size_t at = 0; at < classes.size(); ++at) plain_ranges_[classes[at]] = &facts[at].natural;
+  for (size_t at = 0; at < classes.size(); ++at) plain_ranges_[classes[at]] = &ranges[at];
   std::vector<NodeId> chosen;
   for (const Ref id : classes) chosen.push_back(plain_nodes_[id]);
   ranges_.resize(plain.nodes.size());

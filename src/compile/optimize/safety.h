@@ -12,10 +12,10 @@ namespace lacquer::optimize {
 /// What is known of a plain plan, against which others are held.
 class Safety {
 public:
-  /// Of each node of the plan its class, and what the analyses say of it, where they do; of each class the
-  /// node that the plan has.
+  /// Of each node of the plan its class, and what it can be in float32; of each class the node that the plan
+  /// has.
   Safety(const EGraph& graph, const ir::Dag& dag, const Plan& plain, std::span<const Ref> classes,
-         std::span<const Facts> facts, std::span<const NodeId> nodes, double least_lights,
+         std::span<const Ranges> ranges, std::span<const NodeId> nodes, double least_lights,
          double most_lights);
 
   /// True when each operation with a domain is as safe as one of the plain plan, and no output may be a
