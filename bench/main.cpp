@@ -9,6 +9,7 @@
 #include "bench/cost.h"
 #include "bench/error.h"
 #include "bench/estimate.h"
+#include "bench/loops.h"
 #include "bench/optimize.h"
 #include "bench/pipeline_bench.h"
 
@@ -27,6 +28,7 @@ constexpr Verb kVerbs[] = {
     {"estimate",
      "fits the weights of the costs that `lacquer lod` estimates without Mesa, and prints their error",
      lacquer::bench::runEstimate},
+    {"loops", "loops written out and kept: instructions and cycles on an AMD GPU", lacquer::bench::runLoops},
     {"optimize", "what the search for cheaper forms saves and takes", lacquer::bench::runOptimize},
     {"pipeline", "what making shaders takes, against glslang and spirv-opt; renews bench/pipeline.json",
      lacquer::bench::runPipeline},

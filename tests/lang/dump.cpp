@@ -137,6 +137,7 @@ std::string dumpValue(const ir::Dag& dag, ir::ValueId id) {
     }
     return text;
   }
+  if (value.op == ir::Op::Carried) return fmt::format("carried.{}({})", value.payload, text);
   const std::string_view name = dag.nameOf(id);
   return fmt::format("{}{}{}({})", name, name.empty() ? "" : ":", ir::info(value.op).name, text);
 }

@@ -130,7 +130,7 @@ private:
       case spv::OpConstantFalse: cells_[a[1]] = {0}; return;
       case spv::OpConstant: {
         const bool whole = types_.at(a[0]).op == spv::OpTypeInt;
-        cells_[a[1]] = {whole ? static_cast<int32_t>(a[2]) : std::bit_cast<float>(a[2])};
+        cells_[a[1]] = {whole ? number(a[2]) : double(std::bit_cast<float>(a[2]))};
         return;
       }
       case spv::OpConstantComposite: cells_[a[1]] = concat(a + 2, in.count - 2); return;
@@ -165,7 +165,11 @@ private:
       case spv::OpBranchConditional: return jump(scalar(a[0]) != 0 ? a[1] : a[2]);
       case spv::OpKill: outcome_.dropped = true; [[fallthrough]];
       case spv::OpReturn: running_ = false; return at;
-      case spv::OpStore: outcome_.outputs[variables_.at(a[0]).name] = cell(a[1]); return at + 1;
+      case spv::OpVariable:  // a local one
+        pointers_[a[1]] = {a[1], 0, types_.at(a[0]).element};
+        locals_[a[1]] = Cell(types_.at(pointers_[a[1]].type).count);
+        return at + 1;
+      case spv::OpStore: store(pointers_.at(a[0]), cell(a[1])); return at + 1;
       case spv::OpAccessChain: pointers_[a[1]] = chain(in); return at + 1;
       case spv::OpLine:
       case spv::OpNoLine:
@@ -199,7 +203,8 @@ private:
       const auto index = static_cast<uint32_t>(scalar(in.args[i]));
       const Type& type = types_.at(p.type);
       if (type.op == spv::OpTypeStruct) {
-        p.offset += offsets_.at({p.type, index});
+        const auto offset = offsets_.find({p.type, index});
+        p.offset += offset == offsets_.end() ? 0 : offset->second;
         p.type = type.members.at(index);
       } else {
         constexpr uint32_t kColumn = 16;
@@ -211,7 +216,23 @@ private:
     return p;
   }
 
+  void store(const Pointer& to, const Cell& value) {
+    const auto local = locals_.find(to.variable);
+    if (local != locals_.end()) {
+      std::copy(value.begin(), value.end(), local->second.begin() + to.offset / 4);
+      return;
+    }
+    // glslang's position is a member of a block without a name.
+    const std::string& name = variables_[to.variable].name;
+    outcome_.outputs[name.empty() ? "gl_Position" : name] = value;
+  }
+
   void load(uint32_t id, const Pointer& from) {
+    const auto take = [&](const Cell& whole) {
+      const auto begin = whole.begin() + from.offset / 4;
+      cells_[id] = Cell(begin, begin + types_.at(from.type).count);
+    };
+    if (const auto local = locals_.find(from.variable); local != locals_.end()) return take(local->second);
     const Variable& variable = variables_.at(from.variable);
     const Type& type = types_.at(from.type);
     if (type.op == spv::OpTypeSampledImage) {
@@ -219,7 +240,7 @@ private:
       return;
     }
     if (const auto input = world_.inputs.find(variable.name); input != world_.inputs.end()) {
-      cells_[id] = input->second;
+      take(input->second);
       return;
     }
     const std::vector<uint8_t>& bytes = world_.blocks.at({variable.set, variable.binding});
@@ -229,7 +250,7 @@ private:
       uint32_t word = 0;
       if (from.offset + i * 4 + 4 > bytes.size()) fail("a read behind the block");
       std::memcpy(&word, bytes.data() + from.offset + i * 4, 4);
-      read[i] = type.op == spv::OpTypeInt ? static_cast<int32_t>(word) : std::bit_cast<float>(word);
+      read[i] = type.op == spv::OpTypeInt ? number(word) : double(std::bit_cast<float>(word));
     }
     cells_[id] = read;
   }
@@ -352,6 +373,7 @@ private:
   std::map<uint32_t, Type> types_;
   std::map<uint32_t, Variable> variables_;
   std::map<uint32_t, Pointer> pointers_;
+  std::map<uint32_t, Cell> locals_;
   std::map<uint32_t, Cell> cells_;
   std::map<uint32_t, uint32_t> textures_;  ///< loaded samplers: their variables
   std::map<uint32_t, uint32_t> strides_;

@@ -1,6 +1,6 @@
-// Executes what writeSpirv writes: enough of SPIR-V for it, and nothing more. It knows the words alone,
-// neither the DAG nor ops.def, so that it disagrees when an opcode, an operand's place, an offset or a loop
-// is wrong.
+// Executes what writeSpirv writes, and what glslang makes of the same in GLSL: enough of SPIR-V for these,
+// and nothing more. It knows the words alone, neither the DAG nor ops.def, so that it disagrees when an
+// opcode, an operand's place, an offset or a loop is wrong.
 #pragma once
 
 #include <array>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <utility>
 
 #include "check/check.h"
 #include "spirv/reference.h"
@@ -29,7 +30,11 @@ using Pool = std::map<Type, std::vector<ValueId>>;
 
 class Generator {
 public:
-  explicit Generator(uint32_t seed, Stage stage) : random_(seed), stage_(stage) {}
+  Generator(uint32_t seed, Stage stage, bool loops)
+      : random_(seed),
+        stage_(stage),
+        loops_(loops),
+        rate_(stage == Stage::Vertex ? Rate::Vertex : Rate::Fragment) {}
 
   ir::Module make(int operations) {
     declare();
@@ -96,8 +101,8 @@ private:
     take(dag().component(b_.field("frame.lone"), 2));
     take(dag().component(b_.field("material.lone"), 3));
     take(b_.field("light.color", 3));
-    take(b_.texture("flat", Type::Texture2D));
-    take(b_.texture("cube", Type::TextureCube, true));
+    take(b_.texture("picture", Type::Texture2D));
+    take(b_.texture("sky", Type::TextureCube, true));
     for (const Type type : kFloating) {
       const ValueId in = b_.attribute(fmt::format("A_{}", ir::componentCount(type)), type);
       take(stage_ == Stage::Vertex ? in : b_.varying(fmt::format("a{}", ir::componentCount(type)), in));
@@ -116,11 +121,55 @@ private:
 
   void grow(Pool& pool, int operations) {
     for (int i = 0; i < operations; ++i) {
+      if (loops_ && depth_ < 3 && below(8) == 0) loop(pool);
       const ValueId made = operation(pool);
       pool[dag()[made].type].push_back(made);
       if (below(4) == 0) b_.named(made, fmt::format("n{}", i));
       if (below(8) == 0) b_.term(fmt::format("term.{}", i), "");
     }
+  }
+
+  /// A loop that carries values of some types, with loops in it. What it carries stays small.
+  void loop(Pool& pool) {
+    ++depth_;
+    const uint32_t number = dag().openLoop();
+    const int first = static_cast<int>(below(5)) - 2;
+    const int most = 1 + static_cast<int>(below(4));
+    const ValueId past = dag().integer(first + most);
+    ValueId end = below(2) == 0 ? past : pick(pool, Type::Int);
+    end = dag().make(Op::Select, {dag().make(Op::IntLess, {past, end}), past, end});
+    const double from = first;
+    Pool inside = pool;
+    const auto take = [&](ValueId id) {
+      for (int i = 0; i < 6; ++i) inside[dag()[id].type].push_back(id);
+    };
+    const ValueId index =
+        dag().input({InputKind::LoopIndex, "round", Type::Int, rate_, {from, from + most - 1}, 0, number});
+    take(index);
+    constexpr std::array kCarried = {Type::Float, Type::Vec2, Type::Vec3, Type::Vec4,
+                                     Type::Int,   Type::UInt, Type::Bool};
+    std::vector<std::pair<ValueId, ValueId>> carried;  // the first, and that of a round
+    for (uint32_t k = 0; k <= below(4); ++k) {
+      const Type type = any(kCarried);
+      ir::Input input{InputKind::LoopValue, fmt::format("carried_{}", k), type, rate_, {}, 0, number};
+      input.index = k;
+      carried.emplace_back(pick(pool, type), dag().input(input));
+      take(carried.back().second);
+    }
+    grow(inside, 2 + static_cast<int>(below(12)));
+    ValueId chain = dag().make(Op::Loop, {end, index});
+    for (const auto& [begin, value] : carried) {
+      ValueId next = pick(inside, dag()[value].type);
+      if (below(4) == 0) next = inside.at(dag()[value].type).at(pool[dag()[value].type].size());
+      const bool number_like = ir::isFloating(dag()[value].type);
+      if (number_like && dag()[next].op != Op::Input) next = dag().make(Op::Sin, {next});
+      chain = dag().make(Op::Carry, {chain, begin, next, value});
+    }
+    for (uint32_t k = 0; k < carried.size(); ++k) {
+      const ValueId left = dag().carried(chain, k);
+      for (int i = 0; i < 3; ++i) pool[dag()[left].type].push_back(left);
+    }
+    --depth_;
   }
 
   /// Some sums over a group; its light-rate values go to a pool of their own.
@@ -143,7 +192,9 @@ private:
       take(dag().component(field("light.lone", Type::Vec4, 5), 3));
       take(light("i", Type::Int, InputKind::LightIndex, 0));
     }
+    const Rate outer = std::exchange(rate_, Rate::Light);
     grow(inside, operations);
+    rate_ = outer;
     for (const Type type : kFloating) {
       ValueId total = any(pool[type]);
       for (const ValueId id : inside[type]) {
@@ -307,6 +358,9 @@ private:
 
   std::mt19937 random_;
   Stage stage_;
+  bool loops_;
+  Rate rate_;      ///< of what is made where the generator is
+  int depth_ = 0;  ///< of loops
   bool derivatives_ = true;
   targets::Builder b_;
 };
@@ -334,6 +388,18 @@ void expectRight(const ir::Module& module, const schedule::Program& program, uin
   }
 }
 
+/// The texts compile, and that of GLSL computes what the DAG means.
+void expectTexts(const ir::Module& module, Stage stage, uint32_t seed) {
+  for (const Target target : targets::kTextTargets) {
+    const std::string text = targets::print(module, stage, target);
+    const check::Spirv words = targets::expectCompiles(text, stage, target);
+    if (target != Target::Glsl || words.empty()) continue;
+    const World world = makeWorld(module, seed, 3);
+    SCOPED_TRACE(text);
+    expectSame(evaluate(module, stage, world), interpret(words, world));
+  }
+}
+
 /// The same program with none of its variables: every value is placed by the writer alone.
 schedule::Program withoutVariables(schedule::Program program) {
   std::erase_if(program.statements,
@@ -342,14 +408,15 @@ schedule::Program withoutVariables(schedule::Program program) {
   return program;
 }
 
-void run(uint32_t seed, Stage stage, int operations) {
+void run(uint32_t seed, Stage stage, int operations, bool loops = false) {
   SCOPED_TRACE(fmt::format("seed {}", seed));
-  ir::Module module = Generator(seed, stage).make(operations);
+  ir::Module module = Generator(seed, stage, loops).make(operations);
   const std::vector<std::string> wrong = ir::verify(module);
   ASSERT_TRUE(wrong.empty()) << wrong[0];
   const schedule::Program program = schedule::schedule(module, stage);
   expectRight(module, program, seed);
   expectRight(module, withoutVariables(program), seed);
+  if (seed % 4 == 0) expectTexts(module, stage, seed);
 }
 
 }  // namespace
@@ -363,6 +430,13 @@ TEST(Random, Fragments) {
 TEST(Random, Vertices) {
   for (uint32_t seed = 0; seed < 40 && !testing::Test::HasFailure(); ++seed) {
     run(seed, Stage::Vertex, 20 + static_cast<int>(seed) * 6);
+  }
+}
+
+TEST(Random, Loops) {
+  for (uint32_t seed = 0; seed < 60 && !testing::Test::HasFailure(); ++seed) {
+    run(seed, Stage::Fragment, 20 + static_cast<int>(seed) * 2, true);
+    run(seed, Stage::Vertex, 20 + static_cast<int>(seed) * 2, true);
   }
 }
 

@@ -49,6 +49,7 @@ private:
     }
     if (v.op == Op::Input) return input(dag_.inputOf(id));
     if (v.op == Op::SumOverLights) return sum(v);
+    if (v.op == Op::Carried) return carried(v);
     std::vector<Cell> x;
     for (const ValueId operand : v.operands()) {
       x.push_back(dag_[operand].type == Type::Texture2D || dag_[operand].type == Type::TextureCube
@@ -126,7 +127,9 @@ private:
   Cell input(const ir::Input& in) {
     switch (in.kind) {
       case InputKind::Parameter:
-      case InputKind::Texture: break;
+      case InputKind::Texture:
+      case InputKind::LoopIndex:
+      case InputKind::LoopValue: break;  // known in a loop's rounds
       case InputKind::SpecConstant: return constant(in);
       case InputKind::LightIndex: return {static_cast<double>(light_)};
       case InputKind::FrontFacing: return world_.inputs.at("gl_FrontFacing");
@@ -180,6 +183,46 @@ private:
       of_this_light_.clear();
     }
     return total;
+  }
+
+  /// Runs the whole loop for one of the values that it carries.
+  Cell carried(const ir::Value& v) {
+    std::vector<ir::Value> links;
+    ValueId link = v.args[0];
+    for (; dag_[link].op == Op::Carry; link = dag_[link].args[0]) links.push_back(dag_[link]);
+    const ValueId index = dag_[link].args[1];
+    // What is made of the loop's inputs, however far from it.
+    std::vector<ValueId> inner;
+    std::vector<bool> inside(dag_.size(), false);
+    for (const ValueId id : ir::reachable(dag_, {{v.args[0]}})) {
+      const ir::Value& value = dag_[id];
+      bool of_loop = value.op == Op::Input && ir::ofLoop(dag_.inputOf(id).kind) &&
+                     dag_.inputOf(id).field == dag_.inputOf(index).field;
+      for (const ValueId operand : value.operands()) of_loop = of_loop || inside[operand];
+      inside[id] = of_loop;
+      if (of_loop) inner.push_back(id);
+    }
+    const double end = value(dag_[link].args[0])[0];
+    std::vector<Cell> state;
+    for (const ir::Value& l : links) state.push_back(value(l.args[1]));
+    const ir::Interval& range = dag_.inputOf(index).range;
+    const auto forget = [&] {
+      for (const ValueId id : inner) known_[id].clear();
+    };
+    for (double round = range.lo; round < end && round <= range.hi; ++round) {
+      forget();
+      known_[index] = {round};
+      for (size_t k = 0; k < links.size(); ++k) known_[links[k].args[3]] = state[k];
+      std::vector<Cell> next;
+      for (const ir::Value& l : links) next.push_back(value(l.args[2]));
+      state = std::move(next);
+    }
+    forget();
+    for (size_t k = 0; k < links.size(); ++k) {
+      if (dag_.inputOf(links[k].args[3]).index == v.payload) return state[k];
+    }
+    ADD_FAILURE() << "nothing carries that";
+    return {0};
   }
 
   const ir::Module& module_;

@@ -35,24 +35,30 @@ void Intervals::run() {
 }
 
 void Intervals::run(std::span<const ValueId> ids) {
+  if (dag_.hasLoops()) return runWithLoops(ids);
   values_.reserve(values_.size() + ids.size());
   for (const ValueId id : ids) {
-    if (facets_[id].done) continue;
+    if (!facets_[id].done) evaluateOnce(id);
+  }
+}
+
+void Intervals::evaluateOnce(ValueId id) {
+  if (facets_[id].place == 0) {
     facets_[id].place = static_cast<uint32_t>(values_.size());
     values_.emplace_back();
-    const auto fixed = fixed_.find(id);
     look(id);
-    if (fixed != fixed_.end()) {
-      rangesOf(id) = fixed->second;
-      facets_[id].alike = false;
-    } else {
-      evaluate(id);
-    }
-    facets_[id].done = true;
-    const auto fact = dag_.assumed(id);
-    if (!fact) continue;
-    for (Range& range : rangesOf(id)) range = meet(range, math_.fact(*fact));
   }
+  const auto fixed = fixed_.find(id);
+  if (fixed != fixed_.end()) {
+    rangesOf(id) = fixed->second;
+    facets_[id].alike = false;
+  } else {
+    evaluate(id);
+  }
+  facets_[id].done = true;
+  const auto fact = dag_.assumed(id);
+  if (!fact) return;
+  for (Range& range : rangesOf(id)) range = meet(range, math_.fact(*fact));
 }
 
 Range Intervals::all(ValueId id) const {
@@ -149,6 +155,8 @@ Range Intervals::input(const ir::Input& input) const {
   }
   switch (input.kind) {
     case ir::InputKind::FrontFacing: return {0, 1, false};
+    case ir::InputKind::LoopIndex: return {input.range.lo, input.range.hi, false};
+    case ir::InputKind::LoopValue: return math_.whole(true);  // of a loop that nothing is known of
     case ir::InputKind::LightIndex: return {0, 65535, false};
     case ir::InputKind::Texture: {
       // An environment map's format is the application's: nothing is known, not even that it holds numbers.

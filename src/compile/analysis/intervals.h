@@ -4,10 +4,12 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "analysis/interval_math.h"
+#include "ir/loops.h"
 #include "ir/module.h"
 
 namespace lacquer::analysis {
@@ -40,7 +42,8 @@ public:
 
   /// Evaluates everything that the module's outputs, varyings and preshader reach.
   void run();
-  /// Evaluates these values, which are ascending and hold the operands of each.
+  /// Evaluates these values, which are ascending and hold the operands of each. Where they are of a loop that
+  /// the module has, what it carries is evaluated with them.
   void run(std::span<const ir::ValueId> ids);
 
   /// The range of a component; every component of a Float or a Mat4 has that of component 0.
@@ -65,6 +68,19 @@ private:
     uint8_t factors = 0;      ///< and among the factors of a product of products
     uint32_t place = 0;       ///< of its ranges; 0 while there are none
   };
+
+  void evaluateOnce(ir::ValueId id);
+
+  // loop_intervals.cpp
+  struct LoopRun;
+  void runWithLoops(std::span<const ir::ValueId> ids);
+  std::vector<ir::ValueId> withLoops(std::span<const ir::ValueId> ids);
+  void findLoops(std::span<const ir::ValueId> ids);
+  void evaluateIn(std::span<const ir::ValueId> ids, int32_t loop);
+  void evaluateLoop(int32_t loop, std::span<const ir::ValueId> ids);
+  void round(LoopRun& run, double first, double last);
+  void settle(LoopRun& run, double first, double last);
+  void give(ir::ValueId id, const Ranges& ranges);
 
   Ranges& rangesOf(ir::ValueId id) { return values_[facets_[id].place]; }
   void look(ir::ValueId id);
@@ -112,6 +128,9 @@ private:
   std::vector<Ranges> values_;  ///< of the values that were evaluated, in that order; the first is nobody's
   std::vector<Facet> facets_;
   std::map<ir::ValueId, Ranges> fixed_;
+  std::optional<ir::Loops> loops_;  ///< of the module, once they are asked for
+  std::vector<int32_t> loop_of_;    ///< by value, the loop in which it is evaluated; -1 where that is none
+  std::vector<std::vector<Ranges>> left_by_;  ///< by loop, what is left of what it carries
 };
 
 }  // namespace lacquer::analysis

@@ -47,7 +47,7 @@ public:
 private:
   static bool isOpaque(Op op) {
     return ir::readsTexture(op) || ir::takesDerivatives(op) || op == Op::Interpolate ||
-           op == Op::SumOverLights || op == Op::Element;
+           op == Op::SumOverLights || op == Op::Element || op == Op::Carried;
   }
 
   void markGeometric() {

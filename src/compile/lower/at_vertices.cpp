@@ -24,11 +24,13 @@ std::vector<ValueId> aboveInterpolation(const ir::Dag& dag, ValueId root) {
   return all;
 }
 
-bool knownToVertices(const ir::Value& value) {
+bool knownToVertices(const ir::Dag& dag, ValueId id) {
+  const ir::Value& value = dag[id];
   if (value.rate <= ir::Rate::Vertex || value.op == Op::Interpolate) return true;
+  if (value.op == Op::Input && !ir::ofLoop(dag.inputOf(id).kind)) return false;
   const bool implicit = value.op == Op::Texture || value.op == Op::TextureCompare;
-  return value.rate == ir::Rate::Fragment && value.op != Op::Input && value.op != Op::SumOverLights &&
-         !implicit && !ir::takesDerivatives(value.op);
+  return value.rate == ir::Rate::Fragment && value.op != Op::SumOverLights && !implicit &&
+         !ir::takesDerivatives(value.op);
 }
 
 }  // namespace
@@ -36,7 +38,7 @@ bool knownToVertices(const ir::Value& value) {
 std::optional<ValueId> AtVertices::operator()(ValueId root) {
   const std::vector<ValueId> all = aboveInterpolation(dag_, root);
   for (const ValueId id : all) {
-    if (!knownToVertices(dag_[id])) return std::nullopt;
+    if (!knownToVertices(dag_, id)) return std::nullopt;
   }
   // Operands stand before what is made of them.
   for (const ValueId id : all) {
@@ -50,22 +52,12 @@ ValueId AtVertices::made(ValueId id) {
   const ir::Value value = dag_[id];
   if (value.rate <= ir::Rate::Vertex) return id;
   if (value.op == Op::Interpolate) return value.args[0];
+  dag_.setTerm(dag_.termOf(id));
+  if (value.op == Op::Input) return loops_.input(dag_, id, ir::Rate::Vertex);
   std::array<ValueId, 4> operands{};
   for (size_t k = 0; k < value.count; ++k) operands[k] = known_[value.args[k]];
   const size_t before = dag_.size();
-  const std::span<const ValueId> all(operands.data(), value.count);
-  dag_.setTerm(dag_.termOf(id));
-  ValueId result = ir::kNoValue;
-  if (value.op == Op::Construct) {
-    result = dag_.construct(value.type, all);
-  } else if (value.op == Op::Swizzle) {
-    std::array<int, 4> picks{};
-    const auto count = static_cast<size_t>(ir::componentCount(value.type));
-    for (size_t i = 0; i < count; ++i) picks[i] = ir::swizzleComponent(value.payload, static_cast<int>(i));
-    result = dag_.swizzle(operands[0], {picks.data(), count});
-  } else {
-    result = dag_.make(value.op, all, value.payload);
-  }
+  const ValueId result = dag_.remake(id, {operands.data(), value.count});
   if (result >= before) dag_.name(result, dag_.nameOf(id));
   return result;
 }

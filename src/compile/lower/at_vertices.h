@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "ir/dag.h"
+#include "ir/loops.h"
 
 namespace lacquer::lower {
 
@@ -20,6 +20,7 @@ private:
   ir::ValueId made(ir::ValueId id);
 
   ir::Dag& dag_;
+  ir::LoopCopies loops_;
   std::vector<ir::ValueId> known_;  ///< by value; kNoValue where it was not asked for, or cannot be
 };
 

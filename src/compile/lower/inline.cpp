@@ -15,20 +15,6 @@ using ir::ValueId;
 using lang::Expr;
 using lang::Statement;
 
-/// One body being evaluated.
-struct Inliner::Frame {
-  const lang::Body& body;
-  Values slots;
-  ValueId path;  ///< Bool: whether the conditions of the enclosing arms hold
-
-  /// The returns met so far. The first whose condition holds is the one taken.
-  struct Return {
-    ValueId path;
-    Values results;
-  };
-  std::pmr::vector<Return> returns;
-};
-
 namespace {
 
 bool isTrue(const ir::Dag& dag, ValueId id) { return dag.isConstant(id) && dag.constantOf(id)[0] != 0; }
@@ -131,12 +117,7 @@ bool Inliner::run(const std::vector<Statement>& statements, Frame& frame) {
         dag_.name(frame.slots[statement.slot], statement.name);
         break;
       case Statement::Kind::If: returned = runIf(statement, frame); break;
-      case Statement::Kind::For:
-        for (int i = statement.first; i < statement.last && !returned; ++i) {
-          frame.slots[statement.slot] = dag_.constant(ir::Type::Int, {static_cast<double>(i)});
-          returned = run(statement.body, frame);
-        }
-        break;
+      case Statement::Kind::For: returned = runFor(statement, frame); break;
       case Statement::Kind::Return:
         runReturn(statement, frame);
         returned = true;

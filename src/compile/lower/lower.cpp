@@ -69,10 +69,20 @@ ir::Module fillOf(const lang::TemplateDecl& decl, const lang::LightKindDecl& kin
   return module;
 }
 
+LoopOptions loopOptions(const LowerOptions& options) {
+  LoopOptions loops = options.loops;
+  // Specialization constants are numbers that the shader computes with.
+  loops.preshader = loops.preshader && options.parameters != ParameterMode::Spec;
+  return loops;
+}
+
 class Lowering {
 public:
   Lowering(const graph::Graph& graph, const lang::Library& library, const LowerOptions& options)
-      : graph_(graph), library_(library), options_(options), inliner_(module_.dag, options.on_call) {}
+      : graph_(graph),
+        library_(library),
+        options_(options),
+        inliner_(module_.dag, options.on_call, loopOptions(options)) {}
 
   Result<ir::Module> run() {
     const Result<const lang::TemplateDecl*> found = library_.template_(graph_.template_name);

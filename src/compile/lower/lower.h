@@ -17,7 +17,8 @@ enum class ParameterMode : uint8_t {
 struct LowerOptions {
   ParameterMode parameters = ParameterMode::Uniform;
   bool evaluable = false;  ///< the kinds of light come with what fills them: ir::LightKind::fill
-  OnCall on_call = {};     ///< when given, told of the graph's nodes and of what they and the template call
+  LoopOptions loops = {};
+  OnCall on_call = {};  ///< when given, told of the graph's nodes and of what they and the template call
 };
 
 /// The graph must have passed graph::check() with the same library (asserted where it shows) and be flat.

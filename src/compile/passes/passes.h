@@ -33,6 +33,9 @@ void specializeLights(ir::Module& module, const LightFacts& facts);
 /// that are always dropped, which become 0.
 void simplifyRanges(ir::Module& module);
 
+/// Leaves out what loops carry and nobody asks for.
+void pruneLoops(ir::Module& module);
+
 /// Divides by the preshader's values with their reciprocals, which the preshader makes.
 void takeReciprocals(ir::Module& module);
 

@@ -27,6 +27,8 @@ constexpr std::array kPasses{
          [](ir::Module& m, const PipelineOptions& o) { specializeLights(m, o.lights); }},
     Pass{{"ranges", "removes clamps, choices and guards that intervals prove idle"},
          [](ir::Module& m, const PipelineOptions&) { simplifyRanges(m); }},
+    Pass{{"loops", "leaves out what loops carry and nobody asks for"},
+         [](ir::Module& m, const PipelineOptions&) { pruneLoops(m); }},
     Pass{{"reciprocals", "divides by the preshader's values with reciprocals that the preshader makes"},
          [](ir::Module& m, const PipelineOptions&) { takeReciprocals(m); }},
     Pass{{"scales", "gathers scalar factors of vectors, takes them out of dot products"},

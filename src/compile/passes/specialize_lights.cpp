@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "ir/loops.h"
 #include "passes/passes.h"
 #include "passes/rewrite.h"
 
@@ -52,6 +53,8 @@ public:
 private:
   ir::ValueId input(ir::ValueId id) {
     ir::Input input = rewriter_.dag().inputOf(id);
+    if (ir::ofLoop(input.kind))
+      return loops_.input(rewriter_.dag(), id, element_ >= 0 ? ir::Rate::Fragment : ir::Rate::Light);
     if (input.kind == ir::InputKind::BlockField) {
       for (const auto& [field, value] : *kind_.fixed) {
         if (field == input.field) return rewriter_.dag().constant(input.type, value);
@@ -66,6 +69,7 @@ private:
   Rewriter& rewriter_;
   const LightsOfKind& kind_;
   int32_t group_, element_;
+  ir::LoopCopies loops_;
   std::map<ir::ValueId, ir::ValueId> made_;
 };
 

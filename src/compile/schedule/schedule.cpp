@@ -4,6 +4,7 @@
 #include <cassert>
 #include <map>
 
+#include "ir/loops.h"
 #include "ir/names.h"
 
 namespace lacquer::schedule {
@@ -35,7 +36,7 @@ private:
 class Scheduler {
 public:
   Scheduler(const ir::Module& module, ir::Stage stage)
-      : module_(module), dag_(module.dag), live_(ir::reachable(module, stage)) {
+      : module_(module), dag_(module.dag), live_(ir::reachable(module, stage)), loops_(dag_, live_) {
     program_.stage = stage;
     program_.names.resize(dag_.size());
     for (uint32_t i = 0; i < module_.outputs.size(); ++i) {
@@ -86,7 +87,9 @@ private:
         case ir::InputKind::Varying: varyings.insert(input.field); break;
         case ir::InputKind::Attribute: attributes.insert(input.field); break;
         case ir::InputKind::FrontFacing: program_.front_facing = true; break;
-        case ir::InputKind::LightIndex: break;
+        case ir::InputKind::LightIndex:
+        case ir::InputKind::LoopIndex:
+        case ir::InputKind::LoopValue: break;
         case ir::InputKind::SpecConstant: parameters.insert(input.field); break;
         case ir::InputKind::Parameter: assert(false && "place() runs before schedule()"); break;
       }
@@ -107,12 +110,21 @@ private:
 
   void countUses() {
     uses_.assign(dag_.size(), 0);
-    used_in_loop_.assign(dag_.size(), false);
+    used_deeper_.assign(dag_.size(), false);
+    is_carried_.assign(dag_.size(), false);
     for (const ir::ValueId id : live_) {
-      for (const ir::ValueId operand : dag_[id].operands()) {
+      const ir::Value& value = dag_[id];
+      const bool light = inLoop(id) || value.op == ir::Op::SumOverLights;
+      for (size_t k = 0; k < value.count; ++k) {
+        const ir::ValueId operand = value.args[k];
         ++uses_[operand];
-        if (inLoop(id)) used_in_loop_[operand] = true;
-        if (dag_[id].op == ir::Op::SumOverLights) used_in_loop_[operand] = true;
+        // The next value is asked for in every round.
+        const bool carry = value.op == ir::Op::Carry;
+        const bool next = carry && k == 2;
+        const int32_t loop = next ? loops_.indexOf(id) : loops_.of(id);
+        if ((light && !inLoop(operand)) || (loop != loops_.of(operand) && !ir::makesLoop(dag_[operand].op)))
+          used_deeper_[operand] = true;
+        if (next || (carry && k == 1)) is_carried_[operand] = true;
       }
     }
     for (const uint32_t o : outputs_) {
@@ -139,6 +151,15 @@ private:
     size_.assign(dag_.size(), 0);
     for (const ir::ValueId id : live_) {
       if (leaf(id)) continue;
+      if (ir::makesLoop(dag_[id].op)) {
+        const ir::ValueId end = dag_[id].args[0];
+        if (dag_[id].op == ir::Op::Loop && !leaf(end)) makeVariable(end);
+        continue;
+      }
+      if (dag_[id].op == ir::Op::Carried) {
+        makeVariable(id);
+        continue;
+      }
       // What is compared and where, and a layer, are taken apart by some targets.
       const bool apart =
           ir::readsTexture(dag_[id].op) && (dag_[dag_[id].args[0]].type == ir::Type::Texture2DShadow ||
@@ -168,7 +189,9 @@ private:
     if (discards_ && needsDerivatives(id)) return true;
     if (trivial(id)) return false;
     if (uses_[id] > 1) return true;
-    if (used_in_loop_[id] && !inLoop(id)) return true;
+    if (used_deeper_[id]) return true;
+    // What a loop's variable gets needs none of its own.
+    if (is_carried_[id]) return false;
     if (!dag_.nameOf(id).empty() && value.op != ir::Op::Swizzle) return true;
     return size_[id] > kLargestInline;
   }
@@ -221,8 +244,18 @@ private:
       if (module_.outputs[o].kind == ir::OutputKind::Discard) roots.push_back(module_.outputs[o].value);
     }
     if (roots.empty()) return roots;
-    std::copy_if(live_.begin(), live_.end(), std::back_inserter(roots),
-                 [&](ir::ValueId id) { return needsDerivatives(id) && !inLoop(id); });
+    std::vector<bool> whole(loops_.all().size(), false);
+    for (const ir::ValueId id : live_) {
+      if (!needsDerivatives(id) || inLoop(id)) continue;
+      // Of a loop all, with those around it.
+      int32_t loop = loops_.of(id);
+      if (loop < 0) roots.push_back(id);
+      for (; loop >= 0; loop = loops_[loop].around) whole[static_cast<size_t>(loop)] = true;
+    }
+    for (const ir::ValueId id : live_) {
+      if (dag_[id].op != ir::Op::Carried || loops_.of(id) >= 0) continue;
+      if (whole[static_cast<size_t>(loops_.indexOf(id))]) roots.push_back(id);
+    }
     return roots;
   }
 
@@ -258,9 +291,7 @@ private:
       bodies.insert(bodies.end(), operands.begin(), operands.end());
     }
     const std::vector<ir::ValueId> needed = ir::reachable(dag_, bodies);
-    for (const ir::ValueId id : needed) {
-      if (!inLoop(id)) emit(id);
-    }
+    emitIn(needed, false, -1);
     for (const ir::ValueId sum : sums) {
       section(dag_.termOf(sum));
       program_.names[sum] = nameVariable(sum);
@@ -270,28 +301,128 @@ private:
     // The loop's first section is always printed: it stands in a block of its own.
     const ir::TermId outer = section_;
     section_ = dag_.termOf(sums[0]);
-    for (const ir::ValueId id : needed) {
-      if (inLoop(id)) emit(id);
-    }
+    emitIn(needed, true, -1);
     for (const ir::ValueId sum : sums) {
       section(dag_.termOf(sum));
       program_.statements.push_back({StatementKind::Accumulate, sum, 0, group, 0, {}});
     }
     program_.statements.push_back({StatementKind::LoopEnd, ir::kNoValue, 0, group, 0, {}});
     section_ = outer;
-  }
-
-  void emitValues(const std::vector<ir::ValueId>& roots) {
-    for (const ir::ValueId id : ir::reachable(dag_, roots)) {
-      if (!inLoop(id)) emit(id);
+    // Another loop over lights that needs the same computes it again.
+    for (const ir::ValueId id : live_) {
+      if (inLoop(id)) emitted_[id] = false;
     }
   }
 
+  /// A loop: its variables, what a round computes, and what it leaves to the next one.
+  void rounds(int32_t loop) {
+    const ir::Loop& of = loops_[loop];
+    for (const ir::Carry& carry : of.carries) nameInput(carry.value, of.last);
+    nameInput(of.index, of.last);
+    for (const ir::ValueId id : live_) {
+      if (dag_[id].op != ir::Op::Carried || loops_.indexOf(id) != loop) continue;
+      const auto carry = std::find_if(of.carries.begin(), of.carries.end(), [&](const ir::Carry& c) {
+        return dag_.inputOf(c.value).index == dag_[id].payload;
+      });
+      program_.names[id] = program_.names[carry->value];
+      emitted_[id] = true;
+    }
+    section(dag_.termOf(of.last));
+    const std::vector<Statement> nexts = nextsOf(of, loop);
+    program_.statements.push_back({StatementKind::RoundsBegin, of.last, 0, 0, 0, {}});
+    const ir::TermId outer = section_;
+    emitIn(loops_.bodyOf(loop), inLoop(of.last), loop);
+    section(dag_.termOf(of.last));
+    program_.statements.insert(program_.statements.end(), nexts.begin(), nexts.end());
+    program_.statements.push_back({StatementKind::RoundsEnd, of.last, 0, 0, 0, {}});
+    section_ = outer;
+  }
+
+  void nameInput(ir::ValueId id, ir::ValueId chain) {
+    if (!program_.names[id].empty()) return;
+    const std::string_view layer = ir::layerOf(dag_.terms()[dag_.termOf(chain)].name);
+    program_.names[id] = names_.pick(dag_.inputOf(id).name, layer);
+  }
+
+  /// Which carried values of a loop an expression reads where it stands.
+  void reads(ir::ValueId id, int32_t loop, std::vector<ir::ValueId>& found) const {
+    if (dag_[id].op == ir::Op::Input) {
+      if (loops_.of(id) == loop && dag_.inputOf(id).kind == ir::InputKind::LoopValue) found.push_back(id);
+      return;
+    }
+    if (variable_[id]) return;
+    for (const ir::ValueId operand : dag_[id].operands()) reads(operand, loop, found);
+  }
+
+  /// All next values are made of what the round began with: a variable changes when no other next value reads
+  /// it any more. Where each waits for another, some are computed, or held, before.
+  std::vector<Statement> nextsOf(const ir::Loop& loop, int32_t number) {
+    struct Waiting {
+      const ir::Carry* carry;
+      std::vector<ir::ValueId> reads;
+    };
+    std::vector<Waiting> waiting;
+    std::vector<Statement> holds, nexts;
+    for (const ir::Carry& carry : loop.carries) {
+      waiting.push_back({&carry, {}});
+      reads(carry.next, number, waiting.back().reads);
+    }
+    const auto readBy = [](const Waiting& other, ir::ValueId value) {
+      return other.carry->value != value &&
+             std::find(other.reads.begin(), other.reads.end(), value) != other.reads.end();
+    };
+    std::map<ir::ValueId, std::string> held;
+    while (!waiting.empty()) {
+      const auto free = std::find_if(waiting.begin(), waiting.end(), [&](const Waiting& one) {
+        return std::none_of(waiting.begin(), waiting.end(),
+                            [&](const Waiting& other) { return readBy(other, one.carry->value); });
+      });
+      if (free != waiting.end()) {
+        const ir::Carry& carry = *free->carry;
+        const auto name = held.find(carry.next);
+        const bool from_held = name != held.end() && carry.next != carry.value;
+        nexts.push_back({StatementKind::Next,
+                         carry.value,
+                         0,
+                         0,
+                         0,
+                         {},
+                         carry.next,
+                         from_held ? name->second : std::string()});
+        waiting.erase(free);
+        continue;
+      }
+      const ir::ValueId first = waiting.front().carry->value;
+      for (Waiting& other : waiting) {
+        if (!readBy(other, first)) continue;
+        other.reads.clear();
+        if (other.carry->next != first) {
+          makeVariable(other.carry->next);
+        } else if (const auto [it, fresh] = held.try_emplace(first); fresh) {
+          it->second = names_.pick(program_.names[first] + "_before");
+          holds.push_back({StatementKind::Hold, first, 0, 0, 0, {}, ir::kNoValue, it->second});
+        }
+      }
+    }
+    holds.insert(holds.end(), nexts.begin(), nexts.end());
+    return holds;
+  }
+
+  /// Of these values, those of one place: inside of the loop over lights or not, and of a loop or none.
+  void emitIn(const std::vector<ir::ValueId>& ids, bool light, int32_t loop) {
+    for (const ir::ValueId id : ids) {
+      if (inLoop(id) == light && loops_.of(id) == loop) emit(id);
+    }
+  }
+
+  void emitValues(const std::vector<ir::ValueId>& roots) { emitIn(ir::reachable(dag_, roots), false, -1); }
+
   void emit(ir::ValueId id) {
     if (emitted_[id] || !variable_[id]) return;
+    if (dag_[id].op == ir::Op::Carried) return rounds(loops_.indexOf(id));
     emitted_[id] = true;
     section(dag_.termOf(id));
-    program_.names[id] = nameVariable(id);
+    if (program_.names[id].empty()) program_.names[id] = nameVariable(id);
     program_.statements.push_back({StatementKind::Let, id, 0, 0, 0, {}});
   }
 
@@ -327,10 +458,13 @@ private:
   const ir::Module& module_;
   const ir::Dag& dag_;
   std::vector<ir::ValueId> live_;
+  ir::Loops loops_;                  ///< of a stage
   std::vector<ir::ValueId> fields_;  ///< of the preshader
   std::vector<uint32_t> outputs_, outputs_left_;
   std::vector<int> uses_, size_;
-  std::vector<bool> used_in_loop_, variable_, emitted_;
+  std::vector<bool> used_deeper_;  ///< in a loop in which it is not computed
+  std::vector<bool> is_carried_;   ///< into the first round of a loop, or the next one
+  std::vector<bool> variable_, emitted_;
   ir::Names names_;
   bool discards_ = false;
   ir::TermId section_ = 0;

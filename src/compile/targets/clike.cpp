@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ir/loops.h"
+
 namespace lacquer::targets {
 
 using ir::InputKind;
@@ -69,6 +71,7 @@ private:
   Expression construct(ValueId id) const;
   Expression swizzle(const ir::Value& value) const;
   Expression element(const ir::Value& value) const;
+  std::string carriedName(const ir::Value& carried) const;
   /// The argument list of a function of ops.def.
   std::string arguments(ValueId id) const;
   Expression operation(ValueId id) const;
@@ -76,6 +79,8 @@ private:
   void statement(Text& text, const Statement& statement) const;
   void section(Text& text, ir::TermId id) const;
   void openLoop(Text& text, const Statement& statement) const;
+  void openRounds(Text& text, ValueId chain) const;
+  void next(Text& text, const Statement& statement) const;
   std::string lightCount() const;
   std::string target(const ir::Output& output) const;
   /// An item of an argument list, where any expression may stand.
@@ -121,6 +126,7 @@ Expression Printer::compute(ValueId id) const {
   if (value.op == Op::Construct) return construct(id);
   if (value.op == Op::Swizzle) return swizzle(value);
   if (value.op == Op::Element) return element(value);
+  if (value.op == Op::Carried && written_ != nullptr) return {carriedName(value)};
   if (value.op == Op::Column)
     return {dialect_.column(parenthesized(use(value.args[0]), Precedence::Postfix), value.payload)};
   // Implicit derivatives exist in fragments only, and Direct3D has no lookup without a level elsewhere: a
@@ -175,6 +181,8 @@ Expression Printer::input(const ir::Input& input) const {
     case InputKind::Texture: return {dialect_.name(module_.textures[input.field].name)};
     case InputKind::FrontFacing: return {std::string(dialect_.frontFacing())};
     case InputKind::LightIndex: return {ir::kLightIndexName};
+    case InputKind::LoopIndex:
+    case InputKind::LoopValue: return {input.name};  // in a shader it is a variable
     case InputKind::Varying: return {varyingName(module_.varyings[input.field])};
   }
   assert(false && "not a kind of input");
@@ -195,6 +203,13 @@ Expression Printer::blockField(const ir::Input& input) const {
 Expression Printer::element(const ir::Value& value) const {
   const auto [block, field] = ir::ListField::of(value);
   return dialect_.element(module_.blocks[block], module_.blocks[block].fields[field], use(value.args[0]));
+}
+
+std::string Printer::carriedName(const ir::Value& carried) const {
+  for (const ir::Carry& carry : ir::loopOf(dag_, carried.args[0]).carries) {
+    if (dag_.inputOf(carry.value).index == carried.payload) return dag_.inputOf(carry.value).name;
+  }
+  return {};
 }
 
 Expression Printer::construct(ValueId id) const {
@@ -275,13 +290,41 @@ void Printer::openLoop(Text& text, const Statement& statement) const {
     const std::string end = fmt::format("{} + {}", first, count);
     const ir::Block& numbers = module_.blocks[module_.light_lists->number.block];
     text.line(dialect_.loop(
-        first, dialect_.clampsLoops() ? fmt::format("min({}, {})", end, dialect_.listLength(numbers)) : end));
+        ir::kLightIndexName, first,
+        dialect_.clampsLoops() ? fmt::format("min({}, {})", end, dialect_.listLength(numbers)) : end));
   } else {
     const bool counted = group.count == ir::LightGroup::kCounted;
-    text.line(dialect_.loop(fmt::format("{}", group.first),
+    text.line(dialect_.loop(ir::kLightIndexName, fmt::format("{}", group.first),
                             counted ? lightCount() : fmt::format("{}", group.first + group.count)));
   }
   text.indent();
+}
+
+void Printer::openRounds(Text& text, ValueId chain) const {
+  const ir::Loop loop = ir::loopOf(dag_, chain);
+  for (const ir::Carry& carry : loop.carries)
+    text.line(dialect_.variable(dag_[carry.value].type, use(carry.value).text, root(carry.first), true));
+  const int32_t first = ir::firstRound(dag_, loop);
+  const auto most = static_cast<int32_t>(ir::mostRounds(dag_, loop));
+  const bool clamps = dialect_.clampsLoops() && !dag_.isConstant(loop.end);
+  const std::string bound = dialect_.integer(Type::Int, first + most).text;
+  text.line(dialect_.loop(use(loop.index).text, dialect_.integer(Type::Int, first).text,
+                          clamps ? fmt::format("min({}, {})", root(loop.end), bound) : root(loop.end)));
+  text.indent();
+}
+
+/// `x = y;`, or `x += y;` where that says the same.
+void Printer::next(Text& text, const Statement& s) const {
+  const std::string name = use(s.value).text;
+  if (!s.name.empty()) return text.line(fmt::format("{} = {};", name, dialect_.name(s.name)));
+  const ir::Value& value = dag_[s.next];
+  const bool written = program_.names[s.next].empty() && value.count == 2;
+  const std::string_view spelling = written ? dialect_.spelling(value.op) : "";
+  const bool commutes = spelling == "+" || spelling == "*";
+  const size_t own = value.args[0] == s.value ? 0 : 1;
+  if ((commutes || (spelling == "-" && own == 0)) && value.args[own] == s.value)
+    return text.line(fmt::format("{} {}= {};", name, spelling, operand(s.next, 1 - own).text));
+  text.line(fmt::format("{} = {};", name, root(s.next)));
 }
 
 std::string Printer::target(const ir::Output& output) const {
@@ -308,6 +351,12 @@ void Printer::statement(Text& text, const Statement& s) const {
       text.line(
           fmt::format("{} += {};", dialect_.name(program_.names[s.value]), root(dag_[s.value].args[0])));
       return;
+    case StatementKind::RoundsBegin: openRounds(text, s.value); return;
+    case StatementKind::Hold:
+      text.line(dialect_.variable(dag_[s.value].type, dialect_.name(s.name), use(s.value).text, false));
+      return;
+    case StatementKind::Next: next(text, s); return;
+    case StatementKind::RoundsEnd:
     case StatementKind::LoopEnd:
       text.outdent();
       text.line("}");
@@ -334,7 +383,8 @@ void Printer::statements(Text& text) const {
     const bool begins = s.kind == StatementKind::Section ||
                         (s.kind == StatementKind::Output && before != StatementKind::Output &&
                          before != StatementKind::Section);
-    if (begins && before != StatementKind::LoopBegin) text.blank();
+    const bool top = before == StatementKind::LoopBegin || before == StatementKind::RoundsBegin;
+    if (begins && !top) text.blank();
     statement(text, s);
     before = s.kind;
   }
@@ -476,8 +526,8 @@ Expression Dialect::element(const ir::Block& list, const ir::BlockField& field,
   return {fmt::format("{}s[{}].{}", name(list.instance), number.text, name(field.name))};
 }
 
-std::string Dialect::loop(std::string_view first, std::string_view end) const {
-  return fmt::format("for (int {0} = {1}; {0} < {2}; ++{0}) {{", ir::kLightIndexName, first, end);
+std::string Dialect::loop(std::string_view counter, std::string_view first, std::string_view end) const {
+  return fmt::format("for (int {0} = {1}; {0} < {2}; ++{0}) {{", counter, first, end);
 }
 
 std::string Dialect::member(Type type, std::string_view name, uint32_t array) const {

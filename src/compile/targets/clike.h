@@ -110,14 +110,14 @@ public:
 
   /// True where precisions are part of the language: what the Dag says is relaxed is `mediump`.
   virtual bool precisions() const { return false; }
-  /// A variable with its value; `changes`: the sum of a loop.
+  /// A variable with its value; `changes`: what a loop sums or carries.
   virtual std::string variable(ir::Type type, std::string_view name, std::string_view value,
                                bool changes) const;
   /// A field of the element of that number of a list.
   virtual Expression element(const ir::Block& list, const ir::BlockField& field,
                              const Expression& number) const;
-  /// The opening line of the loop over lights from `first` to before `end`.
-  virtual std::string loop(std::string_view first, std::string_view end) const;
+  /// The opening line of a loop from `first` to before `end`.
+  virtual std::string loop(std::string_view counter, std::string_view first, std::string_view end) const;
   /// True for a target whose contract with the application may be broken by a page that anyone wrote: loops
   /// run no further than arrays and lists reach, whatever counts the application gives.
   virtual bool clampsLoops() const { return false; }

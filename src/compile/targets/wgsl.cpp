@@ -216,8 +216,8 @@ public:
     return fmt::format("i32(arrayLength(&{}))", name(list.instance + "s"));
   }
 
-  std::string loop(std::string_view first, std::string_view end) const override {
-    return fmt::format("for (var {0} = {1}; {0} < {2}; {0}++) {{", ir::kLightIndexName, first, end);
+  std::string loop(std::string_view counter, std::string_view first, std::string_view end) const override {
+    return fmt::format("for (var {0} = {1}; {0} < {2}; {0}++) {{", counter, first, end);
   }
 
   std::string member(Type type, std::string_view name, uint32_t array) const override {

@@ -143,6 +143,7 @@ private:
   void body() {
     size_t begin = 0;
     size_t last = 0;
+    std::vector<std::pair<size_t, int32_t>> rounds;  // of the open loops: where they begin, and the round
     for (size_t i = 0; i < program_.body.size(); ++i) {
       const Instruction& instruction = program_.body[i];
       if (instruction.step == Step::LoopBegin) {
@@ -164,10 +165,36 @@ private:
         }
       } else if (instruction.step == Step::LoopEnd) {
         if (++light_ < last) i = begin;
+      } else if (instruction.step == Step::RoundsBegin) {
+        rounds.push_back({i, instruction.element});
+        if (!setRound(instruction.outs[0], instruction.args[0], instruction, rounds.back().second)) {
+          rounds.pop_back();
+          for (size_t depth = 1; depth != 0;) {
+            const Step step = program_.body[++i].step;
+            depth += step == Step::RoundsBegin ? 1 : 0;
+            depth -= step == Step::RoundsEnd ? 1 : 0;
+          }
+        }
+      } else if (instruction.step == Step::RoundsEnd) {
+        auto& [first, round] = rounds.back();
+        if (setRound(instruction.args[0], instruction.args[1], instruction, ++round))
+          i = first;
+        else
+          rounds.pop_back();
       } else {
         execute(instruction);
       }
     }
+  }
+
+  /// Begins a round; false where no point has it.
+  bool setRound(Register index, Register end, const Instruction& loop, int32_t round) {
+    if (static_cast<int64_t>(round) - loop.element >= static_cast<int64_t>(loop.payload)) return false;
+    const T* ends = at(end);
+    bool runs = false;
+    for (size_t i = 0; i < lanes_; ++i) runs = runs || round < static_cast<int32_t>(bits(ends[i]));
+    std::fill_n(at(index), lanes_, whole<T>(static_cast<uint32_t>(round)));
+    return runs;
   }
 
   /// A number from outside as a register has it.
@@ -282,11 +309,19 @@ private:
           at(out)[i] = rounding_(Op::Add, arg(0)[i], arg(1)[i], sum);
         }
         return;
+      case Step::Copy: return static_cast<void>(std::copy_n(arg(0), lanes_, at(out)));
+      case Step::Keep:
+        for (size_t i = 0; i < lanes_; ++i) {
+          if (ir::int_below(bits(arg(1)[i]), bits(arg(2)[i]))) at(out)[i] = arg(0)[i];
+        }
+        return;
       case Step::Texture: return texture(instruction);
       case Step::DerivativeX: return derivative(instruction, 1);
       case Step::DerivativeY: return derivative(instruction, 2);
       case Step::LoopBegin:
-      case Step::LoopEnd: return;
+      case Step::LoopEnd:
+      case Step::RoundsBegin:
+      case Step::RoundsEnd: return;
     }
   }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "ir/fold.h"
+#include "ir/loops.h"
 
 namespace lacquer::eval {
 
@@ -39,9 +40,9 @@ public:
 
   Result<Program> run(std::span<const ValueId> roots) {
     program_.light_groups = module_.light_groups;
-    for (const ValueId id : ir::reachable(dag_, roots)) {
-      if (dag_[id].rate != Rate::Light) value(id);
-    }
+    const std::vector<ValueId> live = ir::reachable(dag_, roots);
+    loops_ = ir::Loops(dag_, live);
+    values(live, false, -1);
     if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
     for (const ValueId root : roots) {
       program_.results.push_back(registers_of_[root]);
@@ -83,6 +84,13 @@ private:
                             static_cast<uint32_t>(program_.literals.size() - 1)};
     instruction.whole = whole_;
     return emit(instruction, true);
+  }
+
+  /// Of these values, those of one place: inside of the loop over lights or not, and of a loop or none.
+  void values(std::span<const ValueId> ids, bool light, int32_t loop) {
+    for (const ValueId id : ids) {
+      if ((dag_[id].rate == Rate::Light) == light && loops_.of(id) == loop) value(id);
+    }
   }
 
   void fail(std::string code, std::string message, std::string help) {
@@ -163,6 +171,8 @@ private:
       case ir::InputKind::FrontFacing:
       case ir::InputKind::Varying: return load(input);
       case ir::InputKind::LightIndex: return {emit({Step::LightIndex}, false)};
+      case ir::InputKind::LoopIndex:
+      case ir::InputKind::LoopValue: break;  // of the loop that is open: known
       case ir::InputKind::Texture:
         if (!bindings_.textures.contains(module_.textures[input.field].name)) {
           fail("unbound-input", fmt::format("the texture '{}' has no texels", input.name),
@@ -236,9 +246,13 @@ private:
       begin.args[1] = of(value.args[2])[0];
     }
     program_.body.push_back(begin);
-    for (const ValueId id : ir::reachable(dag_, {{operand}})) {
-      if (dag_[id].rate == Rate::Light) this->value(id);
+    // Another sum computes again what it shares with one before it, loops as well.
+    for (const ir::Loop& loop : loops_.all()) {
+      if (dag_[loop.last].rate != Rate::Light) continue;
+      registers_of_[loop.index].clear();
+      for (const ir::Carry& carry : loop.carries) registers_of_[carry.value].clear();
     }
+    values(ir::reachable(dag_, {{operand}}), true, -1);
     for (size_t i = 0; i < sums.size(); ++i) {
       program_.body.push_back({listed ? Step::AddListed : Step::Map,
                                Op::Add,
@@ -250,6 +264,68 @@ private:
     }
     program_.body.push_back({Step::LoopEnd, value.op, 0, -1, value.payload});
     return sums;
+  }
+
+  void copy(Register to, Register from, bool whole) {
+    Instruction instruction{Step::Copy, Op::Carry};
+    instruction.outs[0] = to;
+    instruction.args[0] = from;
+    instruction.whole = whole;
+    program_.body.push_back(instruction);
+  }
+
+  /// All rounds of a loop, when the first of what it carries is asked for. Points may have different numbers
+  /// of rounds.
+  void rounds(int32_t number) {
+    const ir::Loop& loop = loops_[number];
+    const Register end = of(loop.end)[0];
+    std::vector<Register> nexts;
+    for (const ir::Carry& carry : loop.carries) {
+      const bool whole = ir::isWhole(dag_[carry.value].type);
+      for (const Register first : of(carry.first)) {
+        const Register variable = fresh(false);
+        registers_of_[carry.value].push_back(variable);
+        copy(variable, first, whole);
+      }
+    }
+    Instruction begin{Step::RoundsBegin, Op::Loop, 0, ir::firstRound(dag_, loop), ir::mostRounds(dag_, loop)};
+    begin.outs[0] = fresh(false);
+    begin.args[0] = end;
+    registers_of_[loop.index] = {begin.outs[0]};
+    program_.body.push_back(begin);
+    const std::vector<ValueId> body = loops_.bodyOf(number);
+    values(body, dag_[loop.last].rate == Rate::Light, number);
+    // All at once: what the next round begins with is made of what this one began with.
+    for (const ir::Carry& carry : loop.carries) {
+      const bool whole = ir::isWhole(dag_[carry.value].type);
+      for (const Register next : of(carry.next)) {
+        nexts.push_back(fresh(false));
+        copy(nexts.back(), next, whole);
+      }
+    }
+    size_t at = 0;
+    for (const ir::Carry& carry : loop.carries) {
+      for (const Register variable : of(carry.value)) {
+        Instruction keep{Step::Keep, Op::Carry};
+        keep.outs[0] = variable;
+        keep.args = {nexts[at++], begin.outs[0], end, kNoRegister};
+        program_.body.push_back(keep);
+      }
+    }
+    Instruction last{Step::RoundsEnd, Op::Loop, 0, begin.element, begin.payload};
+    last.args[0] = begin.outs[0];
+    last.args[1] = end;
+    program_.body.push_back(last);
+  }
+
+  std::vector<Register> carried(ValueId id) {
+    const int32_t number = loops_.indexOf(id);
+    const ir::Loop& loop = loops_[number];
+    const auto carry = std::find_if(loop.carries.begin(), loop.carries.end(), [&](const ir::Carry& c) {
+      return dag_.inputOf(c.value).index == dag_[id].payload;
+    });
+    if (registers_of_[loop.index].empty()) rounds(number);
+    return of(carry->value);
   }
 
   /// Of a list of ints one register, of the lights those of the field.
@@ -302,6 +378,8 @@ private:
     // After an error registers are missing; what is left to find is more unbound inputs.
     half_ = dag_.relaxed(id);
     whole_ = ir::isWhole(ir::partType(dag_[id].type));
+    const bool known = dag_[id].op == Op::Input && ir::ofLoop(dag_.inputOf(id).kind);
+    if (known || ir::makesLoop(dag_[id].op)) return;
     if (wrong_.empty() || dag_[id].op == Op::Input) registers_of_[id] = made(id);
   }
 
@@ -321,6 +399,7 @@ private:
     if (value.op == Op::DFdy) return derivative(value, Step::DerivativeY);
     if (value.op == Op::SumOverLights) return sumOverLights(value);
     if (value.op == Op::Element) return element(value);
+    if (value.op == Op::Carried) return carried(id);
     std::vector<Register> result;  // of a literal
     for (size_t i = 0; i < static_cast<size_t>(ir::componentCount(value.type)); ++i)
       result.push_back(literal(dag_.constantOf(id)[i]));
@@ -335,6 +414,7 @@ private:
   Diagnostics wrong_;
   bool half_ = false;   ///< what is being compiled is relaxed
   bool whole_ = false;  ///< it is an integer
+  ir::Loops loops_;
   std::vector<Virtual> virtuals_;
   std::vector<std::vector<Register>> registers_of_;
 };
@@ -371,20 +451,33 @@ private:
 
   void lifetimes() {
     const size_t length = program_.body.size();
-    std::vector<size_t> loop_end(length, kNever);
-    size_t end = kNever;
-    for (size_t i = length; i-- > 0;) {
-      if (program_.body[i].step == Step::LoopEnd) end = i;
-      loop_end[i] = end;
-      if (program_.body[i].step == Step::LoopBegin) end = kNever;
+    // Of each loop, where it begins and ends; of each instruction, the innermost that it is in.
+    struct Span {
+      size_t begin, end, around;
+    };
+    std::vector<Span> loops;
+    std::vector<size_t> loop_of(length, kNever);
+    size_t open = kNever;
+    for (size_t i = 0; i < length; ++i) {
+      const Step step = program_.body[i].step;
+      if (step == Step::LoopBegin || step == Step::RoundsBegin) {
+        loops.push_back({i, i, open});
+        open = loops.size() - 1;
+      }
+      loop_of[i] = open;
+      if (step != Step::LoopEnd && step != Step::RoundsEnd) continue;
+      loops[open].end = i;
+      open = loops[open].around;
     }
     for (size_t i = 0; i < length; ++i) {
       const auto touch = [&](Register r) {
         if (r == kNoRegister || virtuals_[r].uniform) return;
         if (first_[r] == kNever) first_[r] = i;
         // What comes from before a loop is needed in its every turn.
-        const bool from_outside = loop_end[i] != kNever && loop_end[first_[r]] != loop_end[i];
-        last_[r] = std::max(last_[r], from_outside ? loop_end[i] : i);
+        size_t last = i;
+        for (size_t l = loop_of[i]; l != kNever && first_[r] < loops[l].begin; l = loops[l].around)
+          last = loops[l].end;
+        last_[r] = std::max(last_[r], last);
       };
       for (const Register r : program_.body[i].outs) touch(r);
       for (const Register r : program_.body[i].args) touch(r);

@@ -29,6 +29,12 @@ enum class Step : uint8_t {
   DerivativeY,  ///< the same along y
   LoopBegin,    ///< over the lights of light_groups[payload]; of listed ones args[1] from place args[0] on
   LoopEnd,
+  RoundsBegin,  ///< out, an Int, from `element` on, up to before the highest of args[0], `payload` rounds at
+                ///< most
+  Copy,         ///< out = args[0]
+  Keep,         ///< out = args[0] where the round args[1] is before args[2]
+  RoundsEnd,    ///< the next round of args[0] up to before the highest of args[1]; payload: rounds to begin
+                ///< with
 };
 
 using Register = uint32_t;

@@ -1,11 +1,11 @@
 // What a shader costs where no compiler of a GPU is at hand: its operations, counted and weighted.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "ir/module.h"
+#include "ir/work.h"
 
 namespace lacquer::lod {
 
@@ -15,18 +15,8 @@ struct Estimate {
   uint64_t vertex_cycles = 0;             ///< of the vertex stage
 };
 
-/// What is counted of a stage. `bench estimate` fits the weights to measured shaders.
-struct Counts {
-  double always = 1;
-  double sums = 0;      ///< sums, products and the like, of one component each
-  double roots = 0;     ///< reciprocals, roots, exponentials, logarithms, sines and cosines
-  double cubes = 0;     ///< lookups of cube maps
-  double pictures = 0;  ///< other lookups
-  double varyings = 0;  ///< interpolated components
-  double loads = 0;     ///< components read of blocks
-  std::array<double, 7> all() const { return {always, sums, roots, cubes, pictures, varyings, loads}; }
-};
-Counts countsOf(const ir::Module& module, ir::Stage stage);
+/// What a stage does; what is in a loop counts for all its rounds.
+ir::Counts countsOf(const ir::Module& module, ir::Stage stage);
 
 /// Of a placed module.
 Estimate estimate(const ir::Module& module);

@@ -7,6 +7,7 @@
 #include "analysis/intervals.h"
 #include "eval/dfg.h"
 #include "eval/points.h"
+#include "ir/loops.h"
 #include "stress/subject.h"
 #include "stress/vectors.h"
 
@@ -190,9 +191,11 @@ private:
                        false,
                        {0, inf, false}});
     }
-    for (const ir::ValueId id : ir::reachable(dag, outputs)) {
-      // Inside of a loop over lights there is no value to look at; with one light there is no loop.
-      if (dag[id].rate == ir::Rate::Light) continue;
+    const std::vector<ir::ValueId> live = ir::reachable(dag, outputs);
+    const ir::Loops loops(dag, live);
+    for (const ir::ValueId id : live) {
+      // Inside of a loop there is no value to look at; with one light there is no loop over lights.
+      if (dag[id].rate == ir::Rate::Light || loops.of(id) >= 0) continue;
       if (dag[id].op != ir::Op::Less && dag[id].op != ir::Op::LessEqual && dag[id].op != ir::Op::Equal)
         continue;
       const std::string term = dag.terms().empty() ? "" : dag.terms()[dag.termOf(id)].name + ": ";

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "analysis/intervals.h"
+#include "ir/loops.h"
 #include "stress/subject.h"
 
 namespace lacquer::stress {
@@ -173,9 +175,13 @@ private:
       roots.push_back({Root::Kind::Result, results[i].first, ir::componentCount(dag[id].type), flag,
                        math.fact(flag ? ir::Interval{0, 1} : results[i].second)});
     }
-    for (ir::ValueId id = 0; id < dag.size(); ++id) {
+    std::vector<ir::ValueId> all(dag.size());
+    std::iota(all.begin(), all.end(), ir::ValueId{0});
+    const ir::Loops loops(dag, all);
+    for (const ir::ValueId id : all) {
       const std::optional<ir::Interval> fact = dag.assumed(id);
-      if (!fact) continue;
+      // Inside of a loop there is no value to look at.
+      if (!fact || loops.of(id) >= 0) continue;
       ids_.push_back(id);
       const std::string_view named = dag.nameOf(id);
       roots.push_back({Root::Kind::Fact, named.empty() ? fmt::format("%{}", id) : std::string(named),
@@ -183,8 +189,9 @@ private:
     }
     for (const ir::ValueId id : ir::reachable(dag, outputs)) {
       if (dag[id].op == ir::Op::DFdx || dag[id].op == ir::Op::DFdy) group = 4;
-      if (dag[id].op != ir::Op::Less && dag[id].op != ir::Op::LessEqual && dag[id].op != ir::Op::Equal)
-        continue;
+      const bool condition =
+          dag[id].op == ir::Op::Less || dag[id].op == ir::Op::LessEqual || dag[id].op == ir::Op::Equal;
+      if (!condition || loops.of(id) >= 0) continue;
       addCondition(module_, id, conditionName(module_, id), roots, ids_);
     }
   }

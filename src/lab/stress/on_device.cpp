@@ -76,7 +76,8 @@ Ready readyNode(const Subject& subject) {
   passes::Rewriter(ready.module).run([](passes::Rewriter& r, ValueId id, std::span<const ValueId> operands) {
     if (r.dag()[id].op != ir::Op::Input) return r.copy(id, operands);
     const ir::Input input = r.dag().inputOf(id);
-    return input.kind == ir::InputKind::Texture ? r.copy(id, operands) : varyingOf(r, input);
+    const bool stays = input.kind == ir::InputKind::Texture || ir::ofLoop(input.kind);
+    return stays ? r.copy(id, operands) : varyingOf(r, input);
   });
   ready.module.parameters.clear();
   setColors(ready);

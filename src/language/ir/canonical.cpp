@@ -76,6 +76,9 @@ private:
     number(input.group);
     number(input.index);
     text(input.name);
+    if (input.kind != InputKind::LoopIndex) return;
+    number(input.range.lo);
+    number(input.range.hi);
   }
 
   void value(ValueId id, const Value& value) {
@@ -93,7 +96,8 @@ private:
     number(dag_.relaxed(id));
     number(value.count);
     text(dag_.nameOf(id));
-    if (value.op == Op::Swizzle || value.op == Op::Column || value.op == Op::SumOverLights)
+    if (value.op == Op::Swizzle || value.op == Op::Column || value.op == Op::SumOverLights ||
+        value.op == Op::Carried)
       number(value.payload);
     if (value.op == Op::Element) {
       const ListField from = ListField::of(value);

@@ -52,6 +52,12 @@ std::optional<Type> specialType(Op op, std::span<const Type> operands) {
   if (op == Op::FromUInt) return from(Type::UInt, Type::Float);
   if (op == Op::AsInt) return from(Type::UInt, Type::Int);
   if (op == Op::AsUInt) return from(Type::Int, Type::UInt);
+  if (op == Op::Loop) return operands[1] == Type::Int ? from(Type::Int, Type::Int) : std::nullopt;
+  if (op == Op::Carry) {
+    const bool alike = operands[1] == operands[2] && operands[2] == operands[3];
+    return alike && !isTexture(operands[1]) && !isComposite(operands[1]) ? from(Type::Int, Type::Int)
+                                                                         : std::nullopt;
+  }
   if (op == Op::Column) return isMatrix(operands[0]) ? std::optional(partType(operands[0])) : std::nullopt;
   if (op == Op::MatMul && isMatrix(operands[0]) && operands[1] == partType(operands[0])) return operands[1];
   const bool lookup =
@@ -225,8 +231,8 @@ void Dag::substitute(ValueId id, std::span<const ValueId> operands) {
 }
 
 ValueId Dag::make(Op op, std::span<const ValueId> operands, uint32_t payload) {
-  assert(op != Op::Construct && op != Op::Swizzle && op != Op::Column && op != Op::Constant &&
-         op != Op::Input);
+  assert(op != Op::Construct && op != Op::Swizzle && op != Op::Column && op != Op::Carried &&
+         op != Op::Constant && op != Op::Input);
   std::array<Type, 4> types{};
   for (size_t i = 0; i < operands.size(); ++i) types[i] = values_[operands[i]].type;
   const std::optional<Type> type = resultType(op, {types.data(), operands.size()});
@@ -292,6 +298,19 @@ ValueId Dag::element(ValueId number, Type type, const ListField& field) {
   return makeRaw(Op::Element, type, {{number}}, field.payload());
 }
 
+ValueId Dag::carried(ValueId loop, uint32_t number) {
+  ValueId link = loop;
+  while (values_[link].op == Op::Carry && inputOf(values_[link].args[3]).index != number)
+    link = values_[link].args[0];
+  assert(values_[link].op == Op::Carry);
+  const Value carry = values_[link];
+  if (carry.args[2] == carry.args[3]) return carry.args[1];  // it stays what it was
+  while (values_[link].op == Op::Carry) link = values_[link].args[0];
+  const ValueId end = values_[link].args[0];
+  const bool runs = !isConstant(end) || constantOf(end)[0] > inputOf(values_[link].args[1]).range.lo;
+  return runs ? makeRaw(Op::Carried, values_[carry.args[3]].type, {{loop}}, number) : carry.args[1];
+}
+
 ValueId Dag::remake(ValueId id, std::span<const ValueId> operands) {
   const Value& now = values_[id];
   bool same = true;
@@ -301,6 +320,7 @@ ValueId Dag::remake(ValueId id, std::span<const ValueId> operands) {
   if (value.op == Op::Construct) return construct(value.type, operands);
   if (value.op == Op::Element) return element(operands[0], value.type, ListField::of(value));
   if (value.op == Op::Column) return column(operands[0], value.payload);
+  if (value.op == Op::Carried) return carried(operands[0], value.payload);
   if (value.op != Op::Swizzle) return make(value.op, operands, value.payload);
   std::array<int, 4> picks{};
   const int n = componentCount(value.type);

@@ -92,7 +92,14 @@ enum class InputKind : uint8_t {
   Varying,       ///< what the place pass puts in for Interpolate: rate Fragment
   SpecConstant,  ///< a parameter whose value the pipeline gets (Module::spec_constants), put in by the place
                  ///< pass: rate Frame
+  LoopIndex,  ///< the round of a loop, an Int; its range is that of the rounds that there may be (ir/loops.h)
+  LoopValue,  ///< what a loop has carried into a round
 };
+
+/// Whether an input is one of a loop's.
+constexpr bool ofLoop(InputKind kind) { return kind == InputKind::LoopIndex || kind == InputKind::LoopValue; }
+/// Whether an op makes a loop, which is a value like others but one that no variable holds.
+constexpr bool makesLoop(Op op) { return op == Op::Loop || op == Op::Carry; }
 
 /// What an Input value stands for. Two inputs are one value when kind, name, block and field are equal.
 struct Input {
@@ -103,10 +110,12 @@ struct Input {
   Interval range;        ///< every component
   uint32_t block = 0;    ///< BlockField: index into Module::blocks
   uint32_t field = 0;    ///< BlockField: index into the block's fields; Parameter, SpecConstant, Texture,
-                         ///< Attribute, Varying: index into the module's table of that kind
+                         ///< Attribute, Varying: index into the module's table of that kind;
+                         ///< LoopIndex, LoopValue: the loop's number
   int32_t element = -1;  ///< light array: a fixed element, or -1 for the loop's index
   int32_t group = 0;     ///< light array: which SumOverLights (its payload) it belongs to
-  uint32_t index = 0;    ///< BlockField that is an array: which element of it
+  uint32_t index =
+      0;  ///< BlockField that is an array: which element of it; LoopValue: its number in the loop
 };
 
 struct Value {
@@ -115,8 +124,8 @@ struct Value {
   Rate rate;
   uint8_t count;     ///< number of operands
   uint32_t payload;  ///< Constant: into constants; Input: into inputs; Swizzle: two bits a component, first
-                     ///< lowest; SumOverLights: the light group; Element: ListField::payload(); Column: its
-                     ///< number
+                     ///< lowest; SumOverLights: the light group; Element: ListField::payload(); Column,
+                     ///< Carried: its number
   std::array<ValueId, 4> args;
   std::span<const ValueId> operands() const { return {args.data(), count}; }
 };
@@ -169,6 +178,13 @@ public:
   ValueId select(ValueId condition, ValueId yes, ValueId no);
   /// What a list's element of that number, an Int, has in a field of that type.
   ValueId element(ValueId number, Type type, const ListField& field);
+
+  /// The number of another loop, for its inputs.
+  uint32_t openLoop() { return loops_++; }
+  /// Whether a loop was ever opened.
+  bool hasLoops() const { return loops_ != 0; }
+  /// What the loop has made of the LoopValue of that number.
+  ValueId carried(ValueId loop, uint32_t number);
 
   /// A value like `id` on other operands: `id` itself when they are its own.
   ValueId remake(ValueId id, std::span<const ValueId> operands);
@@ -259,6 +275,7 @@ private:
   std::vector<uint32_t> rank_of_;
   std::vector<ValueId> table_;  ///< open addressing over values_, by content; a power of two; empty after
                                 ///< compact() until a value is made
+  uint32_t loops_ = 0;          ///< numbers that are given
   TermId current_term_ = 0;
   uint32_t current_rank_ = kOwnRank;
 };

@@ -6,6 +6,8 @@
 #include <cassert>
 #include <map>
 
+#include "ir/loops.h"
+
 namespace lacquer::ir {
 
 std::string BlockField::elementName(uint32_t index) const {
@@ -101,7 +103,9 @@ public:
     for (const Output& output : module_.outputs) {
       if (output.value >= dag_.size()) return {fmt::format("output {} has no value", output.name)};
     }
-    for (const ValueId id : reachable(dag_, roots(module_))) checkValue(id);
+    const std::vector<ValueId> live = reachable(dag_, roots(module_));
+    for (const ValueId id : live) checkValue(id);
+    if (dag_.hasLoops() && wrong_.empty()) checkLoops(live);
     for (const Output& output : module_.outputs) checkOutput(output);
     for (const Varying& varying : module_.varyings) {
       // Without a vertex stage the varyings come from outside.
@@ -148,6 +152,8 @@ private:
       return;
     }
     if (value.op == Op::Element) return checkElement(id);
+    if (makesLoop(value.op) && !checkLink(id)) return;
+    if (value.op == Op::Carried) return checkCarried(id);
     std::array<Type, 4> types{};
     for (size_t i = 0; i < value.count; ++i) types[i] = dag_[value.args[i]].type;
     if (resultType(value.op, {types.data(), value.count}) != value.type) {
@@ -165,6 +171,60 @@ private:
                        module_.blocks[block].fields[field].type == dag_[id].type;
     if (!there || dag_[dag_[id].args[0]].type != Type::Int)
       complain("value {} reads a list's field that is not there", id);
+  }
+
+  bool inputOfLoop(ValueId id, InputKind kind) const {
+    return dag_[id].op == Op::Input && dag_.inputOf(id).kind == kind;
+  }
+
+  /// A loop with an index, or one value more for it.
+  bool checkLink(ValueId id) {
+    const Value& value = dag_[id];
+    const bool carry = value.op == Op::Carry;
+    bool good = inputOfLoop(value.args[carry ? 3 : 1], carry ? InputKind::LoopValue : InputKind::LoopIndex);
+    if (carry) good &= makesLoop(dag_[value.args[0]].op);
+    if (!good) complain("value {} is no link of a loop", id);
+    return good;
+  }
+
+  void checkCarried(ValueId id) {
+    const Value& value = dag_[id];
+    bool found = false;
+    if (makesLoop(dag_[value.args[0]].op)) {
+      for (const Carry& carry : loopOf(dag_, value.args[0]).carries) {
+        found |= dag_.inputOf(carry.value).index == value.payload && dag_[carry.value].type == value.type;
+      }
+    }
+    if (!found) complain("value {} is carried by no loop", id);
+  }
+
+  void checkLoops(std::span<const ValueId> live) {
+    const Loops loops(dag_, live);
+    if (loops.broken()) complain("loops overlap, or their inputs are used outside of them");
+    for (const Loop& loop : loops.all()) {
+      if (loop.last == kNoValue) continue;
+      const Input& index = dag_.inputOf(loop.index);
+      if (!(index.range.lo <= index.range.hi) || mostRounds(dag_, loop) > kMostRounds)
+        complain("the loop over {} has {} rounds", index.name, mostRounds(dag_, loop));
+      std::vector<bool> taken;
+      for (const Carry& carry : loop.carries) {
+        const Input& value = dag_.inputOf(carry.value);
+        if (taken.size() <= value.index) taken.resize(value.index + 1, false);
+        if (value.field != index.field || taken[value.index])
+          complain("the loop over {} carries '{}' twice, or another's", index.name, value.name);
+        taken[value.index] = true;
+      }
+    }
+    for (const ValueId id : live) {
+      const Value& value = dag_[id];
+      if (loops.of(id) >= 0 && (value.op == Op::SumOverLights || value.op == Op::Interpolate))
+        complain("value {} is a {} in a loop's body", id, info(value.op).name);
+      if (value.op == Op::Carried && loops[loops.indexOf(id)].last != value.args[0])
+        complain("value {} is what a part of a loop carries", id);
+    }
+    for (const ValueId root : roots(module_)) {
+      if (loops.of(root) >= 0) complain("value {} of a loop's body leaves it", root);
+    }
   }
 
   void checkInput(ValueId id) {
@@ -200,6 +260,9 @@ private:
       complain("output {} of the vertex stage has {} rate", output.name, rateName(value.rate));
     }
   }
+
+  /// Of a loop: the limit of the node language (lang/check_body.cpp), so that a slip shows.
+  static constexpr uint32_t kMostRounds = 1024;
 
   const Module& module_;
   const Dag& dag_;
@@ -238,6 +301,7 @@ void spell(const Module& module, const Numbers& numbers, ValueId id, std::string
   if (value.op == Op::Input) {
     const Input& input = dag.inputOf(id);
     append(text, input.name);
+    if (ofLoop(input.kind)) append(text, "#", fmt::format_int(numbers[id]).c_str());
     if (input.element >= 0) append(text, "[", fmt::format_int(input.element).c_str(), "]");
     return;
   }
@@ -246,7 +310,8 @@ void spell(const Module& module, const Numbers& numbers, ValueId id, std::string
     text += '.';
     for (int i = 0; i < componentCount(value.type); ++i) text += "xyzw"[swizzleComponent(value.payload, i)];
   }
-  if (value.op == Op::Column) append(text, "[", fmt::format_int(value.payload).c_str(), "]");
+  if (value.op == Op::Column || value.op == Op::Carried)
+    append(text, "[", fmt::format_int(value.payload).c_str(), "]");
   if (value.op == Op::SumOverLights) append(text, "[", fmt::format_int(value.payload).c_str(), "]");
   if (value.op == Op::Element) {
     const Block& block = module.blocks[ListField::of(value).block];
@@ -262,6 +327,13 @@ void spell(const Module& module, const Numbers& numbers, ValueId id, std::string
       appendNumber(text, numbers[operand]);
     }
   }
+  if (value.op != Op::Loop) return;
+  const Interval& rounds = dag.inputOf(value.args[1]).range;
+  text += " in [";
+  appendNumber(text, rounds.lo);
+  append(text, ", ");
+  appendNumber(text, rounds.hi);
+  text += ']';
 }
 
 /// Fills a line that begins at `start` up to a column; names may have wide characters.
@@ -288,8 +360,12 @@ std::string dump(const Module& module) {
   TermId term = ~TermId{0};
   Numbers numbers(dag.size(), 0);
   uint32_t next = 0;
+  std::map<uint32_t, uint32_t> loops;  // by their numbers, those in the order in which they are met
   for (const ValueId id : reachable(dag, roots)) {
     const Value& value = dag[id];
+    if (value.op == Op::Input && ofLoop(dag.inputOf(id).kind))
+      numbers[id] =
+          loops.try_emplace(dag.inputOf(id).field, static_cast<uint32_t>(loops.size())).first->second;
     if (value.op == Op::Constant || value.op == Op::Input) continue;
     numbers[id] = next++;
     if (dag.termOf(id) != term) {

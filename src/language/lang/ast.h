@@ -84,7 +84,8 @@ struct Statement {
     Let,     ///< a new local `slot` (or several, `results` of them) = values[0]
     Assign,  ///< the local `slot` = values[0]; compound assignments are parsed into plain ones
     If,      ///< values[0] ? body : otherwise; locals from `slot` on are of one arm alone
-    For,     ///< `slot` counts from `first` up to, not including, `last`
+    For,     ///< `slot` counts from `first` up to, not including, `last`; where it is `open`, to where
+             ///< values[1] says, but no further
     Return,  ///< values, one for each result, or one Call with all of them
     Assume,  ///< values[0] lies in `range`
   };
@@ -95,6 +96,12 @@ struct Statement {
   uint32_t slot = 0;
   uint32_t results = 1;
   int first = 0, last = 0;
+  bool open = false;       ///< For: the bound is no constant
+  bool inclusive = false;  ///< For: `<=`
+  bool surely = false;     ///< For: there is a round in any case
+  bool direct = false;  ///< For: it returns, sums over lights or interpolates, which no loop that stays does
+  uint32_t weight = 0;  ///< For: expressions to evaluate for a round
+  std::vector<uint32_t> assigned{};  ///< For: locals from before it that its body assigns, ascending
   std::string_view name;
   Span span, name_span;
   std::vector<ExprPtr> values;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "lang/bounds.h"
 #include "lang/checker.h"
+#include "lang/evaluate.h"
 #include "lang/parser.h"
 
 namespace lacquer::lang {
@@ -18,6 +20,15 @@ constexpr uint64_t kMostWeight = 1U << 20U;
 constexpr uint32_t kMostHeight = 4096;
 constexpr size_t kMostNames = 4096;  ///< looked through for each name
 
+template <class Visit>
+void eachAssignment(const std::vector<Statement>& statements, const Visit& visit) {
+  for (const Statement& statement : statements) {
+    if (statement.kind == Statement::Kind::Assign) visit(statement);
+    eachAssignment(statement.body, visit);
+    eachAssignment(statement.otherwise, visit);
+  }
+}
+
 }  // namespace
 
 void Checker::body(NodeDecl& decl, std::string_view variant, Span place, Body& body) {
@@ -25,6 +36,9 @@ void Checker::body(NodeDecl& decl, std::string_view variant, Span place, Body& b
   names_.clear();
   unused_.clear();
   slots_.clear();
+  bounds_.clear();
+  assigned_.clear();
+  eachAssignment(body.statements, [this](const Statement& s) { assigned_.insert(s.name); });
   arms_ = block_depth_ = 0;
   crowded_ = false;
   may_have_returned_ = false;
@@ -36,6 +50,7 @@ void Checker::body(NodeDecl& decl, std::string_view variant, Span place, Body& b
   for (const Param& param : decl.params) {
     names_.push_back({param.name, Name::Kind::Param, param.type, slotCount(), param.span, true, false, {}});
     slots_.push_back(param.name);
+    bounds_.push_back(param.range);
     if (param.name == "PI" ||
         around_.find(param.name).value_or(Surroundings::Found{}).kind == DeclKind::Const) {
       if (!variant.empty()) continue;  // said once, at the reference
@@ -165,6 +180,10 @@ void Checker::let(Statement& statement) {
   name.broken = statement.inferred ? !good : !possible;
   statement.type = name.type;
   statement.slot = name.slot = slotCount();
+  if (good && !assigned_.contains(name.name) && ir::componentCount(name.type) == 1) {
+    bounds_.resize(slotCount());
+    bounds_.push_back(boundOf(*value));
+  }
   if (name.members.empty()) slots_.push_back(name.name);
   for (Member& member : name.members) {
     member.slot = slotCount();
@@ -225,27 +244,45 @@ Checker::Flow Checker::ifElse(Statement& statement) {
   return Flow::MayReturn;
 }
 
-Checker::Flow Checker::loop(Statement& statement) {
+ir::Interval Checker::boundOf(const Expr& expr) const {
+  return boundsOf(expr,
+                  [this](uint32_t slot) { return slot < bounds_.size() ? bounds_[slot] : ir::Interval{}; });
+}
+
+/// How many rounds a loop has at most; 1 where that is wrong.
+uint64_t Checker::rounds(Statement& statement) {
   const std::optional<int> first = constantInt(statement.values[0], "the first value of the counter");
-  const std::optional<int> last = constantInt(statement.values[1], "the bound of the loop");
-  int64_t count = 1;
-  if (first && last) {
-    const bool inclusive = statement.inferred;
-    count = int64_t{*last} - *first + (inclusive ? 1 : 0);
-    statement.first = *first;
-    statement.last = static_cast<int>(*first + std::clamp<int64_t>(count, 0, kMostTrips));
-    if (count < 1) {
-      reporter_.error("empty-loop", statement.values[1]->span, "the loop never runs",
-                      "the bound lies above the start");
-      count = 1;
-    }
+  ExprPtr& bound = statement.values[1];
+  if (!typed(bound, Type::Int, "the bound of the loop") || !first) return 1;
+  if (!scratch_) scratch_.emplace();
+  const Constant constant = evaluateConstant(*scratch_, *bound);
+  statement.open = !constant;
+  ir::Interval last = constant ? ir::Interval{(*constant)[0], (*constant)[0]} : boundOf(*bound);
+  if (!(last.hi < 0x1p31)) {
+    reporter_.error("unbounded-loop", bound->span, "how far this loop may run is not known",
+                    "a constant, a parameter or a result with a range, what is made of these by + - *, or "
+                    "`min(..., 16)`");
+    return 1;
   }
+  const double inclusive = statement.inclusive ? 1 : 0;
+  const double count = last.hi - *first + inclusive;
+  statement.surely = last.lo - *first + inclusive >= 1;
+  statement.first = *first;
+  statement.last = static_cast<int>(*first + std::clamp<double>(count, 0, kMostTrips));
+  if (count >= 1) return static_cast<uint64_t>(std::min<double>(count, kMostTrips + 1));
+  reporter_.error("empty-loop", bound->span, "the loop never runs", "the bound lies above the start");
+  return 1;
+}
+
+Checker::Flow Checker::loop(Statement& statement) {
+  const uint64_t count = rounds(statement);
   const uint64_t outer = trips_;
-  trips_ *= static_cast<uint64_t>(std::min<int64_t>(count, kMostTrips + 1));
+  trips_ *= count;
   if (trips_ > kMostTrips) {
     reporter_.error("loop-too-long", statement.values[1]->span,
                     fmt::format("this loop runs more than {} times, enclosing loops counted", kMostTrips),
-                    "loops are written out");
+                    statement.open ? "a smaller range of what it runs up to, or `min(..., 16)`"
+                                   : "fewer rounds, or several nodes");
     trips_ = outer;
   }
   const size_t scope = names_.size();
@@ -253,9 +290,31 @@ Checker::Flow Checker::loop(Statement& statement) {
   slots_.push_back(statement.name);
   declare(
       {statement.name, Name::Kind::Counter, Type::Int, statement.slot, statement.name_span, true, false, {}});
+  bounds_.resize(slotCount());
+  bounds_.back() = {static_cast<double>(statement.first), static_cast<double>(statement.last) - 1};
+  const Ties before = std::exchange(unties_, Ties{0});
+  const uint64_t weight = weight_;
   const Flow flow = block(statement.body);
+  statement.weight = static_cast<uint32_t>(std::min<uint64_t>((weight_ - weight) / trips_, kMostWeight));
+  statement.direct = flow != Flow::Falls || unties_ != 0;
+  if (statement.open && flow != Flow::Falls) {
+    reporter_.error("return-in-loop", statement.span, "a loop whose length is not a constant cannot return",
+                    "keep what was found in a local, and return it behind the loop");
+  }
+  if (statement.open && unties_ != 0) {
+    reporter_.error("tied-loop", statement.values[1]->span,
+                    fmt::format("the length of a loop in which there is {} must be a constant",
+                                (unties_ & kLight) != 0 ? "sum_over_lights()" : "interpolate()"),
+                    "it is written out, round by round");
+  }
+  unties_ |= before;
   leave(scope);
   trips_ = outer;
+  std::set<uint32_t> assigned;
+  eachAssignment(statement.body, [&](const Statement& s) {
+    if (s.slot < statement.slot) assigned.insert(s.slot);
+  });
+  statement.assigned.assign(assigned.begin(), assigned.end());
   return flow;
 }
 

@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -148,6 +149,8 @@ private:
   void assign(Statement& statement);
   Flow ifElse(Statement& statement);
   Flow loop(Statement& statement);
+  uint64_t rounds(Statement& statement);
+  ir::Interval boundOf(const Expr& expr) const;
   void returns(Statement& statement);
   void assume(Statement& statement);
   uint32_t slotCount() const { return static_cast<uint32_t>(slots_.size()); }
@@ -209,6 +212,8 @@ private:
   bool constants_only_ = false;          ///< the expression must be a constant
   bool ports_allowed_ = false;           ///< the expression is an output's
   std::vector<std::string_view> slots_;  ///< of the body, so far
+  std::vector<ir::Interval> bounds_;     ///< by slot: of parameters, and of locals that are never assigned
+  std::set<std::string_view> assigned_;  ///< names that the body assigns somewhere
   bool crowded_ = false;  ///< names were left out, and that was said: others are not looked for
   uint32_t arms_ = 0;     ///< enclosing arms of `if`
   uint32_t block_depth_ = 0;

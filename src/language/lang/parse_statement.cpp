@@ -187,7 +187,7 @@ bool Parser::forStatement(Statement& out) {
     return false;
   }
   if (!wants(")")) return false;
-  out.inferred = inclusive;
+  out.inclusive = inclusive;
   out.values.push_back(std::move(first));
   out.values.push_back(std::move(last));
   return body(out.body);

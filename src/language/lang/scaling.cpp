@@ -104,14 +104,19 @@ private:
     known_ = outer;
   }
 
-  /// Until nothing changes: a slot can rise three times.
+  /// Until nothing changes: a slot can rise three times. What is assigned in rounds whose number changes with
+  /// the factor is known of no factor.
   void loop(const Statement& statement) {
+    const bool known = !statement.open || isFree(value(*statement.values[1]));
     slots_[statement.slot] = Scaling::Fixed;
     for (bool changed = true; changed;) {
       const std::vector<Scaling> before = slots_;
       statements(statement.body);
       for (size_t i = 0; i < slots_.size(); ++i) slots_[i] = either(slots_[i], before[i]);
       changed = slots_ != before;
+    }
+    for (const uint32_t slot : statement.assigned) {
+      if (!known) slots_[slot] = Scaling::Other;
     }
   }
 

@@ -44,6 +44,7 @@ Body::Body(const ir::Module& module, const schedule::Program& program, const Int
       debug_(options.debug),
       relaxed_(options.relaxed),
       live_(ir::reachable(module, program.stage)),
+      loops_(dag_, live_),
       ids_(dag_.size(), 0),
       splats_(dag_.size() * 3, 0),
       lone_component_(dag_.size(), 0) {
@@ -72,8 +73,9 @@ void Body::findFusedProducts() {
       const ValueId operand = sum.args[k];
       const ir::Value& product = dag_[operand];
       const bool alike = product.op == Op::Mul && dag_[product.args[0]].type == dag_[product.args[1]].type;
-      // What does not change with the light stays outside of the loop.
-      const bool together = (product.rate == Rate::Light) == (sum.rate == Rate::Light);
+      // What does not change with the light, or from round to round, stays outside of the loop.
+      const bool together =
+          (product.rate == Rate::Light) == (sum.rate == Rate::Light) && loops_.of(operand) == loops_.of(id);
       // One instruction has one precision.
       if (!alike || !together || relaxed(id) != relaxed(operand)) continue;
       product_in_[id] = static_cast<uint8_t>(1 + k);
@@ -115,7 +117,7 @@ uint32_t Body::write() {
     if (dropped) break;  // nothing comes after it
     statement(s);
   }
-  assert(!in_loop_);
+  assert(open_.empty());
   code_.op(dropped ? spv::OpKill : spv::OpReturn);
   code_.op(spv::OpFunctionEnd);
   return function;
@@ -127,7 +129,7 @@ uint32_t Body::value(ValueId id) {
   if (ids_[id] != 0) return ids_[id];
   const uint32_t made = make(id);
   ids_[id] = made;
-  if (in_loop_) made_in_loop_.push_back(id);
+  if (!open_.empty()) open_.back().made.push_back(id);
   return made;
 }
 
@@ -219,7 +221,7 @@ uint32_t Body::splat(ValueId scalar, Type like) {
   code_.end();
   if (relaxed(scalar)) globals_.decorations.op(spv::OpDecorate, id, spv::DecorationRelaxedPrecision);
   splats_[slot] = id;
-  if (in_loop_) splats_in_loop_.push_back(static_cast<uint32_t>(slot));
+  if (!open_.empty()) open_.back().splats.push_back(static_cast<uint32_t>(slot));
   return id;
 }
 
@@ -262,9 +264,11 @@ uint32_t Body::input(ValueId id) {
     case InputKind::Attribute: return load(id, interface_.attributes[in.field]);
     case InputKind::Texture: return load(id, interface_.textures[in.field]);
     case InputKind::FrontFacing: return load(id, interface_.front_facing);
-    case InputKind::LightIndex: assert(in_loop_); return loop_.index;
+    case InputKind::LightIndex: return lightIndex();
     case InputKind::Varying: return load(id, interface_.varyings[in.field]);
     case InputKind::SpecConstant: return interface_.constants[in.field];
+    case InputKind::LoopIndex:
+    case InputKind::LoopValue: break;  // of an open loop: known
   }
   assert(false && "not an input of a placed module");
   return 0;
@@ -283,9 +287,8 @@ uint32_t Body::blockField(ValueId id, const ir::Input& input, int component) {
   std::array<uint32_t, 5> indices{};
   size_t count = 0;
   if (block.array != 0) {
-    assert(input.element >= 0 || in_loop_);
     indices[count++] = globals_.integer(0);
-    indices[count++] = input.element >= 0 ? globals_.integer(input.element) : loop_.index;
+    indices[count++] = input.element >= 0 ? globals_.integer(input.element) : lightIndex();
   }
   indices[count++] = globals_.integer(static_cast<int32_t>(input.field));
   const bool array = block.fields[input.field].array != 0;
@@ -431,6 +434,10 @@ void Body::statement(const schedule::Statement& s) {
     case schedule::StatementKind::LoopBegin: openLoop(s); return;
     case schedule::StatementKind::Accumulate: accumulate(s.value); return;
     case schedule::StatementKind::LoopEnd: closeLoop(); return;
+    case schedule::StatementKind::RoundsBegin: openRounds(s.value); return;
+    case schedule::StatementKind::Hold:
+    case schedule::StatementKind::Next: return;  // the phis read all at once
+    case schedule::StatementKind::RoundsEnd: closeRounds(s.value); return;
     case schedule::StatementKind::Discard: discard(s.value); return;
     case schedule::StatementKind::Output: {
       const ir::Output& output = module_.outputs[s.output];
@@ -449,41 +456,122 @@ void Body::label(uint32_t id) {
   term_ = 0;  // an OpLine holds to the end of its block
 }
 
-/// The head of the loop holds the counter and the sums as phis, so that nothing lives in memory.
+/// The loop over lights is around all others.
+uint32_t Body::lightIndex() const {
+  assert(!open_.empty());
+  return open_.front().index;
+}
+
+/// The head of a loop holds the counter, and what its rounds hand on, as phis, so that nothing lives in
+/// memory.
+Body::Loop& Body::enter() {
+  Loop& loop = open_.emplace_back();
+  loop.head = globals_.newId();
+  loop.next_step = globals_.newId();
+  loop.merge = globals_.newId();
+  loop.index = globals_.newId();
+  loop.next_index = globals_.newId();
+  return loop;
+}
+
+void Body::begin(const Loop& loop, uint32_t first) {
+  const uint32_t before = block_;
+  code_.op(spv::OpBranch, loop.head);
+  label(loop.head);
+  code_.op(spv::OpPhi, globals_.type(Kind::Int), loop.index, first, before, loop.next_index, loop.next_step);
+}
+
+void Body::runWhile(const Loop& loop, uint32_t end) {
+  const uint32_t goes_on = globals_.newId();
+  const uint32_t inside = globals_.newId();
+  code_.op(spv::OpSLessThan, globals_.type(Kind::Bool), goes_on, loop.index, end);
+  code_.op(spv::OpLoopMerge, loop.merge, loop.next_step, spv::LoopControlMaskNone);
+  code_.op(spv::OpBranchConditional, goes_on, inside, loop.merge);
+  label(inside);
+}
+
 void Body::openLoop(const schedule::Statement& s) {
-  assert(!in_loop_);
+  assert(open_.empty());
   hoist(s.sums);
   const ir::LightGroup& group = module_.light_groups[s.group];
   const auto [first, end] = boundsOf(group, dag_[s.sums[0]]);
   const uint32_t before = block_;
-  loop_.head = globals_.newId();
-  loop_.next_step = globals_.newId();
-  loop_.merge = globals_.newId();
-  loop_.index = globals_.newId();
-  loop_.next_index = globals_.newId();
-  loop_.sums.clear();
-  for (const ValueId sum : s.sums) loop_.sums.push_back({sum, globals_.newId(), globals_.newId()});
-
-  code_.op(spv::OpBranch, loop_.head);
-  label(loop_.head);
-  code_.op(spv::OpPhi, globals_.type(Kind::Int), loop_.index, first, before, loop_.next_index,
-           loop_.next_step);
-  for (const Sum& sum : loop_.sums) {
+  Loop& loop = enter();
+  for (const ValueId sum : s.sums) {
+    const uint32_t phi = globals_.newId();
+    loop.sums.push_back({sum, phi, globals_.newId()});
+  }
+  begin(loop, first);
+  for (const Sum& sum : loop.sums) {
     const Type type = dag_[sum.value].type;
     const uint32_t zero = type == Type::Float ? globals_.number(0) : globals_.splat(type, 0);
-    code_.op(spv::OpPhi, globals_.type(type), sum.phi, zero, before, sum.next, loop_.next_step);
+    code_.op(spv::OpPhi, globals_.type(type), sum.phi, zero, before, sum.next, loop.next_step);
     // Behind the loop, the phi is the whole sum.
     ids_[sum.value] = sum.phi;
     if (debug_) globals_.name(sum.phi, program_.names[sum.value]);
   }
-  const uint32_t goes_on = globals_.newId();
-  const uint32_t inside = globals_.newId();
-  code_.op(spv::OpSLessThan, globals_.type(Kind::Bool), goes_on, loop_.index, end);
-  code_.op(spv::OpLoopMerge, loop_.merge, loop_.next_step, spv::LoopControlMaskNone);
-  code_.op(spv::OpBranchConditional, goes_on, inside, loop_.merge);
-  label(inside);
-  if (debug_) globals_.name(loop_.index, ir::kLightIndexName);
-  in_loop_ = true;
+  runWhile(loop, end);
+  if (debug_) globals_.name(loop.index, ir::kLightIndexName);
+}
+
+void Body::openRounds(ValueId chain) {
+  const ir::Loop& of = loops_[loops_.indexOf(chain)];
+  hoist(of);
+  std::vector<uint32_t> firsts;
+  for (const ir::Carry& carry : of.carries) firsts.push_back(value(carry.first));
+  const uint32_t end = value(of.end);
+  const uint32_t first = globals_.integer(ir::firstRound(dag_, of));
+  const uint32_t before = block_;
+  Loop& loop = enter();
+  begin(loop, first);
+  const auto know = [&](ValueId input, uint32_t id) {
+    ids_[input] = id;
+    loop.made.push_back(input);
+    if (debug_ && !program_.names[input].empty()) globals_.name(id, program_.names[input]);
+  };
+  know(of.index, loop.index);
+  for (size_t i = 0; i < of.carries.size(); ++i) {
+    const uint32_t phi = globals_.newId();
+    const uint32_t type = globals_.type(dag_[of.carries[i].value].type);
+    code_.op(spv::OpPhi, type, phi, firsts[i], before, 0, loop.next_step);
+    loop.nexts.push_back(code_.size() - 2);
+    know(of.carries[i].value, phi);
+  }
+  runWhile(loop, end);
+}
+
+/// What a round leaves goes into the phis of the head. Behind the loop, they are what is left of it.
+void Body::closeRounds(ValueId chain) {
+  const int32_t number = loops_.indexOf(chain);
+  const ir::Loop& of = loops_[number];
+  std::map<uint32_t, uint32_t> phis;
+  for (size_t i = 0; i < of.carries.size(); ++i) {
+    code_.set(open_.back().nexts[i], value(of.carries[i].next));
+    phis[dag_.inputOf(of.carries[i].value).index] = ids_[of.carries[i].value];
+  }
+  closeLoop();
+  for (const ValueId id : live_) {
+    if (dag_[id].op != Op::Carried || loops_.indexOf(id) != number) continue;
+    ids_[id] = phis.at(dag_[id].payload);
+    if (!open_.empty()) open_.back().made.push_back(id);
+  }
+}
+
+/// Writes, before a loop, all that its body reads and that stands outside of it.
+void Body::hoist(const ir::Loop& loop) {
+  const int32_t number = loops_.indexOf(loop.last);
+  const auto outside = [&](ValueId id) {
+    return !loops_.within(loops_.of(id), number) && !ir::makesLoop(dag_[id].op);
+  };
+  for (const ValueId id : loops_.bodyOf(number)) {
+    const ir::Value& v = dag_[id];
+    for (size_t k = 0; k < v.count; ++k) {
+      if (outside(v.args[k])) operand(v, k);
+    }
+  }
+  for (const ir::Carry& carry : loop.carries) {
+    if (outside(carry.next)) value(carry.next);
+  }
 }
 
 /// Writes, before the loop, all that its body reads and that does not change with the light.
@@ -543,25 +631,23 @@ uint32_t Body::lightCount() {
 
 void Body::accumulate(ValueId sum) {
   const uint32_t term = value(dag_[sum].args[0]);
-  for (const Sum& s : loop_.sums) {
+  for (const Sum& s : open_.back().sums) {
     if (s.value == sum) code_.op(spv::OpFAdd, globals_.type(dag_[sum].type), s.next, s.phi, term);
   }
 }
 
 void Body::closeLoop() {
-  assert(in_loop_);
-  code_.op(spv::OpBranch, loop_.next_step);
-  label(loop_.next_step);
+  const Loop& loop = open_.back();
+  code_.op(spv::OpBranch, loop.next_step);
+  label(loop.next_step);
   const uint32_t one = globals_.integer(1);
-  code_.op(spv::OpIAdd, globals_.type(Kind::Int), loop_.next_index, loop_.index, one);
-  code_.op(spv::OpBranch, loop_.head);
-  label(loop_.merge);
+  code_.op(spv::OpIAdd, globals_.type(Kind::Int), loop.next_index, loop.index, one);
+  code_.op(spv::OpBranch, loop.head);
+  label(loop.merge);
   // The body does not dominate what follows: what it computed is unknown here.
-  for (const ValueId id : made_in_loop_) ids_[id] = 0;
-  for (const uint32_t slot : splats_in_loop_) splats_[slot] = 0;
-  made_in_loop_.clear();
-  splats_in_loop_.clear();
-  in_loop_ = false;
+  for (const ValueId id : loop.made) ids_[id] = 0;
+  for (const uint32_t slot : loop.splats) splats_[slot] = 0;
+  open_.pop_back();
 }
 
 void Body::discard(ValueId condition) {
@@ -583,7 +669,8 @@ void Body::derivativesFirst() {
   for (const ValueId id : live_) {
     const ir::Value& v = dag_[id];
     // What has an id is there already; a sum's operands belong to its loop.
-    bool wait = ids_[id] == 0 && (v.op == Op::SumOverLights || v.rate == Rate::Light);
+    bool wait = ids_[id] == 0 && (v.op == Op::SumOverLights || v.op == Op::Carried || v.rate == Rate::Light ||
+                                  loops_.of(id) >= 0);
     for (const ValueId operand : v.operands()) wait = wait || (ids_[id] == 0 && waits[operand]);
     waits[id] = wait;
     if (ir::takesDerivatives(v.op) && !wait) value(id);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ir/loops.h"
 #include "ir/names.h"
 #include "schedule/schedule.h"
 #include "targets/spirv/interface.h"
@@ -28,10 +29,13 @@ private:
     ir::ValueId value;
     uint32_t phi, next;
   };
+  /// A loop over lights, or one of the DAG's.
   struct Loop {
     uint32_t head = 0, next_step = 0, merge = 0;
     uint32_t index = 0, next_index = 0;
-    std::vector<Sum> sums;
+    std::vector<Sum> sums;      ///< over lights
+    std::vector<size_t> nexts;  ///< of a loop of the DAG: where in the code its phis have the next value
+    std::vector<uint32_t> made, splats;  ///< indices of ids_ and of splats_: forgotten after the loop
   };
   struct Instruction {
     ir::SpirvSet set;
@@ -65,9 +69,16 @@ private:
   // statements
   void statement(const schedule::Statement& statement);
   void openLoop(const schedule::Statement& statement);
+  void openRounds(ir::ValueId chain);
+  Loop& enter();
+  void begin(const Loop& loop, uint32_t first);
+  void runWhile(const Loop& loop, uint32_t end);
+  uint32_t lightIndex() const;
   void hoist(const std::vector<ir::ValueId>& sums);
+  void hoist(const ir::Loop& loop);
   void accumulate(ir::ValueId sum);
   void closeLoop();
+  void closeRounds(ir::ValueId chain);
   void discard(ir::ValueId condition);
   void derivativesFirst();
   void label(uint32_t id);
@@ -86,17 +97,15 @@ private:
   Words code_;
 
   std::vector<ir::ValueId> live_;
+  ir::Loops loops_;
   std::vector<uint8_t> product_in_;      ///< by value: of a sum, 1 + the operand that it multiplies itself
   std::vector<uint8_t> fused_;           ///< by value: a product that is part of the one sum that reads it
   std::vector<uint32_t> ids_;            ///< by value: its id, 0 while it has none here
   std::vector<uint32_t> splats_;         ///< three a value: of 2, 3 and 4 components
   std::vector<uint8_t> lone_component_;  ///< by value, see findLoneComponents
-  std::vector<uint32_t> made_in_loop_;   ///< indices of ids_, then of splats_, forgotten after the loop
-  std::vector<uint32_t> splats_in_loop_;
-  Loop loop_;
-  bool in_loop_ = false;
-  uint32_t block_ = 0;        ///< the label of the block being written
-  uint32_t light_count_ = 0;  ///< loaded once, before the first loop that needs it
+  std::vector<Loop> open_;               ///< the loops around what is written, the outermost first
+  uint32_t block_ = 0;                   ///< the label of the block being written
+  uint32_t light_count_ = 0;             ///< loaded once, before the first loop that needs it
 
   ir::TermId term_ = 0;                      ///< that the last OpLine named
   std::map<std::string, uint32_t> strings_;  ///< the ids of OpStrings

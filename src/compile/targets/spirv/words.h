@@ -16,6 +16,9 @@ public:
   void reserve(size_t words) { words_.reserve(words); }
   std::span<const uint32_t> words() const { return words_; }
   bool empty() const { return words_.empty(); }
+  size_t size() const { return words_.size(); }
+  /// Replaces a word, for what is known only once more is written.
+  void set(size_t at, uint32_t word) { words_[at] = word; }
 
   /// A whole instruction of a fixed length.
   template <class... Operands>
