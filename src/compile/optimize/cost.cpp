@@ -74,7 +74,7 @@ double cyclesOf(const Tally& tally, const Family& family) {
   return weighed(family.weights) + longest;
 }
 
-Counter::Counter(const ir::Module& module) {
+Counter::Counter(const ir::Module& module) : dag_(module.dag) {
   rounds_ = 1;
   for (const ir::LightGroup& group : module.light_groups) {
     const double rounds = group.count < 0 ? kRounds : std::max(1, group.count);
@@ -84,6 +84,7 @@ Counter::Counter(const ir::Module& module) {
 
 Tally Counter::count(const Plan& plan, const Constants& constants) {
   tally_ = {};
+  around_ = loopsAround(dag_, plan);
   add(Count::Always, 1);
   mark(plan);
   fuse(plan);
@@ -168,7 +169,8 @@ void Counter::fuse(const Plan& plan) {
     const Ref a = product(node.args[0]);
     const Ref b = product(node.args[1]);
     const auto fits = [&](Ref p) {
-      return p != kNoRef && (plan.nodes[p].rate == Rate::Light) == (node.rate == Rate::Light);
+      const bool together = around_.empty() || p == kNoRef || around_[p] == around_[at];
+      return p != kNoRef && together && (plan.nodes[p].rate == Rate::Light) == (node.rate == Rate::Light);
     };
     Ref taken = fits(a) ? a : kNoRef;
     if (fits(b) && (taken == kNoRef || reads_[b] < reads_[a])) taken = b;
@@ -283,15 +285,23 @@ bool Counter::scaled(const Plan& plan, const Node& node) const {
                      [&](Ref k) { return plan.nodes[k].rate == Rate::Constant; });
 }
 
+double Counter::timesOf(Ref at, const Node& node) const {
+  double times = node.rate == Rate::Light ? rounds_ : 1;
+  for (int loops = around_.empty() ? 0 : std::popcount(around_[at]); loops > 0; --loops) times *= kRounds;
+  return times;
+}
+
 void Counter::countNode(const Plan& plan, Ref at) {
   const Node& node = plan.nodes[at];
   const auto parts = static_cast<double>(std::popcount(mask_[at]));
-  const double times = node.rate == Rate::Light ? rounds_ : 1;
+  const double times = timesOf(at, node);
   if (node.op == Op::Interpolate) return add(Count::Varyings, parts);
   if (node.rate <= Rate::Material) {
     if (node.rate == Rate::Material && fast_[at] != 0) add(Count::Loads, parts);
     return;
   }
+  if (ir::makesLoop(node.op)) return;
+  if (node.op == Op::Input && !around_.empty() && around_[at] != 0) return;
   if (node.op == Op::Input) {
     // Of a placed module a varying is an input.
     const bool varying = node.rate == Rate::Fragment && ir::isFloating(node.type);

@@ -13,7 +13,7 @@
 
 namespace lacquer::optimize {
 
-/// What is counted. What is in a loop over lights counts for all its rounds.
+/// What is counted. What is in a loop counts for all its rounds.
 enum class Count : uint8_t {
   Always,    ///< 1: what every shader has
   Sums,      ///< sums, products and fused pairs of them, of one component each
@@ -67,7 +67,11 @@ private:
            (node.rate > ir::Rate::Material && node.rate <= ir::Rate::Object && node.op == ir::Op::Input);
   }
 
-  double rounds_;
+  double timesOf(Ref at, const Node& node) const;
+
+  const ir::Dag& dag_;
+  double rounds_;                   ///< of loops over lights
+  std::vector<uint64_t> around_;    ///< the loops around each node (loopsAround())
   Tally tally_{};
   std::vector<uint8_t> mask_;       ///< which components are read
   std::vector<uint16_t> uses_;      ///< by how many operands, roots included

@@ -183,6 +183,8 @@ public:
         if (!(step.best_cost < best - kGain)) continue;
         ir::Module made = module_;
         replaceFragment(made, step.best.plan, constants_);
+        // Nothing of a loop's body may stand for what is the same outside of it.
+        if (made.dag.hasLoops() && !ir::verify(made).empty()) continue;
         // What the plan's ranges promise the module's must keep.
         if (!Proved(made).keeps(proved)) continue;
         best = step.best_cost;

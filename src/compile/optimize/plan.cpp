@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "ir/facts.h"
+#include "ir/loops.h"
 
 namespace lacquer::optimize {
 
@@ -42,6 +43,27 @@ ir::Rate rateOf(Op op, std::span<const ir::Rate> operands) {
   ir::Rate rate = ir::Rate::Constant;
   for (const ir::Rate operand : operands) rate = std::max(rate, operand);
   return op == Op::SumOverLights ? ir::Rate::Fragment : rate;
+}
+
+std::vector<uint64_t> loopsAround(const ir::Dag& dag, const Plan& plan) {
+  if (!dag.hasLoops()) return {};
+  std::vector<uint64_t> around(plan.nodes.size(), 0);
+  std::vector<uint32_t> numbers;
+  const auto bitOf = [&](ValueId input) {
+    const uint32_t number = dag.inputOf(input).field;
+    auto at = std::find(numbers.begin(), numbers.end(), number);
+    if (at == numbers.end()) at = numbers.insert(at, number);
+    return at - numbers.begin() < 64 ? uint64_t{1} << (at - numbers.begin()) : 0;
+  };
+  for (Ref at = 0; at < plan.nodes.size(); ++at) {
+    const Node& node = plan.nodes[at];
+    for (const Ref operand : node.operands()) around[at] |= around[operand];
+    if (!node.opaque()) continue;
+    if (node.op == Op::Input && ir::ofLoop(dag.inputOf(node.source).kind)) around[at] = bitOf(node.source);
+    if (node.op == Op::Carried)
+      around[at] &= ~bitOf(ir::loopOf(dag, dag[node.source].args[0]).index);
+  }
+  return around;
 }
 
 namespace {
@@ -185,6 +207,7 @@ public:
       for (const Ref operand : node.operands()) ++uses_[operand];
     }
     for (const Ref root : plan.roots) ++uses_[root];
+    around_ = loopsAround(dag_, plan);
   }
 
   void run() {
@@ -270,7 +293,7 @@ private:
     }
     if (node.op == Op::Constant) return dag_.constant(node.type, constants_[node.payload]);
     if (node.op == Op::Add) return splat(node.type, sum(node));
-    if (node.op == Op::Mul) return splat(node.type, product(node));
+    if (node.op == Op::Mul) return splat(node.type, product(at));
     if (node.op == Op::Div) return splat(node.type, dag_.div(dag_.constant(1), args[0]));
     if (node.op == Op::Construct) return dag_.construct(node.type, operands);
     if (node.op == Op::Swizzle) {
@@ -300,13 +323,15 @@ private:
   }
 
   /// A reciprocal that nothing else reads is a division. The preshader's are products for the GPU.
-  ValueId product(const Node& node) {
+  ValueId product(Ref at) {
+    const Node& node = plan_.nodes[at];
     for (const size_t k : {size_t{1}, size_t{0}}) {
       const Node& operand = plan_.nodes[node.args[k]];
       const bool reciprocal = operand.op == Op::Div && uses_[node.args[k]] == 1;
       if (!reciprocal || (operand.rate <= ir::Rate::Material && node.rate > ir::Rate::Material)) continue;
       // Out of a loop it is computed once.
       if (operand.rate != node.rate && node.rate == ir::Rate::Light) continue;
+      if (!around_.empty() && around_[node.args[k]] != around_[at]) continue;
       return dag_.div(made_[node.args[1 - k]], made_[operand.args[0]]);
     }
     return dag_.mul(made_[node.args[0]], made_[node.args[1]]);
@@ -319,6 +344,7 @@ private:
   std::vector<ValueId> home_, made_;
   std::vector<ValueId> kept_;  ///< of a node that is made as it was: that value
   std::vector<int> uses_;
+  std::vector<uint64_t> around_;
 };
 
 }  // namespace

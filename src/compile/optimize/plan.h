@@ -70,6 +70,9 @@ bool algebraic(ir::Op op);
 /// The rate of an operation on operands of these rates, as ir::Dag has it.
 ir::Rate rateOf(ir::Op op, std::span<const ir::Rate> operands);
 
+/// By node, a bit for each loop in whose body it is, of the first 64; empty where the Dag has no loops.
+std::vector<uint64_t> loopsAround(const ir::Dag& dag, const Plan& plan);
+
 /// The fragment stage of a module that is not placed yet, or is. Below an Interpolate nothing is taken in.
 Plan planOf(const ir::Module& module, Constants& constants);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/whole_math.h"
 #include "ir/facts.h"
 
 namespace lacquer::optimize {
@@ -151,12 +152,6 @@ private:
     const auto &literal = unknown, &stored = unknown, &element = unknown, &comparison = unknown,
                &select = unknown, &derivative = unknown, &interpolated = unknown, &truth = unknown,
                &at = unknown;
-    // Operations on integers are opaque.
-    const auto &intOf = unknown, &uintOf = unknown, &uintNumber = unknown, &wholeSum = unknown,
-               &wholeDifference = unknown, &wholeProduct = unknown, &intQuotient = unknown,
-               &uintQuotient = unknown, &bitAnd = unknown, &bitOr = unknown, &bitNot = unknown,
-               &shiftLeft = unknown, &intShiftRight = unknown, &uintShiftRight = unknown,
-               &wholeLess = unknown, &uintLess = unknown, &wholeEqual = unknown;
     const auto product = [&](auto&&...) { return m.mul(x(0), x(1)); };
     const auto dot = [&](auto&&...) { return this->dot(); };
     const auto lights = [&](auto&&...) { return this->lights(c); };

@@ -22,7 +22,7 @@ bool within(const Range& x, ir::Domain domain) {
     case ir::Domain::Whole:
     case ir::Domain::Natural:
     case ir::Domain::WholeNonZero:
-    case ir::Domain::Count: return false;  // of operations that are opaque
+    case ir::Domain::Count: return false;
   }
   return false;
 }
