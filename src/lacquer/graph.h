@@ -11,6 +11,8 @@
 namespace lacquer {
 
 class Shader;
+struct Trial;
+struct ValueLook;
 
 /// The numbers that something may be given, each component of a vector for itself; both ends belong to it.
 struct Range {
@@ -107,8 +109,9 @@ public:
 private:
   friend class Scene;
   friend std::optional<Evaluation> evaluate(const Graph&, const std::string&, Engine, const Strings&,
-                                            const Options&, Messages&);
-  friend std::vector<uint8_t> drawBall(const Graph&, uint32_t, const Strings&, const Options&, Messages&);
+                                            const Options&, Messages&, const Trial&);
+  friend std::vector<uint8_t> drawBall(const Graph&, uint32_t, const Strings&, const Options&, Messages&,
+                                       const Trial&, const ValueLook&);
   struct Impl;
   std::shared_ptr<Impl> impl_;
 };

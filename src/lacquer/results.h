@@ -31,7 +31,11 @@ struct Evaluation {
   Engine engine = Engine::Double;
   std::string device;   ///< the Vulkan device's name; else empty
   std::string profile;  ///< of a material; empty for a graph
-  /// Linear colour and alpha of each point, in order. NaN four times where the device has discarded the
+  /// Of a node's output: the node as it was asked for, and the type. Empty for colours.
+  std::string node, type;
+  /// Linear colour and alpha of each point, in order; of a node's output its components, then 0, a bool as 0
+  /// or
+  /// 1. NaN four times where the device has discarded the
   /// fragment; no other number is infinite or NaN for inputs in their ranges.
   std::vector<std::array<double, 4>> rgba;
   std::vector<bool> discarded;  ///< by point, where the material can discard fragments; else empty

@@ -13,6 +13,27 @@ class Scene;
 class Graph;
 class Shader;
 
+/// What is tried of a material or a graph that stays as it is.
+struct Trial {
+  /// Values in place of today's, of parameters of the graph by their names or JSON pointers: a bool is 0
+  /// or 1. The shader stays the one of today's numbers. "no-such-parameter", "wrong-count", and
+  /// "out-of-range" for what is not in the parameter's range, or in that of what it goes to.
+  NamedNumbers parameters;
+  /// Nothing, or the node whose output is looked at instead of the colour: "coat.f0", or where it has several
+  /// "coat.split.half"; of a node in the group that "rust" is an instance of "rust/mix". What differs from
+  /// light to light is summed over them. "no-such-node", "unknown-output", "wrong-type" for a matrix.
+  std::string node;
+};
+
+/// How the value of a node's output is drawn: times `scale`, and as a colour in linear light from 0 to 1, as
+/// a vector whose components go from -1 (black) to 1, or as a grey. A scalar is a grey, a vector of two or
+/// three a colour where its declared range has nothing below 0, else a vector.
+struct ValueLook {
+  enum class As : uint8_t { Any, Color, Vector, Grey };  ///< Grey: the first component
+  As as = As::Any;
+  double scale = 1;
+};
+
 /// Linear forward colours at points, which are JSON (docs/eval.md); nothing on an error. Of a material of a
 /// glTF file, or of a graph where the file's name ends in ".json".
 /// `material`: its name, or empty for a file with one. `points`: the text, for which `points_name` stands in
@@ -20,33 +41,42 @@ class Shader;
 /// each, constants instead of images.
 std::optional<Evaluation> evaluate(const std::string& file, const std::string& material,
                                    const std::string& points, const std::string& points_name, Engine engine,
-                                   const Strings& texels, const Options& options, Messages& messages);
+                                   const Strings& texels, const Options& options, Messages& messages,
+                                   const Trial& trial = {});
 
 /// The same of a material of a scene. `points` is the text itself. A scene from memory has the images that
 /// are in it; "no-such-material" for an index that does not exist.
 std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const std::string& points,
                                    Engine engine, const Strings& texels, const Options& options,
-                                   Messages& messages);
+                                   Messages& messages, const Trial& trial = {});
 /// The same of a graph, for which nothing is built: its template and its terms are what they are, and options
 /// that say otherwise are an error ("graph-is-built"). Textures are those of the glTF file that it was built
 /// from; a graph from a text has none but `texels`.
 std::optional<Evaluation> evaluate(const Graph& graph, const std::string& points, Engine engine,
-                                   const Strings& texels, const Options& options, Messages& messages);
+                                   const Strings& texels, const Options& options, Messages& messages,
+                                   const Trial& trial = {});
 /// A lit ball of a material of a scene, in float: `size` rows from the top of `size` pixels of three bytes,
 /// sRGB. Empty on an error. Where an image is absent a neutral colour stands for it, with a note. Uses
-/// threads.
+/// threads. Of a node's output the value itself is drawn (docs/preview.md), `look` says how.
 std::vector<uint8_t> drawBall(const Scene& scene, size_t material, uint32_t size, const Strings& texels,
-                              const Options& options, Messages& messages);
+                              const Options& options, Messages& messages, const Trial& trial = {},
+                              const ValueLook& look = {});
 
 /// The same of a graph.
 std::vector<uint8_t> drawBall(const Graph& graph, uint32_t size, const Strings& texels,
-                              const Options& options, Messages& messages);
+                              const Options& options, Messages& messages, const Trial& trial = {},
+                              const ValueLook& look = {});
 
 /// A contact sheet (docs/preview.md).
 struct Preview {
-  std::string output;    ///< the PNG file to write
-  Strings compare;       ///< none, or the names of the two settings to put side by side
-  Strings texels;        ///< as for evaluate()
+  std::string output;       ///< the PNG file to write
+  Strings compare;          ///< none, or the names of the two settings to put side by side
+  Strings texels;           ///< as for evaluate()
+  NamedNumbers parameters;  ///< the same of Trial, for the materials that have them
+  /// Instead of the material the outputs of these nodes, one ball for each, as Trial::node has them; "*" for
+  /// all of all nodes. Not with `compare`.
+  Strings nodes;
+  ValueLook look;
   uint32_t size = 160;   ///< pixels of a ball, from 16 to 2048
   uint32_t columns = 0;  ///< balls in a row, at most 100; 0 for a good number
   bool in_float = true;  ///< the arithmetic; else double

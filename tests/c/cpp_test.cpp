@@ -31,16 +31,17 @@ TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
           &Shader::pack));
   all(&generate, &generateGraphs, &plan, &merge);
   all(static_cast<std::optional<Evaluation> (*)(const Scene&, size_t, const std::string&, Engine,
-                                                const Strings&, const Options&, Messages&)>(&evaluate),
+                                                const Strings&, const Options&, Messages&, const Trial&)>(
+          &evaluate),
       static_cast<std::optional<Evaluation> (*)(const std::string&, const std::string&, const std::string&,
                                                 const std::string&, Engine, const Strings&, const Options&,
-                                                Messages&)>(&evaluate),
+                                                Messages&, const Trial&)>(&evaluate),
       static_cast<std::optional<Evaluation> (*)(const Graph&, const std::string&, Engine, const Strings&,
-                                                const Options&, Messages&)>(&evaluate),
+                                                const Options&, Messages&, const Trial&)>(&evaluate),
       static_cast<std::vector<uint8_t> (*)(const Scene&, size_t, uint32_t, const Strings&, const Options&,
-                                           Messages&)>(&drawBall),
-      static_cast<std::vector<uint8_t> (*)(const Graph&, uint32_t, const Strings&, const Options&,
-                                           Messages&)>(&drawBall),
+                                           Messages&, const Trial&, const ValueLook&)>(&drawBall),
+      static_cast<std::vector<uint8_t> (*)(const Graph&, uint32_t, const Strings&, const Options&, Messages&,
+                                           const Trial&, const ValueLook&)>(&drawBall),
       &isGraphFile, &Graph::load, &drawPreview, &writeView, &makeLevels, &stressNodes,
       static_cast<std::vector<ShaderCost> (*)(const Strings&, bool, Messages&)>(&measureCost),
       static_cast<std::vector<ShaderCost> (*)(const std::vector<Shader>&, bool, Messages&)>(&measureCost),

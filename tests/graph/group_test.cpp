@@ -88,16 +88,24 @@ TEST(GraphGroups, areToldByThePathsOfTheirNodes) {
   graph::Source two = number(2);
   two.swizzle = "xxx";
   EXPECT_EQ(flat.nodes[0].inputs[0].second, two) << "a float for each component, in any order";
-  const auto of = [&](const std::string& path) -> const std::vector<graph::Source>& {
-    return outputs.at(path);
-  };
+  const auto of = [&](const std::string& path) -> const graph::Outputs& { return outputs.at(path); };
   EXPECT_EQ(outputs.size(), 4u);
   graph::Source half = ref("a.in.s_2", "half");
-  EXPECT_EQ(of("a/in/s"), (std::vector<graph::Source>{half, ref("a.in.s_2", "sum")}));
+  EXPECT_EQ(of("a/in/s"), (graph::Outputs{{"half", half}, {"sum", ref("a.in.s_2", "sum")}}));
   half.swizzle = "rrg";
-  EXPECT_EQ(of("a/in"), (std::vector<graph::Source>{half, two}));
+  EXPECT_EQ(of("a/in"), (graph::Outputs{{"half", half}, {"x", two}}));
   half.swizzle = "gr";
-  EXPECT_EQ(of("a"), std::vector<graph::Source>{half});
+  EXPECT_EQ(of("a"), (graph::Outputs{{"z", half}}));
+  EXPECT_EQ(graph::outputAt(outputs, "a"), half);
+  EXPECT_EQ(graph::outputAt(outputs, "a.z"), half);
+  EXPECT_EQ(graph::outputAt(outputs, "a/in.x"), two);
+  EXPECT_EQ(formatAll(graph::outputAt(outputs, "a/in").error()),
+            "error: the node 'a/in' has 2 outputs [unknown-output]\n"
+            "  help: it has half and x; one is named behind a dot\n");
+  EXPECT_EQ(formatAll(graph::outputAt(outputs, "a/in/s.sun").error()),
+            "error: the node 'a/in/s' has no output 'sun' [unknown-output]\n  help: it has half and sum\n");
+  EXPECT_EQ(formatAll(graph::outputAt(outputs, "a/inn").error()),
+            "error: there is no node 'a/inn' [no-such-node]\n  help: did you mean 'a/in'?\n");
   half.swizzle = "r";
   EXPECT_EQ(flat.outputs[0].second, half);
 }

@@ -57,6 +57,12 @@ public:
     count_ = count;
   }
 
+  /// The sum of a value over the lights.
+  ir::ValueId summed(ir::ValueId value) {
+    return first_ == ir::kNoValue ? dag_.make(ir::Op::SumOverLights, {value})
+                                  : dag_.make(ir::Op::SumOverLights, {value, first_, count_});
+  }
+
   /// Evaluates a given and puts its values, named, into its slots.
   void bind(const lang::GivenDecl& given, std::vector<ir::ValueId>& slots);
 

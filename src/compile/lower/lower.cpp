@@ -93,7 +93,7 @@ public:
     module_.sums_lights = template_->sums_lights;
     module_.spec_constants = options_.parameters == ParameterMode::Spec;
     slots_.assign(template_->slots, ir::kNoValue);
-    order_ = graph::codeOrder(graph_, library_);
+    order_ = graph::codeOrder(graph_, library_, options_.shown);
     declareInterface();
     bindGivens();
     bindLightRange();
@@ -461,13 +461,36 @@ private:
     return slots;
   }
 
+  void show(const graph::Source& source) {
+    const ir::ValueId value = swizzled(source);
+    const ir::Type type = dag()[value].type;
+    std::vector<ir::ValueId> parts;
+    for (int i = 0; i < 4; ++i) {
+      const bool there = i < ir::componentCount(type);
+      ir::ValueId part = !there                          ? dag().constant(0.0)
+                         : ir::componentCount(type) == 1 ? value
+                                                         : dag().component(value, i);
+      if (dag()[part].type == ir::Type::Bool)
+        part = dag().select(part, dag().constant(1.0), dag().constant(0.0));
+      if (dag()[part].type == ir::Type::UInt) part = dag().make(ir::Op::FromUInt, {part});
+      if (dag()[part].type == ir::Type::Int) part = dag().make(ir::Op::FromInt, {part});
+      parts.push_back(part);
+    }
+    ir::ValueId shown = dag().construct(ir::Type::Vec4, parts);
+    if (dag()[shown].rate == ir::Rate::Light) shown = inliner_.summed(shown);
+    if (dag()[shown].rate == ir::Rate::Vertex) shown = dag().make(ir::Op::Interpolate, {shown});
+    module_.outputs.push_back({ir::OutputKind::Color, ir::Stage::Fragment, "shown", 0, shown});
+  }
+
   Diagnostics outputs() {
     uint32_t color = 0;
     const bool packs = packsOutputs(*template_);
     OutputPacker packer(dag(), *template_);
     const std::vector<ir::ValueId> without = packs ? slotsWithoutPorts() : std::vector<ir::ValueId>();
     dag().setTerm(dag().addTerm({"output", "", std::string(template_->origin.file), template_->origin.line}));
+    if (options_.shown != nullptr) show(*options_.shown);
     for (const lang::OutputDecl& decl : template_->outputs) {
+      if (options_.shown != nullptr && decl.role != lang::OutputRole::Position) continue;
       if (decl.optional && !delivers(*decl.value)) {
         color += decl.role == lang::OutputRole::Color && !packs ? 1 : 0;
         continue;
@@ -494,7 +517,7 @@ private:
       }
       module_.outputs.push_back(output);
     }
-    return packer.finish(color, module_.outputs);
+    return options_.shown != nullptr ? Diagnostics() : packer.finish(color, module_.outputs);
   }
 
   /// What the checks of the template and of the graph do not find, for they do not look into nodes: a

@@ -18,6 +18,9 @@ struct LowerOptions {
   ParameterMode parameters = ParameterMode::Uniform;
   bool evaluable = false;  ///< the kinds of light come with what fills them: ir::LightKind::fill
   LoopOptions loops = {};
+  /// A source of the graph, a number, bool or vector of them, that the only output beside the position has,
+  /// in the first of its four components; the others are 0. Of light rate: summed over the lights.
+  const graph::Source* shown = nullptr;
   OnCall on_call = {};  ///< when given, told of the graph's nodes and of what they and the template call
 };
 

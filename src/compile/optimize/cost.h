@@ -70,8 +70,8 @@ private:
   double timesOf(Ref at, const Node& node) const;
 
   const ir::Dag& dag_;
-  double rounds_;                   ///< of loops over lights
-  std::vector<uint64_t> around_;    ///< the loops around each node (loopsAround())
+  double rounds_;                 ///< of loops over lights
+  std::vector<uint64_t> around_;  ///< the loops around each node (loopsAround())
   Tally tally_{};
   std::vector<uint8_t> mask_;       ///< which components are read
   std::vector<uint16_t> uses_;      ///< by how many operands, roots included

@@ -197,7 +197,8 @@ Ref EGraph::add(Node node, const Facts* known) {
       real[k] = {operand.type, &operand.facts.real};
       lit[k] = {operand.type, &operand.facts.lit};
     }
-    fresh.facts.real = rangesOf(real_, node, {real.data(), node.count}, constants_, least_lights_, most_lights_);
+    fresh.facts.real =
+        rangesOf(real_, node, {real.data(), node.count}, constants_, least_lights_, most_lights_);
     fresh.facts.lit =
         rangesOf(math_, node, {lit.data(), node.count}, constants_, least_lights_, most_lights_);
   } else {

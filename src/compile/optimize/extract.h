@@ -40,8 +40,8 @@ public:
   const Selection& selection() const { return best_; }
   /// Looks for a cheaper one; each that is taken must be `allowed`.
   void improve(const Effort& effort, const std::function<bool(const Selection&)>& allowed);
-  /// Exchanges forms at random, dearer ones, too, the less the longer: `heat` and `slack` in cycles. The best plan that
-  /// is met on the way is kept. The same seed takes the same way.
+  /// Exchanges forms at random, dearer ones, too, the less the longer: `heat` and `slack` in cycles. The best
+  /// plan that is met on the way is kept. The same seed takes the same way.
   void wander(size_t trials, double heat, double slack, uint64_t seed,
               const std::function<bool(const Selection&)>& allowed);
   /// Where it is now.

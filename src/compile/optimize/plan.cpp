@@ -60,8 +60,7 @@ std::vector<uint64_t> loopsAround(const ir::Dag& dag, const Plan& plan) {
     for (const Ref operand : node.operands()) around[at] |= around[operand];
     if (!node.opaque()) continue;
     if (node.op == Op::Input && ir::ofLoop(dag.inputOf(node.source).kind)) around[at] = bitOf(node.source);
-    if (node.op == Op::Carried)
-      around[at] &= ~bitOf(ir::loopOf(dag, dag[node.source].args[0]).index);
+    if (node.op == Op::Carried) around[at] &= ~bitOf(ir::loopOf(dag, dag[node.source].args[0]).index);
   }
   return around;
 }

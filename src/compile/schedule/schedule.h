@@ -18,11 +18,11 @@ enum class StatementKind : uint8_t {
   LoopEnd,      ///< closes the loop
   RoundsBegin,  ///< declares what the loop whose chain `value` ends carries (names[LoopValue], the first
                 ///< values), then opens it; its counter is names[LoopIndex]
-  Hold,       ///< declares the variable `name` with what the LoopValue `value` is in this round
-  Next,       ///< names[value] = `next`, or what is held under `name` where that is not empty
-  RoundsEnd,  ///< closes the loop whose chain `value` ends
-  Discard,    ///< drops the fragment when the Bool `value` is true
-  Output,     ///< assigns outputs[output].value to that output
+  Hold,         ///< declares the variable `name` with what the LoopValue `value` is in this round
+  Next,         ///< names[value] = `next`, or what is held under `name` where that is not empty
+  RoundsEnd,    ///< closes the loop whose chain `value` ends
+  Discard,      ///< drops the fragment when the Bool `value` is true
+  Output,       ///< assigns outputs[output].value to that output
 };
 
 struct Statement {

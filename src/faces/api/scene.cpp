@@ -128,43 +128,46 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
 
 std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const std::string& points,
                                    Engine engine, const Strings& texels, const Options& options,
-                                   Messages& messages) {
+                                   Messages& messages, const Trial& trial) {
   if (!filled(scene.impl_.get(), "scene", messages)) return std::nullopt;
   const Scene::Impl& impl = scene.impl();
   const material::Material* found = impl.material(material, messages);
   if (found == nullptr) return std::nullopt;
   return evaluateOf({*found, *impl.language, impl.document.path, impl.bytes}, points, engine, texels, options,
-                    messages);
+                    messages, trial);
 }
 
 std::optional<Evaluation> evaluate(const Graph& graph, const std::string& points, Engine engine,
-                                   const Strings& texels, const Options& options, Messages& messages) {
+                                   const Strings& texels, const Options& options, Messages& messages,
+                                   const Trial& trial) {
   if (!filled(graph.impl_.get(), "graph", messages)) return std::nullopt;
   const auto language = libraryFor(options);
   if (!language) return report(language.error(), {}, messages), std::nullopt;
   const Graph::Impl& impl = *graph.impl_;
   return evaluateOf({impl.graph, **language, impl.file, impl.bytes, impl.images}, points, engine, texels,
-                    options, messages);
+                    options, messages, trial);
 }
 
 std::vector<uint8_t> drawBall(const Graph& graph, uint32_t size, const Strings& texels,
-                              const Options& options, Messages& messages) {
+                              const Options& options, Messages& messages, const Trial& trial,
+                              const ValueLook& look) {
   if (!filled(graph.impl_.get(), "graph", messages)) return {};
   const auto language = libraryFor(options);
   if (!language) return report(language.error(), {}, messages), std::vector<uint8_t>();
   const Graph::Impl& impl = *graph.impl_;
   return drawBallOf({impl.graph, **language, impl.file, impl.bytes, impl.images}, size, texels, options,
-                    messages);
+                    messages, trial, look);
 }
 
 std::vector<uint8_t> drawBall(const Scene& scene, size_t material, uint32_t size, const Strings& texels,
-                              const Options& options, Messages& messages) {
+                              const Options& options, Messages& messages, const Trial& trial,
+                              const ValueLook& look) {
   if (!filled(scene.impl_.get(), "scene", messages)) return {};
   const Scene::Impl& impl = scene.impl();
   const material::Material* found = impl.material(material, messages);
   if (found == nullptr) return {};
-  return drawBallOf({*found, *impl.language, impl.document.path, impl.bytes}, size, texels, options,
-                    messages);
+  return drawBallOf({*found, *impl.language, impl.document.path, impl.bytes}, size, texels, options, messages,
+                    trial, look);
 }
 
 }  // namespace lacquer

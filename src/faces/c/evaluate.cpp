@@ -51,7 +51,7 @@ lacquer_text* lacquer_scene_evaluate(const lacquer_scene* scene, size_t material
   return evaluated(engine, options, messages,
                    [&](lacquer::Engine wanted, const lacquer_options& how, Messages& to) {
                      return lacquer::evaluate(sceneOf(scene), material, std::string(bytesOf(points, size)),
-                                              wanted, how.texels, how.options, to);
+                                              wanted, how.texels, how.options, to, how.trial);
                    });
 }
 
@@ -60,20 +60,21 @@ lacquer_text* lacquer_graph_evaluate(const lacquer_graph* graph, const char* poi
   return evaluated(engine, options, messages,
                    [&](lacquer::Engine wanted, const lacquer_options& how, Messages& to) {
                      return lacquer::evaluate(graphOf(graph), std::string(bytesOf(points, size)), wanted,
-                                              how.texels, how.options, to);
+                                              how.texels, how.options, to, how.trial);
                    });
 }
 
 int lacquer_scene_preview(const lacquer_scene* scene, size_t material, uint32_t pixels, uint8_t* rgb,
                           size_t capacity, const lacquer_options* options, lacquer_messages* messages) {
   return drawn(pixels, rgb, capacity, options, messages, [&](const lacquer_options& how, Messages& to) {
-    return lacquer::drawBall(sceneOf(scene), material, pixels, how.texels, how.options, to);
+    return lacquer::drawBall(sceneOf(scene), material, pixels, how.texels, how.options, to, how.trial,
+                             how.look);
   });
 }
 
 int lacquer_graph_preview(const lacquer_graph* graph, uint32_t pixels, uint8_t* rgb, size_t capacity,
                           const lacquer_options* options, lacquer_messages* messages) {
   return drawn(pixels, rgb, capacity, options, messages, [&](const lacquer_options& how, Messages& to) {
-    return lacquer::drawBall(graphOf(graph), pixels, how.texels, how.options, to);
+    return lacquer::drawBall(graphOf(graph), pixels, how.texels, how.options, to, how.trial, how.look);
   });
 }

@@ -20,6 +20,8 @@ struct lacquer_messages {
 struct lacquer_options {
   lacquer::Options options;
   lacquer::Strings texels;  ///< of evaluations and previews
+  lacquer::Trial trial;
+  lacquer::ValueLook look;
 };
 struct lacquer_scene {
   lacquer::Scene scene;

@@ -113,6 +113,34 @@ bool setSwitches(const Json& value, lacquer_options& to) {
   return true;
 }
 
+/// Numbers by name; a single one, and true and false, stand without brackets.
+bool setValues(const Json& value, lacquer_options& to) {
+  if (!value.is_object()) return false;
+  for (const auto& [name, json] : value.items()) {
+    std::vector<double> numbers;
+    const auto add = [&](const Json& one) {
+      if (one.is_boolean()) numbers.push_back(one.get<bool>() ? 1 : 0);
+      if (one.is_number()) numbers.push_back(one.get<double>());
+      return one.is_boolean() || one.is_number();
+    };
+    if (!(json.is_array() ? std::all_of(json.begin(), json.end(), add) : add(json))) return false;
+    to.trial.parameters.emplace_back(name, std::move(numbers));
+  }
+  return true;
+}
+
+bool setLook(const Json& value, lacquer_options& to) {
+  using As = ValueLook::As;
+  constexpr std::pair<std::string_view, As> kNames[] = {
+      {"color", As::Color}, {"vector", As::Vector}, {"grey", As::Grey}};
+  for (const auto& [name, as] : kNames) {
+    if (value != name) continue;
+    to.look.as = as;
+    return true;
+  }
+  return false;
+}
+
 struct Row {
   std::string_view key;
   std::string_view what;  ///< it must be
@@ -161,6 +189,18 @@ constexpr Row kRows[] = {
     {"programs", "a whole number",
      [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.programs); }},
     {"programs_model", kTruth, setBool<&Options::programs_model>},
+    {"values", "an object of numbers and arrays of numbers", setValues},
+    {"node", "a string",
+     [](const Json& value, lacquer_options& to) {
+       if (value.is_string()) to.trial.node = value.get<std::string>();
+       return value.is_string();
+     }},
+    {"as", "\"color\", \"vector\" or \"grey\"", setLook},
+    {"scale", "a number",
+     [](const Json& value, lacquer_options& to) {
+       if (value.is_number()) to.look.scale = value.get<double>();
+       return value.is_number();
+     }},
     {"texels", kTexts, [](const Json& value, lacquer_options& to) { return readStrings(value, to.texels); }},
 };
 

@@ -7,6 +7,7 @@
 #include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
+#include "cli/trial.h"
 
 namespace lacquer::cli {
 
@@ -31,6 +32,12 @@ void addEval(CLI::App& verb, EvalFlags& flags, OptionFlags& options) {
   verb.add_option("--texel", flags.texels,
                   "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
       ->allow_extra_args(false);
+  addParameters(verb, flags.trial.parameters);
+  verb.add_option(
+          "--node", flags.trial.node,
+          "the output of a node instead of the colour: coat.f0, or coat.split.half of several; rust/mix in "
+          "a group")
+      ->check(kNotEmpty);
   addAllow(verb, options, "images");
   addMaterialFlags(verb, options);
 }
@@ -48,8 +55,9 @@ Engine engineOf(const EvalFlags& flags) {
 
 int runEval(const EvalFlags& flags, const Options& options) {
   Messages messages;
-  const std::optional<Evaluation> found = evaluate(flags.file, flags.material, {}, flags.points,
-                                                   engineOf(flags), flags.texels, options, messages);
+  const std::optional<Evaluation> found =
+      evaluate(flags.file, flags.material, {}, flags.points, engineOf(flags), flags.texels, options, messages,
+               flags.trial);
   print(messages, true);
   if (found) fmt::print("{}", answerJson(*found));
   return !found || hasError(messages) ? 1 : 0;

@@ -13,6 +13,7 @@ namespace lacquer::cli {
 struct EvalFlags {
   std::string file, material, points, engine = "double", spirv_from = "direct";
   std::vector<std::string> texels;
+  Trial trial;
 };
 
 /// The verb's own flags, and those of a material.

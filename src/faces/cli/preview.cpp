@@ -7,6 +7,7 @@
 #include "cli/answer.h"
 #include "cli/checks.h"
 #include "cli/table.h"
+#include "cli/trial.h"
 
 namespace lacquer::cli {
 
@@ -31,6 +32,13 @@ void addPreview(CLI::App& verb, PreviewFlags& flags, OptionFlags& options) {
   verb.add_option("--texel", flags.preview.texels,
                   "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
       ->allow_extra_args(false);
+  addParameters(verb, flags.preview.parameters);
+  verb.add_option("--node", flags.preview.nodes,
+                  "the output of a node instead of the material, as for eval; * for all of all nodes (may be "
+                  "repeated)")
+      ->allow_extra_args(false)
+      ->check(kNotEmpty);
+  addValueLook(verb, flags.preview.look);
   verb.add_option("--environment", flags.preview.environment,
                   "a picture of the surroundings, .hdr or .exr: the light in place of the studio's")
       ->check(kNotEmpty);

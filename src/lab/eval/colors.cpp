@@ -221,17 +221,19 @@ struct Setup {
   Engine engine;
   const Strings& texels;
   const Options& options;
+  const Trial& trial;
 };
 
 Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& library, FileImages& images,
                                    const Setup& how, Messages& messages) {
-  const auto& [points, points_file, engine, texels, options] = how;
+  const auto& [points, points_file, engine, texels, options, trial] = how;
   const std::string& file = images.file();
   report(found.diagnostics(), file, messages);
   if (lacquer::hasError(found.diagnostics())) return tl::make_unexpected(Diagnostics());  // reported
   EvalMaterial evaluated(images, options);
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
+  evaluated.setTrial(trial);
   if (Result<void> lowered = evaluated.lower(found, library, points.has_environment, {}, messages);
       !lowered) {
     return tl::make_unexpected(std::move(lowered.error()));
@@ -260,6 +262,8 @@ Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& lib
   answer->material = found.name();
   answer->engine = engine;
   answer->profile = evaluated.profile();
+  answer->node = trial.node;
+  if (evaluated.shown()) answer->type = ir::typeName(evaluated.shown()->type);
   return answer;
 }
 
@@ -321,7 +325,8 @@ std::string_view engineName(Engine engine) {
 
 std::optional<Evaluation> evaluate(const std::string& file, const std::string& material,
                                    const std::string& points, const std::string& points_name, Engine engine,
-                                   const Strings& texels, const Options& options, Messages& messages) {
+                                   const Strings& texels, const Options& options, Messages& messages,
+                                   const Trial& trial) {
   if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty())
     return report(wrong, {}, messages), std::nullopt;
   const Limits limits = *limitsOf(options);
@@ -331,21 +336,22 @@ std::optional<Evaluation> evaluate(const std::string& file, const std::string& m
   const Result<EvalPoints> read =
       text ? readPoints(*text, points_name, limits) : tl::make_unexpected(text.error());
   if (!read) return report(read.error(), points_name, messages), std::nullopt;
-  return valueOf(evaluateFile(file, material, {*read, points_name, engine, texels, options}, messages), file,
-                 messages);
+  return valueOf(evaluateFile(file, material, {*read, points_name, engine, texels, options, trial}, messages),
+                 file, messages);
 }
 
 std::optional<Evaluation> evaluateOf(const InMemory& of, const std::string& points, Engine engine,
-                                     const Strings& texels, const Options& options, Messages& messages) {
+                                     const Strings& texels, const Options& options, Messages& messages,
+                                     const Trial& trial) {
   static const std::string kPoints = "points";
   if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty())
     return report(wrong, {}, messages), std::nullopt;
   const Result<EvalPoints> read = readPoints(points, kPoints, *limitsOf(options));
   if (!read) return report(read.error(), kPoints, messages), std::nullopt;
   FileImages images = of.images(options);
-  return valueOf(
-      evaluateSubject(of.subject, of.language, images, {*read, kPoints, engine, texels, options}, messages),
-      of.file, messages);
+  return valueOf(evaluateSubject(of.subject, of.language, images,
+                                 {*read, kPoints, engine, texels, options, trial}, messages),
+                 of.file, messages);
 }
 
 }  // namespace lacquer

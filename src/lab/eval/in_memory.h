@@ -32,9 +32,11 @@ struct InMemory {
 
 /// evaluate() of it.
 std::optional<Evaluation> evaluateOf(const InMemory& of, const std::string& points, Engine engine,
-                                     const Strings& texels, const Options& options, Messages& messages);
+                                     const Strings& texels, const Options& options, Messages& messages,
+                                     const Trial& trial);
 /// drawBall() of it.
 std::vector<uint8_t> drawBallOf(const InMemory& of, uint32_t size, const Strings& texels,
-                                const Options& options, Messages& messages);
+                                const Options& options, Messages& messages, const Trial& trial,
+                                const ValueLook& look);
 
 }  // namespace lacquer

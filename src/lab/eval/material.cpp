@@ -8,6 +8,10 @@
 
 #include "cost/choose.h"
 #include "eval/dfg.h"
+#include "graph/contracts.h"
+#include "graph/edit.h"
+#include "graph/text.h"
+#include "lang/suggest.h"
 #include "lower/lower.h"
 #include "setting/language.h"
 #include "setting/messages.h"
@@ -204,8 +208,9 @@ Result<void> EvalMaterial::lower(const EvalSubject& subject, const Language& lib
   options.ibl = options.ibl && environment;
   options.decode_srgb = false;
   Diagnostics warnings;
+  graph::FlatOutputs outputs;
   Result<graph::Graph> built = subject.graph({true, tangents_, true, {true, true, true, true}}, library,
-                                             options, originals_, warnings);
+                                             options, originals_, warnings, &outputs);
   report(warnings, images_.file(), messages);
   if (!built) return tl::make_unexpected(std::move(built.error()));
   graph::Graph graph = std::move(*built);
@@ -213,13 +218,77 @@ Result<void> EvalMaterial::lower(const EvalSubject& subject, const Language& lib
     const Result<const lang::NodeDecl*> decl = library.node(node.type);
     if (decl && !variant.empty() && (*decl)->find(variant) != nullptr) node.variant = variant;
   }
+  if (Result<void> set = setParameters(library, graph); !set) return set;
   if (Diagnostics wrong = graph::check(graph, library); lacquer::hasError(wrong)) {
     return tl::make_unexpected(std::move(wrong));
   }
-  Result<ir::Module> module = lower::lower(graph, library, loweringOf(options, true));
+  lower::LowerOptions how = loweringOf(options, true);
+  Result<graph::Source> shown;
+  if (!trial_.node.empty()) {
+    shown = look(graph, library, outputs);
+    if (!shown) return tl::make_unexpected(std::move(shown.error()));
+    how.shown = &*shown;
+  }
+  Result<ir::Module> module = lower::lower(graph, library, how);
   if (!module) return tl::make_unexpected(std::move(module.error()));
   module_ = std::move(*module);
   return checkTexels(**library.models.schema());
+}
+
+/// Values in place of today's.
+Result<void> EvalMaterial::setParameters(const Language& library, graph::Graph& graph) {
+  if (trial_.parameters.empty()) return {};
+  const std::vector<ir::Range> limits = graph::parameterLimits(graph, library);
+  for (const auto& [name, value] : trial_.parameters) {
+    const auto found = std::find_if(graph.parameters.begin(), graph.parameters.end(),
+                                    [&, &wanted = name](const graph::Parameter& p) {
+                                      return p.name == wanted || (!p.pointer.empty() && p.pointer == wanted);
+                                    });
+    if (found == graph.parameters.end()) {
+      if (anyway_) continue;
+      std::vector<std::string_view> names;
+      for (const graph::Parameter& p : graph.parameters) names.push_back(p.name);
+      return fail("no-such-parameter", {}, fmt::format("there is no parameter '{}'", printable(name)),
+                  lang::didYouMean(name, names));
+    }
+    const auto count = static_cast<size_t>(ir::componentCount(found->type));
+    if (value.size() != count)
+      return fail("wrong-count", {}, fmt::format("'{}' is given {} numbers", printable(name), value.size()),
+                  fmt::format("it is {}", graph::article(found->type)));
+    const ir::Range& range = limits[static_cast<size_t>(found - graph.parameters.begin())];
+    const ir::Type part = ir::partType(found->type);
+    for (const double x : value) {
+      const bool fits = part == ir::Type::Bool ? x == 0 || x == 1 : !ir::isWhole(part) || x == std::trunc(x);
+      if (!fits)
+        return fail("wrong-type", {}, fmt::format("'{}' is given {}", printable(name), x),
+                    part == ir::Type::Bool ? "it is a bool, 0 or 1" : "it is a whole number");
+      if (range.contains(x) && graph::fitsFloat(x)) continue;
+      return fail("out-of-range", {}, fmt::format("'{}' is given {}", printable(name), x),
+                  fmt::format("the range is {}", ir::rangeText(range)));
+    }
+    std::copy(value.begin(), value.end(), found->value.begin());
+    changed_.push_back(name);
+  }
+  return {};
+}
+
+/// The source of the output that is to be looked at.
+Result<graph::Source> EvalMaterial::look(const graph::Graph& graph, const Language& library,
+                                         const graph::FlatOutputs& outputs) {
+  Result<graph::Source> source = graph::outputAt(outputs, trial_.node);
+  if (!source) return source;
+  const graph::Contracts contracts(graph, library);
+  const std::optional<graph::Offer> offer = contracts.offer(*source, contracts.main());
+  if (!offer)
+    return fail("no-such-node", {},
+                fmt::format("the node '{}' is not there any more", printable(trial_.node)),
+                "what was to be simpler has removed it");
+  if (ir::isMatrix(offer->type) || ir::isTexture(offer->type))
+    return fail("wrong-type", {},
+                fmt::format("the output of '{}' is {}", printable(trial_.node), graph::article(offer->type)),
+                "a number, a bool or a vector can be looked at");
+  shown_ = Shown{offer->type, offer->has_range ? std::optional(offer->range) : std::nullopt};
+  return source;
 }
 
 void EvalMaterial::place(const passes::LightFacts& lights) {

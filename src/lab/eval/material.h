@@ -91,6 +91,12 @@ public:
 
   /// "baseColorTexture=0.5,0.5,0.5,1", each. Errors: "bad-texel".
   Result<void> setTexels(const std::vector<std::string>& texts);
+  /// Before lower(), whose errors say what is wrong with it. `anyway`: names that no parameter has are those
+  /// of other materials.
+  void setTrial(Trial trial, bool anyway = false) {
+    trial_ = std::move(trial);
+    anyway_ = anyway;
+  }
 
   /// The primitive has no tangents: frames come of derivatives.
   void leaveOutTangents() { tangents_ = false; }
@@ -116,6 +122,14 @@ public:
   std::vector<const ir::TextureSlot*> environments() const;
 
   const ir::Module& module() const { return module_; }
+  /// Of the node's output that is looked at.
+  struct Shown {
+    ir::Type type = ir::Type::Float;
+    std::optional<ir::Range> range;
+  };
+  const std::optional<Shown>& shown() const { return shown_; }
+  /// Those of the trial's parameters that lower() has set, as they were named.
+  const Strings& changed() const { return changed_; }
   /// Of the graph that was built of a material; empty for one that was given.
   const std::string& profile() const { return profile_; }
 
@@ -125,6 +139,9 @@ private:
     std::array<double, 4> value{};
   };
 
+  Result<void> setParameters(const Language& library, graph::Graph& graph);
+  Result<graph::Source> look(const graph::Graph& graph, const Language& library,
+                             const graph::FlatOutputs& outputs);
   static Result<Texel> parseTexel(const std::string& text);
   static bool names(const std::string& name, const ir::TextureSlot& slot);
   Result<void> checkTexels(const material::Schema& schema) const;
@@ -135,10 +152,14 @@ private:
   FileImages& images_;
   Options options_;
   std::vector<Texel> texels_;
+  Trial trial_;
+  bool anyway_ = false;
   bool tangents_ = true;
   std::vector<graph::Texture> originals_;  ///< by the slot's texture: the file's
   ir::Module module_;
   std::string profile_;
+  std::optional<Shown> shown_;
+  Strings changed_;
   std::map<std::string, BoundTexture> bound_;
 };
 

@@ -50,14 +50,19 @@ const Diagnostics& EvalSubject::diagnostics() const {
 }
 
 Result<graph::Graph> EvalSubject::built(const gltf::VertexAttributes& attributes, const Language& library,
-                                        const Options& options, Diagnostics& warnings) const {
-  if (!isGraph()) return buildGraph(*material(), attributes, library, options, warnings);
+                                        const Options& options, Diagnostics& warnings,
+                                        graph::FlatOutputs* outputs) const {
+  if (!isGraph()) {
+    Result<graph::Graph> built = buildGraph(*material(), attributes, library, options, warnings);
+    if (built && outputs != nullptr) (void)graph::flattened(*built, library, outputs);
+    return built;
+  }
   const graph::Graph& own = *std::get<const graph::Graph*>(of_);
   if (Diagnostics wrong = asksToBuild(options); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
   if (Diagnostics wrong = graph::check(own, library, limitsOf(options).value_or(Limits{}).nodes);
       lacquer::hasError(wrong))
     return tl::make_unexpected(std::move(wrong));
-  graph::Graph graph = graph::flattened(own, library);
+  graph::Graph graph = graph::flattened(own, library, outputs);
   if (Result<void> simpler = simplifyBuilt(graph, library, options.simplify); !simpler)
     return tl::make_unexpected(std::move(simpler.error()));
   return graph;
@@ -65,9 +70,13 @@ Result<graph::Graph> EvalSubject::built(const gltf::VertexAttributes& attributes
 
 Result<graph::Graph> EvalSubject::graph(const gltf::VertexAttributes& attributes, const Language& library,
                                         const Options& options, std::vector<graph::Texture>& originals,
-                                        Diagnostics& warnings) const {
-  if (!isGraph()) return graphOf(*material(), attributes, library, options, originals, warnings);
-  Result<graph::Graph> graph = built(attributes, library, options, warnings);
+                                        Diagnostics& warnings, graph::FlatOutputs* outputs) const {
+  if (!isGraph()) {
+    Result<graph::Graph> made = graphOf(*material(), attributes, library, options, originals, warnings);
+    if (made && outputs != nullptr) (void)graph::flattened(*made, library, outputs);
+    return made;
+  }
+  Result<graph::Graph> graph = built(attributes, library, options, warnings, outputs);
   if (!graph) return graph;
   for (graph::Texture& slot : graph->textures) {
     originals.push_back(slot);

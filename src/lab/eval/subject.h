@@ -31,13 +31,15 @@ public:
 
   /// The graph to lower. A material's is built for the options' template, profile and switches; a graph is
   /// what it is, checked and flat, and options that would build it otherwise are an error ("graph-is-built").
+  /// `outputs`: those of its nodes.
   Result<graph::Graph> built(const gltf::VertexAttributes& attributes, const Language& library,
-                             const Options& options, Diagnostics& warnings) const;
+                             const Options& options, Diagnostics& warnings,
+                             graph::FlatOutputs* outputs = nullptr) const;
   /// The same with a slot of its own for every use of a texture, whose index is that of the file's texture in
   /// `originals`.
   Result<graph::Graph> graph(const gltf::VertexAttributes& attributes, const Language& library,
                              const Options& options, std::vector<graph::Texture>& originals,
-                             Diagnostics& warnings) const;
+                             Diagnostics& warnings, graph::FlatOutputs* outputs = nullptr) const;
 
 private:
   std::variant<const material::Material*, const graph::Graph*> of_;

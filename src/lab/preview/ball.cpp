@@ -83,7 +83,22 @@ Vec3 shown(const Rgba& linear, uint32_t x, uint32_t y, uint32_t size) {
   return result;
 }
 
-void drawRow(const Row& row, const std::vector<Rgba>& colors, uint32_t y, Color background, Picture& to) {
+/// Display light of a value. What is no number has a colour that nothing else has.
+Vec3 shown(const Rgba& value, const ValueLook& look) {
+  Vec3 result{};
+  for (size_t i = 0; i < 3; ++i) {
+    const double x = value[look.as == ValueLook::As::Grey ? 0 : i] * look.scale;
+    if (!std::isfinite(x)) return {1, 0, 1};
+    if (look.as == ValueLook::As::Color)
+      result[i] = std::clamp(x, 0.0, 1.0);
+    else
+      result[i] = eval::decodeSrgb(std::clamp(look.as == ValueLook::As::Vector ? x / 2 + 0.5 : x, 0.0, 1.0));
+  }
+  return result;
+}
+
+void drawRow(const Row& row, const std::vector<Rgba>& colors, const std::optional<ValueLook>& value,
+             uint32_t y, Color background, Picture& to) {
   const uint32_t size = to.width();
   Vec3 back{};
   for (size_t i = 0; i < 3; ++i) back[i] = eval::decodeSrgb(background[i] / 255.0);
@@ -91,7 +106,7 @@ void drawRow(const Row& row, const std::vector<Rgba>& colors, uint32_t y, Color 
   std::vector<uint32_t> hits(size, 0);
   for (size_t i = 0; i < row.points.size(); ++i) {
     const uint32_t x = row.sample[i] / kSamples;
-    const Vec3 light = shown(colors[i], x, y, size);
+    const Vec3 light = value ? shown(colors[i], *value) : shown(colors[i], x, y, size);
     for (size_t c = 0; c < 3; ++c) sums[x][c] += light[c];
     ++hits[x];
   }
@@ -256,7 +271,7 @@ Picture drawBall(const Shading& shading, uint32_t size, Color background) {
   Picture picture(size, size, background);
   tbb::parallel_for(uint32_t{0}, size, [&](uint32_t y) {
     const Row row = rowOf(y, size);
-    drawRow(row, shading(row.points), y, background, picture);
+    drawRow(row, shading(row.points), shading.value(), y, background, picture);
   });
   return picture;
 }
@@ -312,8 +327,8 @@ Comparison compareBalls(const Shading& a, const Shading& b, uint32_t size, Color
     const Row row = rowOf(y, size);
     const std::vector<Rgba> of_a = a(row.points);
     const std::vector<Rgba> of_b = b(row.points);
-    drawRow(row, of_a, y, background, result.a);
-    drawRow(row, of_b, y, background, result.b);
+    drawRow(row, of_a, std::nullopt, y, background, result.a);
+    drawRow(row, of_b, std::nullopt, y, background, result.b);
     rows[y] = addRow(row, of_a, of_b, std::span(pixels).subspan(size_t{y} * size, size));
   });
   Sums all;

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "eval/evaluate.h"
 #include "eval/points.h"
 #include "ir/module.h"
+#include "lacquer/tools.h"
 #include "preview/canvas.h"
 #include "preview/mesh.h"
 #include "preview/studio.h"
@@ -23,6 +25,8 @@ struct Look {
   std::vector<std::string> specular, irradiance,
       fibres;  ///< the environment maps that it reads, by slot name
   bool in_float = true;
+  /// Instead of colours a value is drawn, in one of the ways but As::Any.
+  std::optional<ValueLook> value;
 };
 
 /// A Look compiled: linear colours, straight alpha, of points.
@@ -35,6 +39,8 @@ public:
   std::vector<std::array<double, 4>> operator()(std::span<const eval::Point> points) const;
 
   /// What the vertex stage hands over, by varying, the components of a vertex side by side.
+  const std::optional<ValueLook>& value() const { return look_->value; }
+
   using Vertices = std::vector<std::vector<double>>;
   Vertices vertices(std::span<const eval::Point> points, const Standing& standing) const;
   /// RGBA of samples of triangles of these vertices. Thread-safe.

@@ -26,13 +26,33 @@ constexpr uint32_t kLeastBall = 16;  ///< pixels of a ball
 constexpr uint32_t kMostBall = 2048;
 constexpr uint32_t kMostColumns = 100;
 
+/// What is tried of a material, and how a value is drawn.
+struct Trying {
+  const Strings& texels;
+  const Trial& trial;
+  const ValueLook& look;
+  Strings* changed = nullptr;  ///< names of parameters that it has; the others are those of other materials
+};
+
+/// As the value's type and range want it where nobody says.
+ValueLook lookOf(const EvalMaterial::Shown& shown, ValueLook look) {
+  using As = ValueLook::As;
+  if (look.as != As::Any) return look;
+  if (ir::componentCount(shown.type) == 1)
+    look.as = As::Grey;
+  else
+    look.as = shown.range && shown.range->lo >= 0 ? As::Color : As::Vector;
+  return look;
+}
+
 /// A material compiled for the studio. `substituted` is the number of images that a neutral colour stands
 /// for.
 Result<preview::Shading> shadingOf(const EvalSubject& subject, const Language& library, FileImages& images,
-                                   const PreviewSetting& of, const Strings& texels,
-                                   const preview::Studio& studio, Messages& messages, size_t& substituted) {
+                                   const PreviewSetting& of, const Trying& how, const preview::Studio& studio,
+                                   Messages& messages, size_t& substituted) {
   EvalMaterial evaluated(images, of.options);
-  if (Result<void> set = evaluated.setTexels(texels); !set)
+  evaluated.setTrial(how.trial, how.changed != nullptr);
+  if (Result<void> set = evaluated.setTexels(how.texels); !set)
     return tl::make_unexpected(std::move(set.error()));
   if (Result<void> lowered = evaluated.lower(subject, library, true, of.variant, messages); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
@@ -63,6 +83,9 @@ Result<preview::Shading> shadingOf(const EvalSubject& subject, const Language& l
   report(images.takeNotes(), images.file(), messages);
   if (!bound) return tl::make_unexpected(bound.error());
   look.module = evaluated.module();
+  if (how.changed != nullptr)
+    how.changed->insert(how.changed->end(), evaluated.changed().begin(), evaluated.changed().end());
+  if (evaluated.shown()) look.value = lookOf(*evaluated.shown(), how.look);
   return preview::Shading::make(std::move(look), studio);
 }
 
@@ -103,11 +126,16 @@ public:
       preview::Section section{read_files.size() > 1 ? input.path : std::string(), {}};
       FileImages images =
           input.graph ? FileImages::ofGraph(input.path, options_) : FileImages(input.path, options_);
-      for (const material::Material& material : input.materials) draw(material, images, section);
-      if (input.graph) draw(*input.graph, images, section);
+      for (const material::Material& material : input.materials) drawAll(material, images, section);
+      if (input.graph) drawAll(*input.graph, images, section);
       const Strings of_images = images.read();
       inputs.insert(inputs.end(), of_images.begin(), of_images.end());
       if (!section.cells.empty()) sections.push_back(std::move(section));
+    }
+    for (const auto& [name, value] : preview_.parameters) {
+      if (done_ == 0 || std::find(changed_.begin(), changed_.end(), name) != changed_.end()) continue;
+      return fail("no-such-parameter", {}, fmt::format("none has a parameter '{}'", printable(name)),
+                  "`lacquer graph` prints those of a material");
     }
     if (sections.empty()) return fail("nothing-to-show", {}, "there is no material to show");
     std::string title;
@@ -164,6 +192,11 @@ private:
       return fail("wrong-count", {}, fmt::format("{} settings are to be compared", preview_.compare.size()),
                   "name two, or none");
     }
+    if (!preview_.nodes.empty() && !preview_.compare.empty())
+      return fail("wrong-count", {}, "settings are to be compared by the values of nodes",
+                  "colours alone can be compared");
+    if (!std::isfinite(preview_.look.scale))
+      return fail("not-finite", {}, fmt::format("the scale of values is {}", preview_.look.scale), {});
     return inRange("the number of columns", preview_.columns, 0, kMostColumns, {});
   }
 
@@ -212,27 +245,65 @@ private:
   }
 
   Result<preview::Shading> shading(const EvalSubject& subject, FileImages& images, size_t setting,
-                                   size_t& substituted) {
+                                   const Trial& trial, size_t& substituted) {
     // Warnings about the material are the same for both settings.
     Messages again;
-    return shadingOf(subject, *libraries_[setting], images, settings_[setting], preview_.texels, studio_,
+    return shadingOf(subject, *libraries_[setting], images, settings_[setting],
+                     {preview_.texels, trial, preview_.look, &changed_}, studio_,
                      setting == 0 ? messages_ : again, substituted);
   }
 
-  void draw(const EvalSubject& subject, FileImages& images, preview::Section& section) {
+  /// The nodes that are asked for; one that is none for the material itself.
+  Result<Strings> nodesOf(const EvalSubject& subject) const {
+    if (preview_.nodes.empty()) return Strings{""};
+    Strings nodes;
+    for (const std::string& wanted : preview_.nodes) {
+      if (wanted != "*") {
+        nodes.push_back(wanted);
+        continue;
+      }
+      Options options = settings_[0].options;
+      if (Result<void> named = subject.isGraph() ? Result<void>() : resolveNames(*libraries_[0], options);
+          !named)
+        return tl::make_unexpected(std::move(named.error()));
+      graph::FlatOutputs outputs;
+      Diagnostics warnings;
+      const Result<graph::Graph> built = subject.built({true, true, true, {true, true, true, true}},
+                                                       *libraries_[0], options, warnings, &outputs);
+      if (!built) return tl::make_unexpected(built.error());
+      for (const auto& [node, of] : outputs) {
+        for (const auto& [output, source] : of) nodes.push_back(of.size() == 1 ? node : node + "." + output);
+      }
+    }
+    return nodes;
+  }
+
+  void drawAll(const EvalSubject& subject, FileImages& images, preview::Section& section) {
     report(subject.diagnostics(), images.file(), messages_);
     ++done_;
     if (lacquer::hasError(subject.diagnostics())) return;
+    const Result<Strings> nodes = nodesOf(subject);
+    if (!nodes) return report(nodes.error(), images.file(), messages_);
+    balls_ += nodes->size() - 1;
+    if (Result<void> fits = preview::mayLayOut((total_ + balls_) * settings_.size(), preview_.size); !fits)
+      return report(fits.error(), images.file(), messages_);
+    for (const std::string& node : *nodes) draw(subject, node, images, section);
+    if (progress_) progress_(done_, total_);
+  }
+
+  void draw(const EvalSubject& subject, const std::string& node, FileImages& images,
+            preview::Section& section) {
+    const Trial trial{preview_.parameters, node};
     size_t substituted = 0;
     std::vector<preview::Shading> shadings;
     for (size_t i = 0; i < settings_.size(); ++i) {
       substituted = 0;
-      Result<preview::Shading> made = shading(subject, images, i, substituted);
+      Result<preview::Shading> made = shading(subject, images, i, trial, substituted);
       if (!made) return report(made.error(), images.file(), messages_);
       shadings.push_back(std::move(*made));
     }
     const std::string name = subject.title();
-    preview::Cell cell{name, {}, {}};
+    preview::Cell cell{node.empty() ? name : node, {}, {}};
     if (shadings.size() == 2) {
       preview::Comparison compared =
           preview::compareBalls(shadings[0], shadings[1], preview_.size, preview::kBackground);
@@ -246,7 +317,6 @@ private:
     }
     if (substituted > 0) noteAbsent(subject, images.file(), substituted, cell);
     section.cells.push_back(std::move(cell));
-    if (progress_) progress_(done_, total_);
   }
 
   void noteAbsent(const EvalSubject& subject, const std::string& file, size_t count, preview::Cell& cell) {
@@ -262,7 +332,9 @@ private:
   std::vector<PreviewSetting> settings_;  ///< one, or the two to compare
   std::vector<std::shared_ptr<const Language>> libraries_;
   PreviewSheet sheet_;
+  Strings changed_;  ///< parameters that some material has
   size_t done_ = 0, total_ = 0;
+  size_t balls_ = 0;  ///< beyond one for each
 };
 
 }  // namespace
@@ -277,7 +349,8 @@ std::optional<PreviewSheet> drawPreview(const Preview& preview, const Strings& f
 }
 
 static Result<std::vector<uint8_t>> ballOf(const InMemory& of, uint32_t size, const Strings& texels,
-                                           const Options& options, Messages& messages) {
+                                           const Options& options, Messages& messages, const Trial& trial,
+                                           const ValueLook& look) {
   if (Diagnostics wrong = checkReading(options); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
   if (Result<void> good = inRange("the size of a ball", size, kLeastBall, kMostBall, "pixels"); !good)
     return tl::make_unexpected(std::move(good.error()));
@@ -287,7 +360,7 @@ static Result<std::vector<uint8_t>> ballOf(const InMemory& of, uint32_t size, co
   const preview::Studio studio;
   size_t substituted = 0;
   const Result<preview::Shading> shading = shadingOf(of.subject, of.language, images, {"", options, true, ""},
-                                                     texels, studio, messages, substituted);
+                                                     {texels, trial, look}, studio, messages, substituted);
   if (!shading) return tl::make_unexpected(shading.error());
   if (substituted > 0) report({absentImages(of.subject, of.file, substituted)}, of.file, messages);
   const preview::Picture picture = preview::drawBall(*shading, size, preview::kBackground);
@@ -300,9 +373,10 @@ static Result<std::vector<uint8_t>> ballOf(const InMemory& of, uint32_t size, co
 }
 
 std::vector<uint8_t> drawBallOf(const InMemory& of, uint32_t size, const Strings& texels,
-                                const Options& options, Messages& messages) {
+                                const Options& options, Messages& messages, const Trial& trial,
+                                const ValueLook& look) {
   Result<std::vector<uint8_t>> made = std::vector<uint8_t>();
-  withJobs(options.jobs, [&] { made = ballOf(of, size, texels, options, messages); });
+  withJobs(options.jobs, [&] { made = ballOf(of, size, texels, options, messages, trial, look); });
   if (made) return std::move(*made);
   report(made.error(), of.file, messages);
   return {};

@@ -11,8 +11,8 @@ namespace {
 
 class CodeOrder {
 public:
-  CodeOrder(const Graph& graph, const lang::Library& library)
-      : graph_(graph), contracts_(graph, library), body_(contracts_.main()) {}
+  CodeOrder(const Graph& graph, const lang::Library& library, const Source* also)
+      : graph_(graph), contracts_(graph, library), body_(contracts_.main()), also_(also) {}
 
   std::vector<size_t> run() {
     // As the ports ask for them, which also says what nobody asks for.
@@ -37,6 +37,7 @@ private:
         if (name == decl->ports[i].param.name) add(source, nodes);
       }
     }
+    if (also_ != nullptr) add(*also_, nodes);
     return nodes;
   }
 
@@ -92,12 +93,13 @@ private:
   const Graph& graph_;
   Contracts contracts_;
   const Body& body_;
+  const Source* also_;
 };
 
 }  // namespace
 
-std::vector<size_t> codeOrder(const Graph& graph, const lang::Library& library) {
-  return CodeOrder(graph, library).run();
+std::vector<size_t> codeOrder(const Graph& graph, const lang::Library& library, const Source* also) {
+  return CodeOrder(graph, library, also).run();
 }
 
 }  // namespace lacquer::graph

@@ -1,11 +1,16 @@
 // Groups' nodes in their places. Sources come before what takes from them, so that nothing here goes deeper
 // than groups lie within groups.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <unordered_set>
 
+#include "graph/check_body.h"
 #include "graph/contracts.h"
 #include "graph/graph.h"
 #include "graph/text.h"
+#include "lang/suggest.h"
+#include "support/text.h"
 
 namespace lacquer::graph {
 
@@ -42,10 +47,10 @@ private:
   /// Nodes that see each other: the graph's own, or those of an instance.
   struct Scope {
     const Body& body;
-    std::string path;                          ///< of an instance: "rust/inner"
-    std::vector<Source> inputs;                ///< of an instance, in the order of its group's
-    std::vector<std::string> ids;              ///< by node, of those that are none: in the flat graph
-    std::vector<std::vector<Source>> outputs;  ///< by node, of those that are instances
+    std::string path;              ///< of an instance: "rust/inner"
+    std::vector<Source> inputs;    ///< of an instance, in the order of its group's
+    std::vector<std::string> ids;  ///< by node, of those that are none: in the flat graph
+    std::vector<Outputs> outputs;  ///< by node, of those that are instances
   };
 
   void expand(Scope& scope) {
@@ -70,9 +75,11 @@ private:
   }
 
   void tell(const std::string& path, const Node& node) {
-    std::vector<Source>& outputs = (*told_)[path];
-    for (const lang::Param& result : contracts_.of(node)->results)
-      outputs.push_back({NodeRef{node.id, std::string(result.name)}, {}});
+    Outputs& outputs = (*told_)[path];
+    for (const lang::Param& result : contracts_.of(node)->results) {
+      const std::string name(result.name);
+      outputs.emplace_back(name, Source{NodeRef{node.id, name}, {}});
+    }
   }
 
   std::string freeId(std::string path) {
@@ -82,7 +89,7 @@ private:
     return id;
   }
 
-  std::vector<Source> instance(const Node& node, const std::string& path, const Scope& scope) {
+  Outputs instance(const Node& node, const std::string& path, const Scope& scope) {
     const size_t group = *graph_.findGroup(node.type);
     Scope inner{contracts_.body(group), path, {}, {}, {}};
     for (const GroupInput& input : graph_.groups[group].inputs) {
@@ -92,8 +99,8 @@ private:
       inner.inputs.push_back(wide(source, scope, input.type));
     }
     expand(inner);
-    std::vector<Source> outputs;
-    for (const auto& [name, source] : inner.body.outputs()) outputs.push_back(flat(source, inner));
+    Outputs outputs;
+    for (const auto& [name, source] : inner.body.outputs()) outputs.emplace_back(name, flat(source, inner));
     return outputs;
   }
 
@@ -109,7 +116,7 @@ private:
       const size_t place = *scope.body.find(ref->node);
       const Node& node = scope.body.nodes()[place];
       if (!node.group) return {NodeRef{scope.ids[place], ref->output}, source.swizzle};
-      found = &scope.outputs[place][*contracts_.of(node)->result(ref->output)];
+      found = &scope.outputs[place][*contracts_.of(node)->result(ref->output)].second;
     }
     return found == nullptr ? source : Source{found->from, swizzleBehind(found->swizzle, source.swizzle)};
   }
@@ -142,6 +149,34 @@ Graph flattened(Graph graph, const lang::Library& library, FlatOutputs* told) {
   graph.outputs = std::move(outputs);
   graph.groups.clear();
   return graph;
+}
+
+Result<Source> outputAt(const FlatOutputs& outputs, const std::string& path) {
+  const auto exact = outputs.find(path);
+  if (exact != outputs.end() && exact->second.size() == 1) return exact->second[0].second;
+  std::vector<std::string_view> names;
+  const auto listed = [&](const Outputs& of) {
+    for (const auto& [name, source] : of) names.push_back(name);
+    return names.empty() ? std::string("it has none") : "it has " + listOf(names);
+  };
+  if (exact != outputs.end())
+    return fail("unknown-output", {},
+                fmt::format("the node {} has {} outputs", inQuotes(path), exact->second.size()),
+                listed(exact->second) + "; one is named behind a dot");
+  const size_t dot = path.rfind('.');
+  const auto node = dot == std::string::npos ? outputs.end() : outputs.find(path.substr(0, dot));
+  if (node != outputs.end()) {
+    const std::string wanted = path.substr(dot + 1);
+    for (const auto& [name, source] : node->second) {
+      if (name == wanted) return source;
+    }
+    return fail("unknown-output", {},
+                fmt::format("the node {} has no output {}", inQuotes(node->first), inQuotes(wanted)),
+                listed(node->second));
+  }
+  for (const auto& [name, of] : outputs) names.push_back(name);
+  return fail("no-such-node", {}, fmt::format("there is no node {}", inQuotes(path)),
+              lang::didYouMean(path, names));
 }
 
 }  // namespace lacquer::graph

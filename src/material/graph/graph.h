@@ -202,18 +202,23 @@ Graph bare(Graph graph);
 Texture bare(const Texture& texture);
 
 /// What the outputs of each node of a graph are in the flat one, by its path: "coat.f0", "rust", and of a
-/// node in the group that "rust" is an instance of "rust/mix".
-using FlatOutputs = std::map<std::string, std::vector<Source>, std::less<>>;
+/// node in the group that "rust" is an instance of "rust/mix". An only result has no name.
+using FlatOutputs = std::map<std::string, Outputs, std::less<>>;
 
 /// A checked graph with its groups' nodes in their places, whose ids begin with the instance's: "rust.mix",
 /// and with the form of each node as its type. A graph without groups and forms comes back as it is, unless
 /// its outputs are asked for.
 Graph flattened(Graph graph, const lang::Library& library, FlatOutputs* outputs = nullptr);
 
+/// One of them by a node's path, behind which a dot and the output's name stand where it has several.
+/// "no-such-node", "unknown-output".
+Result<Source> outputAt(const FlatOutputs& outputs, const std::string& path);
+
 /// The nodes of a flat, checked graph that its outputs reach, in the order of the code: sources first, by the
 /// terms' places, and where nothing says otherwise in the order in which the template's ports and the nodes'
-/// inputs ask for them. Neither the order of the lists nor ids matter.
-std::vector<size_t> codeOrder(const Graph& graph, const lang::Library& library);
+/// inputs ask for them. Neither the order of the lists nor ids matter. `also`: a source whose nodes come,
+/// too.
+std::vector<size_t> codeOrder(const Graph& graph, const lang::Library& library, const Source* also = nullptr);
 
 /// The JSON form (docs/graph-format.md), two spaces of indent, stable key order, a final newline.
 std::string toJson(const Graph& graph);
