@@ -108,6 +108,16 @@ void addParts(ir::Dag& dag, ValueId value, std::vector<ValueId>& parts) {
   if (dag[value].type == ir::Type::Bool) {
     value = dag.make(ir::Op::Select, {value, dag.constant(1), dag.constant(0)});
   }
+  if (const ir::Type type = dag[value].type; ir::isWhole(type)) {  // as halves, which a float holds
+    const bool integer = type == ir::Type::Int;
+    const ir::Op number = integer ? ir::Op::FromInt : ir::Op::FromUInt;
+    const ValueId low = dag.make(ir::Op::BitAnd, {value, dag.constant(type, {65535})});
+    const ValueId high = dag.make(integer ? ir::Op::IntShiftRight : ir::Op::UIntShiftRight,
+                                  {value, dag.constant(ir::Type::UInt, {16})});
+    parts.push_back(dag.make(number, {low}));
+    parts.push_back(dag.make(number, {high}));
+    return;
+  }
   for (int c = 0; c < ir::componentCount(dag[value].type); ++c) parts.push_back(dag.component(value, c));
 }
 
@@ -239,7 +249,10 @@ ir::Interval domainOf(ir::Op op, size_t operand) {
 }
 
 const std::vector<ir::Type> kOperandTypes = {ir::Type::Float, ir::Type::Vec2, ir::Type::Vec3, ir::Type::Vec4,
-                                             ir::Type::Bool};
+                                             ir::Type::Bool,  ir::Type::Int,  ir::Type::UInt};
+
+/// An integer of any 32 bits, out of two numbers of which each fills a half.
+constexpr ir::Interval kHalves{-32768, 65535};
 
 /// Every list of types that the operation takes.
 std::vector<std::vector<ir::Type>> typesOf(ir::Op op) {
@@ -260,6 +273,13 @@ std::vector<std::vector<ir::Type>> typesOf(ir::Op op) {
 
 /// An operand of any type, out of a Vec4.
 ValueId narrowed(ir::Dag& dag, ValueId whole, ir::Type type) {
+  if (ir::isWhole(type)) {
+    const ValueId high = dag.make(ir::Op::ToInt, {dag.component(whole, 0)});
+    const ValueId low = dag.make(ir::Op::ToInt, {dag.component(whole, 1)});
+    const ValueId both = dag.make(
+        ir::Op::BitXor, {dag.make(ir::Op::ShiftLeft, {high, dag.constant(ir::Type::UInt, {16})}), low});
+    return type == ir::Type::Int ? both : dag.make(ir::Op::AsUInt, {both});
+  }
   if (type == ir::Type::Bool) return dag.make(ir::Op::Less, {dag.constant(0.5), dag.component(whole, 0)});
   std::vector<int> components;
   for (int c = 0; c < ir::componentCount(type); ++c) components.push_back(c);
@@ -279,7 +299,10 @@ Subject operationSubject(ir::Op op, std::span<const std::vector<ir::Type>> lists
   std::vector<ValueId> operands;
   for (uint32_t k = 0; k < lists[0].size(); ++k) {
     const std::string name = fmt::format("operand_{}", k);
-    const ir::Interval domain = lists[0][k] == ir::Type::Bool ? ir::Interval{0, 1} : domainOf(op, k);
+    const ir::Type type = lists[0][k];
+    const ir::Interval domain = type == ir::Type::Bool ? ir::Interval{0, 1}
+                                : ir::isWhole(type)    ? kHalves
+                                                       : domainOf(op, k);
     module.varyings.push_back({name, ir::Type::Vec4, k, ir::kNoValue});
     operands.push_back(
         module.dag.input({ir::InputKind::Varying, name, ir::Type::Vec4, ir::Rate::Fragment, domain, 0, k}));
@@ -297,6 +320,10 @@ Subject operationSubject(ir::Op op, std::span<const std::vector<ir::Type>> lists
   for (const std::vector<ir::Type>& types : lists) {
     std::vector<ValueId> narrow;
     for (size_t k = 0; k < types.size(); ++k) narrow.push_back(narrowed(module.dag, operands[k], types[k]));
+    if (op == ir::Op::IntDiv || op == ir::Op::UIntDiv) {  // by 0 and by -1 nothing is promised
+      narrow[1] = module.dag.make(ir::Op::BitOr, {narrow[1], module.dag.constant(types[1], {1})});
+      narrow[1] = module.dag.make(ir::Op::BitAnd, {narrow[1], module.dag.constant(types[1], {0x7fffffff})});
+    }
     results.push_back(module.dag.make(op, narrow));
   }
   setColors(module, results);

@@ -121,9 +121,11 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
                   "how hard fragment stages are searched for cheaper forms, 0 to 2 (docs/optimize.md)")
       ->check(CLI::Range(0, 2))
       ->check(kWhole);
-  verb.add_option("--error", flags.options.optimize_error,
-                  "the part of the light that approximations of --optimize 2 may change, such as 0.001")
-      ->check(CLI::Range(0.0, 0.5));
+  if (verb.get_option_no_throw("--error") == nullptr) {  // levels of detail have errors of their own
+    verb.add_option("--error", flags.options.optimize_error,
+                    "the part of the light that approximations of --optimize 2 may change, such as 0.001")
+        ->check(CLI::Range(0.0, 0.5));
+  }
   verb.add_option("--optimize-for", flags.options.optimize_for, "the GPUs whose cycles --optimize counts")
       ->check(CLI::IsMember(optimizeFamilies()));
   verb.add_flag("--decode-srgb", flags.options.decode_srgb, "decode colour textures in the shader");
