@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "eval/program.h"
+#include "ir/fold.h"
 
 namespace lacquer::parity {
 
@@ -69,7 +70,10 @@ void Enclosure::value(ValueId id) {
   Ranges& out = values_[id];
   switch (v.op) {
     case Op::Constant:
-      for (size_t c = 0; c < 4; ++c) out[c] = math_.constant(dag_.constantOf(id)[c]);
+      for (size_t c = 0; c < 4; ++c) {
+        const double x = dag_.constantOf(id)[c];
+        out[c] = ir::isWhole(v.type) ? Range{x, x, false} : math_.constant(x);
+      }
       return;
     case Op::Input: return input(id);
     case Op::Interpolate: out = values_[v.args[0]]; return;
@@ -308,6 +312,11 @@ Range Enclosure::arithmetic(Op op, const Range& a, const Range& b, const Range& 
     case Op::Abs: return math_.abs(a);
     case Op::Sign: return math_.sign(a);
     case Op::Floor: return math_.floor(a);
+    case Op::Ceil: return math_.ceil(a);
+    case Op::Round: return math_.round(a);
+    case Op::Trunc: return math_.trunc(a);
+    case Op::Asin: return math_.asin(a);
+    case Op::Tanh: return math_.tanh(a);
     case Op::Fract: {
       const bool whole = !a.finite() || std::floor(a.lo) != std::floor(a.hi);
       return whole ? math_.fract(a) : math_.sub(a, math_.floor(a));
@@ -351,6 +360,12 @@ void Enclosure::componentWise(ValueId id) {
     const Range& a = get(v.args[0], i);
     const Range& b = v.count > 1 ? get(v.args[1], i) : a;
     const Range& t = v.count > 2 ? get(v.args[2], i) : a;
+    if (ir::isWhole(dag_[v.args[0]].type) && v.op != Op::Select) {  // integers are what they are
+      const bool points = a.lo == a.hi && b.lo == b.hi && !a.nan && !b.nan;
+      const double exact = points ? ir::foldComponent<double>(v.op, a.lo, b.lo, t.lo) : 0;
+      values_[id][i] = points ? Range{exact, exact, false} : math_.whole(true);
+      continue;
+    }
     const bool square = v.op == Op::Mul && v.args[0] == v.args[1];
     values_[id][i] = square ? math_.square(a) : arithmetic(v.op, a, b, t);
   }
