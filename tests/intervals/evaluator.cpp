@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "ir/fold.h"
+#include "ir/loops.h"
 
 namespace lacquer::test {
 
@@ -114,11 +116,73 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// The values in their order, loops round by round.
+class Run {
+public:
+  Run(const ir::Module& module, std::span<const ValueId> ids, const World& world, std::vector<Floats>& values,
+      const std::function<void(ValueId)>& visit)
+      : dag_(module.dag),
+        ids_(ids),
+        loops_(module.dag, ids),
+        evaluation_(module, world, values),
+        values_(values),
+        visit_(visit) {}
+
+  void within(int32_t loop) {
+    for (const ValueId id : ids_) {
+      if (loops_.of(id) != loop) continue;
+      const Op op = dag_[id].op;
+      if (op == Op::Input && ir::ofLoop(dag_.inputOf(id).kind)) continue;  // of this round
+      if (ir::makesLoop(op)) {
+        const int32_t own = loops_.indexOf(id);
+        if (loops_[own].last == id) rounds(own);
+        continue;
+      }
+      if (op != Op::Carried) values_[id] = evaluation_.value(id);
+      if (op == Op::Carried) values_[id] = left_.at({dag_[id].args[0], dag_[id].payload});
+      if (visit_) visit_(id);
+    }
+  }
+
+private:
+  void rounds(int32_t number) {
+    const ir::Loop& loop = loops_[number];
+    std::vector<Floats> state;
+    for (const ir::Carry& carry : loop.carries) state.push_back(values_[carry.first]);
+    const auto end = static_cast<int32_t>(ir::bits(values_[loop.end][0]));
+    const int32_t first = ir::firstRound(dag_, loop);
+    const int32_t past = first + static_cast<int32_t>(ir::mostRounds(dag_, loop));
+    for (int32_t round = first; round < end && round < past; ++round) {
+      values_[loop.index].fill(ir::whole<float>(static_cast<uint32_t>(round)));
+      if (visit_) visit_(loop.index);
+      for (size_t k = 0; k < state.size(); ++k) {
+        values_[loop.carries[k].value] = state[k];
+        if (visit_) visit_(loop.carries[k].value);
+      }
+      within(number);
+      for (size_t k = 0; k < state.size(); ++k) state[k] = values_[loop.carries[k].next];
+    }
+    for (size_t k = 0; k < state.size(); ++k)
+      left_[{loop.last, dag_.inputOf(loop.carries[k].value).index}] = state[k];
+  }
+
+  const ir::Dag& dag_;
+  std::span<const ValueId> ids_;
+  ir::Loops loops_;
+  Evaluation evaluation_;
+  std::vector<Floats>& values_;
+  const std::function<void(ValueId)>& visit_;
+  std::map<std::pair<ValueId, uint32_t>, Floats> left_;
+};
+
+}  // namespace
+
 void evaluate(const ir::Module& module, std::span<const ValueId> ids, const World& world,
-              std::vector<Floats>& values) {
+              std::vector<Floats>& values, const std::function<void(ValueId)>& visit) {
   values.resize(module.dag.size());
-  const Evaluation evaluation(module, world, values);
-  for (const ValueId id : ids) values[id] = evaluation.value(id);
+  Run(module, ids, world, values, visit).within(-1);
 }
 
 std::vector<ValueId> everything(const ir::Module& module) {

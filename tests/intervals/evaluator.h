@@ -1,6 +1,7 @@
 // A module evaluated in float32, value by value.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -10,9 +11,10 @@
 namespace lacquer::test {
 
 /// The values of `ids` (ascending, operands included), by id. Light-rate values are those of one light, which
-/// every sum takes as many times as lights are on.
+/// every sum takes as many times as lights are on. `visit` sees each as it is computed, those of loops in
+/// every round.
 void evaluate(const ir::Module& module, std::span<const ir::ValueId> ids, const World& world,
-              std::vector<Floats>& values);
+              std::vector<Floats>& values, const std::function<void(ir::ValueId)>& visit = {});
 
 /// Everything that the outputs, varyings and preshader reach.
 std::vector<ir::ValueId> everything(const ir::Module& module);

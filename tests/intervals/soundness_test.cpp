@@ -8,6 +8,7 @@
 
 #include "intervals/evaluator.h"
 #include "ir/facts.h"
+#include "ir/loops.h"
 #include "ir/whole.h"
 #include "lower/lower.h"
 #include "passes/pipeline.h"
@@ -30,9 +31,8 @@ size_t violations(const ir::Module& module, const Intervals& intervals, int samp
   std::vector<Floats> values;
   size_t count = 0;
   for (int i = 0; i < samples; ++i) {
-    evaluate(module, ids, World(static_cast<uint64_t>(i), limit), values);
-    for (const ValueId id : ids) {
-      if (ir::isTexture(module.dag[id].type)) continue;
+    evaluate(module, ids, World(static_cast<uint64_t>(i), limit), values, [&](ValueId id) {
+      if (ir::isTexture(module.dag[id].type)) return;
       for (int c = 0; c < std::min(ir::componentCount(module.dag[id].type), 4); ++c) {
         const float held = values[id][static_cast<size_t>(c)];
         const bool whole = ir::isWhole(ir::partType(module.dag[id].type));
@@ -47,7 +47,7 @@ size_t violations(const ir::Module& module, const Intervals& intervals, int samp
              << r.hi << "] (world " << i << ")";
         what = text.str();
       }
-    }
+    });
   }
   return count;
 }
@@ -63,7 +63,7 @@ void expectSound(const ir::Module& module, const analysis::IntervalOptions& opti
 /// A random DAG over a few inputs; made through the constructor, so that its rules apply.
 class RandomDag {
 public:
-  explicit RandomDag(uint32_t seed) : random_(seed) {
+  explicit RandomDag(uint32_t seed, bool loops = false) : random_(seed), loops_(loops) {
     const ir::Interval ranges[] = {{0, 1},  {-1, 1}, {0.25, 3},
                                    {-2, 0}, {},      {0, std::numeric_limits<double>::infinity()}};
     for (int i = 0; i < 6; ++i) {
@@ -73,7 +73,7 @@ public:
                              ranges[pick(6)], 0, static_cast<uint32_t>(i)}));
     }
     for (const double x : {0.0, 1.0, 0.5, -0.3, 1e-30}) values_.push_back(module_.dag.constant(x));
-    for (int i = 0; i < 60; ++i) add();
+    for (int i = 0; i < (loops ? 20 : 60); ++i) add();
     for (uint32_t i = 0; i < 4; ++i) {
       module_.outputs.push_back({ir::OutputKind::Color, ir::Stage::Fragment, "o" + std::to_string(i), i,
                                  values_[values_.size() - 1 - i]});
@@ -91,7 +91,49 @@ private:
     }
   }
 
+  /// A loop that carries two numbers, with some operations in a round; of few rounds, or of very many.
+  void loop() {
+    ir::Dag& dag = module_.dag;
+    ++depth_;
+    const uint32_t own = dag.openLoop();
+    const double first = static_cast<double>(pick(4)) - 2;
+    const double most = depth_ == 1 && pick(4) == 0 ? 65 + static_cast<double>(pick(300)) : 1 + pick(6);
+    const ValueId past = dag.constant(Type::Int, {first + most});
+    ValueId end = pick(2) == 0 ? past : integer(false);
+    end = dag.make(Op::Select, {dag.make(Op::IntLess, {past, end}), past, end});
+    const ValueId index = dag.input({ir::InputKind::LoopIndex,
+                                     "round",
+                                     Type::Int,
+                                     ir::Rate::Material,
+                                     {first, first + most - 1},
+                                     0,
+                                     own});
+    const Type types[] = {Type::Float, pick(2) == 0 ? Type::Float : Type::Vec3};
+    ValueId carried[2], begin[2];
+    for (uint32_t k = 0; k < 2; ++k) {
+      ir::Input input{
+          ir::InputKind::LoopValue, "c" + std::to_string(k), types[k], ir::Rate::Material, {}, 0, own};
+      input.index = k;
+      begin[k] = of(types[k]);
+      carried[k] = dag.input(input);
+    }
+    const size_t outside = values_.size();
+    for (int i = 0; i < 3; ++i) values_.insert(values_.end(), {carried[0], carried[1], number(index)});
+    for (size_t i = 2 + pick(6); i > 0; --i) add();
+    ValueId chain = dag.make(Op::Loop, {end, index});
+    for (size_t k = 0; k < 2; ++k) {
+      ValueId next = of(types[k]);
+      if (pick(3) == 0) next = dag.add(carried[k], dag.mul(next, dag.constant(0.5)));
+      if (pick(3) == 0) next = dag.make(Op::Fract, {next});
+      chain = dag.make(Op::Carry, {chain, begin[k], next, carried[k]});
+    }
+    values_.resize(outside);
+    for (uint32_t k = 0; k < 2; ++k) values_.push_back(dag.carried(chain, k));
+    --depth_;
+  }
+
   void add() {
+    if (loops_ && depth_ < 2 && pick(10) == 0) return loop();
     const Op op = static_cast<Op>(pick(ir::kOpCount));
     if (ir::facts(op).kind == ir::Kind::Surroundings) return add();
     ir::Dag& dag = module_.dag;
@@ -189,6 +231,8 @@ private:
   }
 
   std::mt19937 random_;
+  bool loops_;
+  int depth_ = 0;
   ir::Module module_;
   std::vector<ValueId> values_;
 };
@@ -198,6 +242,36 @@ TEST(IntervalSoundness, RandomDags) {
     const RandomDag random(seed);
     expectSound(random.module(), {}, 100, "seed " + std::to_string(seed));
     expectSound(random.module(), {analysis::Arithmetic::Vulkan, 1e4}, 100, "seed " + std::to_string(seed));
+  }
+}
+
+TEST(IntervalSoundness, RandomLoops) {
+  size_t loops = 0;
+  for (uint32_t seed = 0; seed < 300; ++seed) {
+    const RandomDag random(seed, true);
+    const std::string name = "seed " + std::to_string(seed);
+    const ir::Loops found(random.module().dag, everything(random.module()));
+    ASSERT_FALSE(found.broken()) << name;
+    loops += found.all().size();
+    expectSound(random.module(), {}, 40, name);
+    expectSound(random.module(), {analysis::Arithmetic::Vulkan, 1e4}, 40, name);
+  }
+  EXPECT_GT(loops, 300U);
+}
+
+/// What is there of a loop's body alone is evaluated with the whole loop.
+TEST(IntervalSoundness, PartsOfLoops) {
+  for (uint32_t seed = 0; seed < 100; ++seed) {
+    const ir::Module module = RandomDag(seed, true).module();
+    Intervals whole(module);
+    whole.run();
+    const std::vector<ValueId> all = everything(module);
+    for (const ValueId id : all) {
+      Intervals part(module);
+      part.run(ir::reachable(module.dag, {{id}}));
+      for (int c = 0; c < std::min(ir::componentCount(module.dag[id].type), 4); ++c)
+        ASSERT_EQ(part.at(id, c), whole.at(id, c)) << "seed " << seed << " %" << id;
+    }
   }
 }
 
