@@ -172,11 +172,48 @@ TEST(Contract, PassesAreTheMaterialsOwnWhateverProgramsTheyShare) {
     EXPECT_EQ(passOf("Ghost"), "blended");
     EXPECT_EQ(passOf("Pane"), "looks_through");
     EXPECT_EQ(made.default_material->state.pass, Pass::Opaque);
-    EXPECT_EQ(made.shaders.size() == 1, programs == 1) << made.shaders.size();
+    // One that morphs, one that does not.
+    EXPECT_EQ(made.shaders.size() == 2, programs == 1) << made.shaders.size();
     for (const ContractMaterial& material : made.materials)
       EXPECT_EQ(material.state.depth_write, material.name != "Ghost");
   }
   EXPECT_EQ(passName(static_cast<Pass>(77)), "");
+}
+
+/// A shared program is for one vertex stage: skins, instances and morph targets are no material's choice.
+TEST(Contract, ProgramsAreSharedWithinAVertexStage) {
+  const char* const file = R"({"asset": {"version": "2.0"}, "extensionsUsed": ["EXT_mesh_gpu_instancing"],
+    "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
+      {"componentType": 5121, "count": 3, "type": "VEC4"}, {"componentType": 5126, "count": 3, "type": "VEC4"}],
+    "materials": [{}, {"alphaMode": "MASK"}, {"alphaMode": "BLEND"}, {"doubleSided": true, "alphaMode": "BLEND"}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "material": 0},
+      {"attributes": {"POSITION": 0, "NORMAL": 0}, "material": 1},
+      {"attributes": {"POSITION": 0, "NORMAL": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}, "material": 2}]},
+      {"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "material": 3}]}],
+    "nodes": [{"mesh": 1, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}}]})";
+  Options options = forContract();
+  options.programs = 1;
+  options.programs_model = true;
+  Messages messages;
+  const Scene scene = Scene::fromMemory(file, "file.gltf", options, messages);
+  const Contract made = contract(scene, {}, options, messages);
+  EXPECT_EQ(made.shaders.size(), 3U);
+  EXPECT_EQ(errorsOf(messages), "");
+  const bool warned = std::any_of(messages.begin(), messages.end(), [](const Message& message) {
+    return message.code == "programs" && message.help.find("3 different vertex stages") != std::string::npos;
+  });
+  EXPECT_TRUE(warned);
+  for (const ContractPrimitive& primitive : made.primitives) {
+    const Drawn drawn = made.drawn(primitive);
+    ASSERT_TRUE(drawn);
+    const auto reads = [&](const char* name) {
+      const std::vector<ShaderInput>& inputs = drawn.shader->shader.reflection().inputs;
+      return std::any_of(inputs.begin(), inputs.end(),
+                         [&](const ShaderInput& input) { return input.name == name; });
+    };
+    EXPECT_EQ(reads("JOINTS_0"), drawn.use->attributes.skin[0]);
+    EXPECT_EQ(reads("TRANSLATION"), drawn.use->attributes.instances);
+  }
 }
 
 /// What a material's shader alone draws, the program that it shares draws, too: it asks for what the material

@@ -434,9 +434,14 @@ Result<United> Uniter::run() {
     if (member->template_name != template_name)
       return tl::make_unexpected(differ("they are for different templates"));
   }
+  for (const Graph* member : members_) {
+    if (member->attributes != members_[0]->attributes)
+      return tl::make_unexpected(differ("the primitives need different vertex stages"));
+  }
   const Result<const lang::TemplateDecl*> decl = library_.template_(template_name);
   if (!decl) return tl::make_unexpected(decl.error());
   united_.graph.template_name = template_name;
+  united_.graph.attributes = members_[0]->attributes;
   index();
   outputs(**decl);
   if (wrong_.empty()) {

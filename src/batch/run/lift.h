@@ -37,6 +37,7 @@ public:
   }
   bool closed() const override { return false; }
   const Key& digest() const override { return digest_; }
+  Diagnostics about(size_t) const override { return {}; }
   /// Null for a structure of which no material came. Not beside note().
   const Example* of(const Key& structure) const;
 

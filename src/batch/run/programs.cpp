@@ -1,5 +1,6 @@
 #include "run/programs.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -47,11 +48,24 @@ std::vector<OwnProgram> ownPrograms(const std::vector<const Structure*>& structu
   return all;
 }
 
+/// What a shader is specialised in that no material chooses: the known lights, and what a primitive has
+/// beside its material, such as a skin.
+using Domain = std::pair<std::map<std::string, int>, std::vector<std::string>>;
+
+std::map<std::string, int> lightsOf(const OwnProgram& program) {
+  const passes::LightFacts& lights = program.structures[0]->lights;
+  std::map<std::string, int> counts(lights.counts.begin(), lights.counts.end());
+  counts[""] = lights.any ? 1 : 0;
+  return counts;
+}
+
+Domain domainOf(const OwnProgram& program) { return {lightsOf(program), program.graphs[0].attributes}; }
+
 std::vector<Item> itemsOf(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses,
                           ProgramCosts& costs) {
   std::map<std::string_view, std::vector<double>> weights;
   for (const ProgramUse& use : uses) weights[use.shader].push_back(use.weight);
-  std::map<std::map<std::string, int>, uint32_t> domains;
+  std::map<Domain, uint32_t> domains;
   std::vector<Item> items;
   std::vector<Places> alone;
   for (uint32_t i = 0; i < all.size(); ++i) {
@@ -59,10 +73,7 @@ std::vector<Item> itemsOf(const std::vector<OwnProgram>& all, const std::vector<
     std::vector<double>& shares = weights[all[i].shader];
     std::sort(shares.begin(), shares.end());  // a sum in the order of the files would be rounded by it
     for (const double share : shares) item.weight += share;
-    const passes::LightFacts& lights = all[i].structures[0]->lights;
-    std::map<std::string, int> domain(lights.counts.begin(), lights.counts.end());
-    domain[""] = lights.any ? 1 : 0;
-    item.domain = domains.emplace(std::move(domain), static_cast<uint32_t>(domains.size())).first->second;
+    item.domain = domains.emplace(domainOf(all[i]), static_cast<uint32_t>(domains.size())).first->second;
     items.push_back(std::move(item));
     alone.push_back({i});
   }
@@ -119,12 +130,14 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
     : setting_(setting) {
   const Options& options = setting.options;
   const std::vector<OwnProgram> all = ownPrograms(structures, examples, setting);
-  std::set<std::map<std::string, int, std::less<>>> lights;
+  std::set<std::map<std::string, int>> lights;
+  std::set<std::vector<std::string>> vertices;
   for (const OwnProgram& one : all) {
-    const passes::LightFacts& known = one.structures[0]->lights;
-    lights.insert({known.counts.begin(), known.counts.end()});
+    lights.insert(lightsOf(one));
+    vertices.insert(one.graphs[0].attributes);
   }
   light_sets_ = lights.size();
+  vertex_sets_ = vertices.size();
   ProgramCosts costs(setting, all, options.programs_model);
   const std::vector<Item> items = itemsOf(all, uses, costs);
   const bool report = !options.programs_report.empty();
@@ -181,6 +194,29 @@ Sharing::Share Programs::bring(graph::Graph& graph, const material::Material* ma
   if (place == group.places.end()) return {};
   graph = programs::instance(group.united, place->second, own);
   return {&group.united.fills[place->second], found->second.looks_through};
+}
+
+Diagnostics Programs::about(size_t made) const {
+  const size_t wanted = setting_.options.programs;
+  if (wanted == 0 || made <= wanted) return {};
+  std::string help = fmt::format("the others cannot be made one: give --programs {}", made);
+  if (light_sets_ > 1) {
+    help = fmt::format(
+        "materials of {} different sets of known lights share none: give --lights any, or the same counts "
+        "for all, or --programs {}",
+        light_sets_, made);
+  } else if (vertex_sets_ > 1) {
+    help = fmt::format(
+        "primitives of {} different vertex stages (skins, morph targets, instances, integers) share none: "
+        "give --programs {}",
+        vertex_sets_, made);
+  }
+  return {{"programs",
+           Severity::Warning,
+           {},
+           fmt::format("there are {} programs, not at most {}", made, wanted),
+           std::move(help),
+           {}}};
 }
 
 void Programs::close() {

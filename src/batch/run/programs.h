@@ -57,8 +57,7 @@ public:
   bool closed() const override { return closed_; }
   const Key& digest() const override { return digest_; }
   const programs::Curve& curve() const { return curve_; }
-  /// Different known lights: materials share programs only within one of these.
-  size_t lightSets() const { return light_sets_; }
+  Diagnostics about(size_t made) const override;
 
 private:
   /// Structures that share a program.
@@ -80,7 +79,8 @@ private:
   bool closed_ = false;
   Key digest_;
   programs::Curve curve_;
-  size_t light_sets_ = 0;
+  /// Different known lights, and vertex stages: materials share programs only within one of each.
+  size_t light_sets_ = 0, vertex_sets_ = 0;
 };
 
 /// What is wrong with the options that ask for programs: "programs-baked", "report-format".

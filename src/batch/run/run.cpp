@@ -177,26 +177,8 @@ void Run::read(const std::vector<std::string>& files, InputKind kind, const std:
         seen.insert(seen.end(), result.names.begin(), result.names.end());
         each(result);
       });
-  if (programs_) warnOfPrograms();
+  if (programs_) report(programs_->about(structures_->shaders().size()), {});
   checkNames(only, seen);
-}
-
-/// Of more programs than were asked for.
-void Run::warnOfPrograms() {
-  const size_t made = structures_->shaders().size();
-  if (options_.programs == 0 || made <= options_.programs) return;
-  const size_t lights = programs_->lightSets();
-  report(
-      {{"programs",
-        Severity::Warning,
-        {},
-        fmt::format("there are {} programs, not at most {}", made, options_.programs),
-        lights > 1 ? fmt::format("materials of {} different sets of known lights share none: give --lights "
-                                 "any, or the same counts for all, or --programs {}",
-                                 lights, made)
-                   : fmt::format("the others cannot be made one: give --programs {}", made),
-        {}}},
-      {});
 }
 
 void Run::checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen) {

@@ -62,7 +62,6 @@ private:
                const std::function<FileResult(const std::string&)>& read,
                const std::function<void(FileResult&)>& each);
   bool checkPrograms();
-  void warnOfPrograms();
   void mergePrograms(const std::vector<std::string>& files, InputKind kind,
                      const std::vector<std::string>& only);
   void checkNames(const std::vector<std::string>& only, const std::vector<std::string>& seen);

@@ -71,6 +71,8 @@ public:
   virtual bool closed() const = 0;
   /// Of everything that it decides.
   virtual const Key& digest() const = 0;
+  /// A warning where so many shaders are more than the options ask for.
+  virtual Diagnostics about(size_t made) const = 0;
 };
 
 /// Everything that the code depends on beside the graph: this build, the node library, options.

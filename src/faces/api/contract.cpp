@@ -91,6 +91,7 @@ Contract Making::make(const Strings& materials, const Progress& progress) {
     if (progress) progress(done, known);
   });
   report(made.diagnostics, document_.path, messages_);
+  if (sharing) report(sharing->about(made.shaders.size()), {}, messages_);
   contract = std::move(made.values);
   const Result<const material::Schema*> schema = language_->models.schema();
   for (size_t i = 0; i < made.shaders.size(); ++i)
