@@ -26,6 +26,8 @@ out vec3 v_position;
 out vec3 v_normal;
 out vec2 v_uv0;
 
+invariant gl_Position;
+
 void main() {
     // world
     vec4 world = object.model * vec4(in_position, 1.0);

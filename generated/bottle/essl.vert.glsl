@@ -56,6 +56,8 @@ out vec3 v_position;
 out vec3 v_normal;
 out float v_volume_length;
 
+invariant gl_Position;
+
 void main() {
     // world
     vec4 world = object.model * vec4(in_position, 1.0);

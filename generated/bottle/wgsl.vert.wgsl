@@ -52,7 +52,7 @@ struct Material {
 @group(1) @binding(0) var<uniform> material: Material;
 
 struct VertexOutputs {
-    @builtin(position) position: vec4f,
+    @builtin(position) @invariant position: vec4f,
     @location(0) v_position: vec3f,
     @location(1) v_normal: vec3f,
     @location(2) v_volume_length: f32,

@@ -25,6 +25,8 @@ layout(location = 1) out vec3 v_normal;
 layout(location = 2) out vec4 v_tangent;
 layout(location = 3) out vec2 v_uv0;
 
+invariant gl_Position;
+
 void main() {
     // world
     vec4 world = object.model * vec4(in_position, 1.0);

@@ -19,7 +19,7 @@ struct Object {
 @group(2) @binding(0) var<uniform> object: Object;
 
 struct VertexOutputs {
-    @builtin(position) position: vec4f,
+    @builtin(position) @invariant position: vec4f,
     @location(0) v_position: vec3f,
     @location(1) v_normal: vec3f,
     @location(2) v_tangent: vec4f,

@@ -29,7 +29,7 @@ void main(
     out float3 v_position : TEXCOORD0,
     out float3 v_normal : TEXCOORD1,
     out float4 v_COLOR_0 : TEXCOORD2,
-    out float4 out_position : SV_Position) {
+    out precise float4 out_position : SV_Position) {
     // world
     float4 world = mul(object.model, float4(in_position, 1.0));
 

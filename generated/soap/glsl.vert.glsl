@@ -23,6 +23,8 @@ layout(location = 0) out vec3 v_position;
 layout(location = 1) out vec3 v_normal;
 layout(location = 2) out vec2 v_uv0;
 
+invariant gl_Position;
+
 void main() {
     // world
     vec4 world = object.model * vec4(in_position, 1.0);

@@ -24,6 +24,8 @@ layout(location = 1) in vec3 in_normal;
 out vec3 v_position;
 out vec3 v_normal;
 
+invariant gl_Position;
+
 void main() {
     // world
     vec4 world = object.model * vec4(in_position, 1.0);

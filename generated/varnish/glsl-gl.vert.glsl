@@ -21,6 +21,8 @@ layout(location = 1) in vec3 in_normal;
 layout(location = 0) out vec3 v_position;
 layout(location = 1) out vec3 v_normal;
 
+invariant gl_Position;
+
 void main() {
     // world
     vec4 world = object.model * vec4(in_position, 1.0);

@@ -252,6 +252,10 @@ private:
   }
 
   void outputs(Text& text, const ir::Module& module, const schedule::Program& program) const {
+    if (program.stage == ir::Stage::Vertex) {
+      text.blank();
+      text.line("invariant gl_Position;");
+    }
     if (!program.outputs.empty()) text.blank();
     for (uint32_t index : program.outputs) {
       const ir::Output& o = module.outputs[index];

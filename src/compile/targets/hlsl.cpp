@@ -159,7 +159,7 @@ private:
     }
     for (const ir::Output& o : module.outputs) {
       if (vertex && o.kind == ir::OutputKind::Position) {
-        list.push_back(fmt::format("out {} {} : SV_Position", type(Type::Vec4), position()));
+        list.push_back(fmt::format("out precise {} {} : SV_Position", type(Type::Vec4), position()));
       }
     }
     if (program.front_facing) list.push_back(fmt::format("bool {} : SV_IsFrontFace", frontFacing()));

@@ -369,7 +369,7 @@ private:
   std::vector<std::string> results(const ir::Module& module, const schedule::Program& program) const {
     std::vector<std::string> members;
     if (program.stage == ir::Stage::Vertex) {
-      members.emplace_back("@builtin(position) position: vec4f");
+      members.emplace_back("@builtin(position) @invariant position: vec4f");
       for (const uint32_t index : program.varyings) members.push_back(varying(module.varyings[index]));
     }
     for (const uint32_t index : program.outputs) {

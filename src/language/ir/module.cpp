@@ -51,6 +51,16 @@ std::vector<ValueId> reachable(const Module& module, Stage stage) {
   return reachable(module.dag, roots);
 }
 
+std::vector<bool> ofPositions(const Module& module, Stage stage) {
+  std::vector<ValueId> roots;
+  for (const Output& output : module.outputs) {
+    if (output.stage == stage && output.kind == OutputKind::Position) roots.push_back(output.value);
+  }
+  std::vector<bool> made_of(module.dag.size(), false);
+  for (const ValueId id : reachable(module.dag, roots)) made_of[id] = true;
+  return made_of;
+}
+
 namespace {
 
 template <class Module, class Visit>

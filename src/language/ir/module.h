@@ -203,6 +203,8 @@ std::optional<uint32_t> blockOf(const Module& module, ValueId id);
 
 /// The values that the outputs of a stage reach (both stages when none is given), ascending.
 std::vector<ValueId> reachable(const Module& module, Stage stage);
+/// By value, whether the stage's positions are made of it.
+std::vector<bool> ofPositions(const Module& module, Stage stage);
 
 /// All values that the module holds by id: outputs, sources of varyings, preshader fields.
 std::vector<ValueId> roots(const Module& module);

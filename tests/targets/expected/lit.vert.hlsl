@@ -26,7 +26,7 @@ void main(
     out float3 v_position : TEXCOORD0,
     out float3 v_normal : TEXCOORD1,
     out float2 v_uv : TEXCOORD2,
-    out float4 out_position : SV_Position) {
+    out precise float4 out_position : SV_Position) {
     // vertex.position
     float4 world_position = mul(object.model, float4(in_position, 1.0));
 

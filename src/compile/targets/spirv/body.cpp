@@ -56,7 +56,8 @@ Body::Body(const ir::Module& module, const schedule::Program& program, const Int
 
 /// a b + c is one instruction, as are a b - c and c - a b. GPUs have it, and its rounding is within what
 /// SPIR-V allows the two. Of two products the one that nothing else reads is preferred, since it need not be
-/// made at all; where something does, the sum at least does not wait for it.
+/// made at all; where something does, the sum at least does not wait for it. Positions are left out: what
+/// else a stage computes must not decide how they are rounded.
 void Body::findFusedProducts() {
   std::vector<uint32_t> uses(dag_.size(), 0);
   for (const ValueId id : live_) {
@@ -65,7 +66,9 @@ void Body::findFusedProducts() {
   for (const ir::Output& output : module_.outputs) ++uses[output.value];
   fused_.assign(dag_.size(), 0);
   product_in_.assign(dag_.size(), 0);
+  const std::vector<bool> invariant = ir::ofPositions(module_, program_.stage);
   for (const ValueId id : live_) {
+    if (invariant[id]) continue;
     const ir::Value& sum = dag_[id];
     if ((sum.op != Op::Add && sum.op != Op::Sub) || dag_[sum.args[0]].type != dag_[sum.args[1]].type)
       continue;

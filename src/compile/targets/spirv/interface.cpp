@@ -163,6 +163,7 @@ private:
       if (o.kind != ir::OutputKind::Position || o.stage != program_.stage) continue;
       made_.outputs[index] =
           io(out, ir::Type::Vec4, "gl_Position", spv::DecorationBuiltIn, spv::BuiltInPosition);
+      globals_.decorations.op(spv::OpDecorate, made_.outputs[index], spv::DecorationInvariant);
     }
     for (const uint32_t index : program_.outputs) {
       const ir::Output& o = module_.outputs[index];
