@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
 #include <thread>
+#include <tuple>
+
+#include "lang/embedded.h"
 
 namespace lacquer::lang {
 namespace {
@@ -121,6 +126,74 @@ TEST(LangLibrary, ManyErrorsEndInANote) {
 TEST(LangLibrary, EverythingEmbeddedChecks) {
   const Library library = Library::embedded();
   for (const Diagnostic& diagnostic : library.checkAll()) ADD_FAILURE() << format(diagnostic);
+}
+
+/// The table of names, made when the library is built, is what each file declares.
+TEST(LangStandard, TheTableNamesWhatTheFilesDeclare) {
+  const EmbeddedStandard standard = embeddedStandard();
+  ASSERT_GT(standard.names.size(), 50U);
+  std::set<std::tuple<std::string_view, uint16_t, bool>> told, declared;
+  for (const EmbeddedName& name : standard.names) told.emplace(name.name, name.file, name.constant);
+  EXPECT_EQ(told.size(), standard.names.size());
+  EXPECT_TRUE(std::is_sorted(standard.names.begin(), standard.names.end(),
+                             [](const auto& a, const auto& b) { return a.name < b.name; }));
+  std::vector<Library> libraries;  // names view into them
+  for (size_t i = 0; i < standard.files.size(); ++i) {
+    auto library =
+        Library::fromFiles({{std::string(standard.files[i].name), std::string(standard.files[i].text)}});
+    ASSERT_TRUE(library) << format(library.error()[0]);
+    const auto file = static_cast<uint16_t>(i);
+    for (const std::string_view name : library->names(DeclKind::Node))
+      declared.emplace(name.substr(0, name.find('<')), file, false);
+    for (const std::string_view name : library->names(DeclKind::Const)) declared.emplace(name, file, true);
+    for (const DeclKind other : {DeclKind::Template, DeclKind::Extension, DeclKind::Part, DeclKind::Switch})
+      EXPECT_TRUE(library->names(other).empty()) << "a standard file declares nodes and constants";
+    libraries.push_back(std::move(*library));
+  }
+  EXPECT_EQ(told, declared);
+}
+
+TEST(LangStandard, ANodeIsThereWhenItIsNamed) {
+  const Library library = Library::embedded();
+  EXPECT_TRUE(library.has(DeclKind::Node, "add<vec3>"));
+  EXPECT_FALSE(library.has(DeclKind::Node, "add"));
+  EXPECT_FALSE(library.has(DeclKind::Node, "add<sampler2D>"));
+  EXPECT_EQ(library.forms("add").size(), 12U);
+  EXPECT_TRUE(library.node("mix<vec3, float>"));
+  const auto near = library.node("subtrakt<vec3>");
+  ASSERT_FALSE(near);
+  EXPECT_NE(format(near.error()[0]).find("did you mean 'subtract<vec3>'"), std::string::npos);
+}
+
+/// Calls mean the built-in function, and names of values never a standard node.
+TEST(LangStandard, TextsOfOnesOwnCallStandardNodes) {
+  Library library = Library::embedded();
+  ASSERT_TRUE(library.add({{"a.node",
+                            "/// D.\n/// source: S\nnode mine(float range, vec3 v) -> vec3 {\n"
+                            "  float mask = mix(range, 1, 0.5);\n"
+                            "  return contrast(v, mask, STANDARD_DIVISOR_MIN);\n}\n"}}));
+  const auto mine = library.node("mine");
+  ASSERT_TRUE(mine) << format(mine.error()[0]);
+  ASSERT_TRUE(library.add({{"b.node", node("more", "return rang;")}}));
+  const auto more = library.node("more");
+  ASSERT_FALSE(more);
+  EXPECT_EQ(more.error()[0].code, "unknown-value");
+}
+
+TEST(LangStandard, ANameIsDeclaredOnce) {
+  Library library = Library::embedded();
+  const auto twice = library.add({{"a.node", node("contrast", "return x;")}});
+  ASSERT_FALSE(twice);
+  EXPECT_EQ(twice.error()[0].code, "duplicate-name");
+  EXPECT_NE(twice.error()[0].help.find("nodes/standard/adjustment.node:"), std::string::npos);
+  // What the failure brought in went with it, and comes again.
+  EXPECT_TRUE(library.node("contrast<vec2>"));
+  EXPECT_FALSE(library.add({{"a.node", node("contrast", "return x;")}}));
+  // Another form of one's own is one more of the name.
+  const size_t forms = library.forms("contrast").size();
+  ASSERT_TRUE(library.add(
+      {{"b.node", "/// D.\n/// source: S\nnode contrast<mat3>(mat3 in) -> mat3 { return in; }\n"}}));
+  EXPECT_EQ(library.forms("contrast").size(), forms + 1);
 }
 
 }  // namespace

@@ -209,6 +209,12 @@ void Intervals::vectorOp(ValueId id) {
     for (int c = 0; c < ir::componentCount(value.type); ++c) {
       out[static_cast<size_t>(c)] = at(a, ir::swizzleComponent(value.payload, c));
     }
+  } else if (value.op == Op::Construct && ir::isMatrix(value.type)) {
+    Range all = at(a, 0);
+    for (const ValueId part : value.operands()) {
+      for (int c = 0; c < std::min(ir::componentCount(dag_[part].type), 4); ++c) all = hull(all, at(part, c));
+    }
+    out.fill(all);
   } else if (value.op == Op::Construct) {
     size_t next = 0;
     for (const ValueId part : value.operands()) {

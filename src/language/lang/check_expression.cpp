@@ -532,7 +532,7 @@ bool Checker::function(Expr& expr) {
 bool Checker::call(Expr& expr) {
   // What is built in is meant in bodies; a node of such a name is for graphs.
   if (findFunction(expr.name) != nullptr) return function(expr);
-  const auto found = around_.find(expr.name);
+  const auto found = around_.find(expr.name, true);
   if (!found || found->kind != DeclKind::Node) {
     for (ExprPtr& arg : expr.args) expression(arg);
     if (found || find(expr.name) != nullptr) {

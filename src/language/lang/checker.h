@@ -28,13 +28,14 @@ public:
     bool open = false;    ///< it is being checked: it uses itself
     bool family = false;  ///< a name of several nodes: forms()
   };
-  virtual std::optional<Found> find(std::string_view name) const = 0;
+  /// A standard node is found only where one is `called`: names of values do not bring its text in.
+  virtual std::optional<Found> find(std::string_view name, bool called = false) = 0;
   /// The heads of the nodes of that name that parse; each has its parameters and results, unchecked.
   virtual std::vector<const NodeDecl*> forms(std::string_view family) = 0;
   /// Checks the node of one of these heads.
   virtual Found form(std::string_view key) = 0;
   /// All names of that kind, for suggestions.
-  virtual std::vector<std::string_view> names(DeclKind kind) const = 0;
+  virtual std::vector<std::string_view> names(DeclKind kind) = 0;
   /// How an open declaration came to use itself: "a -> b -> a".
   virtual std::string cycle(std::string_view name) const = 0;
 

@@ -10,6 +10,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "lang/builtins.h"
 #include "lang/checker.h"
 #include "lang/embedded.h"
 #include "lang/forms.h"
@@ -94,26 +95,35 @@ public:
     return (entry->*decl).get();
   }
 
-  std::optional<Found> find(std::string_view name) const override;
+  std::optional<Found> find(std::string_view name, bool called) override;
   std::vector<const NodeDecl*> forms(std::string_view family) override;
   Found form(std::string_view key) override;
-  std::vector<std::string_view> names(DeclKind kind) const override;
+  std::vector<std::string_view> names(DeclKind kind) override;
+  /// Reads all of the standard nodes' files.
+  void wakeAll();
   std::string cycle(std::string_view name) const override;
 
   std::mutex mutex;
   std::deque<File> files;
   std::deque<Entry> entries;  ///< by file, then by place
   Diagnostics scan_errors;    ///< of embedded files
+  bool has_standard = false;  ///< it has the standard nodes, each file of which is read when it is wanted
   /// The default one, once it was looked for; more files may bring another.
   const Entry* default_template = nullptr;
 
 private:
-  tl::unexpected<Diagnostics> missing(DeclKind kind, std::string_view name) const;
+  tl::unexpected<Diagnostics> missing(DeclKind kind, std::string_view name);
   void parse(Entry& entry, Reporter& reporter);
   void check(Entry& entry, Reporter& reporter);
   bool basesOf(const Entry& entry, Reporter& reporter, std::vector<TemplateDecl>& bases);
   void collect(Entry& entry, std::unordered_set<const Entry*>& seen, Diagnostics& out);
 
+  /// Reads the file of the standard nodes that declares the name, if one does; of a form by what stands
+  /// before its types.
+  void wake(std::string_view name, bool constants_only);
+  void wakeFile(size_t number);
+  Entry* known(DeclKind kind, std::string_view name);
+  void scanFile(const File& file, Diagnostics& errors);
   bool index(const ScannedDecl& decl, const File& file, uint32_t line, Reporter& reporter);
   bool indexForms(const ScannedDecl& decl, std::vector<Form> forms, const File& file, uint32_t line,
                   Reporter& reporter);
@@ -124,6 +134,12 @@ private:
   std::unordered_map<std::string_view, std::vector<Entry*>>
       families_;  ///< by name, in the order of the texts
   std::vector<Entry*> open_;
+  struct Awake {
+    File file;
+    bool awake = false;
+  };
+  std::vector<std::unique_ptr<Awake>> standard_;  ///< by the file's number; empty before the first is read
+  std::vector<std::pair<size_t, Awake*>> woken_;  ///< with how many entries there were before
 };
 
 Diagnostics Library::Impl::scanFrom(size_t first) {
@@ -141,22 +157,7 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
                         {}});
       continue;
     }
-    Reporter reporter(file.name, file.text);
-    uint32_t line = 1;
-    const char* counted = file.text.data();
-    for (const ScannedDecl& decl : scan(reporter)) {
-      line += static_cast<uint32_t>(std::count(counted, decl.name.data(), '\n'));
-      counted = decl.name.data();
-      const auto after = static_cast<uint32_t>(decl.name.data() + decl.name.size() - file.text.data());
-      std::vector<Form> forms;
-      if (decl.kind == DeclKind::Node) forms = formsOf(reporter, decl.name, after, decl.end);
-      if (forms.empty())
-        index(decl, file, line, reporter);
-      else
-        indexForms(decl, std::move(forms), file, line, reporter);
-    }
-    Diagnostics found = reporter.take();
-    errors.insert(errors.end(), found.begin(), found.end());
+    scanFile(file, errors);
   }
   if (errors.empty()) {
     // What was wrong may be right now.
@@ -173,7 +174,60 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
   return errors;
 }
 
+void Library::Impl::scanFile(const File& file, Diagnostics& errors) {
+  Reporter reporter(file.name, file.text);
+  uint32_t line = 1;
+  const char* counted = file.text.data();
+  for (const ScannedDecl& decl : scan(reporter)) {
+    line += static_cast<uint32_t>(std::count(counted, decl.name.data(), '\n'));
+    counted = decl.name.data();
+    // A standard node of that name comes first, so that the two meet in one order.
+    if (spaceOf(decl.kind) == 0) wake(decl.name, false);
+    const auto after = static_cast<uint32_t>(decl.name.data() + decl.name.size() - file.text.data());
+    std::vector<Form> forms;
+    if (decl.kind == DeclKind::Node) forms = formsOf(reporter, decl.name, after, decl.end);
+    if (forms.empty())
+      index(decl, file, line, reporter);
+    else
+      indexForms(decl, std::move(forms), file, line, reporter);
+  }
+  Diagnostics found = reporter.take();
+  errors.insert(errors.end(), found.begin(), found.end());
+}
+
+void Library::Impl::wake(std::string_view name, bool constants_only) {
+  if (!has_standard) return;
+  name = name.substr(0, name.find('<'));
+  const std::span<const EmbeddedName> table = embeddedStandard().names;
+  const auto row =
+      std::lower_bound(table.begin(), table.end(), name,
+                       [](const EmbeddedName& one, std::string_view wanted) { return one.name < wanted; });
+  if (row != table.end() && row->name == name && (row->constant || !constants_only)) wakeFile(row->file);
+}
+
+void Library::Impl::wakeFile(size_t number) {
+  const std::span<const EmbeddedFile> all = embeddedStandard().files;
+  if (standard_.empty()) standard_.resize(all.size());
+  std::unique_ptr<Awake>& slot = standard_[number];
+  if (!slot) {
+    slot = std::make_unique<Awake>();
+    slot->file.name = all[number].name;
+    slot->file.text = all[number].text;
+  }
+  if (slot->awake) return;
+  slot->awake = true;
+  woken_.emplace_back(entries.size(), slot.get());
+  scanFile(slot->file, scan_errors);
+}
+
+void Library::Impl::wakeAll() {
+  if (!has_standard) return;
+  for (size_t i = 0; i < embeddedStandard().files.size(); ++i) wakeFile(i);
+}
+
 void Library::Impl::forget(size_t old_entries) {
+  for (; !woken_.empty() && woken_.back().first >= old_entries; woken_.pop_back())
+    woken_.back().second->awake = false;
   while (entries.size() > old_entries) {
     const Entry& last = entries.back();
     index_[spaceOf(last.kind)].erase(last.name);
@@ -248,6 +302,7 @@ bool Library::Impl::indexForms(const ScannedDecl& decl, std::vector<Form> forms,
 }
 
 std::vector<const NodeDecl*> Library::Impl::forms(std::string_view family) {
+  wake(family, false);
   std::vector<Entry*> all;
   if (const auto found = families_.find(family); found != families_.end())
     all = found->second;
@@ -281,13 +336,24 @@ Surroundings::Found Library::Impl::form(std::string_view key) {
 }
 
 Entry* Library::Impl::find(DeclKind kind, std::string_view name) {
+  Entry* entry = known(kind, name);
+  if (entry != nullptr || kind > DeclKind::Node) return entry;
+  wake(name, kind == DeclKind::Const);
+  return known(kind, name);
+}
+
+Entry* Library::Impl::known(DeclKind kind, std::string_view name) {
   const auto& index = index_[spaceOf(kind)];
   const auto it = index.find(name);
   return it == index.end() || it->second->kind != kind ? nullptr : it->second;
 }
 
-std::optional<Surroundings::Found> Library::Impl::find(std::string_view name) const {
-  const auto it = index_[0].find(name);
+std::optional<Surroundings::Found> Library::Impl::find(std::string_view name, bool called) {
+  auto it = index_[0].find(name);
+  if (it == index_[0].end()) {
+    wake(name, !called);
+    it = index_[0].find(name);
+  }
   if (it == index_[0].end()) {
     if (!families_.contains(name)) return std::nullopt;
     Found found;
@@ -303,7 +369,8 @@ std::optional<Surroundings::Found> Library::Impl::find(std::string_view name) co
   return found;
 }
 
-std::vector<std::string_view> Library::Impl::names(DeclKind kind) const {
+std::vector<std::string_view> Library::Impl::names(DeclKind kind) {
+  if (kind <= DeclKind::Node) wakeAll();
   std::vector<std::string_view> names;
   for (const Entry& entry : entries) {
     if (entry.kind == kind) names.push_back(entry.name);
@@ -321,7 +388,7 @@ std::string Library::Impl::cycle(std::string_view name) const {
   return path + std::string(name);
 }
 
-tl::unexpected<Diagnostics> Library::Impl::missing(DeclKind kind, std::string_view name) const {
+tl::unexpected<Diagnostics> Library::Impl::missing(DeclKind kind, std::string_view name) {
   const std::string_view what = kindName(kind);
   const auto& index = index_[spaceOf(kind)];
   const auto it = index.find(name);
@@ -445,6 +512,8 @@ void Library::Impl::parse(Entry& entry, Reporter& reporter) {
       break;
   }
   const auto use = [&](std::string_view name, DeclKind kind) {
+    // What is built in is meant in bodies; a node of such a name is for graphs.
+    if (kind == DeclKind::Node && findFunction(name) != nullptr) return;
     Entry* used = find(kind, name);
     if (used == nullptr || std::find(entry.uses.begin(), entry.uses.end(), used) != entry.uses.end()) return;
     entry.uses.push_back(used);
@@ -497,6 +566,7 @@ Library Library::embedded() {
     for (const EmbeddedFile& file : list) impl->files.push_back({{}, {}, file.name, file.text});
   }
   impl->scan_errors = impl->scanFrom(0);
+  impl->has_standard = true;
   return Library(std::move(impl));
 }
 
@@ -581,6 +651,7 @@ std::vector<std::string_view> Library::names(DeclKind kind) const {
 
 Diagnostics Library::checkAll() const {
   const std::lock_guard lock(impl_->mutex);
+  impl_->wakeAll();
   Diagnostics all = impl_->scan_errors;
   for (Entry& entry : impl_->entries) {
     impl_->demand(entry);

@@ -28,7 +28,8 @@ public:
   /// Fails when a declaration's head cannot be found or a name is declared twice.
   static Result<Library> fromFiles(std::vector<SourceFile> files);
 
-  /// nodes/ and templates/ as they were at build time.
+  /// nodes/ and templates/ as they were at build time. Of nodes/standard/ only the names are known at first:
+  /// a file of it is scanned when one of its nodes or constants is named, or when all names are asked for.
   static Library embedded();
 
   Library(Library&&) noexcept;

@@ -119,6 +119,11 @@ Contracts::Contracts(const Graph& graph, const lang::Library& library)
 
 namespace {
 
+/// How many types tell the form from others of its name.
+size_t typeCount(const lang::NodeDecl& form) {
+  return static_cast<size_t>(std::count(form.name.begin(), form.name.end(), ','));
+}
+
 /// How well a node's inputs fit a form: the number of those that are widened or converted; nothing where one
 /// does not fit.
 template <class OfferOf>
@@ -150,15 +155,18 @@ std::optional<size_t> fitOf(const lang::NodeDecl& form, const Node& node, OfferO
 
 }  // namespace
 
-/// Of a node's forms, those that fit best.
+/// Of a node's forms, those that fit best; of those that fit equally well, those with the fewest types in
+/// their names. So "floor" of a float is floor<float>, and not floor<float, int>, which a graph names.
 std::vector<const lang::NodeDecl*> Contracts::candidates(const Node& node, const Body& body) const {
   std::vector<const lang::NodeDecl*> best;
-  size_t least = std::numeric_limits<size_t>::max();
+  std::pair<size_t, size_t> least{std::numeric_limits<size_t>::max(), 0};
   for (const lang::NodeDecl* form : library_.forms(node.type)) {
     const auto fit = fitOf(*form, node, [&](const Source& source) { return offer(source, body); });
-    if (!fit || *fit > least) continue;
-    if (*fit < least) best.clear();
-    least = *fit;
+    if (!fit) continue;
+    const std::pair<size_t, size_t> worth{*fit, typeCount(*form)};
+    if (worth > least) continue;
+    if (worth < least) best.clear();
+    least = worth;
     best.push_back(form);
   }
   return best;
