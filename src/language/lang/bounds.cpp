@@ -49,6 +49,13 @@ Interval operation(const Expr& expr, const std::array<Interval, 3>& x) {
   return {};
 }
 
+/// What these give is one of their operands, which do not wrap.
+bool choosing(const Expr& expr) {
+  if (expr.kind != Expr::Kind::Operation) return false;
+  const std::string_view name = expr.builtin->name;
+  return name == "min" || name == "max" || name == "clamp";
+}
+
 /// What wraps may be anything.
 Interval within(ir::Type type, const Interval& range) {
   const ir::Type part = ir::partType(type);
@@ -96,7 +103,8 @@ Interval of(const Expr& expr, const RangeOfSlot& slot) {
 
 Interval boundsOf(const Expr& expr, const RangeOfSlot& slot) {
   if (expr.type == ir::Type::Bool) return {0, 1};
-  return within(expr.type, of(expr, slot));
+  const Interval range = of(expr, slot);
+  return choosing(expr) ? range : within(expr.type, range);
 }
 
 }  // namespace lacquer::lang
