@@ -136,7 +136,7 @@ TEST(Keys, ShadersOfOneIdentifierAreTold) {
     setting.id_bits = bits;
     Structures structures(setting);
     const std::string path = (sourceFolder() / "examples/coat.gltf").string();
-    const FileResult result = readInput(path, InputKind::ByName, {}, setting, structures);
+    const FileResult result = makeInput(path, InputKind::ByName, {}, setting, structures);
     EXPECT_EQ(result.ok, bits == Keys::kAll);
     return static_cast<size_t>(std::count_if(result.diagnostics.begin(), result.diagnostics.end(),
                                              [](const Diagnostic& d) { return d.code == "same-id"; }));

@@ -16,7 +16,7 @@ public:
   Alone(const std::string& path, const Options& options, const Language& language, size_t bits)
       : setting_{options, language, {}}, structures_(setting_) {
     setting_.keys = std::make_shared<Keys>(bits);
-    result_ = readInput(path, InputKind::ByName, {}, setting_, structures_);
+    result_ = makeInput(path, InputKind::ByName, {}, setting_, structures_);
   }
 
   const FileResult& result() const { return result_; }

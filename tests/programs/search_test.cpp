@@ -26,7 +26,7 @@ public:
     setting_.emplace(Setting{options_, *language_, {}, nullptr, nullptr, {}, "."});
     structures_.emplace(*setting_);
     setting_->sharing = &examples_;
-    const FileResult result = readInput(path, InputKind::ByName, {}, *setting_, *structures_);
+    const FileResult result = makeInput(path, InputKind::ByName, {}, *setting_, *structures_);
     std::map<std::string, OwnProgram> own;
     for (const Key& key : result.structures) {
       const Structure& structure = *structures_->known(key);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -14,6 +15,13 @@ namespace {
 /// Stands between items until it is known whether they get a line each. JSON text never holds it.
 constexpr char kMarker = '\x01';
 constexpr size_t kLongestLine = 110;
+
+/// By character: what is not written as it is.
+constexpr std::array<bool, 256> kSpecial = [] {
+  std::array<bool, 256> special{};
+  for (size_t c = 0; c < special.size(); ++c) special[c] = c < 0x20 || c >= 0x7F || c == '"' || c == '\\';
+  return special;
+}();
 
 }  // namespace
 
@@ -81,11 +89,11 @@ void JsonText::breakLines() {
     in.broken = true;
     const size_t margin = depth_ + i + 1;
     if (!in.empty) newLine(margin);
-    for (size_t at = from; at < to; ++at) {
-      if (tail[at] != kMarker) {
-        out_ += tail[at];
-        continue;
-      }
+    for (size_t at = from; at < to;) {
+      const size_t next = std::min(tail.find(kMarker, at), to);
+      out_.append(tail, at, next - at);
+      at = next + 1;
+      if (next == to) break;
       out_ += ',';
       newLine(margin);
     }
@@ -97,8 +105,8 @@ void JsonText::reserve(size_t items, size_t written) {
 }
 
 void JsonText::quoted(std::string_view text) {
-  const bool plain = std::all_of(text.begin(), text.end(),
-                                 [](char c) { return c >= 0x20 && c < 0x7F && c != '"' && c != '\\'; });
+  const bool plain =
+      std::none_of(text.begin(), text.end(), [](char c) { return kSpecial[static_cast<unsigned char>(c)]; });
   if (!plain) {
     // A name that is not UTF-8 must not cost the whole text.
     out_ += json::quotedText(text);

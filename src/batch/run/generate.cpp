@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "manifest/manifest.h"
 #include "manifest/stale.h"
 #include "run/pipelines.h"
@@ -57,18 +55,6 @@ struct Inputs {
   InputKind kind;
 };
 
-/// From the manifest that the run has written.
-void writePipelines(const std::string& manifest, const Options& options, Run& run) {
-  const Result<std::string> text = readFile(manifest, std::numeric_limits<uint64_t>::max());
-  if (!text) return run.wrote(tl::make_unexpected(text.error()));
-  constexpr uint64_t kAny = std::numeric_limits<uint64_t>::max();
-  Limits limits;
-  limits.json = limits.values = kAny;  // it is ours, however many materials there are
-  const Result<Json> json = json::parse(*text, manifest, limits);
-  if (!json) return;  // another process has written it meanwhile
-  run.wrote(writeFile(options.pipelines, pipelinesText(*json), {nullptr, options.sync}));
-}
-
 /// Below the output folder.
 Strings shaderFiles(const Report& report) {
   Strings paths;
@@ -123,8 +109,10 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   const Scratch scratch(folder);
   const Strings earlier = shard ? Strings() : listedShaders(path);
   ManifestFile manifest(path, {shard ? nullptr : &scratch, options.sync});
+  Pipelines pipelines;
   run.read(inputs.files, inputs.kind, inputs.materials, [&](FileResult& file) {
     if (!shard) manifest.file(file.text);
+    for (Pipeline& pipeline : file.pipelines) pipelines.add(std::move(pipeline));
   });
   if (!run.make(folder, scratch, receipt ? &*receipt : nullptr,
                 [&](const MadeShader& shader) { manifest.shader(shader.id, shader.text); })) {
@@ -137,7 +125,8 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
     if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
   }
   run.writeProgramsReport();
-  if (!options.pipelines.empty() && !shard) writePipelines(path, options, run);
+  if (!options.pipelines.empty() && !shard)
+    run.wrote(writeFile(options.pipelines, pipelines.text(), {nullptr, options.sync}));
   if (!options.depfile.empty()) run.wrote(writeFile(options.depfile, *depfile, {nullptr, options.sync}));
   if (receipt) run.keep(*receipt);
   return run.finish();

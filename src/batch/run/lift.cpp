@@ -66,15 +66,16 @@ bool add(uint16_t extension, const gltf::VertexAttributes& attributes, const gra
 
 }  // namespace
 
-void Examples::note(const Key& structure, const graph::Graph& graph, const material::Material* material,
+void Examples::note(const Key& structure, const material::Material& material,
                     const gltf::VertexAttributes& attributes) {
-  if (material == nullptr)
-    note(structure, {keyOf(graph::toJson(graph)), {}, {}, graph});
-  else
-    note(structure, {contentOf(*material, attributes), *material, attributes, {}});
+  keep(structure, {contentOf(material, attributes), material, attributes, {}});
 }
 
-void Examples::note(const Key& structure, Example example) {
+void Examples::note(const Key& structure, const graph::Graph& graph) {
+  keep(structure, {keyOf(graph::toJson(graph)), {}, {}, graph});
+}
+
+void Examples::keep(const Key& structure, Example example) {
   const std::lock_guard lock(mutex_);
   const auto [it, fresh] = examples_.try_emplace(structure);
   if (fresh || example.content < it->second.content) it->second = std::move(example);
@@ -104,15 +105,18 @@ Result<graph::Graph> graphOf(const Example& example, const Setting& setting) {
 }
 
 graph::Graph lifted(const material::Material* material, const gltf::VertexAttributes& attributes,
-                    const graph::Graph& own, const Lift& lift, const Setting& setting) {
+                    const graph::Graph& own, const Lift& lift, const Setting& setting,
+                    model::Origins* origins) {
   if (material == nullptr) return own;
   material::Material more = *material;
   for (const uint16_t extension : lift.extensions) add(extension, attributes, own, setting, more);
   Options options = setting.options;
   options.live.insert(options.live.end(), lift.live.begin(), lift.live.end());
   Diagnostics unsaid;
-  Result<graph::Graph> graph = buildGraph(more, attributes, setting.library, options, unsaid);
+  model::Origins found;
+  Result<graph::Graph> graph = buildGraph(more, attributes, setting.library, options, unsaid, &found);
   if (!graph || hasError(graph::check(*graph, setting.library))) return own;
+  if (origins != nullptr) *origins = std::move(found);
   return std::move(*graph);
 }
 

@@ -29,9 +29,10 @@ struct Example {
 /// materials come. Materials keep their programs. May be used from several threads at once.
 class Examples : public Sharing {
 public:
-  void note(const Key& structure, const graph::Graph& graph, const material::Material* material,
+  void note(const Key& structure, const material::Material& material,
             const gltf::VertexAttributes& attributes) override;
-  Share bring(graph::Graph&, const material::Material*, const gltf::VertexAttributes&,
+  void note(const Key& structure, const graph::Graph& graph) override;
+  Share bring(Traced&, const material::Material*, const gltf::VertexAttributes&,
               const passes::LightFacts&) override {
     return {};
   }
@@ -42,7 +43,7 @@ public:
   const Example* of(const Key& structure) const;
 
 private:
-  void note(const Key& structure, Example example);
+  void keep(const Key& structure, Example example);
 
   std::mutex mutex_;
   std::map<Key, Example> examples_;
@@ -57,8 +58,10 @@ Result<graph::Graph> graphOf(const Example& example, const Setting& setting);
 
 /// The material's graph with all of a lift that is neutral for it: an extension that it has not is added
 /// where its defaults leave the graph as it is. `own`: the graph without, which comes back where there is no
-/// other, and where there is no material (null).
+/// other, and where there is no material (null). `origins`, where it is not null, has those of `own` and is
+/// given those of the graph.
 graph::Graph lifted(const material::Material* material, const gltf::VertexAttributes& attributes,
-                    const graph::Graph& own, const Lift& lift, const Setting& setting);
+                    const graph::Graph& own, const Lift& lift, const Setting& setting,
+                    model::Origins* origins = nullptr);
 
 }  // namespace lacquer

@@ -1,18 +1,19 @@
 #include "run/pipelines.h"
 
 #include <algorithm>
-#include <array>
-#include <map>
-#include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
+
+#include "interface/entry.h"
+#include "json/text.h"
+#include "manifest/entries.h"
+#include "support/blob.h"
 
 namespace lacquer {
 
 namespace {
 
-using json::Json;
-using json::member;
+using json::JsonText;
 
 /// A vertex format in the words of three interfaces; empty where one of them has none.
 struct Format {
@@ -42,175 +43,138 @@ std::pair<std::string, std::string> channels(std::string_view one, size_t count)
 }
 
 size_t components(std::string_view type) {
-  if (type.starts_with("VEC") || type.starts_with("vec")) return static_cast<size_t>(type[3] - '0');
-  return 1;
+  const bool vector = type.size() == 4 && (type.starts_with("VEC") || type.starts_with("vec"));
+  return vector ? static_cast<size_t>(type[3] - '0') : 1;
 }
 
-/// What the interfaces call the format; null where it has none and the engine converts the attribute.
-void addFormats(std::string_view component, bool normalized, size_t count, Json& input) {
+/// What the interfaces call the format; null where one has none and the engine converts the attribute.
+void writeFormats(const PipelineInput& input, JsonText& to) {
   const auto it = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& format) {
-    return format.component == component && format.normalized == normalized;
+    return format.component == input.component && format.normalized == input.normalized;
   });
-  for (const char* name : {"vulkan", "d3d12", "webgpu"}) input[name] = nullptr;
-  if (it == std::end(kFormats) || count < 1 || count > 4) return;
-  const auto [vulkan_channels, vulkan_kind] = channels(it->vulkan, count);
-  input["vulkan"] = "VK_FORMAT_" + vulkan_channels + "_" + vulkan_kind;
-  const bool whole = it->component == "FLOAT";
-  if (!it->d3d12.empty() && (whole || count != 3)) {
-    const auto [d3d12_channels, d3d12_kind] = channels(it->d3d12, count);
-    input["d3d12"] = "DXGI_FORMAT_" + d3d12_channels + "_" + d3d12_kind;
+  std::string vulkan, d3d12, webgpu;
+  if (it != std::end(kFormats) && input.count >= 1 && input.count <= 4) {
+    const auto [vulkan_channels, vulkan_kind] = channels(it->vulkan, input.count);
+    vulkan = "VK_FORMAT_" + vulkan_channels + "_" + vulkan_kind;
+    const bool whole = it->component == "FLOAT";
+    if (!it->d3d12.empty() && (whole || input.count != 3)) {
+      const auto [d3d12_channels, d3d12_kind] = channels(it->d3d12, input.count);
+      d3d12 = "DXGI_FORMAT_" + d3d12_channels + "_" + d3d12_kind;
+    }
+    if (!it->webgpu.empty() && (whole || input.count == 2 || input.count == 4))
+      webgpu = std::string(it->webgpu) + (input.count > 1 ? "x" + std::to_string(input.count) : "");
   }
-  if (it->webgpu.empty() || (!whole && count != 2 && count != 4)) return;
-  input["webgpu"] = std::string(it->webgpu) + (count > 1 ? "x" + std::to_string(count) : "");
+  for (const auto& [key, format] : {std::pair("vulkan", &vulkan), {"d3d12", &d3d12}, {"webgpu", &webgpu}}) {
+    to.key(key);
+    if (format->empty())
+      to.raw("null");
+    else
+      to.string(*format);
+  }
 }
 
-const Json& at(const Json& json, std::string_view name) {
-  static const Json kNull;
-  const Json* found = member(json, name);
-  return found == nullptr ? kNull : *found;
+/// The shader's input with the format that the primitive has.
+PipelineInput inputOf(const ShaderInput& input, const std::vector<StoredAttribute>* attributes) {
+  PipelineInput made{input.name, input.location, "FLOAT", static_cast<uint32_t>(components(input.type))};
+  if (attributes == nullptr) return made;
+  const auto own = std::find_if(attributes->begin(), attributes->end(),
+                                [&](const StoredAttribute& one) { return one.semantic == input.name; });
+  made.stand_in = own == attributes->end();
+  if (made.stand_in) return made;
+  if (!own->component_type.empty()) made.component = own->component_type;
+  if (!own->type.empty()) made.count = static_cast<uint32_t>(components(own->type));
+  made.normalized = own->normalized;
+  return made;
 }
 
-/// The shader's inputs, each with the format that the primitive has. One that it lacks is read from a buffer
-/// with a step of 0.
-Json vertexLayout(const Json& shader, const Json& attributes) {
-  Json all = Json::array();
-  for (const Json& input : at(shader, "inputs")) {
-    Json row;
-    row["name"] = at(input, "name");
-    row["location"] = at(input, "location");
-    const auto name = at(input, "name").get<std::string>();
-    const auto type = at(input, "type").get<std::string>();
-    const Json& own = at(attributes, name);
-    std::string component = "FLOAT";
-    size_t count = components(type);
-    bool normalized = false;
-    if (own.is_object()) {
-      if (at(own, "component_type").is_string()) component = own["component_type"].get<std::string>();
-      if (at(own, "type").is_string()) count = components(own["type"].get<std::string>());
-      normalized = at(own, "normalized") == true;
-    }
-    addFormats(component, normalized, count, row);
-    if (!own.is_object() && attributes.is_object()) row["stand_in"] = true;
-    all.push_back(std::move(row));
-  }
-  return all;
+/// The constant with the material's number.
+SpecConstant valued(SpecConstant constant, const std::vector<UsedParameter>& parameters) {
+  const auto it = std::find_if(parameters.begin(), parameters.end(),
+                               [&](const UsedParameter& one) { return one.name == constant.name; });
+  if (it == parameters.end() || constant.component >= it->value.size()) return constant;
+  constant.neutral = it->value[constant.component];
+  if (constant.is_bool) constant.neutral = constant.neutral != 0 ? 1 : 0;
+  return constant;
 }
 
-Json specialization(const Json& shader, const Json& use) {
-  Json all = Json::array();
-  for (const Json& constant : at(shader, "spec_constants")) {
-    const Json& parameter = at(at(use, "parameters"), at(constant, "name").get<std::string>());
-    const Json& value = at(parameter, "value");
-    const Json& component = at(constant, "component");
-    Json row;
-    row["id"] = at(constant, "id");
-    row["type"] = at(constant, "type");
-    const size_t place = component.is_number_unsigned() ? component.get<size_t>() : 0;
-    row["value"] = value.is_array() && place < value.size() ? value[place] : value;
-    if (row["value"].is_null()) row["value"] = at(constant, "default");
-    if (row["type"] == "bool" && row["value"].is_number()) row["value"] = row["value"] != 0;
-    all.push_back(std::move(row));
-  }
-  return all;
+std::string identityOf(const Pipeline& of) {
+  BlobWriter key;
+  key(of.shader, of.has_vertex, of.double_sided, of.depth_write, of.blend.has_value());
+  for (const PipelineInput& input : of.inputs)
+    key(input.name, input.location, input.component, input.count, input.normalized, input.stand_in);
+  for (const SpecConstant& constant : of.specialization) key(constant.id, constant.neutral);
+  return key.take();
 }
 
-class Pipelines {
-public:
-  explicit Pipelines(const Json& manifest) : manifest_(manifest) {}
-
-  std::string text() {
-    for (const Json& file : at(manifest_, "files")) {
-      index(file);
-      if (const Json& primitives = at(file, "primitives"); primitives.is_array())
-        drawn(file, primitives);
-      else
-        alone(file);
-    }
-    Json json;
-    json["lacquer"] = at(manifest_, "lacquer");
-    json["pipelines"] = std::move(all_);
-    return json.dump(2) + "\n";
+void writePipeline(const Pipeline& of, JsonText& to) {
+  to.beginObject().key("shader").string(of.shader).key("stages").beginArray();
+  if (of.has_vertex) to.string("vertex");
+  to.string("fragment").endArray().key("vertex").beginArray();
+  for (const PipelineInput& input : of.inputs) {
+    to.beginObject().key("name").string(input.name).key("location").integer(input.location);
+    writeFormats(input, to);
+    if (input.stand_in) to.key("stand_in").boolean(true);
+    to.endObject();
   }
-
-private:
-  /// A file's materials by their index.
-  void index(const Json& file) {
-    materials_.clear();
-    for (const Json& material : at(file, "materials"))
-      materials_[at(material, "index").get<int>()] = &material;
-    if (const Json& by_default = at(file, "default_material"); by_default.is_object())
-      materials_[-1] = &by_default;
+  to.endArray().key("blend");
+  if (of.blend)
+    writeBlend(*of.blend, to);
+  else
+    to.raw("null");
+  to.key("depth_write").boolean(of.depth_write).key("cull").string(of.double_sided ? "none" : "back");
+  to.key("front").string("counter-clockwise").key("outputs").beginArray();
+  for (const ShaderOutput& output : of.outputs) to.json(outputJson(output));
+  to.endArray().key("specialization").beginArray();
+  for (const SpecConstant& constant : of.specialization) {
+    to.beginObject().key("id").integer(constant.id);
+    to.key("type").string(constant.is_bool ? "bool" : "float").key("value");
+    if (constant.is_bool)
+      to.boolean(constant.neutral != 0);
+    else
+      to.number(constant.neutral);
+    to.endObject();
   }
-
-  void drawn(const Json& file, const Json& primitives) {
-    for (const Json& primitive : primitives) {
-      use(file, primitive, primitive);
-      for (const Json& variant : at(primitive, "variants")) use(file, primitive, variant);
-    }
-  }
-
-  void use(const Json& file, const Json& primitive, const Json& chosen) {
-    const auto material = materials_.find(at(chosen, "material").get<int>());
-    const Json& place = at(chosen, "use");
-    if (material == materials_.end() || !place.is_number_integer()) return;
-    const Json& uses = at(*material->second, "uses");
-    if (place.get<size_t>() >= uses.size()) return;
-    Json first;
-    first["source"] = at(file, "source");
-    first["mesh"] = at(primitive, "mesh");
-    first["primitive"] = at(primitive, "primitive");
-    add(*material->second, uses[place.get<size_t>()], at(primitive, "attributes"), std::move(first));
-  }
-
-  /// Materials that nothing draws here: attributes are floats.
-  void alone(const Json& file) {
-    for (const Json& material : at(file, "materials")) {
-      for (const Json& use : at(material, "uses")) {
-        Json first;
-        first["source"] = at(file, "source");
-        first["material"] = at(material, "index");
-        add(material, use, Json(), std::move(first));
-      }
-    }
-  }
-
-  void add(const Json& material, const Json& use, const Json& attributes, Json first) {
-    const Json& id = at(use, "shader");
-    if (!id.is_string()) return;
-    const Json& shader = at(at(manifest_, "shaders"), id.get<std::string>());
-    Json row;
-    row["shader"] = id;
-    Json stages = Json::array();
-    for (const auto& [target, files] : at(shader, "files").items()) {
-      if (stages.empty() && files.contains("frag"))
-        stages = files.contains("vert") ? Json{"vertex", "fragment"} : Json{"fragment"};
-    }
-    row["stages"] = std::move(stages);
-    row["vertex"] = vertexLayout(shader, attributes);
-    row["blend"] = at(material, "blend");
-    row["depth_write"] = at(material, "blend").is_null();
-    row["cull"] = at(material, "double_sided") == true ? "none" : "back";
-    row["front"] = "counter-clockwise";
-    row["outputs"] = at(shader, "outputs");
-    row["specialization"] = specialization(shader, use);
-    const auto [it, fresh] = places_.emplace(row.dump(), all_.size());
-    if (fresh) {
-      row["uses"] = 0;
-      row["first"] = std::move(first);
-      all_.push_back(std::move(row));
-    }
-    Json& uses = (*(all_.begin() + it->second))["uses"];
-    uses = uses.get<int64_t>() + 1;
-  }
-
-  const Json& manifest_;
-  std::map<int, const Json*> materials_;
-  std::map<std::string, size_t> places_;
-  Json all_ = Json::array();
-};
+  to.endArray().key("uses").integer(static_cast<int64_t>(of.uses));
+  to.key("first").beginObject().key("source").string(of.source);
+  if (of.mesh >= 0)
+    to.key("mesh").integer(of.mesh).key("primitive").integer(of.primitive);
+  else
+    to.key("material").integer(of.material);
+  to.endObject().endObject();
+}
 
 }  // namespace
 
-std::string pipelinesText(const Json& manifest) { return Pipelines(manifest).text(); }
+void Pipelines::add(Pipeline pipeline) {
+  const auto [it, fresh] = places_.emplace(identityOf(pipeline), all_.size());
+  if (fresh)
+    all_.push_back(std::move(pipeline));
+  else
+    all_[it->second].uses += pipeline.uses;
+}
+
+void Pipelines::add(const DrawState& state, const std::string& shader,
+                    const std::vector<UsedParameter>& parameters, const Reflection& reflection,
+                    bool has_vertex, const std::vector<StoredAttribute>* attributes, const Pipeline& first) {
+  Pipeline made = first;
+  made.shader = shader;
+  made.has_vertex = has_vertex;
+  for (const ShaderInput& input : reflection.inputs) made.inputs.push_back(inputOf(input, attributes));
+  made.blend = state.blend;
+  made.double_sided = state.double_sided;
+  made.depth_write = state.depth_write;
+  made.outputs = reflection.outputs;
+  for (const SpecConstant& constant : reflection.spec_constants)
+    made.specialization.push_back(valued(constant, parameters));
+  made.uses = 1;
+  add(std::move(made));
+}
+
+std::string Pipelines::text() const {
+  JsonText to;
+  to.beginObject().key("lacquer").string(version()).key("pipelines").beginArray();
+  for (const Pipeline& pipeline : all_) writePipeline(pipeline, to);
+  return to.endArray().endObject().take() + "\n";
+}
 
 }  // namespace lacquer

@@ -171,29 +171,37 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
   for (programs::Point& point : curve_.points) point.cost *= curve_.error.scale;
 }
 
-/// Of the graphs of one structure the one with the smallest text: others may be looked at first next time.
-void Programs::look(Group& group, const Key& key, const graph::Graph& graph) const {
-  graph::Graph plain = graph::bare(graph);
-  const std::lock_guard lock(group.mutex);
-  const auto [it, fresh] = group.graphs.try_emplace(key);
-  if (fresh || graph::toJson(plain) < graph::toJson(it->second)) it->second = std::move(plain);
-}
-
-Sharing::Share Programs::bring(graph::Graph& graph, const material::Material* material,
+Sharing::Share Programs::bring(Traced& own, const material::Material* material,
                                const gltf::VertexAttributes& attributes, const passes::LightFacts& lights) {
-  const auto found = members_.find(structureKey(graph, lights, setting_));
+  const auto found = members_.find(structureKey(own.graph, lights, setting_));
   if (found == members_.end()) return {};
   Group& group = *found->second.group;
-  const graph::Graph own = lifted(material, attributes, graph, group.lift, setting_);
-  const Key key = structureKey(own, lights, setting_);
+  model::Origins origins;
+  for (const auto& number : own.numbers) origins.parameters.push_back(*number);  // none of a graph
+  for (const auto& texture : own.textures) origins.textures.push_back(*texture);
+  const graph::Graph more = lifted(material, attributes, own.graph, group.lift, setting_, &origins);
+  const Key key = structureKey(more, lights, setting_);
   if (!closed_) {
-    look(group, key, own);
+    const std::lock_guard lock(group.mutex);
+    if (!group.graphs.contains(key)) group.graphs.emplace(key, withoutMaterial(more, setting_));
     return {};
   }
   const auto place = group.places.find(key);
   if (place == group.places.end()) return {};
-  graph = programs::instance(group.united, place->second, own);
-  return {&group.united.fills[place->second], found->second.looks_through};
+  const programs::Fill& fill = group.united.fills[place->second];
+  own.graph = programs::instance(group.united, place->second, more);
+  own.numbers.assign(own.graph.parameters.size(), std::nullopt);
+  for (size_t i = 0; i < own.numbers.size(); ++i) {
+    const auto at = fill.numbers[i].own ? more.findParameter(own.graph.parameters[i].name) : std::nullopt;
+    if (at && material != nullptr) own.numbers[i] = origins.parameters[*at];
+  }
+  own.textures.assign(own.graph.textures.size(), std::nullopt);
+  for (size_t i = 0; i < own.textures.size(); ++i) {
+    for (size_t k = 0; material != nullptr && fill.textures[i].own && k < more.textures.size(); ++k) {
+      if (more.textures[k].name == own.graph.textures[i].name) own.textures[i] = origins.textures[k];
+    }
+  }
+  return {&fill, found->second.looks_through};
 }
 
 Diagnostics Programs::about(size_t made) const {
@@ -256,6 +264,7 @@ std::unique_ptr<Programs> sharePrograms(Setting& setting, Structures& structures
   }
   auto programs = std::make_unique<Programs>(met, examples, uses.uses(), uses.materials(), setting);
   setting.sharing = programs.get();
+  structures.forgetShapes();
   Uses again;
   if (setting.options.programs > 0) look(again);
   programs->close();

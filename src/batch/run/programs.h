@@ -46,11 +46,11 @@ public:
   Programs(const std::vector<const Structure*>& structures, const Examples& examples,
            const std::vector<ProgramUse>& uses, size_t materials, const Setting& setting);
 
-  void note(const Key&, const graph::Graph&, const material::Material*,
-            const gltf::VertexAttributes&) override {}
+  void note(const Key&, const material::Material&, const gltf::VertexAttributes&) override {}
+  void note(const Key&, const graph::Graph&) override {}
   /// Until close() it only looks at the graph, and leaves it. From several threads at once.
-  Share bring(graph::Graph& graph, const material::Material* material,
-              const gltf::VertexAttributes& attributes, const passes::LightFacts& lights) override;
+  Share bring(Traced& own, const material::Material* material, const gltf::VertexAttributes& attributes,
+              const passes::LightFacts& lights) override;
   /// Unites what was looked at. Not beside bring().
   void close();
 
@@ -68,8 +68,6 @@ private:
     std::map<Key, size_t> places;        ///< of those in the united graph
     programs::United united;
   };
-  void look(Group& group, const Key& key, const graph::Graph& graph) const;
-
   const Setting& setting_;
   struct Member {
     std::shared_ptr<Group> group;
@@ -90,8 +88,8 @@ Result<programs::Weights> weightsOf(const Options& options, const Limits& limits
 
 /// The programs of all materials, as the options ask for them; the setting and the structures are then such
 /// that describe() brings materials to them. `look`: describes all materials, and says what it finds. It is
-/// called once, or twice: the first look finds the structures and how much each is used, the second what
-/// every material brings to the program that it shares.
+/// called once, or twice: the first look finds the structures and how much each is used, the second, at one
+/// material of each shape, what materials bring to the program that they share.
 std::unique_ptr<Programs> sharePrograms(Setting& setting, Structures& structures,
                                         const std::function<void(Uses&)>& look);
 /// The same for the materials of one document, or for those of the names in `only` where there are some.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <set>
@@ -18,9 +19,13 @@ namespace lacquer {
 
 namespace {
 
-/// So many files are held in memory at once. Enough for every core, few enough that a run over thousands of
+/// So many files are held in memory at once: enough for every thread, few enough that a run over thousands of
 /// files does not grow with their number.
-constexpr size_t kFilesAtOnce = 16;
+size_t filesAtOnce() {
+  constexpr size_t kMost = 16;
+  return std::min(kMost, 2 * static_cast<size_t>(tbb::this_task_arena::max_concurrency()));
+}
+
 constexpr auto kProgressGrain = std::chrono::milliseconds(50);
 
 }  // namespace
@@ -94,13 +99,18 @@ bool Run::checkPrograms() {
   return true;
 }
 
+/// The files stay in memory between the looks.
 void Run::mergePrograms(const std::vector<std::string>& files, InputKind kind,
                         const std::vector<std::string>& only) {
+  read_.resize(files.size());
+  tbb::parallel_for(size_t{0}, files.size(),
+                    [&](size_t i) { read_[i] = readInput(files[i], kind, *setting_); });
   programs_ = sharePrograms(*setting_, *structures_, [&](Uses& uses) {
-    for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
-      std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
+    const size_t at_once = filesAtOnce();
+    for (size_t first = 0; first < read_.size(); first += at_once) {
+      std::vector<FileResult> results(std::min(at_once, read_.size() - first));
       tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) {
-        results[i] = readInput(files[first + i], kind, only, *setting_, *structures_);
+        results[i] = makeInput(read_[first + i], only, *setting_, *structures_);
       });
       for (const FileResult& result : results) {
         for (const Key& key : result.structures) uses.structure(key);
@@ -149,12 +159,12 @@ void Run::progress(size_t done, bool last) {
   progress_(done, structures_->shaderCount());
 }
 
-void Run::readAll(const std::vector<std::string>& files,
-                  const std::function<FileResult(const std::string&)>& read,
+void Run::readAll(const std::vector<std::string>& files, const std::function<FileResult(size_t file)>& read,
                   const std::function<void(FileResult&)>& each) {
-  for (size_t first = 0; first < files.size(); first += kFilesAtOnce) {
-    std::vector<FileResult> results(std::min(kFilesAtOnce, files.size() - first));
-    tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) { results[i] = read(files[first + i]); });
+  const size_t at_once = filesAtOnce();
+  for (size_t first = 0; first < files.size(); first += at_once) {
+    std::vector<FileResult> results(std::min(at_once, files.size() - first));
+    tbb::parallel_for(size_t{0}, results.size(), [&](size_t i) { results[i] = read(first + i); });
     for (size_t i = 0; i < results.size(); ++i) {
       FileResult& result = results[i];
       report(result.diagnostics, files[first + i]);
@@ -171,8 +181,15 @@ void Run::read(const std::vector<std::string>& files, InputKind kind, const std:
                const std::function<void(FileResult&)>& each) {
   if (options_.programs > 0 || !options_.programs_report.empty()) mergePrograms(files, kind, only);
   std::vector<std::string> seen;
+  const bool in_memory = !read_.empty();
   readAll(
-      files, [&](const std::string& path) { return readInput(path, kind, only, *setting_, *structures_); },
+      files,
+      [&](size_t i) {
+        if (!in_memory) return makeInput(files[i], kind, only, *setting_, *structures_);
+        FileResult result = makeInput(read_[i], only, *setting_, *structures_);
+        read_[i] = {};
+        return result;
+      },
       [&](FileResult& result) {
         seen.insert(seen.end(), result.names.begin(), result.names.end());
         each(result);

@@ -58,8 +58,7 @@ public:
 
 private:
   bool allGood(const Diagnostics& wrong);
-  void readAll(const std::vector<std::string>& files,
-               const std::function<FileResult(const std::string&)>& read,
+  void readAll(const std::vector<std::string>& files, const std::function<FileResult(size_t file)>& read,
                const std::function<void(FileResult&)>& each);
   bool checkPrograms();
   void mergePrograms(const std::vector<std::string>& files, InputKind kind,
@@ -82,6 +81,7 @@ private:
   std::optional<Structures> structures_;
   programs::Weights weights_;
   std::unique_ptr<Programs> programs_;
+  std::vector<Input> read_;  ///< where programs are looked for: what was read for that
   std::vector<std::string> node_files_, inputs_;
   Report report_;
 };

@@ -60,9 +60,8 @@ std::string Maker::entry(const std::string& id, const Structure& structure,
   JsonText json(2);
   json.beginObject();
   writeCode(id, structure.has_vertex, validated, json);
-  for (const auto& [name, text] : structure.interface) {
-    if (isShown(name, setting_.options)) json.key(name.substr(0, name.find(' '))).raw(text);
-  }
+  const json::Json interface = shownOf(structure.reflection, setting_.options);
+  for (const auto& [name, value] : interface.items()) json.key(name).json(value);
   return json.endObject().take();
 }
 

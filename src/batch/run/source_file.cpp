@@ -14,9 +14,33 @@
 #include "setting/options.h"
 #include "shader/module.h"
 #include "structures/describe.h"
+#include "structures/reflection_blob.h"
 #include "support/relative.h"
 
 namespace lacquer {
+
+template <class Archive>
+static void fields(Archive& archive, PipelineInput& of) {
+  archive(of.name, of.location, of.component, of.count, of.normalized, of.stand_in);
+}
+
+template <class Archive>
+static void fields(Archive& archive, Blend& of) {
+  archive(of.source_color, of.destination_color, of.source_alpha, of.destination_alpha);
+}
+template <>
+struct LastEnumerator<BlendFactor> {
+  static constexpr BlendFactor value = BlendFactor::OneMinusSourceAlpha;
+};
+
+template <class Archive>
+static void fields(Archive& archive, Pipeline& of) {
+  Blend blend = of.blend.value_or(Blend());
+  bool blends = of.blend.has_value();
+  archive(of.shader, of.has_vertex, of.inputs, blends, blend, of.double_sided, of.depth_write, of.outputs,
+          of.specialization, of.uses, of.source, of.mesh, of.primitive, of.material);
+  if (blends) of.blend = blend;
+}
 
 namespace {
 
@@ -25,6 +49,12 @@ constexpr size_t kMaterialsAtOnce = 4096;
 /// A file's result that takes a larger part of the cache is not kept there: it would push out all the rest.
 constexpr uint64_t kCachePart = 8;
 
+/// What a use of a material says of its pipelines.
+struct PipelineUse {
+  const Structure* structure = nullptr;
+  std::vector<UsedParameter> parameters;  ///< where there are specialization constants
+};
+
 /// A material's entry and what the run needs of it.
 struct Done {
   std::string text;
@@ -32,6 +62,8 @@ struct Done {
   MaterialReport report;
   std::vector<Key> structures;
   std::vector<gltf::VertexAttributes> uses;  ///< those in the manifest
+  DrawState state;
+  std::vector<PipelineUse> pipelines;
 };
 
 Done textOf(const Wanted& wanted, const std::string& file, const Setting& setting, Described described) {
@@ -42,6 +74,15 @@ Done textOf(const Wanted& wanted, const std::string& file, const Setting& settin
   done.text =
       materialText(described.values, entries, wanted.material == nullptr ? nullptr : &setting.options.profile,
                    described.terms_texts, described.diagnostics);
+  if (!setting.options.pipelines.empty()) {
+    done.state = described.values.state;
+    for (size_t i = 0; i < described.met.size(); ++i) {
+      PipelineUse& use = done.pipelines.emplace_back();
+      use.structure = described.met[i];
+      if (use.structure->reflection.has_spec_constants)
+        use.parameters = std::move(described.values.uses[i].parameters);
+    }
+  }
   done.report = {file,
                  wanted.name,
                  static_cast<size_t>(std::max(wanted.index, 0)),
@@ -76,6 +117,63 @@ private:
   passes::LightFacts lights_;
 };
 
+/// The pipelines of a file's materials and primitives.
+class FilePipelines {
+public:
+  FilePipelines(const std::string& path, const material::Document& document, const Setting& setting)
+      : wanted_(!setting.options.pipelines.empty()), drawn_(!document.primitives.empty()) {
+    if (wanted_) first_.source = relativeTo(setting.folder, path);
+  }
+
+  /// Keeps of a material what primitives need of it; materials that nothing draws have pipelines at once.
+  void material(int index, Done& done) {
+    if (!wanted_) return;
+    if (drawn_) {
+      materials_.emplace(index, Material{done.state, std::move(done.pipelines)});
+      return;
+    }
+    Pipeline first = first_;
+    first.material = index;
+    for (const PipelineUse& use : done.pipelines) add(done.state, use, nullptr, first);
+  }
+
+  std::vector<Pipeline> finish(const std::vector<ContractPrimitive>& primitives) {
+    for (const ContractPrimitive& primitive : primitives) {
+      primitiveOf(primitive, primitive.material, primitive.use);
+      for (const VariantUse& variant : primitive.variants)
+        primitiveOf(primitive, variant.material, variant.use);
+    }
+    return all_.all();
+  }
+
+private:
+  struct Material {
+    DrawState state;
+    std::vector<PipelineUse> uses;
+  };
+
+  void add(const DrawState& state, const PipelineUse& use, const std::vector<StoredAttribute>* attributes,
+           const Pipeline& first) {
+    const Structure& structure = *use.structure;
+    all_.add(state, structure.shader, use.parameters, structure.reflection, structure.has_vertex, attributes,
+             first);
+  }
+
+  void primitiveOf(const ContractPrimitive& primitive, int material, std::optional<size_t> use) {
+    const auto it = materials_.find(material);
+    if (it == materials_.end() || !use) return;
+    Pipeline first = first_;
+    first.mesh = static_cast<int32_t>(primitive.mesh);
+    first.primitive = static_cast<int32_t>(primitive.primitive);
+    add(it->second.state, it->second.uses[*use], &primitive.attributes, first);
+  }
+
+  bool wanted_, drawn_;
+  Pipeline first_;
+  std::map<int, Material> materials_;
+  Pipelines all_;
+};
+
 FileResult SceneFile::run(const material::Document& document) {
   FileResult result;
   lights_ = lightFacts(setting_.options, lightsOf(document));
@@ -87,12 +185,14 @@ FileResult SceneFile::run(const material::Document& document) {
   result.ok = !hasError(result.diagnostics);
   JsonText json(kFileDepth);
   beginFile(relativeTo(setting_.folder, path_), json);
+  FilePipelines pipelines(path_, document, setting_);
   std::set<Key> seen;
   UsesOf uses;
   std::string default_text;
   std::vector<Done> done;
   for (size_t first = 0; first < all.size(); first += done.size()) {
-    done.assign(std::min(kMaterialsAtOnce, all.size() - first), {});
+    done.clear();
+    done.resize(std::min(kMaterialsAtOnce, all.size() - first));
     // Each thread takes some at a time: a material is a few microseconds when its structure is known.
     tbb::parallel_for(tbb::blocked_range<size_t>(0, done.size(), 16),
                       [&](const tbb::blocked_range<size_t>& range) {
@@ -100,6 +200,7 @@ FileResult SceneFile::run(const material::Document& document) {
                       });
     const StageTimer timer(setting_.times, StageOfRun::Manifest);
     for (size_t i = 0; i < done.size(); ++i) {
+      pipelines.material(all[first + i].index, done[i]);
       if (all[first + i].index < 0)
         default_text = std::move(done[i].text);
       else
@@ -116,9 +217,11 @@ FileResult SceneFile::run(const material::Document& document) {
     if (first == 0) json.reserve(all.size(), done.size());
   }
   const StageTimer timer(setting_.times, StageOfRun::Manifest);
-  endFile({default_text, document.variants, primitivesOf(document, uses), texturesOf(document),
-           imagesOf(document), document.diagnostics},
+  const std::vector<ContractPrimitive> primitives = primitivesOf(document, uses);
+  endFile({default_text, document.variants, primitives, texturesOf(document), imagesOf(document),
+           document.diagnostics},
           json);
+  result.pipelines = pipelines.finish(primitives);
   result.text = json.take();
   return result;
 }
@@ -143,17 +246,18 @@ FileResult unreadable(const std::string& path, const Setting& setting, const Dia
 
 // -- whole files in the cache --
 
-Key fileKey(const std::string& path, const std::string& bytes, const Setting& setting) {
+Key fileKey(const std::string& path, const Key& content, const Setting& setting) {
   KeyBuilder key;
-  key.text("file").key(setting.base).text(path).text(relativeTo(setting.folder, path)).key(keyOf(bytes));
+  key.text("file").key(setting.base).text(path).text(relativeTo(setting.folder, path)).key(content);
   addOptions(setting.options, {Decides::Graph, Decides::Module}, key);
   if (setting.sharing != nullptr) key.key(setting.sharing->digest());
+  key.number(setting.options.pipelines.empty());
   return key.finish();
 }
 
 std::string toBlob(const FileResult& result) {
   BlobWriter blob;
-  blob(result.text, result.diagnostics, result.structures);
+  blob(result.text, result.diagnostics, result.structures, result.pipelines);
   writeMaterials(result.materials, blob);
   return blob.take();
 }
@@ -161,7 +265,7 @@ std::string toBlob(const FileResult& result) {
 std::optional<FileResult> fromBlob(const std::string& path, std::string_view bytes) {
   BlobReader blob(bytes);
   FileResult result;
-  blob(result.text, result.diagnostics, result.structures);
+  blob(result.text, result.diagnostics, result.structures, result.pipelines);
   readMaterials(path, blob, result.materials);
   if (!blob.complete()) return std::nullopt;
   return result;
@@ -181,35 +285,28 @@ std::optional<FileResult> cachedFile(const std::string& path, const Key& key, co
   return all ? std::move(result) : std::nullopt;
 }
 
-FileResult readScene(const std::string& path, const std::vector<std::string>& only, const Setting& setting,
-                     Structures& structures) {
-  Result<std::string> bytes;
-  {
-    const StageTimer timer(setting.times, StageOfRun::Read);
-    bytes = readFile(path, setting.limits.file);
-  }
-  if (!bytes) return unreadable(path, setting, bytes.error());
-  // While programs are looked for, results are of no use to another run.
-  const bool looking = setting.sharing != nullptr && !setting.sharing->closed();
-  const bool keep = setting.cache != nullptr && only.empty() && !looking;
-  const Key key = keep ? fileKey(path, *bytes, setting) : Key{};
-  if (keep) {
-    if (std::optional<FileResult> cached = cachedFile(path, key, setting, structures))
-      return std::move(*cached);
-  }
+Result<std::string> bytesOf(const std::string& path, const Setting& setting) {
+  const StageTimer timer(setting.times, StageOfRun::Read);
+  return readFile(path, setting.limits.file);
+}
+
+Input parsed(const std::string& path, const Key& content, std::string& bytes, const Setting& setting) {
+  Input input{path, false, content, {}, {}};
   const Result<const material::Schema*> schema = setting.library.models.schema();
-  if (!schema) return unreadable(path, setting, schema.error());
-  Result<material::Document> document;
-  {
-    const StageTimer timer(setting.times, StageOfRun::Read);
-    document = material::readText(*bytes, path, **schema, {setting.options.permissive, setting.limits});
-    *bytes = {};
-  }
-  if (!document) return unreadable(path, setting, document.error());
-  FileResult result = SceneFile(path, only, setting, structures).run(*document);
-  if (keep && result.ok && result.text.size() <= setting.options.cache_size / kCachePart) {
+  if (!schema) return input.document = tl::make_unexpected(schema.error()), input;
+  const StageTimer timer(setting.times, StageOfRun::Read);
+  input.document = material::readText(bytes, path, **schema, {setting.options.permissive, setting.limits});
+  bytes = {};
+  return input;
+}
+
+FileResult makeScene(const Input& input, const Key* key, const std::vector<std::string>& only,
+                     const Setting& setting, Structures& structures) {
+  if (!input.document) return unreadable(input.path, setting, input.document.error());
+  FileResult result = SceneFile(input.path, only, setting, structures).run(*input.document);
+  if (key != nullptr && result.ok && result.text.size() <= setting.options.cache_size / kCachePart) {
     const StageTimer timer(setting.times, StageOfRun::Cache);
-    setting.cache->put(key, toBlob(result));
+    setting.cache->put(*key, toBlob(result));
   }
   return result;
 }
@@ -224,35 +321,76 @@ void addDoubts(const graph::Graph& graph, const std::string& path, const lang::L
   }
 }
 
-FileResult readGraph(const std::string& path, const std::vector<std::string>& only, const Setting& setting,
+FileResult makeGraph(const Input& input, const std::vector<std::string>& only, const Setting& setting,
                      Structures& structures) {
-  const Result<std::string> text = readFile(path, setting.limits.file);
-  const Result<graph::Graph> graph =
-      text ? graph::fromJson(*text, path, setting.limits) : tl::make_unexpected(text.error());
-  if (!graph) return unreadable(path, setting, graph.error());
+  if (!input.graph) return unreadable(input.path, setting, input.graph.error());
+  const graph::Graph& graph = *input.graph;
   FileResult result;
   std::vector<std::string> texts;
-  if (!only.empty()) result.names.push_back(graph->name);
-  if (only.empty() || std::find(only.begin(), only.end(), graph->name) != only.end()) {
-    Done done = textOf({nullptr, graph->name, 0, {}, {}}, path, setting,
-                       describeGraph(*graph, path, setting, structures));
+  if (!only.empty()) result.names.push_back(graph.name);
+  if (only.empty() || std::find(only.begin(), only.end(), graph.name) != only.end()) {
+    Done done = textOf({nullptr, graph.name, 0, {}, {}}, input.path, setting,
+                       describeGraph(graph, input.path, setting, structures));
     result.diagnostics = std::move(done.diagnostics);
     result.structures = std::move(done.structures);
     result.ok = done.report.ok;
-    if (result.ok) addDoubts(*graph, path, setting.library, result.diagnostics);
+    if (result.ok) addDoubts(graph, input.path, setting.library, result.diagnostics);
+    Pipeline first;
+    first.source = relativeTo(setting.folder, input.path);
+    first.material = 0;
+    Pipelines pipelines;
+    for (const PipelineUse& use : done.pipelines) {
+      pipelines.add(done.state, use.structure->shader, use.parameters, use.structure->reflection,
+                    use.structure->has_vertex, nullptr, first);
+    }
+    result.pipelines = pipelines.all();
     result.materials.push_back(std::move(done.report));
     texts.push_back(std::move(done.text));
   }
-  result.text = bareText(path, setting, texts, {});
+  result.text = bareText(input.path, setting, texts, {});
   return result;
+}
+
+bool isGraph(const std::string& path, InputKind kind) {
+  return kind == InputKind::Graph || isGraphFile(path);
 }
 
 }  // namespace
 
-FileResult readInput(const std::string& path, InputKind kind, const std::vector<std::string>& only,
+Input readInput(const std::string& path, InputKind kind, const Setting& setting) {
+  Result<std::string> bytes = bytesOf(path, setting);
+  if (isGraph(path, kind)) {
+    Input input{path, true, {}, {}, {}};
+    input.graph = bytes ? graph::fromJson(*bytes, path, setting.limits) : tl::make_unexpected(bytes.error());
+    return input;
+  }
+  if (!bytes) return {path, false, {}, tl::make_unexpected(bytes.error()), {}};
+  return parsed(path, setting.cache == nullptr ? Key{} : keyOf(*bytes), *bytes, setting);
+}
+
+FileResult makeInput(const Input& input, const std::vector<std::string>& only, const Setting& setting,
+                     Structures& structures) {
+  if (input.is_graph) return makeGraph(input, only, setting, structures);
+  // While programs are looked for, results are of no use to another run.
+  const bool looking = setting.sharing != nullptr && !setting.sharing->closed();
+  const bool keep = setting.cache != nullptr && only.empty() && !looking;
+  const Key key = keep ? fileKey(input.path, input.content, setting) : Key{};
+  return makeScene(input, keep ? &key : nullptr, only, setting, structures);
+}
+
+FileResult makeInput(const std::string& path, InputKind kind, const std::vector<std::string>& only,
                      const Setting& setting, Structures& structures) {
-  return kind == InputKind::Graph || isGraphFile(path) ? readGraph(path, only, setting, structures)
-                                                       : readScene(path, only, setting, structures);
+  if (isGraph(path, kind)) return makeGraph(readInput(path, kind, setting), only, setting, structures);
+  Result<std::string> bytes = bytesOf(path, setting);
+  if (!bytes) return unreadable(path, setting, bytes.error());
+  const bool looking = setting.sharing != nullptr && !setting.sharing->closed();
+  if (setting.cache == nullptr || !only.empty() || looking)
+    return makeScene(parsed(path, {}, *bytes, setting), nullptr, only, setting, structures);
+  const Key content = keyOf(*bytes);
+  const Key key = fileKey(path, content, setting);
+  if (std::optional<FileResult> cached = cachedFile(path, key, setting, structures))
+    return std::move(*cached);
+  return makeScene(parsed(path, content, *bytes, setting), &key, only, setting, structures);
 }
 
 }  // namespace lacquer

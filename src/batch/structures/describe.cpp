@@ -27,8 +27,8 @@ public:
         structures_(structures) {}
 
   void use(const gltf::VertexAttributes& attributes);
-  /// `said`: what building the graph has reported.
-  void use(graph::Graph& graph, const gltf::VertexAttributes& attributes, const Diagnostics& said);
+  /// A graph that is the input.
+  void use(graph::Graph& graph, const gltf::VertexAttributes& attributes);
   /// No graph could be made.
   void fail(const Diagnostics& why) { add(why); }
   Described finish();
@@ -45,6 +45,12 @@ private:
         diagnostics_.push_back(d);
     }
   }
+  bool known(const std::string& key, const gltf::VertexAttributes& attributes);
+  void use(Traced graph, const gltf::VertexAttributes& attributes, const Diagnostics& said,
+           const std::string& key);
+  bool check(const Structure& structure, const Filling& filling, graph::Graph& graph);
+  bool accept(const Structure& structure, const Filling& filling, const Sharing::Share& share,
+              const gltf::VertexAttributes& attributes);
   std::shared_ptr<const MaterialTerms> terms() const;
 
   const Wanted& wanted_;
@@ -60,15 +66,15 @@ private:
 };
 
 /// What is no constant though constants are asked for.
-Diagnostics animated(const Structure& structure, const graph::Graph& graph) {
+Diagnostics animated(const Structure& structure, const Filling& filling) {
   Diagnostics notes;
   for (const uint32_t i : structure.parameters) {
-    const ir::Parameter& p = graph.parameters[i];
-    if (!p.animated) continue;
+    const Filling::Number& number = filling.numbers[i];
+    if (!number.animated) continue;
     notes.push_back({"animated-parameter",
                      Severity::Note,
-                     {{}, 0, 0, p.pointer},
-                     fmt::format("{} is animated: it stays in the Material block", p.name),
+                     {{}, 0, 0, number.pointer},
+                     fmt::format("{} is animated: it stays in the Material block", structure.numbers[i].name),
                      "what changes at run time is no constant",
                      {}});
   }
@@ -79,50 +85,95 @@ Diagnostics animated(const Structure& structure, const graph::Graph& graph) {
 Strings standIns(const Structure& structure, const gltf::VertexAttributes& attributes) {
   const Strings own = attributes.names();
   Strings missing;
-  for (const std::string& name : structure.inputs) {
-    if (name != "POSITION" && std::find(own.begin(), own.end(), name) == own.end()) missing.push_back(name);
+  for (const ShaderInput& input : structure.reflection.inputs) {
+    if (input.name != "POSITION" && std::find(own.begin(), own.end(), input.name) == own.end())
+      missing.push_back(input.name);
   }
   return missing;
 }
 
 void Describer::use(const gltf::VertexAttributes& attributes) {
+  std::string key;
+  if (KnownShapes* shapes = structures_.shapes()) {
+    key = shapes->keyOf(material_, attributes, lights_);
+    if (known(key, attributes)) return;
+  }
   Diagnostics said;
+  model::Origins origins;
   Result<graph::Graph> graph;
   {
     const StageTimer timer(setting_.times, StageOfRun::Graph);
-    graph = buildGraph(material_, attributes, setting_.library, setting_.options, said);
+    graph = buildGraph(material_, attributes, setting_.library, setting_.options, said, &origins);
   }
-  if (graph)
-    use(*graph, attributes, said);
-  else
-    fail(graph.error());
+  if (!graph) return fail(graph.error());
+  use({*graph,
+       {origins.parameters.begin(), origins.parameters.end()},
+       {origins.textures.begin(), origins.textures.end()}},
+      attributes, said, key);
 }
 
-void Describer::use(graph::Graph& graph, const gltf::VertexAttributes& attributes, const Diagnostics& said) {
+void Describer::use(graph::Graph& graph, const gltf::VertexAttributes& attributes) {
+  use({graph, {}, {}}, attributes, {}, {});
+}
+
+/// Whether a material of its shape was there before; not where the numbers are others than the check has
+/// accepted: it says why.
+bool Describer::known(const std::string& key, const gltf::VertexAttributes& attributes) {
+  const KnownShape* shape = structures_.shapes()->find(key);
+  if (shape == nullptr) return false;
+  const Filling filling = structures_.shapes()->fill(*shape, material_);
+  if (!withinLimits(*shape->structure, filling)) return false;
+  if (setting_.sharing != nullptr) setting_.sharing->note(shape->structure->key, material_, attributes);
+  met_.push_back(shape->structure);
+  accept(*shape->structure, filling, shape->share, attributes);
+  return true;
+}
+
+/// `said`: what building the graph has reported. `key`: of the material's shape; empty where shapes are not
+/// kept.
+void Describer::use(Traced own, const gltf::VertexAttributes& attributes, const Diagnostics& said,
+                    const std::string& key) {
   Sharing::Share share;
   if (setting_.sharing != nullptr) {
-    setting_.sharing->note(structureKey(graph, lights_, setting_), graph, wanted_.material, attributes);
-    share = setting_.sharing->bring(graph, wanted_.material, attributes, lights_);
+    const Key structure = structureKey(own.graph, lights_, setting_);
+    if (wanted_.material != nullptr)
+      setting_.sharing->note(structure, material_, attributes);
+    else
+      setting_.sharing->note(structure, own.graph);
+    share = setting_.sharing->bring(own, wanted_.material, attributes, lights_);
   }
-  const Structure& structure = structures_.of(graph, lights_);
+  const Structure& structure = structures_.of(own.graph, lights_);
+  Filling filling = fillingOf(own.graph, material_);
   met_.push_back(&structure);
   add(said);
-  if (structure.shader.empty() || !withinLimits(structure, graph)) {
-    const Diagnostics found = graph::check(graph, setting_.library);
-    add(found);
-    if (hasError(found)) return;
-  }
+  const bool good = check(structure, filling, own.graph) && accept(structure, filling, share, attributes);
+  if (good && said.empty() && !key.empty() && withinLimits(structure, filling))
+    structures_.shapes()->keep(
+        key, {&structure, share, std::move(filling), std::move(own.numbers), std::move(own.textures)});
+}
+
+/// False, with errors, for a graph that is wrong.
+bool Describer::check(const Structure& structure, const Filling& filling, graph::Graph& graph) {
+  if (!structure.shader.empty() && withinLimits(structure, filling)) return true;
+  const Diagnostics found = graph::check(graph, setting_.library);
+  add(found);
+  return !hasError(found);
+}
+
+bool Describer::accept(const Structure& structure, const Filling& filling, const Sharing::Share& share,
+                       const gltf::VertexAttributes& attributes) {
   add(structure.diagnostics);
-  if (structure.shader.empty()) return;
-  if (setting_.options.parameters != Parameters::Uniform) add(animated(structure, graph));
+  if (structure.shader.empty()) return false;
+  if (setting_.options.parameters != Parameters::Uniform) add(animated(structure, filling));
   looks_through_ |= share.fill != nullptr ? share.looks_through : structure.looks_through;
-  ContractUse use = useOf(structure, graph, material_, share.fill);
+  ContractUse use = useOf(structure, filling, share.fill);
   use.attributes = toPublic(attributes);
   if (use.shares_program) use.stand_in_attributes = standIns(structure, attributes);
   made_.values.uses.push_back(std::move(use));
   made_.shaders.push_back(structure.shader);
   made_.met.push_back(&structure);
   made_.uses.push_back(attributes);
+  return true;
 }
 
 /// Of all uses, each once.
@@ -239,7 +290,7 @@ Described describeGraph(const graph::Graph& graph, const std::string& file, cons
   }
   graph::Graph flat = graph::flattened(checked, setting.library);
   if (const Result<void> simpler = simplifyBuilt(flat, setting.library, setting.options.simplify); simpler)
-    describer.use(flat, everything(), {});
+    describer.use(flat, everything());
   else
     describer.fail(simpler.error());
   return describer.finish();

@@ -8,7 +8,6 @@
 #include "cost/choose.h"
 #include "cost/cost.h"
 #include "graph/edit.h"
-#include "interface/entry.h"
 #include "interface/interface.h"
 #include "lower/lower.h"
 #include "manifest/values.h"
@@ -17,12 +16,11 @@
 #include "setting/simplify.h"
 #include "shader/limits.h"
 #include "shader/module.h"
+#include "structures/reflection_blob.h"
 
 namespace lacquer {
 
 namespace {
-
-constexpr size_t kInterfaceDepth = 3;  ///< manifest, "shaders", the shader's entry
 
 class StructureKey {
 public:
@@ -81,24 +79,27 @@ private:
   bool values_;
 };
 
+std::vector<Structure::Number> numbersOf(const graph::Graph& graph, const lang::Library& library) {
+  const std::vector<ir::Range> limits = graph::parameterLimits(graph, library);
+  std::vector<Structure::Number> numbers;
+  for (size_t i = 0; i < limits.size(); ++i) {
+    const ir::Parameter& p = graph.parameters[i];
+    numbers.push_back({p.name, static_cast<uint32_t>(ir::componentCount(p.type)), limits[i]});
+  }
+  return numbers;
+}
+
 /// Takes away what belongs to one material.
-graph::Graph withoutMaterial(graph::Graph graph, const std::vector<ir::Range>& limits, bool values) {
+graph::Graph withoutMaterial(graph::Graph graph, const std::vector<Structure::Number>& numbers, bool values) {
   graph = graph::bare(std::move(graph));
   for (size_t i = 0; i < graph.parameters.size(); ++i) {
     ir::Parameter& p = graph.parameters[i];
     if (values && !p.animated) continue;
-    const double x = std::min(std::max(0.0, limits[i].lo), limits[i].hi);
+    const double x = std::min(std::max(0.0, numbers[i].limits.lo), numbers[i].limits.hi);
     p.value.fill(0);
     std::fill_n(p.value.begin(), ir::componentCount(p.type), std::isfinite(x) ? x : 0);
   }
   return graph;
-}
-
-template <class Write>
-std::string textAt(size_t depth, Write write) {
-  JsonText json(depth);
-  write(json);
-  return json.take();
 }
 
 void describe(const graph::Graph& graph, Structure& structure) {
@@ -135,13 +136,7 @@ void describe(const ir::Module& module, const graph::Graph& graph, const Setting
   structure.has_vertex = hasVertexStage(module);
   structure.looks_through = looksThrough(module);
   const Result<const material::Schema*> schema = library.models.schema();
-  const Reflection reflection = reflect(module, structure.has_vertex, schema ? *schema : nullptr);
-  const Json entry = entryOf(reflection);
-  for (const auto& [name, value] : entry.items()) {
-    structure.interface.emplace_back(
-        name, textAt(kInterfaceDepth, [&, &v = value](JsonText& json) { json.json(v); }));
-  }
-  for (const ShaderInput& input : reflection.inputs) structure.inputs.push_back(input.name);
+  structure.reflection = reflect(module, structure.has_vertex, schema ? *schema : nullptr);
   structure.preshader = Preshader(module);
   const auto place = [](const auto& list, const std::string& name) {
     const auto it =
@@ -196,10 +191,10 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
 
 std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
                                         const Setting& setting, Structure& structure) {
-  structure.limits = graph::parameterLimits(graph, setting.library);
+  structure.numbers = numbersOf(graph, setting.library);
   structure.lights = lights;
   const bool baked = setting.options.parameters == Parameters::Baked;
-  graph::Graph plain = withoutMaterial(graph, structure.limits, baked);
+  graph::Graph plain = withoutMaterial(graph, structure.numbers, baked);
   {
     const StageTimer timer(setting.times, StageOfRun::Graph);
     structure.diagnostics = graph::check(plain, setting.library);
@@ -223,6 +218,11 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
   return std::move(*module);
 }
 
+graph::Graph withoutMaterial(const graph::Graph& graph, const Setting& setting) {
+  return withoutMaterial(graph, numbersOf(graph, setting.library),
+                         setting.options.parameters == Parameters::Baked);
+}
+
 Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting) {
   Result<graph::Graph> graph = graph::fromJson(structure.graph, structure.shader, setting.limits);
   if (!graph) return tl::make_unexpected(graph.error());
@@ -232,19 +232,31 @@ Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting) 
   return modulate(*graph, structure.lights, setting);
 }
 
-bool withinLimits(const Structure& structure, const graph::Graph& graph) {
-  for (size_t i = 0; i < graph.parameters.size(); ++i) {
-    const ir::Parameter& p = graph.parameters[i];
-    for (int c = 0; c < ir::componentCount(p.type); ++c) {
-      const double x = p.value[static_cast<size_t>(c)];
-      if (!std::isfinite(x) || !structure.limits[i].contains(x)) return false;
+Filling fillingOf(const graph::Graph& graph, const material::Material& material) {
+  Filling filling;
+  for (const ir::Parameter& p : graph.parameters) filling.numbers.push_back({p.value, p.pointer, p.animated});
+  for (const graph::Texture& t : graph.textures) {
+    const auto it = std::find_if(material.textures.begin(), material.textures.end(),
+                                 [&](const auto& texture) { return texture.info.pointer == t.pointer; });
+    filling.textures.push_back({t.texture, t.srgb, t.pointer,
+                                it == material.textures.end() ? nullptr : &it->info,
+                                t.file.empty() && !t.color ? nullptr : &t});
+  }
+  return filling;
+}
+
+bool withinLimits(const Structure& structure, const Filling& filling) {
+  for (size_t i = 0; i < filling.numbers.size(); ++i) {
+    for (uint32_t c = 0; c < structure.numbers[i].components; ++c) {
+      const double x = filling.numbers[i].value[c];
+      if (!std::isfinite(x) || !structure.numbers[i].limits.contains(x)) return false;
     }
   }
   return true;
 }
 
-static std::vector<double> numbersOf(const ir::Components& of, ir::Type type) {
-  return {of.begin(), of.begin() + ir::componentCount(type)};
+static std::vector<double> firstOf(const ir::Components& of, size_t count) {
+  return {of.begin(), of.begin() + static_cast<ptrdiff_t>(count)};
 }
 
 /// Of a graph's texture that is a file.
@@ -257,33 +269,45 @@ static TextureSampler samplerOf(const graph::Texture& texture) {
   return sampler;
 }
 
-ContractUse useOf(const Structure& structure, const graph::Graph& graph, const material::Material& material,
-                  const programs::Fill* fill) {
+ContractUse useOf(const Structure& structure, const Filling& filling, const programs::Fill* fill) {
   ContractUse use;
   use.facts = structure.facts;
   use.structure = structure.key.text();
   use.shares_program = fill != nullptr;
+  use.parameters.reserve(structure.parameters.size());
   for (const uint32_t i : structure.parameters) {
-    const ir::Parameter& p = graph.parameters[i];
+    const Structure::Number& parameter = structure.numbers[i];
+    const Filling::Number& number = filling.numbers[i];
     const bool own = fill == nullptr || fill->numbers[i].own;
-    use.parameters.push_back({p.name, numbersOf(p.value, p.type), p.pointer, p.animated && own, !own});
+    use.parameters.push_back({parameter.name, firstOf(number.value, parameter.components), number.pointer,
+                              number.animated && own, !own});
   }
   const std::vector<Preshader::Field>& fields = structure.preshader.fields();
   const std::vector<ir::Components> packed = structure.preshader.evaluate(
-      [&](uint32_t i) -> const ir::Components& { return graph.parameters[structure.parameters[i]].value; });
+      [&](uint32_t i) -> const ir::Components& { return filling.numbers[structure.parameters[i]].value; });
+  use.uniforms.reserve(packed.size());
   for (size_t i = 0; i < packed.size(); ++i)
-    use.uniforms.emplace_back(fields[i].name, numbersOf(packed[i], fields[i].type));
+    use.uniforms.emplace_back(fields[i].name,
+                              firstOf(packed[i], static_cast<size_t>(ir::componentCount(fields[i].type))));
   use.block.resize(structure.preshader.blockSize());
   structure.preshader.write(packed, use.block);
+  use.textures.reserve(structure.textures.size());
   for (const auto& [name, i] : structure.textures) {
-    const graph::Texture& slot = graph.textures[i];
-    UsedTexture texture{name, slot.texture, slot.pointer, {}, {}, slot.srgb, {}, slot.file, {}, slot.color};
-    if (!slot.file.empty()) texture.sampler = samplerOf(slot);
-    if (fill == nullptr || fill->textures[i].own)
-      addTextureInfo(material, texture);
-    else
+    const Filling::Texture& slot = filling.textures[i];
+    UsedTexture& texture = use.textures.emplace_back();
+    texture.slot = name;
+    texture.texture = slot.texture;
+    texture.pointer = slot.pointer;
+    texture.srgb = slot.srgb;
+    if (slot.image != nullptr) {
+      texture.file = slot.image->file;
+      texture.color = slot.image->color;
+      if (!texture.file.empty()) texture.sampler = samplerOf(*slot.image);
+    }
+    if (fill != nullptr && !fill->textures[i].own)
       texture.stand_in = fill->textures[i].texel;
-    use.textures.push_back(std::move(texture));
+    else if (slot.info != nullptr)
+      addTextureInfo(*slot.info, texture);
   }
   return use;
 }
@@ -308,9 +332,14 @@ static void fields(Archive& archive, StructureFacts& f) {
 }
 
 template <class Archive>
+static void fields(Archive& archive, Structure::Number& number) {
+  archive(number.name, number.components, number.limits);
+}
+
+template <class Archive>
 static void fields(Archive& archive, Structure& s) {
-  archive(s.content, s.module, s.diagnostics, s.shader, s.has_vertex, s.looks_through, s.facts, s.interface,
-          s.terms, s.preshader, s.parameters, s.textures, s.inputs, s.limits, s.graph, s.lights);
+  archive(s.content, s.module, s.diagnostics, s.shader, s.has_vertex, s.looks_through, s.facts, s.reflection,
+          s.terms, s.preshader, s.parameters, s.textures, s.numbers, s.graph, s.lights);
 }
 
 std::string toBlob(const Structure& structure) {
@@ -329,7 +358,12 @@ bool fromBlob(std::string_view bytes, Structure& s) {
 
 bool fits(const Structure& s, const graph::Graph& graph) {
   const auto below = [](size_t n) { return [n](uint32_t i) { return i < n; }; };
-  return s.limits.size() == graph.parameters.size() &&
+  const auto same = [](const Structure::Number& number, const ir::Parameter& parameter) {
+    return number.name == parameter.name &&
+           number.components == static_cast<uint32_t>(ir::componentCount(parameter.type));
+  };
+  return std::equal(s.numbers.begin(), s.numbers.end(), graph.parameters.begin(), graph.parameters.end(),
+                    same) &&
          std::all_of(s.parameters.begin(), s.parameters.end(), below(graph.parameters.size())) &&
          std::all_of(s.textures.begin(), s.textures.end(),
                      [&](const auto& texture) { return texture.second < graph.textures.size(); });

@@ -10,6 +10,7 @@
 #include "cache/cache.h"
 #include "lacquer.h"
 #include "manifest/entries.h"
+#include "model/shape.h"
 #include "programs/unite.h"
 #include "shader/module.h"
 #include "shader/preshader.h"
@@ -35,19 +36,29 @@ struct Structure {
   std::string shader;       ///< id; empty when none can be made
   bool has_vertex = false;
   bool looks_through = false;  ///< the shader reads what is drawn behind it
-  std::vector<std::pair<std::string, std::string>>
-      interface;  ///< members of the shader's entry in the manifest
+  Reflection reflection;
   std::shared_ptr<const MaterialTerms> terms;
   std::shared_ptr<const StructureFacts> facts;
   StructureTexts texts;  ///< of both
   Preshader preshader;
   std::vector<uint32_t> parameters;                        ///< of the module, as places in the graph's list
   std::vector<std::pair<std::string, uint32_t>> textures;  ///< the module's material textures, the same way
-  std::vector<std::string> inputs;                         ///< vertex attributes that the shader reads
-  std::vector<ir::Range>
-      limits;         ///< for each of the graph's parameters: values for which the check has no complaint
+  /// A parameter of the graph, and the numbers for which the check has no complaint.
+  struct Number {
+    std::string name;
+    uint32_t components = 1;
+    ir::Range limits;
+  };
+  std::vector<Number> numbers;
   std::string graph;  ///< JSON form of the graph without what belongs to one material
   passes::LightFacts lights;
+};
+
+/// A material's graph, and where its numbers and textures come from: none for what is not the material's.
+struct Traced {
+  graph::Graph& graph;
+  std::vector<std::optional<model::Origin>> numbers;
+  std::vector<std::optional<uint16_t>> textures;  ///< properties
 };
 
 /// What materials of different structures share, where the options ask for it.
@@ -60,12 +71,14 @@ public:
     const programs::Fill* fill = nullptr;  ///< null for a material that keeps its program
     bool looks_through = false;
   };
-  /// Takes note of a graph that needs a structure. `material`: that the graph was built of, here and in
-  /// bring(); null for a graph that is the input.
-  virtual void note(const Key& structure, const graph::Graph& graph, const material::Material* material,
+  /// Takes note of a material whose graph needs a structure.
+  virtual void note(const Key& structure, const material::Material& material,
                     const gltf::VertexAttributes& attributes) = 0;
-  /// Puts the graph of a material's program in place of its own.
-  virtual Share bring(graph::Graph& graph, const material::Material* material,
+  /// The same of a graph that is the input.
+  virtual void note(const Key& structure, const graph::Graph& graph) = 0;
+  /// Puts the graph of a material's program in place of its own. `material`: that the graph was built of;
+  /// null for a graph that is the input.
+  virtual Share bring(Traced& own, const material::Material* material,
                       const gltf::VertexAttributes& attributes, const passes::LightFacts& lights) = 0;
   /// Results are of use to another run.
   virtual bool closed() const = 0;
@@ -98,6 +111,10 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
 std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
                                         const Setting& setting, Structure& structure);
 
+/// The graph without what belongs to one material: numbers that stay editable have values that the check
+/// accepts.
+graph::Graph withoutMaterial(const graph::Graph& graph, const Setting& setting);
+
 /// The module of a structure that came from the cache.
 Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting);
 
@@ -108,13 +125,31 @@ bool fromBlob(std::string_view bytes, Structure& structure);
 /// whatever the cache says.
 bool fits(const Structure& structure, const graph::Graph& graph);
 
-/// What a use of a material says of its structure: parameters, uniforms, textures. TextureInfos are looked up
-/// by the graph's pointers. `fill`: of a graph that several structures share, what this one has not itself;
-/// null for its own graph.
-ContractUse useOf(const Structure& structure, const graph::Graph& graph, const material::Material& material,
-                  const programs::Fill* fill);
+/// What a material puts into its graph, in the order of the graph's parameters and textures.
+struct Filling {
+  struct Number {
+    ir::Components value{};
+    std::string pointer;
+    bool animated = false;
+  };
+  struct Texture {
+    int texture = -1;
+    bool srgb = false;
+    std::string pointer;
+    const gltf::TextureInfo* info = nullptr;  ///< null for a graph that is the input
+    const graph::Texture* image = nullptr;    ///< of such a graph: its file, what is there without; else null
+  };
+  std::vector<Number> numbers;
+  std::vector<Texture> textures;
+};
+/// It points into the graph and the material.
+Filling fillingOf(const graph::Graph& graph, const material::Material& material);
+
+/// What a use of a material says of its structure: parameters, uniforms, textures. `fill`: of a graph that
+/// several structures share, what this one has not itself; null for its own graph.
+ContractUse useOf(const Structure& structure, const Filling& filling, const programs::Fill* fill);
 
 /// True when the values of the graph's parameters are such that the structure's check holds for it.
-bool withinLimits(const Structure& structure, const graph::Graph& graph);
+bool withinLimits(const Structure& structure, const Filling& filling);
 
 }  // namespace lacquer

@@ -78,7 +78,18 @@ const Structure& Structures::met(const Structure& structure) {
   return structure;
 }
 
-void Structures::lookAgain() { looks_again_ = true; }
+void Structures::lookAgain() {
+  looks_again_ = true;
+  forgetShapes();
+}
+
+void Structures::forgetShapes() {
+  shapes_.reset();
+  const auto model = setting_.library.models.of(setting_.options.profile);
+  const auto schema = setting_.library.models.schema();
+  if (KnownShapes::usable(setting_.options) && model && schema)
+    shapes_ = std::make_unique<KnownShapes>(**model, **schema);
+}
 
 std::map<std::string, Distinct>& Structures::shaders() {
   if (looks_again_) std::erase_if(shaders_, [&](const auto& one) { return !met_again_.contains(one.first); });

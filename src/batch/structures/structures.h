@@ -9,6 +9,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "structures/shapes.h"
 #include "structures/structure.h"
 
 namespace lacquer {
@@ -22,7 +23,7 @@ struct Distinct {
 /// May be used from several threads at once.
 class Structures {
 public:
-  explicit Structures(const Setting& setting) : setting_(setting) {}
+  explicit Structures(const Setting& setting) : setting_(setting) { forgetShapes(); }
 
   /// The structure of a graph, found or made. It lives as long as this object.
   const Structure& of(const graph::Graph& graph, const passes::LightFacts& lights);
@@ -31,6 +32,11 @@ public:
   /// What was met so far was to look at: its shaders need not be made unless they are met again. Not beside
   /// of() and known().
   void lookAgain();
+
+  /// The shapes of the materials so far; null where a graph depends on more than its material's shape.
+  KnownShapes* shapes() { return shapes_.get(); }
+  /// From here on materials are built anew: they have other graphs. Not beside of().
+  void forgetShapes();
 
   /// By id, those that are needed. Not beside of() and known().
   std::map<std::string, Distinct>& shaders();
@@ -53,6 +59,7 @@ private:
   std::map<std::string, Distinct> shaders_;
   std::set<std::string> met_again_;
   bool looks_again_ = false;
+  std::unique_ptr<KnownShapes> shapes_;
 };
 
 }  // namespace lacquer

@@ -101,12 +101,6 @@ Json textureJson(const ReflectedTexture& texture) {
   return row;
 }
 
-Json outputJson(const ShaderOutput& output) {
-  Json row = {{"name", output.name}, {"type", "vec4"}, {"location", output.location}};
-  if (!output.holds.empty()) row["holds"] = output.holds;
-  return row;
-}
-
 template <class Row, class Make>
 Json listOf(const std::vector<Row>& rows, const Make& make) {
   Json list = Json::array();
@@ -216,6 +210,12 @@ Json metalOf(const Reflection& of, bool argument_buffers) {
 }
 
 }  // namespace
+
+Json outputJson(const ShaderOutput& output) {
+  Json row = {{"name", output.name}, {"type", "vec4"}, {"location", output.location}};
+  if (!output.holds.empty()) row["holds"] = output.holds;
+  return row;
+}
 
 Json numbersJson(const std::vector<double>& numbers) {
   if (numbers.size() == 1) return numbers[0];

@@ -30,5 +30,6 @@ Json namedJson(const NamedNumbers& named);
 /// [low, high], infinite ends as texts, with "nan" behind them for what may be NaN.
 Json reachedJson(const Reached& reached);
 Json operationJson(const OperationProof& operation);
+Json outputJson(const ShaderOutput& output);
 
 }  // namespace lacquer

@@ -53,16 +53,7 @@ void writeState(const DrawState& state, JsonText& json) {
   if (state.alpha_mode == AlphaMode::Mask) json.key("alpha_cutoff").number(state.alpha_cutoff);
   json.key("pass").string(passName(state.pass));
   json.key("depth_write").boolean(state.depth_write);
-  if (state.blend) {
-    const auto factors = [&](std::string_view name, BlendFactor source, BlendFactor destination) {
-      json.key(name).beginArray().string(wordOf(source, kFactors));
-      json.string(wordOf(destination, kFactors)).endArray();
-    };
-    json.key("blend").beginObject();
-    factors("color", state.blend->source_color, state.blend->destination_color);
-    factors("alpha", state.blend->source_alpha, state.blend->destination_alpha);
-    json.endObject();
-  }
+  if (state.blend) writeBlend(*state.blend, json.key("blend"));
   json.key("double_sided").boolean(state.double_sided);
 }
 
@@ -160,6 +151,17 @@ void writeDiagnostics(const Diagnostics& diagnostics, JsonText& json) {
 }  // namespace
 
 std::string_view passName(Pass pass) { return wordOf(pass, kPasses); }
+
+void writeBlend(const Blend& blend, JsonText& json) {
+  const auto factors = [&](std::string_view name, BlendFactor source, BlendFactor destination) {
+    json.key(name).beginArray().string(wordOf(source, kFactors));
+    json.string(wordOf(destination, kFactors)).endArray();
+  };
+  json.beginObject();
+  factors("color", blend.source_color, blend.destination_color);
+  factors("alpha", blend.source_alpha, blend.destination_alpha);
+  json.endObject();
+}
 
 void writeList(const std::vector<std::string>& names, JsonText& json) {
   json.beginArray();

@@ -17,6 +17,9 @@ inline constexpr size_t kMaterialDepth = 4;  ///< the file, "materials"
 
 void writeList(const std::vector<std::string>& names, JsonText& json);
 
+/// The member "blend" of a material.
+void writeBlend(const Blend& blend, JsonText& json);
+
 /// What all materials of a structure say alike, as texts of its depth.
 struct StructureTexts {
   std::string terms, skipped;    ///< members of the material

@@ -128,14 +128,11 @@ std::vector<std::pair<std::string, std::string>> extensionsOf(const material::Ma
   return all;
 }
 
-void addTextureInfo(const material::Material& material, UsedTexture& texture) {
-  const auto it = std::find_if(material.textures.begin(), material.textures.end(),
-                               [&](const auto& one) { return one.info.pointer == texture.pointer; });
-  if (it == material.textures.end()) return;
-  texture.texcoord = it->info.texCoord;
-  if (!it->info.transform) return;
-  const gltf::TextureTransform& t = *it->info.transform;
-  texture.transform = {t.offset, t.rotation, t.scale};
+void addTextureInfo(const gltf::TextureInfo& info, UsedTexture& texture) {
+  texture.texcoord = info.texCoord;
+  if (info.transform)
+    texture.transform =
+        TextureTransform{info.transform->offset, info.transform->rotation, info.transform->scale};
 }
 
 }  // namespace lacquer

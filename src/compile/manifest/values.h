@@ -23,7 +23,7 @@ DrawState stateOf(const material::Material& material, const material::Schema& sc
 std::vector<std::pair<std::string, std::string>> extensionsOf(const material::Material& material,
                                                               const material::Schema& schema);
 
-/// Fills in what the material says of a texture's textureInfo; nothing where it has none of that pointer.
-void addTextureInfo(const material::Material& material, UsedTexture& texture);
+/// Fills in the UV set and the transform.
+void addTextureInfo(const gltf::TextureInfo& info, UsedTexture& texture);
 
 }  // namespace lacquer

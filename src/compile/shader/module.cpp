@@ -23,7 +23,8 @@ passes::LightFacts lightsOf(const gltf::Scene& scene) {
 }
 
 Result<graph::Graph> buildGraph(const material::Material& material, const gltf::VertexAttributes& attributes,
-                                const Language& language, const Options& options, Diagnostics& warnings) {
+                                const Language& language, const Options& options, Diagnostics& warnings,
+                                model::Origins* origins) {
   const Result<Simplification> simpler = simplificationOf(options.simplify);
   if (!simpler) return tl::make_unexpected(simpler.error());
   const Result<const model::Model*> model = language.models.of(options.profile, simpler->lods);
@@ -41,8 +42,9 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
   build.without = simpler->without;
   build.texels = simpler->texels;
   for (const auto& [name, value] : simpler->switches) build.switches.insert_or_assign(name, value);
-  Result<graph::Graph> graph = model::build(
-      **model, **wanted, withoutTextures(material, *(*model)->schema, *simpler), attributes, build, warnings);
+  Result<graph::Graph> graph =
+      model::build(**model, **wanted, withoutTextures(material, *(*model)->schema, *simpler), attributes,
+                   build, warnings, origins);
   if (graph) simplify(*graph, language, *simpler);
   return graph;
 }

@@ -6,15 +6,18 @@
 #include <string_view>
 
 #include "graph/graph.h"
+#include "model/shape.h"
 #include "passes/pipeline.h"
 #include "setting/language.h"
 
 namespace lacquer {
 
 passes::LightFacts lightsOf(const gltf::Scene& scene);
-/// The graph of a material as the options want it: the profile, then what is to be simpler.
+/// The graph of a material as the options want it: the profile, then what is to be simpler. `origins`: as of
+/// model::build().
 Result<graph::Graph> buildGraph(const material::Material& material, const gltf::VertexAttributes& attributes,
-                                const Language& language, const Options& options, Diagnostics& warnings);
+                                const Language& language, const Options& options, Diagnostics& warnings,
+                                model::Origins* origins = nullptr);
 
 using AfterPass = std::function<void(std::string_view pass, const ir::Module&)>;
 

@@ -28,7 +28,7 @@ class Writer {
 public:
   Writer(const Model& model, Resolver& resolver, const material::Material& material,
          const gltf::VertexAttributes& attributes, const BuildOptions& options, Graph& graph,
-         Diagnostics& warnings)
+         Diagnostics& warnings, Origins& origins)
       : model_(model),
         resolver_(resolver),
         material_(material),
@@ -36,6 +36,7 @@ public:
         options_(options),
         graph_(graph),
         warnings_(warnings),
+        origins_(origins),
         marked_(model.ids.size()),
         written_(model.ids.size()) {}
 
@@ -51,8 +52,8 @@ private:
   Source number(const Found& value);
   Source texel(uint16_t property);
   Source coordinate(uint16_t property);
-  Source editable(std::string name, ir::Type type, ir::Components value, const ir::Range& range,
-                  const std::string& pointer, const ir::Components& neutral, bool animated);
+  Source editable(std::string name, ir::Type type, const ir::Range& range, const Origin& origin,
+                  const ir::Components& otherwise, const ir::Components& neutral, bool animated);
 
   const Model& model_;
   Resolver& resolver_;
@@ -61,6 +62,7 @@ private:
   const BuildOptions& options_;
   Graph& graph_;
   Diagnostics& warnings_;
+  Origins& origins_;
   std::vector<bool> marked_;
   std::vector<std::string> written_;                         ///< the node's id in the graph, once it is there
   std::vector<std::pair<std::string, Source>> texels_;       ///< texture, UV and colour space -> texel
@@ -75,17 +77,18 @@ void Writer::mark(const Found& value) {
 
 // -- sources --
 
-Source Writer::editable(std::string name, ir::Type type, ir::Components value, const ir::Range& range,
-                        const std::string& pointer, const ir::Components& neutral, bool animated) {
+Source Writer::editable(std::string name, ir::Type type, const ir::Range& range, const Origin& origin,
+                        const ir::Components& otherwise, const ir::Components& neutral, bool animated) {
   if (!graph_.findParameter(name)) {
     graph::Parameter& parameter = graph_.parameters.emplace_back();
     parameter.name = name;
     parameter.type = type;
-    parameter.value = value;
+    parameter.value = valueOf(origin, material_, otherwise);
     parameter.range = range;
-    parameter.pointer = pointer;
+    parameter.pointer = pointerOf(origin, material_, *model_.schema);
     parameter.neutral = neutral;
     parameter.animated = animated;
+    origins_.parameters.push_back(origin);
   }
   return {graph::ParameterRef{std::move(name)}, {}};
 }
@@ -94,13 +97,13 @@ Source Writer::number(const Found& value) {
   const material::Property& property = model_.schema->properties[value.property];
   const lang::PropertyDecl* decl = property.decl;
   std::string name = property.parameter_name;
-  std::string pointer = fmt::format("/materials/{}/{}", material_.index, property.path);
+  Origin origin{Origin::Kind::Number, value.property, value.member};
   if (value.kind == Found::Kind::Member) {
+    origin.kind = Origin::Kind::Member;
     decl = &decl->members[static_cast<size_t>(value.member)];
     name += "_" + material::parameterName(decl->name);
-    pointer = fmt::format("{}/{}", material_.texture(value.property)->pointer, decl->name);
   }
-  return editable(std::move(name), decl->type, value.constant, decl->range, pointer,
+  return editable(std::move(name), decl->type, decl->range, origin, value.constant,
                   decl->default_value.value_or(ir::Components{}), value.animated);
 }
 
@@ -126,19 +129,16 @@ Source Writer::coordinate(uint16_t property) {
   const gltf::TextureTransform t = info.transform.value_or(gltf::TextureTransform{});
   if (!t.identity() || info.animated.transform()) {
     graph::Inputs inputs{{"uv", uv}};
-    const std::string pointer = info.pointer + "/extensions/KHR_texture_transform";
-    const auto add = [&](const char* input, ir::Type type, ir::Components value, bool animated, bool given) {
+    const auto add = [&](const char* input, ir::Type type, Origin::Kind kind, bool animated, bool given) {
       if (!animated && !given) return;
       inputs.emplace_back(
-          input,
-          editable(fmt::format("{}_uv_{}", slot, input), type, value, {},
-                   fmt::format("{}/{}", pointer, input),
-                   std::string_view(input) == "scale" ? ir::Components{1, 1} : ir::Components{}, animated));
+          input, editable(fmt::format("{}_uv_{}", slot, input), type, {}, {kind, property, -1}, {},
+                          kind == Origin::Kind::Scale ? ir::Components{1, 1} : ir::Components{}, animated));
     };
-    add("offset", ir::Type::Vec2, {t.offset[0], t.offset[1]}, info.animated.offset,
+    add("offset", ir::Type::Vec2, Origin::Kind::Offset, info.animated.offset,
         t.offset != std::array<double, 2>{0, 0});
-    add("rotation", ir::Type::Float, {t.rotation}, info.animated.rotation, t.rotation != 0);
-    add("scale", ir::Type::Vec2, {t.scale[0], t.scale[1]}, info.animated.scale,
+    add("rotation", ir::Type::Float, Origin::Kind::Rotation, info.animated.rotation, t.rotation != 0);
+    add("scale", ir::Type::Vec2, Origin::Kind::Scale, info.animated.scale,
         t.scale != std::array<double, 2>{1, 1});
     graph_.add(slot + ".uv", "uv_transform", std::move(inputs));
     uv = {graph::NodeRef{slot + ".uv", {}}, {}};
@@ -162,6 +162,7 @@ Source Writer::texel(uint16_t property) {
   texture.texture = info.texture;
   texture.pointer = info.pointer;
   graph_.textures.push_back(texture);
+  origins_.textures.push_back(property);
   const Source uv = coordinate(property);
   graph_.add(slot + ".texel", "texture_sample",
              graph::Inputs{{"image", {graph::TextureRef{texture.name}, {}}}, {"uv", uv}});
@@ -363,8 +364,9 @@ LeftOut chooseAttributes(const lang::TemplateDecl& template_decl, const gltf::Ve
 
 Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
                     const material::Material& material, const gltf::VertexAttributes& attributes,
-                    const BuildOptions& options, Diagnostics& warnings) {
+                    const BuildOptions& options, Diagnostics& warnings, Origins* origins) {
   Graph graph;
+  Origins unwanted;
   graph.name = material.name;
   graph.template_name = options.template_name;
   // Room for a coat with all of its terms.
@@ -372,7 +374,9 @@ Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
   graph.parameters.reserve(48);
   chooseAttributes(template_decl, attributes, options, graph).report(material.index, warnings);
   Resolver resolver(model, template_decl, material, attributes, options, warnings);
-  Writer(model, resolver, material, attributes, options, graph, warnings).run(template_decl);
+  Writer(model, resolver, material, attributes, options, graph, warnings,
+         origins == nullptr ? unwanted : *origins)
+      .run(template_decl);
   const Diagnostics unordered = resolver.unordered();
   if (!resolver.wrong().empty()) return tl::make_unexpected(resolver.wrong());
   warnings.insert(warnings.end(), unordered.begin(), unordered.end());

@@ -7,6 +7,7 @@
 #include "graph/graph.h"
 #include "material/material.h"
 #include "model/model.h"
+#include "model/shape.h"
 
 namespace lacquer::model {
 
@@ -22,9 +23,10 @@ struct BuildOptions {
 
 /// Builds the graph of a material whose diagnostics hold no error, for a template of the library.
 /// `attributes` are those of the primitives that use it. `warnings` receives what the user should know of
-/// this permutation (a texture's UV set is missing, …). Errors: lines that need each other in a circle.
+/// this permutation (a texture's UV set is missing, …). `origins`, where it is not null, is given where the
+/// graph's parameters and textures come from. Errors: lines that need each other in a circle.
 Result<graph::Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
                            const material::Material& material, const gltf::VertexAttributes& attributes,
-                           const BuildOptions& options, Diagnostics& warnings);
+                           const BuildOptions& options, Diagnostics& warnings, Origins* origins = nullptr);
 
 }  // namespace lacquer::model

@@ -1,0 +1,82 @@
+// A shader's interface in the cache.
+#pragma once
+
+#include "lacquer/reflection.h"
+#include "support/blob.h"
+
+namespace lacquer {
+
+template <>
+struct LastEnumerator<BlockRole> {
+  static constexpr BlockRole value = BlockRole::List;
+};
+template <>
+struct LastEnumerator<TextureRole> {
+  static constexpr TextureRole value = TextureRole::Object;
+};
+
+template <class Archive>
+void fields(Archive& archive, BoundResource& of) {
+  archive(of.name, of.at.set, of.at.binding, of.at.flat, of.vertex, of.fragment);
+  archive(of.wgsl.group, of.wgsl.binding, of.wgsl.sampler);
+  for (MslPlace* at : {&of.msl, &of.msl_argument}) archive(at->argument_buffer, at->index, at->sampler);
+}
+template <class Archive>
+void fields(Archive& archive, BlockField& of) {
+  archive(of.name, of.type, of.offset, of.array, of.stride, of.meaning, of.expression);
+}
+template <class Archive>
+void fields(Archive& archive, PreshaderValue& of) {
+  archive(of.name, of.type, of.expression);
+}
+template <class Archive>
+void fields(Archive& archive, UniformBlock& of) {
+  archive(static_cast<BoundResource&>(of), of.role, of.structure, of.list, of.size, of.array, of.values,
+          of.fields);
+}
+template <class Archive>
+void fields(Archive& archive, ReflectedTexture& of) {
+  archive(static_cast<BoundResource&>(of), of.slot, of.type, of.sampler, of.role, of.srgb);
+}
+template <class Archive>
+void fields(Archive& archive, ShaderInput& of) {
+  archive(of.name, of.type, of.location);
+}
+template <class Archive>
+void fields(Archive& archive, ShaderOutput& of) {
+  archive(of.name, of.location, of.holds);
+}
+template <class Archive>
+void fields(Archive& archive, Range& of) {
+  archive(of.low, of.high, of.or_zero);
+}
+template <class Archive>
+void fields(Archive& archive, ReflectedParameter& of) {
+  archive(of.name, of.type, of.range, of.neutral, of.meaning, of.fields);
+}
+template <class Archive>
+void fields(Archive& archive, SpecConstant& of) {
+  archive(of.id, of.name, of.component, of.is_bool, of.neutral);
+}
+template <class Archive>
+void fields(Archive& archive, OperationProof& of) {
+  archive(of.term, of.name, of.operation, of.rate, of.operand, of.need);
+  archive(of.reached.low, of.reached.high, of.reached.nan, of.safe);
+}
+template <class Archive>
+void fields(Archive& archive, Reflection& of) {
+  archive(of.template_name, of.blocks, of.parameters, of.has_spec_constants, of.spec_constants, of.textures,
+          of.inputs, of.outputs, of.proved, of.unproved, of.webgpu_limits);
+  RelaxedFigures figures = of.relaxed.value_or(RelaxedFigures());
+  bool relaxed = of.relaxed.has_value();
+  archive(relaxed, figures.bound, figures.operations, figures.of_operations, figures.cycles,
+          figures.of_cycles, figures.conversions);
+  if (relaxed) of.relaxed = figures;
+  OptimizedFigures search = of.optimized.value_or(OptimizedFigures());
+  bool optimized = of.optimized.has_value();
+  archive(optimized, search.level, search.family, search.by, search.cycles, search.of_cycles,
+          search.error_growth);
+  if (optimized) of.optimized = search;
+}
+
+}  // namespace lacquer
