@@ -24,6 +24,7 @@
 #include "lacquer/contract.h"    // what a file is drawn with, as values
 #include "lacquer/generate.h"    // scenes, shaders, runs over files
 #include "lacquer/graph.h"       // the node graph, to look at and to edit
+#include "lacquer/manifest.h"    // a manifest that is read
 #include "lacquer/options.h"     // what all calls share: messages, targets, options
 #include "lacquer/reflection.h"  // what a shader is bound to
 #include "lacquer/results.h"     // what the tools find

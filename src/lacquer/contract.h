@@ -95,6 +95,7 @@ struct StructureFacts {
 struct ContractUse {
   Attributes attributes;
   size_t shader = 0;      ///< index into Contract::shaders
+  std::string shader_id;  ///< the shader's
   std::string structure;  ///< Graph::structure() of its graph, or of that of its program
   std::vector<UsedParameter> parameters;
   std::vector<std::pair<std::string, std::vector<double>>> uniforms;  ///< the Material block's fields by name
@@ -112,6 +113,7 @@ Shader::Values numbersOf(const ContractUse& use, Shader::Values changed = {});
 struct ContractMaterial {
   int index = -1;  ///< in the file; -1 for the default material
   std::string name;
+  std::string profile;  ///< that its graph follows; empty for a graph that is the input, which has no state
   DrawState state;
   std::vector<std::pair<std::string, std::string>> extensions;  ///< name, status
   std::vector<ContractUse> uses;  ///< one for each set of attributes; empty where no primitive uses it
@@ -172,19 +174,24 @@ struct Drawn {
   explicit operator bool() const { return use != nullptr; }
 };
 
-/// Of one file. Index -1 among the materials is the default one of primitives without a material.
-struct Contract {
+/// What is known of one file but for its shaders. Index -1 among the materials is the default one of
+/// primitives without a material.
+struct FileContract {
   std::string source;                                ///< the scene's name
-  std::string profile;                               ///< that the materials' graphs follow
-  std::vector<Target> targets;                       ///< that shaders were made for
   std::vector<ContractMaterial> materials;           ///< in the file's order
   std::optional<ContractMaterial> default_material;  ///< where a primitive has none of its own
   Strings variants;                                  ///< names of KHR_materials_variants
   std::vector<ContractPrimitive> primitives;         ///< those that can be drawn, in the file's order
   std::vector<ContractTexture> textures;
   std::vector<ContractImage> images;
+  Messages messages;  ///< of the file as a whole
+};
+
+/// Of one file, with its shaders.
+struct Contract : FileContract {
+  std::string profile;                  ///< that the materials' graphs follow
+  std::vector<Target> targets;          ///< that shaders were made for
   std::vector<ContractShader> shaders;  ///< each once, by id
-  Messages messages;                    ///< of the file as a whole
   bool ok = true;                       ///< no material and no shader failed
 
   /// What a material's use is drawn with; empty where there is none.

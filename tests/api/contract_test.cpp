@@ -26,6 +26,36 @@ std::string bytesOf(const std::vector<uint32_t>& words) {
   return bytes;
 }
 
+/// What is read of a manifest's file are the values that it was written of.
+void compareRead(const std::filesystem::path& path, const std::string& text, const Contract& made) {
+  Messages messages;
+  const std::optional<Manifest> read = readManifest(path.string(), {}, messages);
+  ASSERT_TRUE(read) << (messages.empty() ? "" : messages[0].text);
+  EXPECT_EQ(manifestJson(*read), text);
+  ASSERT_EQ(read->files.size(), 1U);
+  ASSERT_EQ(read->files[0].materials.size(), made.materials.size());
+  for (size_t i = 0; i < made.materials.size(); ++i) {
+    const ContractMaterial &a = read->files[0].materials[i], &b = made.materials[i];
+    EXPECT_EQ(a.state.pass, b.state.pass);
+    EXPECT_EQ(a.state.blend, b.state.blend);
+    EXPECT_EQ(a.terms->terms, b.terms->terms);
+    EXPECT_EQ(a.messages.size(), b.messages.size());
+    ASSERT_EQ(a.uses.size(), b.uses.size());
+    for (size_t k = 0; k < a.uses.size(); ++k) {
+      EXPECT_EQ(read->shaders.at(a.uses[k].shader).id, made.shaders.at(b.uses[k].shader).shader.id());
+      EXPECT_EQ(a.uses[k].attributes.texCoord, b.uses[k].attributes.texCoord);
+      EXPECT_EQ(a.uses[k].attributes.skin, b.uses[k].attributes.skin);
+      EXPECT_EQ(a.uses[k].uniforms, b.uses[k].uniforms);
+      EXPECT_EQ(a.uses[k].shares_program, b.uses[k].shares_program);
+      ASSERT_EQ(a.uses[k].textures.size(), b.uses[k].textures.size());
+      for (size_t t = 0; t < a.uses[k].textures.size(); ++t) {
+        EXPECT_EQ(a.uses[k].textures[t].srgb, b.uses[k].textures[t].srgb);
+        EXPECT_EQ(a.uses[k].textures[t].transform, b.uses[k].textures[t].transform);
+      }
+    }
+  }
+}
+
 /// Compares the manifest and every file of a shader.
 void compare(const std::string& file, const Options& options) {
   SCOPED_TRACE(file);
@@ -38,6 +68,7 @@ void compare(const std::string& file, const Options& options) {
   const std::string manifest = textOf(folder / "manifest.json");
   const size_t at = manifest.find("\"source\": \"") + std::strlen("\"source\": \"");
   EXPECT_EQ(manifestJson(made, manifest.substr(at, manifest.find('"', at) - at)), manifest);
+  compareRead(folder / "manifest.json", manifest, made);
   for (const ContractShader& one : made.shaders) {
     const std::string stem = one.shader.id();
     EXPECT_EQ(one.shader.fragmentText(Target::Glsl), textOf(folder / "glsl" / (stem + ".frag.glsl")));
@@ -70,6 +101,10 @@ TEST(Contract, OfTheExamplesIsTheManifestWhateverTheOptions) {
   options.parameters = Parameters::Baked;
   compare(file, options);
   options.parameters = Parameters::Uniform;
+  options.targets.insert(options.targets.end(), {Target::Wgsl, Target::Msl, Target::Cpp});
+  compare(file, options);
+  options.argument_buffers = true;
+  compare(file, options);
   options.template_name = "surface";
   compare(std::string(LACQUER_EXAMPLES) + "/core.gltf", options);
   options.template_name.clear();

@@ -118,6 +118,12 @@ protected:
     std::ofstream(folder_ + "/" + name, std::ios::binary) << bytes;
     return folder_ + "/" + name;
   }
+  /// Of one shader, x, with these files.
+  static std::string manifestOf(const std::string& files) {
+    return R"({"lacquer": "0.2.0", "schema": 1, "files": [], "shaders": {"x": {"files": {)" + files +
+           R"(}, "validated": {}, "template": "forward", "uniforms": [], "parameters": [], "textures": [],
+              "inputs": [], "outputs": [], "proofs": {"safe": 0, "unproved": []}}}})";
+  }
   std::string write(const std::string& name, const Spirv& words) const {
     return write(name,
                  std::string(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t)));
@@ -130,10 +136,10 @@ TEST_F(Paths, FilesFoldersAndManifests) {
   write("a.vert.spv", compile(kVertex, check::Stage::Vertex));
   Messages messages;
   EXPECT_EQ(measureCost({fragment, folder_}, false, messages).size(), 2U);
-  write(
-      "manifest.json",
-      std::string(
-          R"({"lacquer": "0.2.0", "schema": 1, "files": [], "shaders": {"x": {"files": {"spirv": {"vert": "a.vert.spv", "frag": "a.frag.spv"}}}}})"));
+  std::filesystem::create_directories(folder_ + "/spirv");
+  write("spirv/x.frag.spv", compile(kShort, check::Stage::Fragment));
+  write("spirv/x.vert.spv", compile(kVertex, check::Stage::Vertex));
+  write("manifest.json", manifestOf(R"("spirv": {"vert": "spirv/x.vert.spv", "frag": "spirv/x.frag.spv"})"));
   const std::vector<ShaderCost> costs = measureCost({folder_}, false, messages);
   ASSERT_EQ(costs.size(), 1U);
   EXPECT_EQ(costs[0].name, "x");
@@ -160,11 +166,10 @@ TEST_F(Paths, WhatIsWrongIsSaid) {
     write("manifest.json", "{" + std::string(head) + "}");
     EXPECT_EQ(codeOf(folder_), "no-manifest") << head;
   }
-  write(
-      "manifest.json",
-      std::string(
-          R"({"lacquer": "0.2.0", "schema": 1, "files": [], "shaders": {"x": {"files": {"glsl": {"frag": "a"}}, "y": 3}, "z": []}})"));
+  write("manifest.json", manifestOf(R"("glsl": {"frag": "glsl/x.frag.glsl"})"));
   EXPECT_EQ(codeOf(folder_), "no-spirv");
+  write("manifest.json", manifestOf(R"("spirv": {"frag": "../x.frag.spv"})"));
+  EXPECT_EQ(codeOf(folder_), "wrong-path");
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "manifest/manifest.h"
 #include "manifest/stale.h"
+#include "manifest/text.h"
 #include "run/pipelines.h"
 #include "run/run.h"
 #include "setting/messages.h"
@@ -108,7 +108,8 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   }
   const Scratch scratch(folder);
   const Strings earlier = shard ? Strings() : listedShaders(path);
-  ManifestFile manifest(path, {shard ? nullptr : &scratch, options.sync});
+  ReplacingFile written_to(path, {shard ? nullptr : &scratch, options.sync});
+  manifest::Writer manifest([&](std::string_view text) { written_to.append(text); });
   Pipelines pipelines;
   run.read(inputs.files, inputs.kind, inputs.materials, [&](FileResult& file) {
     if (!shard) manifest.file(file.text);
@@ -120,7 +121,8 @@ Report generateWith(const Inputs& inputs, const std::string& folder, const Optio
   }
   // A shard stands for its shader: without the one there is not the other.
   if (!shard || run.result().ok) {
-    const Result<bool> written = manifest.finish();
+    manifest.finish();
+    const Result<bool> written = written_to.finish();
     run.wrote(written);
     if (written) removeStale(folder, earlier, shaderFiles(run.result()), run.readFiles());
   }

@@ -1,14 +1,15 @@
+#include <fmt/format.h>
+
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "json/json.h"
-#include "json/text.h"
-#include "manifest/check.h"
-#include "manifest/manifest.h"
+#include "manifest/read.h"
+#include "manifest/text.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "support/file.h"
 #include "support/outputs.h"
 #include "support/relative.h"
 #include "support/text.h"
@@ -17,61 +18,81 @@ namespace lacquer {
 
 namespace {
 
-constexpr size_t kEntryDepth = 2;  ///< manifest, "files" or "shaders"
-/// Levels of a manifest; ours have eleven. Each level moves what is in it two columns to the right: what is
-/// written may be so many times what was read.
+/// Levels of a manifest; ours have eleven.
 constexpr uint64_t kMostLevels = 32;
 
-Result<Json> readManifest(const std::string& path, std::vector<NamedShader>& named) {
+Result<Manifest> readShard(const std::string& path) {
   const Result<std::string> text = readFile(path);
   if (!text) return tl::make_unexpected(text.error());
   Limits limits;
   limits.depth = kMostLevels;
-  Result<Json> json = json::parse(*text, path, limits);
-  if (!json) {
-    for (Diagnostic& one : json.error()) {
+  Result<Manifest> manifest = manifest::read(*text, path, limits);
+  if (!manifest) {
+    for (Diagnostic& one : manifest.error()) {
       if (one.code == "json-too-deep") one.help = "what `lacquer gen` writes has fewer levels";
     }
-    return json;
+    return manifest;
   }
-  if (Result<void> good = checkManifest(*json, path, named); !good)
-    return tl::make_unexpected(std::move(good.error()));
-  return json;
+  if (manifest->levels.empty()) return manifest;
+  return fail("unknown-property", {path, 0, 0, "/levels"}, "levels of detail are not merged",
+              "merge what `lacquer gen` wrote");
 }
 
-/// What a file's entry says of its source holds in the new manifest's folder.
-void rebase(Json& file, const Moved& moved) {
-  const Json* source = json::member(file, "source");
-  if (source == nullptr || !source->is_string()) return;
-  file["source"] = moved(source->text());
+template <class Write>
+std::string entryText(const Write& write) {
+  json::JsonText json(manifest::kEntryDepth);
+  write(json);
+  return json.take();
 }
 
-std::string entryText(const Json& json) { return JsonText(kEntryDepth).json(json).take(); }
-
-using Shaders = std::map<std::string, std::pair<std::string, std::string>>;  ///< id: entry, where it is from
+/// A use, by where it is, and its shader.
+struct Named {
+  std::string path, pointer, shader;
+};
 
 /// What the shards say, as it is to be written.
 struct Merged {
   Strings files;
-  Shaders shaders;
-  std::vector<std::pair<std::string, std::vector<NamedShader>>> named;  ///< by the shard
+  std::map<std::string, std::pair<std::string, std::string>> shaders;  ///< id: entry, where it is from
+  std::vector<Named> uses;                                             ///< whose shaders no shard so far has
 };
 
+/// Uses whose shaders are not known yet.
+void addUses(const FileContract& file, const std::string& path, size_t index, Merged& merged) {
+  const auto add = [&](const ContractMaterial& material, const std::string& pointer) {
+    for (size_t i = 0; i < material.uses.size(); ++i) {
+      const std::string& id = material.uses[i].shader_id;
+      if (!merged.shaders.contains(id))
+        merged.uses.push_back({path, fmt::format("{}/uses/{}/shader", pointer, i), id});
+    }
+  };
+  const std::string pointer = fmt::format("/files/{}", index);
+  for (size_t i = 0; i < file.materials.size(); ++i)
+    add(file.materials[i], fmt::format("{}/materials/{}", pointer, i));
+  if (file.default_material) add(*file.default_material, pointer + "/default_material");
+}
+
 Result<void> addShard(const std::string& path, const std::string& folder, Merged& merged) {
-  Result<Json> json = readManifest(path, merged.named.emplace_back(path, std::vector<NamedShader>()).second);
-  if (!json) return tl::make_unexpected(std::move(json.error()));
-  const Moved moved(folderOf(path), folder);
-  for (Json& file : (*json)["files"]) {
-    rebase(file, moved);
-    merged.files.push_back(entryText(file));
-  }
-  for (const auto& [id, shader] : (*json)["shaders"].items()) {
-    std::string text = entryText(shader);
-    const auto [it, fresh] = merged.shaders.try_emplace(id, text, path);
+  Result<Manifest> shard = readShard(path);
+  if (!shard) return tl::make_unexpected(std::move(shard.error()));
+  for (const ManifestShader& shader : shard->shaders) {
+    std::string text = entryText([&](json::JsonText& json) {
+      manifest::writeShader(shader.targets, shader.reflection, shader.argument_buffers, json);
+    });
+    const auto [it, fresh] = merged.shaders.try_emplace(shader.id, text, path);
     if (fresh || it->second.first == text) continue;
     return fail("shards-differ", {path, 0, 0, {}},
-                "its entry of " + id + " is not that of " + it->second.second,
+                "its entry of " + shader.id + " is not that of " + it->second.second,
                 "merge shards that were made with the same options");
+  }
+  const Moved moved(folderOf(path), folder);
+  for (size_t i = 0; i < shard->files.size(); ++i) {
+    FileContract& file = shard->files[i];
+    // What an entry says of its source holds in the new manifest's folder.
+    file.source = moved(file.source);
+    addUses(file, path, i, merged);
+    merged.files.push_back(entryText([&](json::JsonText& json) { manifest::write(file, json); }));
+    file = {};
   }
   return {};
 }
@@ -79,17 +100,15 @@ Result<void> addShard(const std::string& path, const std::string& folder, Merged
 /// An error for each use whose shader is in none of the shards.
 Diagnostics absent(const Merged& merged) {
   Diagnostics wrong;
-  for (const auto& [path, uses] : merged.named) {
-    for (const NamedShader& use : uses) {
-      if (merged.shaders.contains(use.id)) continue;
-      if (isFull(wrong)) return wrong;
-      addBounded(wrong, {"no-such-shader",
-                         Severity::Error,
-                         {path, 0, 0, use.pointer},
-                         "there is no shader " + quote(use.id),
-                         "merge its shard, too",
-                         {}});
-    }
+  for (const Named& use : merged.uses) {
+    if (merged.shaders.contains(use.shader)) continue;
+    if (isFull(wrong)) return wrong;
+    addBounded(wrong, {"no-such-shader",
+                       Severity::Error,
+                       {use.path, 0, 0, use.pointer},
+                       "there is no shader " + quote(use.shader),
+                       "merge its shard, too",
+                       {}});
   }
   return wrong;
 }
@@ -111,10 +130,12 @@ Result<bool> mergeInto(const std::string& folder, const Strings& shards) {
   if (Diagnostics wrong = absent(merged); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
   if (Result<bool> usable = makeFolder(folder); !usable) return usable;
   const Scratch scratch(folder);
-  ManifestFile manifest(path, {&scratch});
-  for (const std::string& file : merged.files) manifest.file(file);
-  for (const auto& [id, entry] : merged.shaders) manifest.shader(id, entry.first);
-  return manifest.finish();
+  ReplacingFile to(path, {&scratch});
+  manifest::Writer writer([&](std::string_view text) { to.append(text); });
+  for (const std::string& file : merged.files) writer.file(file);
+  for (const auto& [id, entry] : merged.shaders) writer.shader(id, entry.first);
+  writer.finish();
+  return to.finish();
 }
 
 }  // namespace

@@ -4,9 +4,8 @@
 #include <string_view>
 #include <utility>
 
-#include "interface/entry.h"
 #include "json/text.h"
-#include "manifest/entries.h"
+#include "manifest/text.h"
 #include "support/blob.h"
 
 namespace lacquer {
@@ -118,12 +117,12 @@ void writePipeline(const Pipeline& of, JsonText& to) {
   }
   to.endArray().key("blend");
   if (of.blend)
-    writeBlend(*of.blend, to);
+    manifest::write(*of.blend, to);
   else
     to.raw("null");
   to.key("depth_write").boolean(of.depth_write).key("cull").string(of.double_sided ? "none" : "back");
   to.key("front").string("counter-clockwise").key("outputs").beginArray();
-  for (const ShaderOutput& output : of.outputs) to.json(outputJson(output));
+  for (const ShaderOutput& output : of.outputs) manifest::write(output, to);
   to.endArray().key("specialization").beginArray();
   for (const SpecConstant& constant : of.specialization) {
     to.beginObject().key("id").integer(constant.id);

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 
-#include "manifest/manifest.h"
+#include "json/text.h"
+#include "manifest/text.h"
 #include "run/run.h"
 #include "setting/messages.h"
 #include "setting/options.h"
@@ -131,10 +132,11 @@ public:
 
 private:
   void list(std::string_view name, const Strings& words) {
-    json_.key(name);
-    writeList(words, json_);
+    json_.key(name).beginArray();
+    for (const std::string& word : words) json_.string(word);
+    json_.endArray();
   }
-  JsonText json_;
+  json::JsonText json_;
 };
 
 class NinjaFile {
@@ -294,8 +296,9 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
     return run.finish();
   }
   const Writing how{nullptr, options.sync};
-  ManifestFile manifest(all_materials, how);
-  run.read(files, InputKind::ByName, materials, [&](FileResult& file) { manifest.file(file.text); });
+  ReplacingFile file(all_materials, how);
+  manifest::Writer manifest([&](std::string_view text) { file.append(text); });
+  run.read(files, InputKind::ByName, materials, [&](FileResult& of) { manifest.file(of.text); });
   NinjaFile ninja(plan, folder, options, run.inputs());
   Strings graphs;
   for (const auto& [id, shader] : run.structures().shaders())
@@ -310,7 +313,8 @@ Report planWith(const Plan& plan, const std::vector<std::string>& files,
     ninja.shaderAction(id, *shader.structure, actions);
   }
   ninja.mergeAction(actions);
-  run.wrote(manifest.finish());
+  manifest.finish();
+  run.wrote(file.finish());
   if (!plan.json.empty()) run.wrote(writeFile(plan.json, actions.finish(), how));
   run.wrote(writeFile(plan.ninja, ninja.finish(), how));
   return run.finish();

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "interface/entry.h"
+#include "manifest/text.h"
 #include "structures/code.h"
 
 namespace lacquer {
@@ -54,15 +54,12 @@ void Maker::write(const std::string& id, const Structure& structure,
 
 std::string Maker::entry(const std::string& id, const Structure& structure,
                          const std::map<Target, TargetCode>& codes) const {
-  std::vector<std::pair<Target, bool>> validated;
+  std::vector<ManifestCode> made;
   for (const Target target : setting_.options.targets)
-    validated.emplace_back(target, codes.at(target).validated);
-  JsonText json(2);
-  json.beginObject();
-  writeCode(id, structure.has_vertex, validated, json);
-  const json::Json interface = shownOf(structure.reflection, setting_.options);
-  for (const auto& [name, value] : interface.items()) json.key(name).json(value);
-  return json.endObject().take();
+    made.push_back(manifest::codeOf(target, id, structure.has_vertex, codes.at(target).validated));
+  json::JsonText json(manifest::kEntryDepth);
+  manifest::writeShader(made, structure.reflection, setting_.options.argument_buffers, json);
+  return json.take();
 }
 
 MadeShader Maker::make(const std::string& id, Distinct& shader) const {

@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "gltf/container.h"
+#include "manifest/text.h"
 #include "manifest/values.h"
 #include "run/report_blob.h"
+#include "setting/messages.h"
 #include "setting/option_key.h"
 #include "setting/options.h"
 #include "shader/module.h"
@@ -58,6 +60,7 @@ struct PipelineUse {
 /// A material's entry and what the run needs of it.
 struct Done {
   std::string text;
+  std::optional<ContractMaterial> by_default;  ///< of the default material, in place of the text
   Diagnostics diagnostics;
   MaterialReport report;
   std::vector<Key> structures;
@@ -68,12 +71,14 @@ struct Done {
 
 Done textOf(const Wanted& wanted, const std::string& file, const Setting& setting, Described described) {
   Done done;
-  std::vector<UseEntry> entries;
-  for (size_t i = 0; i < described.met.size(); ++i)
-    entries.push_back({described.shaders[i], &described.met[i]->texts});
-  done.text =
-      materialText(described.values, entries, wanted.material == nullptr ? nullptr : &setting.options.profile,
-                   described.terms_texts, described.diagnostics);
+  report(described.diagnostics, file, described.values.messages);
+  if (wanted.index >= 0) {
+    json::JsonText json(manifest::kMaterialDepth);
+    manifest::write(described.values, json);
+    done.text = json.take();
+  } else {
+    done.by_default = described.values;
+  }
   if (!setting.options.pipelines.empty()) {
     done.state = described.values.state;
     for (size_t i = 0; i < described.met.size(); ++i) {
@@ -183,12 +188,12 @@ FileResult SceneFile::run(const material::Document& document) {
   }
   result.diagnostics = document.diagnostics;
   result.ok = !hasError(result.diagnostics);
-  JsonText json(kFileDepth);
-  beginFile(relativeTo(setting_.folder, path_), json);
+  json::JsonText json(manifest::kEntryDepth);
+  manifest::beginFile(relativeTo(setting_.folder, path_), json);
   FilePipelines pipelines(path_, document, setting_);
   std::set<Key> seen;
   UsesOf uses;
-  std::string default_text;
+  FileContract behind;
   std::vector<Done> done;
   for (size_t first = 0; first < all.size(); first += done.size()) {
     done.clear();
@@ -202,7 +207,7 @@ FileResult SceneFile::run(const material::Document& document) {
     for (size_t i = 0; i < done.size(); ++i) {
       pipelines.material(all[first + i].index, done[i]);
       if (all[first + i].index < 0)
-        default_text = std::move(done[i].text);
+        behind.default_material = std::move(done[i].by_default);
       else
         json.raw(done[i].text);
       uses.emplace(all[first + i].index, std::move(done[i].uses));
@@ -217,11 +222,10 @@ FileResult SceneFile::run(const material::Document& document) {
     if (first == 0) json.reserve(all.size(), done.size());
   }
   const StageTimer timer(setting_.times, StageOfRun::Manifest);
-  const std::vector<ContractPrimitive> primitives = primitivesOf(document, uses);
-  endFile({default_text, document.variants, primitives, texturesOf(document), imagesOf(document),
-           document.diagnostics},
-          json);
-  result.pipelines = pipelines.finish(primitives);
+  addScene(document, uses, behind);
+  report(document.diagnostics, path_, behind.messages);
+  manifest::endFile(behind, json);
+  result.pipelines = pipelines.finish(behind.primitives);
   result.text = json.take();
   return result;
 }
@@ -229,10 +233,12 @@ FileResult SceneFile::run(const material::Document& document) {
 /// An entry without anything but materials, which are texts.
 std::string bareText(const std::string& path, const Setting& setting,
                      const std::vector<std::string>& materials, const Diagnostics& diagnostics) {
-  JsonText json(kFileDepth);
-  beginFile(relativeTo(setting.folder, path), json);
+  json::JsonText json(manifest::kEntryDepth);
+  manifest::beginFile(relativeTo(setting.folder, path), json);
   for (const std::string& text : materials) json.raw(text);
-  endFile({{}, {}, {}, {}, {}, diagnostics}, json);
+  FileContract behind;
+  report(diagnostics, path, behind.messages);
+  manifest::endFile(behind, json);
   return json.take();
 }
 

@@ -103,10 +103,7 @@ MadeContract contractOf(const material::Document& document, const std::vector<st
     else
       made.values.materials.push_back(std::move(values));
   }
-  made.values.variants = document.variants;
-  made.values.primitives = primitivesOf(document, uses);
-  made.values.textures = texturesOf(document);
-  made.values.images = imagesOf(document);
+  addScene(document, uses, made.values);
   report(document.diagnostics, document.path, made.values.messages);
   makeCode(setting, structures, made, progress);
   return made;

@@ -222,8 +222,8 @@ Described Describer::finish() {
   values.name = wanted_.name;
   values.terms = terms();
   values.ignored = material_.ignored;
-  if (!met_.empty() && values.terms == met_[0]->terms) made_.terms_texts = &met_[0]->texts;
   if (wanted_.material != nullptr) {
+    values.profile = setting_.options.profile;
     if (const Result<const material::Schema*> schema = setting_.library.models.schema()) {
       values.state = stateOf(material_, **schema, looks_through_);
       values.extensions = extensionsOf(material_, **schema);

@@ -32,8 +32,6 @@ struct Described {
   std::vector<const Structure*> met;         ///< by use
   std::vector<gltf::VertexAttributes> uses;  ///< the attributes of each
   std::vector<Key> structures;               ///< distinct, those of failed uses among them
-  const StructureTexts* terms_texts =
-      nullptr;  ///< of the structure whose terms the material has; may be null
   Diagnostics diagnostics;
   bool ok = true;
 };

@@ -105,7 +105,15 @@ graph::Graph withoutMaterial(graph::Graph graph, const std::vector<Structure::Nu
 void describe(const graph::Graph& graph, Structure& structure) {
   auto terms = std::make_shared<MaterialTerms>();
   for (const graph::Node& node : graph.nodes) terms->terms.push_back(node.id);
-  for (const graph::Skipped& s : graph.skipped) terms->skipped.emplace_back(s.term, s.reason);
+  for (const graph::Skipped& s : graph.skipped) {
+    // A term that is skipped several times is named once, with the last reason.
+    const auto it = std::find_if(terms->skipped.begin(), terms->skipped.end(),
+                                 [&](const auto& other) { return other.first == s.term; });
+    if (it == terms->skipped.end())
+      terms->skipped.emplace_back(s.term, s.reason);
+    else
+      it->second = s.reason;
+  }
   structure.terms = terms;
 }
 
@@ -201,7 +209,6 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
   }
   describe(plain, structure);
   structure.facts = std::make_shared<StructureFacts>(factsOf(plain, setting));
-  structure.texts = textsOf(*structure.terms, *structure.facts);
   if (hasError(structure.diagnostics)) return std::nullopt;
   Result<ir::Module> module = modulate(plain, lights, setting);
   if (!module) {
@@ -273,6 +280,7 @@ ContractUse useOf(const Structure& structure, const Filling& filling, const prog
   ContractUse use;
   use.facts = structure.facts;
   use.structure = structure.key.text();
+  use.shader_id = structure.shader;
   use.shares_program = fill != nullptr;
   use.parameters.reserve(structure.parameters.size());
   for (const uint32_t i : structure.parameters) {
@@ -351,9 +359,8 @@ std::string toBlob(const Structure& structure) {
 bool fromBlob(std::string_view bytes, Structure& s) {
   BlobReader blob(bytes);
   blob(s);
-  if (!blob.complete()) return false;
-  s.texts = textsOf(*s.terms, *s.facts);
-  return (s.shader.empty() || isShaderId(s.shader)) && s.preshader.uses(s.parameters.size());
+  return blob.complete() && (s.shader.empty() || isShaderId(s.shader)) &&
+         s.preshader.uses(s.parameters.size());
 }
 
 bool fits(const Structure& s, const graph::Graph& graph) {

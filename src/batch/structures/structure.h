@@ -9,7 +9,7 @@
 
 #include "cache/cache.h"
 #include "lacquer.h"
-#include "manifest/entries.h"
+#include "lacquer/contract.h"
 #include "model/shape.h"
 #include "programs/unite.h"
 #include "shader/module.h"
@@ -19,8 +19,6 @@
 #include "support/key.h"
 
 namespace lacquer {
-
-using json::Json;
 
 template <class Archive>
 void fields(Archive& archive, MaterialTerms& t) {
@@ -39,7 +37,6 @@ struct Structure {
   Reflection reflection;
   std::shared_ptr<const MaterialTerms> terms;
   std::shared_ptr<const StructureFacts> facts;
-  StructureTexts texts;  ///< of both
   Preshader preshader;
   std::vector<uint32_t> parameters;                        ///< of the module, as places in the graph's list
   std::vector<std::pair<std::string, uint32_t>> textures;  ///< the module's material textures, the same way

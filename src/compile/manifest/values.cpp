@@ -74,13 +74,13 @@ AlphaMode alphaModeOf(const material::Material& material, const material::Schema
 
 }  // namespace
 
-std::vector<ContractPrimitive> primitivesOf(const gltf::Scene& scene, const UsesOf& uses) {
+static std::vector<ContractPrimitive> primitivesOf(const gltf::Scene& scene, const UsesOf& uses) {
   std::vector<ContractPrimitive> all;
   for (const gltf::Primitive& primitive : scene.primitives) all.push_back(primitiveOf(primitive, uses));
   return all;
 }
 
-std::vector<ContractTexture> texturesOf(const gltf::Scene& scene) {
+static std::vector<ContractTexture> texturesOf(const gltf::Scene& scene) {
   std::vector<ContractTexture> all;
   for (const gltf::Texture& from : scene.textures) {
     ContractTexture texture;
@@ -94,13 +94,20 @@ std::vector<ContractTexture> texturesOf(const gltf::Scene& scene) {
   return all;
 }
 
-std::vector<ContractImage> imagesOf(const gltf::Scene& scene) {
+static std::vector<ContractImage> imagesOf(const gltf::Scene& scene) {
   std::vector<ContractImage> all;
   for (const gltf::Image& from : scene.images) {
     const bool in_view = from.uri.empty() && from.bufferView >= 0;
     all.push_back({from.uri, in_view ? from.bufferView : -1, from.uri.empty() && !in_view, from.mimeType});
   }
   return all;
+}
+
+void addScene(const gltf::Scene& scene, const UsesOf& uses, FileContract& to) {
+  to.variants = scene.variants;
+  to.primitives = primitivesOf(scene, uses);
+  to.textures = texturesOf(scene);
+  to.images = imagesOf(scene);
 }
 
 DrawState stateOf(const material::Material& material, const material::Schema& schema, bool looks_through) {

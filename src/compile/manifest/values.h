@@ -12,9 +12,8 @@ namespace lacquer {
 /// For each material by its index, -1 for the default one: the attribute sets of its uses.
 using UsesOf = std::map<int, std::vector<gltf::VertexAttributes>>;
 
-std::vector<ContractPrimitive> primitivesOf(const gltf::Scene& scene, const UsesOf& uses);
-std::vector<ContractTexture> texturesOf(const gltf::Scene& scene);
-std::vector<ContractImage> imagesOf(const gltf::Scene& scene);
+/// Fills in variants, primitives, textures and images.
+void addScene(const gltf::Scene& scene, const UsesOf& uses, FileContract& to);
 
 /// `looks_through`: a shader of the material alone reads what is drawn behind it.
 DrawState stateOf(const material::Material& material, const material::Schema& schema, bool looks_through);

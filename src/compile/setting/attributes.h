@@ -8,5 +8,7 @@ namespace lacquer {
 
 Attributes toPublic(const gltf::VertexAttributes& attributes);
 gltf::VertexAttributes fromPublic(const Attributes& attributes);
+/// Of the names that gltf::VertexAttributes::names() gives.
+Attributes attributesOf(const Strings& names);
 
 }  // namespace lacquer

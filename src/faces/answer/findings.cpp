@@ -2,12 +2,28 @@
 
 #include "answer/answer.h"
 #include "environment/read.h"
-#include "interface/entry.h"
-#include "manifest/levels.h"
+#include "json/text.h"
+#include "manifest/text.h"
 
 namespace lacquer {
 
 namespace {
+
+using json::Json;
+
+/// A number, or a list of several.
+Json numbersJson(const std::vector<double>& numbers) {
+  if (numbers.size() == 1) return numbers[0];
+  return Json(numbers);
+}
+
+/// [low, high], infinite ends as words, with "nan" behind them for what may be NaN.
+Json reachedJson(const Reached& reached) {
+  const auto end = [](double x) { return std::isfinite(x) ? Json(x) : Json(x < 0 ? "-inf" : "inf"); };
+  Json json = Json::array({end(reached.low), end(reached.high)});
+  if (reached.nan) json.push_back("nan");
+  return json;
+}
 
 Json claimsJson(const std::vector<Claim>& claims) {
   Json json = Json::array();
@@ -63,7 +79,11 @@ Json caseJson(const StressFinding& finding, const StressSubject& subject) {
   json["fault"] = faultName(finding.fault);
   json["what"] = finding.what;
   Json& samples = json["samples"] = Json::array();
-  for (const NamedNumbers& sample : finding.samples) samples.push_back(namedJson(sample));
+  for (const NamedNumbers& sample : finding.samples) {
+    Json named = Json::object();
+    for (const auto& [name, numbers] : sample) named[name] = numbersJson(numbers);
+    samples.push_back(std::move(named));
+  }
   return json;
 }
 
@@ -82,7 +102,13 @@ Json findingJson(const StressFinding& finding, const StressSubject& subject) {
 std::string answerJson(const Proofs& proofs) {
   Json operations = Json::array();
   for (const OperationProof& proof : proofs.operations) {
-    Json row = operationJson(proof);
+    Json row = {{"term", proof.term}};
+    if (!proof.name.empty()) row["name"] = proof.name;
+    row["operation"] = proof.operation;
+    row["rate"] = proof.rate;
+    row["operand"] = proof.operand;
+    row["need"] = proof.need;
+    row["reached"] = reachedJson(proof.reached);
     row["safe"] = proof.safe;
     operations.push_back(std::move(row));
   }
@@ -127,9 +153,10 @@ std::string answerJson(const PreviewSheet& sheet) {
 }
 
 std::string answerJson(const Levels& levels) {
-  const Json json = {
-      {"output", levels.output}, {"driver", levels.driver}, {"materials", levelsJson(levels.materials)}};
-  return json.dump(2) + "\n";
+  json::JsonText json;
+  json.beginObject().key("output").string(levels.output).key("driver").string(levels.driver);
+  manifest::writeLevels(levels.materials, json.key("materials"));
+  return json.endObject().take() + "\n";
 }
 
 std::string answerJson(const StressReport& report) {

@@ -4,10 +4,8 @@
 
 #include "api/internal.h"
 #include "cache/cache.h"
-#include "interface/entry.h"
 #include "interface/interface.h"
-#include "manifest/entries.h"
-#include "manifest/manifest.h"
+#include "manifest/text.h"
 #include "run/programs.h"
 #include "setting/messages.h"
 #include "setting/options.h"
@@ -102,18 +100,6 @@ Contract Making::make(const Strings& materials, const Progress& progress) {
   return contract;
 }
 
-/// The shader's members in the manifest, behind those of its code.
-void writeInterface(const Shader& shader, JsonText& json) {
-  const Json entry = json::reread(shader.interfaceJson());
-  for (const auto& [name, value] : entry.items()) json.key(name).json(value);
-}
-
-Diagnostics diagnosticsOf(const Messages& messages) {
-  Diagnostics all;
-  for (const Message& message : messages) all.push_back(toDiagnostic(message));
-  return all;
-}
-
 }  // namespace
 
 Contract contract(const Scene& scene, const Strings& materials, const Options& options, Messages& messages,
@@ -165,38 +151,26 @@ Shader::Values numbersOf(const ContractUse& use, Shader::Values changed) {
 }
 
 std::string manifestJson(const Contract& contract, const std::string& source) {
-  const auto entry = [&](const ContractMaterial& material) {
-    std::vector<UseEntry> uses;
-    for (const ContractUse& use : material.uses)
-      uses.push_back(
-          {use.shader < contract.shaders.size() ? contract.shaders[use.shader].shader.id() : "", nullptr});
-    return materialText(material, uses, &contract.profile, nullptr, diagnosticsOf(material.messages));
-  };
-  JsonText file(kFileDepth);
-  beginFile(source, file);
-  for (const ContractMaterial& material : contract.materials) file.raw(entry(material));
-  const std::string by_default =
-      contract.default_material ? entry(*contract.default_material) : std::string();
-  endFile({by_default, contract.variants, contract.primitives, contract.textures, contract.images,
-           diagnosticsOf(contract.messages)},
-          file);
   std::string text;
-  ManifestText manifest([&](std::string_view bytes) { text += bytes; });
+  manifest::Writer manifest([&](std::string_view bytes) { text += bytes; });
+  json::JsonText file(manifest::kEntryDepth);
+  manifest::beginFile(source, file);
+  for (const ContractMaterial& material : contract.materials) manifest::write(material, file);
+  manifest::endFile(contract, file);
   manifest.file(file.take());
   for (const ContractShader& one : contract.shaders) {
-    std::vector<std::pair<Target, bool>> validated;
+    std::vector<ManifestCode> code;
     for (const Target target : contract.targets) {
       const auto it = std::find_if(one.validated.begin(), one.validated.end(),
                                    [&](const auto& of) { return of.first == target; });
-      validated.emplace_back(target, it != one.validated.end() && it->second);
+      const bool validated = it != one.validated.end() && it->second;
+      code.push_back(manifest::codeOf(target, one.shader.id(), one.shader.hasVertexStage(), validated));
     }
-    JsonText json(2);
-    json.beginObject();
-    writeCode(one.shader.id(), one.shader.hasVertexStage(), validated, json);
-    writeInterface(one.shader, json);
-    manifest.shader(one.shader.id(), json.endObject().take());
+    json::JsonText json(manifest::kEntryDepth);
+    manifest::writeShader(code, one.shader.reflection(), ShaderMaker::argumentBuffers(one.shader), json);
+    manifest.shader(one.shader.id(), json.take());
   }
-  manifest.end();
+  manifest.finish();
   return text;
 }
 

@@ -42,7 +42,8 @@ struct Scene::Impl {
 struct Shader::Impl : ShaderData {
   Preshader preshader;
   Reflection reflection;
-  std::string entry;  ///< the same in the manifest
+  std::string entry;              ///< the same in the manifest
+  bool argument_buffers = false;  ///< of its MSL
 
   /// Writes the whole of `block`, which has as many bytes as the material's.
   void pack(const Values& value, std::span<std::byte> block, Messages* messages) const;
@@ -51,6 +52,7 @@ struct Shader::Impl : ShaderData {
 struct ShaderMaker {
   /// A shader of what was printed. `schema`: whose prose says what the parameters are; may be null.
   static Shader make(ShaderData data, const material::Schema* schema, const Options& options);
+  static bool argumentBuffers(const Shader& shader) { return shader.impl().argument_buffers; }
 };
 
 /// "empty-handle" where there is nothing behind a handle.

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "interface/entry.h"
+#include "json/json.h"
 #include "lacquer/tools.h"
 #include "setting/language.h"
 #include "setting/messages.h"
@@ -8,6 +8,14 @@
 namespace lacquer {
 
 namespace {
+
+using json::Json;
+
+/// A number, or a list of several.
+Json numbersJson(const double* numbers, ir::Type type) {
+  const int count = ir::componentCount(type);
+  return count == 1 ? Json(*numbers) : Json(std::vector<double>(numbers, numbers + count));
+}
 
 Json limitsJson(const ir::Range& range) {
   const auto end = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
@@ -18,12 +26,8 @@ Json paramJson(const lang::Param& param, std::string_view fallback) {
   Json json = {{"name", param.name.empty() ? fallback : param.name}, {"type", ir::typeName(param.type)}};
   if (param.has_range) json["range"] = limitsJson(param.range);
   if (param.range.gap > 0) json["or_zero"] = true;
-  if (param.default_value)
-    json["default"] = numbersJson(
-        {param.default_value->begin(), param.default_value->begin() + ir::componentCount(param.type)});
-  if (param.matrix_default)
-    json["default"] = numbersJson(
-        {param.matrix_default->begin(), param.matrix_default->begin() + ir::componentCount(param.type)});
+  if (param.default_value) json["default"] = numbersJson(param.default_value->data(), param.type);
+  if (param.matrix_default) json["default"] = numbersJson(param.matrix_default->data(), param.type);
   if (!param.given.empty()) json["given"] = param.given;
   if (!param.choices.empty()) json["choices"] = param.choices;
   const lang::Hints& hints = param.hints;

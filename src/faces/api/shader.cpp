@@ -6,8 +6,8 @@
 
 #include "api/internal.h"
 #include "cost/files.h"
-#include "interface/entry.h"
 #include "interface/interface.h"
+#include "manifest/text.h"
 #include "setting/messages.h"
 #include "setting/options.h"
 #include "shader/module.h"
@@ -26,7 +26,10 @@ Shader ShaderMaker::make(ShaderData data, const material::Schema* schema, const 
   auto impl = std::make_shared<Shader::Impl>();
   static_cast<ShaderData&>(*impl) = std::move(data);
   impl->reflection = reflect(impl->module, impl->has_vertex, schema);
-  impl->entry = entryText(impl->reflection, options);
+  impl->argument_buffers = options.argument_buffers;
+  json::JsonText entry;
+  manifest::writeReflection(impl->reflection, options.targets, options.argument_buffers, entry);
+  impl->entry = entry.take();
   impl->preshader = Preshader(impl->module);
   shader.impl_ = std::move(impl);
   return shader;

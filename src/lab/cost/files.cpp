@@ -11,11 +11,12 @@
 #include <set>
 
 #include "json/json.h"
-#include "manifest/check.h"
+#include "lacquer/manifest.h"
 #include "setting/messages.h"
 #include "support/contain.h"
 #include "support/file.h"
 #include "support/text.h"
+#include "targets/target.h"
 
 namespace lacquer {
 namespace {
@@ -129,44 +130,39 @@ void addFile(const std::string& path, Shaders& shaders, Messages& messages) {
   addPair(path, vertex, path, Links::Follow, shaders, messages);
 }
 
-/// The value at a path of keys when it is a text; else empty.
-std::string textAt(const json::Json& json, std::initializer_list<const char*> keys) {
-  const json::Json* at = &json;
-  for (const char* key : keys) {
-    at = json::member(*at, key);
-    if (at == nullptr) return {};
-  }
-  return at->is_string() ? at->get<std::string>() : std::string();
+/// The file of that kind; empty where there is none.
+std::string fileOf(const ManifestCode& code, std::string_view kind) {
+  const auto it = std::find_if(code.files.begin(), code.files.end(),
+                               [&](const auto& file) { return file.first == kind; });
+  return it == code.files.end() ? std::string() : it->second;
 }
 
 void addManifest(const fs::path& folder, Shaders& shaders, Messages& messages) {
   const std::string path = (folder / "manifest.json").string();
-  const Result<std::string> text = readFile(path);
-  if (!text) return report(text.error(), path, messages);
-  const Result<json::Json> manifest = json::parse(*text, path);
-  if (!manifest) return report(manifest.error(), path, messages);
-  if (const Result<void> head = checkManifestHead(*manifest, path); !head)
-    return report(head.error(), path, messages);
+  const std::optional<Manifest> manifest = readManifest(path, {}, messages);
+  if (!manifest) return;
   const size_t before = shaders.subjects.size();
-  for (const auto& [id, shader] : json::member(*manifest, "shaders")->items()) {
-    const std::string vertex = textAt(shader, {"files", "spirv", "vert"});
-    const std::string fragment = textAt(shader, {"files", "spirv", "frag"});
+  for (const ManifestShader& shader : manifest->shaders) {
+    const auto spirv = std::find_if(shader.targets.begin(), shader.targets.end(),
+                                    [](const ManifestCode& code) { return targets::row(code.target).words; });
+    if (spirv == shader.targets.end()) continue;
+    const std::string vertex = fileOf(*spirv, "vert"), fragment = fileOf(*spirv, "frag");
     if (fragment.empty()) continue;
-    // A manifest of others does not choose which files are read.
+    // A link may lead out of the folder.
     std::optional<std::string> vertex_file = resolveBelow(folder.string(), vertex, {});
     const std::optional<std::string> file = resolveBelow(folder.string(), fragment, {});
     if (!vertex_file || !file) {
       report({{"manifest-outside",
                Severity::Error,
                {path, 0, 0, {}},
-               "the files of " + quote(id) + " lie outside of the folder",
+               "the files of " + quote(shader.id) + " lie outside of the folder",
                {},
                {}}},
              path, messages);
       continue;
     }
     if (vertex.empty()) vertex_file.reset();
-    addPair(id, vertex_file, *file, Links::None, shaders, messages);
+    addPair(shader.id, vertex_file, *file, Links::None, shaders, messages);
   }
   if (shaders.subjects.size() > before || hasError(messages)) return;
   const Diagnostic none{"no-spirv",

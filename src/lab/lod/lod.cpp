@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "cost/cost.h"
-#include "interface/entry.h"
 #include "interface/interface.h"
+#include "lacquer/manifest.h"
 #include "lacquer/tools.h"
 #include "lod/report.h"
 #include "lod/share.h"
-#include "manifest/levels.h"
-#include "manifest/manifest.h"
 #include "manifest/stale.h"
+#include "manifest/text.h"
 #include "setting/messages.h"
 #include "setting/simplify.h"
 #include "shader/preshader.h"
@@ -70,7 +69,7 @@ Result<void> checkLod(const Lod& lod, const Options& options) {
 
 /// A shader of a level, printed.
 struct Printed {
-  json::Json entry;                                        ///< in the manifest
+  ManifestShader entry;
   std::vector<std::pair<std::string, std::string>> files;  ///< path below the folder, bytes
 };
 
@@ -347,22 +346,18 @@ private:
     Wrong wrong;
     lacquer::print(data, options_, wrong);
     Printed made;
-    json::Json files = json::Json::object();
-    json::Json validated = json::Json::object();
+    made.entry.id = data.id;
+    made.entry.argument_buffers = options_.argument_buffers;
     for (const Target target : options_.targets) {
       const auto row = static_cast<size_t>(target);
       if (lacquer::hasError(wrong[row])) return tl::make_unexpected(std::move(wrong[row]));
-      json::Json& of_target = files[std::string(targetName(target))] = json::Json::object();
-      for (int stage = firstStage(target, data.has_vertex); stage < 2; ++stage) {
-        std::string path = shaderPath(target, data.id, stage);
-        of_target[std::string(fileKind(target, stage))] = path;
-        made.files.emplace_back(std::move(path), takeBytes(data, target, stage));
-      }
-      if (hasValidator(target)) validated[std::string(targetName(target))] = options_.validate;
+      made.entry.targets.push_back(
+          manifest::codeOf(target, data.id, data.has_vertex, options_.validate && hasValidator(target)));
+      for (int stage = firstStage(target, data.has_vertex); stage < 2; ++stage)
+        made.files.emplace_back(shaderPath(target, data.id, stage), takeBytes(data, target, stage));
     }
-    made.entry = {{"files", std::move(files)}, {"validated", std::move(validated)}};
     const Result<const material::Schema*> schema = language_->models.schema();
-    made.entry.update(shownOf(reflect(data.module, data.has_vertex, schema ? *schema : nullptr), options_));
+    made.entry.reflection = reflect(data.module, data.has_vertex, schema ? *schema : nullptr);
     printed_.emplace(data.id, std::move(made));
     return {};
   }
@@ -392,12 +387,9 @@ private:
   }
 
   std::string manifest() const {
-    json::Json json = {{"lacquer", version()}, {"schema", kManifestSchema}, {"files", json::Json::array()}};
-    json::Json shaders = json::Json::object();
-    for (const auto& [id, one] : printed_) shaders[id] = one.entry;
-    json["shaders"] = std::move(shaders);
-    json["levels"] = levelsJson(found());
-    return json.dump(2) + "\n";
+    Manifest manifest{std::string(version()), {}, {}, found()};
+    for (const auto& [id, one] : printed_) manifest.shaders.push_back(one.entry);
+    return manifestJson(manifest);
   }
 
   Result<void> write() const {
