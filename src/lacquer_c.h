@@ -131,6 +131,12 @@ LACQUER_C size_t lacquer_scene_use_count(const lacquer_scene* scene, size_t mate
 LACQUER_C uint32_t lacquer_scene_use(const lacquer_scene* scene, size_t material, size_t use);
 LACQUER_C lacquer_graph* lacquer_scene_graph(const lacquer_scene* scene, size_t material, uint32_t attributes,
                                              const lacquer_options* options, lacquer_messages* messages);
+/* A JSON array of a material's properties: `pointer` of each, what its `change` is to the shader ("numbers",
+ * "textures" or "program"), the `name` of the parameter or texture, and of "program" the terms that "live" in
+ * the options makes a number of it with. */
+LACQUER_C lacquer_text* lacquer_scene_properties(const lacquer_scene* scene, size_t material,
+                                                 uint32_t attributes, const lacquer_options* options,
+                                                 lacquer_messages* messages);
 
 /* ---- contracts: all that a file is drawn with */
 
@@ -305,6 +311,9 @@ LACQUER_C int lacquer_scene_preview(const lacquer_scene* scene, size_t material,
 /* From the JSON form (docs/graph-format.md). */
 LACQUER_C lacquer_graph* lacquer_graph_read(const char* json, size_t size, const char* name,
                                             lacquer_messages* messages);
+/* The same for a library of one's own: of the options, "node_directories" and "limits". */
+LACQUER_C lacquer_graph* lacquer_graph_read_with(const char* json, size_t size, const char* name,
+                                                 const lacquer_options* options, lacquer_messages* messages);
 LACQUER_C void lacquer_graph_free(lacquer_graph* graph);
 LACQUER_C lacquer_text* lacquer_graph_json(const lacquer_graph* graph);
 LACQUER_C lacquer_text* lacquer_graph_dot(const lacquer_graph* graph);
@@ -316,21 +325,64 @@ LACQUER_C lacquer_text* lacquer_graph_parameters(const lacquer_graph* graph);
 LACQUER_C size_t lacquer_graph_texture_count(const lacquer_graph* graph);
 LACQUER_C int lacquer_graph_texture(const lacquer_graph* graph, size_t index, char* slot, size_t capacity,
                                     int* texture);
-/* Edits, as those of lacquer::Graph: one that fails leaves the graph as it was. */
+/* What is there, as JSON, in the order of the graph's own. Of its textures an array of name, type, srgb,
+ * texture (-1: none), pointer, file, ui; of its groups an array of their names. Of its nodes, or with the
+ * name of a group of that's, an array of id, node or group, variant, stage, inputs (name to source), ui; of
+ * its outputs, or of a group's, an object of sources by name. A `group` of NULL is the graph. ui is any JSON
+ * of a tool's, or null. */
+LACQUER_C lacquer_text* lacquer_graph_textures(const lacquer_graph* graph);
+LACQUER_C lacquer_text* lacquer_graph_groups(const lacquer_graph* graph);
+LACQUER_C lacquer_text* lacquer_graph_nodes(const lacquer_graph* graph, const char* group);
+LACQUER_C lacquer_text* lacquer_graph_outputs(const lacquer_graph* graph, const char* group);
+/* What a node takes and gives, without a node (NULL) the template's ports as inputs: {"inputs": [...],
+ * "outputs": [...]} of name (of an only output ""), type, low, high (null: unbounded), or_zero, and of inputs
+ * optional and source (null: nothing). */
+LACQUER_C lacquer_text* lacquer_graph_sockets(const lacquer_graph* graph, const char* node,
+                                              lacquer_messages* messages);
+/* Edits, as those of lacquer::Graph: one that fails leaves the graph as it was. Nodes, inputs and outputs of
+ * a group are named with the group and a slash: "worn/mix". */
 LACQUER_C int lacquer_graph_add_node(lacquer_graph* graph, const char* id, const char* type,
                                      lacquer_messages* messages);
+LACQUER_C int lacquer_graph_add_instance(lacquer_graph* graph, const char* id, const char* group,
+                                         lacquer_messages* messages);
 LACQUER_C int lacquer_graph_remove_node(lacquer_graph* graph, const char* id, lacquer_messages* messages);
+LACQUER_C int lacquer_graph_rename_node(lacquer_graph* graph, const char* id, const char* to,
+                                        lacquer_messages* messages);
 /* `source` is JSON: 0.5, [1, 0, 0], {"node": "coat.f0"}, {"parameter": "x"}, {"texture": "x"}, {"given":
  * "view"} */
 LACQUER_C int lacquer_graph_connect(lacquer_graph* graph, const char* node, const char* input,
                                     const char* source, lacquer_messages* messages);
+/* The input has its default again. */
+LACQUER_C int lacquer_graph_disconnect(lacquer_graph* graph, const char* node, const char* input,
+                                       lacquer_messages* messages);
 LACQUER_C int lacquer_graph_set_output(lacquer_graph* graph, const char* port, const char* source,
                                        lacquer_messages* messages);
+LACQUER_C int lacquer_graph_remove_output(lacquer_graph* graph, const char* port, lacquer_messages* messages);
 LACQUER_C int lacquer_graph_set_parameter(lacquer_graph* graph, const char* name, const double* numbers,
                                           size_t count, lacquer_messages* messages);
 LACQUER_C int lacquer_graph_set_range(lacquer_graph* graph, const char* parameter, double low, double high,
                                       int or_zero, lacquer_messages* messages);
-/* Types, ranges, names, cycles: 1 when there is no error. It may change the order of the nodes. */
+/* Puts `count` nodes into a new group, and an instance of it in their place. */
+LACQUER_C int lacquer_graph_make_group(lacquer_graph* graph, const char* const* nodes, size_t count,
+                                       const char* group, const char* instance, lacquer_messages* messages);
+/* A graph as a group of this one: its parameters and textures are inputs. */
+LACQUER_C int lacquer_graph_add_group(lacquer_graph* graph, const char* group, const lacquer_graph* other,
+                                      lacquer_messages* messages);
+/* Puts the nodes of an instance's group in its place. */
+LACQUER_C int lacquer_graph_expand(lacquer_graph* graph, const char* node, lacquer_messages* messages);
+/* Any edit in its JSON form, or an array of them, all or none (docs/graph-format.md, "Edits"): what takes it
+ * back, after which the graph has the same bytes. NULL on an error. */
+LACQUER_C lacquer_text* lacquer_graph_edit(lacquer_graph* graph, const char* json, size_t size,
+                                           lacquer_messages* messages);
+/* What has changed since lacquer_graph_generate(), the gravest. */
+enum {
+  LACQUER_CHANGED_NOTHING = 0,
+  LACQUER_CHANGED_NUMBERS = 1,  /* the bytes of the block: lacquer_shader_pack_graph() */
+  LACQUER_CHANGED_TEXTURES = 2, /* images or samplers, and perhaps numbers */
+  LACQUER_CHANGED_PROGRAM = 3   /* the shader is to be generated */
+};
+LACQUER_C int lacquer_graph_changes(const lacquer_graph* graph);
+/* Types, ranges, names, cycles: 1 when there is no error. */
 LACQUER_C int lacquer_graph_check(lacquer_graph* graph, const lacquer_options* options,
                                   lacquer_messages* messages);
 /* The address of its structure, 64 digits: graphs of one structure have one shader, so that one of them is
@@ -450,6 +502,9 @@ typedef struct lacquer_value {
  * bytes, does not suffice. */
 LACQUER_C int lacquer_shader_pack(const lacquer_shader* shader, const lacquer_value* values, size_t count,
                                   void* block, size_t capacity, lacquer_messages* messages);
+/* The same with a graph's numbers as they are now. */
+LACQUER_C int lacquer_shader_pack_graph(const lacquer_shader* shader, const lacquer_graph* graph, void* block,
+                                        size_t capacity, lacquer_messages* messages);
 
 /* ---- what instruments find: proofs, stress tests, levels of detail, sheets of pictures. lacquer/results.h
  * says what the members mean. Rows are filled as those of reflection; texts belong to the handle. */

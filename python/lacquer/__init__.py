@@ -10,7 +10,7 @@ import ctypes
 import json
 import operator
 import os
-from ctypes import byref, c_double, c_float, c_size_t, c_uint8
+from ctypes import byref, c_char_p, c_double, c_float, c_size_t, c_uint8
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Union
@@ -35,6 +35,7 @@ _UNUSED = ("NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1")
 _LEVELS = ("note", "warning", "error")
 _STAGES = {"vertex": 0, "fragment": 1}
 _ENGINES = {"double": 0, "float": 1, "vulkan": 2, "vulkan-glsl": 3, "vulkan-hlsl": 4}
+_CHANGES = ("nothing", "numbers", "textures", "program")
 _NONE = c_size_t(-1).value
 
 Options = Mapping[str, Any]
@@ -197,6 +198,13 @@ class Shader(_Handle):
         _calling(None, messages, lambda said, _: _lib.lacquer_shader_pack(self._at, rows, len(rows), block, size, said))
         return bytes(block)
 
+    def pack_graph(self, graph: "Graph", messages: Optional[List[Message]] = None) -> bytes:
+        """The same with a graph's numbers as they are now: one whose shader this is, Graph.changes() says."""
+        size = self.uniform_size
+        block = (c_uint8 * size)()
+        _calling(None, messages, lambda said, _: _lib.lacquer_shader_pack_graph(self._at, graph._at, block, size, said))
+        return bytes(block)
+
 
 @dataclass(frozen=True)
 class Evaluation:
@@ -235,15 +243,18 @@ def _drawn(pixels: int, call: Callable[[Any, int], Any]) -> NDArray[np.uint8]:
 
 
 class Graph(_Handle):
-    """A node graph: one term of the specification is one node. An edit that fails raises, and leaves it as it was."""
+    """A node graph: one term of the specification is one node. An edit that fails raises, and leaves it as it was. Nodes,
+    inputs and outputs of a group are named with the group and a slash: "worn/mix"."""
 
     _free = _lib.lacquer_graph_free
 
     @classmethod
     def from_json(cls, graph: Union[str, Mapping[str, Any]], name: str = "graph.json",
-                  messages: Optional[List[Message]] = None) -> "Graph":
+                  messages: Optional[List[Message]] = None, options: Optional[Options] = None) -> "Graph":
+        """Of the options, "node_directories", which edits are checked against, and "limits"."""
         text = (graph if isinstance(graph, str) else json.dumps(dict(graph))).encode()
-        return cls(_calling(None, messages, lambda said, _: _lib.lacquer_graph_read(text, len(text), _text(name), said)))
+        return cls(_calling(options, messages,
+                            lambda said, how: _lib.lacquer_graph_read_with(text, len(text), _text(name), how, said)))
 
     def to_text(self) -> str:
         """The JSON form as the program writes it."""
@@ -256,21 +267,86 @@ class Graph(_Handle):
         return _taken(_lib.lacquer_graph_dot(self._at))
 
     def parameters(self) -> List[Dict[str, Any]]:
-        """name, type, value, low, high (None: unbounded), or_zero, pointer of each editable number."""
+        """name, type, value, low, high (None: unbounded), or_zero, pointer, ui of each editable number."""
         return json.loads(_taken(_lib.lacquer_graph_parameters(self._at)))
+
+    def textures(self) -> List[Dict[str, Any]]:
+        """name, type, srgb, texture (-1: none), pointer, file, ui of each."""
+        return json.loads(_taken(_lib.lacquer_graph_textures(self._at)))
+
+    def groups(self) -> List[str]:
+        """Their names."""
+        return json.loads(_taken(_lib.lacquer_graph_groups(self._at)))
+
+    def nodes(self, group: str = "") -> List[Dict[str, Any]]:
+        """id, node or group, variant, stage, inputs, ui of the graph's nodes, or of a group's."""
+        return json.loads(_taken(_lib.lacquer_graph_nodes(self._at, _text(group))))
+
+    def outputs(self, group: str = "") -> Dict[str, Any]:
+        """The ports of the template that are connected, or the outputs of a group, with their sources."""
+        return json.loads(_taken(_lib.lacquer_graph_outputs(self._at, _text(group))))
+
+    def sockets(self, node: str = "", messages: Optional[List[Message]] = None) -> Dict[str, Any]:
+        """"inputs" and "outputs" of a node, or the template's ports as inputs: name, type, low, high, or_zero, and of
+        inputs optional and source."""
+        return json.loads(_taken(_calling(
+            None, messages, lambda said, _: _lib.lacquer_graph_sockets(self._at, _text(node), said))))
 
     def add_node(self, id: str, type: str, messages: Optional[List[Message]] = None) -> None:
         self._edit(messages, _lib.lacquer_graph_add_node, id, type)
 
+    def add_instance(self, id: str, group: str, messages: Optional[List[Message]] = None) -> None:
+        """A node that is a group of the graph."""
+        self._edit(messages, _lib.lacquer_graph_add_instance, id, group)
+
     def remove_node(self, id: str, messages: Optional[List[Message]] = None) -> None:
         self._edit(messages, _lib.lacquer_graph_remove_node, id)
+
+    def rename_node(self, id: str, to: str, messages: Optional[List[Message]] = None) -> None:
+        """And in all that takes values from it."""
+        self._edit(messages, _lib.lacquer_graph_rename_node, id, to)
 
     def connect(self, node: str, input: str, source: Any, messages: Optional[List[Message]] = None) -> None:
         """`source`: 0.5, [1, 0, 0], {"node": "coat.f0"}, {"parameter": "x"}, {"texture": "x"}, {"given": "view"}."""
         self._edit(messages, _lib.lacquer_graph_connect, node, input, json.dumps(source))
 
+    def disconnect(self, node: str, input: str, messages: Optional[List[Message]] = None) -> None:
+        """The input has its default again."""
+        self._edit(messages, _lib.lacquer_graph_disconnect, node, input)
+
     def set_output(self, port: str, source: Any, messages: Optional[List[Message]] = None) -> None:
         self._edit(messages, _lib.lacquer_graph_set_output, port, json.dumps(source))
+
+    def remove_output(self, port: str, messages: Optional[List[Message]] = None) -> None:
+        self._edit(messages, _lib.lacquer_graph_remove_output, port)
+
+    def make_group(self, nodes: Sequence[str], group: str, instance: str,
+                   messages: Optional[List[Message]] = None) -> None:
+        """Puts nodes into a new group, and an instance of it in their place."""
+        names = (c_char_p * len(nodes))(*map(_text, nodes))
+        _calling(None, messages, lambda said, _: _lib.lacquer_graph_make_group(
+            self._at, names, len(names), _text(group), _text(instance), said))
+
+    def add_group(self, group: str, graph: "Graph", messages: Optional[List[Message]] = None) -> None:
+        """A graph as a group of this one: its parameters and textures are inputs."""
+        _calling(None, messages,
+                 lambda said, _: _lib.lacquer_graph_add_group(self._at, _text(group), graph._at, said))
+
+    def expand(self, node: str, messages: Optional[List[Message]] = None) -> None:
+        """Puts the nodes of an instance's group in its place."""
+        self._edit(messages, _lib.lacquer_graph_expand, node)
+
+    def edit(self, edit: Any, messages: Optional[List[Message]] = None) -> Any:
+        """Any edit in its JSON form, or a list of them, all or none (docs/graph-format.md, "Edits"): the edit that takes
+        it back, after which the graph has the same bytes."""
+        text = json.dumps(edit).encode()
+        return json.loads(_taken(_calling(
+            None, messages, lambda said, _: _lib.lacquer_graph_edit(self._at, text, len(text), said))))
+
+    def changes(self) -> str:
+        """What has changed since generate(), the gravest: "nothing", "numbers" (the bytes of the block), "textures" or
+        "program"."""
+        return _CHANGES[_lib.lacquer_graph_changes(self._at)]
 
     def set_parameter(self, name: str, value: Numbers, messages: Optional[List[Message]] = None) -> None:
         numbers = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
@@ -284,7 +360,7 @@ class Graph(_Handle):
                                                                               int(or_zero), said))
 
     def check(self, options: Optional[Options] = None) -> List[Message]:
-        """What is wrong with it and worth knowing; it may change the order of the nodes."""
+        """What is wrong with it and worth knowing."""
         messages: List[Message] = []
         try:
             _calling(options, messages, lambda said, how: _lib.lacquer_graph_check(self._at, how, said))
@@ -363,11 +439,24 @@ class Scene(_Handle):
     def graph(self, material: int = 0, options: Optional[Options] = None, attributes: Optional[Sequence[str]] = None,
               messages: Optional[List[Message]] = None) -> Graph:
         """On primitives with these attributes; those of its first use where none are named."""
-        if attributes is None:
-            attributes = next(iter(self.uses(material)), _UNUSED)
-        bits = sum(1 << ATTRIBUTES.index(name) for name in attributes)
+        bits = self._bits(material, attributes)
         return Graph(_calling(options, messages, lambda said, how: _lib.lacquer_scene_graph(self._at, _index(material), bits, how,
                                                                                            said)))
+
+    def properties(self, material: int = 0, options: Optional[Options] = None,
+                   attributes: Optional[Sequence[str]] = None,
+                   messages: Optional[List[Message]] = None) -> List[Dict[str, Any]]:
+        """Of each property of a material its `pointer`, what its `change` is to the shader ("numbers", "textures" or
+        "program"), the `name` of the parameter or texture, and of "program" the terms that, as "live" in the options,
+        make a number of it."""
+        bits = self._bits(material, attributes)
+        return json.loads(_taken(_calling(options, messages, lambda said, how: _lib.lacquer_scene_properties(
+            self._at, _index(material), bits, how, said))))
+
+    def _bits(self, material: int, attributes: Optional[Sequence[str]]) -> int:
+        if attributes is None:
+            attributes = next(iter(self.uses(material)), _UNUSED)
+        return sum(1 << ATTRIBUTES.index(name) for name in attributes)
 
     def evaluate(self, material: int, points: Points, engine: str = "double", options: Optional[Options] = None,
                  messages: Optional[List[Message]] = None) -> Evaluation:

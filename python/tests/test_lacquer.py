@@ -92,6 +92,61 @@ def test_pack_takes_values_by_name(coat):
         shader.pack({"coat_roughness_factor": [1, 2]})
 
 
+def test_graph_is_edited_for_a_hundred_steps(coat):
+    """After each step the colours are those of the file that the graph is saved to."""
+    graph = coat.graph(0, attributes=lacquer.ATTRIBUTES[:7])
+    texels = {"texels": [f"{texture['name']}=0.2,0.4,0.6,0.8" for texture in graph.textures()]}
+    points = [{"v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "env": [0.3, 0.4, 0.5]}]
+    shader = graph.generate({"targets": ["essl"], "validate": False})
+    assert graph.changes() == "nothing"
+    start, back = graph.to_text(), []
+    for step in range(100):
+        nodes = graph.nodes()
+        node = nodes[7 * step % len(nodes)]
+        parameters = graph.parameters()
+        parameter = parameters[step % len(parameters)]
+        edits = [
+            {"do": "rename_node", "node": node["id"], "to": f"my.n{step}"},
+            {"do": "set_value", "parameter": parameter["name"], "value": parameter["value"]},
+            {"do": "make_group", "nodes": [node["id"]], "group": f"g{step}", "node": node["id"]},
+            {"do": "set_ui", "node": node["id"], "ui": {"x": step}},
+        ]
+        back.append(graph.edit(edits[step % len(edits)]))
+        saved = lacquer.Graph.from_json(graph.to_text())
+        assert (graph.evaluate(points, options=texels).rgba == saved.evaluate(points, options=texels).rgba).all()
+        assert graph.changes() in ("nothing", "numbers")
+    assert shader.pack_graph(graph) == shader.pack()
+    for edit in reversed(back):
+        graph.edit(edit)
+    assert graph.to_text() == start
+    graph.set_parameter("coat_roughness_factor", 0.75)
+    assert graph.changes() == "numbers"
+    assert shader.pack_graph(graph) == shader.pack({"coat_roughness_factor": 0.75}) != shader.pack()
+
+
+def test_graph_is_listed_and_grouped(coat):
+    graph = coat.graph(0)
+    before = graph.to_text()
+    node = graph.nodes()[0]
+    assert set(node["inputs"]) == {i["name"] for i in graph.sockets(node["id"])["inputs"] if i["source"] is not None}
+    assert graph.outputs() == {i["name"]: i["source"] for i in graph.sockets()["inputs"] if i["source"] is not None}
+    graph.make_group([node["id"]], "folded", "it")
+    assert graph.groups() == ["folded"]
+    assert [inner["id"] for inner in graph.nodes("folded")] == [node["id"]]
+    assert graph.outputs("folded")
+    graph.add_instance("again", "folded")
+    graph.rename_node("again", "more")
+    graph.remove_node("more")
+    graph.expand("it")
+    graph.add_group("whole", coat.graph(0))
+    with pytest.raises(lacquer.Error, match="not-connected"):
+        graph.disconnect(graph.nodes()[0]["id"], "nothing")
+    graph.remove_output(next(iter(graph.outputs())))
+    assert graph.to_text() != before
+    with pytest.raises(lacquer.Error, match="no-such-node"):
+        graph.sockets("nobody")
+
+
 def test_graph_is_edited_and_checked(coat):
     graph = coat.graph(0)
     assert lacquer.Graph.from_json(graph.to_json()).to_text() == graph.to_text()
@@ -101,8 +156,11 @@ def test_graph_is_edited_and_checked(coat):
     assert graph.check() == []
     with pytest.raises(lacquer.Error, match="no-such-node"):
         graph.remove_node("mine")
-    graph.set_output("nowhere", 1)
-    assert [m.level for m in graph.check()] == ["error"]
+    with pytest.raises(lacquer.Error, match="unknown-port"):
+        graph.set_output("nowhere", 1)
+    for node in graph.nodes():
+        graph.remove_node(node["id"])
+    assert {m.level for m in graph.check()} == {"error"}
     assert "; fragment" in coat.graph(0).dump()
 
 

@@ -31,6 +31,16 @@ struct Attributes {
 inline const Attributes kUnusedAttributes{true,  true,  false, {true, true, false, false}, {}, false,
                                           false, false, {}};
 
+/// What a change of a property of a material is to its shader.
+struct PropertyUse {
+  std::string pointer;  ///< JSON pointer of the glTF property, or of the textureInfo
+  Change change = Change::Program;
+  std::string name{};  ///< of the parameter (Change::Numbers) or of the texture (Change::Textures)
+  /// Of Change::Program: terms that, in Options::live, make a parameter of it whatever its value is; none
+  /// where there are no such.
+  Strings live{};
+};
+
 /// The materials of a glTF file.
 class Scene {
 public:
@@ -58,6 +68,12 @@ public:
   /// the options have, and for an index that does not exist: "no-such-material".
   Graph graph(size_t material, const Attributes& attributes, const Options& options,
               Messages& messages) const;
+  /// Which of a material's properties change a number of its block, which a texture, and which the shader, on
+  /// primitives with these attributes: those of glTF's own material and of the extensions that it has, first
+  /// what is no change of the shader. A tool that watches some adds their `live` to the options. None where
+  /// graph() gives none.
+  std::vector<PropertyUse> properties(size_t material, const Attributes& attributes, const Options& options,
+                                      Messages& messages) const;
 
 private:
   friend std::optional<Evaluation> evaluate(const Scene&, size_t, const std::string&, Engine, const Strings&,
@@ -109,6 +125,8 @@ public:
   /// The same, and what is packed otherwise than it is given is said: the warnings "out-of-range" and
   /// "not-a-number", at most one for each parameter. The error "block-too-small".
   bool pack(const Values& value, std::span<std::byte> block, Messages& messages) const;
+  /// The same with a graph's numbers as they are now: one whose shader this is, Graph::changes() says.
+  bool packGraph(const Graph& graph, std::span<std::byte> block, Messages& messages) const;
 
 private:
   friend class Graph;

@@ -23,6 +23,22 @@ TEST(Edits, thatFailSayWhyAndChangeNothing) {
       {"duplicate-name", [&](Messages& m) { return graph.addNode(taken, "occluded", m); }},
       {"no-such-node", [&](Messages& m) { return graph.removeNode("nobody", m); }},
       {"no-such-node", [&](Messages& m) { return graph.connect("nobody", "light", "1", m); }},
+      {"unknown-node", [&](Messages& m) { return graph.addNode("fresh", "occludet", m); }},
+      {"wrong-name", [&](Messages& m) { return graph.addNode("a b", "occluded", m); }},
+      {"no-such-node", [&](Messages& m) { return graph.renameNode("nobody", "body", m); }},
+      {"duplicate-name", [&](Messages& m) { return graph.renameNode("base.alpha", taken, m); }},
+      {"unknown-input", [&](Messages& m) { return graph.connect(taken, "lihgt", "1", m); }},
+      {"wrong-type", [&](Messages& m) { return graph.connect(taken, "metallic", R"({"given": "uv0"})", m); }},
+      {"cycle",
+       [&](Messages& m) { return graph.connect(taken, "base_color", R"({"node": "base.direct"})", m); }},
+      {"not-connected", [&](Messages& m) { return graph.disconnect(taken, "lihgt", m); }},
+      {"not-a-group", [&](Messages& m) { return graph.expand(taken, m); }},
+      {"unknown-group", [&](Messages& m) { return graph.addInstance("fresh", "worn", m); }},
+      {"unknown-port", [&](Messages& m) { return graph.setOutput("emision", "1", m); }},
+      {"not-connected", [&](Messages& m) { return graph.removeOutput("emision", m); }},
+      {"no-such-node", [&](Messages& m) { return graph.makeGroup({"nobody"}, "worn", "x", m); }},
+      {"unknown-edit", [&](Messages& m) { return !graph.edit(R"({"do": "fly"})", m).empty(); }},
+      {"out-of-range", [&](Messages& m) { return graph.setParameter("metallic_factor", {1.5}, m); }},
       {"json-syntax", [&](Messages& m) { return graph.connect(taken, "light", "{", m); }},
       {"json-syntax", [&](Messages& m) { return graph.connect(taken, "light", "", m); }},
       {"unknown-key wrong-source",
@@ -115,24 +131,28 @@ TEST(Edits, ofABoolAreZeroOrOne) {
 TEST(Edits, ofAnIndexOfRefractionHaveItsExactRange) {
   for (const double ior : {0.0, 0.5, 1.0, 1.5, -1.0}) {
     const bool good = ior == 0 || ior >= 1;
+    const char* const expected = good ? "" : "out-of-range";
     Messages messages;
     Graph graph = paintGraph();
     EXPECT_TRUE(graph.addNode("my.f0", "f0_from_ior", messages));
-    EXPECT_TRUE(graph.connect("my.f0", "ior", std::to_string(ior), messages));
-    EXPECT_EQ(graph.check(messages), good) << ior;
-    EXPECT_EQ(errorsOf(messages), good ? "" : "out-of-range") << ior;
-    // The same as a parameter: where it is stated, and where it goes.
+    EXPECT_EQ(graph.connect("my.f0", "ior", std::to_string(ior), messages), good) << ior;
+    EXPECT_EQ(errorsOf(messages), expected) << ior;
+    // The same as a parameter: where it goes, and where it is stated.
     messages.clear();
     EXPECT_TRUE(graph.setParameter("my_ior", {ior}, messages));
-    EXPECT_TRUE(graph.connect("my.f0", "ior", R"({"parameter": "my_ior"})", messages));
-    EXPECT_EQ(graph.check(messages), good) << ior;
-    EXPECT_EQ(errorsOf(messages), good ? "" : "out-of-range") << ior;
+    EXPECT_EQ(graph.connect("my.f0", "ior", R"({"parameter": "my_ior"})", messages), good) << ior;
+    EXPECT_EQ(errorsOf(messages), expected) << ior;
     messages.clear();
-    EXPECT_TRUE(graph.setRange("my_ior", {1, 1e9, true}, messages));
-    EXPECT_EQ(graph.check(messages), good) << ior;
-    EXPECT_EQ(errorsOf(messages), good ? "" : "out-of-range out-of-range") << ior;
-    if (good) continue;
-    EXPECT_NE(messages[0].message.find("[1, 1000000000] or 0"), std::string::npos) << messages[0].message;
+    EXPECT_EQ(graph.setRange("my_ior", {1, 1e9, true}, messages), good) << ior;
+    EXPECT_EQ(errorsOf(messages), expected) << ior;
+    if (!good) {
+      EXPECT_NE(messages[0].message.find("[1, 1000000000] or 0"), std::string::npos) << messages[0].message;
+      continue;
+    }
+    EXPECT_TRUE(graph.check(messages));
+    EXPECT_TRUE(messages.empty());
+    EXPECT_FALSE(graph.setParameter("my_ior", {0.5}, messages));
+    EXPECT_EQ(errorsOf(messages), "out-of-range");
   }
 }
 
@@ -164,9 +184,8 @@ TEST(Edits, ofACoatsIndexOfRefraction) {
   EXPECT_TRUE(graph.setParameter("coat_ior", {0}, messages));
   EXPECT_TRUE(graph.check(messages));
   EXPECT_TRUE(messages.empty());
-  EXPECT_TRUE(graph.setParameter("coat_ior", {0.5}, messages));
-  EXPECT_FALSE(graph.check(messages));
-  EXPECT_NE(errorsOf(messages), "");
+  EXPECT_FALSE(graph.setParameter("coat_ior", {0.5}, messages));
+  EXPECT_EQ(errorsOf(messages), "out-of-range");
 }
 
 TEST(Blocks, arePackedWhole) {

@@ -166,10 +166,118 @@ TEST_F(CCalls, aGraphIsEditedAndChecked) {
   EXPECT_EQ(lacquer_graph_remove_node(graph.get(), "mine", messages_), 0);
   messages_.takeCodes();
   EXPECT_EQ(lacquer_graph_check(graph.get(), nullptr, messages_), 1) << messages_.takeCodes();
-  EXPECT_EQ(lacquer_graph_set_output(graph.get(), "nowhere", "1", messages_), 1);
+  EXPECT_EQ(lacquer_graph_set_output(graph.get(), "nowhere", "1", messages_), 0);
+  EXPECT_NE(messages_.takeCodes(), "");
+  // What takes values from a node that is gone is the check's to say.
+  const Json nodes = Json::parse(textOf(CText(lacquer_graph_nodes(graph.get(), nullptr))));
+  for (const Json& node : nodes)
+    EXPECT_EQ(lacquer_graph_remove_node(graph.get(), node["id"].get<std::string>().c_str(), messages_), 1);
   EXPECT_EQ(lacquer_graph_check(graph.get(), nullptr, messages_), 0);
   EXPECT_NE(messages_.takeCodes(), "");
   EXPECT_EQ(lacquer_graph_generate(graph.get(), options_.get(), messages_), nullptr);
+}
+
+/// A tool's session: after each step the colours are those of the file that the graph is saved to.
+TEST_F(CCalls, aGraphIsEditedForAHundredSteps) {
+  const std::string path = (sourceFolder() / "examples/coat.gltf").string();
+  scene_.reset(lacquer_scene_load(path.c_str(), options_.get(), messages_));
+  const CGraph graph(lacquer_scene_graph(scene_.get(), 0, 127, options_.get(), messages_));
+  const auto json = [](lacquer_text* text) { return Json::parse(textOf(CText(text))); };
+  const std::string points = R"([{"v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "env": [0.3, 0.2, 0.1]}])";
+  std::string texels;
+  for (const Json& texture : json(lacquer_graph_textures(graph.get())))
+    texels += (texels.empty() ? "\"" : ", \"") + texture["name"].get<std::string>() + "=0.2,0.4,0.6,0.8\"";
+  const COptions lookups = optionsFrom(("{\"texels\": [" + texels + "]}").c_str(), messages_);
+  const auto colors = [&](const lacquer_graph* of) {
+    return textOf(CText(
+        lacquer_graph_evaluate(of, points.data(), points.size(), LACQUER_DOUBLE, lookups.get(), messages_)));
+  };
+  const Json parameters = json(lacquer_graph_parameters(graph.get()));
+  const CShader shader(lacquer_graph_generate(graph.get(), options_.get(), messages_));
+  EXPECT_EQ(lacquer_graph_changes(graph.get()), LACQUER_CHANGED_NOTHING);
+  const std::string start = textOf(CText(lacquer_graph_json(graph.get())));
+  std::vector<std::string> back;
+  for (int step = 0; step < 100; ++step) {
+    const Json nodes = json(lacquer_graph_nodes(graph.get(), nullptr));
+    const std::string id = nodes[static_cast<size_t>(step * 7) % nodes.size()]["id"];
+    const Json& parameter = parameters[static_cast<size_t>(step) % parameters.size()];
+    std::string edit;
+    switch (step % 4) {
+      case 0:
+        edit = R"({"do": "rename_node", "node": ")" + id + R"(", "to": "my.n)" + std::to_string(step) + "\"}";
+        break;
+      case 1:
+        edit = R"({"do": "set_value", "parameter": )" + parameter["name"].dump() + R"(, "value": )" +
+               parameter["value"].dump() + "}";
+        break;
+      case 2:
+        edit = R"({"do": "make_group", "nodes": [")" + id + R"("], "group": "g)" + std::to_string(step) +
+               R"(", "node": ")" + id + "\"}";
+        break;
+      default:
+        edit = R"({"do": "set_ui", "node": ")" + id + R"(", "ui": )" + std::to_string(step) + "}";
+        break;
+    }
+    back.push_back(textOf(CText(lacquer_graph_edit(graph.get(), edit.data(), edit.size(), messages_))));
+    ASSERT_EQ(messages_.takeCodes(), "") << edit;
+    const std::string saved = textOf(CText(lacquer_graph_json(graph.get())));
+    const CGraph loaded(
+        lacquer_graph_read_with(saved.data(), saved.size(), "saved.json", options_.get(), messages_));
+    const std::string expected = colors(loaded.get());
+    ASSERT_NE(expected, "") << messages_.takeCodes();
+    ASSERT_EQ(colors(graph.get()), expected) << edit;
+    // Ids, groups and tools' own words are of no shader.
+    EXPECT_LE(lacquer_graph_changes(graph.get()), LACQUER_CHANGED_NUMBERS) << edit;
+  }
+  const size_t size = lacquer_shader_uniform_size(shader.get());
+  std::vector<uint8_t> before(size), after(size);
+  EXPECT_EQ(lacquer_shader_pack(shader.get(), nullptr, 0, before.data(), size, messages_), 1);
+  EXPECT_EQ(lacquer_shader_pack_graph(shader.get(), graph.get(), after.data(), size, messages_), 1);
+  EXPECT_EQ(after, before);
+  EXPECT_EQ(lacquer_shader_pack_graph(shader.get(), graph.get(), after.data(), size - 1, messages_), 0);
+  EXPECT_EQ(lacquer_shader_pack_graph(shader.get(), nullptr, after.data(), size, messages_), 0);
+  EXPECT_EQ(messages_.takeCodes(), "block-too-small, empty-handle");
+  for (; !back.empty(); back.pop_back()) {
+    const CText done(lacquer_graph_edit(graph.get(), back.back().data(), back.back().size(), messages_));
+    ASSERT_NE(done, nullptr) << messages_.takeCodes();
+  }
+  EXPECT_EQ(textOf(CText(lacquer_graph_json(graph.get()))), start);
+}
+
+TEST_F(CCalls, aGraphIsListed) {
+  const CGraph graph = graphOf(0);
+  const auto json = [](lacquer_text* text) { return Json::parse(textOf(CText(text))); };
+  const Json nodes = json(lacquer_graph_nodes(graph.get(), nullptr));
+  ASSERT_FALSE(nodes.empty());
+  const std::string id = nodes[0]["id"];
+  const Json sockets = json(lacquer_graph_sockets(graph.get(), id.c_str(), messages_));
+  EXPECT_FALSE(sockets["outputs"].empty());
+  const Json ports = json(lacquer_graph_sockets(graph.get(), nullptr, messages_));
+  EXPECT_TRUE(ports["outputs"].empty());
+  size_t connected = 0;
+  for (const Json& port : ports["inputs"]) connected += port["source"].is_null() ? 0 : 1;
+  const Json outputs = json(lacquer_graph_outputs(graph.get(), nullptr));
+  EXPECT_EQ(connected, outputs.size());
+  const char* const names[] = {id.c_str()};
+  EXPECT_EQ(lacquer_graph_make_group(graph.get(), names, 1, "folded", "it", messages_), 1);
+  EXPECT_EQ(json(lacquer_graph_groups(graph.get())), Json::parse(R"(["folded"])"));
+  EXPECT_EQ(json(lacquer_graph_nodes(graph.get(), "folded")).size(), 1u);
+  EXPECT_FALSE(json(lacquer_graph_outputs(graph.get(), "folded")).empty());
+  EXPECT_EQ(lacquer_graph_add_instance(graph.get(), "again", "folded", messages_), 1);
+  EXPECT_EQ(lacquer_graph_rename_node(graph.get(), "again", "more", messages_), 1);
+  EXPECT_EQ(lacquer_graph_disconnect(graph.get(), "more", "nothing", messages_), 0);
+  EXPECT_EQ(messages_.takeCodes(), "not-connected");
+  EXPECT_EQ(lacquer_graph_remove_node(graph.get(), "more", messages_), 1);
+  EXPECT_EQ(lacquer_graph_expand(graph.get(), "it", messages_), 1);
+  EXPECT_EQ(lacquer_graph_expand(graph.get(), "nobody", messages_), 0);
+  EXPECT_EQ(lacquer_graph_sockets(graph.get(), "nobody", messages_), nullptr);
+  EXPECT_EQ(messages_.takeCodes(), "no-such-node, no-such-node");
+  const CGraph other = graphOf(0);
+  EXPECT_EQ(lacquer_graph_add_group(graph.get(), "whole", other.get(), messages_), 1);
+  EXPECT_EQ(lacquer_graph_remove_output(graph.get(), outputs.begin().key().c_str(), messages_), 1);
+  EXPECT_EQ(messages_.takeCodes(), "");
+  EXPECT_EQ(lacquer_graph_nodes(nullptr, nullptr), nullptr);
+  EXPECT_EQ(lacquer_graph_changes(nullptr), LACQUER_CHANGED_PROGRAM);
 }
 
 TEST_F(CCalls, aDumpStopsAfterAPass) {

@@ -4,16 +4,22 @@ import {
   LacquerError,
   type Attribute,
   type BindGroupLayoutEntry,
+  type Change,
   type Evaluation,
   type EvaluationOptions,
+  type GraphEdit,
   type GraphJson,
+  type GraphNode,
   type GraphSource,
+  type GraphTexture,
   type Interface,
   type Level,
   type Message,
   type Options,
   type Parameter,
   type Points,
+  type PropertyUse,
+  type Sockets,
   type Stage,
   type Target,
   type Values,
@@ -33,6 +39,7 @@ const kStages: Record<Stage, number> = { vertex: 0, fragment: 1 };
 /** GPUShaderStage, which Node does not have. */
 const kVisibility: Record<string, number> = { vertex: 1, fragment: 2 };
 const kInterfaceVersion = 1;
+const kChanges: Change[] = ['nothing', 'numbers', 'textures', 'program'];
 
 function readMessages(it: Instance, handle: number): Message[] {
   const part = (index: number, which: number) => it.sized('lacquer_message_part', handle, index, which);
@@ -75,6 +82,10 @@ const forgotten = new FinalizationRegistry<() => void>((free) => free());
 abstract class Handle {
   /** @internal */
   protected at: number;
+  /** @internal */
+  get address(): number {
+    return this.at;
+  }
   private readonly release: (at: number) => void;
 
   /** @internal */
@@ -179,6 +190,15 @@ export class Shader extends Handle {
       }),
     );
   }
+  /** The same with a graph's numbers as they are now: one whose shader this is, changes() says. */
+  packGraph(graph: Graph, messages: Message[] = []): Uint8Array {
+    return this.it.withBytes(this.uniformSize, (block, size) => {
+      calling(this.it, undefined, messages, (said) =>
+        this.it.call.lacquer_shader_pack_graph(this.at, graph.address, block, size, said),
+      );
+      return this.it.bytes(block, size).slice();
+    });
+  }
 }
 
 function evaluated(
@@ -210,7 +230,8 @@ function drawn(
   });
 }
 
-/** A node graph: one term of the specification is one node. An edit that fails throws, and leaves the graph as it was. */
+/** A node graph: one term of the specification is one node. An edit that fails throws, and leaves the graph as it was. Nodes,
+ * inputs and outputs of a group are named with the group and a slash: "worn/mix". */
 export class Graph extends Handle {
   /** @internal */
   constructor(it: Instance, at: number) {
@@ -229,17 +250,94 @@ export class Graph extends Handle {
   parameters(): Parameter[] {
     return JSON.parse(this.it.taken(this.it.call.lacquer_graph_parameters(this.at)) || '[]');
   }
+  textures(): GraphTexture[] {
+    return JSON.parse(this.it.taken(this.it.call.lacquer_graph_textures(this.at)) || '[]');
+  }
+  /** The names of its groups. */
+  groups(): string[] {
+    return JSON.parse(this.it.taken(this.it.call.lacquer_graph_groups(this.at)) || '[]');
+  }
+  /** Its nodes, or those of a group. */
+  nodes(group = ''): GraphNode[] {
+    return this.it.withText(group, (at) => JSON.parse(this.it.taken(this.it.call.lacquer_graph_nodes(this.at, at)) || '[]'));
+  }
+  /** The ports of the template that are connected, or the outputs of a group. */
+  outputs(group = ''): Record<string, GraphSource> {
+    return this.it.withText(group, (at) => JSON.parse(this.it.taken(this.it.call.lacquer_graph_outputs(this.at, at)) || '{}'));
+  }
+  /** What a node takes and gives; without a node the template's ports, as inputs. */
+  sockets(node = '', messages: Message[] = []): Sockets {
+    return this.it.withText(node, (at) =>
+      JSON.parse(
+        this.it.taken(
+          calling(this.it, undefined, messages, (said) => this.it.call.lacquer_graph_sockets(this.at, at, said)),
+        ),
+      ),
+    );
+  }
   addNode(id: string, type: string, messages?: Message[]): void {
-    this.edit('lacquer_graph_add_node', [id, type], messages);
+    this.call('lacquer_graph_add_node', [id, type], messages);
+  }
+  /** A node that is a group of the graph. */
+  addInstance(id: string, group: string, messages?: Message[]): void {
+    this.call('lacquer_graph_add_instance', [id, group], messages);
   }
   removeNode(id: string, messages?: Message[]): void {
-    this.edit('lacquer_graph_remove_node', [id], messages);
+    this.call('lacquer_graph_remove_node', [id], messages);
+  }
+  /** And in all that takes values from it. */
+  renameNode(id: string, to: string, messages?: Message[]): void {
+    this.call('lacquer_graph_rename_node', [id, to], messages);
+  }
+  /** The input has its default again. */
+  disconnect(node: string, input: string, messages?: Message[]): void {
+    this.call('lacquer_graph_disconnect', [node, input], messages);
+  }
+  removeOutput(port: string, messages?: Message[]): void {
+    this.call('lacquer_graph_remove_output', [port], messages);
+  }
+  /** Puts nodes into a new group, and an instance of it in their place. */
+  makeGroup(nodes: string[], group: string, instance: string, messages: Message[] = []): void {
+    this.it.withTexts([group, instance, ...nodes], ([name, id, ...ids]) =>
+      this.it.withBytes(new Uint8Array(new Uint32Array(ids).buffer), (list) =>
+        calling(this.it, undefined, messages, (said) =>
+          this.it.call.lacquer_graph_make_group(this.at, list, ids.length, name, id, said),
+        ),
+      ),
+    );
+  }
+  /** A graph as a group of this one: its parameters and textures are inputs. */
+  addGroup(group: string, graph: Graph, messages: Message[] = []): void {
+    this.it.withText(group, (at) =>
+      calling(this.it, undefined, messages, (said) =>
+        this.it.call.lacquer_graph_add_group(this.at, at, graph.address, said),
+      ),
+    );
+  }
+  /** Puts the nodes of an instance's group in its place. */
+  expand(node: string, messages?: Message[]): void {
+    this.call('lacquer_graph_expand', [node], messages);
+  }
+  /** Any edit in its JSON form, or several, all or none (docs/graph-format.md, "Edits"): what takes it back, after which the
+   * graph has the same bytes. */
+  edit(edit: GraphEdit | GraphEdit[], messages: Message[] = []): GraphEdit | GraphEdit[] {
+    return this.it.withBytes(new TextEncoder().encode(JSON.stringify(edit)), (at, size) =>
+      JSON.parse(
+        this.it.taken(
+          calling(this.it, undefined, messages, (said) => this.it.call.lacquer_graph_edit(this.at, at, size, said)),
+        ),
+      ),
+    );
+  }
+  /** What has changed since generate(), the gravest. */
+  changes(): Change {
+    return kChanges[this.it.call.lacquer_graph_changes(this.at)];
   }
   connect(node: string, input: string, source: GraphSource, messages?: Message[]): void {
-    this.edit('lacquer_graph_connect', [node, input, JSON.stringify(source)], messages);
+    this.call('lacquer_graph_connect', [node, input, JSON.stringify(source)], messages);
   }
   setOutput(port: string, source: GraphSource, messages?: Message[]): void {
-    this.edit('lacquer_graph_set_output', [port, JSON.stringify(source)], messages);
+    this.call('lacquer_graph_set_output', [port, JSON.stringify(source)], messages);
   }
   setParameter(name: string, value: number | number[], messages: Message[] = []): void {
     const numbers = [value].flat();
@@ -258,7 +356,7 @@ export class Graph extends Handle {
       ),
     );
   }
-  /** What is wrong with it and worth knowing; it may change the order of the nodes. */
+  /** What is wrong with it and worth knowing. */
   check(options?: Options): Message[] {
     const messages: Message[] = [];
     try {
@@ -293,7 +391,7 @@ export class Graph extends Handle {
     );
   }
 
-  private edit(call: string, texts: string[], messages: Message[] = []): void {
+  private call(call: string, texts: string[], messages: Message[] = []): void {
     this.it.withTexts(texts, (at) =>
       calling(this.it, undefined, messages, (said) => this.it.call[call](this.at, ...at, said)),
     );
@@ -322,10 +420,20 @@ export class Scene extends Handle {
   }
   /** On primitives with these attributes; those of its first use where none are named. */
   graph(material: number, options?: Options, attributes?: Attribute[], messages: Message[] = []): Graph {
-    const names = attributes ?? this.uses(material)[0] ?? kUnusedAttributes;
-    const bits = names.reduce((sum, name) => sum | (1 << kAttributes.indexOf(name)), 0);
+    const bits = this.bits(material, attributes);
     const call = (said: number, how: number) => this.it.call.lacquer_scene_graph(this.at, material, bits, how, said);
     return new Graph(this.it, calling(this.it, options, messages, call));
+  }
+  /** What a change of each property of a material is to its shader: a number of its block, another image, or another program. */
+  properties(material: number, options?: Options, attributes?: Attribute[], messages: Message[] = []): PropertyUse[] {
+    const bits = this.bits(material, attributes);
+    const call = (said: number, how: number) =>
+      this.it.call.lacquer_scene_properties(this.at, material, bits, how, said);
+    return JSON.parse(this.it.taken(calling(this.it, options, messages, call)));
+  }
+  private bits(material: number, attributes?: Attribute[]): number {
+    const names = attributes ?? this.uses(material)[0] ?? kUnusedAttributes;
+    return names.reduce((sum, name) => sum | (1 << kAttributes.indexOf(name)), 0);
   }
   /** Linear colours at points, as `lacquer eval`. */
   evaluate(
@@ -374,12 +482,14 @@ export class Lacquer {
     );
     return new Scene(this.it, handle);
   }
-  /** Reads the JSON form of a graph. */
-  graph(json: GraphJson | string, name = 'graph.json', messages: Message[] = []): Graph {
+  /** Reads the JSON form of a graph. Of the options, `limits`. */
+  graph(json: GraphJson | string, name = 'graph.json', messages: Message[] = [], options?: Options): Graph {
     const text = typeof json === 'string' ? json : JSON.stringify(json);
     const handle = this.it.withBytes(new TextEncoder().encode(text), (at, size) =>
       this.it.withText(name, (named) =>
-        calling(this.it, undefined, messages, (said) => this.it.call.lacquer_graph_read(at, size, named, said)),
+        calling(this.it, options, messages, (said, how) =>
+          this.it.call.lacquer_graph_read_with(at, size, named, how, said),
+        ),
       ),
     );
     return new Graph(this.it, handle);

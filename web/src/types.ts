@@ -71,7 +71,69 @@ export interface Parameter {
   or_zero: boolean;
   /** JSON pointer of the glTF property; may be empty. */
   pointer: string;
+  /** The tool's own words; null for none. */
+  ui: unknown;
 }
+
+/** A texture of a material. */
+export interface GraphTexture {
+  name: string;
+  type: 'sampler2D' | 'samplerCube';
+  srgb: boolean;
+  /** Index in the file's `textures`; -1 for none. */
+  texture: number;
+  /** JSON pointer of the textureInfo; may be empty. */
+  pointer: string;
+  /** The image of a graph's own, a URI; may be empty. */
+  file: string;
+  ui: unknown;
+}
+
+/** A node of a graph: a `node` of the library, or a `group` of the graph. */
+export interface GraphNode {
+  id: string;
+  node?: string;
+  group?: string;
+  /** Empty for the reference. */
+  variant: string;
+  stage: Stage;
+  inputs: Record<string, GraphSource>;
+  ui: unknown;
+}
+
+/** What a node or a template takes, or what a node gives. */
+export interface Socket {
+  /** Of an only output empty. */
+  name: string;
+  type: string;
+  /** null: unbounded. */
+  low: number | null;
+  high: number | null;
+  or_zero: boolean;
+}
+export interface Sockets {
+  /** `optional`: it has a default. `source`: null for nothing. */
+  inputs: (Socket & { optional: boolean; source: GraphSource | null })[];
+  outputs: Socket[];
+}
+
+/** A property of a material. */
+export interface PropertyUse {
+  /** JSON pointer of the glTF property, or of the textureInfo. */
+  pointer: string;
+  change: Change;
+  /** Of the parameter ("numbers") or the texture ("textures"). */
+  name: string;
+  /** Of "program": terms that, as `live` in the options, make a parameter of it whatever its value is. */
+  live: string[];
+}
+
+/** An edit in its JSON form (docs/graph-format.md, "Edits"). */
+export type GraphEdit = { do: string } & Record<string, unknown>;
+
+/** What has changed of a graph since its shader was generated: nothing of it, the bytes of its block, images or samplers (and
+ *  perhaps numbers), or the program. */
+export type Change = 'nothing' | 'numbers' | 'textures' | 'program';
 
 /** Where an input of a node comes from (docs/graph-format.md). */
 export type GraphSource =
@@ -81,7 +143,9 @@ export type GraphSource =
   | { node: string; output?: string; swizzle?: string }
   | { parameter: string; swizzle?: string }
   | { texture: string }
-  | { given: string; swizzle?: string };
+  | { given: string; swizzle?: string }
+  | { input: string; swizzle?: string }
+  | { value: number | number[]; swizzle: string };
 
 /** The JSON form of a graph. */
 export interface GraphJson {

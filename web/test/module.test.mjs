@@ -140,6 +140,65 @@ test('a ball is drawn', () => {
   scene.free();
 });
 
+test('a graph is edited for a hundred steps, and has the colours of the file that it is saved to after each', () => {
+  const scene = library.scene(withImages(read('examples/coat.gltf')), 'examples/coat.gltf');
+  const all = ['NORMAL', 'TANGENT', 'COLOR_0', 'TEXCOORD_0', 'TEXCOORD_1', 'TEXCOORD_2', 'TEXCOORD_3'];
+  const graph = scene.graph(0, {}, all);
+  const texels = graph.textures().map(({ name }) => `${name}=0.2,0.4,0.6,0.8`);
+  const points = [{ v: [0, 0.6, 0.8], l: [0.6, 0, 0.8], env: [0.3, 0.4, 0.5] }];
+  const shader = graph.generate({ targets: ['essl'] });
+  assert.equal(graph.changes(), 'nothing');
+  const start = graph.toText();
+  const back = [];
+  for (let step = 0; step < 100; ++step) {
+    const nodes = graph.nodes();
+    const { id } = nodes[(7 * step) % nodes.length];
+    const parameters = graph.parameters();
+    const { name, value } = parameters[step % parameters.length];
+    const edits = [
+      { do: 'rename_node', node: id, to: `my.n${step}` },
+      { do: 'set_value', parameter: name, value },
+      { do: 'make_group', nodes: [id], group: `g${step}`, node: id },
+      { do: 'set_ui', node: id, ui: { x: step } },
+    ];
+    back.push(graph.edit(edits[step % edits.length]));
+    const saved = library.graph(graph.toText());
+    assert.deepEqual(graph.evaluate(points, { texels }).rgba, saved.evaluate(points, { texels }).rgba);
+    assert.ok(['nothing', 'numbers'].includes(graph.changes()));
+    saved.free();
+  }
+  assert.deepEqual(shader.packGraph(graph), shader.pack());
+  for (const edit of back.reverse()) graph.edit(edit);
+  assert.equal(graph.toText(), start);
+  graph.setParameter('coat_roughness_factor', 0.75);
+  assert.equal(graph.changes(), 'numbers');
+  assert.deepEqual(shader.packGraph(graph), shader.pack({ coat_roughness_factor: 0.75 }));
+  for (const handle of [shader, graph, scene]) handle.free();
+});
+
+test('a graph is listed and grouped', () => {
+  const scene = library.scene(read('examples/coat.gltf'), 'coat.gltf');
+  const graph = scene.graph(0);
+  const [node] = graph.nodes();
+  const connected = graph.sockets(node.id).inputs.filter(({ source }) => source !== null);
+  assert.deepEqual(connected.map(({ name }) => name).sort(), Object.keys(node.inputs).sort());
+  assert.equal(graph.sockets().inputs.filter(({ source }) => source !== null).length, Object.keys(graph.outputs()).length);
+  graph.makeGroup([node.id], 'folded', 'it');
+  assert.deepEqual(graph.groups(), ['folded']);
+  assert.deepEqual(graph.nodes('folded').map(({ id }) => id), [node.id]);
+  assert.ok(Object.keys(graph.outputs('folded')).length > 0);
+  graph.addInstance('again', 'folded');
+  graph.renameNode('again', 'more');
+  graph.removeNode('more');
+  graph.expand('it');
+  graph.addGroup('whole', scene.graph(0));
+  assert.throws(() => graph.disconnect(graph.nodes()[0].id, 'nothing'), /not-connected/);
+  assert.throws(() => graph.sockets('nobody'), /no-such-node/);
+  graph.removeOutput(Object.keys(graph.outputs())[0]);
+  graph.free();
+  scene.free();
+});
+
 test('graphs are edited and checked', () => {
   const scene = library.scene(read('examples/coat.gltf'), 'coat.gltf');
   const graph = scene.graph(0);
@@ -151,7 +210,8 @@ test('graphs are edited and checked', () => {
   assert.throws(() => graph.setOutput('alpha', { no: 1 }), LacquerError);
   graph.removeNode('mine');
   assert.deepEqual(graph.check(), []);
-  graph.setOutput('nowhere', 1);
+  assert.throws(() => graph.setOutput('nowhere', 1), /unknown-port/);
+  for (const { id } of graph.nodes()) graph.removeNode(id);
   assert.equal(graph.check()[0].level, 'error');
   assert.throws(() => graph.generate(), LacquerError);
   assert.match(scene.graph(0).dump(), /; fragment/);

@@ -16,18 +16,41 @@ namespace lacquer {
 
 struct Graph::Impl {
   graph::Graph graph;
-  std::string file;  ///< its name, or that of the glTF file that it was built from
-  passes::LightFacts scene_lights;
+  std::string file;                          ///< its name, or that of the glTF file that it was built from
+  std::shared_ptr<const Language> language;  ///< that edits are checked against
+  Limits limits;
+  passes::LightFacts scene_lights{};
   ImagesOf images = ImagesOf::Nothing;
-  std::shared_ptr<const std::string> bytes;  ///< the file's, where it was read from memory
+  std::shared_ptr<const std::string> bytes{};  ///< the file's, where it was read from memory
+
+  /// What the last generation was given, and what was edited since.
+  struct Made {
+    Options options;
+    std::shared_ptr<const Language> language;
+    std::string key;  ///< graph::programKey()
+    graph::Graph graph;
+    bool numbers = false;    ///< values of parameters were set
+    bool structure = false;  ///< anything else was edited
+  };
+  std::optional<Made> made{};
+  /// For each parameter what it may be; empty after an edit of anything but numbers.
+  std::vector<ir::Range> may_be{};
+
+  /// Makes an edit; false, and messages, on an error.
+  template <class Edit>
+  bool edit(Messages& messages, const Edit& edit);
+  void edited();
 
   /// The checked graph, flat and simplified as the options want it.
   Result<graph::Graph> flat(const Options& options, const lang::Library& library) const;
-  /// Checks the options and the graph, lowers it and runs the passes.
-  Result<ir::Module> module(const Options& options, Diagnostics (*check)(const Options&),
-                            const AfterPass& after = {}) const;
-  bool refuse(std::string code, std::string message, std::string help, Messages& messages) const;
-  std::optional<graph::Source> source(std::string_view text, Messages& messages) const;
+  /// What a module is made of, checked.
+  struct Prepared {
+    std::shared_ptr<const Language> language;
+    graph::Graph flat;
+  };
+  Result<Prepared> prepared(const Options& options, Diagnostics (*check)(const Options&)) const;
+  /// Lowers it and runs the passes.
+  Result<ir::Module> module(const Prepared& of, const Options& options, const AfterPass& after = {}) const;
 };
 
 struct Scene::Impl {

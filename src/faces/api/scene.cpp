@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <map>
+#include <set>
+
 #include "api/internal.h"
 #include "eval/in_memory.h"
 #include "setting/attributes.h"
@@ -121,9 +124,46 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   Result<graph::Graph> graph = buildGraph(m, fromPublic(attributes), **language, named, warnings);
   report(warnings, document.path, messages);
   if (!graph) return report(graph.error(), {}, messages), result;
-  result.impl_ = std::make_shared<Graph::Impl>(
-      Graph::Impl{std::move(*graph), document.path, lightsOf(document), ImagesOf::Gltf, impl_->bytes});
+  result.impl_ = std::make_shared<Graph::Impl>(Graph::Impl{std::move(*graph), document.path, *language,
+                                                           *limitsOf(options), lightsOf(document),
+                                                           ImagesOf::Gltf, impl_->bytes});
   return result;
+}
+
+std::vector<PropertyUse> Scene::properties(size_t material, const Attributes& attributes,
+                                           const Options& options, Messages& messages) const {
+  std::vector<PropertyUse> uses;
+  const Graph built = graph(material, attributes, options, messages);
+  if (!built) return uses;
+  std::set<std::string> known;
+  for (const Parameter& parameter : built.parameters()) {
+    if (!parameter.pointer.empty() && known.insert(parameter.pointer).second)
+      uses.push_back({parameter.pointer, Change::Numbers, parameter.name});
+  }
+  for (const TextureUse& texture : built.textures()) {
+    if (!texture.pointer.empty() && known.insert(texture.pointer).second)
+      uses.push_back({texture.pointer, Change::Textures, texture.name});
+  }
+  // The rest is not in the graph: the term that would have it is left out.
+  const Language& language = *built.impl_->language;
+  Options named = options;
+  const Result<const material::Schema*> schema = language.models.schema();
+  if (!resolveNames(language, named) || !schema) return uses;
+  const Result<const model::Model*> model = language.models.of(named.profile);
+  if (!model) return uses;
+  std::set<std::string, std::less<>> skipped;
+  for (const graph::Skipped& term : built.impl_->graph.skipped) skipped.insert(term.term);
+  std::map<std::string, Strings> absent;
+  for (const auto& [name, terms] : (*model)->absent(skipped)) absent.emplace(name, terms);
+  const material::Material& of = impl_->document.materials[material];
+  for (const material::Property& row : (*schema)->properties) {
+    if (row.extension != 0 && !of.has(row.extension)) continue;
+    const std::string pointer = fmt::format("/materials/{}/{}", material, row.path);
+    if (!known.insert(pointer).second) continue;
+    PropertyUse& use = uses.emplace_back(PropertyUse{pointer, Change::Program});
+    if (const auto it = absent.find(row.parameter_name); it != absent.end()) use.live = it->second;
+  }
+  return uses;
 }
 
 std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const std::string& points,

@@ -116,6 +116,21 @@ bool Shader::pack(const Values& value, std::span<std::byte> block, Messages& mes
   return true;
 }
 
+bool Shader::packGraph(const Graph& graph, std::span<std::byte> block, Messages& messages) const {
+  if (!filled(graph.impl_.get(), "graph", messages)) return false;
+  const graph::Graph& numbers = graph.impl_->graph;
+  return pack(
+      [&](std::string_view name, std::span<double> components) {
+        const std::optional<size_t> found = numbers.findParameter(name);
+        if (!found) return false;
+        const graph::Parameter& parameter = numbers.parameters[*found];
+        if (static_cast<size_t>(ir::componentCount(parameter.type)) != components.size()) return false;
+        std::copy_n(parameter.value.begin(), components.size(), components.begin());
+        return true;
+      },
+      block, messages);
+}
+
 std::vector<ShaderCost> measureCost(const std::vector<Shader>& shaders, bool disassembly,
                                     Messages& messages) {
   std::vector<cost::Subject> subjects;

@@ -26,7 +26,8 @@ std::string parametersJson(const Graph& graph) {
         .number(parameter.range.low)
         .key("high")
         .number(parameter.range.high);  // infinite ones: null
-    text.key("or_zero").boolean(parameter.range.or_zero).key("pointer").string(parameter.pointer).endObject();
+    text.key("or_zero").boolean(parameter.range.or_zero).key("pointer").string(parameter.pointer);
+    text.key("ui").raw(parameter.ui.empty() ? "null" : parameter.ui).endObject();
   }
   return text.endArray().take();
 }
@@ -41,8 +42,13 @@ using lacquer::Messages;
 
 lacquer_graph* lacquer_graph_read(const char* json, size_t size, const char* name,
                                   lacquer_messages* messages) {
+  return lacquer_graph_read_with(json, size, name, nullptr, messages);
+}
+
+lacquer_graph* lacquer_graph_read_with(const char* json, size_t size, const char* name,
+                                       const lacquer_options* options, lacquer_messages* messages) {
   return guarded(messages, static_cast<lacquer_graph*>(nullptr), [&](Messages& to) -> lacquer_graph* {
-    Graph graph = Graph::fromJson(bytesOf(json, size), textOf(name), to);
+    Graph graph = Graph::fromJson(bytesOf(json, size), textOf(name), to, optionsOf(options).options);
     return graph ? new lacquer_graph{std::move(graph)} : nullptr;
   });
 }

@@ -1,6 +1,7 @@
 #include <optional>
 
 #include "c/handles.h"
+#include "json/text.h"
 
 namespace lacquer::c {
 
@@ -98,5 +99,25 @@ lacquer_graph* lacquer_scene_graph(const lacquer_scene* scene, size_t material, 
     lacquer::Graph graph =
         sceneOf(scene).graph(material, attributesOf(attributes), optionsOf(options).options, to);
     return graph ? new lacquer_graph{std::move(graph)} : nullptr;
+  });
+}
+
+lacquer_text* lacquer_scene_properties(const lacquer_scene* scene, size_t material, uint32_t attributes,
+                                       const lacquer_options* options, lacquer_messages* messages) {
+  return guarded(messages, static_cast<lacquer_text*>(nullptr), [&](Messages& to) -> lacquer_text* {
+    const std::vector<lacquer::PropertyUse> uses =
+        sceneOf(scene).properties(material, attributesOf(attributes), optionsOf(options).options, to);
+    if (uses.empty()) return nullptr;
+    lacquer::json::JsonText json;
+    json.beginArray();
+    for (const lacquer::PropertyUse& use : uses) {
+      constexpr const char* kChanges[] = {"nothing", "numbers", "textures", "program"};
+      json.beginObject().key("pointer").string(use.pointer).key("change");
+      json.string(kChanges[static_cast<size_t>(use.change)]).key("name").string(use.name).key("live");
+      json.beginArray();
+      for (const std::string& term : use.live) json.string(term);
+      json.endArray().endObject();
+    }
+    return textFrom(json.endArray().take());
   });
 }

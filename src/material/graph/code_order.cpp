@@ -1,5 +1,7 @@
 // The order in which a graph's nodes become code: a function of what is connected, of terms and of names that
 // the library gives, and of nothing else.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "graph/contracts.h"
@@ -100,6 +102,88 @@ private:
 
 std::vector<size_t> codeOrder(const Graph& graph, const lang::Library& library, const Source* also) {
   return CodeOrder(graph, library, also).run();
+}
+
+namespace {
+
+/// A text of what a graph's code is made of, in the order of the code.
+class ProgramKey {
+public:
+  ProgramKey(const Graph& graph, const lang::Library& library) : graph_(graph), contracts_(graph, library) {
+    const std::vector<size_t> order = codeOrder(graph, library);
+    places_.resize(graph.nodes.size());
+    for (size_t i = 0; i < order.size(); ++i) places_[order[i]] = i;
+    word(graph.template_name);
+    std::vector<std::string> attributes = graph.attributes;
+    std::sort(attributes.begin(), attributes.end());
+    for (const std::string& name : attributes) word(name);
+    for (const size_t index : order) node(graph.nodes[index]);
+    const lang::TemplateDecl* decl = contracts_.templateDecl();
+    for (size_t i = 0; decl != nullptr && i < decl->ports.size(); ++i)
+      named(graph.outputs, decl->ports[i].param.name);
+  }
+  std::string take() { return std::move(key_); }
+
+private:
+  void word(std::string_view text) { key_ += fmt::format("{}:{} ", text.size(), text); }
+
+  void node(const Node& node) {
+    key_ += '\n';
+    word(node.type);
+    word(node.variant);
+    word(node.term);
+    key_ += node.at_vertices ? "v " : "";
+    const Contract* contract = contracts_.of(node);
+    for (size_t i = 0; contract != nullptr && i < contract->params.size(); ++i)
+      named(node.inputs, contract->params[i].name);
+  }
+
+  void named(const Inputs& sources, std::string_view wanted) {
+    for (const auto& [name, source] : sources) {
+      if (name != wanted) continue;
+      word(name);
+      std::visit([this](const auto& from) { this->from(from); }, source.from);
+      word(source.swizzle);
+    }
+  }
+
+  void from(const Literal& literal) {
+    key_ += fmt::format("{} {} {} {} {} ", ir::typeName(literal.type), literal.value[0], literal.value[1],
+                        literal.value[2], literal.value[3]);
+  }
+  void from(const ParameterRef& ref) {
+    word(ref.name);
+    const Parameter* p = contracts_.parameter(ref.name);
+    if (p == nullptr) return;
+    key_ +=
+        fmt::format("{} {} {} {} {} {} {} {} {} ", ir::typeName(p->type), p->range.lo, p->range.hi,
+                    p->range.gap, p->animated, p->neutral[0], p->neutral[1], p->neutral[2], p->neutral[3]);
+  }
+  void from(const TextureRef& ref) {
+    word(ref.name);
+    const std::optional<size_t> place = graph_.findTexture(ref.name);
+    if (place)
+      key_ += fmt::format("{} {} ", ir::typeName(graph_.textures[*place].type), graph_.textures[*place].srgb);
+  }
+  void from(const GivenRef& ref) { word("given"), word(ref.name); }
+  void from(const InputRef& ref) { word("input"), word(ref.name); }
+  void from(const Choice& choice) { word("choice"), word(choice.name); }
+  void from(const NodeRef& ref) {
+    const std::optional<size_t> place = contracts_.main().find(ref.node);
+    key_ += fmt::format("#{} ", place ? places_[*place] : 0);
+    word(ref.output);
+  }
+
+  const Graph& graph_;
+  Contracts contracts_;
+  std::vector<size_t> places_;
+  std::string key_;
+};
+
+}  // namespace
+
+std::string programKey(const Graph& graph, const lang::Library& library) {
+  return ProgramKey(graph, library).take();
 }
 
 }  // namespace lacquer::graph

@@ -220,6 +220,10 @@ Result<Source> outputAt(const FlatOutputs& outputs, const std::string& path);
 /// too.
 std::vector<size_t> codeOrder(const Graph& graph, const lang::Library& library, const Source* also = nullptr);
 
+/// Equal for flat, checked graphs of one shader as far as the graph says it: not ids, orders, values of
+/// parameters, images and tools' own words, nor what the outputs do not reach.
+std::string programKey(const Graph& graph, const lang::Library& library);
+
 /// The JSON form (docs/graph-format.md), two spaces of indent, stable key order, a final newline.
 std::string toJson(const Graph& graph);
 
