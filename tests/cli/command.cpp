@@ -128,15 +128,16 @@ nlohmann::json Workplace::manifest(const std::string& folder) const {
   return json;
 }
 
-std::optional<std::string> schemaErrors(const std::vector<std::filesystem::path>& manifests) {
+std::optional<std::string> schemaErrors(const std::vector<std::filesystem::path>& files,
+                                        const std::string& schema) {
   constexpr int kNoLibrary = 77;
   constexpr int kNoProgram = 127;
   static bool absent = false;
   if (absent) return std::nullopt;
   const auto quoted = [](const std::filesystem::path& path) { return "'" + path.string() + "' "; };
   std::string command = "python3 " + quoted(sourceFolder() / "tests/cli/validate_manifest.py") +
-                        quoted(sourceFolder() / "docs/manifest.schema.json");
-  for (const std::filesystem::path& manifest : manifests) command += quoted(manifest);
+                        quoted(sourceFolder() / "docs" / (schema + ".schema.json"));
+  for (const std::filesystem::path& file : files) command += quoted(file);
   FILE* pipe = popen((command + "2>&1").c_str(), "r");
   if (pipe == nullptr) return std::nullopt;
   std::string said;

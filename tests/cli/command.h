@@ -53,9 +53,10 @@ private:
   std::filesystem::path path_;
 };
 
-/// What is wrong with manifests by docs/manifest.schema.json, a line each; nothing where there is no library
-/// of schemas to ask (Debian: python3-jsonschema).
-std::optional<std::string> schemaErrors(const std::vector<std::filesystem::path>& manifests);
+/// What is wrong with manifests by docs/manifest.schema.json, or with other files by another schema of docs/,
+/// a line each; nothing where there is no library of schemas to ask (Debian: python3-jsonschema).
+std::optional<std::string> schemaErrors(const std::vector<std::filesystem::path>& files,
+                                        const std::string& schema = "manifest");
 
 /// A file of examples/, absolute.
 std::string example(const std::string& name);

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "json/json.h"
 #include "lacquer/tools.h"
+#include "lang/builtins.h"
 #include "setting/language.h"
 #include "setting/messages.h"
 
@@ -16,6 +19,8 @@ Json numbersJson(const double* numbers, ir::Type type) {
   const int count = ir::componentCount(type);
   return count == 1 ? Json(*numbers) : Json(std::vector<double>(numbers, numbers + count));
 }
+/// Of docs/nodes.schema.json.
+constexpr int kNodesSchema = 1;
 
 Json limitsJson(const ir::Range& range) {
   const auto end = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
@@ -89,8 +94,15 @@ Json propertyJson(const lang::PropertyDecl& property) {
   return json;
 }
 
+/// A declaration's name, prose and place.
+template <class Decl>
+Json documented(const Decl& decl) {
+  return {{"name", decl.name}, {"doc", decl.doc}, {"file", decl.origin.file}, {"line", decl.origin.line}};
+}
+
 Json extensionJson(const lang::ExtensionDecl& decl) {
-  Json json = {{"name", decl.name}, {"doc", decl.doc}, {"source", decl.source}};
+  Json json = documented(decl);
+  json["source"] = decl.source;
   if (!decl.status.empty()) json["status"] = decl.status;
   if (!decl.inside.empty()) json["inside"] = decl.inside;
   const auto list = [&](const char* key, const std::vector<std::string_view>& names) {
@@ -105,6 +117,140 @@ Json extensionJson(const lang::ExtensionDecl& decl) {
   for (const lang::PropertyDecl& property : decl.properties)
     json["properties"].push_back(propertyJson(property));
   return json;
+}
+
+Json profileJson(const lang::ProfileDecl& decl) {
+  Json json = documented(decl);
+  json["source"] = decl.source;
+  if (decl.by_default) json["default"] = true;
+  return json;
+}
+
+Json switchJson(const lang::SwitchDecl& decl) {
+  Json json = documented(decl);
+  json["default"] = decl.value;
+  return json;
+}
+
+Json constantJson(const lang::ConstDecl& decl) {
+  Json json = documented(decl);
+  json["type"] = ir::typeName(decl.type);
+  json["value"] = numbersJson(decl.value.data(), decl.type);
+  return json;
+}
+
+Json partJson(const lang::PartDecl& decl) {
+  Json json = documented(decl);
+  json["source"] = decl.source;
+  json["of"] = decl.of;
+  json["over"] = decl.over;
+  return json;
+}
+
+Json blockJson(const lang::BlockDecl& block) {
+  Json json = {{"name", block.instance}, {"type", block.type_name}};
+  switch (block.role) {
+    case lang::BlockRole::Frame: json["role"] = "frame"; break;
+    case lang::BlockRole::Lights: json["role"] = "lights"; break;
+    case lang::BlockRole::Object: json["role"] = "object"; break;
+    case lang::BlockRole::List: json["role"] = "list"; break;
+  }
+  if (block.array > 0) json["array"] = block.array;
+  if (block.list) json["list"] = true;
+  if (block.optional) json["optional"] = true;
+  if (!block.prose.empty()) json["meaning"] = block.prose;
+  json["fields"] = Json::array();
+  for (const lang::BlockFieldDecl& field : block.fields) {
+    Json row = paramJson(field, {});
+    if (field.array > 0) row["array"] = field.array;
+    json["fields"].push_back(std::move(row));
+  }
+  return json;
+}
+
+Json attributeJson(const lang::AttributeDecl& attribute) {
+  Json json = {{"name", attribute.name}};
+  if (!attribute.fact) {
+    json["type"] = ir::typeName(attribute.type);
+    json["location"] = attribute.location;
+  }
+  if (attribute.optional) json["optional"] = true;
+  if (!attribute.prose.empty()) json["meaning"] = attribute.prose;
+  return json;
+}
+
+Json environmentJson(const lang::EnvironmentDecl& texture) {
+  Json json = {{"name", texture.name},
+               {"type", ir::typeName(texture.type)},
+               {"role", texture.object ? "object" : "environment"}};
+  if (texture.optional) json["optional"] = true;
+  if (!texture.prose.empty()) json["meaning"] = texture.prose;
+  return json;
+}
+
+/// What a graph refers to: each result by the name that it writes.
+void addGiven(const lang::GivenDecl& given, Json& rows) {
+  for (const lang::Param& result : given.results) {
+    Json json = paramJson(result, {});
+    json["name"] = given.multiple ? fmt::format("{}.{}", given.name, result.name) : std::string(given.name);
+    if ((given.ties & lang::kLight) != 0) json["per_light"] = true;
+    if (!given.prose.empty() && !json.contains("meaning")) json["meaning"] = given.prose;
+    rows.push_back(std::move(json));
+  }
+}
+
+Json portJson(const lang::PortDecl& port) {
+  Json json = paramJson(port.param, {});
+  json["required"] = port.default_value == nullptr;
+  // A sum over the lights is made of it by the template.
+  if ((port.refused & lang::kLight) == 0) json["per_light"] = true;
+  return json;
+}
+
+Json outputJson(const lang::OutputDecl& output) {
+  Json json = {{"name", output.name}, {"type", ir::typeName(output.type)}};
+  switch (output.role) {
+    case lang::OutputRole::Position: json["role"] = "position"; break;
+    case lang::OutputRole::Color: json["role"] = "color"; break;
+    case lang::OutputRole::Discard: json["role"] = "discard"; break;
+  }
+  if (output.optional) json["optional"] = true;
+  if (!output.prose.empty()) json["meaning"] = output.prose;
+  return json;
+}
+
+Json templateJson(const lang::TemplateDecl& decl) {
+  Json json = documented(decl);
+  if (decl.is_default) json["default"] = true;
+  if (!decl.base.empty()) json["extends"] = decl.base;
+  const auto rows = [&](const char* key, const auto& list, auto row) {
+    json[key] = Json::array();
+    for (const auto& one : list) json[key].push_back(row(one));
+  };
+  rows("ports", decl.ports, portJson);
+  json["gives"] = Json::array();
+  for (const lang::GivenDecl& given : decl.givens) addGiven(given, json["gives"]);
+  rows("blocks", decl.blocks, blockJson);
+  rows("attributes", decl.attributes, attributeJson);
+  rows("textures", decl.environments, environmentJson);
+  rows("outputs", decl.outputs, outputJson);
+  rows("lights", decl.light_kinds, [](const lang::LightKindDecl& kind) {
+    return Json{{"name", kind.name}, {"meaning", kind.prose}};
+  });
+  return json;
+}
+
+/// The operators and functions that a body may use, as docs/node-language.md lists them.
+Json operationsJson() {
+  Json rows = Json::array();
+  for (const lang::Builtin& builtin : lang::builtins()) {
+    Json json = {{"name", builtin.name}, {"operands", builtin.arity}};
+    if (builtin.is_operator) json["operator"] = true;
+    if (!builtin.shape.empty()) json["takes"] = builtin.shape;
+    if (!builtin.prose.empty()) json["meaning"] = builtin.prose;
+    rows.push_back(std::move(json));
+  }
+  return rows;
 }
 
 /// The declarations of a kind, each by `row`.
@@ -127,21 +273,23 @@ std::string nodesJson(const Options& options, Messages& messages) {
   report(found, {}, messages);
   if (hasError(found)) return {};
   const lang::Library& all = **library;
-  const auto documented = [](const auto& decl) { return Json{{"name", decl.name}, {"doc", decl.doc}}; };
-  Json json = {
-      {"lacquer", version()},
-      {"extensions", rowsOf(all, lang::DeclKind::Extension, &lang::Library::extension, extensionJson)},
-      {"profiles", rowsOf(all, lang::DeclKind::Profile, &lang::Library::profile, documented)},
-      {"lods", rowsOf(all, lang::DeclKind::Lod, &lang::Library::lod, documented)},
-      {"switches", rowsOf(all, lang::DeclKind::Switch, &lang::Library::switch_,
-                          [&](const lang::SwitchDecl& decl) {
-                            Json row = documented(decl);
-                            row["default"] = decl.value;
-                            return row;
-                          })},
-      {"templates", rowsOf(all, lang::DeclKind::Template, &lang::Library::template_, documented)},
-      {"live", liveTerms(options)},
-      {"nodes", rowsOf(all, lang::DeclKind::Node, &lang::Library::node, nodeJson)}};
+  using lang::DeclKind;
+  using lang::Library;
+  Json types = Json::array();
+  for (const ir::Type type : ir::kTypes) types.push_back(ir::typeName(type));
+  const Json json = {{"lacquer", version()},
+                     {"schema", kNodesSchema},
+                     {"types", std::move(types)},
+                     {"extensions", rowsOf(all, DeclKind::Extension, &Library::extension, extensionJson)},
+                     {"parts", rowsOf(all, DeclKind::Part, &Library::part, partJson)},
+                     {"profiles", rowsOf(all, DeclKind::Profile, &Library::profile, profileJson)},
+                     {"lods", rowsOf(all, DeclKind::Lod, &Library::lod, profileJson)},
+                     {"switches", rowsOf(all, DeclKind::Switch, &Library::switch_, switchJson)},
+                     {"templates", rowsOf(all, DeclKind::Template, &Library::template_, templateJson)},
+                     {"live", liveTerms(options)},
+                     {"constants", rowsOf(all, DeclKind::Const, &Library::constant, constantJson)},
+                     {"operations", operationsJson()},
+                     {"nodes", rowsOf(all, DeclKind::Node, &Library::node, nodeJson)}};
   return json.dump(2);  // a node file may hold any bytes
 }
 
