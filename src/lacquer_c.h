@@ -615,6 +615,10 @@ LACQUER_C_NATIVE int lacquer_sheet_difference(const lacquer_sheet* sheet, size_t
 
 /* Nodes, templates, profiles, extensions and their properties as JSON, as `lacquer nodes --json`. */
 LACQUER_C lacquer_text* lacquer_nodes(const lacquer_options* options, lacquer_messages* messages);
+/* Whether the options' own node files, "node_directories" and "node_texts", are good where they stand: 1 when
+ * there is no error. All errors at once, and warnings of names that nobody uses and of ranges that are left.
+ */
+LACQUER_C int lacquer_check_nodes(const lacquer_options* options, lacquer_messages* messages);
 /* The tables behind environment_dfg and environment_sheen (docs/bindings.md): `size` rows of `size` pairs,
  * from 2 to 1024, into `pairs`, which has room for `capacity` floats. */
 LACQUER_C int lacquer_environment_dfg(uint32_t size, float* pairs, size_t capacity,

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ._native import Value, load
 
 __all__ = [
-    "ATTRIBUTES", "Error", "Evaluation", "Graph", "Message", "Scene", "Shader", "environment_dfg", "environment_sheen",
+    "ATTRIBUTES", "Error", "Evaluation", "Graph", "Message", "Scene", "Shader", "check_nodes", "environment_dfg", "environment_sheen",
     "nodes", "version",
 ]
 
@@ -476,6 +476,16 @@ class Scene(_Handle):
 def version() -> str:
     """The library's: "0.2.0"."""
     return _lib.lacquer_version().decode()
+
+
+def check_nodes(options: Options) -> List[Message]:
+    """What is wrong with the options' own node files, "node_directories" and "node_texts", and worth knowing."""
+    messages: List[Message] = []
+    try:
+        _calling(options, messages, lambda said, how: _lib.lacquer_check_nodes(how, said))
+    except Error:
+        pass
+    return messages
 
 
 def nodes(options: Optional[Options] = None) -> Dict[str, Any]:

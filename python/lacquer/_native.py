@@ -52,6 +52,7 @@ _FUNCTIONS = {
     "graph_json": (c_void_p, c_void_p),
     "graph_dot": (c_void_p, c_void_p),
     "graph_parameters": (c_void_p, c_void_p),
+    "check_nodes": (c_int, c_void_p, c_void_p),
     "graph_textures": (c_void_p, c_void_p),
     "graph_groups": (c_void_p, c_void_p),
     "graph_nodes": (c_void_p, c_void_p, c_char_p),

@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lacquer {
@@ -140,8 +141,11 @@ struct Options {
   bool debug = false;  ///< SPIR-V has the names of values and the lines of the nodes (Direct)
   Strings live;        ///< terms kept though today's value would remove them, of liveTerms()
   Strings node_directories;  ///< folders with more node files (*.node) beside the built-in library
-  uint32_t jobs = 0;         ///< threads, at most 1024; 0 for one on each core
-  std::string cache;         ///< folder that keeps results between runs (docs/builds.md); empty for none
+  /// More node files from memory, behind those: what messages call each, and its text. Not of plan(), whose
+  /// commands read folders.
+  std::vector<std::pair<std::string, std::string>> node_texts;
+  uint32_t jobs = 0;  ///< threads, at most 1024; 0 for one on each core
+  std::string cache;  ///< folder that keeps results between runs (docs/builds.md); empty for none
   uint64_t cache_size = uint64_t{1} << 30;  ///< bytes that the cache may take
   std::string
       depfile;  ///< of generate(), generateGraphs(): a file for Make and Ninja, what the manifest depends on

@@ -189,6 +189,11 @@ std::optional<EnvironmentMaps> writeEnvironment(const Environment& environment, 
 /// The node library as JSON: contracts, ranges, sources, variants. Of the options, `node_directories`. Empty
 /// on an error.
 std::string nodesJson(const Options& options, Messages& messages);
+/// Whether the options' own node files, of `node_directories` and `node_texts`, are good where they stand:
+/// each declaration, and each part under every profile and with every lod, all errors at once. Of two parts
+/// over one place the order must be said ("unordered-parts"). Warnings: "unused-name" for what nobody uses,
+/// and "may-leave-range" for lines whose value may leave the range of what it goes to. True without an error.
+bool checkNodes(const Options& options, Messages& messages);
 /// What is proved of each of its nodes for all inputs in their ranges (docs/intervals.md), each variant by
 /// itself. The same options. Nothing on an error.
 std::optional<std::vector<NodeProof>> proveNodes(const Options& options, Messages& messages,

@@ -125,5 +125,111 @@ TEST(NodesAsJson, TellAToolEverything) {
   EXPECT_EQ((*cosine)["type"], "float");
 }
 
+TEST(Check, OfAGoodFolder) {
+  const Workplace place;
+  place.write("mine/moss.node", kMoss);
+  const auto good = place.run({"check", "mine"});
+  EXPECT_EQ(good.status, 0) << good.all();
+  EXPECT_EQ(good.err, "");
+  EXPECT_NE(good.out.find("good"), std::string::npos) << good.out;
+}
+
+/// All errors at once, each at its place.
+TEST(Check, OfWrongDeclarations) {
+  const Workplace place;
+  place.write("mine/moss.node", replaced(replaced(kMoss, "return factor * texel;", "return factor * texell;"),
+                                         "return mix(below", "return mixx(below"));
+  const auto wrong = place.run({"check", "mine"});
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.err.find("mine/moss.node:24:21: error:"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find("mixx"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find("texell"), std::string::npos) << wrong.err;
+  place.write("other/moss.node", replaced(kMoss, "base.cosines.NdotL);", "base.cosine.NdotL);"));
+  const auto part = place.run({"check", "other"});
+  EXPECT_EQ(part.status, 1);
+  EXPECT_NE(part.err.find("other/moss.node:17:"), std::string::npos) << part.err;
+}
+
+TEST(Check, OfNamesThatNobodyUses) {
+  const Workplace place;
+  std::string text = replaced(kMoss, "mossFactor, mossTexture)", "mossFactor)");
+  text = replaced(text, "surface:\n", "surface:\n    moss.idle = moss_cover(1);\n");
+  text += R"(
+/// Nobody's.
+const float LONELY = 3;
+
+/// Nobody calls it.
+/// source: ACME
+node moss_alone(float x in [0, 1]) -> float in [0, 1] {
+    return x;
+}
+
+/// Of a palette.
+/// source: ACME
+/// category: plants
+node moss_palette(float x in [0, 1]) -> float in [0, 1] {
+    return x;
+}
+)";
+  place.write("mine/moss.node", text);
+  const auto said = place.run({"check", "mine"});
+  EXPECT_EQ(said.status, 0) << said.all();
+  for (const char* name : {"mossTexture", "moss.idle", "LONELY", "moss_alone"})
+    EXPECT_NE(said.err.find("'" + std::string(name) + "'"), std::string::npos) << name << "\n" << said.err;
+  EXPECT_EQ(said.err.find("moss_palette"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("[unused-name]"), std::string::npos);
+}
+
+TEST(Check, OfLinesThatLeaveARange) {
+  const Workplace place;
+  place.write("mine/moss.node", replaced(kMoss, "texel in [0, 1] = 1) -> float in [0, 1] {",
+                                         "texel in [0, 1] = 1) -> float in [0, 2] {"));
+  const auto said = place.run({"check", "mine"});
+  EXPECT_EQ(said.status, 0) << said.all();
+  EXPECT_NE(said.err.find("mine/moss.node:17:"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("[may-leave-range]"), std::string::npos) << said.err;
+}
+
+/// Which of two layers lies above is said, or it is an error.
+TEST(Check, OfTwoPartsOverOnePlace) {
+  const Workplace place;
+  place.write("mine/moss.node", kMoss);
+  std::string ice = kMoss;
+  for (const auto& [from, to] : {std::pair("moss", "ice"), std::pair("Moss", "Ice")}) {
+    for (size_t at = ice.find(from); at != std::string::npos; at = ice.find(from, at))
+      ice.replace(at, std::string(from).size(), to);
+  }
+  place.write("mine/ice.node", ice);
+  const auto said = place.run({"check", "mine"});
+  EXPECT_EQ(said.status, 1) << said.all();
+  EXPECT_NE(said.err.find("error: the parts 'ice' and 'moss' lie over the same part"), std::string::npos)
+      << said.err;
+  place.write("mine/ice.node", replaced(ice, "over coat", "over coat, moss"));
+  EXPECT_EQ(place.run({"check", "mine"}).status, 0);
+}
+
+TEST(Check, OfNothing) {
+  const Workplace place;
+  EXPECT_EQ(place.run({"check"}).status, 2);
+  EXPECT_EQ(place.run({"check", "nowhere"}).status, 1);
+}
+
+/// An extension that is spelled wrong does nothing, which is hard to see.
+TEST(Undeclared, ExtensionsAreNamed) {
+  const Workplace place;
+  place.write("a.gltf", gltfOf({R"({"extensions": {"KHR_materials_cleercoat": {"clearcoatFactor": 1}}})",
+                                R"({"extensions": {"KHR_materials_cleercoat": {}, "ACME_x": {}}})"}));
+  const auto said = place.run({"gen", "a.gltf", "-o", "out", "--target", "glsl", "--no-validate"});
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("KHR_materials_cleercoat"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("did you mean 'KHR_materials_clearcoat'?"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("ACME_x"), std::string::npos) << said.err;
+  size_t count = 0;
+  for (size_t at = said.err.find("[undeclared-extension]"); at != std::string::npos;
+       at = said.err.find("[undeclared-extension]", at + 1))
+    ++count;
+  EXPECT_EQ(count, 2u) << said.err;
+}
+
 }  // namespace
 }  // namespace lacquer::test

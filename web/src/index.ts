@@ -498,6 +498,16 @@ export class Lacquer {
   nodes(options?: Options): any {
     return JSON.parse(this.it.taken(calling(this.it, options, [], (said, how) => this.it.call.lacquer_nodes(how, said))));
   }
+  /** What is wrong with the options' own node files, `node_texts`, and worth knowing. */
+  checkNodes(options: Options): Message[] {
+    const messages: Message[] = [];
+    try {
+      calling(this.it, options, messages, (said, how) => this.it.call.lacquer_check_nodes(how, said));
+    } catch (error) {
+      if (!(error instanceof LacquerError)) throw error;
+    }
+    return messages;
+  }
   /** The table behind environment_dfg: `size` rows of `size` pairs. */
   environmentDfg(size: number): Float32Array {
     return this.table('lacquer_environment_dfg', size);

@@ -48,6 +48,8 @@ export interface Options {
   permissive?: boolean;
   debug?: boolean;
   live?: string[];
+  /** More node files: their texts by the names that messages have of them. */
+  node_texts?: Record<string, string>;
   limits?: string[];
   /** Of evaluations and previews: "SLOT=r,g,b,a", constants instead of images. */
   texels?: string[];

@@ -1,13 +1,16 @@
 #include "run/source_file.h"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "gltf/container.h"
+#include "lang/suggest.h"
 #include "manifest/text.h"
 #include "manifest/values.h"
 #include "run/report_blob.h"
@@ -18,6 +21,7 @@
 #include "structures/describe.h"
 #include "structures/reflection_blob.h"
 #include "support/relative.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -179,6 +183,31 @@ private:
   Pipelines all_;
 };
 
+/// Extensions of the materials that no node file declares, each once: one that is misspelt does nothing,
+/// which is hard to see in a picture.
+Diagnostics undeclared(const material::Document& document, const std::string& path,
+                       const material::Schema& schema) {
+  std::map<std::string, std::string> places;  // of the first of each
+  for (const material::Material& material : document.materials) {
+    for (const std::string& pointer : material.ignored)
+      places.emplace(pointer.substr(pointer.rfind('/') + 1), pointer);
+  }
+  std::vector<std::string_view> known;
+  for (const lang::ExtensionDecl* decl : schema.extensions) {
+    if (!decl->core) known.push_back(decl->name);
+  }
+  Diagnostics notes;
+  for (const auto& [name, pointer] : places) {
+    addBounded(notes, {"undeclared-extension",
+                       Severity::Note,
+                       {path, 0, 0, pointer},
+                       fmt::format("no node file declares {}: it does nothing", printable(name)),
+                       lang::didYouMean(name, known),
+                       {}});
+  }
+  return notes;
+}
+
 FileResult SceneFile::run(const material::Document& document) {
   FileResult result;
   lights_ = lightFacts(setting_.options, lightsOf(document));
@@ -188,6 +217,10 @@ FileResult SceneFile::run(const material::Document& document) {
   }
   result.diagnostics = document.diagnostics;
   result.ok = !hasError(result.diagnostics);
+  if (const auto schema = setting_.library.models.schema()) {
+    const Diagnostics notes = undeclared(document, path_, **schema);
+    result.diagnostics.insert(result.diagnostics.end(), notes.begin(), notes.end());
+  }
   json::JsonText json(manifest::kEntryDepth);
   manifest::beginFile(relativeTo(setting_.folder, path_), json);
   FilePipelines pipelines(path_, document, setting_);

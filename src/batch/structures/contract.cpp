@@ -123,6 +123,7 @@ Key baseOf(const Options& options, std::vector<std::string>* node_files, bool* a
       if (node_files != nullptr) node_files->push_back(file.name);
     }
   }
+  for (const auto& [name, text] : options.node_texts) base.text(name).text(text);
   return base.finish();
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <mutex>
 
 #include "model/order.h"
 #include "setting/options.h"
@@ -72,23 +74,56 @@ Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {
   return files;
 }
 
+Result<std::vector<lang::SourceFile>> ownNodeFiles(const Options& options) {
+  std::vector<lang::SourceFile> own;
+  for (const std::string& folder : options.node_directories) {
+    Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
+    if (!files) return files;
+    std::move(files->begin(), files->end(), std::back_inserter(own));
+  }
+  const uint64_t largest = Limits{}.file;
+  for (const auto& [name, text] : options.node_texts) {
+    if (text.size() > largest)
+      return fail("file-too-large", {name, 0, 0, {}}, fmt::format("it has more than {} bytes", largest));
+    own.push_back({name, text});
+  }
+  return own;
+}
+
+/// The built-in library and the options' own files.
+static Result<std::shared_ptr<const Language>> libraryWith(const Options& options) {
+  Result<std::vector<lang::SourceFile>> own = ownNodeFiles(options);
+  if (!own) return tl::make_unexpected(std::move(own.error()));
+  lang::Library library = lang::Library::embedded();
+  if (Result<void> added = library.add(std::move(*own)); !added)
+    return tl::make_unexpected(std::move(added.error()));
+  return std::make_shared<const Language>(std::move(library));
+}
+
 Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
   if (!hasStack())
     return fail("stack-too-small", {}, "the thread has too little stack",
                 fmt::format("it takes {} KiB: `ulimit -s`, or the size that the thread is made with",
                             kStackNeeded / 1024));
-  if (options.node_directories.empty()) {
+  if (options.node_directories.empty() && options.node_texts.empty()) {
     static const auto kBuiltIn = std::make_shared<const Language>(lang::Library::embedded());
     return kBuiltIn;
   }
-  lang::Library library = lang::Library::embedded();
-  for (const std::string& folder : options.node_directories) {
-    Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
-    if (!files) return tl::make_unexpected(files.error());
-    if (Result<void> added = library.add(std::move(*files)); !added)
-      return tl::make_unexpected(added.error());
+  // Files of a folder may have changed.
+  if (!options.node_directories.empty()) return libraryWith(options);
+  static std::mutex mutex;
+  static std::vector<std::pair<std::string, std::string>> texts;
+  static std::shared_ptr<const Language> kept;
+  {
+    const std::lock_guard lock(mutex);
+    if (kept && texts == options.node_texts) return kept;
   }
-  return std::make_shared<const Language>(std::move(library));
+  Result<std::shared_ptr<const Language>> made = libraryWith(options);
+  if (!made) return made;
+  const std::lock_guard lock(mutex);
+  texts = options.node_texts;
+  kept = *made;
+  return made;
 }
 
 Result<material::Document> readMaterials(const std::string& path, const Language& language,

@@ -28,11 +28,15 @@ struct Language : lang::Library {
 /// The node files of a folder, sorted by name.
 Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder);
 
+/// The options' own node files: those of its folders, then its texts.
+Result<std::vector<lang::SourceFile>> ownNodeFiles(const Options& options);
+
 /// A file's materials by the library's declarations.
 Result<material::Document> readMaterials(const std::string& path, const Language& language,
                                          const Options& options, Links links = Links::Follow);
 
-/// The built-in library with the options' folders added. The built-in one alone is made once.
+/// The built-in library with the options' own files added. The built-in one alone is made once, and one with
+/// texts alone is kept until it is asked for with others: a tool that edits a text makes it anew.
 Result<std::shared_ptr<const Language>> libraryFor(const Options& options);
 
 /// Puts the library's defaults in where no template or no profile is named.

@@ -24,6 +24,10 @@ void add(const std::map<std::string, bool, std::less<>>& switches, KeyBuilder& k
   for (const auto& [name, on] : switches) key.text(name).number(on);
 }
 
+void add(const std::pair<std::string, std::string>& texts, KeyBuilder& key) {
+  key.text(texts.first).text(texts.second);
+}
+
 template <class T>
 void add(const std::vector<T>& list, KeyBuilder& key) {
   key.number(list.size());

@@ -6,7 +6,6 @@
 #include "cost/choose.h"
 #include "eval/subject.h"
 #include "graph/text.h"
-#include "interface/entry.h"
 #include "interface/interface.h"
 #include "prove/prove.h"
 #include "setting/language.h"

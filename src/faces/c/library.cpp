@@ -12,6 +12,11 @@ lacquer_text* lacquer_nodes(const lacquer_options* options, lacquer_messages* me
                  [&](Messages& to) { return textFrom(lacquer::nodesJson(optionsOf(options).options, to)); });
 }
 
+int lacquer_check_nodes(const lacquer_options* options, lacquer_messages* messages) {
+  return guarded(messages, 0,
+                 [&](Messages& to) { return lacquer::checkNodes(optionsOf(options).options, to) ? 1 : 0; });
+}
+
 static int table(std::vector<float> (*make)(uint32_t, Messages&), uint32_t size, float* pairs,
                  size_t capacity, lacquer_messages* messages) {
   return guarded(messages, 0, [&](Messages& to) {

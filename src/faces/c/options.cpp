@@ -113,6 +113,15 @@ bool setSwitches(const Json& value, lacquer_options& to) {
   return true;
 }
 
+bool setNodeTexts(const Json& value, lacquer_options& to) {
+  if (!value.is_object()) return false;
+  for (const auto& [name, text] : value.items()) {
+    if (!text.is_string()) return false;
+    to.options.node_texts.emplace_back(name, text.get<std::string>());
+  }
+  return true;
+}
+
 /// Numbers by name; a single one, and true and false, stand without brackets.
 bool setValues(const Json& value, lacquer_options& to) {
   if (!value.is_object()) return false;
@@ -180,6 +189,7 @@ constexpr Row kRows[] = {
     {"debug", kTruth, setBool<&Options::debug>},
     {"live", kTexts, setStrings<&Options::live>},
     {"node_directories", kTexts, setStrings<&Options::node_directories>},
+    {"node_texts", "an object of texts by their names", setNodeTexts},
     {"jobs", "a whole number",
      [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.jobs); }},
     {"limits", kTexts, setStrings<&Options::limits>},

@@ -176,6 +176,11 @@ void addNodes(CLI::App& verb, Flags& flags, std::string& name) {
   lacquer::cli::addNodeFolders(verb, flags);
 }
 
+void addCheck(CLI::App& verb, Flags& flags) {
+  verb.add_option("folders", flags.files, "folders of node files")->required()->check(kNotEmpty);
+  lacquer::cli::addNodeFolders(verb, flags);
+}
+
 void addMerge(CLI::App& verb, Flags& flags) {
   verb.add_option("shards", flags.files, "what gen wrote, in the order of a run over all files")->required();
   verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
@@ -301,6 +306,20 @@ int nodes(const Flags& flags, const std::string& name) {
   return lacquer::cli::printNodes(json, name, flags.json) ? kGood : kFailed;
 }
 
+int check(const Flags& flags) {
+  Messages messages;
+  Options options = flags.options;
+  options.node_directories.insert(options.node_directories.end(), flags.files.begin(), flags.files.end());
+  const bool good = lacquer::checkNodes(options, messages);
+  if (good) {
+    std::string folders;
+    for (const std::string& folder : flags.files) folders += (folders.empty() ? "" : ", ") + folder;
+    fmt::print("{}: good, {} warnings\n", lacquer::cli::printable(folders), messages.size());
+  }
+  print(messages);
+  return good ? kGood : kFailed;
+}
+
 int cost(const Flags& flags) {
   Messages messages;
   const std::vector<lacquer::ShaderCost> costs =
@@ -357,6 +376,8 @@ std::vector<Verb> verbsOf(VerbFlags& all) {
        [&](CLI::App& verb) { addProve(verb, flags); }, [&] { return prove(flags); }},
       {"nodes", "the node library: contracts, ranges, sources, variants",
        [&](CLI::App& verb) { addNodes(verb, flags, all.node); }, [&] { return nodes(flags, all.node); }},
+      {"check", "whether folders of node files are good where they are to stand",
+       [&](CLI::App& verb) { addCheck(verb, flags); }, [&] { return check(flags); }},
       {"cost", "what SPIR-V fragment shaders cost on AMD GPUs, by Mesa's compiler",
        [&](CLI::App& verb) { addCost(verb, flags); }, [&] { return cost(flags); }},
       {"eval", "the linear colours of a material at points, computed on the CPU or by a GPU",
