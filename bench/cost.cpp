@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "bench/page.h"
 #include "bench/works.h"
 #include "support/file.h"
 
@@ -16,8 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::string kRoot = LACQUER_SOURCE_FOLDER;
-constexpr std::string_view kBegin = "<!-- measured: -->\n";
-constexpr std::string_view kEnd = "<!-- :measured -->\n";
 
 /// All that is measured: with and without compensation for multiple scattering, directly and through an
 /// optimizer.
@@ -119,18 +118,6 @@ std::string markdown(const Tables& tables) {
   text += "\nWith `--no-multiple-scattering`:\n\n";
   text += markdown(tables.direct[1], tables.optimized[1], best);
   return text;
-}
-
-/// Replaces what stands between the marks of the page.
-bool renewPage(const std::string& path, const std::string& tables) {
-  Result<std::string> page = readFile(path);
-  if (!page) return false;
-  const size_t begin = page->find(kBegin);
-  const size_t end = page->find(kEnd);
-  if (begin == std::string::npos || end == std::string::npos || end < begin) return false;
-  const size_t first = begin + kBegin.size();
-  page->replace(first, end - first, tables);
-  return writeFile(path, *page).has_value();
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "bench/error_subjects.h"
 #include "bench/error_times.h"
 #include "bench/error_wholes.h"
+#include "bench/page.h"
 #include "cost/cost.h"
 #include "lacquer.h"
 #include "support/file.h"
@@ -28,8 +29,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::string kRoot = LACQUER_SOURCE_FOLDER;
-constexpr std::string_view kBegin = "<!-- measured: -->\n";
-constexpr std::string_view kEnd = "<!-- :measured -->\n";
 constexpr size_t kPoints = 100000;
 constexpr uint64_t kSeed = 5;
 constexpr const char* kFamily = "navi21";
@@ -346,18 +345,6 @@ std::string wholeSvg(const std::vector<Whole>& whole, const std::map<std::string
         {one.profile, static_cast<double>(costs.at(one.profile).inverse_throughput), shown(one.physics.rms)});
   }
   return plot(panels, "cycles of inverse throughput", "E3, RMS");
-}
-
-/// Replaces what stands between the marks of the page.
-bool renewPage(const std::string& path, const std::string& tables) {
-  Result<std::string> page = readFile(path);
-  if (!page) return false;
-  const size_t begin = page->find(kBegin);
-  const size_t end = page->find(kEnd);
-  if (begin == std::string::npos || end == std::string::npos || end < begin) return false;
-  const size_t first = begin + kBegin.size();
-  page->replace(first, end - first, tables);
-  return writeFile(path, *page).has_value();
 }
 
 }  // namespace

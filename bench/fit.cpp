@@ -30,7 +30,7 @@ public:
       Diagnostics warnings;
       const Result<graph::Graph> graph = buildGraph(material, attributes, *language_, options_, warnings);
       if (!graph) continue;
-      for (const std::string& word : possibleWords(*graph, material, *language_, options_))
+      for (const std::string& word : possibleWords(*graph, &material, *language_, options_))
         add(material, attributes, {word});
     }
   }

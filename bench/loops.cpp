@@ -120,7 +120,7 @@ T checked(Result<T> result) {
 ir::Module moduleOf(const lang::Library& library, const std::string& node, double written_cycles) {
   graph::Graph graph;
   graph.template_name = "forward";
-  ir::TextureSlot map;
+  graph::Texture map;
   map.name = "map";
   graph.textures.push_back(map);
   graph.add("loop", node, {{"map", {graph::TextureRef{"map"}, {}}}, {"uv", {graph::GivenRef{"uv0"}, {}}}});

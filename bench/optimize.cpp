@@ -2,71 +2,212 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-#include <cstdlib>
+#include <array>
+#include <ctime>
+#include <nlohmann/json.hpp>
 
+#include "bench/page.h"
 #include "bench/works.h"
-#include "optimize/optimize.h"
-#include "setting/options.h"
-#include "shader/module.h"
+#include "cost/cost.h"
+#include "support/file.h"
 
 namespace lacquer::bench {
 
 namespace {
 
-/// A work's module as the passes before the search leave it.
-Result<ir::Module> moduleOf(const Work& work, Options options) {
+using Json = nlohmann::ordered_json;
+
+const std::string kRoot = LACQUER_SOURCE_FOLDER;
+constexpr double kError = 1e-3;
+
+/// How much is searched: what a column of the table shows.
+struct Setting {
+  const char* name;
+  uint32_t level;
+  double error;
+};
+constexpr Setting kSettings[] = {
+    {"plain", 0, 0}, {"level 1", 1, 0}, {"level 2", 2, 0}, {"level 2, error 1e-3", 2, kError}};
+constexpr size_t kCount = std::size(kSettings);
+
+/// Cycles on navi21 that are wanted of a work: with equal forms alone, and with approximations.
+struct Goal {
+  const char* work;
+  uint64_t exact, approximate;
+};
+constexpr Goal kGoals[] = {{"W0", 236, 215}, {"W0L", 140, 128}, {"W1", 293, 265},  {"W1L", 177, 160},
+                           {"W2", 512, 470}, {"W3", 510, 460},  {"W3L", 322, 290}, {"A", 410, 370},
+                           {"AL", 255, 232}, {"B", 482, 440},   {"BL", 360, 325},  {"C", 790, 700},
+                           {"CL", 540, 480}};
+
+struct Cell {
+  cost::Subject subject;
+  double seconds = 0;  ///< of one core
+  double growth = 1;
+  cost::Statistics statistics;
+};
+
+Cell make(const Work& work, const std::string& profile, const Setting& setting, Messages& messages) {
+  Options options;
+  options.targets = {Target::Spirv};
   options.lights = {Lights::Mode::Fixed, {{"directional", 1}}};
+  options.profile = profile;
   options.ibl = work.ibl;
-  const auto language = libraryFor(options);
-  if (!language) return tl::make_unexpected(language.error());
-  if (auto names = resolveNames(**language, options); !names) return tl::make_unexpected(names.error());
-  const Result<material::Document> document =
-      readMaterials(std::string(LACQUER_SOURCE_FOLDER "/bench/works/") + work.file, **language, options);
-  if (!document) return tl::make_unexpected(document.error());
-  Diagnostics warnings;
-  const gltf::VertexAttributes attributes{true, true, false, {true, true}};
-  Result<graph::Graph> graph =
-      buildGraph(document->materials.at(0), attributes, **language, options, warnings);
-  if (!graph) return tl::make_unexpected(graph.error());
-  if (Diagnostics found = graph::check(*graph, **language); hasError(found))
-    return tl::make_unexpected(std::move(found));
-  ir::Module before;
-  const AfterPass keep = [&](std::string_view pass, const ir::Module& module) {
-    if (pass == "vertex") before = module;
-  };
-  const Result<ir::Module> module = toModule(*graph, **language, options, {}, keep);
-  if (!module) return tl::make_unexpected(module.error());
-  return before;
+  options.validate = false;
+  options.optimize = setting.level;
+  options.optimize_error = setting.error;
+  // Of what was found the driver chooses, which is not the search's time.
+  Options model = options;
+  model.programs_model = true;
+  Cell cell;
+  cell.subject.name = work.name;
+  const Scene scene = Scene::load(kRoot + "/bench/works/" + work.file, options, messages);
+  if (!scene || scene.uses(0).empty()) return cell;
+  Graph graph = scene.graph(0, scene.uses(0)[0], options, messages);
+  const std::clock_t begin = std::clock();
+  if (!graph || !graph.generate(model, messages)) return cell;
+  cell.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  const Shader shader = graph.generate(options, messages);
+  if (!shader) return cell;
+  cell.subject.vertex = shader.vertexSpirv();
+  cell.subject.fragment = shader.fragmentSpirv();
+  if (const auto& figures = shader.reflection().optimized) {
+    cell.growth = figures->error_growth;
+  }
+  return cell;
+}
+
+/// Compiles all cells at once. False where the driver refuses one.
+bool measure(std::vector<Cell>& cells, std::string& driver) {
+  std::vector<cost::Subject> subjects;
+  for (const Cell& cell : cells) subjects.push_back(cell.subject);
+  const cost::Measurement measured = cost::measure(subjects, "navi21", false);
+  driver = measured.driver;
+  for (size_t i = 0; i < cells.size(); ++i) {
+    if (!measured.outcomes[i].statistics) {
+      fmt::print(stderr, "bench optimize: {}: {}\n", subjects[i].name, measured.outcomes[i].problem);
+      return false;
+    }
+    cells[i].statistics = *measured.outcomes[i].statistics;
+  }
+  return true;
+}
+
+std::string reached(uint64_t cycles, uint64_t goal) {
+  return cycles <= goal ? fmt::format("{}", goal) : fmt::format("{} (missed)", goal);
+}
+
+const Goal* goalOf(const Work& work) {
+  for (const Goal& goal : kGoals) {
+    if (work.name == goal.work) return &goal;
+  }
+  return nullptr;
+}
+
+/// Cells stand by work, then by setting.
+std::string markdown(const std::vector<Cell>& cells, const std::string& driver) {
+  std::string text = fmt::format(
+      "{}, cycles of inverse throughput on navi21.\n\n"
+      "| work | plain | level 1 | level 2 | goal | level 2, error 1e-3 | goal | bounds of errors grow by | "
+      "seconds: level 1 | level 2 |\n|---|---|---|---|---|---|---|---|---|---|\n",
+      driver);
+  std::array<uint64_t, kCount> cycles{};
+  std::array<double, kCount> seconds{};
+  for (size_t w = 0; w < kWorks.size(); ++w) {
+    const Cell* row = &cells[w * kCount];
+    for (size_t s = 0; s < kCount; ++s) {
+      cycles[s] += row[s].statistics.inverse_throughput;
+      seconds[s] += row[s].seconds;
+    }
+    const Goal* goal = goalOf(kWorks[w]);
+    const auto of = [&](size_t s) { return row[s].statistics.inverse_throughput; };
+    text += fmt::format("| {} | {} | {} | **{}** | {} | **{}** | {} | {:.2f} | {:.1f} | {:.1f} |\n",
+                        kWorks[w].name, of(0), of(1), of(2), goal ? reached(of(2), goal->exact) : "none",
+                        of(3), goal ? reached(of(3), goal->approximate) : "none", row[2].growth,
+                        row[1].seconds - row[0].seconds, row[2].seconds - row[0].seconds);
+  }
+  const auto n = static_cast<double>(kWorks.size());
+  text += fmt::format("| all | {} | {} | **{}** | | **{}** | | | {:.1f} in the mean | {:.1f} |\n", cycles[0],
+                      cycles[1], cycles[2], cycles[3], (seconds[1] - seconds[0]) / n,
+                      (seconds[2] - seconds[0]) / n);
+  return text;
+}
+
+Json toJson(const std::vector<Cell>& cells, const std::string& driver) {
+  Json json;
+  json["driver"] = driver;
+  for (size_t w = 0; w < kWorks.size(); ++w) {
+    for (size_t s = 0; s < kCount; ++s) {
+      const Cell& cell = cells[w * kCount + s];
+      json["works"][kWorks[w].name][kSettings[s].name] = {
+          {"instructions", cell.statistics.instructions},
+          {"inverse_throughput", cell.statistics.inverse_throughput},
+          {"error_growth", cell.growth}};
+    }
+  }
+  return json;
+}
+
+/// What `physical` costs beside `openpbr`.
+std::string profiles(bool& good, Messages& messages) {
+  std::vector<Cell> cells;
+  std::vector<const Work*> works;
+  for (const Work& work : kWorks) {
+    if (work.name == "W1" || work.name == "W2") works.push_back(&work);
+  }
+  for (const Work* work : works) {
+    for (const Setting& setting : {kSettings[0], kSettings[2]}) {
+      for (const char* profile : {"openpbr", "physical"})
+        cells.push_back(make(*work, profile, setting, messages));
+    }
+  }
+  std::string driver;
+  good = !hasError(messages) && measure(cells, driver);
+  if (!good) return "";
+  std::string text =
+      "\n| work | openpbr | physical | more | openpbr, level 2 | physical, level 2 | more |\n"
+      "|---|---|---|---|---|---|---|\n";
+  for (size_t w = 0; w < works.size(); ++w) {
+    text += "| " + works[w]->name;
+    for (size_t s = 0; s < 2; ++s) {
+      const uint64_t a = cells[4 * w + 2 * s].statistics.inverse_throughput;
+      const uint64_t b = cells[4 * w + 2 * s + 1].statistics.inverse_throughput;
+      text += fmt::format(" | {} | {} | {:.0f} %", a, b,
+                          100 * (static_cast<double>(b) / static_cast<double>(a) - 1));
+    }
+    text += " |\n";
+  }
+  return text;
 }
 
 }  // namespace
 
 int runOptimize() {
-  Options options;
-  const int level = std::getenv("LEVEL") != nullptr ? std::atoi(std::getenv("LEVEL")) : 1;
-  double plain = 0;
-  double best = 0;
-  double seconds = 0;
-  for (const Work& work : kWorks) {
-    if (std::getenv("WORK") != nullptr && work.name != std::getenv("WORK")) continue;
-    const Result<ir::Module> module = moduleOf(work, options);
-    if (!module) {
-      fmt::print(stderr, "{}\n", format(module.error().at(0)));
-      return 1;
-    }
-    const auto begin = std::chrono::steady_clock::now();
-    const std::vector<optimize::Candidate> found = optimize::search(*module, {level, 0, nullptr});
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    fmt::print("{:6} {:7.0f} -> {:7.0f}  growth {:.2f}  {:.2f} s\n", work.name, found.front().outcome.cycles,
-               found.back().outcome.cycles, found.back().outcome.growth, took.count());
-    std::fflush(stdout);
-    plain += found.front().outcome.cycles;
-    best += found.back().outcome.cycles;
-    seconds += took.count();
+  if (const std::string reason = cost::unavailable(); !reason.empty()) {
+    fmt::print(stderr, "bench optimize: {}\n", reason);
+    return 1;
   }
-  fmt::print("{:6} {:7.0f} -> {:7.0f}  {:.2f} s\n", "all", plain, best, seconds);
-  return 0;
+  Messages messages;
+  std::vector<Cell> cells;
+  for (const Work& work : kWorks) {
+    for (const Setting& setting : kSettings) {
+      cells.push_back(make(work, Options().profile, setting, messages));
+      fmt::print(stderr, "{} {}\n", work.name, setting.name);
+    }
+  }
+  std::string driver;
+  bool good = !hasError(messages) && measure(cells, driver);
+  std::string text = good ? markdown(cells, driver) : "";
+  if (good) text += profiles(good, messages);
+  for (const Message& message : messages) fmt::print(stderr, "{}\n", message.text);
+  if (!good) return 1;
+  fmt::print("{}", text);
+  if (writeFile(kRoot + "/bench/optimize.json", toJson(cells, driver).dump(2) + "\n") &&
+      renewPage(kRoot + "/docs/optimize.md", text)) {
+    return 0;
+  }
+  fmt::print(stderr, "bench optimize: bench/optimize.json and docs/optimize.md could not be renewed\n");
+  return 1;
 }
 
 }  // namespace lacquer::bench

@@ -1,8 +1,9 @@
-// `bench optimize`: what the search for cheaper forms saves, and what it takes.
+// bench/optimize.json and the tables of docs/optimize.md.
 #pragma once
 
 namespace lacquer::bench {
 
+/// Searches cheaper forms of all works, measures them, and writes both files. The exit status.
 int runOptimize();
 
 }  // namespace lacquer::bench

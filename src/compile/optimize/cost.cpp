@@ -50,6 +50,9 @@ bool isNumber(const Plan& plan, Ref at, const Constants& constants, std::initial
 /// Moves components; costs nothing.
 bool moves(Op op) { return op == Op::Swizzle || op == Op::Construct; }
 
+/// How many components a mask has.
+constexpr std::array<int, 16> kParts{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+
 constexpr double kRounds = 8;  // of a loop, as the driver's estimate takes it
 
 }  // namespace
@@ -151,7 +154,7 @@ void Counter::mark(const Plan& plan) {
 int Counter::timesOf(const Plan& plan, const Node& node, uint8_t mask, Ref operand) {
   const bool spread = plan.nodes[operand].type == Type::Float && ir::isFloatVector(node.type) &&
                       !node.opaque() && node.op != Op::Construct;
-  return spread ? std::popcount(mask) : 1;
+  return spread ? kParts[mask & 15U] : 1;
 }
 
 /// Each sum takes one product in, the one that is read least.
@@ -184,7 +187,7 @@ void Counter::modify(const Plan& plan, const Constants& constants) {
   free_.assign(plan.nodes.size(), 0);
   for (Ref at = 0; at < plan.nodes.size(); ++at) {
     const Node& node = plan.nodes[at];
-    if (mask_[at] == 0 || node.opaque()) continue;
+    if (mask_[at] == 0 || node.opaque() || node.rate <= Rate::Material) continue;
     if (moves(node.op)) free_[at] = 1;
     const Ref host = node.count > 0 ? node.args[0] : kNoRef;
     if (node.op == Op::Clamp) {
@@ -192,7 +195,8 @@ void Counter::modify(const Plan& plan, const Constants& constants) {
           isNumber(plan, node.args[1], constants, {0}) && isNumber(plan, node.args[2], constants, {1});
       free_[at] = unit && uses_[host] == 1 &&
                   (hosts(plan.nodes[host]) ||
-                   (plan.nodes[host].op == Op::Neg && uses_[plan.nodes[host].args[0]] == 1));
+                   (plan.nodes[host].op == Op::Neg && plan.nodes[host].rate > Rate::Material &&
+                    uses_[plan.nodes[host].args[0]] == 1));
     }
     if (node.op == Op::Mul) {
       for (const size_t k : {size_t{0}, size_t{1}}) {
@@ -217,12 +221,12 @@ void Counter::modify(const Plan& plan, const Constants& constants) {
   std::vector<uint8_t>& free = free_;
   for (size_t at = plan.nodes.size(); at-- > 0;) {
     const Node& node = plan.nodes[at];
-    if (mask_[at] == 0 || node.opaque()) continue;
+    if (mask_[at] == 0 || node.opaque() || node.rate <= Rate::Material) continue;
     if (node.op == Op::Neg || node.op == Op::Abs) free[at] |= 2;
   }
   const auto refuse = [&](Ref operand) {
     const Node& sign = plan.nodes[operand];
-    if ((sign.op != Op::Neg && sign.op != Op::Abs) || sign.opaque()) return;
+    if ((sign.op != Op::Neg && sign.op != Op::Abs) || sign.opaque() || sign.rate <= Rate::Material) return;
     const Ref of = sign.args[0];
     const bool folds = sign.op == Op::Neg && uses_[of] == 1 && hosts(plan.nodes[of]);
     if (!folds) free[operand] = static_cast<uint8_t>(free[operand] & ~2U);
@@ -293,7 +297,7 @@ double Counter::timesOf(Ref at, const Node& node) const {
 
 void Counter::countNode(const Plan& plan, Ref at) {
   const Node& node = plan.nodes[at];
-  const auto parts = static_cast<double>(std::popcount(mask_[at]));
+  const auto parts = static_cast<double>(kParts[mask_[at] & 15U]);
   const double times = timesOf(at, node);
   if (node.op == Op::Interpolate) return add(Count::Varyings, parts);
   if (node.rate <= Rate::Material) {

@@ -24,26 +24,31 @@ constexpr double kGain = 1e-6;
 double planCost(Counter& counter, const Plan& plan, const Constants& constants, const Family& family) {
   const Tally tally = counter.count(plan, constants);
   const double cost = cyclesOf(tally, family) + kLoad * tally[static_cast<size_t>(Count::Loads)];
-  return cost + kNode * static_cast<double>(plan.nodes.size());
+  const auto paid = std::count_if(plan.nodes.begin(), plan.nodes.end(),
+                                  [](const Node& node) { return node.rate > Rate::Material; });
+  return cost + kNode * static_cast<double>(paid);
 }
 
 Extractor::Extractor(const EGraph& graph, const ir::Module& module, const Family& family,
                      std::vector<Ref> roots, std::vector<NodeId> start)
     : graph_(graph), family_(family), counter_(module), roots_(std::move(roots)), choice_(std::move(start)) {
   choice_.resize(graph.classCount(), kNoNode);
+  for (Ref& root : roots_) root = graph.find(root);
   own_.resize(graph.nodeCount(), 0);
+  home_.resize(graph.nodeCount(), kNoRef);
   for (NodeId id = 0; id < graph.nodeCount(); ++id) {
     if (!graph.live(id)) continue;
     nodes_.push_back(id);
     own_[id] = ownPrice(graph.node(id));
+    home_[id] = graph.classOf(id);
   }
   prices_.resize(graph.classCount());
   price();
-  if (!build(choice_, current_)) {
+  if (!build(true, current_)) {
     // Classes that became one have closed a ring: the cheapest nodes have none.
     std::fill(choice_.begin(), choice_.end(), kNoNode);
     price();
-    build(choice_, current_);
+    build(true, current_);
   }
   current_.cost = planCost(counter_, current_.plan, graph_.constants(), family_);
   choice_.assign(graph.classCount(), kNoNode);
@@ -51,63 +56,56 @@ Extractor::Extractor(const EGraph& graph, const ir::Module& module, const Family
   best_ = current_;
 }
 
-/// The nodes that a choice reaches from the roots, operands first. False where a class is made of itself.
-bool Extractor::build(const std::vector<NodeId>& choice, Selection& into) {
-  into.plan.nodes.clear();
-  into.plan.origin.clear();
-  into.plan.roots.clear();
+/// The nodes that the choice reaches from the roots, operands first, or of those that cost something: what is
+/// of the material's rate is made of nothing then. False where a class is made of itself.
+bool Extractor::build(bool whole, Selection& into) {
+  Plan& plan = into.plan;
+  plan.nodes.clear();
+  plan.origin.clear();
+  plan.roots.clear();
   into.classes.clear();
   into.nodes.clear();
   // What is marked by an earlier epoch is not marked.
-  marks_.resize(graph_.classCount(), {0, 0, kNoRef});
+  marks_.resize(graph_.classCount(), {0, 0, 0, kNoRef});
   ++epoch_;
-  const auto markOf = [&](Ref id) -> Mark& {
+  open_.clear();
+  const auto visit = [&](Ref id) {
     Mark& mark = marks_[id];
-    if (mark.epoch != epoch_) mark = {epoch_, 0, kNoRef};
-    return mark;
+    if (mark.epoch == epoch_) return mark.state == 2;
+    mark = {epoch_, 1, 0, kNoRef};
+    open_.push_back(id);
+    return true;
   };
-  std::vector<std::pair<Ref, uint8_t>>& open = open_;
-  open.clear();
   for (const Ref root : roots_) {
-    open.emplace_back(graph_.find(root), 0);
-    while (!open.empty()) {
-      const auto [id, next] = open.back();
-      Mark& mark = markOf(id);
-      if (mark.state == 2) {
-        open.pop_back();
-        continue;
-      }
-      const NodeId chosen = this->chosen(choice, id);
+    visit(root);
+    while (!open_.empty()) {
+      const Ref id = open_.back();
+      Mark& mark = marks_[id];
+      const NodeId chosen = this->chosen(id);
       if (chosen == kNoNode) return false;
       const Node& node = graph_.node(chosen);
-      if (next == 0) {
-        if (mark.state == 1) return false;
-        mark.state = 1;
-      }
-      if (next < node.count) {
-        ++open.back().second;
-        const Ref operand = graph_.find(node.args[next]);
-        const uint8_t state = markOf(operand).state;
-        if (state == 1) return false;
-        if (state == 0) open.emplace_back(operand, 0);
+      const uint8_t count = whole || node.rate > Rate::Material ? node.count : 0;
+      if (mark.next < count) {
+        if (!visit(node.args[mark.next++])) return false;
         continue;
       }
-      Node made = node;
-      std::array<Rate, 4> rates{};
-      for (size_t k = 0; k < made.count; ++k) {
-        made.args[k] = marks_[graph_.find(node.args[k])].place;
-        rates[k] = into.plan.nodes[made.args[k]].rate;
+      Node& made = plan.nodes.emplace_back(node);
+      made.count = count;
+      Rate rate = Rate::Constant;
+      for (size_t k = 0; k < count; ++k) {
+        const Ref place = marks_[node.args[k]].place;
+        made.args[k] = place;
+        rate = std::max(rate, plan.nodes[place].rate);
       }
-      if (!made.opaque() && made.count > 0) made.rate = rateOf(made.op, {rates.data(), made.count});
-      mark.place = static_cast<Ref>(into.plan.nodes.size());
-      into.plan.nodes.push_back(made);
-      into.plan.origin.push_back(graph_[id].origin);
+      if (!made.opaque() && count > 0) made.rate = made.op == Op::SumOverLights ? Rate::Fragment : rate;
+      mark.place = static_cast<Ref>(plan.nodes.size() - 1);
+      mark.state = 2;
+      if (whole) plan.origin.push_back(graph_[id].origin);
       into.classes.push_back(id);
       into.nodes.push_back(chosen);
-      mark.state = 2;
-      open.pop_back();
+      open_.pop_back();
     }
-    into.plan.roots.push_back(marks_[graph_.find(root)].place);
+    plan.roots.push_back(marks_[root].place);
   }
   return true;
 }
@@ -137,7 +135,7 @@ double Extractor::ownPrice(const Node& node) const {
 }
 
 double Extractor::priceOf(const Node& node, double own) const {
-  const auto of = [&](size_t k) -> const Price& { return prices_[graph_.find(node.args[k])]; };
+  const auto of = [&](size_t k) -> const Price& { return prices_[node.args[k]]; };
   double price = own;
   if (node.op == Op::Add && !node.opaque()) {
     return price +
@@ -157,13 +155,13 @@ void Extractor::price() {
     changed = false;
     for (const NodeId id : nodes_) {
       const Node& node = graph_.node(id);
-      Price& price = prices_[graph_.classOf(id)];
+      Price& price = prices_[home_[id]];
       if (price.whole == 0) continue;
       const double whole = priceOf(node, own_[id]);
       if (whole < price.whole) price.whole = whole, price.node = id, changed = true;
       double taken = kNever;
       if (!node.opaque() && node.op == Op::Mul) taken = whole - own_[id] + kNode;
-      if (!node.opaque() && node.op == Op::Neg) taken = prices_[graph_.find(node.args[0])].taken;
+      if (!node.opaque() && node.op == Op::Neg) taken = prices_[node.args[0]].taken;
       taken = std::min(taken, whole);
       if (taken < price.taken) price.taken = taken, changed = true;
     }
@@ -179,7 +177,7 @@ bool Extractor::pass(const Effort& effort, const std::function<bool(const Select
     if (choice_[id] == kNoNode) continue;  // it left the plan on the way
     const Node& now = graph_.node(choice_[id]);
     double kept = own_[choice_[id]];
-    for (const Ref operand : now.operands()) kept += prices_[graph_.find(operand)].whole;
+    for (const Ref operand : now.operands()) kept += prices_[operand].whole;
     // A form that is dearer by itself may free others.
     for (const NodeId node : graph_[id].nodes) {
       if (node == choice_[id] || trials_ >= effort.trials) continue;
@@ -201,9 +199,14 @@ bool Extractor::attempt(Ref id, NodeId node, double limit,
   const NodeId before = choice_[id];
   choice_[id] = node;
   ++trials_;
-  bool taken = build(choice_, trial_);
-  if (taken) trial_.cost = planCost(counter_, trial_.plan, graph_.constants(), family_);
-  taken = taken && trial_.cost <= limit && allowed(trial_);
+  bool taken = true;
+  // What does not pay without the material's part does not with it.
+  for (const bool whole : {false, true}) {
+    taken = taken && build(whole, trial_);
+    if (taken) trial_.cost = planCost(counter_, trial_.plan, graph_.constants(), family_);
+    taken = taken && trial_.cost <= limit;
+  }
+  taken = taken && allowed(trial_);
   if (!taken) {
     choice_[id] = before;
     return false;

@@ -55,15 +55,13 @@ private:
     NodeId node = kNoNode;
   };
 
-  bool build(const std::vector<NodeId>& choice, Selection& into);
+  bool build(bool whole, Selection& into);
   double ownPrice(const Node& node) const;
   void price();
   double priceOf(const Node& node, double own) const;
   bool attempt(Ref id, NodeId node, double limit, const std::function<bool(const Selection&)>& allowed);
   bool pass(const Effort& effort, const std::function<bool(const Selection&)>& allowed);
-  NodeId chosen(const std::vector<NodeId>& choice, Ref id) const {
-    return choice[id] != kNoNode ? choice[id] : prices_[id].node;
-  }
+  NodeId chosen(Ref id) const { return choice_[id] != kNoNode ? choice_[id] : prices_[id].node; }
 
   const EGraph& graph_;
   const Family& family_;
@@ -74,14 +72,16 @@ private:
   std::vector<Price> prices_;
   std::vector<NodeId> nodes_;  ///< live ones, ascending
   std::vector<double> own_;    ///< by node: ownPrice()
+  std::vector<Ref> home_;      ///< by node: its class
   struct Mark {
     uint32_t epoch;
     uint8_t state;  ///< 1: its operands are being placed, 2: it has its place
+    uint8_t next;   ///< which of them is
     Ref place;
   };
   std::vector<Mark> marks_;
   uint32_t epoch_ = 0;
-  std::vector<std::pair<Ref, uint8_t>> open_;
+  std::vector<Ref> open_;
   size_t trials_ = 0;
 };
 

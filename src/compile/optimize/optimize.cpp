@@ -138,10 +138,11 @@ struct Plenty {
   size_t nodes;    ///< of a graph
   int ways;        ///< from the plain form
   int steps;       ///< of a way: graphs, each from where the one before it has ended
+  int idle;        ///< steps that find nothing, behind which there is no other
   size_t wander;   ///< plans by chance in each of them
   size_t matches;  ///< of one rule in a round of its graph
 };
-constexpr Plenty kPlenty[] = {{12000, 1, 8, 1000, 12000}, {16000, 8, 8, 3000, 12000}};
+constexpr Plenty kPlenty[] = {{12000, 1, 8, 3, 1000, 12000}, {16000, 8, 8, 4, 3000, 12000}};
 
 /// What differs from one graph to the next, so that they do not all end in the same place.
 struct Taste {
@@ -177,9 +178,13 @@ public:
     double best = plain;
     for (int way = 0; way < plenty_.ways; ++way) {
       Found from = plain_;
-      for (int i = 0; i < plenty_.steps; ++i) {
+      double before = plain;
+      int idle = 0;
+      for (int i = 0; i < plenty_.steps && idle < plenty_.idle; ++i) {
         const Step step = this->step(from, static_cast<uint64_t>(way * plenty_.steps + i));
         from = step.last;
+        idle = step.best_cost < before - kGain ? 0 : idle + 1;
+        before = std::min(before, step.best_cost);
         if (!(step.best_cost < best - kGain)) continue;
         ir::Module made = module_;
         replaceFragment(made, step.best.plan, constants_);
