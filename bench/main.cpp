@@ -29,7 +29,11 @@ constexpr Verb kVerbs[] = {
      "fits the weights of the costs that `lacquer lod` estimates without Mesa, and prints their error",
      lacquer::bench::runEstimate},
     {"loops", "loops written out and kept: instructions and cycles on an AMD GPU", lacquer::bench::runLoops},
-    {"optimize", "what the search for cheaper forms saves and takes", lacquer::bench::runOptimize},
+    {"optimize",
+     "what the search for cheaper forms saves and takes at level 1; renews bench/optimize.json and "
+     "docs/optimize.md",
+     lacquer::bench::runOptimize},
+    {"optimize-long", "the same at all levels, in many minutes", lacquer::bench::runOptimizeLong},
     {"pipeline", "what making shaders takes, against glslang and spirv-opt; renews bench/pipeline.json",
      lacquer::bench::runPipeline},
 };

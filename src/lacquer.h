@@ -30,3 +30,4 @@
 #include "lacquer/results.h"     // what the tools find
 #include "lacquer/targets.h"     // targets of one's own
 #include "lacquer/tools.h"  // what else is known of a material or a shader: colours, pictures, proofs, costs
+#include "lacquer/tune.h"   // run time against error

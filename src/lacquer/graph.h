@@ -12,6 +12,7 @@ namespace lacquer {
 
 class Shader;
 struct Trial;
+struct Tuned;
 struct ValueLook;
 
 /// The numbers that something may be given, each component of a vector for itself; both ends belong to it.
@@ -194,6 +195,7 @@ private:
                                             const Options&, Messages&, const Trial&);
   friend std::vector<uint8_t> drawBall(const Graph&, uint32_t, const Strings&, const Options&, Messages&,
                                        const Trial&, const ValueLook&);
+  friend std::optional<Tuned> tune(const Graph&, const Options&, Messages&);
   struct Impl;
   std::shared_ptr<Impl> impl_;
 };

@@ -124,6 +124,7 @@ struct OptimizedFigures {
   std::string by;                    ///< who counted them: a driver, or "model"
   double cycles = 0, of_cycles = 0;  ///< of the fragment stage with it and without
   double error_growth = 1;           ///< by which bounds of rounding errors have grown, at most
+  double error = 0;  ///< by which approximations change a colour at most, as a part of it or of the light
 };
 
 struct Reflection {

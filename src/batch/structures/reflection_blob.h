@@ -75,7 +75,7 @@ void fields(Archive& archive, Reflection& of) {
   OptimizedFigures search = of.optimized.value_or(OptimizedFigures());
   bool optimized = of.optimized.has_value();
   archive(optimized, search.level, search.family, search.by, search.cycles, search.of_cycles,
-          search.error_growth);
+          search.error_growth, search.error);
   if (optimized) of.optimized = search;
 }
 

@@ -239,7 +239,8 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
   }
   if (module.optimized) {
     const ir::Optimized& of = *module.optimized;
-    made.optimized = {static_cast<uint32_t>(of.level), of.family, of.by, of.cycles, of.plain, of.growth};
+    made.optimized = {
+        static_cast<uint32_t>(of.level), of.family, of.by, of.cycles, of.plain, of.growth, of.error};
   }
   made.webgpu_limits = webgpuLimits(made, module.varyings.size());
   return made;

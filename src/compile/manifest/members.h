@@ -455,6 +455,7 @@ void members(A& a, Of<A, OptimizedFigures>& of) {
   a("cycles", of.cycles);
   a("of_cycles", of.of_cycles);
   a("error_growth", of.error_growth);
+  a("error", of.error);
 }
 
 /// Of every target.

@@ -17,8 +17,15 @@ namespace {
 // docs/optimize.md has the error).
 constexpr Tally kNavi21{6, 2, 2, 2, 4, 14, 0, 2, 0, 1};
 
+// Cycles that an engine of a core needs for its 16 threads, by the rates that Arm publishes: fused sums and
+// products and conversions, with comparisons and choices, sixteen at a time, special functions four. Lookups
+// and interpolants have units of their own, which no rule relieves.
+constexpr Tally kValhallUnits[] = {
+    {0, 1, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, {0, 0, 0, 4, 0, 0, 0, 0, 0, 0}};
+
 constexpr Family kFamilies[] = {
     {"navi21", "AMD RDNA 2: RADV's estimate of inverse throughput", kNavi21, {}},
+    {"valhall", "Arm Mali-G77 and later: the longest of the arithmetic units", {}, kValhallUnits},
 };
 
 /// An operation of the vector units on numbers, whose result may be clamped or doubled for nothing.
@@ -64,6 +71,13 @@ const Family* findFamily(std::string_view name) {
     if (family.name == name) return &family;
   }
   return nullptr;
+}
+
+double cyclesOf(Count what, const Family& family) {
+  const auto at = static_cast<size_t>(what);
+  double longest = 0;
+  for (const Tally& pipe : family.pipes) longest = std::max(longest, pipe[at]);
+  return family.weights[at] + longest;
 }
 
 double cyclesOf(const Tally& tally, const Family& family) {

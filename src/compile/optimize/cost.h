@@ -44,6 +44,8 @@ std::span<const Family> families();
 const Family* findFamily(std::string_view name);
 
 double cyclesOf(const Tally& tally, const Family& family);
+/// Of one by itself.
+double cyclesOf(Count what, const Family& family);
 
 /// Counts plans; keeps its memory from one to the next.
 class Counter {

@@ -117,8 +117,8 @@ double Extractor::ownPrice(const Node& node) const {
   static constexpr Ops kRoots{Op::Div, Op::Sqrt, Op::InverseSqrt, Op::Exp2, Op::Log2, Op::Sin, Op::Cos};
   static constexpr Ops kReductions{Op::Dot, Op::Length, Op::Normalize};
   const double width = std::min(ir::componentCount(node.type), 4);
-  const double sums = family_.weights[static_cast<size_t>(Count::Sums)];
-  const double roots = family_.weights[static_cast<size_t>(Count::Roots)];
+  const double sums = cyclesOf(Count::Sums, family_);
+  const double roots = cyclesOf(Count::Roots, family_);
   const double times = node.rate == Rate::Light ? 8 : 1;
   double price = sums * width;
   if (kNothing.has(node.op)) price = 0;

@@ -5,9 +5,9 @@
 #include <map>
 #include <tuple>
 
-#include "analysis/prove.h"
-#include "analysis/relax.h"
+#include "optimize/approximate.h"
 #include "optimize/extract.h"
+#include "optimize/facts.h"
 #include "optimize/points.h"
 #include "optimize/rules.h"
 #include "optimize/safety.h"
@@ -16,68 +16,11 @@ namespace lacquer::optimize {
 
 namespace {
 
-using analysis::Intervals;
 using ir::ValueId;
 
 /// Nothing may have an error twice that of the plain form.
 constexpr double kGrowth = 2;
-
-/// How many lights a sum may have.
-std::pair<double, double> lightCounts(const ir::Module& module) {
-  double most = 1;
-  for (const ir::Block& block : module.blocks) {
-    if (block.role == ir::BlockRole::Lights) most = std::max<double>(most, block.array);
-  }
-  bool counted = module.light_groups.empty();
-  double fixed = 0;
-  for (const ir::LightGroup& group : module.light_groups) {
-    counted |= group.count < 0;
-    fixed = std::max<double>(fixed, group.count);
-  }
-  return {0, counted ? most : fixed};
-}
-
-/// What the analyses say of the module's values, as facts of classes.
-class ModuleFacts {
-public:
-  explicit ModuleFacts(const ir::Module& module)
-      : dag_(module.dag),
-        real_(module, {analysis::Arithmetic::Real, analysis::kSceneLimit}),
-        natural_(module, {analysis::Arithmetic::Vulkan, analysis::kSceneLimit}),
-        lit_(module, {analysis::Arithmetic::Vulkan, analysis::kSceneLimit}) {
-    real_.run();
-    natural_.run();
-    for (const ValueId light : analysis::lightsOf(module)) {
-      Ranges ranges;
-      ranges.fill({natural_.all(light).lo >= 0 ? 0.0 : -1.0, 1, false});
-      lit_.fix(light, ranges);
-    }
-    lit_.run();
-  }
-
-  Facts of(ValueId id) const { return {all(real_, id), all(lit_, id)}; }
-  /// In float32, with light as bright as it may be.
-  Ranges natural(ValueId id) const { return all(natural_, id); }
-  bool known(ValueId id) const { return natural_.known(id) && lit_.known(id) && real_.known(id); }
-
-private:
-  Ranges all(const Intervals& intervals, ValueId id) const {
-    Ranges ranges;
-    const int width = std::max(ir::componentCount(dag_[id].type), 1);
-    for (int c = 0; c < 4; ++c) ranges[static_cast<size_t>(c)] = intervals.at(id, std::min(c, width - 1));
-    return ranges;
-  }
-
-  const ir::Dag& dag_;
-  Intervals real_, natural_, lit_;
-};
-
-/// A plan with what is known of its nodes.
-struct Found {
-  Plan plan;
-  std::vector<Facts> facts;
-  std::vector<bool> known;
-};
+constexpr double kCheaper = 0.01;  // cycles; less is a matter of how many operations there are
 
 /// Puts a plan into a graph. Returns the class of each node.
 std::vector<Ref> seed(EGraph& graph, const Found& found, std::map<ValueId, Ref>& origins) {
@@ -110,29 +53,6 @@ std::vector<NodeId> nodesOf(const EGraph& graph, const Plan& plan, std::span<con
   return start;
 }
 
-/// What proofs say of a module that a search must not lose.
-struct Proved {
-  size_t unsafe = 0;
-  std::vector<analysis::OutputRange> outputs;
-
-  explicit Proved(const ir::Module& module) {
-    const analysis::Proofs proofs = analysis::prove(module);
-    for (const analysis::Proof& proof : proofs.operations) unsafe += proof.safe ? 0 : 1;
-    outputs = proofs.outputs;
-  }
-  /// True where nothing is lost of another's.
-  bool keeps(const Proved& plain) const {
-    if (unsafe > plain.unsafe || outputs.size() != plain.outputs.size()) return false;
-    for (size_t i = 0; i < outputs.size(); ++i) {
-      const Range& now = outputs[i].reached;
-      const Range& before = plain.outputs[i].reached;
-      if ((now.nan && !before.nan) || (now.lo < 0 && before.lo >= 0)) return false;
-      if (std::isinf(now.hi) && !std::isinf(before.hi)) return false;
-    }
-    return true;
-  }
-};
-
 /// How much a level looks at.
 struct Plenty {
   size_t nodes;    ///< of a graph
@@ -142,7 +62,7 @@ struct Plenty {
   size_t wander;   ///< plans by chance in each of them
   size_t matches;  ///< of one rule in a round of its graph
 };
-constexpr Plenty kPlenty[] = {{12000, 1, 8, 3, 1000, 12000}, {16000, 8, 8, 4, 3000, 12000}};
+constexpr Plenty kPlenty[] = {{12000, 1, 8, 3, 1000, 12000}, {16000, 3, 8, 3, 2000, 12000}};
 
 /// What differs from one graph to the next, so that they do not all end in the same place.
 struct Taste {
@@ -157,16 +77,11 @@ public:
       : module_(module),
         family_(settings.family != nullptr ? *settings.family : families()[0]),
         plenty_(kPlenty[settings.level >= 2 ? 1 : 0]) {
-    std::tie(least_lights_, most_lights_) = lightCounts(module);
-    const ModuleFacts facts(module);
-    plain_.plan = planOf(module, constants_);
-    for (const ValueId origin : plain_.plan.origin) {
-      const bool known = origin != ir::kNoValue && facts.known(origin);
-      plain_.known.push_back(known);
-      plain_.facts.push_back(known ? facts.of(origin) : Facts{});
-      natural_.push_back(known ? facts.natural(origin) : Ranges{});
-    }
-    fill();
+    Plain plain = plainOf(module, constants_);
+    plain_ = std::move(plain.found);
+    natural_ = std::move(plain.natural);
+    least_lights_ = plain.least_lights;
+    most_lights_ = plain.most_lights;
   }
 
   std::vector<Candidate> run() {
@@ -183,9 +98,9 @@ public:
       for (int i = 0; i < plenty_.steps && idle < plenty_.idle; ++i) {
         const Step step = this->step(from, static_cast<uint64_t>(way * plenty_.steps + i));
         from = step.last;
-        idle = step.best_cost < before - kGain ? 0 : idle + 1;
+        idle = step.best_cost < before - kCheaper ? 0 : idle + 1;
         before = std::min(before, step.best_cost);
-        if (!(step.best_cost < best - kGain)) continue;
+        if (!(step.best_cost < best - kCheaper)) continue;
         ir::Module made = module_;
         replaceFragment(made, step.best.plan, constants_);
         // Nothing of a loop's body may stand for what is the same outside of it.
@@ -204,32 +119,12 @@ public:
   }
 
 private:
-  static constexpr double kGain = 0.01;  // less is a matter of how many operations there are
   static constexpr size_t kMostCandidates = 12;
 
   struct Step {
     Found best, last;
     double best_cost = 0, growth = 1;
   };
-
-  /// What the analyses have no value for follows from the operands.
-  void fill() {
-    const analysis::RangeMath floats(analysis::Arithmetic::Vulkan);
-    const analysis::RangeMath reals(analysis::Arithmetic::Real);
-    for (Ref at = 0; at < plain_.plan.nodes.size(); ++at) {
-      if (plain_.known[at]) continue;
-      const Node& node = plain_.plan.nodes[at];
-      const auto ranges = [&](const analysis::RangeMath& math, auto of) {
-        std::array<Known, 4> operands{};
-        for (size_t k = 0; k < node.count; ++k)
-          operands[k] = {plain_.plan.nodes[node.args[k]].type, &of(node.args[k])};
-        return rangesOf(math, node, {operands.data(), node.count}, constants_, least_lights_, most_lights_);
-      };
-      natural_[at] = ranges(floats, [&](Ref k) -> const Ranges& { return natural_[k]; });
-      plain_.facts[at].real = ranges(reals, [&](Ref k) -> const Ranges& { return plain_.facts[k].real; });
-      plain_.facts[at].lit = ranges(floats, [&](Ref k) -> const Ranges& { return plain_.facts[k].lit; });
-    }
-  }
 
   static Found foundOf(const EGraph& graph, const Selection& selection) {
     Found found;
@@ -290,7 +185,47 @@ private:
 }  // namespace
 
 std::vector<Candidate> search(const ir::Module& module, const Settings& settings) {
-  return Search(module, settings).run();
+  std::vector<Candidate> all = Search(module, settings).run();
+  if (settings.level < 2 || !(settings.error > 0)) return all;
+  const Family& family = settings.family != nullptr ? *settings.family : families()[0];
+  const double plain = all.front().outcome.cycles;
+  const auto take = [&](ir::Module form, Outcome outcome) {
+    outcome.plain = plain;
+    if (outcome.cycles < all.back().outcome.cycles - kCheaper) all.push_back({std::move(form), outcome});
+  };
+  // Before the search, which makes the best of what approximations leave, and behind it.
+  const Candidate exact = all.back();
+  if (std::optional<Approximated> made = approximate(exact.module, family, settings.error))
+    take(std::move(made->module), {plain, made->cycles, exact.outcome.growth, made->error, made->count});
+  if (const std::optional<Approximated> made = approximate(module, family, settings.error)) {
+    for (Candidate& candidate : Search(made->module, settings).run()) {
+      candidate.outcome.error = made->error;
+      candidate.outcome.approximations = made->count;
+      take(std::move(candidate.module), candidate.outcome);
+    }
+  }
+  return all;
+}
+
+std::vector<Outcome> front(const ir::Module& module, const Settings& settings,
+                           std::span<const double> errors) {
+  const Family& family = settings.family != nullptr ? *settings.family : families()[0];
+  const std::vector<Candidate> all = Search(module, settings).run();
+  const Candidate& exact = all.back();
+  std::vector<Outcome> front{exact.outcome};
+  for (const double error : errors) {
+    // Of the plain form other functions of one number are left than of the cheapest one.
+    for (const ir::Module* from : {&exact.module, &module}) {
+      const std::optional<Approximated> made = approximate(*from, family, error);
+      if (!made || !(made->cycles < front.back().cycles - kCheaper)) continue;
+      const double growth = from == &module ? 1 : exact.outcome.growth;
+      const Outcome outcome{exact.outcome.plain, made->cycles, growth, made->error, made->count};
+      // What is cheaper and off by less beats those before it.
+      while (front.size() > 1 && front.back().error >= outcome.error) front.pop_back();
+      front.push_back(outcome);
+    }
+  }
+  return front;
 }
 
 }  // namespace lacquer::optimize

@@ -2,6 +2,7 @@
 // real numbers, by equality saturation. docs/optimize.md
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "optimize/cost.h"
@@ -18,6 +19,8 @@ struct Settings {
 struct Outcome {
   double plain = 0, cycles = 0;  ///< of the module as it was and as it is
   double growth = 1;             ///< of the bounds of rounding errors, at most: below 2
+  double error = 0;              ///< of a colour by approximations, at most (errorOfOutputs())
+  int approximations = 0;
 };
 
 /// A form of a module that is not placed yet.
@@ -29,5 +32,11 @@ struct Candidate {
 /// The module itself, then what was found, each cheaper by the model than the one before it. The same module
 /// gives the same candidates.
 std::vector<Candidate> search(const ir::Module& module, const Settings& settings);
+
+/// The Pareto front of cycles against error by the model: first the cheapest form that is equal in real
+/// numbers, then cheaper ones, each off by more than the one before it and by at most one of `errors`, which
+/// ascend. Settings::error does not count.
+std::vector<Outcome> front(const ir::Module& module, const Settings& settings,
+                           std::span<const double> errors);
 
 }  // namespace lacquer::optimize

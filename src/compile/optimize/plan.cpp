@@ -223,7 +223,11 @@ public:
       dag_.setRank(home == ir::kNoValue ? ir::Dag::kOwnRank : dag_.rankOf(home));
       made_[at] = make(at);
       const ValueId origin = plan_.origin[at];
-      if (origin != ir::kNoValue && made_[at] != origin) dag_.inherit(made_[at], origin);
+      const bool off = !plan_.off.empty() && plan_.off[at];
+      if (origin != ir::kNoValue && made_[at] != origin && off) dag_.name(made_[at], dag_.nameOf(origin));
+      if (origin != ir::kNoValue && made_[at] != origin && !off) dag_.inherit(made_[at], origin);
+      if (const auto proved = plan_.proved.find(at); proved != plan_.proved.end())
+        dag_.assume(made_[at], proved->second);
     }
     dag_.setTerm(0);
     dag_.setRank(ir::Dag::kOwnRank);

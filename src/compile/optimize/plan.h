@@ -60,6 +60,11 @@ struct Plan {
   std::vector<Node> nodes;
   std::vector<ir::ValueId> origin;  ///< of a node: the module's value that it equals, or kNoValue
   std::vector<Ref> roots;           ///< what the module's fragment outputs are, in their order
+  /// Nodes that are not equal to their origin, because they are made of approximations: empty where there are
+  /// none. What is stated of the origin is not known of them.
+  std::vector<bool> off;
+  /// Of approximations: what they are proved to be.
+  std::map<Ref, ir::Interval> proved;
 };
 
 /// Whether operands in either order give the same.

@@ -67,28 +67,51 @@ Granted grantedFor(Op op, const Range& a, const Range& b) {
   return most;
 }
 
-/// A value in the range that is off by `e` and is rounded once more.
-Error after(const Range& x, const Error& e, const Granted& own) {
-  if (!e.finite()) return unknownError();
-  const double unit = own.units * kUlp;
-  Error result{e.part + unit * (1 + e.part), e.amount * (1 + unit) + own.amount};
-  if (own.units > 0 && x.contains(0)) result.amount += kLeast;
-  return result;
-}
-
 using Errors = std::array<Error, 4>;
 
 class Propagation {
 public:
-  Propagation(const Plan& plan, std::span<const Ref> classes, const EGraph& graph, double most_lights)
+  /// `rounds` is false where operations are exact.
+  Propagation(const Plan& plan, std::vector<const Ranges*> ranges, const Constants& constants,
+              const analysis::RangeMath& math, double most_lights, bool rounds)
       : plan_(plan),
-        classes_(classes),
-        graph_(graph),
+        ranges_(std::move(ranges)),
+        constants_(constants),
+        math_(math),
         most_lights_(most_lights),
+        rounds_(rounds),
         errors_(plan.nodes.size()) {}
 
-  /// `cuts`: the classes behind which all is taken as exact; null where they are to be found.
-  Bounds run(const std::vector<Ref>* cuts) {
+  /// What the outputs are off where nodes are by `own`; infinite where nobody can tell.
+  double outputs(std::span<const double> own) {
+    for (Ref at = 0; at < plan_.nodes.size(); ++at) {
+      const Node& node = plan_.nodes[at];
+      const auto off = [&](Ref operand) {
+        return std::any_of(errors_[operand].begin(), errors_[operand].end(),
+                           [](const Error& e) { return !e.none(); });
+      };
+      const bool moved = std::any_of(node.operands().begin(), node.operands().end(), off);
+      if (!moved && own[at] == 0) continue;
+      if (moved && ends(node)) return kInf;
+      if (node.op == Op::Select && off(node.args[0])) return kInf;
+      for (int c = 0; c < width(at); ++c) {
+        Error& e = errors_[at][static_cast<size_t>(c)];
+        if (moved) e = errorAt(at, c);
+        e.amount += own[at];
+        if (!e.finite()) return kInf;
+      }
+    }
+    double most = 0;
+    for (const Ref root : plan_.roots) {
+      for (int c = 0; c < width(root); ++c) most = std::max(most, of(root, c).part + of(root, c).amount);
+    }
+    return most;
+  }
+
+  /// Of each node its class. `cuts`: those behind which all is taken as exact; null where they are to be
+  /// found.
+  Bounds run(std::span<const Ref> classes, const std::vector<Ref>* cuts) {
+    classes_ = classes;
     for (Ref at = 0; at < plan_.nodes.size(); ++at) {
       const Node& node = plan_.nodes[at];
       if (ends(node)) {
@@ -124,12 +147,23 @@ private:
   }
   int width(Ref at) const { return std::min(ir::componentCount(plan_.nodes[at].type), 4); }
   const Range& range(Ref at, int c) const {
-    const Class& of = graph_[classes_[at]];
-    return optimize::component(of.facts.lit, of.type, c);
+    return optimize::component(*ranges_[at], plan_.nodes[at].type, c);
   }
   const Error& of(Ref at, int c) const {
     return errors_[at][ir::isFloatVector(plan_.nodes[at].type) ? static_cast<size_t>(c) : 0];
   }
+
+  /// A value in the range that is off by `e` and is rounded once more.
+  Error after(const Range& x, const Error& e, const Granted& own) const {
+    if (!e.finite()) return unknownError();
+    if (!rounds_) return e;
+    const double unit = own.units * kUlp;
+    Error result{e.part + unit * (1 + e.part), e.amount * (1 + unit) + own.amount};
+    if (own.units > 0 && x.contains(0)) result.amount += kLeast;
+    return result;
+  }
+
+  double rounding() const { return rounds_ ? kRounding : 0; }
 
   /// The largest error of a value, as a part of what it may be at most.
   double sizeOf(Ref at) const {
@@ -163,7 +197,7 @@ private:
   }
 
   Error product(const Range& x, const Error& ex, const Range& y, const Error& ey) const {
-    return after(graph_.math().mul(x, y), errorOfProduct(x, ex, y, ey), {0.5, 0});
+    return after(math_.mul(x, y), errorOfProduct(x, ex, y, ey), {0.5, 0});
   }
 
   Error dot(Ref a, Ref b) const {
@@ -174,19 +208,19 @@ private:
     for (int c = 0; c < count; ++c) {
       const Range& x = range(a, c);
       const Range& y = range(b, c);
-      const Range product = a == b ? graph_.math().square(x) : graph_.math().mul(x, y);
+      const Range product = a == b ? math_.square(x) : math_.mul(x, y);
       const Error e = after(product, errorOfProduct(x, of(a, c), y, of(b, c)), {0.5, 0});
       total = {std::max(total.part, e.part), total.amount + e.amount};
       magnitude += largest(product);
       positive &= product.lo >= 0;
     }
-    const double roundings = 1.01 * (count - 1) * kRounding;
+    const double roundings = 1.01 * (count - 1) * rounding();
     if (positive) return {total.part + roundings * (1 + total.part), total.amount * (1 + roundings)};
     return {0, (total.amount + total.part * magnitude) * (1 + roundings) + roundings * magnitude};
   }
 
   Error blend(const Node& node, int c) const {
-    const analysis::RangeMath& math = graph_.math();
+    const analysis::RangeMath& math = math_;
     const Range one{1, 1, false};
     const Range& t = range(node.args[2], c);
     const Error& et = of(node.args[2], c);
@@ -203,7 +237,7 @@ private:
   Error lights(const Node& node, int c) const {
     const Error& e = of(node.args[0], c);
     const Range& x = range(node.args[0], c);
-    const double roundings = most_lights_ * kRounding;
+    const double roundings = most_lights_ * rounding();
     if (x.lo >= 0 || x.hi <= 0) return {e.part + roundings, e.amount * most_lights_};
     return {0, (e.amount + (e.part + roundings) * largest(x)) * most_lights_};
   }
@@ -225,7 +259,7 @@ private:
   }
 
   Error cross(const Node& node, int c) const {
-    const analysis::RangeMath& math = graph_.math();
+    const analysis::RangeMath& math = math_;
     const int i = (c + 1) % 3;
     const int j = (c + 2) % 3;
     const auto times = [&](int p, int q, Range& range_of) {
@@ -243,10 +277,10 @@ private:
   Error unit(const Node& node, int c) const {
     const Ref v = node.args[0];
     std::array<Range, 4> squares;
-    for (int k = 0; k < width(v); ++k) squares[static_cast<size_t>(k)] = graph_.math().square(range(v, k));
-    const Range sum = graph_.math().sum({squares.data(), static_cast<size_t>(width(v))});
-    const Error root = after(graph_.math().inverseSqrt(sum), errorOfInverseRoot(sum, dot(v, v)), {2, 0});
-    return product(range(v, c), of(v, c), graph_.math().inverseSqrt(sum), root);
+    for (int k = 0; k < width(v); ++k) squares[static_cast<size_t>(k)] = math_.square(range(v, k));
+    const Range sum = math_.sum({squares.data(), static_cast<size_t>(width(v))});
+    const Error root = after(math_.inverseSqrt(sum), errorOfInverseRoot(sum, dot(v, v)), {2, 0});
+    return product(range(v, c), of(v, c), math_.inverseSqrt(sum), root);
   }
 
   Error errorAt(Ref at, int c) const {
@@ -256,8 +290,8 @@ private:
     constexpr double kLn2 = 0.6931471805599453;
     // A literal is rounded, but for what float32 holds.
     if (node.op == Op::Constant) {
-      const double value = graph_.constants()[node.payload][static_cast<size_t>(c)];
-      return value == static_cast<double>(static_cast<float>(value)) ? Error{} : Error{kRounding, 0};
+      const double value = constants_[node.payload][static_cast<size_t>(c)];
+      return value == static_cast<double>(static_cast<float>(value)) ? Error{} : Error{rounding(), 0};
     }
     if (node.op == Op::Construct) return part(node, c);
     if (node.op == Op::Swizzle) return of(node.args[0], ir::swizzleComponent(node.payload, c));
@@ -271,7 +305,7 @@ private:
     if (node.op == Op::Length) {
       const Error squares = dot(node.args[0], node.args[0]);
       const Range& length = range(at, 0);
-      return after(length, errorOfRoot(graph_.math().square(length), squares), {3, 0});
+      return after(length, errorOfRoot(math_.square(length), squares), {3, 0});
     }
     if (node.op == Op::Select) return errorOfEither(e(1), e(2));
     if (node.op == Op::SumOverLights) return lights(node, c);
@@ -287,8 +321,8 @@ private:
     }
     if (node.op == Op::Pow) {
       const Error log = logarithm(x(0), e(0), kLn2);
-      const Error exponent = errorOfProduct(x(1), e(1), graph_.math().log2(x(0)), log);
-      return rounded(at, c, errorOfPower(graph_.math().mul(x(1), graph_.math().log2(x(0))), exponent));
+      const Error exponent = errorOfProduct(x(1), e(1), math_.log2(x(0)), log);
+      return rounded(at, c, errorOfPower(math_.mul(x(1), math_.log2(x(0))), exponent));
     }
     if (node.op == Op::Add) return rounded(at, c, errorOfSum(x(0), e(0), x(1), e(1)));
     if (node.op == Op::Min || node.op == Op::Max) return errorOfEither(e(0), e(1));
@@ -300,9 +334,12 @@ private:
   }
 
   const Plan& plan_;
-  std::span<const Ref> classes_;
-  const EGraph& graph_;
+  std::vector<const Ranges*> ranges_;
+  const Constants& constants_;
+  const analysis::RangeMath& math_;
   double most_lights_;
+  bool rounds_;
+  std::span<const Ref> classes_;
   std::vector<Errors> errors_;
   Bounds bounds_;
 };
@@ -311,7 +348,18 @@ private:
 
 Bounds boundsOf(const Plan& plan, std::span<const Ref> classes, const EGraph& graph, double most_lights,
                 const Bounds* plain) {
-  return Propagation(plan, classes, graph, most_lights).run(plain == nullptr ? nullptr : &plain->cuts);
+  std::vector<const Ranges*> ranges;
+  for (const Ref id : classes) ranges.push_back(&graph[id].facts.lit);
+  Propagation propagation(plan, std::move(ranges), graph.constants(), graph.math(), most_lights, true);
+  return propagation.run(classes, plain == nullptr ? nullptr : &plain->cuts);
+}
+
+double errorOfOutputs(const Plan& plan, std::span<const Facts> facts, const Constants& constants,
+                      double most_lights, std::span<const double> own) {
+  static const analysis::RangeMath kMath(analysis::Arithmetic::Vulkan);
+  std::vector<const Ranges*> ranges;
+  for (const Facts& of : facts) ranges.push_back(&of.lit);
+  return Propagation(plan, std::move(ranges), constants, kMath, most_lights, false).outputs(own);
 }
 
 double growth(const Bounds& bounds, const Bounds& plain) {

@@ -33,4 +33,10 @@ Bounds boundsOf(const Plan& plan, std::span<const Ref> classes, const EGraph& gr
 /// one.
 double growth(const Bounds& bounds, const Bounds& plain);
 
+/// What the outputs of a plan are off at most where each node is off by `own` beside what its operands are,
+/// and nothing is rounded: as a part of them or of 1, for light of at most 1 (analysis/relax.h). Infinite
+/// where nobody can tell.
+double errorOfOutputs(const Plan& plan, std::span<const Facts> facts, const Constants& constants,
+                      double most_lights, std::span<const double> own);
+
 }  // namespace lacquer::optimize

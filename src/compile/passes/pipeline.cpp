@@ -83,10 +83,10 @@ void optimizeFragment(ir::Module& module, const PipelineOptions& options) {
     }
     if (std::optional<Choice> other = options.choose(forms)) choice = std::move(*other);
   }
-  const double growth = found[choice.index].outcome.growth;
+  const optimize::Outcome outcome = found[choice.index].outcome;
   if (choice.index > 0) module = std::move(found[choice.index].module);
-  module.optimized = {
-      options.optimize.level, std::string(family.name), choice.by, choice.plain, choice.cycles, growth};
+  module.optimized = {options.optimize.level, std::string(family.name), choice.by,    choice.plain,
+                      choice.cycles,          outcome.growth,           outcome.error};
 }
 
 }  // namespace

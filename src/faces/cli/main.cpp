@@ -24,6 +24,7 @@
 #include "cli/streams.h"
 #include "cli/stress.h"
 #include "cli/table.h"
+#include "cli/tune.h"
 #include "cli/view.h"
 #include "lacquer.h"
 #include "support/shown.h"
@@ -353,6 +354,7 @@ struct VerbFlags {
   lacquer::cli::PreviewFlags preview;
   lacquer::cli::LodFlags lod;
   lacquer::cli::StressFlags stress;
+  lacquer::cli::TuneFlags tune;
   lacquer::cli::ViewFlags view;
 };
 
@@ -396,6 +398,8 @@ std::vector<Verb> verbsOf(VerbFlags& all) {
       {"stress", "attacks nodes and materials with the inputs that break shaders",
        [&](CLI::App& verb) { addStress(verb, all.stress, flags); },
        [&] { return runStress(all.stress, options); }},
+      {"tune", "cheaper forms of a node or a material, run time against error",
+       [&](CLI::App& verb) { addTune(verb, all.tune, flags); }, [&] { return runTune(all.tune, options); }},
       {"view", "a page that shows and edits materials, with the compiler inside, as one file",
        [&](CLI::App& verb) { addView(verb, all.view, flags); }, [&] { return runView(all.view, options); }},
   };

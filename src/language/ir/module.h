@@ -168,6 +168,7 @@ struct Optimized {
   std::string by;                ///< who counted them: a driver's name and version, or "model"
   double plain = 0, cycles = 0;  ///< of the fragment stage without and with it
   double growth = 1;             ///< by which bounds of rounding errors have grown, at most
+  double error = 0;              ///< by which approximations change a colour, at most: proved
 };
 
 struct Module {

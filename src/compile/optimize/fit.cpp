@@ -1,0 +1,287 @@
+#include "optimize/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lacquer::optimize {
+
+using ir::Op;
+
+namespace {
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr Range kFlat{0, 0, false};
+
+Range exactly(double x) { return {x, x, false}; }
+double middle(const Range& x) { return x.lo + (x.hi - x.lo) / 2; }
+double magnitudeOf(const Range& x) { return x.nan ? kEndless : std::max(std::abs(x.lo), std::abs(x.hi)); }
+
+}  // namespace
+
+Curve::Curve(const Plan& plan, const Constants& constants, Ref variable, std::vector<Ref> nodes)
+    : plan_(plan),
+      constants_(constants),
+      variable_(variable),
+      nodes_(std::move(nodes)),
+      math_(analysis::Arithmetic::Real),
+      boxes_(nodes_.back() + size_t{1}) {
+  // Constants are what they are.
+  for (const Ref at : nodes_) {
+    for (const Ref operand : plan_.nodes[at].operands()) {
+      const Node& node = plan_.nodes[operand];
+      if (node.op != Op::Constant) continue;
+      for (size_t c = 0; c < 4; ++c) boxes_[operand].value[c] = exactly(constants_[node.payload][c]);
+      boxes_[operand].slope.fill(kFlat);
+    }
+  }
+}
+
+int Curve::width() const { return std::min(ir::componentCount(plan_.nodes[nodes_.back()].type), 4); }
+
+const Curve::Box& Curve::over(const Range& x) {
+  boxes_[variable_].value.fill(x);
+  boxes_[variable_].slope.fill(exactly(1));
+  for (const Ref at : nodes_) {
+    const Node& node = plan_.nodes[at];
+    std::array<Known, 4> operands{};
+    for (size_t k = 0; k < node.count; ++k)
+      operands[k] = {plan_.nodes[node.args[k]].type, &boxes_[node.args[k]].value};
+    Box& box = boxes_[at];
+    box.value = rangesOf(math_, node, {operands.data(), node.count}, constants_, 1, 1);
+    const int width = std::min(ir::componentCount(node.type), 4);
+    // Components that are not there are like the last one.
+    for (int c = width; c < 4; ++c)
+      box.value[static_cast<size_t>(c)] = box.value[static_cast<size_t>(width - 1)];
+    for (int c = 0; c < 4; ++c) {
+      const int of = std::min(c, width - 1);
+      box.slope[static_cast<size_t>(c)] =
+          c <= of ? slope(node, c, box.value) : box.slope[static_cast<size_t>(of)];
+    }
+  }
+  return boxes_[nodes_.back()];
+}
+
+/// Where two branches meet, the slopes of both.
+Range Curve::slope(const Node& node, int c, const Ranges& result) const {
+  const analysis::RangeMath& m = math_;
+  const auto x = [&](size_t k) -> const Range& {
+    return optimize::component(boxes_[node.args[k]].value, plan_.nodes[node.args[k]].type, c);
+  };
+  const auto d = [&](size_t k) -> const Range& {
+    return optimize::component(boxes_[node.args[k]].slope, plan_.nodes[node.args[k]].type, c);
+  };
+  const Range& r = optimize::component(result, node.type, c);
+  const Range ln2 = m.widened(exactly(0.6931471805599453), 0x1p-50, 0);
+  const auto extremum = [&](bool first, bool second) {
+    return first ? d(0) : second ? d(1) : hull(d(0), d(1));
+  };
+  switch (node.op) {
+    case Op::Add: return m.add(d(0), d(1));
+    case Op::Mul:
+      if (node.args[0] == node.args[1]) return m.mul(exactly(2), m.mul(x(0), d(0)));
+      return m.add(m.mul(x(0), d(1)), m.mul(x(1), d(0)));
+    case Op::Neg: return m.neg(d(0));
+    case Op::Abs: return x(0).lo >= 0 ? d(0) : x(0).hi <= 0 ? m.neg(d(0)) : hull(d(0), m.neg(d(0)));
+    case Op::Div: return m.neg(m.mul(d(0), m.square(r)));
+    case Op::Sqrt: return m.div(d(0), m.mul(exactly(2), r));
+    case Op::InverseSqrt: return m.mul(exactly(-0.5), m.mul(d(0), m.mul(r, m.square(r))));
+    case Op::Exp2: return m.mul(ln2, m.mul(r, d(0)));
+    case Op::Exp: return m.mul(r, d(0));
+    case Op::Log2: return m.div(d(0), m.mul(ln2, x(0)));
+    case Op::Log: return m.div(d(0), x(0));
+    case Op::Min: return extremum(x(0).hi < x(1).lo, x(1).hi < x(0).lo);
+    case Op::Max: return extremum(x(0).lo > x(1).hi, x(1).lo > x(0).hi);
+    case Op::Clamp:
+      if (x(0).lo > x(1).hi && x(0).hi < x(2).lo) return d(0);
+      if (x(0).hi < x(1).lo) return d(1);
+      if (x(0).lo > x(2).hi) return d(2);
+      return hull(d(0), hull(d(1), d(2)));
+    case Op::Mix: {
+      const Range rest = m.sub(exactly(1), x(2));
+      return m.add(m.add(m.mul(d(0), rest), m.mul(d(1), x(2))), m.mul(m.sub(x(1), x(0)), d(2)));
+    }
+    case Op::Swizzle: {
+      const int from = ir::swizzleComponent(node.payload, c);
+      return optimize::component(boxes_[node.args[0]].slope, plan_.nodes[node.args[0]].type, from);
+    }
+    default: return m.whole(true);
+  }
+}
+
+namespace {
+
+/// A polynomial, and its derivative, over a range; for one component.
+Range horner(const analysis::RangeMath& m, const std::vector<ir::Components>& coefficients, size_t c,
+             const Range& x, bool derivative) {
+  Range sum = kFlat;
+  for (size_t k = coefficients.size(); k-- > (derivative ? 1U : 0U);) {
+    const double factor = derivative ? static_cast<double>(k) : 1;
+    sum = m.add(m.mul(sum, x), exactly(coefficients[k][c] * factor));
+  }
+  return sum;
+}
+
+/// Interpolates at Chebyshev's points, which is off by little more than the best polynomial is.
+std::vector<ir::Components> interpolate(Curve& curve, const Range& domain, size_t degree) {
+  const size_t n = degree + 1;
+  const double half = (domain.hi - domain.lo) / 2;
+  const double mid = middle(domain);
+  std::vector<ir::Components> series(n), result(n);
+  std::vector<std::vector<double>> cosines(n, std::vector<double>(n));
+  for (size_t j = 0; j < n; ++j) {
+    const double angle = kHalfTurn * (static_cast<double>(j) + 0.5) / static_cast<double>(n);
+    for (size_t k = 0; k < n; ++k) cosines[k][j] = std::cos(static_cast<double>(k) * angle);
+    const double t = n == 1 ? 0 : std::cos(angle);
+    const Curve::Box& box = curve.over(exactly(mid + half * t));
+    for (size_t c = 0; c < 4; ++c) {
+      const double y = middle(box.value[c]);
+      for (size_t k = 0; k < n; ++k)
+        series[k][c] += (k == 0 ? 1.0 : 2.0) / static_cast<double>(n) * y * cosines[k][j];
+    }
+  }
+  // Chebyshev's polynomials of t = (x - mid) / half as powers of x.
+  std::vector<double> before{1}, now{-mid / half, 1 / half};
+  const auto add = [&](const std::vector<double>& powers, size_t k) {
+    for (size_t i = 0; i < powers.size(); ++i) {
+      for (size_t c = 0; c < 4; ++c) result[i][c] += series[k][c] * powers[i];
+    }
+  };
+  add(before, 0);
+  for (size_t k = 1; k < n; ++k) {
+    add(now, k);
+    std::vector<double> next(now.size() + 1, 0);
+    for (size_t i = 0; i < now.size(); ++i) {
+      next[i + 1] += 2 * now[i] / half;
+      next[i] -= 2 * now[i] * mid / half;
+    }
+    for (size_t i = 0; i < before.size(); ++i) next[i] -= before[i];
+    before = std::move(now);
+    now = std::move(next);
+  }
+  for (ir::Components& power : result) {
+    for (double& x : power) x = static_cast<double>(static_cast<float>(x));
+  }
+  return result;
+}
+
+double valueAt(const std::vector<ir::Components>& coefficients, size_t c, double x) {
+  double sum = 0;
+  for (size_t k = coefficients.size(); k-- > 0;) sum = sum * x + coefficients[k][c];
+  return sum;
+}
+
+/// At points that lie close at the ends, where errors of roots have their peaks.
+double sampled(Curve& curve, const Range& domain, const std::vector<ir::Components>& coefficients) {
+  constexpr int kPoints = 48;
+  double most = 0;
+  const auto look = [&](double u) {
+    const double x = domain.lo + (domain.hi - domain.lo) * u;
+    const Curve::Box& box = curve.over(exactly(x));
+    for (size_t c = 0; c < static_cast<size_t>(curve.width()); ++c) {
+      const double off = std::abs(middle(box.value[c]) - valueAt(coefficients, c, x));
+      most = off <= most ? most : std::isnan(off) ? kEndless : off;
+    }
+  };
+  for (int i = 0; i <= kPoints; ++i) {
+    const double u = static_cast<double>(i) / kPoints;
+    look(u);
+    look(u * u * u * u);
+    look(1 - u * u * u * u);
+  }
+  return most;
+}
+
+/// What Horner's sums and products in float32 are off.
+double roundings(const std::vector<ir::Components>& coefficients, const Range& domain) {
+  double most = 0;
+  for (size_t c = 0; c < 4; ++c) {
+    double sum = 0;
+    double power = 1;
+    for (const ir::Components& coefficient : coefficients) {
+      sum += std::abs(coefficient[c]) * power;
+      power *= magnitudeOf(domain);
+    }
+    most = std::max(most, sum);
+  }
+  return most * (2 * static_cast<double>(coefficients.size()) + 1) * 0x1p-24;
+}
+
+}  // namespace
+
+double sampledError(Curve& curve, const Range& domain, size_t degree) {
+  return sampled(curve, domain, interpolate(curve, domain, degree));
+}
+
+bool prove(Curve& curve, const Range& domain, const std::vector<ir::Components>& coefficients, double most,
+           Range& reached) {
+  constexpr size_t kMostBoxes = 3000;
+  const analysis::RangeMath m(analysis::Arithmetic::Real);
+  // Small ones from the start, so that what is reached is told closely.
+  constexpr int kFirst = 64;
+  std::vector<Range> open;
+  for (int i = kFirst; i-- > 0;) {
+    const double step = (domain.hi - domain.lo) / kFirst;
+    open.push_back({domain.lo + i * step, i + 1 == kFirst ? domain.hi : domain.lo + (i + 1) * step, false});
+  }
+  size_t looked = 0;
+  while (!open.empty()) {
+    const Range x = open.back();
+    open.pop_back();
+    if (++looked > kMostBoxes) return false;
+    const double mid = middle(x);
+    const double half = std::max(x.hi - mid, mid - x.lo) * (1 + 0x1p-50);
+    const Ranges at_middle = curve.over(exactly(mid)).value;
+    const Curve::Box& box = curve.over(x);
+    bool kept = true;
+    Range here{kEndless, -kEndless, false};
+    for (size_t c = 0; c < static_cast<size_t>(curve.width()) && kept; ++c) {
+      const Range at = horner(m, coefficients, c, exactly(mid), false);
+      const Range tangent = horner(m, coefficients, c, x, true);
+      const Range p =
+          meet(horner(m, coefficients, c, x, false), m.add(at, m.mul(tangent, {-half, half, false})));
+      const double direct = magnitudeOf(m.sub(box.value[c], p));
+      const double center = magnitudeOf(m.sub(at_middle[c], horner(m, coefficients, c, exactly(mid), false)));
+      const double lean = magnitudeOf(m.sub(box.slope[c], tangent));
+      const double by_slope = m.add(exactly(center), m.mul(exactly(lean), exactly(half))).hi;
+      // A product of 0 and infinity is no number, and proves nothing.
+      kept = direct <= most || by_slope <= most;
+      if (!kept) break;
+      const Range near = m.widened(box.value[c], 0, most);
+      const Range both = meet(p, near);
+      here = {std::min(here.lo, both.lo), std::max(here.hi, both.hi), false};
+    }
+    if (kept) {
+      reached = {std::min(reached.lo, here.lo), std::max(reached.hi, here.hi), false};
+      continue;
+    }
+    if (mid <= x.lo || mid >= x.hi) return false;
+    open.push_back({mid, x.hi, false});
+    open.push_back({x.lo, mid, false});
+  }
+  return true;
+}
+
+std::optional<Fit> fit(Curve& curve, const Range& domain, size_t degree, double most,
+                       std::optional<double> least) {
+  Fit made;
+  made.coefficients = interpolate(curve, domain, degree);
+  const double rounding = roundings(made.coefficients, domain);
+  // A little more than is seen, so that few boxes show it.
+  double claimed = 1.05 * sampled(curve, domain, made.coefficients) + rounding / 4;
+  constexpr int kLifts = 4;
+  for (int lift = 0; lift <= kLifts && claimed + rounding <= most; ++lift) {
+    made.reached = {kEndless, -kEndless, false};
+    made.error = claimed + rounding;
+    made.rounding = rounding;
+    if (!prove(curve, domain, made.coefficients, claimed, made.reached)) return std::nullopt;
+    if (!least || made.reached.lo >= *least + rounding) return made;
+    const double by = 1.05 * (*least - made.reached.lo) + 3 * rounding;
+    for (double& x : made.coefficients[0]) x = static_cast<double>(static_cast<float>(x + by));
+    claimed += 1.01 * by;
+  }
+  return std::nullopt;
+}
+
+}  // namespace lacquer::optimize

@@ -1,0 +1,81 @@
+#include "cli/tune.h"
+
+#include <fmt/format.h>
+
+#include "cli/checks.h"
+#include "cli/graphs.h"
+#include "cli/streams.h"
+#include "cli/table.h"
+#include "json/json.h"
+
+namespace lacquer::cli {
+
+void addTune(CLI::App& verb, TuneFlags& flags, OptionFlags& options) {
+  verb.add_option("subject", flags.subject,
+                  "a node, or NODE.VARIANT; a .gltf or .glb file, or a graph: .json")
+      ->required()
+      ->check(kNotEmpty);
+  verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
+  verb.add_flag("--json", flags.json, "as JSON");
+  addMaterialFlags(verb, options);
+}
+
+namespace {
+
+void printTable(const Tuned& tuned) {
+  fmt::print("{}: {} cycles on {} as it is\n\n", printable(tuned.name), tuned.plain, tuned.family);
+  fmt::print("{:>10} {:>8} {:>7} {:>15} {:>8}\n", "error", "cycles", "saved", "approximations", "rounding");
+  for (const TunedForm& form : tuned.forms) {
+    const double saved = tuned.plain > 0 ? 100 * (1 - form.cycles / tuned.plain) : 0;
+    fmt::print("{:>10.2g} {:>8.0f} {:>5.0f} % {:>15} {:>8.2f}\n", form.error, form.cycles, saved,
+               form.approximations, form.growth);
+  }
+}
+
+void printJson(const Tuned& tuned) {
+  json::Json forms = json::Json::array();
+  for (const TunedForm& form : tuned.forms) {
+    forms.push_back({{"error", form.error},
+                     {"cycles", form.cycles},
+                     {"error_growth", form.growth},
+                     {"approximations", form.approximations}});
+  }
+  const json::Json all = {
+      {"name", tuned.name}, {"family", tuned.family}, {"of_cycles", tuned.plain}, {"forms", forms}};
+  fmt::print("{}\n", all.dump(2));
+}
+
+bool isFile(const std::string& subject) {
+  return isGraphFile(subject) || subject.ends_with(".gltf") || subject.ends_with(".glb");
+}
+
+std::optional<Tuned> find(const TuneFlags& flags, const Options& options, Messages& messages) {
+  if (!isFile(flags.subject)) return tune(flags.subject, options, messages);
+  std::optional<Tuned> found;
+  if (isGraphFile(flags.subject)) {
+    const Graph graph = Graph::load(flags.subject, options, messages);
+    return graph ? tune(graph, options, messages) : found;
+  }
+  const Scene scene = Scene::load(flags.subject, options, messages);
+  const std::optional<size_t> material = scene ? scene.findMaterial(flags.material, messages) : std::nullopt;
+  if (!material) return found;
+  const std::vector<Attributes> uses = scene.uses(*material);
+  const Graph graph = scene.graph(*material, uses.empty() ? kUnusedAttributes : uses[0], options, messages);
+  return graph ? tune(graph, options, messages) : found;
+}
+
+}  // namespace
+
+int runTune(const TuneFlags& flags, const Options& options) {
+  Messages messages;
+  const std::optional<Tuned> tuned = find(flags, options, messages);
+  print(messages);
+  if (!tuned || hasError(messages)) return 1;
+  if (flags.json)
+    printJson(*tuned);
+  else
+    printTable(*tuned);
+  return 0;
+}
+
+}  // namespace lacquer::cli

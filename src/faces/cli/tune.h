@@ -1,0 +1,23 @@
+// The verb `tune`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "cli/options.h"
+#include "lacquer.h"
+
+namespace lacquer::cli {
+
+struct TuneFlags {
+  std::string subject, material;
+  bool json = false;
+};
+
+/// The verb's own flags, and those of a material.
+void addTune(CLI::App& verb, TuneFlags& flags, OptionFlags& options);
+
+/// The exit status: 0, or 1 with an error.
+int runTune(const TuneFlags& flags, const Options& options);
+
+}  // namespace lacquer::cli

@@ -1,0 +1,37 @@
+/// Run time against error: the forms of a node or a material that a search finds (docs/optimize.md).
+/// lacquer.h says what holds for every declaration.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lacquer/graph.h"
+#include "lacquer/options.h"
+
+namespace lacquer {
+
+/// A form that no other one beats in both.
+struct TunedForm {
+  double error = 0;   ///< of a result at most, proved: as a part of it or of 1, for light of at most 1
+  double cycles = 0;  ///< of the fragment stage, by the family's model
+  double growth = 1;  ///< by which bounds of rounding errors have grown, at most
+  size_t approximations = 0;
+};
+
+struct Tuned {
+  std::string name;    ///< of the node, or of the graph
+  std::string family;  ///< whose cycles count
+  double plain = 0;    ///< cycles of the form as it is
+  /// Each cheaper than the one before it, and off by more; the first is equal in real numbers.
+  std::vector<TunedForm> forms;
+};
+
+/// The Pareto front of a node by itself: its parameters are inputs of each fragment in their declared ranges.
+/// `name`: a node, or one with a variant, "fresnel_conductor.exact". Of the options, `node_directories`,
+/// `optimize` (0 counts as 1) and `optimize_for`. Nothing on an error: "no-such-node", "no-such-variant".
+std::optional<Tuned> tune(const std::string& name, const Options& options, Messages& messages);
+/// The same of a graph's shader.
+std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& messages);
+
+}  // namespace lacquer

@@ -1,0 +1,98 @@
+// `--optimize` and `tune`: what a search does to a run's files, its cache and its manifest.
+#include <gtest/gtest.h>
+
+#include "command.h"
+
+namespace lacquer::test {
+namespace {
+
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+constexpr std::chrono::seconds kLong(600);
+
+Words words(Words first, const Words& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
+/// A clear coat over a metal: little to search.
+std::string coat() {
+  return gltfOf({R"({"extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1}}})"});
+}
+
+std::map<std::string, std::string> filesOf(const Workplace& place, const std::string& folder) {
+  std::map<std::string, std::string> files;
+  for (const std::string& name : place.names()) {
+    if (name.starts_with(folder + "/") && std::filesystem::is_regular_file(place / name))
+      files[name.substr(folder.size())] = place.read(name);
+  }
+  return files;
+}
+
+TEST(Optimize, ARunIsRepeatedToTheByteAndKept) {
+  const Workplace place;
+  place.write("a.gltf", coat());
+  const Words common = {"a.gltf",        "-q",         "--unused", "--target",     "glsl,spirv",
+                        "--no-validate", "--optimize", "1",        "--model-costs"};
+  const Outcome first = place.run(words({"gen", "-o", "one", "--cache", "kept"}, common), kLong);
+  ASSERT_EQ(first.status, 0) << first.all();
+  const Outcome again = place.run(words({"gen", "-o", "two", "--jobs", "1"}, common), kLong);
+  ASSERT_EQ(again.status, 0) << again.all();
+  EXPECT_EQ(filesOf(place, "one"), filesOf(place, "two"));
+  // What is kept is not searched for again.
+  const Outcome cached = place.run(words({"gen", "-o", "three", "--cache", "kept", "--time"}, common), kLong);
+  EXPECT_EQ(cached.status, 0) << cached.all();
+  EXPECT_NE(cached.all().find("0 shaders made"), std::string::npos) << cached.all();
+  EXPECT_EQ(filesOf(place, "one"), filesOf(place, "three"));
+
+  const json manifest = place.manifest("one");
+  ASSERT_FALSE(manifest["shaders"].empty());
+  for (const json& shader : manifest["shaders"]) {
+    const json& optimized = shader["optimized"];
+    EXPECT_EQ(optimized["level"], 1);
+    EXPECT_EQ(optimized["family"], "navi21");
+    EXPECT_EQ(optimized["by"], "model");
+    EXPECT_LT(optimized["cycles"], optimized["of_cycles"]);
+    EXPECT_LT(optimized["error_growth"], 2);
+    EXPECT_EQ(optimized["error"], 0);
+  }
+}
+
+TEST(Optimize, IsOffByItselfAndSaysWhatDoesNotGoTogether) {
+  const Workplace place;
+  place.write("a.gltf", coat());
+  const Outcome plain =
+      place.run({"gen", "a.gltf", "-o", "o", "-q", "--unused", "--target", "glsl", "--no-validate"});
+  ASSERT_EQ(plain.status, 0) << plain.all();
+  for (const json& shader : place.manifest("o")["shaders"]) EXPECT_FALSE(shader.contains("optimized"));
+  const Outcome error = place.run({"gen", "a.gltf", "-o", "p", "-q", "--optimize", "1", "--error", "0.01"});
+  EXPECT_EQ(error.status, 1);
+  EXPECT_NE(error.err.find("[no-approximations]"), std::string::npos) << error.all();
+  EXPECT_NE(place.run({"gen", "a.gltf", "-o", "p", "-q", "--optimize", "3"}).status, 0);
+  EXPECT_NE(place.run({"gen", "a.gltf", "-o", "p", "-q", "--optimize-for", "voodoo2"}).status, 0);
+}
+
+TEST(Tune, ANodesFrontFallsAsItsErrorGrows) {
+  const Workplace place;
+  const Outcome outcome = place.run({"tune", "coat_absorption", "--json"}, kLong);
+  ASSERT_EQ(outcome.status, 0) << outcome.all();
+  const json front = json::parse(outcome.out);
+  EXPECT_EQ(front["name"], "coat_absorption");
+  const json& forms = front["forms"];
+  ASSERT_GE(forms.size(), 1U);
+  EXPECT_EQ(forms[0]["error"], 0);
+  EXPECT_LE(forms[0]["cycles"], front["of_cycles"]);
+  for (size_t i = 1; i < forms.size(); ++i) {
+    EXPECT_GT(forms[i]["error"], forms[i - 1]["error"]);
+    EXPECT_LT(forms[i]["cycles"], forms[i - 1]["cycles"]);
+    EXPECT_GE(forms[i]["approximations"], 1);
+  }
+  const Outcome table = place.run({"tune", "coat_absorption"}, kLong);
+  EXPECT_NE(table.out.find("coat_absorption: "), std::string::npos) << table.all();
+  EXPECT_EQ(place.run({"tune", "no_such_node"}).status, 1);
+  EXPECT_NE(place.run({"tune", "coat_absorption.none"}).err.find("[no-such-variant]"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lacquer::test

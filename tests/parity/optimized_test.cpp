@@ -1,0 +1,198 @@
+// `--optimize`: shaders that were searched for give what the plain ones do, on the CPU and on a device, and
+// their approximations keep to the error that is proved.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "eval/evaluate.h"
+#include "eval/points.h"
+#include "optimize/approximate.h"
+#include "parity/subject.h"
+#include "passes/pipeline.h"
+
+namespace lacquer::parity {
+namespace {
+
+/// Lowers a material and runs all passes.
+ir::Module moduleOf(const NamedGraph& graph, const MaterialSetting& setting, const optimize::Settings& how) {
+  Result<ir::Module> module = lower::lower(graph.graph, library(), {setting.parameters, true});
+  EXPECT_TRUE(module) << graph.name;
+  if (!module) return {};
+  passes::PipelineOptions options;
+  options.lights = setting.lights;
+  options.optimize = how;
+  passes::runPipeline(*module, options);
+  EXPECT_TRUE(ir::verify(*module).empty()) << graph.name;
+  return std::move(*module);
+}
+
+/// A subject with another form of its module.
+Subject withModule(const Subject& plain, ir::Module module) {
+  Subject other = plain;
+  other.module = std::move(module);
+  EXPECT_TRUE(eval::bindMaterialBlock(other.module, other.bindings)) << other.name;
+  EXPECT_TRUE(eval::bindVaryings<float>(other.module, other.points, other.bindings)) << other.name;
+  return other;
+}
+
+/// Bounds twice as wide: so much may rounding errors grow.
+std::vector<std::vector<analysis::Range>> doubled(std::vector<std::vector<analysis::Range>> bounds) {
+  for (auto& point : bounds) {
+    for (analysis::Range& bound : point) {
+      const double half = (bound.hi - bound.lo) / 2;
+      if (std::isfinite(half)) bound = {bound.lo - half, bound.hi + half, bound.nan};
+    }
+  }
+  return bounds;
+}
+
+/// Some of the examples, of all their files.
+std::vector<NamedGraph> someGraphs(const MaterialSetting& setting, size_t stride, size_t first) {
+  const std::vector<NamedGraph> all = exampleGraphs(setting);
+  std::vector<NamedGraph> some;
+  for (size_t i = first; i < all.size(); i += stride) some.push_back(all[i]);
+  return some;
+}
+
+TEST(ParityOptimized, GiveThePlainShadersColours) {
+  const MaterialSetting setting;
+  Comparison all;
+  size_t changed = 0;
+  std::vector<NamedGraph> graphs = someGraphs(setting, 5, 0);
+  for (NamedGraph& graph : randomGraphs(setting, 1)) graphs.push_back(std::move(graph));
+  for (size_t i = 0; i < graphs.size(); ++i) {
+    const Subject plain = materialSubject(graphs[i], setting, 512, i);
+    const Subject fast = withModule(plain, moduleOf(graphs[i], setting, {1, 0, nullptr}));
+    changed += passes::contentDigest(fast.module) == passes::contentDigest(plain.module) ? 0 : 1;
+    const auto bounds = doubled(boundsOf(plain));
+    compare(fast, bounds, onCpu(fast), "the CPU", all);
+    if (device() == nullptr) continue;
+    compare(fast, bounds, onDevice(fast, FragmentRoute::Direct), "the direct SPIR-V", all);
+    compare(fast, bounds, onDevice(fast, FragmentRoute::Glsl), "the GLSL", all);
+  }
+  EXPECT_EQ(all.outside, 0U) << all.first;
+  EXPECT_GT(changed, graphs.size() / 2);
+  std::cout << all.numbers << " numbers of " << graphs.size() << " materials, " << all.vague
+            << " with a vague bound, " << all.endless << " with none"
+            << (device() == nullptr ? "; NOT TESTED on a device: there is none" : "") << "\n";
+}
+
+std::vector<std::vector<double>> exactly(const Subject& subject) {
+  const auto values =
+      eval::evaluate<double>(subject.module, subject.roots(), subject.bindings, subject.points);
+  EXPECT_TRUE(values) << subject.name;
+  return values.value_or(std::vector<std::vector<double>>{});
+}
+
+/// The largest difference of two colours, as a part of them or of 1.
+double difference(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b) {
+  double most = 0;
+  for (size_t r = 0; r < a.size(); ++r) {
+    for (size_t i = 0; i < a[r].size(); ++i) {
+      if (!std::isfinite(a[r][i])) continue;
+      const double off = std::abs(a[r][i] - b[r][i]) / std::max(1.0, std::abs(a[r][i]));
+      most = std::isnan(off) ? std::numeric_limits<double>::infinity() : std::max(most, off);
+    }
+  }
+  return most;
+}
+
+MaterialSetting baked() {
+  MaterialSetting setting;
+  setting.parameters = lower::ParameterMode::Baked;
+  return setting;
+}
+
+// With numbers for parameters nothing is rounded but in double: what is equal in real numbers differs by that
+// alone.
+TEST(ParityOptimized, AreEqualInRealNumbers) {
+  for (const NamedGraph& graph : someGraphs(baked(), 6, 1)) {
+    const Subject plain = materialSubject(graph, baked(), 2048, 3);
+    const Subject fast = withModule(plain, moduleOf(graph, baked(), {1, 0, nullptr}));
+    EXPECT_LE(difference(exactly(plain), exactly(fast)), 1e-9) << graph.name;
+  }
+}
+
+/// Light of at most 1, which is what errors are a part of.
+void dim(Subject& subject) {
+  for (eval::Columns& light : subject.bindings.lights) {
+    for (auto& [name, column] : light) {
+      if (name.find("radiance") == std::string::npos && name.find("color") == std::string::npos &&
+          name.find("intensity") == std::string::npos) {
+        continue;
+      }
+      for (double& x : column.values) x = std::min(x, 1.0);
+    }
+  }
+  subject.bindings.columns["frame.environment_intensity"] = eval::Column::constant({1});
+  for (auto& [name, sampler] : subject.bindings.textures) {
+    sampler = [bright = sampler](size_t point, const std::array<double, 3>& at, double lod) {
+      std::array<double, 4> texel = bright(point, at, lod);
+      for (double& x : texel) x = std::min(x, 1.0);
+      return texel;
+    };
+  }
+}
+
+TEST(ParityOptimized, ApproximationsKeepToTheProvedError) {
+  constexpr double kError = 0.02;
+  size_t approximated = 0;
+  for (const NamedGraph& graph : someGraphs(baked(), 6, 2)) {
+    Result<ir::Module> module = lower::lower(graph.graph, library(), {lower::ParameterMode::Baked, true});
+    ASSERT_TRUE(module) << graph.name;
+    ir::Module before;
+    passes::PipelineOptions options;
+    options.lights = baked().lights;
+    options.after = [&](std::string_view pass, const ir::Module& after) {
+      if (pass == "vertex") before = after;
+    };
+    passes::runPipeline(*module, options);
+    std::optional<optimize::Approximated> made =
+        optimize::approximate(before, optimize::families()[0], kError);
+    if (!made) continue;
+    ++approximated;
+    EXPECT_LE(made->error, kError) << graph.name;
+    options.after = nullptr;
+    passes::runPipeline(made->module, options);
+    Subject plain = materialSubject(graph, baked(), 2048, 3);
+    dim(plain);
+    const Subject fast = withModule(plain, std::move(made->module));
+    const double off = difference(exactly(plain), exactly(fast));
+    EXPECT_LE(off, made->error + 1e-9) << graph.name;
+    EXPECT_GT(off, 0) << graph.name;
+    std::cout << graph.name << ": " << made->count << " approximations, off by " << off << ", proved "
+              << made->error << "\n";
+  }
+  EXPECT_GT(approximated, 0U);
+}
+
+/// Puts a wrong value in the place of a sum: a plan that no right rule gives.
+TEST(ParityOptimized, AWrongFormIsFound) {
+  const MaterialSetting setting;
+  const NamedGraph graph = someGraphs(setting, 100, 4).at(0);
+  const Subject plain = materialSubject(graph, setting, 256, 1);
+  const auto bounds = doubled(boundsOf(plain));
+  size_t found = 0;
+  size_t tried = 0;
+  optimize::Constants constants;
+  const optimize::Plan right = optimize::planOf(plain.module, constants);
+  for (size_t at = 0; at < right.nodes.size(); at += 7) {
+    const optimize::Node& node = right.nodes[at];
+    if (node.op != ir::Op::Mul || node.opaque() || node.rate <= ir::Rate::Material) continue;
+    optimize::Plan wrong = right;
+    wrong.nodes[at].op = ir::Op::Add;
+    Subject subject = plain;
+    optimize::replaceFragment(subject.module, wrong, constants);
+    Comparison comparison;
+    compare(subject, bounds, onCpu(subject), "the CPU", comparison);
+    found += comparison.outside > 0 ? 1 : 0;
+    ++tried;
+  }
+  EXPECT_GT(tried, 2U);
+  EXPECT_GT(2 * found, tried);  // where a bound is wide, or the sum hardly counts, it may stay hidden
+}
+
+}  // namespace
+}  // namespace lacquer::parity
