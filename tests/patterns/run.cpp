@@ -3,45 +3,53 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <filesystem>
 #include <random>
 #include <stdexcept>
 
 #include "eval/evaluate.h"
 #include "ir/module.h"
 #include "lower/inline.h"
-#include "support/cases.h"
 
 namespace lacquer::test {
 
 const lang::Library& standardLibrary() {
-  static const lang::Library kLibrary = [] {
-    lang::Library library = lang::Library::embedded();
-    if (library.node("perlin2")) return library;
-    std::vector<lang::SourceFile> files;
-    for (const auto& entry : std::filesystem::directory_iterator(sourceFolder() / "nodes/standard"))
-      files.push_back({entry.path().filename().string(), readFile(entry.path())});
-    std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
-    if (const auto added = library.add(std::move(files)); !added)
-      throw std::runtime_error(format(added.error().at(0)));
-    return library;
-  }();
+  static const lang::Library kLibrary = lang::Library::embedded();
   return kLibrary;
+}
+
+std::array<double, 4> texelAt(double u, double v) {
+  return {0.5 + 0.4 * std::sin(5 * u + v), 0.5 + 0.4 * std::cos(3 * v - u),
+          0.6 + 0.3 * std::sin(u * 2 + v * 4), 0.5 + 0.5 * std::sin(u + v)};
 }
 
 template <class T>
 std::vector<std::vector<T>> runNode(const std::string& form, const Arguments& arguments, size_t points,
-                                    const std::string& variant) {
+                                    const std::string& variant, bool quads) {
   const auto found = standardLibrary().node(form);
   if (!found) throw std::runtime_error(format(found.error().at(0)));
   const lang::NodeDecl& node = **found;
   ir::Module module;
   module.template_name = "node";
   eval::Bindings bindings;
+  bindings.quads = quads;
   std::vector<ir::ValueId> values;
   size_t used = 0;
   for (const lang::Param& param : node.params) {
+    if (ir::isTexture(param.type)) {
+      ir::TextureSlot slot;
+      slot.name = param.name;
+      slot.type = param.type;
+      const auto index = static_cast<uint32_t>(module.textures.size());
+      module.textures.push_back(slot);
+      values.push_back(module.dag.input(
+          {ir::InputKind::Texture, slot.name, param.type, ir::Rate::Frame, {0, 1}, 0, index}));
+      bindings.textures[slot.name] = [](size_t, const std::array<double, 3>& uv, double) {
+        return texelAt(uv[0], uv[1]);
+      };
+      continue;
+    }
     const auto argument = arguments.find(param.name);
     if (argument == arguments.end()) {
       values.push_back(ir::kNoValue);
@@ -72,9 +80,9 @@ std::vector<std::vector<T>> runNode(const std::string& form, const Arguments& ar
 }
 
 template std::vector<std::vector<float>> runNode(const std::string&, const Arguments&, size_t,
-                                                 const std::string&);
+                                                 const std::string&, bool);
 template std::vector<std::vector<double>> runNode(const std::string&, const Arguments&, size_t,
-                                                  const std::string&);
+                                                  const std::string&, bool);
 
 std::vector<Place> somePlaces(size_t count, int dimensions, float largest, uint64_t seed) {
   std::mt19937_64 engine(seed);

@@ -10,17 +10,21 @@
 
 namespace lacquer::test {
 
-/// The library with nodes/standard/.
+/// Of Lacquer, nodes/standard/ with it.
 const lang::Library& standardLibrary();
 
 /// By parameter: the components of each point, or of all where there is one point's.
 using Arguments = std::map<std::string, std::vector<double>, std::less<>>;
 
+/// A texel of every image.
+std::array<double, 4> texelAt(double u, double v);
+
 /// The results of a node, each the components of all points side by side. What has no argument has its
-/// default, or that of what is given where there is no template. T is float or double.
+/// default, or that of what is given where there is no template. `quads`: points stand in fours, as pixels
+/// do. T is float or double.
 template <class T>
 std::vector<std::vector<T>> runNode(const std::string& form, const Arguments& arguments, size_t points,
-                                    const std::string& variant = {});
+                                    const std::string& variant = {}, bool quads = false);
 
 /// Places of all sizes: within a few cells, on and beside corners, negative ones, and large ones, up to
 /// `largest`.
