@@ -99,13 +99,22 @@ NodeModule nodeModule(const lang::NodeDecl& node, std::string_view variant, ir::
     if (!std::exchange(outermost, false)) result.calls.push_back({&callee, {args.begin(), args.end()}});
   });
   const lower::Values results = inliner.call(node, variant, arguments);
+  const auto put = [&](std::string name, ValueId value) {
+    const auto place = static_cast<uint32_t>(result.module.outputs.size());
+    result.module.outputs.push_back(
+        {ir::OutputKind::Color, ir::Stage::Fragment, std::move(name), place, value});
+  };
   for (size_t i = 0; i < results.size(); ++i) {
     const std::string name(node.results[i].name);
-    result.module.outputs.push_back(
-        {ir::OutputKind::Color, ir::Stage::Fragment, name, static_cast<uint32_t>(i), results[i]});
+    const uint32_t outputs = outputCount(node.results[i].type);
+    if (outputs == 1) put(name, results[i]);
+    for (uint32_t k = 0; outputs > 1 && k < outputs; ++k)
+      put(fmt::format("{}[{}]", name, k), result.module.dag.column(results[i], k));
   }
   return result;
 }
+
+uint32_t outputCount(ir::Type type) { return type == ir::Type::Mat3 ? 3 : type == ir::Type::Mat4 ? 4 : 1; }
 
 void proveCall(const ir::Module& module, const NodeModule::Call& call, int budget,
                std::vector<Claim>& claims) {
@@ -145,11 +154,13 @@ void proveModule(const lang::NodeDecl& node, const NodeModule& made, Arithmetic 
     proof.operations.push_back(operationClaim(module, operations[i], operands[i], arithmetic));
   analysis::Intervals exact(module, {Arithmetic::Real});
   exact.run();
-  for (size_t i = 0; i < node.results.size(); ++i) {
-    const lang::Param& result = node.results[i];
+  size_t output = 0;
+  for (const lang::Param& result : node.results) {
+    const ValueId value = module.outputs[output].value;
+    output += outputCount(result.type);
     if (open(result.range) || !ir::isFloating(result.type)) continue;
     const std::string what = result.name.empty() ? "the result" : fmt::format("the result {}", result.name);
-    proof.results.push_back(claimOf(module, exact, module.outputs[i].value, result.range, what, 20000));
+    proof.results.push_back(claimOf(module, exact, value, result.range, what, 20000));
   }
   for (const NodeModule::Call& call : made.calls) proveCall(module, call, 20000, proof.calls);
 }

@@ -11,7 +11,11 @@
 
 namespace lacquer {
 
-/// A node by itself: its parameters are inputs in their declared ranges, its results are outputs, in order.
+/// How many outputs a result of that type is: one, of a matrix one for each column.
+uint32_t outputCount(ir::Type type);
+
+/// A node by itself: its parameters are inputs in their declared ranges, its results are outputs, in order; a
+/// matrix is its columns, `name[0]` and so on.
 struct NodeModule {
   ir::Module module;
   struct Call {

@@ -174,9 +174,12 @@ private:
     const lang::NodeDecl& node = **found;
     stress::NodeSource source{
         variant.empty() ? name : name + "." + variant, nodeModule(node, variant).module, {}};
-    for (const lang::Param& result : node.results)
-      source.results.emplace_back(result.name.empty() ? "the result" : std::string(result.name),
-                                  result.range);
+    for (const lang::Param& result : node.results) {
+      const std::string called = result.name.empty() ? "the result" : std::string(result.name);
+      const uint32_t outputs = outputCount(result.type);
+      for (uint32_t k = 0; k < outputs; ++k)
+        source.results.emplace_back(outputs == 1 ? called : fmt::format("{}[{}]", called, k), result.range);
+    }
     return stress::nodeSubject(std::move(source));
   }
 
