@@ -137,7 +137,7 @@ TEST(Physical, IsExactForASmoothCoat) {
   for (const double ior : kIors) {
     for (const double tint : kTints) {
       std::vector<Query> queries;
-      for (const double albedo : {0.0, 0.5, 0.9, 1.0}) {
+      for (const double albedo : {0.01, 0.5, 0.9, 1.0}) {
         for (const double view : {1.0, 0.6, 0.2, 0.02}) {
           for (const double light : {1.0, 0.4, 0.05})
             queries.push_back({{ior, albedo, tint, 0}, view, light});
