@@ -25,7 +25,7 @@ function embedded(file) {
 async function makePackage() {
   const folder = join(output, 'package');
   mkdirSync(folder, { recursive: true });
-  for (const name of ['index', 'gltf']) {
+  for (const name of ['index', 'gltf', 'webgpu']) {
     await build({
       entryPoints: [join(here, `src/${name}.ts`)], outfile: join(folder, `${name}.js`), bundle: true, format: 'esm', target: 'es2022',
       external: ['./packed.js'],

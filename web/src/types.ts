@@ -51,6 +51,8 @@ export interface Options {
   /** More node files: their texts by the names that messages have of them. */
   node_texts?: Record<string, string>;
   limits?: string[];
+  /** Of contracts: also materials that no primitive uses. */
+  unused?: boolean;
   /** Of evaluations and previews: "SLOT=r,g,b,a", constants instead of images. */
   texels?: string[];
 }
@@ -205,11 +207,95 @@ export interface Interface {
   template: string;
   uniforms: { block: string; role: string; size: number; array?: number; stride?: number; fields: Field[] }[];
   parameters: { name: string; type: string; fields: string[] }[];
-  textures: { name: string; type: string; role: string; color_space?: string }[];
+  textures: {
+    name: string;
+    type: string;
+    role: 'material' | 'environment' | 'object';
+    /** What of a texel the shader reads. */
+    channels: string;
+    color_space?: 'srgb' | 'linear';
+    content?: 'color' | 'normal' | 'data';
+  }[];
   inputs?: { name: string; location: number; type: string }[];
   /** Of the target "wgsl": what createBindGroupLayout wants (docs/bindings.md). */
   webgpu?: { bindings: { name: string; group: number; binding: number; visibility: string[]; [kind: string]: unknown }[] };
   [key: string]: unknown;
+}
+
+/** When in a frame a material is drawn, in this order (docs/bindings.md). */
+export type Pass = 'opaque' | 'masked' | 'looks_through' | 'blended';
+
+/** A texture of a use: which of the file's, and how its coordinates are found. */
+export interface UsedTexture {
+  /** An index into the file's textures; -1 where a stand-in is bound. */
+  texture: number;
+  pointer: string;
+  texcoord?: number;
+  transform?: { offset: [number, number]; rotation: number; scale: [number, number] };
+  stand_in?: { texel: [number, number, number, number]; color_space: 'srgb' | 'linear' };
+  /** Of a graph's own texture: its image, its sampler, and what is there without an image. */
+  file?: string;
+  sampler?: { wrap_s: string; wrap_t: string; mag_filter?: string };
+  default?: number[];
+}
+/** A material on primitives with one set of attributes (docs/manifest.md). */
+export interface Use {
+  attributes: string[];
+  /** The id of its shader. */
+  shader: string;
+  parameters: Record<string, { value: number | number[]; pointer: string; animated?: true; stand_in?: true }>;
+  uniforms: Record<string, number | number[]>;
+  textures: Record<string, UsedTexture>;
+  stand_in_attributes?: string[];
+  absent_parameters: Record<string, string[]>;
+  unfilled_ports: string[];
+}
+export interface ContractMaterial {
+  /** In the file; -1 for the default material. */
+  index: number;
+  name: string;
+  profile: string;
+  alpha_mode: 'OPAQUE' | 'MASK' | 'BLEND';
+  alpha_cutoff?: number;
+  pass: Pass;
+  depth_write: boolean;
+  blend?: { color: [string, string]; alpha: [string, string] };
+  double_sided: boolean;
+  extensions?: Record<string, string>;
+  uses: Use[];
+  terms: string[];
+  skipped: Record<string, string>;
+  ignored: string[];
+}
+export interface ContractPrimitive {
+  mesh: number;
+  primitive: number;
+  material: number;
+  use?: number;
+  attributes: Record<string, { type?: string; component_type?: string; normalized?: true }>;
+  targets?: string[][];
+  variants?: { variants: number[]; material: number; use?: number }[];
+}
+export interface ContractTexture {
+  images: { image: number; extension?: string }[];
+  sampler: { wrap_s: string; wrap_t: string; mag_filter?: string; min_filter?: string };
+}
+/** The file's entry in manifest.json. */
+export interface ContractFile {
+  source: string;
+  materials: ContractMaterial[];
+  default_material?: ContractMaterial;
+  variants?: string[];
+  primitives?: ContractPrimitive[];
+  textures?: ContractTexture[];
+  images?: { uri?: string; buffer_view?: number; data_uri?: true; mime_type?: string }[];
+}
+/** manifest.json, as far as the types say it. */
+export interface Manifest {
+  lacquer: string;
+  schema: number;
+  files: ContractFile[];
+  shaders: Record<string, Interface>;
 }
 
 /** Numbers by the names of a block's fields. */

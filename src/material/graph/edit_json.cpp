@@ -174,7 +174,9 @@ const Edit::Kind* Edit::kind(json::Report& report, const json::Path& path) const
                    "it needs " + listOf(kind.keys));
     });
   }
-  for (const auto& [key, value] : json_.items()) {
+  for (const auto& member : json_.items()) {
+    const auto& key = member.first;  // no structured binding: lambdas take them
+    const auto& value = member.second;
     const json::Path here(path, key);
     if (key == "do") continue;
     if (key == "unchecked") {
