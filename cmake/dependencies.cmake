@@ -9,6 +9,7 @@ find_package(SPIRV-Tools REQUIRED)
 find_package(SPIRV-Tools-opt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(TBB REQUIRED)
+find_package(pugixml REQUIRED)
 find_package(Vulkan QUIET)  # its headers alone; `lacquer cost` opens the loader at run time, if there is one
 if(LACQUER_EXAMPLES)
   find_package(TinyGLTF QUIET)  # of examples/renderer

@@ -22,7 +22,7 @@ function(lacquer_headers)
   target_compile_definitions(lacquer_headers INTERFACE FMT_HEADER_ONLY)
   foreach(name fmt::fmt tl::expected nlohmann_json::nlohmann_json SPIRV-Headers::SPIRV-Headers TBB::tbb xxhash stb sodium
                CLI11::CLI11 glslang::glslang glslang::SPIRV glslang::glslang-default-resource-limits SPIRV-Tools-static
-               SPIRV-Tools-opt)
+               SPIRV-Tools-opt pugixml::pugixml)
     add_library(${name} INTERFACE IMPORTED GLOBAL)
     target_link_libraries(${name} INTERFACE lacquer_headers)
   endforeach()

@@ -4,7 +4,7 @@
 # Native only: compilers and validators, GPUs, runs over folders with their cache, attacks, the search for levels. Callers
 # of the first two are linked with web/absent/.
 set(LACQUER_ABSENT check vulkan cost stress cache run lod view)
-set(LACQUER_ABSENT_FILES lab/environment/files.cpp lab/eval/gpu.cpp faces/answer/findings.cpp faces/c/findings.cpp)
+set(LACQUER_ABSENT_FILES material/materialx/xml.cpp lab/environment/files.cpp lab/eval/gpu.cpp faces/answer/findings.cpp faces/c/findings.cpp)
 
 include(headers)
 # What emscripten's standard library of 2022 lacks, and loops without threads, come before the rest.

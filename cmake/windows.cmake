@@ -1,7 +1,7 @@
 # The sources for Windows by MinGW, as objects: the libraries that a program would be linked with are not there. What has no
 # POSIX there must compile without it, `long` has 32 bits, and a path is no string (docs/portability.md).
 include(headers)
-lacquer_headers(PARTS fmt tl nlohmann spirv stb xxhash.h xxh3.h CLI glslang spirv-tools tbb oneapi sodium sodium.h)
+lacquer_headers(PARTS fmt tl nlohmann spirv stb xxhash.h xxh3.h CLI glslang spirv-tools tbb oneapi sodium sodium.h pugixml.hpp pugiconfig.hpp)
 
 # lacquer_objects(): a target for the objects of all folders, and those of the program.
 function(lacquer_objects)

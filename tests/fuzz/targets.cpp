@@ -12,6 +12,7 @@ constexpr Target kTargets[] = {
     {"gltf", "gltf", Form::Gltf, feedGltf},
     {"gltf-oracle", "gltf", Form::Gltf, judgeGltf},
     {"glb", "glb", Form::Glb, feedGltf},
+    {"mtlx", "mtlx", Form::Bytes, feedGltf},
     {"addresses", "gltf", Form::Gltf, feedAddresses},
     {"graph", "graph", Form::Graph, feedGraph},
     {"graph-oracle", "graph", Form::Graph, judgeGraph},

@@ -24,6 +24,10 @@ Key contentOf(const material::Material& material, const gltf::VertexAttributes& 
   key.number(material.textures.size());
   for (const auto& texture : material.textures) {
     key.number(texture.property).number(texture.info.texture).number(texture.info.texCoord);
+    if (!texture.info.group.empty()) {
+      key.text(texture.info.group).text(texture.info.output);
+      key.key(keyOf(graph::toJson(*material.patterns)));
+    }
     key.number(texture.info.transform.has_value());
     if (!texture.info.transform) continue;
     numbers(texture.info.transform->offset);

@@ -343,7 +343,9 @@ FileResult makeScene(const Input& input, const Key* key, const std::vector<std::
                      const Setting& setting, Structures& structures) {
   if (!input.document) return unreadable(input.path, setting, input.document.error());
   FileResult result = SceneFile(input.path, only, setting, structures).run(*input.document);
-  if (key != nullptr && result.ok && result.text.size() <= setting.options.cache_size / kCachePart) {
+  // What a file includes may change without it.
+  if (key != nullptr && result.ok && input.document->included.empty() &&
+      result.text.size() <= setting.options.cache_size / kCachePart) {
     const StageTimer timer(setting.times, StageOfRun::Cache);
     setting.cache->put(*key, toBlob(result));
   }

@@ -45,7 +45,15 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
   Result<graph::Graph> graph =
       model::build(**model, **wanted, withoutTextures(material, *(*model)->schema, *simpler), attributes,
                    build, warnings, origins);
-  if (graph) simplify(*graph, language, *simpler);
+  if (!graph) return graph;
+  if (!graph->groups.empty()) {
+    // What computes texels: a template may not give all that its nodes take.
+    if (Diagnostics wrong = graph::check(*graph, language, limitsOf(options).value_or(Limits{}).nodes);
+        hasError(wrong))
+      return tl::make_unexpected(std::move(wrong));
+    *graph = graph::flattened(std::move(*graph), language);
+  }
+  simplify(*graph, language, *simpler);
   return graph;
 }
 

@@ -126,8 +126,8 @@ void FileImages::passedOver(int texture, const gltf::TextureSource& source) {
 
 Result<void> FileImages::open() {
   if (opened_) return {};
-  if (of_graph_) {
-    opened_ = gltf::TextureFile::beside(file_, access_, in_memory_);
+  if (of_graph_ || isMaterialX()) {
+    opened_ = gltf::TextureFile::beside(file_, access_, in_memory_ || bytes_ != nullptr);
     return {};
   }
   Result<gltf::TextureFile> opened = bytes_ ? gltf::TextureFile::fromMemory(*bytes_, file_, access_)
@@ -138,7 +138,7 @@ Result<void> FileImages::open() {
 }
 
 gltf::Geometry FileImages::geometry(size_t material) {
-  if (of_graph_ || !open()) return {};
+  if (of_graph_ || isMaterialX() || !open()) return {};
   return gltf::geometryOf(*opened_, material);
 }
 

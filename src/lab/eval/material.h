@@ -54,6 +54,8 @@ private:
     uint64_t used = 0;    ///< a later use has a larger number
   };
 
+  /// Its images are files that the document names, and it has no geometry.
+  bool isMaterialX() const { return file_.ends_with(".mtlx"); }
   Result<void> open();
   Result<Held> decode(const Result<std::string>& bytes, const Place& place);
   template <class Bytes>

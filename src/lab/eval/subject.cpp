@@ -21,7 +21,16 @@ Result<graph::Graph> graphOf(material::Material material, const gltf::VertexAttr
     originals.emplace_back().texture = texture.info.texture;
     texture.info.texture = static_cast<int>(originals.size()) - 1;
   }
-  return buildGraph(material, attributes, library, options, warnings);
+  Result<graph::Graph> graph = buildGraph(material, attributes, library, options, warnings);
+  if (!graph || !material.patterns) return graph;
+  // And those of patterns, which the file names itself.
+  for (graph::Texture& slot : graph->textures) {
+    if (!material.patterns->findTexture(slot.name)) continue;
+    originals.push_back(slot);
+    slot.file.clear();
+    slot.texture = static_cast<int>(originals.size()) - 1;
+  }
+  return graph;
 }
 
 }  // namespace

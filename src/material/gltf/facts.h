@@ -30,6 +30,7 @@ struct TextureInfo {
   std::optional<TextureTransform> transform;  ///< present when the file has the extension, even if identity
   std::string pointer;                        ///< JSON pointer of this textureInfo
   std::vector<double> members;                ///< what the declaration of the texture adds, in its order
+  std::string group, output;  ///< what computes the texel in the texture's place; empty for none
   /// What animations change (KHR_animation_pointer): of the transform, and of the members, by their places.
   struct Animated {
     bool offset = false, rotation = false, scale = false;

@@ -40,6 +40,8 @@ constexpr Beside kRows[] = {
     {"MPEG_texture_video", kImages},
     {"MSFT_texture_dds", kImages},
     {"KHR_texture_transform", "it is implemented, in textureInfos"},
+    {"KHR_texture_procedurals", "it is implemented, in textureInfos"},
+    {"EXT_texture_procedurals_mx_1_39", "which nodes the procedural textures have"},
     {"KHR_lights_punctual", kLights},
     {"EXT_lights_ies", kLights},
     {"EXT_lights_image_based", kLights},

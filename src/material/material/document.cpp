@@ -15,6 +15,7 @@
 #include "material/beside.h"
 #include "material/material.h"
 #include "material/reader.h"
+#include "materialx/materialx.h"
 #include "support/file.h"
 #include "support/text.h"
 
@@ -108,8 +109,52 @@ void checkExtensions(const Json& root, const Schema& schema, Report& report) {
   }
 }
 
+/// What computes texels in the place of textures, where the file has such a thing.
+materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, const ReadOptions& options,
+                                     Document& document) {
+  const Json* extensions = json::member(root, "extensions");
+  const Json* found = extensions == nullptr ? nullptr : json::member(*extensions, "KHR_texture_procedurals");
+  if (found == nullptr) return {};
+  const Json* required = json::member(root, "extensionsRequired");
+  bool needed = false;
+  for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i)
+    needed = needed || (*required)[i] == Json("KHR_texture_procedurals");
+  return materialx::readProcedurals(*found, document.path, *schema.library, options.limits, needed,
+                                    document.diagnostics);
+}
+
+/// A MaterialX document: its surfaces as materials of a glTF file without a scene.
+Result<Document> readMaterialX(std::string_view text, const std::string& name, const Schema& schema,
+                               const ReadOptions& options) {
+  // Names that parameters of properties have.
+  materialx::Names reserved;
+  for (const Property& property : schema.properties) {
+    reserved.insert(property.parameter_name);
+    for (const lang::PropertyDecl& member : property.decl->members)
+      reserved.insert(fmt::format("{}_{}", property.parameter_name, parameterName(member.name)));
+  }
+  Result<materialx::Materials> read =
+      materialx::readMaterials(text, name, *schema.library, options.limits, reserved);
+  if (!read) return tl::make_unexpected(read.error());
+  Document document;
+  document.path = name;
+  document.diagnostics = std::move(read->diagnostics);
+  document.included = std::move(read->files);
+  document.uses.resize(read->materials.size());
+  const FileFacts facts{name, document, options.permissive, &read->procedurals};
+  for (size_t i = 0; i < read->materials.size(); ++i) {
+    Material& material = document.materials.emplace_back(readMaterial(read->materials[i], i, schema, facts));
+    material.patterns = read->procedurals.patterns;
+    Diagnostics& own = read->of_materials[i];
+    own.insert(own.end(), material.diagnostics.begin(), material.diagnostics.end());
+    material.diagnostics = std::move(own);
+  }
+  return document;
+}
+
 Result<Document> readDocument(std::string_view bytes, const std::string& name, const Schema& schema,
                               const ReadOptions& options) {
+  if (materialx::isXml(bytes)) return readMaterialX(bytes, name, schema, options);
   const Result<std::string_view> text = gltf::jsonText(bytes, name);
   if (!text) return tl::make_unexpected(text.error());
   Document document;
@@ -127,7 +172,8 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
 
   document.path = name;
   gltf::readScene(*root, document);
-  const FileFacts facts{name, document, options.permissive};
+  const materialx::Procedurals procedurals = proceduralsOf(*root, schema, options, document);
+  const FileFacts facts{name, document, options.permissive, procedurals.patterns ? &procedurals : nullptr};
   Report of_scene(name, document.diagnostics);
   checkExtensions(*root, schema, of_scene);
   if (const Json* materials = json::member(*root, "materials")) {
@@ -136,6 +182,7 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
     document.materials.reserve(materials->size());
     for (size_t i = 0; i < materials->size(); ++i) {
       document.materials.push_back(readMaterial((*materials)[i], i, schema, facts));
+      document.materials.back().patterns = procedurals.patterns;
       if (const auto it = animated.find(i); it != animated.end())
         readAnimated(it->second, schema, name, document.materials.back());
     }

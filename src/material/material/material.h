@@ -2,6 +2,7 @@
 // what the file leaves out. Numbers are doubles as the JSON has them.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "ir/dag.h"
 #include "material/schema.h"
 #include "support/limits.h"
+
+namespace lacquer::graph {
+struct Graph;
+}
 
 namespace lacquer::material {
 
@@ -30,6 +35,8 @@ struct Material {
   std::vector<uint16_t> animated;    ///< numbers that animations change, sorted
   std::vector<uint16_t> extensions;  ///< those that have an effect; glTF's own (0) is not listed
   std::vector<std::string> ignored;  ///< JSON pointers of extensions that are not implemented, sorted
+  /// The groups that compute texels (gltf::TextureInfo::group), with their parameters and textures.
+  std::shared_ptr<const graph::Graph> patterns;
   Diagnostics diagnostics;  ///< of this material; one of severity Error means: generate nothing for it
 
   bool has(uint16_t extension) const;
@@ -41,6 +48,7 @@ struct Material {
 /// A file's materials and the facts of its scene.
 struct Document : gltf::Scene {
   std::vector<Material> materials;
+  std::vector<std::string> included;  ///< files whose text is a part of it
 };
 
 struct ReadOptions {
@@ -48,8 +56,9 @@ struct ReadOptions {
   Limits limits = {};
 };
 
-/// Reads a .gltf or .glb file. Buffers and images need not exist. Errors: what makes the whole file unusable
-/// (unreadable, not JSON, truncated GLB, wrong root type); errors of one material are in that material.
+/// Reads a .gltf, .glb or .mtlx file. Buffers and images need not exist. Errors: what makes the whole file
+/// unusable (unreadable, not JSON, truncated GLB, wrong root type); errors of one material are in that
+/// material.
 Result<Document> read(const std::string& path, const Schema& schema, const ReadOptions& options);
 
 /// As read(), from memory; `name` stands for the path in diagnostics.

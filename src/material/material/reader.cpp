@@ -22,6 +22,7 @@ using lang::PropertyDecl;
 namespace {
 
 constexpr std::string_view kTransform = "KHR_texture_transform";
+constexpr std::string_view kProcedurals = "KHR_texture_procedurals";
 
 /// "a number from 0 to 1", for messages about numbers and elements of arrays.
 std::string rangeWords(const PropertyDecl& decl) {
@@ -77,6 +78,7 @@ private:
   void texture(const PropertyDecl& decl, const Json& json, const Path& path, bool used);
   void texCoord(std::string_view name, const Json& json, const Path& path, int& out);
   void transform(const Json& json, const Path& path);
+  void procedural(const Json& json, const Path& path);
 
   bool admitted(const ExtensionDecl& decl, const Json& all, const Path& path);
   bool overruled(const ExtensionDecl& decl, const Path& path);
@@ -239,7 +241,7 @@ void MaterialReader::texture(const PropertyDecl& decl, const Json& json, const P
   };
   object(json, path, decl.name, decl.members, {{}, true, false, true}, read);
   texture_ = nullptr;
-  if (member(json, "index") == nullptr) {
+  if (member(json, "index") == nullptr && info.group.empty()) {
     report_.error("missing-property", path, fmt::format("{} has no \"index\"", decl.name),
                   "\"index\" is required");
   }
@@ -278,6 +280,35 @@ void MaterialReader::transform(const Json& json, const Path& path) {
   info.transform = out;
 }
 
+/// What computes the texel in the texture's place. Where that cannot be, the texture is taken.
+void MaterialReader::procedural(const Json& json, const Path& path) {
+  if (!json.is_object()) return report_.wrongType(path, kProcedurals, json, "an object");
+  const std::vector<materialx::Procedural>& list = file_.procedurals->list;
+  const auto fallback = [&](const Path& at, std::string message, std::string help = {}) {
+    report_.warning("procedural-fallback", at, std::move(message), std::move(help));
+  };
+  int index = -1;
+  const Json* number = member(json, "index");
+  if (number == nullptr)
+    return fallback(path, fmt::format("{} has no \"index\"", kProcedurals), "the texture is taken");
+  if (!report_.index(Path(path, "index"), "index", *number, list.size(), "procedural", index)) return;
+  const materialx::Procedural& one = list[static_cast<size_t>(index)];
+  const Json* named = member(json, "output");
+  const std::string wanted = named != nullptr && named->is_string() ? named->text() : std::string();
+  if (one.wrong)
+    return fallback(path, fmt::format("the procedural {} is wrong", index), "the texture is taken");
+  const std::string_view output = one.output(wanted);
+  if (output.empty()) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, group] : one.outputs) names.push_back(name);
+    return fallback(path, fmt::format("the procedural {} has no output {}", index, quote(wanted)),
+                    names.empty() ? "it has none: the texture is taken"
+                                  : fmt::format("it has {}: the texture is taken", listOf(names)));
+  }
+  texture_->group = one.group;
+  texture_->output = output;
+}
+
 // -- extensions --
 
 void MaterialReader::extensions(const Json& all, const Path& path, const Here& here) {
@@ -287,6 +318,8 @@ void MaterialReader::extensions(const Json& all, const Path& path, const Here& h
     const std::optional<uint16_t> index = schema_.find(name);
     if (here.texture && name == kTransform) {
       transform(json, at);
+    } else if (here.texture && name == kProcedurals && file_.procedurals != nullptr) {
+      procedural(json, at);
     } else if (here.extensible && !here.texture && index && *index != 0 &&
                schema_.extensions[*index]->inside == (here.named ? std::string_view{} : here.extension)) {
       extension(*index, all, name, json, at);

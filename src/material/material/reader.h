@@ -7,6 +7,7 @@
 
 #include "json/json.h"
 #include "material/material.h"
+#include "materialx/materialx.h"
 
 namespace lacquer::material {
 
@@ -15,6 +16,7 @@ struct FileFacts {
   std::string name;
   const gltf::Scene& scene;
   bool permissive = false;
+  const materialx::Procedurals* procedurals = nullptr;  ///< of textures; null where the file has none
 };
 
 /// Reads materials[index]. What is wrong with it goes to its diagnostics.

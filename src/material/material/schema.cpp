@@ -181,6 +181,7 @@ std::vector<Row> Schema::rows() const {
 
 Result<Schema> schemaOf(const lang::Library& library) {
   Schema schema;
+  schema.library = &library;
   Diagnostics wrong;
   for (const std::string_view name : library.names(lang::DeclKind::Extension)) {
     const Result<const lang::ExtensionDecl*> found = library.extension(name);

@@ -31,6 +31,7 @@ struct Row {
 };
 
 struct Schema {
+  const lang::Library* library = nullptr;              ///< that it was collected from
   std::vector<const lang::ExtensionDecl*> extensions;  ///< glTF's own first, then by name
   std::vector<Property> properties;
   /// By what parts call them: the properties that give it, in the order of the extensions.

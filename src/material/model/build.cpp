@@ -51,6 +51,8 @@ private:
   Source from(const Found& value);
   Source number(const Found& value);
   Source texel(uint16_t property);
+  Source computed(const gltf::TextureInfo& info, const std::string& slot);
+  void bring(const std::string& group);
   Source coordinate(uint16_t property);
   Source editable(std::string name, ir::Type type, const ir::Range& range, const Origin& origin,
                   const ir::Components& otherwise, const ir::Components& neutral, bool animated);
@@ -147,11 +149,54 @@ Source Writer::coordinate(uint16_t property) {
   return uv;
 }
 
+/// A group of the file's, with the groups, parameters and textures that it has.
+void Writer::bring(const std::string& group) {
+  const Graph& patterns = *material_.patterns;
+  std::vector<std::string> wanted{group};
+  const auto take = [&](const Source& source) {
+    if (const auto* parameter = std::get_if<graph::ParameterRef>(&source.from)) {
+      if (!graph_.findParameter(parameter->name))
+        graph_.parameters.push_back(patterns.parameters[*patterns.findParameter(parameter->name)]);
+    } else if (const auto* texture = std::get_if<graph::TextureRef>(&source.from)) {
+      if (!graph_.findTexture(texture->name))
+        graph_.textures.push_back(patterns.textures[*patterns.findTexture(texture->name)]);
+    }
+  };
+  while (!wanted.empty()) {
+    const std::string name = std::move(wanted.back());
+    wanted.pop_back();
+    if (graph_.findGroup(name)) continue;
+    const graph::Group& found = patterns.groups[*patterns.findGroup(name)];
+    graph_.groups.push_back(found);
+    for (const graph::GroupInput& input : found.inputs) {
+      if (input.by_default) take(*input.by_default);
+    }
+    for (const graph::Node& node : found.nodes) {
+      if (node.group) wanted.push_back(node.type);
+      for (const auto& [input, source] : node.inputs) take(source);
+    }
+    for (const auto& [output, source] : found.outputs) take(source);
+  }
+}
+
+/// The texel that a group computes; one instance for all of its outputs.
+Source Writer::computed(const gltf::TextureInfo& info, const std::string& slot) {
+  const std::string key = "group " + info.group;
+  for (const auto& [known, source] : texels_) {
+    if (known == key) return {graph::NodeRef{std::get<graph::NodeRef>(source.from).node, info.output}, {}};
+  }
+  bring(info.group);
+  graph_.nodes[graph_.add(slot + ".texel", info.group)].group = true;
+  texels_.emplace_back(key, Source{graph::NodeRef{slot + ".texel", {}}, {}});
+  return {graph::NodeRef{slot + ".texel", info.output}, {}};
+}
+
 /// The texel of a texture as a vec4; textures used twice in the same way are sampled once.
 Source Writer::texel(uint16_t property) {
   const gltf::TextureInfo& info = *material_.texture(property);
   const material::Property& row = model_.schema->properties[property];
   const std::string& slot = row.parameter_name;
+  if (!info.group.empty()) return computed(info, slot);
   const std::string key = fmt::format("{} {} {}", info.texture, row.decl->srgb, coordinateKey(info));
   for (const auto& [known, source] : texels_) {
     if (known == key) return source;

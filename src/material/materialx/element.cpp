@@ -1,0 +1,61 @@
+#include "materialx/element.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace lacquer::materialx {
+
+const std::string* Element::find(std::string_view attribute) const {
+  for (const auto& [name, value] : attributes) {
+    if (name == attribute) return &value;
+  }
+  return nullptr;
+}
+
+std::string_view Element::get(std::string_view attribute) const {
+  const std::string* value = find(attribute);
+  return value == nullptr ? std::string_view() : std::string_view(*value);
+}
+
+void Element::set(std::string_view attribute, std::string value) {
+  for (auto& [name, old] : attributes) {
+    if (name != attribute) continue;
+    old = std::move(value);
+    return;
+  }
+  attributes.emplace_back(std::string(attribute), std::move(value));
+}
+
+const Element* Element::child(std::string_view of, std::string_view named) const {
+  for (const Element& child : children) {
+    if (child.category == of && child.name() == named) return &child;
+  }
+  return nullptr;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpaces = " \t\r\n";
+  const size_t first = text.find_first_not_of(kSpaces);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpaces) - first + 1);
+}
+
+std::optional<std::vector<double>> numbersOf(std::string_view value) {
+  constexpr size_t kMost = 16;  // of a matrix44
+  std::vector<double> numbers;
+  while (true) {
+    const size_t comma = value.find(',');
+    std::string_view one = trimmed(value.substr(0, comma));
+    if (one.starts_with('+')) one.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(one.data(), one.data() + one.size(), number);
+    if (error != std::errc{} || end != one.data() + one.size() || !std::isfinite(number)) return std::nullopt;
+    numbers.push_back(number);
+    if (comma == std::string_view::npos) return numbers;
+    if (numbers.size() == kMost) return std::nullopt;
+    value.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace lacquer::materialx

@@ -1,0 +1,57 @@
+// A MaterialX document as a tree of elements, whether it was written as XML or as the JSON of
+// KHR_texture_procedurals. Names and values are as they were written; nothing is looked up here.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "json/json.h"
+#include "support/diagnostic.h"
+#include "support/limits.h"
+
+namespace lacquer::materialx {
+
+struct Element {
+  std::string category;  ///< "nodegraph", "input", "add"
+  std::vector<std::pair<std::string, std::string>> attributes;
+  std::vector<Element> children;
+  Place place;
+
+  /// Null where there is no such attribute.
+  const std::string* find(std::string_view attribute) const;
+  /// Empty where there is none.
+  std::string_view get(std::string_view attribute) const;
+  std::string_view name() const { return get("name"); }
+  void set(std::string_view attribute, std::string value);
+  /// A child of that category and name; null where there is none.
+  const Element* child(std::string_view category, std::string_view name) const;
+};
+
+/// A document, and what it was made of.
+struct Document {
+  Element root;
+  std::vector<std::string> files;  ///< included ones, in their order
+};
+
+/// Reads the XML of a `.mtlx` file: no entities but XML's own, no document type, UTF-8. Included files
+/// (`xi:include`) lie in the file's folder or below it. `colorspace` and `fileprefix` of the elements around
+/// have been handed down to the inputs. Errors: "xml-syntax", "xml-too-deep", "xml-too-many",
+/// "not-materialx", "unsupported-version", "include-…".
+Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits);
+
+/// The `procedurals` of the extension KHR_texture_procedurals as elements: a `nodegraph` for each, in their
+/// order, and what is in `procedural_definitions` behind them. Places have JSON pointers. What is wrong with
+/// one goes to `wrong`, with its pointer, and its element is empty then.
+std::vector<Element> readProcedurals(const json::Json& extension, const std::string& path,
+                                     const Limits& limits, Diagnostics& wrong);
+
+/// The numbers of a value such as "1, 0.5": without a locale. Nothing for what is no list of finite numbers.
+std::optional<std::vector<double>> numbersOf(std::string_view value);
+/// A text without the spaces around it.
+std::string_view trimmed(std::string_view text);
+
+}  // namespace lacquer::materialx

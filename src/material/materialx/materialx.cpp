@@ -1,0 +1,273 @@
+#include "materialx/materialx.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "materialx/element.h"
+#include "materialx/surface.h"
+#include "support/text.h"
+
+namespace lacquer::materialx {
+
+using graph::Source;
+using json::Json;
+
+bool isXml(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '<';
+}
+
+std::string_view Procedural::output(std::string_view name) const {
+  for (const auto& [file, group] : outputs) {
+    if (name.empty() || file == name) return group;
+  }
+  return {};
+}
+
+namespace {
+
+/// The form of the node for a type; any, where the document does not say it.
+std::string texelOf(std::optional<ir::Type> type) {
+  if (!type || (*type != ir::Type::Float && !ir::isFloatVector(*type))) return "texel_of";
+  return fmt::format("texel_of<{}>", ir::typeName(*type));
+}
+
+class MaterialsReader {
+public:
+  MaterialsReader(Document& document, const lang::Library& library, PatternOptions options)
+      : document_(document), patterns_({&document.root}, library, std::move(options)) {}
+
+  Result<Materials> read();
+
+private:
+  struct Made {
+    std::string name;
+    Place place;
+    Scope* scope = nullptr;
+    Diagnostics said;
+    Json json;
+    std::vector<std::pair<std::string, std::string>> outputs;
+  };
+  struct Found {
+    const Element* shader = nullptr;
+    const Element* owner = nullptr;
+  };
+
+  Found shaderOf(const Element& material);
+  void material(const Element& at, std::string_view name, const Found& found, Diagnostics said);
+  void patternsAlone();
+  void pattern(const Element& owner, const Element& output, const std::string& name);
+  static bool isSurface(const Element& element) {
+    const std::vector<std::string_view> names = translated();
+    return element.get("type") == "surfaceshader" ||
+           std::find(names.begin(), names.end(), element.category) != names.end();
+  }
+
+  Document& document_;
+  Patterns patterns_;
+  Diagnostics wrong_;
+  std::vector<Made> made_;
+};
+
+/// The surface of a material, and what it stands in.
+MaterialsReader::Found MaterialsReader::shaderOf(const Element& material) {
+  const Element& root = document_.root;
+  const Element* in = material.child("input", "surfaceshader");
+  if (in == nullptr) return {};
+  const auto node = [](const Element& owner, std::string_view name) -> const Element* {
+    for (const Element& child : owner.children) {
+      if (child.name() == name && child.category != "input" && child.category != "output") return &child;
+    }
+    return nullptr;
+  };
+  const std::string* nodegraph = in->find("nodegraph");
+  const Element* graph = nodegraph == nullptr ? nullptr : root.child("nodegraph", *nodegraph);
+  const Element* found = nodegraph == nullptr ? node(root, in->get("nodename")) : nullptr;
+  if (found != nullptr && found->category == "nodegraph") graph = std::exchange(found, nullptr);
+  if (graph == nullptr) return {found, &root};
+  for (const Element& output : graph->children) {
+    const bool wanted =
+        output.category == "output" && (in->get("output").empty() || output.name() == in->get("output"));
+    if (wanted) return {node(*graph, output.get("nodename")), graph};
+  }
+  return {};
+}
+
+void MaterialsReader::material(const Element& at, std::string_view name, const Found& found,
+                               Diagnostics said) {
+  Made made;
+  made.name = name;
+  made.place = at.place;
+  made.said = std::move(said);
+  const auto wrong = [&](const Element& where, std::string code, std::string message, std::string help) {
+    made.said.push_back(
+        {std::move(code), Severity::Error, where.place, std::move(message), std::move(help), {}});
+  };
+  made.json = Json::object();
+  made.json["name"] = Json(name);
+  if (found.shader == nullptr) {
+    wrong(at, "no-such-node", fmt::format("the material {} has no surface", quote(name)),
+          "its input surfaceshader names one");
+  } else {
+    made.scope = &patterns_.body(*found.owner, fmt::format("{}_material", name));
+    Surface surface(patterns_, *made.scope, *found.shader, made.said);
+    if (translate(surface, found.shader->category)) {
+      made.json = surface.finish(name, made_.size());
+      made.outputs = surface.outputs();
+    } else {
+      wrong(*found.shader, "unsupported-surface",
+            fmt::format("the surface {} is not translated", quote(found.shader->category)),
+            "there are " + listOf(translated()));
+    }
+  }
+  made_.push_back(std::move(made));
+}
+
+/// A pattern's output, as a colour without light.
+void MaterialsReader::pattern(const Element& owner, const Element& output, const std::string& name) {
+  const std::optional<ir::Type> type = typeOf(output.get("type"));
+  if (!type || ir::isMatrix(*type) || ir::isTexture(*type)) return;
+  Made made;
+  made.name = name;
+  made.scope = &patterns_.body(owner, fmt::format("{}_pattern", name));
+  const std::string property = "baseColorTexture";
+  made.place = output.place;
+  std::optional<Source> source = patterns_.connected(*made.scope, output);
+  made.json = Json::object();
+  made.json["name"] = name;
+  made.json["extensions"]["KHR_materials_unlit"] = Json::object();
+  if (source) {
+    const Source texel = patterns_.add(*made.scope, "texel", texelOf(type), {{"value", *source}});
+    made.scope->group().outputs.emplace_back(property, texel);
+    made.outputs.emplace_back(property, property);
+    Json& own = made.json["pbrMetallicRoughness"][property]["extensions"]["KHR_texture_procedurals"];
+    own["index"] = static_cast<uint64_t>(made_.size());
+    own["output"] = property;
+  }
+  made_.push_back(std::move(made));
+}
+
+void MaterialsReader::patternsAlone() {
+  const Element& root = document_.root;
+  for (const Element& child : root.children) {
+    if (child.category == "output") pattern(root, child, std::string(child.name()));
+    if (child.category != "nodegraph" || !child.get("nodedef").empty()) continue;
+    const auto outputs = std::count_if(child.children.begin(), child.children.end(),
+                                       [](const Element& e) { return e.category == "output"; });
+    for (const Element& output : child.children) {
+      if (output.category != "output" || !Patterns::isConnected(output)) continue;
+      pattern(child, output,
+              outputs == 1 ? std::string(child.name()) : fmt::format("{}/{}", child.name(), output.name()));
+    }
+  }
+}
+
+Result<Materials> MaterialsReader::read() {
+  const Element& root = document_.root;
+  for (const Element& child : root.children) {
+    if (child.category != "surfacematerial") continue;
+    Diagnostics said;
+    for (const std::string_view other : {"backsurfaceshader", "displacementshader"}) {
+      const Element* in = child.child("input", other);
+      if (in == nullptr || !Patterns::isConnected(*in)) continue;
+      said.push_back({"not-translated",
+                      Severity::Warning,
+                      in->place,
+                      fmt::format("{} has no counterpart in glTF", other),
+                      "it is left out",
+                      {}});
+    }
+    material(child, child.name(), shaderOf(child), std::move(said));
+  }
+  if (made_.empty()) {
+    for (const Element& child : root.children) {
+      if (isSurface(child) && child.category != "nodedef" && child.category != "output" &&
+          child.category != "input")
+        material(child, child.name(), {&child, &root}, {});
+    }
+  }
+  if (made_.empty()) patternsAlone();
+  if (made_.empty())
+    return fail("no-materials", root.place,
+                "the document has no material, no surface and no pattern's output",
+                "a surfacematerial, a surface, or a nodegraph with an output is drawn");
+  patterns_.finish();
+  Materials result;
+  result.files = document_.files;
+  for (const Diagnostic& one : patterns_.wrong()) addBounded(result.diagnostics, one);
+  for (Made& made : made_) {
+    const bool wrong = made.scope != nullptr && patterns_.isWrong(made.scope->group().name);
+    if (wrong) {
+      made.said.push_back({"wrong-pattern",
+                           Severity::Error,
+                           made.place,
+                           fmt::format("a pattern of the material {} is wrong", quote(made.name)),
+                           "the errors of the file say where",
+                           {}});
+    }
+    if (hasError(made.said)) {
+      made.json = Json::object();
+      made.json["name"] = made.name;
+    }
+    result.materials.push_back(std::move(made.json));
+    result.of_materials.push_back(std::move(made.said));
+    result.procedurals.list.push_back(
+        {made.scope == nullptr ? std::string() : made.scope->group().name, std::move(made.outputs), wrong});
+  }
+  result.procedurals.patterns = std::make_shared<const graph::Graph>(std::move(patterns_.graph()));
+  return result;
+}
+
+}  // namespace
+
+Result<Materials> readMaterials(std::string_view text, const std::string& path, const lang::Library& library,
+                                const Limits& limits, const Names& reserved) {
+  Result<Document> document = readXml(text, path, limits);
+  if (!document) return tl::make_unexpected(document.error());
+  addTangentSpace(document->root);
+  return MaterialsReader(*document, library, {true, limits.nodes, reserved}).read();
+}
+
+Procedurals readProcedurals(const Json& extension, const std::string& path, const lang::Library& library,
+                            const Limits& limits, bool required, Diagnostics& diagnostics) {
+  Diagnostics wrong;
+  Element root;
+  root.category = "materialx";
+  root.children = readProcedurals(extension, path, limits, wrong);
+  Patterns patterns({&root}, library, {false, limits.nodes, {}});
+  Procedurals made;
+  std::vector<Scope*> scopes;
+  for (const Element& graph : root.children) {
+    Procedural& one = made.list.emplace_back();
+    Scope*& scope = scopes.emplace_back(nullptr);
+    one.wrong = graph.children.empty();
+    if (one.wrong) continue;
+    scope = &patterns.body(graph, graph.name().empty() ? "procedural" : graph.name());
+    one.group = scope->group().name;
+    for (const Element& output : graph.children) {
+      if (output.category != "output") continue;
+      const std::optional<Source> source = patterns.connected(*scope, output);
+      if (!source) continue;
+      const Source texel = patterns.add(*scope, fmt::format("{}_texel", output.name()),
+                                        texelOf(typeOf(output.get("type"))), {{"value", *source}});
+      scope->group().outputs.emplace_back(graphName(output.name()), texel);
+      one.outputs.emplace_back(output.name(), graphName(output.name()));
+    }
+  }
+  patterns.finish();
+  for (size_t i = 0; i < made.list.size(); ++i) {
+    if (scopes[i] != nullptr) made.list[i].wrong = patterns.isWrong(made.list[i].group);
+  }
+  for (const Diagnostics* list : {&std::as_const(wrong), &patterns.wrong()}) {
+    for (Diagnostic one : *list) {
+      if (!required && one.severity == Severity::Error) one.severity = Severity::Warning;
+      addBounded(diagnostics, std::move(one));
+    }
+  }
+  made.patterns = std::make_shared<const graph::Graph>(std::move(patterns.graph()));
+  return made;
+}
+
+}  // namespace lacquer::materialx

@@ -1,0 +1,64 @@
+// MaterialX as a source of materials: a document's surfaces as glTF's properties, its patterns as groups of a
+// graph; and the procedural textures of a glTF file, which are the same patterns.
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graph/graph.h"
+#include "json/json.h"
+#include "lang/library.h"
+#include "support/diagnostic.h"
+#include "support/limits.h"
+
+namespace lacquer::materialx {
+
+/// What computes a texel in a texture's place.
+struct Procedural {
+  std::string group;  ///< of Procedurals::patterns; each of its outputs is a vec4 in [0, 1]
+  /// By what the file calls it, and in the group.
+  std::vector<std::pair<std::string, std::string>> outputs;
+  bool wrong = false;  ///< it cannot be read, and that was said
+
+  /// What the group calls an output; the only one for an empty name; empty where there is no such.
+  std::string_view output(std::string_view name) const;
+};
+
+struct Procedurals {
+  std::vector<Procedural> list;
+  /// Groups, parameters and textures; null where there are none.
+  std::shared_ptr<const graph::Graph> patterns;
+};
+
+/// What a document has: as a glTF file would have it, its `materials`, whose textures name the procedurals by
+/// their numbers.
+struct Materials {
+  json::Json materials = json::Json::array();
+  std::vector<Diagnostics> of_materials;  ///< of each, beside what reading `materials` finds
+  Procedurals procedurals;
+  Diagnostics diagnostics;         ///< of the document as a whole
+  std::vector<std::string> files;  ///< that it includes
+};
+
+using Names = std::set<std::string, std::less<>>;
+
+/// True for text that is XML and no JSON: its first character that is no space is `<`.
+bool isXml(std::string_view text);
+
+/// Reads a document; `path` is where its included files are looked for. Surfaces are translated to glTF's
+/// properties, and numbers of patterns become parameters with other names than the reserved ones; without a
+/// material, and without a surface, each output of a pattern is an unlit material. Errors: those of
+/// readXml(), and "no-materials".
+Result<Materials> readMaterials(std::string_view text, const std::string& path, const lang::Library& library,
+                                const Limits& limits, const Names& reserved);
+
+/// Of a glTF file's extension KHR_texture_procedurals: one for each entry of `procedurals`. What is wrong
+/// goes to the diagnostics, with JSON pointers, as warnings unless `required`.
+Procedurals readProcedurals(const json::Json& extension, const std::string& path,
+                            const lang::Library& library, const Limits& limits, bool required,
+                            Diagnostics& diagnostics);
+
+}  // namespace lacquer::materialx

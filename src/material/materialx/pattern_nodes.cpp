@@ -1,0 +1,340 @@
+// Nodes of the library, and what they are given: numbers, texts, images.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "graph/contracts.h"
+#include "graph/text.h"
+#include "lang/suggest.h"
+#include "materialx/patterns.h"
+#include "support/text.h"
+
+namespace lacquer::materialx {
+
+using graph::Source;
+
+namespace {
+
+/// What an image is read by, and no node is given: it becomes the texture's sampler.
+bool isSampling(std::string_view input) {
+  constexpr std::string_view kNames[] = {"filtertype", "uaddressmode", "vaddressmode",
+                                         "wrapS",      "wrapT",        "layer",
+                                         "framerange", "frameoffset",  "frameendaction"};
+  return std::find(std::begin(kNames), std::end(kNames), input) != std::end(kNames);
+}
+
+bool samplesFile(const Element& node) {
+  return std::any_of(node.children.begin(), node.children.end(), [](const Element& child) {
+    return child.category == "input" && child.get("type") == "filename";
+  });
+}
+
+const lang::Param* paramOf(const lang::NodeDecl& form, std::string_view name) {
+  const auto it = std::find_if(form.params.begin(), form.params.end(),
+                               [&](const lang::Param& p) { return p.name == name; });
+  return it == form.params.end() ? nullptr : &*it;
+}
+
+/// Whether the form gives the node's type and has its inputs with their types.
+bool gives(const lang::NodeDecl& form, const Element& node) {
+  const std::optional<ir::Type> type = typeOf(node.get("type"));
+  return form.results.size() > 1 || !type || form.results[0].type == *type;
+}
+
+bool takes(const lang::NodeDecl& form, const Element& node, bool types) {
+  return std::all_of(node.children.begin(), node.children.end(), [&](const Element& input) {
+    if (input.category != "input") return true;
+    const lang::Param* param = paramOf(form, input.name());
+    if (param == nullptr) return isSampling(input.name()) || (input.name() == "default" && samplesFile(node));
+    const std::optional<ir::Type> type = typeOf(input.get("type"));
+    // Channels of MaterialX 1.38 make another type of what is connected.
+    return !types || !type || param->type == *type || !param->choices.empty();
+  });
+}
+
+}  // namespace
+
+void Patterns::unknownNode(const Element& element) {
+  std::vector<std::string_view> names;
+  for (const Definition& one : definitions_) names.push_back(one.nodedef->get("node"));
+  for (std::string_view name : library_.names(lang::DeclKind::Node))
+    names.push_back(name.substr(0, name.find('<')));
+  error(element, "unknown-node", fmt::format("there is no node {}", quote(element.category)),
+        lang::didYouMean(element.category, names,
+                         "the library has no such node, and the document does not define it"));
+}
+
+/// The form of a node of the library that the element means, by the types that it says.
+const lang::NodeDecl* Patterns::formOf(const Element& element) {
+  const std::vector<const lang::NodeDecl*> forms = library_.forms(element.category);
+  if (forms.empty()) return unknownNode(element), nullptr;
+  const lang::NodeDecl* found = nullptr;
+  const lang::NodeDecl* near = nullptr;
+  bool gives_any = false;
+  for (const lang::NodeDecl* form : forms) {
+    if (!gives(*form, element)) continue;
+    gives_any = true;
+    if (near == nullptr && takes(*form, element, false)) near = form;
+    if (found == nullptr && takes(*form, element, true)) found = form;
+  }
+  if (found != nullptr || near != nullptr) {
+    const Result<const lang::NodeDecl*> whole = library_.node((found != nullptr ? found : near)->name);
+    if (whole) return *whole;
+    error(element, "unknown-node",
+          fmt::format("the node {} is wrong: {}", quote(element.category), whole.error()[0].message));
+    return nullptr;
+  }
+  if (!gives_any) {
+    std::vector<std::string_view> types;
+    for (const lang::NodeDecl* form : forms) {
+      const std::string_view type = nameOf(form->results[0].type);
+      if (std::find(types.begin(), types.end(), type) == types.end()) types.push_back(type);
+    }
+    error(element, "wrong-type",
+          fmt::format("the node {} gives no {}", quote(element.category), quote(element.get("type"))),
+          "it gives " + listOf(types, "or"));
+    return nullptr;
+  }
+  for (const Element& input : element.children) {
+    if (input.category != "input") continue;
+    std::vector<std::string_view> names;
+    for (const lang::NodeDecl* form : forms) {
+      for (const lang::Param& param : form->params) {
+        if (std::find(names.begin(), names.end(), param.name) == names.end()) names.push_back(param.name);
+      }
+    }
+    if (std::find(names.begin(), names.end(), input.name()) != names.end() || isSampling(input.name()))
+      continue;
+    error(input, "unknown-input",
+          fmt::format("the node {} has no input {}", quote(element.category), quote(input.name())),
+          lang::didYouMean(input.name(), names));
+    return nullptr;
+  }
+  error(element, "wrong-type",
+        fmt::format("the node {} takes no inputs of these types", quote(element.category)));
+  return nullptr;
+}
+
+void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& made) {
+  const lang::NodeDecl* form = formOf(element);
+  if (form == nullptr) return;
+  made.type = form->name;
+  std::string_view space;
+  for (const Element& input : element.children) {
+    if (input.category != "input") continue;
+    const lang::Param* param = paramOf(*form, input.name());
+    if (param == nullptr) continue;  // a sampler's
+    std::optional<Source> source;
+    if (ir::isTexture(param->type)) {
+      source = image(scope, element, input);
+      space = input.get("colorspace");
+    } else if (!param->choices.empty() && input.get("type") == "string") {
+      source = literal(scope, element, input, *param);
+    } else if (isConnected(input)) {
+      source = connected(scope, input);
+    } else if (input.find("value") != nullptr) {
+      source = ir::isMatrix(param->type) ? matrix(scope, element, input, param->type)
+                                         : literal(scope, element, input, *param);
+    }
+    if (source) made.inputs.emplace_back(std::string(input.name()), std::move(*source));
+  }
+  const std::string_view type = element.get("type");
+  const bool color = type == "color3" || type == "color4";
+  const bool decoded =
+      space.empty() || isLinear(space) || space == "srgb_texture" || space == "srgb_rec709_scene";
+  if (!color || decoded) {
+    scope.group_.nodes.push_back(std::move(made));
+    scope.elements_.push_back(&element);
+    return;
+  }
+  // What a texture's format does not decode.
+  const std::string converter = fmt::format("{}_to_lin_rec709", space == "lin_ap1" ? "acescg" : space);
+  if (!isColorSpace(space) || library_.forms(converter).empty())
+    return error(element, "unknown-colorspace",
+                 fmt::format("the image is of the colour space {}", quote(space)),
+                 "those of MaterialX's library are known: lin_rec709, srgb_texture, acescg, g22_rec709, …");
+  graph::Node convert;
+  convert.id = std::exchange(made.id, freeName(made.id + "_texel", scope.taken_));
+  convert.type = converter;
+  convert.inputs.emplace_back("in", Source{graph::NodeRef{made.id, {}}, {}});
+  for (graph::Node* node : {&made, &convert}) {
+    scope.group_.nodes.push_back(std::move(*node));
+    scope.elements_.push_back(&element);
+  }
+}
+
+// -- values --
+
+/// A parameter for a number of the document.
+std::string Patterns::parameter(const Element& at, std::string name, const std::string& pointer,
+                                ir::Type type, const ir::Components& value, const ir::Range& range) {
+  graph::Parameter& made = graph_.parameters.emplace_back();
+  made.name = freeName(std::move(name), parameter_names_);
+  made.type = type;
+  made.value = value;
+  made.neutral = value;
+  made.range = range;
+  made.pointer = at.place.pointer.empty() ? pointer : at.place.pointer;
+  return made.name;
+}
+
+std::optional<Source> Patterns::literal(Scope& scope, const Element& element, const Element& input,
+                                        const lang::Param& param) {
+  // A text, its own or that of the interface.
+  if (!param.choices.empty() && input.get("type") != "integer") {
+    const Element* from = &input;
+    if (const std::string* name = input.find("interfacename"))
+      from = scope.interface_ == nullptr ? nullptr : scope.interface_->child("input", *name);
+    const std::string value(from == nullptr ? std::string_view() : from->get("value"));
+    if (std::find(param.choices.begin(), param.choices.end(), value) != param.choices.end())
+      return Source{graph::Choice{value}, {}};
+    error(input, "unknown-value", fmt::format("{} is {}", quote(input.name()), quote(value)),
+          fmt::format("it must be {}", listOf(param.choices, "or")));
+    return std::nullopt;
+  }
+  if (!typeOf(input.get("type")) && !input.get("type").empty()) {
+    if (input.get("value").empty()) return std::nullopt;
+    error(input, "wrong-type",
+          fmt::format("{} is of the type {}", quote(input.name()), quote(input.get("type"))),
+          fmt::format("it must be {}", quote(nameOf(param.type))));
+    return std::nullopt;
+  }
+  const ir::Type type = typeOf(input.get("type")).value_or(param.type);
+  if (ir::isMatrix(type)) return matrix(scope, element, input, type);
+  const Result<ir::Components> value = valueOf(input, type);
+  if (!value) {
+    for (const Diagnostic& one : value.error()) error(input, one.code, one.message, one.help);
+    return std::nullopt;
+  }
+  const bool number = type == ir::Type::Float || ir::isFloatVector(type);
+  if (!number || !options_.editable)
+    return Source{graph::Literal{type == ir::Type::Int ? ir::Type::Float : type, *value}, {}};
+  // As the document names it: "NG/noise/amplitude", "noise/amplitude" beside the graphs.
+  std::vector<std::string_view> path;
+  if (scope.owner_->category == "nodegraph") path.push_back(scope.owner_->name());
+  if (&element != scope.owner_) path.push_back(element.name());
+  path.push_back(input.name());
+  std::string name;
+  std::string pointer;
+  for (const std::string_view part : path) {
+    name += (name.empty() ? "" : "_") + graphName(part);
+    pointer += fmt::format("/{}", part);
+  }
+  for (int i = 0; param.has_range && i < ir::componentCount(type); ++i) {
+    const double x = (*value)[static_cast<size_t>(i)];
+    if (param.range.contains(x)) continue;
+    error(input, "out-of-range", fmt::format("{} is {}", quote(input.name()), x),
+          fmt::format("the range is {}", ir::rangeText(param.range)));
+    return std::nullopt;
+  }
+  ir::Range range;
+  if (param.has_range) range = param.range;
+  return Source{graph::ParameterRef{parameter(input, std::move(name), pointer, type, *value, range)}, {}};
+}
+
+/// A matrix by its rows, which the node `creatematrix` takes.
+std::optional<Source> Patterns::matrix(Scope& scope, const Element& element, const Element& input,
+                                       ir::Type type) {
+  const size_t side = type == ir::Type::Mat3 ? 3 : 4;
+  const std::optional<std::vector<double>> numbers = numbersOf(input.get("value"));
+  if (!numbers || numbers->size() != side * side) {
+    error(input, "wrong-value",
+          fmt::format("the value of {} is {}", quote(input.name()), quote(input.get("value"))),
+          fmt::format("it must be {} numbers, with commas between", side * side));
+    return std::nullopt;
+  }
+  graph::Inputs rows;
+  for (size_t row = 0; row < side; ++row) {
+    ir::Components components{};
+    std::copy_n(numbers->begin() + static_cast<ptrdiff_t>(row * side), side, components.begin());
+    rows.emplace_back(fmt::format("in{}", row + 1),
+                      Source{graph::Literal{side == 3 ? ir::Type::Vec3 : ir::Type::Vec4, components}, {}});
+  }
+  return add(scope, fmt::format("{}_{}", element.name(), input.name()), "creatematrix", std::move(rows));
+}
+
+// -- images --
+
+/// The file's name with the document's tokens in place of their names.
+std::string Patterns::fileOf(const Scope& scope, const Element& input) {
+  std::string file(trimmed(input.get("value")));
+  const auto replace = [&](const std::string& token, std::string_view value) {
+    const size_t at = file.find(token);
+    if (at == std::string::npos) return false;
+    file.replace(at, token.size(), value);
+    return true;
+  };
+  std::vector<const Element*> owners{scope.owner_};
+  owners.insert(owners.end(), documents_.begin(), documents_.end());
+  for (const Element* owner : owners) {
+    for (const Element& token : owner->children) {
+      if (token.category == "token") replace(fmt::format("[{}]", token.name()), token.get("value"));
+    }
+  }
+  const bool udim = replace("<UDIM>", "1001");
+  if (replace("<UVTILE>", "u1_v1") || udim)
+    warning(input, "first-tile", fmt::format("{} is an image for each tile", quote(input.get("value"))),
+            "the first tile's is taken for all");
+  return file;
+}
+
+std::optional<Source> Patterns::image(Scope& scope, const Element& element, const Element& input) {
+  const Element* from = &input;
+  if (const std::string* name = input.find("interfacename")) {
+    from = scope.interface_ == nullptr ? nullptr : scope.interface_->child("input", *name);
+    if (from == nullptr || scope.interface_ != scope.owner_) return connected(scope, input);
+  }
+  graph::Texture texture;
+  const std::string_view type = element.get("type");
+  const bool color = type == "color3" || type == "color4" || type == "multioutput";
+  const std::string_view space = from->get("colorspace");
+  texture.srgb = color && (space == "srgb_texture" || space == "srgb_rec709_scene");
+  if (const std::string* number = from->find("texture")) {
+    const std::optional<std::vector<double>> index = numbersOf(*number);
+    texture.texture = index && (*index)[0] >= 0 && (*index)[0] < 1e9 ? static_cast<int>((*index)[0]) : -1;
+  } else {
+    texture.file = fileOf(scope, *from);
+  }
+  const auto wrapOf = [&](std::string_view name, std::string_view usd) {
+    const Element* mode = element.child("input", name);
+    if (mode == nullptr) mode = element.child("input", usd);
+    const std::string_view value = mode == nullptr ? std::string_view() : mode->get("value");
+    if (value == "constant" || value == "black")
+      warning(*mode, "wrap-clamped", fmt::format("{} is {}", quote(name), quote(value)),
+              "beyond its edge the image has its edge's colour here");
+    return value == "clamp" || value == "constant" || value == "black" ? graph::Wrap::Clamp
+           : value == "mirror"                                         ? graph::Wrap::Mirror
+                                                                       : graph::Wrap::Repeat;
+  };
+  texture.wrap = {wrapOf("uaddressmode", "wrapS"), wrapOf("vaddressmode", "wrapT")};
+  const Element* filter = element.child("input", "filtertype");
+  texture.nearest = filter != nullptr && filter->get("value") == "closest";
+  const Element* fallback = element.child("input", "default");
+  ir::Components color_of{0, 0, 0, 0};
+  if (fallback != nullptr && fallback->find("value") != nullptr) {
+    const std::optional<ir::Type> of = typeOf(fallback->get("type"));
+    const Result<ir::Components> value =
+        of ? valueOf(*fallback, *of) : Result<ir::Components>(ir::Components{});
+    if (value) color_of = *value;
+    if (of == ir::Type::Float) color_of = {color_of[0], color_of[0], color_of[0], 1};
+    if (of == ir::Type::Vec3) color_of[3] = 1;
+  }
+  if (texture.texture < 0) texture.color = color_of;
+  texture.pointer = from->place.pointer.empty() ? fmt::format("/{}/{}", scope.group_.name, element.name())
+                                                : from->place.pointer;
+  std::string key = fmt::format(
+      "{} {} {} {} {} {} {}", texture.file, texture.texture, texture.srgb, static_cast<int>(texture.wrap[0]),
+      static_cast<int>(texture.wrap[1]), texture.nearest,
+      texture.color ? fmt::format("{} {} {} {}", color_of[0], color_of[1], color_of[2], color_of[3])
+                    : std::string());
+  const auto [it, fresh] = textures_.try_emplace(std::move(key));
+  if (fresh) {
+    texture.name = it->second = freeName(
+        graphName(element.name().empty() ? input.name() : element.name()) + "_image", texture_names_);
+    graph_.textures.push_back(std::move(texture));
+  }
+  return Source{graph::TextureRef{it->second}, {}};
+}
+
+}  // namespace lacquer::materialx

@@ -1,0 +1,591 @@
+#include "materialx/patterns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "lang/suggest.h"
+#include "support/text.h"
+
+namespace lacquer::materialx {
+
+using graph::Source;
+
+namespace {
+
+/// Outputs, conversions and swizzles that stand for what is behind them.
+constexpr size_t kMostAliases = 64;
+constexpr size_t kDeepestInheritance = 16;
+
+/// Elements of a body that are no nodes.
+bool isNode(const Element& element) {
+  constexpr std::string_view kOthers[] = {
+      "input",     "output",         "token",       "nodedef",      "implementation", "comment",   "typedef",
+      "unitdef",   "unittypedef",    "geompropdef", "attributedef", "targetdef",      "backdrop",  "look",
+      "lookgroup", "materialassign", "propertyset", "collection",   "geominfo",       "variantset"};
+  return std::find(std::begin(kOthers), std::end(kOthers), element.category) == std::end(kOthers);
+}
+
+std::string_view givenOf(std::string_view geomprop) {
+  constexpr std::pair<std::string_view, std::string_view> kGiven[] = {
+      {"UV0", "uv0"}, {"UV1", "uv1"}, {"Pworld", "position"}, {"Nworld", "normal"}, {"Tworld", "tangent"}};
+  for (const auto& [name, given] : kGiven) {
+    if (name == geomprop) return given;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string graphName(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (good) {
+      text += c;
+    } else if (!text.empty() && text.back() != '_') {
+      text += '_';
+    }
+    constexpr size_t kLongest = 80;
+    if (text.size() == kLongest) break;
+  }
+  while (text.ends_with('_')) text.pop_back();
+  if (text.empty()) return "unnamed";
+  return text[0] >= '0' && text[0] <= '9' ? "n" + text : text;
+}
+
+std::string freeName(std::string name, std::set<std::string, std::less<>>& taken) {
+  std::string free = name;
+  for (size_t i = 2; !taken.insert(free).second; ++i) free = fmt::format("{}_{}", name, i);
+  return free;
+}
+
+Patterns::Patterns(const std::vector<const Element*>& documents, const lang::Library& library,
+                   PatternOptions options)
+    : library_(library),
+      options_(std::move(options)),
+      documents_(documents),
+      parameter_names_(options_.reserved) {
+  for (const Element* document : documents) define(*document);
+}
+
+void Patterns::error(const Element& at, std::string code, std::string message, std::string help) {
+  if (now_ != nullptr) broken_.insert(now_->group_.name);
+  addBounded(wrong_, {std::move(code), Severity::Error, at.place, std::move(message), std::move(help), {}});
+}
+
+void Patterns::warning(const Element& at, std::string code, std::string message, std::string help) {
+  addBounded(wrong_, {std::move(code), Severity::Warning, at.place, std::move(message), std::move(help), {}});
+}
+
+// -- definitions --
+
+void Patterns::define(const Element& document) {
+  const auto graphFor = [&](const Element& nodedef) -> const Element* {
+    for (const Element* file : documents_) {
+      for (const Element& child : file->children) {
+        if (child.category == "nodegraph" && child.get("nodedef") == nodedef.name()) return &child;
+        if (child.category == "implementation" && child.get("nodedef") == nodedef.name() &&
+            !child.get("nodegraph").empty())
+          return file->child("nodegraph", child.get("nodegraph"));
+      }
+    }
+    return nullptr;
+  };
+  for (const Element& child : document.children) {
+    if (child.category != "nodedef" || child.get("node").empty()) continue;
+    definitions_.push_back({merged(child, 0), graphFor(child)});
+  }
+}
+
+/// A definition with the ports of those that it inherits from.
+const Element* Patterns::merged(const Element& nodedef, size_t depth) {
+  const std::string_view inherits = nodedef.get("inherit");
+  if (inherits.empty() || depth == kDeepestInheritance) return &nodedef;
+  if (const auto known = merges_.find(&nodedef); known != merges_.end()) return known->second;
+  const Element* base = nullptr;
+  for (const Element* file : documents_) {
+    if (base == nullptr) base = file->child("nodedef", inherits);
+  }
+  if (base == nullptr || base == &nodedef) return &nodedef;
+  Element& whole = merged_.emplace_back(nodedef);
+  for (const Element& port : merged(*base, depth + 1)->children) {
+    if (whole.child(port.category, port.name()) == nullptr) whole.children.push_back(port);
+  }
+  merges_.emplace(&nodedef, &whole);
+  return &whole;
+}
+
+const Element* Patterns::definitionOf(const Element& node) const {
+  const Element* best = nullptr;
+  const auto outputOf = [](const Element& nodedef) -> std::string_view {
+    if (!nodedef.get("type").empty()) return nodedef.get("type");
+    std::string_view type;
+    for (const Element& port : nodedef.children) {
+      if (port.category != "output") continue;
+      if (!type.empty()) return "multioutput";
+      type = port.get("type");
+    }
+    return type;
+  };
+  for (const Definition& definition : definitions_) {
+    const Element& nodedef = *definition.nodedef;
+    if (nodedef.get("node") != node.category) continue;
+    if (!node.get("nodedef").empty()) {
+      if (nodedef.name() == node.get("nodedef")) return &nodedef;
+      continue;
+    }
+    if (!node.get("type").empty() && outputOf(nodedef) != node.get("type")) continue;
+    if (!node.get("version").empty() && nodedef.get("version") != node.get("version")) continue;
+    const bool fits = std::all_of(node.children.begin(), node.children.end(), [&](const Element& input) {
+      const Element* port = input.category == "input" ? nodedef.child("input", input.name()) : nullptr;
+      return input.category != "input" ||
+             (port != nullptr && (input.get("type").empty() || port->get("type") == input.get("type")));
+    });
+    if (!fits) continue;
+    if (best == nullptr || nodedef.get("isdefaultversion") == "true") best = &nodedef;
+  }
+  return best;
+}
+
+// -- bodies --
+
+void Patterns::prepare(Scope& scope, const Element& owner, const Element* inputs, std::string_view name) {
+  scope.owner_ = &owner;
+  scope.interface_ = inputs;
+  scope.group_.name = freeName(graphName(name), group_names_);
+  for (const Element& child : owner.children) {
+    if (isNode(child) && !child.name().empty()) scope.siblings_.emplace(child.name(), &child);
+  }
+}
+
+const std::string& Patterns::group(const Element& nodegraph) {
+  const auto [it, fresh] = groups_.try_emplace(&nodegraph);
+  if (!fresh) return it->second->group_.name;
+  const Element* inputs = &nodegraph;
+  for (const Definition& definition : definitions_) {
+    if (definition.graph == &nodegraph) inputs = definition.nodedef;
+  }
+  Scope& scope = scopes_.emplace_back();
+  it->second = &scope;
+  prepare(scope, nodegraph, inputs, nodegraph.name());
+  Scope* const outer = std::exchange(now_, &scope);
+  groupInputs(scope);
+  now_ = outer;
+  return scope.group_.name;
+}
+
+/// Something takes that output of a nodegraph: `at`.
+void Patterns::demand(const Element& nodegraph, std::string_view output, const Element& at) {
+  (void)group(nodegraph);
+  demands_.push_back({groups_.at(&nodegraph), std::string(output), &at});
+}
+
+void Patterns::output(Scope& scope, std::string_view name, const Element& at) {
+  for (const auto& [known, source] : scope.group_.outputs) {
+    if (known == graphName(name)) return;
+  }
+  now_ = &scope;
+  const Element* output = scope.owner_->child("output", name);
+  std::optional<Source> source;
+  if (output == nullptr) {
+    std::vector<std::string_view> names;
+    for (const Element& child : scope.owner_->children) {
+      if (child.category == "output") names.push_back(child.name());
+    }
+    error(at, "unknown-output", fmt::format("{} has no output {}", quote(scope.owner_->name()), quote(name)),
+          lang::didYouMean(name, names));
+  } else if (isConnected(*output)) {
+    source = connected(scope, *output);
+  } else if (output->find("value") != nullptr) {
+    lang::Param param;
+    param.type = typeOf(output->get("type")).value_or(ir::Type::Float);
+    source = literal(scope, *scope.owner_, *output, param);
+  } else {
+    error(*output, "not-connected", fmt::format("the output {} has no value", quote(name)));
+  }
+  now_ = nullptr;
+  if (source) scope.group_.outputs.emplace_back(graphName(name), std::move(*source));
+}
+
+Scope& Patterns::body(const Element& owner, std::string_view name) {
+  Scope& scope = scopes_.emplace_back();
+  prepare(scope, owner, owner.category == "nodegraph" ? &owner : nullptr, name);
+  Scope* const outer = std::exchange(now_, &scope);
+  if (scope.interface_ != nullptr) groupInputs(scope);
+  now_ = outer;
+  return scope;
+}
+
+/// What instances of the body are given, with their values as defaults. Texts are no values of a graph: who
+/// asks for one gets the text.
+void Patterns::groupInputs(Scope& scope) {
+  for (const Element& input : scope.interface_->children) {
+    if (input.category != "input") continue;
+    const std::optional<ir::Type> type = typeOf(input.get("type"));
+    if (!type || ir::isMatrix(*type)) continue;
+    const bool file = ir::isTexture(*type);
+    if (file && scope.interface_ == scope.owner_) continue;
+    graph::GroupInput made;
+    made.name = graphName(input.name());
+    made.type = *type;
+    if (const std::string_view given = givenOf(input.get("defaultgeomprop")); !given.empty()) {
+      made.by_default = Source{graph::GivenRef{std::string(given)},
+                               *type == ir::Type::Vec3 && given == "tangent" ? "xyz" : ""};
+    } else if (file) {
+      made.by_default = image(scope, input, input);
+    } else if (input.find("value") != nullptr) {
+      lang::Param param;
+      param.type = *type;
+      made.by_default = literal(scope, *scope.owner_, input, param);
+    } else {
+      made.by_default = Source{graph::Literal{*type == ir::Type::Int ? ir::Type::Float : *type, {}}, {}};
+    }
+    scope.group_.inputs.push_back(std::move(made));
+  }
+}
+
+const std::string& Patterns::idOf(Scope& scope, const Element& element) {
+  const auto [it, fresh] = scope.ids_.try_emplace(&element);
+  if (fresh) {
+    it->second =
+        freeName(graphName(element.name().empty() ? element.category : element.name()), scope.taken_);
+    if (scope.pending_.empty()) dirty_.push_back(&scope);
+    scope.pending_.push_back(&element);
+  }
+  return it->second;
+}
+
+Source Patterns::add(Scope& scope, std::string_view name, std::string type, graph::Inputs inputs) {
+  graph::Node node;
+  node.id = freeName(graphName(name), scope.taken_);
+  node.type = std::move(type);
+  node.inputs = std::move(inputs);
+  scope.group_.nodes.push_back(std::move(node));
+  scope.elements_.push_back(nullptr);
+  return {graph::NodeRef{scope.group_.nodes.back().id, {}}, {}};
+}
+
+bool Patterns::isConnected(const Element& input) {
+  return input.find("nodename") != nullptr || input.find("nodegraph") != nullptr ||
+         input.find("interfacename") != nullptr ||
+         (input.find("output") != nullptr && input.find("value") == nullptr);
+}
+
+/// The node, nodegraph or output that an input names.
+std::optional<Patterns::Referred> Patterns::find(const Scope& scope, const Element& input) {
+  const auto beside = [&](std::string_view name, bool graphs) -> const Element* {
+    if (const auto it = scope.siblings_.find(name); it != scope.siblings_.end()) return it->second;
+    for (const Element* document : documents_) {
+      if (const Element* found = graphs ? document->child("nodegraph", name) : nullptr) return found;
+    }
+    return nullptr;
+  };
+  Referred referred;
+  referred.output = input.get("output");
+  referred.swizzle = input.get("channels");
+  const std::string* nodegraph = input.find("nodegraph");
+  const std::string* name = nodegraph != nullptr ? nodegraph : input.find("nodename");
+  if (name == nullptr) {
+    referred.element = scope.owner_->child("output", referred.output);
+    referred.output.clear();
+  } else {
+    referred.element = beside(*name, nodegraph != nullptr);
+  }
+  if (referred.element != nullptr) return referred;
+  std::vector<std::string_view> names;
+  for (const Element& child : scope.owner_->children) {
+    if (isNode(child)) names.push_back(child.name());
+  }
+  error(input, "no-such-node",
+        fmt::format("{} is connected to {}, which is not there", quote(input.name()),
+                    quote(name != nullptr ? *name : std::string(input.get("output")))),
+        lang::didYouMean(name != nullptr ? *name : std::string(input.get("output")), names));
+  return std::nullopt;
+}
+
+const Element* Patterns::upstream(const Scope& scope, const Element& input) const {
+  const std::string_view name = input.get("nodename");
+  const auto it = scope.siblings_.find(name);
+  return name.empty() || it == scope.siblings_.end() ? nullptr : it->second;
+}
+
+const Element* Patterns::nodegraph(const Scope& scope, const Element& input) const {
+  const std::string* named = input.find("nodegraph");
+  if (named == nullptr) {
+    const Element* node = upstream(scope, input);
+    return node != nullptr && node->category == "nodegraph" ? node : nullptr;
+  }
+  if (const auto it = scope.siblings_.find(*named); it != scope.siblings_.end()) return it->second;
+  for (const Element* document : documents_) {
+    if (const Element* found = document->child("nodegraph", *named)) return found;
+  }
+  return nullptr;
+}
+
+std::optional<Source> Patterns::insert(Scope& scope, Element element) {
+  const Element& kept = made_.emplace_back(std::move(element));
+  return refer(scope, kept, {&kept, {}, {}}, 0);
+}
+
+std::optional<Source> Patterns::connected(Scope& scope, const Element& input) {
+  Scope* const outer = std::exchange(now_, &scope);
+  std::optional<Source> source;
+  if (const std::string* name = input.find("interfacename")) {
+    const Element* port = scope.interface_ == nullptr ? nullptr : scope.interface_->child("input", *name);
+    if (port == nullptr) {
+      std::vector<std::string_view> names;
+      for (const Element& one : scope.owner_->children) {
+        if (one.category == "input") names.push_back(one.name());
+      }
+      error(input, "unknown-input", fmt::format("there is no interface input {}", quote(*name)),
+            lang::didYouMean(*name, names));
+    } else {
+      source = Source{graph::InputRef{graphName(*name)}, std::string(input.get("channels"))};
+    }
+  } else if (std::optional<Referred> referred = find(scope, input)) {
+    source = refer(scope, input, std::move(*referred), 0);
+  }
+  now_ = outer;
+  return source;
+}
+
+namespace {
+
+/// Of a node that stands for what it is given: a conversion between types that are one here, a swizzle of
+/// MaterialX 1.38. Null for all others.
+const Element* aliased(const Element& node) {
+  if (node.category != "convert" && node.category != "swizzle") return nullptr;
+  const Element* in = node.child("input", "in");
+  if (in == nullptr || node.category == "swizzle") return in;
+  const std::optional<ir::Type> from = typeOf(in->get("type"));
+  return from && from == typeOf(node.get("type")) ? in : nullptr;
+}
+
+}  // namespace
+
+std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referred referred, size_t depth) {
+  const Element& element = *referred.element;
+  if (depth == kMostAliases) {
+    error(input, "too-deep", fmt::format("{} outputs and conversions stand behind each other", kMostAliases));
+    return std::nullopt;
+  }
+  const auto behind = [&](const Element& next, std::string swizzle) -> std::optional<Source> {
+    std::optional<Source> source;
+    if (next.find("interfacename") != nullptr) {
+      source = connected(scope, next);
+    } else if (isConnected(next)) {
+      std::optional<Referred> further = find(scope, next);
+      if (further) source = refer(scope, next, std::move(*further), depth + 1);
+    } else if (next.find("value") != nullptr) {
+      lang::Param param;
+      param.type = typeOf(next.get("type")).value_or(ir::Type::Float);
+      source = literal(scope, element, next, param);
+    } else {
+      error(next, "not-connected", fmt::format("{} has no value", quote(next.name())));
+    }
+    if (source && !swizzle.empty()) source->swizzle = graph::swizzleBehind(source->swizzle, swizzle);
+    return source;
+  };
+  if (element.category == "output") return behind(element, referred.swizzle);
+  if (const Element* in = aliased(element); in != nullptr && definitionOf(element) == nullptr) {
+    std::string swizzle = referred.swizzle;
+    if (element.category == "swizzle") {
+      const Element* channels = element.child("input", "channels");
+      const std::string own(channels == nullptr ? std::string_view() : channels->get("value"));
+      if (own.empty() || graph::swizzleComponents(own).empty()) {
+        error(element, "wrong-channels", fmt::format("the channels are {}", quote(own)),
+              "one to four of xyzw or rgba: put a \"combine\" node where 0 or 1 is wanted");
+        return std::nullopt;
+      }
+      swizzle = graph::swizzleBehind(own, swizzle);
+    }
+    return behind(*in, swizzle);
+  }
+  const Element* interface = element.category == "nodegraph" ? &element : definitionOf(element);
+  std::string output;
+  if (interface != nullptr) {
+    std::string_view only = referred.output;
+    for (const Element& port : interface->children) {
+      if (port.category == "output" && only.empty()) only = port.name();
+    }
+    if (only.empty()) only = "out";
+    output = graphName(only);
+    const Element* graph = &element;
+    for (const Definition& definition : definitions_) {
+      if (definition.nodedef == interface) graph = definition.graph;
+    }
+    if (graph != nullptr) demand(*graph, only, input);
+  } else {
+    const std::vector<const lang::NodeDecl*> forms = library_.forms(element.category);
+    const size_t results = forms.empty() ? 1 : forms[0]->results.size();
+    const std::string* number = input.find("outputnumber");
+    const std::optional<std::vector<double>> place = number == nullptr ? std::nullopt : numbersOf(*number);
+    if (results > 1 && place && (*place)[0] >= 0 && (*place)[0] < static_cast<double>(results))
+      output = forms[0]->results[static_cast<size_t>((*place)[0])].name;
+    else if (results > 1)
+      output = referred.output;
+  }
+  return Source{graph::NodeRef{idOf(scope, element), output}, referred.swizzle};
+}
+
+void Patterns::work(Scope& scope) {
+  now_ = &scope;
+  while (!scope.pending_.empty()) {
+    const Element& element = *scope.pending_.back();
+    scope.pending_.pop_back();
+    node(scope, element);
+  }
+  now_ = nullptr;
+}
+
+void Patterns::node(Scope& scope, const Element& element) {
+  if (++count_ > options_.most) {
+    if (count_ == options_.most + 1)
+      error(element, "too-many",
+            fmt::format("the document's patterns have more than {} nodes", options_.most), raising("nodes"));
+    broken_.insert(scope.group_.name);
+    return;
+  }
+  graph::Node made;
+  made.id = scope.ids_.at(&element);
+  if (element.category == "nodegraph") {
+    made.type = group(element);
+    instance(scope, element, element, made);
+  } else if (const Element* nodedef = definitionOf(element)) {
+    const auto definition = std::find_if(definitions_.begin(), definitions_.end(),
+                                         [&](const Definition& one) { return one.nodedef == nodedef; });
+    if (definition->graph == nullptr)
+      return error(element, "no-graph",
+                   fmt::format("the definition {} has no nodegraph", quote(nodedef->name())),
+                   "code in a shading language is not read: give it a nodegraph, or a node file by --nodes");
+    made.type = group(*definition->graph);
+    instance(scope, element, *nodedef, made);
+  } else {
+    return libraryNode(scope, element, made);
+  }
+  scope.group_.nodes.push_back(std::move(made));
+  scope.elements_.push_back(&element);
+}
+
+void Patterns::instance(Scope& scope, const Element& element, const Element& interface, graph::Node& made) {
+  made.group = true;
+  for (const Element& input : element.children) {
+    if (input.category != "input") continue;
+    const bool linked = isConnected(input);
+    if (&element == &interface && !linked) continue;  // its value is the group's default
+    const Element* port = interface.child("input", input.name());
+    if (port == nullptr) {
+      std::vector<std::string_view> names;
+      for (const Element& one : interface.children) {
+        if (one.category == "input") names.push_back(one.name());
+      }
+      error(input, "unknown-input",
+            fmt::format("{} has no input {}", quote(element.category), quote(input.name())),
+            lang::didYouMean(input.name(), names));
+      continue;
+    }
+    const std::optional<ir::Type> type = typeOf(port->get("type"));
+    std::optional<Source> source;
+    if (linked) {
+      source = connected(scope, input);
+    } else if (type && ir::isTexture(*type)) {
+      source = image(scope, input, input);
+    } else if (type) {
+      lang::Param param;
+      param.type = *type;
+      source = literal(scope, element, input, param);
+    } else if (input.get("value") != port->get("value")) {
+      warning(input, "text-kept",
+              fmt::format("{} is a text, which is the same for all instances", quote(input.name())),
+              "the definition's own is taken");
+    }
+    if (source) made.inputs.emplace_back(graphName(input.name()), std::move(*source));
+  }
+}
+
+void Patterns::finish() {
+  while (!dirty_.empty() || !demands_.empty()) {
+    if (dirty_.empty()) {
+      const Demand one = std::move(demands_.back());
+      demands_.pop_back();
+      output(*one.scope, one.output, *one.at);
+      continue;
+    }
+    Scope& scope = *dirty_.back();
+    dirty_.pop_back();
+    work(scope);
+  }
+  for (Scope& scope : scopes_) {
+    if (!scope.group_.nodes.empty() || !scope.group_.outputs.empty()) graph_.groups.push_back(scope.group_);
+  }
+  if (count_ <= options_.most) checked();
+  spread();
+  // In the order of the files, whatever came to what is wrong first.
+  std::stable_sort(wrong_.begin(), wrong_.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.place.file, a.place.line, a.place.column) <
+           std::tie(b.place.file, b.place.line, b.place.column);
+  });
+}
+
+/// The whole as the compiler sees it, said where the document has it.
+void Patterns::checked() {
+  const Result<std::string> name = library_.defaultTemplate();
+  if (name) graph_.template_name = *name;
+  std::map<std::string_view, const Scope*> scopes;
+  for (const Scope& scope : scopes_) scopes.emplace(scope.group_.name, &scope);
+  for (Diagnostic& one : graph::check(graph_, library_)) {
+    if (!one.place.pointer.starts_with("/groups/")) continue;
+    const std::string rest = one.place.pointer.substr(std::string_view("/groups/").size());
+    const size_t slash = rest.find('/');
+    const auto scope = scopes.find(std::string_view(rest).substr(0, slash));
+    if (scope == scopes.end()) continue;
+    const Element* at = scope->second->owner_;
+    std::string_view nodes =
+        slash == std::string::npos ? std::string_view() : std::string_view(rest).substr(slash);
+    if (nodes.starts_with("/nodes/")) {
+      nodes.remove_prefix(std::string_view("/nodes/").size());
+      const std::optional<std::vector<double>> place = numbersOf(nodes.substr(0, nodes.find('/')));
+      if (place && (*place)[0] < static_cast<double>(scope->second->elements_.size())) {
+        const Element* element = scope->second->elements_[static_cast<size_t>((*place)[0])];
+        if (element != nullptr) at = element;
+        constexpr std::string_view kInputs = "/inputs/";
+        const size_t input = nodes.find(kInputs);
+        for (const Element& child : at->children) {
+          if (input != std::string_view::npos && child.category == "input" &&
+              graphName(child.name()) == nodes.substr(input + kInputs.size()))
+            at = &child;
+          if (at == &child) break;
+        }
+      }
+    }
+    if (one.severity == Severity::Error) {
+      // Of what is wrong already the rest says nothing new.
+      if (!broken_.insert(scope->second->group_.name).second) continue;
+    }
+    one.place = at->place;
+    addBounded(wrong_, std::move(one));
+  }
+}
+
+/// What has a broken group is broken.
+void Patterns::spread() {
+  std::map<std::string_view, std::vector<std::string_view>> users;
+  for (const graph::Group& group : graph_.groups) {
+    for (const graph::Node& node : group.nodes) {
+      if (node.group) users[node.type].push_back(group.name);
+    }
+  }
+  std::vector<std::string> left(broken_.begin(), broken_.end());
+  while (!left.empty()) {
+    const std::string name = std::move(left.back());
+    left.pop_back();
+    for (const std::string_view user : users[name]) {
+      if (broken_.emplace(user).second) left.emplace_back(user);
+    }
+  }
+}
+
+}  // namespace lacquer::materialx

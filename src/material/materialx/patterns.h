@@ -1,0 +1,145 @@
+// What a document has of patterns as groups of a graph: each nodegraph is a group, each definition with a
+// graph of its own, too.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "graph/graph.h"
+#include "lang/library.h"
+#include "materialx/element.h"
+#include "materialx/values.h"
+
+namespace lacquer::materialx {
+
+struct PatternOptions {
+  bool editable = true;                              ///< numbers become parameters of the graph
+  uint64_t most = 0;                                 ///< nodes of all bodies together
+  std::set<std::string, std::less<>> reserved = {};  ///< names that no parameter may have
+};
+
+/// The nodes of one body while it is made: of a group, whose elements stand beside each other.
+class Scope {
+public:
+  const Element& owner() const { return *owner_; }
+  graph::Group& group() { return group_; }
+
+private:
+  friend class Patterns;
+  const Element* owner_ = nullptr;
+  const Element* interface_ = nullptr;  ///< whose inputs the group has; null for none
+  graph::Group group_;
+  std::unordered_map<std::string_view, const Element*> siblings_;
+  std::unordered_map<const Element*, std::string> ids_;  ///< looked up, never walked
+  std::set<std::string, std::less<>> taken_;
+  std::vector<const Element*> pending_;
+  std::vector<const Element*> elements_;  ///< of the group's nodes
+};
+
+class Patterns {
+public:
+  /// `documents`: elements whose children are nodegraphs and definitions. They and the library live longer.
+  Patterns(const std::vector<const Element*>& documents, const lang::Library& library,
+           PatternOptions options);
+
+  /// The group of a nodegraph: its name. finish() makes of its body what is asked for.
+  const std::string& group(const Element& nodegraph);
+  /// A body of its own, beside the elements of `owner`, with the inputs of `owner` if it is a nodegraph. It
+  /// lives as long as this.
+  Scope& body(const Element& owner, std::string_view name);
+  /// Where a value of an input comes from, in a body. Nothing, and an error, where that cannot be said.
+  std::optional<graph::Source> connected(Scope& scope, const Element& input);
+  /// A node of the library in a body.
+  graph::Source add(Scope& scope, std::string_view name, std::string type, graph::Inputs inputs);
+  /// The node or output that an input is connected to, through outputs of its scope; null for none.
+  const Element* upstream(const Scope& scope, const Element& input) const;
+  /// The nodegraph that an input is connected to; null for none.
+  const Element* nodegraph(const Scope& scope, const Element& input) const;
+  /// A node of a body that the document has not: what it gives. It lives as long as this.
+  std::optional<graph::Source> insert(Scope& scope, Element element);
+  static bool isConnected(const Element& input);
+
+  /// Makes the bodies of all groups that were asked for, and checks them. Afterwards wrong() is whole.
+  void finish();
+  const Diagnostics& wrong() const { return wrong_; }
+  /// Whether a group, or one that it has, is wrong.
+  bool isWrong(const std::string& group) const { return broken_.contains(group); }
+  graph::Graph& graph() { return graph_; }
+  const Element* definitionOf(const Element& node) const;
+
+private:
+  struct Definition {
+    const Element* nodedef = nullptr;
+    const Element* graph = nullptr;  ///< null for code
+  };
+  struct Referred {
+    const Element* element = nullptr;
+    std::string output, swizzle;
+  };
+
+  void define(const Element& document);
+  const Element* merged(const Element& nodedef, size_t depth);
+  void prepare(Scope& scope, const Element& owner, const Element* inputs, std::string_view name);
+  void groupInputs(Scope& scope);
+  void work(Scope& scope);
+  void demand(const Element& nodegraph, std::string_view output, const Element& at);
+  void output(Scope& scope, std::string_view name, const Element& at);
+  void node(Scope& scope, const Element& element);
+  void instance(Scope& scope, const Element& element, const Element& interface, graph::Node& node);
+  void libraryNode(Scope& scope, const Element& element, graph::Node& node);
+  std::optional<graph::Source> literal(Scope& scope, const Element& element, const Element& input,
+                                       const lang::Param& param);
+  std::optional<graph::Source> matrix(Scope& scope, const Element& element, const Element& input,
+                                      ir::Type type);
+  std::optional<graph::Source> image(Scope& scope, const Element& element, const Element& input);
+  std::optional<graph::Source> refer(Scope& scope, const Element& input, Referred referred, size_t depth);
+  std::optional<Referred> find(const Scope& scope, const Element& input);
+  const lang::NodeDecl* formOf(const Element& element);
+  const std::string& idOf(Scope& scope, const Element& element);
+  std::string parameter(const Element& at, std::string name, const std::string& pointer, ir::Type type,
+                        const ir::Components& value, const ir::Range& range);
+  std::string fileOf(const Scope& scope, const Element& input);
+  void unknownNode(const Element& element);
+  void checked();
+  void spread();
+
+  void error(const Element& at, std::string code, std::string message, std::string help = {});
+  void warning(const Element& at, std::string code, std::string message, std::string help = {});
+
+  const lang::Library& library_;
+  PatternOptions options_;
+  std::vector<const Element*> documents_;
+  std::vector<Definition> definitions_;
+  std::deque<Element> merged_, made_;
+  std::map<const Element*, const Element*> merges_;
+  graph::Graph graph_;
+  std::deque<Scope> scopes_;
+  std::unordered_map<const Element*, Scope*> groups_;  ///< looked up, never walked
+  std::set<std::string, std::less<>> group_names_, parameter_names_, texture_names_;
+  std::map<std::string, std::string> textures_;  ///< by all that is said of one
+  struct Demand {
+    Scope* scope;
+    std::string output;
+    const Element* at;
+  };
+  std::vector<Demand> demands_;  ///< outputs of groups that something takes
+  std::vector<Scope*> dirty_;    ///< with pending nodes
+  uint64_t count_ = 0;           ///< of nodes
+  Scope* now_ = nullptr;
+  std::set<std::string, std::less<>> broken_;
+  Diagnostics wrong_;
+};
+
+/// A name of the graph: letters, digits and single underscores.
+std::string graphName(std::string_view name);
+/// One that is not among the names, to which it is added.
+std::string freeName(std::string name, std::set<std::string, std::less<>>& taken);
+
+}  // namespace lacquer::materialx

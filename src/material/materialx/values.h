@@ -1,0 +1,36 @@
+// Values as a document writes them: numbers with units and colour spaces, as numbers of the graph.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ir/dag.h"
+#include "ir/types.h"
+#include "materialx/element.h"
+
+namespace lacquer::materialx {
+
+/// "color3" and "vector3" are a Vec3; nothing for "string", "surfaceshader" and other types without numbers.
+std::optional<ir::Type> typeOf(std::string_view type);
+
+/// What a type of the graph is called in MaterialX, for messages: "vector3", of colours, too.
+std::string_view nameOf(ir::Type type);
+
+/// Whether colours of that space can be brought to linear Rec. 709: the spaces of `cmlib`, and none.
+bool isColorSpace(std::string_view space);
+/// Colours of these spaces are as they are: linear Rec. 709 and what says that it is no colour.
+bool isLinear(std::string_view space);
+/// Brings the first three components from a space of isColorSpace() to linear Rec. 709, by the formulas of
+/// MaterialX's `cmlib`.
+ir::Components toLinear(std::string_view space, ir::Components color);
+
+/// How many of the units in which a scene is (metres, degrees, seconds) one of `unit` is; nothing for no
+/// unit.
+std::optional<double> unitScale(std::string_view unittype, std::string_view unit);
+
+/// Reads the `value` of an input of a type of typeOf() but a matrix, in the graph's units and colours. An
+/// error with the input's place for what is none.
+Result<ir::Components> valueOf(const Element& input, ir::Type type);
+
+}  // namespace lacquer::materialx

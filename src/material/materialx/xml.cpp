@@ -1,0 +1,244 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include <pugixml.hpp>
+
+#include "materialx/element.h"
+#include "support/contain.h"
+#include "support/file.h"
+#include "support/text.h"
+
+namespace lacquer::materialx {
+
+namespace {
+
+/// Elements within elements: a document has nodes in graphs in a root, and documentation in these.
+constexpr size_t kDeepestElement = 32;
+/// Files that a file includes, theirs included.
+constexpr size_t kMostFiles = 256;
+
+/// What inputs have of the elements around them.
+struct Inherited {
+  std::string colorspace, fileprefix;
+};
+
+class XmlReader {
+public:
+  XmlReader(const std::string& path, const Limits& limits) : top_(path), limits_(limits) {}
+
+  Result<Document> read(std::string_view text) {
+    Document document;
+    document.root.category = "materialx";
+    file(text, top_, document.root, {});
+    if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
+    document.files = std::move(files_);
+    return document;
+  }
+
+private:
+  void file(std::string_view text, const std::string& path, Element& into, const Inherited& around);
+  void elements(pugi::xml_node parent, Element& into, const Inherited& around, size_t depth);
+  void include(pugi::xml_node node, Element& into, const Inherited& around);
+  void handDown(Element& element, const Inherited& around) const;
+  void version(Element& root);
+
+  Diagnostic& error(std::string code, ptrdiff_t offset, std::string message, std::string help = {}) {
+    Diagnostic& one = wrong_.emplace_back();
+    one.code = std::move(code);
+    one.place.file = path_;
+    one.message = std::move(message);
+    one.help = std::move(help);
+    const auto at = static_cast<size_t>(std::max<ptrdiff_t>(offset, 0));
+    if (at <= text_.size()) locate(one, text_, at);
+    return one;
+  }
+
+  /// Lines and columns of offsets that never go back far: elements come in the order of the text.
+  Place placeOf(ptrdiff_t offset) {
+    const auto at = std::min(static_cast<size_t>(std::max<ptrdiff_t>(offset, 0)), text_.size());
+    if (at < counted_) counted_ = 0, line_ = 1, start_ = 0;
+    for (; counted_ < at; ++counted_) {
+      if (text_[counted_] != '\n') continue;
+      ++line_;
+      start_ = counted_ + 1;
+    }
+    return {path_, line_, static_cast<uint32_t>(at - start_ + 1), {}};
+  }
+
+  const std::string& top_;
+  const Limits& limits_;
+  Diagnostics wrong_;
+  std::vector<std::string> files_;
+  std::vector<std::string> open_;  ///< files that are being read, to see a circle
+  uint64_t count_ = 0;
+  // Of the file that is being read.
+  std::string path_;
+  std::string_view text_;
+  size_t counted_ = 0, start_ = 0;
+  uint32_t line_ = 1;
+};
+
+void XmlReader::file(std::string_view text, const std::string& path, Element& into, const Inherited& around) {
+  const std::string outer_path = std::exchange(path_, path);
+  const std::string_view outer_text = std::exchange(text_, text);
+  const size_t outer_counted = std::exchange(counted_, 0);
+  const size_t outer_start = std::exchange(start_, 0);
+  const uint32_t outer_line = std::exchange(line_, 1);
+  pugi::xml_document xml;
+  // No entities beyond XML's own five are known to the parser, and a document type is an error below.
+  constexpr unsigned kFlags = pugi::parse_cdata | pugi::parse_escapes | pugi::parse_eol |
+                              pugi::parse_doctype | pugi::parse_wconv_attribute;
+  const pugi::xml_parse_result parsed =
+      xml.load_buffer(text.data(), text.size(), kFlags, pugi::encoding_utf8);
+  const pugi::xml_node root = xml.document_element();
+  if (!parsed) {
+    error("xml-syntax", parsed.offset, fmt::format("this is no XML: {}", parsed.description()));
+  } else if (const pugi::xml_node type =
+                 xml.find_child([](pugi::xml_node n) { return n.type() == pugi::node_doctype; })) {
+    error("xml-syntax", 0, "the file has a document type",
+          "MaterialX has none, and entities are not read: take the line away");
+  } else if (std::strcmp(root.name(), "materialx") != 0) {
+    error("not-materialx", root.offset_debug(), fmt::format("the root element is {}", quote(root.name())),
+          "a MaterialX document has <materialx version=\"1.39\">");
+  } else {
+    Element own;
+    own.place = placeOf(root.offset_debug());
+    for (const pugi::xml_attribute& a : root.attributes()) own.attributes.emplace_back(a.name(), a.value());
+    version(own);
+    Inherited inside = around;
+    if (const std::string* space = own.find("colorspace")) inside.colorspace = *space;
+    if (const std::string* prefix = own.find("fileprefix")) inside.fileprefix = *prefix;
+    if (into.attributes.empty()) {
+      into.attributes = own.attributes;
+      into.place = own.place;
+    }
+    open_.push_back(path);
+    if (!hasError(wrong_)) elements(root, into, inside, 1);
+    open_.pop_back();
+  }
+  path_ = outer_path;
+  text_ = outer_text;
+  counted_ = outer_counted;
+  start_ = outer_start;
+  line_ = outer_line;
+}
+
+void XmlReader::version(Element& root) {
+  const std::string_view text = root.get("version");
+  const size_t dot = text.find('.');
+  const auto number = [](std::string_view digits) {
+    return digits.empty() || digits.size() > 4 ||
+                   digits.find_first_not_of("0123456789") != std::string_view::npos
+               ? -1
+               : std::stoi(std::string(digits));
+  };
+  const int major = number(text.substr(0, dot));
+  const int minor = dot == std::string_view::npos ? -1 : number(text.substr(dot + 1));
+  constexpr int kLeast = 38;
+  if (major == 1 && minor >= kLeast) return;
+  Diagnostic one{
+      "unsupported-version",
+      Severity::Error,
+      root.place,
+      text.empty() ? "the document has no version" : fmt::format("the version is {}", quote(text)),
+      "Lacquer reads MaterialX 1.38 and later; MaterialX's own library brings older documents to it",
+      {}};
+  wrong_.push_back(std::move(one));
+}
+
+/// Colours and files are said on the way down what space and folder they are of.
+void XmlReader::handDown(Element& element, const Inherited& around) const {
+  const std::string_view type = element.get("type");
+  const bool file = type == "filename";
+  if ((file || type == "color3" || type == "color4") && !around.colorspace.empty() &&
+      element.find("colorspace") == nullptr)
+    element.set("colorspace", around.colorspace);
+  const std::string* value = element.find("value");
+  if (file && value != nullptr && !value->empty() && !around.fileprefix.empty() && !value->starts_with('/'))
+    element.set("value", around.fileprefix + *value);
+}
+
+void XmlReader::elements(pugi::xml_node parent, Element& into, const Inherited& around, size_t depth) {
+  for (const pugi::xml_node& node : parent.children()) {
+    if (node.type() != pugi::node_element) continue;
+    if (hasError(wrong_)) return;
+    if (depth > kDeepestElement) {
+      error("xml-too-deep", node.offset_debug(),
+            fmt::format("elements lie in each other more than {} deep", kDeepestElement));
+      return;
+    }
+    if (++count_ > limits_.values) {
+      error("xml-too-many", node.offset_debug(),
+            fmt::format("the file has more than {} elements", limits_.values), raising("values"));
+      return;
+    }
+    const std::string_view name = node.name();
+    if (name == "xi:include" || name == "include") {
+      include(node, into, around);
+      continue;
+    }
+    Element& element = into.children.emplace_back();
+    element.category = name;
+    element.place = placeOf(node.offset_debug());
+    for (const pugi::xml_attribute& a : node.attributes())
+      element.attributes.emplace_back(a.name(), a.value());
+    Inherited inside = around;
+    if (const std::string* space = element.find("colorspace")) inside.colorspace = *space;
+    if (const std::string* prefix = element.find("fileprefix")) inside.fileprefix = *prefix;
+    handDown(element, inside);
+    elements(node, element, inside, depth + 1);
+  }
+}
+
+void XmlReader::include(pugi::xml_node node, Element& into, const Inherited& around) {
+  const ptrdiff_t offset = node.offset_debug();
+  const std::string href = node.attribute("href").value();
+  if (href.empty()) return void(error("include-missing", offset, "the include has no \"href\""));
+  const std::string folder = std::filesystem::path(path_).parent_path().string();
+  const std::string first = std::filesystem::path(top_).parent_path().string();
+  const std::filesystem::path relative(href);
+  if (relative.is_absolute() || href.find(':') != std::string::npos) {
+    error("include-outside", offset, fmt::format("{} is no relative path", quote(href)),
+          "included files lie beside the document or below it");
+    return;
+  }
+  const std::optional<std::string> path = resolveBelow(folder, href, {first.empty() ? "." : first});
+  if (!path) {
+    error("include-outside", offset, fmt::format("{} leads out of the document's folder", quote(href)),
+          "included files lie beside the document or below it");
+    return;
+  }
+  if (std::find(open_.begin(), open_.end(), *path) != open_.end()) {
+    error("include-cycle", offset, fmt::format("{} includes itself", quote(href)));
+    return;
+  }
+  if (files_.size() >= kMostFiles) {
+    error("include-too-many", offset, fmt::format("more than {} files are included", kMostFiles));
+    return;
+  }
+  const Result<std::string> text = readFile(*path, limits_.file, Links::None);
+  if (!text) {
+    error("include-missing", offset,
+          fmt::format("{} cannot be read: {}", quote(href), text.error()[0].message));
+    return;
+  }
+  files_.push_back(*path);
+  // It may stand in any folder: what is shown of it is its path, so that its errors are found.
+  file(*text, *path, into, around);
+}
+
+}  // namespace
+
+Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits) {
+  if (text.size() > limits.json)
+    return fail("xml-too-large", {path, 0, 0, {}},
+                fmt::format("the file has more than {} bytes", limits.json), raising("json"));
+  return XmlReader(path, limits).read(text);
+}
+
+}  // namespace lacquer::materialx

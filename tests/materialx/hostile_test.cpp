@@ -1,0 +1,162 @@
+// Documents of others: whatever they hold, there is a message or a material.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "material/material.h"
+#include "support/materials.h"
+
+namespace lacquer::test {
+namespace {
+
+std::string codesOf(const std::string& text, const std::string& name = "hostile.mtlx") {
+  const auto document = materialsOf(text, name);
+  std::string codes;
+  const auto add = [&](const Diagnostics& list) {
+    for (const Diagnostic& one : list) codes += (codes.empty() ? "" : " ") + one.code;
+  };
+  add(document ? document->diagnostics : document.error());
+  if (document) {
+    for (const material::Material& material : document->materials) add(material.diagnostics);
+  }
+  return codes;
+}
+
+std::string inDocument(const std::string& text) {
+  return "<materialx version=\"1.39\">" + text + "</materialx>";
+}
+
+TEST(MaterialXHostile, entitiesAreOff) {
+  const std::string bomb =
+      "<?xml version=\"1.0\"?><!DOCTYPE m [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b "
+      "\"&a;&a;&a;&a;&a;&a;&a;&a;\">]>"
+      "<materialx version=\"1.39\"><surface_unlit name=\"&b;\" type=\"surfaceshader\"/></materialx>";
+  EXPECT_EQ(codesOf(bomb), "xml-syntax");
+}
+
+TEST(MaterialXHostile, elementsLieTooDeep) {
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += "<a>";
+  for (int i = 0; i < 100'000; ++i) deep += "</a>";
+  EXPECT_EQ(codesOf(inDocument(deep)), "xml-too-deep");
+}
+
+TEST(MaterialXHostile, halfAFile) {
+  const std::string whole = inDocument(
+      "<gltf_pbr name=\"s\" type=\"surfaceshader\"><input name=\"metallic\" type=\"float\" "
+      "value=\"0.5\"/></gltf_pbr>"
+      "<surfacematerial name=\"m\" type=\"material\"><input name=\"surfaceshader\" type=\"surfaceshader\" "
+      "nodename=\"s\"/></surfacematerial>");
+  EXPECT_EQ(codesOf(whole), "");
+  for (size_t size = 1; size < whole.size(); ++size) EXPECT_NE(codesOf(whole.substr(0, size)), "") << size;
+}
+
+/// A hundred thousand nodes, one behind the other.
+TEST(MaterialXHostile, nodesInARow) {
+  std::string nodes =
+      "<texel_product name=\"n0\" type=\"float\"><input name=\"a\" type=\"float\" value=\"1\"/>"
+      "<input name=\"b\" type=\"float\" value=\"1\"/></texel_product>";
+  constexpr int kCount = 100'000;
+  for (int i = 1; i < kCount; ++i)
+    nodes += fmt::format(
+        "<texel_product name=\"n{}\" type=\"float\"><input name=\"a\" type=\"float\" nodename=\"n{}\"/>"
+        "<input name=\"b\" type=\"float\" nodename=\"n{}\"/></texel_product>",
+        i, i - 1, i - 1);
+  nodes += fmt::format("<output name=\"o\" type=\"float\" nodename=\"n{}\"/>", kCount - 1);
+  EXPECT_NE(codesOf(inDocument(nodes)).find("too-many"), std::string::npos)
+      << codesOf(inDocument(nodes)).substr(0, 400);
+}
+
+TEST(MaterialXHostile, circles) {
+  EXPECT_NE(
+      codesOf(inDocument(
+                  "<nodegraph name=\"g\"><texel_normal name=\"a\" type=\"vector3\"><input name=\"normal\" "
+                  "type=\"vector3\" nodename=\"b\"/></texel_normal><texel_normal name=\"b\" "
+                  "type=\"vector3\"><input name=\"normal\" type=\"vector3\" nodename=\"a\"/></texel_normal>"
+                  "<output name=\"o\" type=\"vector3\" nodename=\"a\"/></nodegraph>"))
+          .find("cycle"),
+      std::string::npos);
+  EXPECT_NE(codesOf(inDocument("<nodegraph name=\"g\"><output name=\"a\" type=\"float\" output=\"b\"/>"
+                               "<output name=\"b\" type=\"float\" output=\"a\"/></nodegraph>"))
+                .find("too-deep"),
+            std::string::npos);
+  EXPECT_NE(
+      codesOf(
+          inDocument("<nodedef name=\"d\" node=\"mine\" type=\"float\"/><nodegraph name=\"g\" nodedef=\"d\">"
+                     "<mine name=\"m\" type=\"float\"/><output name=\"out\" type=\"float\" nodename=\"m\"/>"
+                     "</nodegraph><mine name=\"top\" type=\"float\"/>"
+                     "<output name=\"out\" type=\"float\" nodename=\"top\"/>"))
+          .find("cycle"),
+      std::string::npos);
+}
+
+/// Names that no target takes, and none at all.
+TEST(MaterialXHostile, names) {
+  for (const std::string name :
+       {"float", "1", "a b", "*/ }", "\xC3\xA4", "__", "gl_Position", "main", "in", "$", "a.b/c"}) {
+    const auto document = materialsOf(
+        inDocument("<nodegraph name=\"" + name + "\"><texel_normal name=\"" + name +
+                   "\" type=\"vector3\"><input "
+                   "name=\"normal\" type=\"vector3\" value=\"1, 0, 0\"/></texel_normal><output name=\"" +
+                   name + "\" type=\"vector3\" nodename=\"" + name + "\"/></nodegraph>"),
+        "names.mtlx");
+    ASSERT_TRUE(document || document.error()[0].code != "") << name;
+    if (!document) continue;
+    for (const material::Material& material : document->materials)
+      EXPECT_FALSE(hasError(material.diagnostics)) << name;
+  }
+}
+
+TEST(MaterialXHostile, numbers) {
+  for (const std::string value :
+       {"nan", "inf", "-inf", "1e999", "0,5", "1;2", "0x10", "", "1 2", "1,", "\xD9\xA1"}) {
+    const std::string codes = codesOf(inDocument(
+        "<gltf_pbr name=\"s\" type=\"surfaceshader\"><input name=\"metallic\" type=\"float\" value=\"" +
+        value + "\"/></gltf_pbr>"));
+    EXPECT_EQ(codes, "wrong-value") << value;
+  }
+}
+
+class Folder {
+public:
+  Folder()
+      : path_(std::filesystem::temp_directory_path() /
+              fmt::format("lacquer-mtlx-{}", std::chrono::steady_clock::now().time_since_epoch().count())) {
+    std::filesystem::create_directories(path_ / "inner");
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return (path_ / name).string();
+  }
+
+private:
+  std::filesystem::path path_;
+};
+
+TEST(MaterialXHostile, includes) {
+  const Folder folder;
+  const std::string surface = "<surface_unlit name=\"s\" type=\"surfaceshader\"/>";
+  const auto included = [](const std::string& href) {
+    return inDocument("<xi:include href=\"" + href + "\"/>");
+  };
+  (void)folder.write("surface.mtlx", inDocument(surface));
+  (void)folder.write("inner/up.mtlx", included("../surface.mtlx"));
+  const auto codes = [&](const std::string& text) { return codesOf(text, folder.write("top.mtlx", text)); };
+  EXPECT_EQ(codes(included("surface.mtlx")), "");
+  EXPECT_EQ(codes(included("inner/up.mtlx")), "");
+  EXPECT_EQ(codes(included("missing.mtlx")), "include-missing");
+  EXPECT_EQ(codes(included("../outside.mtlx")), "include-outside");
+  EXPECT_EQ(codes(included("/etc/passwd")), "include-outside");
+  EXPECT_EQ(codes(included("https://example.com/a.mtlx")), "include-outside");
+  (void)folder.write("circle.mtlx", included("circle.mtlx"));
+  EXPECT_EQ(codes(included("circle.mtlx")), "include-cycle");
+}
+
+}  // namespace
+}  // namespace lacquer::test

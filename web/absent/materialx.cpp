@@ -1,0 +1,11 @@
+// Debian has no sources of pugixml beside its compiled library, so the module reads no XML.
+#include "materialx/element.h"
+
+namespace lacquer::materialx {
+
+Result<Document> readXml(std::string_view, const std::string& path, const Limits&) {
+  return fail("no-xml", {path, 0, 0, {}}, "this module reads no MaterialX documents",
+              "the program and the native library do; glTF's procedural textures are read here, too");
+}
+
+}  // namespace lacquer::materialx
