@@ -63,7 +63,8 @@ std::string shown(const graph::Source& source) {
 std::string shown(const graph::Graph& patterns) {
   std::string text;
   for (const graph::Parameter& p : patterns.parameters)
-    text += fmt::format("${} = {} ({})\n", p.name, numbers(p.value, ir::componentCount(p.type)), p.pointer);
+    text += fmt::format("${} = {} ({}){}\n", p.name, numbers(p.value, ir::componentCount(p.type)), p.pointer,
+                        p.animated ? ", animated" : "");
   for (const graph::Texture& t : patterns.textures)
     text += fmt::format("texture {} = {}{}{}{}{}\n", t.name,
                         t.file.empty() ? fmt::format("{}", t.texture) : t.file, t.srgb ? ", srgb" : "",

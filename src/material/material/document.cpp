@@ -109,6 +109,17 @@ void checkExtensions(const Json& root, const Schema& schema, Report& report) {
   }
 }
 
+/// The names that parameters of properties have.
+materialx::Names namesOf(const Schema& schema) {
+  materialx::Names names;
+  for (const Property& property : schema.properties) {
+    names.insert(property.parameter_name);
+    for (const lang::PropertyDecl& member : property.decl->members)
+      names.insert(fmt::format("{}_{}", property.parameter_name, parameterName(member.name)));
+  }
+  return names;
+}
+
 /// What computes texels in the place of textures, where the file has such a thing.
 materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, const ReadOptions& options,
                                      Document& document) {
@@ -119,22 +130,22 @@ materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, con
   bool needed = false;
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i)
     needed = needed || (*required)[i] == Json("KHR_texture_procedurals");
-  return materialx::readProcedurals(*found, document.path, *schema.library, options.limits, needed,
-                                    document.diagnostics);
+  materialx::ProceduralOptions how{options.limits, needed, {}, namesOf(schema)};
+  // The extension's text leaves its own name out of the pointers.
+  constexpr std::string_view kShort = "/extensions/procedurals/";
+  for (const gltf::AnimatedPointer& pointer : document.animated)
+    how.animated.insert(pointer.target.starts_with(kShort)
+                            ? "/extensions/KHR_texture_procedurals/procedurals/" +
+                                  pointer.target.substr(kShort.size())
+                            : pointer.target);
+  return materialx::readProcedurals(*found, document.path, *schema.library, how, document.diagnostics);
 }
 
 /// A MaterialX document: its surfaces as materials of a glTF file without a scene.
 Result<Document> readMaterialX(std::string_view text, const std::string& name, const Schema& schema,
                                const ReadOptions& options) {
-  // Names that parameters of properties have.
-  materialx::Names reserved;
-  for (const Property& property : schema.properties) {
-    reserved.insert(property.parameter_name);
-    for (const lang::PropertyDecl& member : property.decl->members)
-      reserved.insert(fmt::format("{}_{}", property.parameter_name, parameterName(member.name)));
-  }
   Result<materialx::Materials> read =
-      materialx::readMaterials(text, name, *schema.library, options.limits, reserved);
+      materialx::readMaterials(text, name, *schema.library, options.limits, namesOf(schema));
   if (!read) return tl::make_unexpected(read.error());
   Document document;
   document.path = name;

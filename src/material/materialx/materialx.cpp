@@ -76,11 +76,8 @@ MaterialsReader::Found MaterialsReader::shaderOf(const Element& material) {
   const Element& root = document_.root;
   const Element* in = material.child("input", "surfaceshader");
   if (in == nullptr) return {};
-  const auto node = [](const Element& owner, std::string_view name) -> const Element* {
-    for (const Element& child : owner.children) {
-      if (child.name() == name && child.category != "input" && child.category != "output") return &child;
-    }
-    return nullptr;
+  const auto node = [&](const Element& owner, std::string_view name) {
+    return patterns_.nodeOf(owner, name);
   };
   const std::string* nodegraph = in->find("nodegraph");
   const Element* graph = nodegraph == nullptr ? nullptr : root.child("nodegraph", *nodegraph);
@@ -227,16 +224,16 @@ Result<Materials> readMaterials(std::string_view text, const std::string& path, 
   Result<Document> document = readXml(text, path, limits);
   if (!document) return tl::make_unexpected(document.error());
   addTangentSpace(document->root);
-  return MaterialsReader(*document, library, {true, limits.nodes, reserved}).read();
+  return MaterialsReader(*document, library, {true, limits.nodes, {}, reserved}).read();
 }
 
 Procedurals readProcedurals(const Json& extension, const std::string& path, const lang::Library& library,
-                            const Limits& limits, bool required, Diagnostics& diagnostics) {
+                            const ProceduralOptions& options, Diagnostics& diagnostics) {
   Diagnostics wrong;
   Element root;
   root.category = "materialx";
-  root.children = readProcedurals(extension, path, limits, wrong);
-  Patterns patterns({&root}, library, {false, limits.nodes, {}});
+  root.children = readProcedurals(extension, path, options.limits, wrong);
+  Patterns patterns({&root}, library, {false, options.limits.nodes, options.animated, options.reserved});
   Procedurals made;
   std::vector<Scope*> scopes;
   for (const Element& graph : root.children) {
@@ -262,7 +259,7 @@ Procedurals readProcedurals(const Json& extension, const std::string& path, cons
   }
   for (const Diagnostics* list : {&std::as_const(wrong), &patterns.wrong()}) {
     for (Diagnostic one : *list) {
-      if (!required && one.severity == Severity::Error) one.severity = Severity::Warning;
+      if (!options.required && one.severity == Severity::Error) one.severity = Severity::Warning;
       addBounded(diagnostics, std::move(one));
     }
   }

@@ -55,10 +55,18 @@ bool isXml(std::string_view text);
 Result<Materials> readMaterials(std::string_view text, const std::string& path, const lang::Library& library,
                                 const Limits& limits, const Names& reserved);
 
+struct ProceduralOptions {
+  const Limits& limits;
+  bool required = false;
+  Names animated{};  ///< JSON pointers of what animations change
+  Names reserved{};
+};
+
 /// Of a glTF file's extension KHR_texture_procedurals: one for each entry of `procedurals`. What is wrong
-/// goes to the diagnostics, with JSON pointers, as warnings unless `required`.
+/// goes to the diagnostics, with JSON pointers, as warnings unless the file requires the extension. Numbers
+/// of inputs are parameters where animations change them.
 Procedurals readProcedurals(const json::Json& extension, const std::string& path,
-                            const lang::Library& library, const Limits& limits, bool required,
+                            const lang::Library& library, const ProceduralOptions& options,
                             Diagnostics& diagnostics);
 
 }  // namespace lacquer::materialx

@@ -56,13 +56,16 @@ bool takes(const lang::NodeDecl& form, const Element& node, bool types) {
 }  // namespace
 
 void Patterns::unknownNode(const Element& element) {
-  std::vector<std::string_view> names;
-  for (const Definition& one : definitions_) names.push_back(one.nodedef->get("node"));
-  for (std::string_view name : library_.names(lang::DeclKind::Node))
-    names.push_back(name.substr(0, name.find('<')));
+  std::string help = "the library has no such node, and the document does not define it";
+  if (maySuggest()) {
+    std::vector<std::string_view> names;
+    for (const Definition& one : definitions_) names.push_back(one.nodedef->get("node"));
+    for (const std::string_view name : library_.names(lang::DeclKind::Node))
+      names.push_back(name.substr(0, name.find('<')));
+    help = lang::didYouMean(element.category, names, std::move(help));
+  }
   error(element, "unknown-node", fmt::format("there is no node {}", quote(element.category)),
-        lang::didYouMean(element.category, names,
-                         "the library has no such node, and the document does not define it"));
+        std::move(help));
 }
 
 /// The form of a node of the library that the element means, by the types that it says.
@@ -155,7 +158,7 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
                  fmt::format("the image is of the colour space {}", quote(space)),
                  "those of MaterialX's library are known: lin_rec709, srgb_texture, acescg, g22_rec709, …");
   graph::Node convert;
-  convert.id = std::exchange(made.id, freeName(made.id + "_texel", scope.taken_));
+  convert.id = std::exchange(made.id, scope.taken_.free(made.id + "_texel"));
   convert.type = converter;
   convert.inputs.emplace_back("in", Source{graph::NodeRef{made.id, {}}, {}});
   for (graph::Node* node : {&made, &convert}) {
@@ -166,15 +169,23 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
 
 // -- values --
 
+/// Whether an animation changes the number of an input.
+bool Patterns::isAnimated(const Element& input) const {
+  const std::string& pointer = input.place.pointer;
+  return !pointer.empty() &&
+         (options_.animated.contains(pointer) || options_.animated.contains(pointer + "/value"));
+}
+
 /// A parameter for a number of the document.
 std::string Patterns::parameter(const Element& at, std::string name, const std::string& pointer,
                                 ir::Type type, const ir::Components& value, const ir::Range& range) {
   graph::Parameter& made = graph_.parameters.emplace_back();
-  made.name = freeName(std::move(name), parameter_names_);
+  made.name = parameter_names_.free(std::move(name));
   made.type = type;
   made.value = value;
   made.neutral = value;
   made.range = range;
+  made.animated = isAnimated(at);
   made.pointer = at.place.pointer.empty() ? pointer : at.place.pointer;
   return made.name;
 }
@@ -184,8 +195,7 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
   // A text, its own or that of the interface.
   if (!param.choices.empty() && input.get("type") != "integer") {
     const Element* from = &input;
-    if (const std::string* name = input.find("interfacename"))
-      from = scope.interface_ == nullptr ? nullptr : scope.interface_->child("input", *name);
+    if (const std::string* name = input.find("interfacename")) from = scope.input(*name);
     const std::string value(from == nullptr ? std::string_view() : from->get("value"));
     if (std::find(param.choices.begin(), param.choices.end(), value) != param.choices.end())
       return Source{graph::Choice{value}, {}};
@@ -208,7 +218,7 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
     return std::nullopt;
   }
   const bool number = type == ir::Type::Float || ir::isFloatVector(type);
-  if (!number || !options_.editable)
+  if (!number || (!options_.editable && !isAnimated(input)))
     return Source{graph::Literal{type == ir::Type::Int ? ir::Type::Float : type, *value}, {}};
   // As the document names it: "NG/noise/amplitude", "noise/amplitude" beside the graphs.
   std::vector<std::string_view> path;
@@ -282,7 +292,7 @@ std::string Patterns::fileOf(const Scope& scope, const Element& input) {
 std::optional<Source> Patterns::image(Scope& scope, const Element& element, const Element& input) {
   const Element* from = &input;
   if (const std::string* name = input.find("interfacename")) {
-    from = scope.interface_ == nullptr ? nullptr : scope.interface_->child("input", *name);
+    from = scope.input(*name);
     if (from == nullptr || scope.interface_ != scope.owner_) return connected(scope, input);
   }
   graph::Texture texture;
@@ -330,8 +340,8 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
                     : std::string());
   const auto [it, fresh] = textures_.try_emplace(std::move(key));
   if (fresh) {
-    texture.name = it->second = freeName(
-        graphName(element.name().empty() ? input.name() : element.name()) + "_image", texture_names_);
+    texture.name = it->second =
+        texture_names_.free(graphName(element.name().empty() ? input.name() : element.name()) + "_image");
     graph_.textures.push_back(std::move(texture));
   }
   return Source{graph::TextureRef{it->second}, {}};

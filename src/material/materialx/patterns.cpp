@@ -56,19 +56,44 @@ std::string graphName(std::string_view name) {
   return text[0] >= '0' && text[0] <= '9' ? "n" + text : text;
 }
 
-std::string freeName(std::string name, std::set<std::string, std::less<>>& taken) {
-  std::string free = name;
-  for (size_t i = 2; !taken.insert(free).second; ++i) free = fmt::format("{}_{}", name, i);
-  return free;
+std::string NameSet::free(std::string name) {
+  if (taken_.insert(name).second) return name;
+  size_t& number = next_.try_emplace(name, 2).first->second;
+  while (true) {
+    std::string free = fmt::format("{}_{}", name, number++);
+    if (taken_.insert(free).second) return free;
+  }
 }
 
 Patterns::Patterns(const std::vector<const Element*>& documents, const lang::Library& library,
                    PatternOptions options)
-    : library_(library),
-      options_(std::move(options)),
-      documents_(documents),
-      parameter_names_(options_.reserved) {
-  for (const Element* document : documents) define(*document);
+    : library_(library), options_(std::move(options)), documents_(documents) {
+  for (const std::string& name : options_.reserved) parameter_names_.take(name);
+  define();
+}
+
+const Siblings& Patterns::siblingsOf(const Element& owner) {
+  const auto [it, fresh] = siblings_.try_emplace(&owner);
+  for (const Element& child : owner.children) {
+    if (fresh && isNode(child) && !child.name().empty()) it->second.emplace(child.name(), &child);
+  }
+  return it->second;
+}
+
+const Element* Patterns::nodeOf(const Element& owner, std::string_view name) {
+  const Siblings& siblings = siblingsOf(owner);
+  const auto it = siblings.find(name);
+  return it == siblings.end() ? nullptr : it->second;
+}
+
+template <class Wanted>
+std::string Patterns::suggest(std::string_view name, const Element& owner, Wanted wanted) {
+  std::vector<std::string_view> names;
+  if (!maySuggest()) return {};
+  for (const Element& child : owner.children) {
+    if (wanted(child)) names.push_back(child.name());
+  }
+  return lang::didYouMean(name, names);
 }
 
 void Patterns::error(const Element& at, std::string code, std::string message, std::string help) {
@@ -82,22 +107,40 @@ void Patterns::warning(const Element& at, std::string code, std::string message,
 
 // -- definitions --
 
-void Patterns::define(const Element& document) {
-  const auto graphFor = [&](const Element& nodedef) -> const Element* {
-    for (const Element* file : documents_) {
-      for (const Element& child : file->children) {
-        if (child.category == "nodegraph" && child.get("nodedef") == nodedef.name()) return &child;
-        if (child.category == "implementation" && child.get("nodedef") == nodedef.name() &&
-            !child.get("nodegraph").empty())
-          return file->child("nodegraph", child.get("nodegraph"));
-      }
+void Patterns::define() {
+  std::unordered_map<std::string_view, const Element*> graphs;  // by the definition
+  for (const Element* document : documents_) {
+    for (const Element& child : document->children) {
+      if (child.category == "nodegraph") nodegraphs_.emplace(child.name(), &child);
+      if (child.category == "nodedef") nodedefs_.emplace(child.name(), &child);
     }
-    return nullptr;
-  };
-  for (const Element& child : document.children) {
-    if (child.category != "nodedef" || child.get("node").empty()) continue;
-    definitions_.push_back({merged(child, 0), graphFor(child)});
   }
+  for (const Element* document : documents_) {
+    for (const Element& child : document->children) {
+      const std::string_view nodedef = child.get("nodedef");
+      if (nodedef.empty()) continue;
+      const auto named = nodegraphs_.find(child.get("nodegraph"));
+      if (child.category == "nodegraph") graphs.emplace(nodedef, &child);
+      if (child.category == "implementation" && named != nodegraphs_.end())
+        graphs.emplace(nodedef, named->second);
+    }
+  }
+  for (const Element* document : documents_) {
+    for (const Element& child : document->children) {
+      if (child.category != "nodedef" || child.get("node").empty()) continue;
+      const auto graph = graphs.find(child.name());
+      const Definition made{merged(child, 0), graph == graphs.end() ? nullptr : graph->second};
+      definitions_of_[made.nodedef->get("node")].push_back(definitions_.size());
+      by_nodedef_.emplace(made.nodedef, definitions_.size());
+      if (made.graph != nullptr) by_graph_.emplace(made.graph, definitions_.size());
+      definitions_.push_back(made);
+    }
+  }
+}
+
+const Patterns::Definition* Patterns::definition(const Element& nodedef) const {
+  const auto it = by_nodedef_.find(&nodedef);
+  return it == by_nodedef_.end() ? nullptr : &definitions_[it->second];
 }
 
 /// A definition with the ports of those that it inherits from.
@@ -105,10 +148,8 @@ const Element* Patterns::merged(const Element& nodedef, size_t depth) {
   const std::string_view inherits = nodedef.get("inherit");
   if (inherits.empty() || depth == kDeepestInheritance) return &nodedef;
   if (const auto known = merges_.find(&nodedef); known != merges_.end()) return known->second;
-  const Element* base = nullptr;
-  for (const Element* file : documents_) {
-    if (base == nullptr) base = file->child("nodedef", inherits);
-  }
+  const auto found = nodedefs_.find(inherits);
+  const Element* base = found == nodedefs_.end() ? nullptr : found->second;
   if (base == nullptr || base == &nodedef) return &nodedef;
   Element& whole = merged_.emplace_back(nodedef);
   for (const Element& port : merged(*base, depth + 1)->children) {
@@ -130,9 +171,10 @@ const Element* Patterns::definitionOf(const Element& node) const {
     }
     return type;
   };
-  for (const Definition& definition : definitions_) {
-    const Element& nodedef = *definition.nodedef;
-    if (nodedef.get("node") != node.category) continue;
+  const auto of = definitions_of_.find(node.category);
+  if (of == definitions_of_.end()) return nullptr;
+  for (const size_t place : of->second) {
+    const Element& nodedef = *definitions_[place].nodedef;
     if (!node.get("nodedef").empty()) {
       if (nodedef.name() == node.get("nodedef")) return &nodedef;
       continue;
@@ -155,19 +197,19 @@ const Element* Patterns::definitionOf(const Element& node) const {
 void Patterns::prepare(Scope& scope, const Element& owner, const Element* inputs, std::string_view name) {
   scope.owner_ = &owner;
   scope.interface_ = inputs;
-  scope.group_.name = freeName(graphName(name), group_names_);
-  for (const Element& child : owner.children) {
-    if (isNode(child) && !child.name().empty()) scope.siblings_.emplace(child.name(), &child);
+  scope.group_.name = group_names_.free(graphName(name));
+  scope.siblings_ = &siblingsOf(owner);
+  for (const Element& child : inputs == nullptr ? owner.children : inputs->children) {
+    if (inputs != nullptr && child.category == "input") scope.inputs_.emplace(child.name(), &child);
   }
 }
 
 const std::string& Patterns::group(const Element& nodegraph) {
   const auto [it, fresh] = groups_.try_emplace(&nodegraph);
   if (!fresh) return it->second->group_.name;
-  const Element* inputs = &nodegraph;
-  for (const Definition& definition : definitions_) {
-    if (definition.graph == &nodegraph) inputs = definition.nodedef;
-  }
+  const auto definition = by_graph_.find(&nodegraph);
+  const Element* inputs =
+      definition == by_graph_.end() ? &nodegraph : definitions_[definition->second].nodedef;
   Scope& scope = scopes_.emplace_back();
   it->second = &scope;
   prepare(scope, nodegraph, inputs, nodegraph.name());
@@ -180,23 +222,17 @@ const std::string& Patterns::group(const Element& nodegraph) {
 /// Something takes that output of a nodegraph: `at`.
 void Patterns::demand(const Element& nodegraph, std::string_view output, const Element& at) {
   (void)group(nodegraph);
-  demands_.push_back({groups_.at(&nodegraph), std::string(output), &at});
+  Scope& scope = *groups_.at(&nodegraph);
+  if (scope.demanded_.emplace(output).second) demands_.push_back({&scope, std::string(output), &at});
 }
 
 void Patterns::output(Scope& scope, std::string_view name, const Element& at) {
-  for (const auto& [known, source] : scope.group_.outputs) {
-    if (known == graphName(name)) return;
-  }
   now_ = &scope;
   const Element* output = scope.owner_->child("output", name);
   std::optional<Source> source;
   if (output == nullptr) {
-    std::vector<std::string_view> names;
-    for (const Element& child : scope.owner_->children) {
-      if (child.category == "output") names.push_back(child.name());
-    }
     error(at, "unknown-output", fmt::format("{} has no output {}", quote(scope.owner_->name()), quote(name)),
-          lang::didYouMean(name, names));
+          suggest(name, *scope.owner_, [](const Element& e) { return e.category == "output"; }));
   } else if (isConnected(*output)) {
     source = connected(scope, *output);
   } else if (output->find("value") != nullptr) {
@@ -250,8 +286,7 @@ void Patterns::groupInputs(Scope& scope) {
 const std::string& Patterns::idOf(Scope& scope, const Element& element) {
   const auto [it, fresh] = scope.ids_.try_emplace(&element);
   if (fresh) {
-    it->second =
-        freeName(graphName(element.name().empty() ? element.category : element.name()), scope.taken_);
+    it->second = scope.taken_.free(graphName(element.name().empty() ? element.category : element.name()));
     if (scope.pending_.empty()) dirty_.push_back(&scope);
     scope.pending_.push_back(&element);
   }
@@ -260,7 +295,7 @@ const std::string& Patterns::idOf(Scope& scope, const Element& element) {
 
 Source Patterns::add(Scope& scope, std::string_view name, std::string type, graph::Inputs inputs) {
   graph::Node node;
-  node.id = freeName(graphName(name), scope.taken_);
+  node.id = scope.taken_.free(graphName(name));
   node.type = std::move(type);
   node.inputs = std::move(inputs);
   scope.group_.nodes.push_back(std::move(node));
@@ -277,11 +312,9 @@ bool Patterns::isConnected(const Element& input) {
 /// The node, nodegraph or output that an input names.
 std::optional<Patterns::Referred> Patterns::find(const Scope& scope, const Element& input) {
   const auto beside = [&](std::string_view name, bool graphs) -> const Element* {
-    if (const auto it = scope.siblings_.find(name); it != scope.siblings_.end()) return it->second;
-    for (const Element* document : documents_) {
-      if (const Element* found = graphs ? document->child("nodegraph", name) : nullptr) return found;
-    }
-    return nullptr;
+    if (const auto it = scope.siblings_->find(name); it != scope.siblings_->end()) return it->second;
+    const auto it = nodegraphs_.find(name);
+    return graphs && it != nodegraphs_.end() ? it->second : nullptr;
   };
   Referred referred;
   referred.output = input.get("output");
@@ -295,21 +328,17 @@ std::optional<Patterns::Referred> Patterns::find(const Scope& scope, const Eleme
     referred.element = beside(*name, nodegraph != nullptr);
   }
   if (referred.element != nullptr) return referred;
-  std::vector<std::string_view> names;
-  for (const Element& child : scope.owner_->children) {
-    if (isNode(child)) names.push_back(child.name());
-  }
+  const std::string wanted = name != nullptr ? *name : std::string(input.get("output"));
   error(input, "no-such-node",
-        fmt::format("{} is connected to {}, which is not there", quote(input.name()),
-                    quote(name != nullptr ? *name : std::string(input.get("output")))),
-        lang::didYouMean(name != nullptr ? *name : std::string(input.get("output")), names));
+        fmt::format("{} is connected to {}, which is not there", quote(input.name()), quote(wanted)),
+        suggest(wanted, *scope.owner_, isNode));
   return std::nullopt;
 }
 
 const Element* Patterns::upstream(const Scope& scope, const Element& input) const {
   const std::string_view name = input.get("nodename");
-  const auto it = scope.siblings_.find(name);
-  return name.empty() || it == scope.siblings_.end() ? nullptr : it->second;
+  const auto it = scope.siblings_->find(name);
+  return name.empty() || it == scope.siblings_->end() ? nullptr : it->second;
 }
 
 const Element* Patterns::nodegraph(const Scope& scope, const Element& input) const {
@@ -318,11 +347,9 @@ const Element* Patterns::nodegraph(const Scope& scope, const Element& input) con
     const Element* node = upstream(scope, input);
     return node != nullptr && node->category == "nodegraph" ? node : nullptr;
   }
-  if (const auto it = scope.siblings_.find(*named); it != scope.siblings_.end()) return it->second;
-  for (const Element* document : documents_) {
-    if (const Element* found = document->child("nodegraph", *named)) return found;
-  }
-  return nullptr;
+  if (const auto it = scope.siblings_->find(*named); it != scope.siblings_->end()) return it->second;
+  const auto it = nodegraphs_.find(*named);
+  return it == nodegraphs_.end() ? nullptr : it->second;
 }
 
 std::optional<Source> Patterns::insert(Scope& scope, Element element) {
@@ -334,14 +361,10 @@ std::optional<Source> Patterns::connected(Scope& scope, const Element& input) {
   Scope* const outer = std::exchange(now_, &scope);
   std::optional<Source> source;
   if (const std::string* name = input.find("interfacename")) {
-    const Element* port = scope.interface_ == nullptr ? nullptr : scope.interface_->child("input", *name);
-    if (port == nullptr) {
-      std::vector<std::string_view> names;
-      for (const Element& one : scope.owner_->children) {
-        if (one.category == "input") names.push_back(one.name());
-      }
+    if (!scope.inputs_.contains(*name)) {
       error(input, "unknown-input", fmt::format("there is no interface input {}", quote(*name)),
-            lang::didYouMean(*name, names));
+            suggest(*name, scope.interface_ == nullptr ? *scope.owner_ : *scope.interface_,
+                    [](const Element& e) { return e.category == "input"; }));
     } else {
       source = Source{graph::InputRef{graphName(*name)}, std::string(input.get("channels"))};
     }
@@ -413,10 +436,7 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
     }
     if (only.empty()) only = "out";
     output = graphName(only);
-    const Element* graph = &element;
-    for (const Definition& definition : definitions_) {
-      if (definition.nodedef == interface) graph = definition.graph;
-    }
+    const Element* graph = interface == &element ? &element : definition(*interface)->graph;
     if (graph != nullptr) demand(*graph, only, input);
   } else {
     const std::vector<const lang::NodeDecl*> forms = library_.forms(element.category);
@@ -455,13 +475,12 @@ void Patterns::node(Scope& scope, const Element& element) {
     made.type = group(element);
     instance(scope, element, element, made);
   } else if (const Element* nodedef = definitionOf(element)) {
-    const auto definition = std::find_if(definitions_.begin(), definitions_.end(),
-                                         [&](const Definition& one) { return one.nodedef == nodedef; });
-    if (definition->graph == nullptr)
+    const Element* graph = definition(*nodedef)->graph;
+    if (graph == nullptr)
       return error(element, "no-graph",
                    fmt::format("the definition {} has no nodegraph", quote(nodedef->name())),
                    "code in a shading language is not read: give it a nodegraph, or a node file by --nodes");
-    made.type = group(*definition->graph);
+    made.type = group(*graph);
     instance(scope, element, *nodedef, made);
   } else {
     return libraryNode(scope, element, made);
@@ -478,13 +497,9 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
     if (&element == &interface && !linked) continue;  // its value is the group's default
     const Element* port = interface.child("input", input.name());
     if (port == nullptr) {
-      std::vector<std::string_view> names;
-      for (const Element& one : interface.children) {
-        if (one.category == "input") names.push_back(one.name());
-      }
       error(input, "unknown-input",
             fmt::format("{} has no input {}", quote(element.category), quote(input.name())),
-            lang::didYouMean(input.name(), names));
+            suggest(input.name(), interface, [](const Element& e) { return e.category == "input"; }));
       continue;
     }
     const std::optional<ir::Type> type = typeOf(port->get("type"));

@@ -22,23 +22,45 @@ namespace lacquer::materialx {
 struct PatternOptions {
   bool editable = true;                              ///< numbers become parameters of the graph
   uint64_t most = 0;                                 ///< nodes of all bodies together
+  std::set<std::string, std::less<>> animated = {};  ///< JSON pointers of inputs whose numbers change
   std::set<std::string, std::less<>> reserved = {};  ///< names that no parameter may have
 };
+
+/// Names that are given once.
+class NameSet {
+public:
+  void take(std::string name) { taken_.insert(std::move(name)); }
+  /// The name, or with a number behind it where something has it already.
+  std::string free(std::string name);
+
+private:
+  std::set<std::string, std::less<>> taken_;
+  std::map<std::string, size_t, std::less<>> next_;  ///< the number to try
+};
+
+using Siblings = std::unordered_map<std::string_view, const Element*>;
 
 /// The nodes of one body while it is made: of a group, whose elements stand beside each other.
 class Scope {
 public:
   const Element& owner() const { return *owner_; }
   graph::Group& group() { return group_; }
+  /// Of the interface; null where there is none of that name.
+  const Element* input(std::string_view name) const {
+    const auto it = inputs_.find(name);
+    return it == inputs_.end() ? nullptr : it->second;
+  }
 
 private:
   friend class Patterns;
   const Element* owner_ = nullptr;
   const Element* interface_ = nullptr;  ///< whose inputs the group has; null for none
   graph::Group group_;
-  std::unordered_map<std::string_view, const Element*> siblings_;
+  const Siblings* siblings_ = nullptr;
+  Siblings inputs_;                                      ///< of the interface
+  std::set<std::string, std::less<>> demanded_;          ///< outputs
   std::unordered_map<const Element*, std::string> ids_;  ///< looked up, never walked
-  std::set<std::string, std::less<>> taken_;
+  NameSet taken_;
   std::vector<const Element*> pending_;
   std::vector<const Element*> elements_;  ///< of the group's nodes
 };
@@ -58,6 +80,8 @@ public:
   std::optional<graph::Source> connected(Scope& scope, const Element& input);
   /// A node of the library in a body.
   graph::Source add(Scope& scope, std::string_view name, std::string type, graph::Inputs inputs);
+  /// The node of that name among the children of an element; null for none.
+  const Element* nodeOf(const Element& owner, std::string_view name);
   /// The node or output that an input is connected to, through outputs of its scope; null for none.
   const Element* upstream(const Scope& scope, const Element& input) const;
   /// The nodegraph that an input is connected to; null for none.
@@ -84,7 +108,7 @@ private:
     std::string output, swizzle;
   };
 
-  void define(const Element& document);
+  void define();
   const Element* merged(const Element& nodedef, size_t depth);
   void prepare(Scope& scope, const Element& owner, const Element* inputs, std::string_view name);
   void groupInputs(Scope& scope);
@@ -105,11 +129,17 @@ private:
   const std::string& idOf(Scope& scope, const Element& element);
   std::string parameter(const Element& at, std::string name, const std::string& pointer, ir::Type type,
                         const ir::Components& value, const ir::Range& range);
+  bool isAnimated(const Element& input) const;
   std::string fileOf(const Scope& scope, const Element& input);
   void unknownNode(const Element& element);
   void checked();
   void spread();
 
+  const Siblings& siblingsOf(const Element& owner);
+  const Definition* definition(const Element& nodedef) const;
+  template <class Wanted>
+  std::string suggest(std::string_view name, const Element& owner, Wanted wanted);
+  bool maySuggest() { return ++suggestions_ <= 20; }  // each looks at every name that there is
   void error(const Element& at, std::string code, std::string message, std::string help = {});
   void warning(const Element& at, std::string code, std::string message, std::string help = {});
 
@@ -122,7 +152,13 @@ private:
   graph::Graph graph_;
   std::deque<Scope> scopes_;
   std::unordered_map<const Element*, Scope*> groups_;  ///< looked up, never walked
-  std::set<std::string, std::less<>> group_names_, parameter_names_, texture_names_;
+  NameSet group_names_, parameter_names_, texture_names_;
+  std::unordered_map<const Element*, Siblings> siblings_;  ///< of owners
+  Siblings nodegraphs_, nodedefs_;                         ///< of the documents
+  /// Looked up, never walked.
+  std::unordered_map<std::string_view, std::vector<size_t>> definitions_of_;
+  std::unordered_map<const Element*, size_t> by_nodedef_, by_graph_;
+  size_t suggestions_ = 0;
   std::map<std::string, std::string> textures_;  ///< by all that is said of one
   struct Demand {
     Scope* scope;
@@ -139,7 +175,5 @@ private:
 
 /// A name of the graph: letters, digits and single underscores.
 std::string graphName(std::string_view name);
-/// One that is not among the names, to which it is added.
-std::string freeName(std::string name, std::set<std::string, std::less<>>& taken);
 
 }  // namespace lacquer::materialx

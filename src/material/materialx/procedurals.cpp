@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "json/path.h"
 #include "materialx/element.h"
@@ -187,11 +188,11 @@ Element ProceduralReader::graph(const Json& json, const Path& path, bool definit
           raising("nodes"));
     return {};
   }
+  std::set<std::string, std::less<>> names;
   for (size_t i = 0; i < count; ++i) {
     const Json* name = json::member((*nodes)[i], "name");
     std::string own = name != nullptr && name->is_string() ? name->text() : std::string();
-    if (own.empty() || std::find(nodes_.begin(), nodes_.end(), own) != nodes_.end())
-      own += fmt::format("_{}", i);
+    if (own.empty() || !names.insert(own).second) own += fmt::format("_{}", i);
     nodes_.push_back(std::move(own));
   }
   bool good = ports(json, "inputs", path, [&](const Json&, const std::string& name, const Path&) {

@@ -32,13 +32,6 @@ const Element* outputOf(const Element& nodegraph, std::string_view name) {
   return nullptr;
 }
 
-const Element* nodeOf(const Element& owner, std::string_view name) {
-  for (const Element& child : owner.children) {
-    if (child.name() == name && child.category != "input" && child.category != "output") return &child;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 bool Value::isConstant(double x) const {
@@ -50,11 +43,14 @@ void addTangentSpace(Element& document) {
   for (Element& graph : document.children) {
     if (graph.category != "nodegraph") continue;
     std::vector<Element> more;
+    std::unordered_map<std::string_view, const Element*> maps;
+    for (const Element& node : graph.children) {
+      if (node.category == "normalmap") maps.emplace(node.name(), &node);
+    }
     for (const Element& output : graph.children) {
-      if (output.category != "output") continue;
-      const Element* node = nodeOf(graph, output.get("nodename"));
-      if (node == nullptr || node->category != "normalmap") continue;
-      const Element* in = node->child("input", "in");
+      const auto map = maps.find(output.get("nodename"));
+      if (output.category != "output" || map == maps.end()) continue;
+      const Element* in = map->second->child("input", "in");
       if (in == nullptr) continue;
       Element& made = more.emplace_back(*in);
       made.category = "output";
@@ -289,7 +285,7 @@ void Surface::normal(std::string_view name, const std::string& texture) {
   const Element* graph = patterns_.nodegraph(scope_, *in);
   const Element* output = graph == nullptr ? nullptr : outputOf(*graph, in->get("output"));
   if (output == nullptr) return;  // said where it is connected
-  const Element* node = nodeOf(*graph, output->get("nodename"));
+  const Element* node = patterns_.nodeOf(*graph, output->get("nodename"));
   if (node == nullptr || node->category != "normalmap")
     return other(node == nullptr ? "a value" : std::string_view(node->category));
   Element& link = made_.emplace_back(*in);

@@ -19,6 +19,8 @@ namespace {
 
 /// Elements within elements: a document has nodes in graphs in a root, and documentation in these.
 constexpr size_t kDeepestElement = 32;
+/// Elements of a document with all that it includes.
+constexpr uint64_t kMostElements = uint64_t{1} << 20;
 /// Files that a file includes, theirs included.
 constexpr size_t kMostFiles = 256;
 
@@ -172,9 +174,10 @@ void XmlReader::elements(pugi::xml_node parent, Element& into, const Inherited& 
             fmt::format("elements lie in each other more than {} deep", kDeepestElement));
       return;
     }
-    if (++count_ > limits_.values) {
+    if (++count_ > kMostElements || count_ > limits_.values) {
       error("xml-too-many", node.offset_debug(),
-            fmt::format("the file has more than {} elements", limits_.values), raising("values"));
+            fmt::format("the document has more than {} elements", std::min(kMostElements, limits_.values)),
+            raising("values"));
       return;
     }
     const std::string_view name = node.name();
