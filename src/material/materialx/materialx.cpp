@@ -30,7 +30,7 @@ namespace {
 
 /// The form of the node for a type; any, where the document does not say it.
 std::string texelOf(std::optional<ir::Type> type) {
-  if (!type || (*type != ir::Type::Float && !ir::isFloatVector(*type))) return "texel_of";
+  if (!type || ir::isMatrix(*type) || ir::isTexture(*type)) return "texel_of";
   return fmt::format("texel_of<{}>", ir::typeName(*type));
 }
 

@@ -16,13 +16,16 @@ using graph::Source;
 
 namespace {
 
-/// What an image is read by, and no node is given: it becomes the texture's sampler.
-bool isSampling(std::string_view input) {
-  constexpr std::string_view kNames[] = {"filtertype", "uaddressmode", "vaddressmode",
-                                         "wrapS",      "wrapT",        "layer",
-                                         "framerange", "frameoffset",  "frameendaction"};
+/// What no node is given: how an image is read becomes the texture's sampler, and a note is for people.
+bool isBeside(std::string_view input) {
+  constexpr std::string_view kNames[] = {"filtertype",     "uaddressmode", "vaddressmode", "wrapS",
+                                         "wrapT",          "layer",        "framerange",   "frameoffset",
+                                         "frameendaction", "note"};
   return std::find(std::begin(kNames), std::end(kNames), input) != std::end(kNames);
 }
+
+/// What stands for an image that is not there.
+bool isFallback(std::string_view input) { return input == "default" || input == "fallback"; }
 
 bool samplesFile(const Element& node) {
   return std::any_of(node.children.begin(), node.children.end(), [](const Element& child) {
@@ -46,7 +49,7 @@ bool takes(const lang::NodeDecl& form, const Element& node, bool types) {
   return std::all_of(node.children.begin(), node.children.end(), [&](const Element& input) {
     if (input.category != "input") return true;
     const lang::Param* param = paramOf(form, input.name());
-    if (param == nullptr) return isSampling(input.name()) || (input.name() == "default" && samplesFile(node));
+    if (param == nullptr) return isBeside(input.name()) || (isFallback(input.name()) && samplesFile(node));
     const std::optional<ir::Type> type = typeOf(input.get("type"));
     // Channels of MaterialX 1.38 make another type of what is connected.
     return !types || !type || param->type == *type || !param->choices.empty();
@@ -107,7 +110,7 @@ const lang::NodeDecl* Patterns::formOf(const Element& element) {
         if (std::find(names.begin(), names.end(), param.name) == names.end()) names.push_back(param.name);
       }
     }
-    if (std::find(names.begin(), names.end(), input.name()) != names.end() || isSampling(input.name()))
+    if (std::find(names.begin(), names.end(), input.name()) != names.end() || isBeside(input.name()))
       continue;
     error(input, "unknown-input",
           fmt::format("the node {} has no input {}", quote(element.category), quote(input.name())),
@@ -321,6 +324,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
   const Element* filter = element.child("input", "filtertype");
   texture.nearest = filter != nullptr && filter->get("value") == "closest";
   const Element* fallback = element.child("input", "default");
+  if (fallback == nullptr) fallback = element.child("input", "fallback");
   ir::Components color_of{0, 0, 0, 0};
   if (fallback != nullptr && fallback->find("value") != nullptr) {
     const std::optional<ir::Type> of = typeOf(fallback->get("type"));

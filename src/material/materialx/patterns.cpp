@@ -361,7 +361,17 @@ std::optional<Source> Patterns::connected(Scope& scope, const Element& input) {
   Scope* const outer = std::exchange(now_, &scope);
   std::optional<Source> source;
   if (const std::string* name = input.find("interfacename")) {
-    if (!scope.inputs_.contains(*name)) {
+    // Beside the graphs an input may stand, too.
+    const Element* beside = scope.interface_ == nullptr ? scope.owner_->child("input", *name) : nullptr;
+    if (beside != nullptr && beside != &input && beside->find("interfacename") == nullptr) {
+      if (isConnected(*beside)) {
+        source = connected(scope, *beside);
+      } else {
+        lang::Param param;
+        param.type = typeOf(beside->get("type")).value_or(ir::Type::Float);
+        source = literal(scope, *scope.owner_, *beside, param);
+      }
+    } else if (!scope.inputs_.contains(*name)) {
       error(input, "unknown-input", fmt::format("there is no interface input {}", quote(*name)),
             suggest(*name, scope.interface_ == nullptr ? *scope.owner_ : *scope.interface_,
                     [](const Element& e) { return e.category == "input"; }));

@@ -208,12 +208,19 @@ void gltfPbr(Surface& s) {
     s.set("extensions/KHR_materials_dispersion/dispersion", dispersion);
 }
 
+/// How much rougher OpenPBR's isotropic roughness is where MaterialX's `roughness_anisotropy` comes to the
+/// same: its roughness across is r^2 sqrt(1 - a), along it r^2 / sqrt(1 - a); OpenPBR's are r^2 sqrt(2 / (1 +
+/// (1 - a)^2)) and 1 - a times as much.
+double wideningOf(double stretch) {
+  const double ratio = 1 - stretch;
+  return std::sqrt(std::sqrt((1 + ratio * ratio) / (2 * ratio)));
+}
+
 void standardSurface(Surface& s) {
   Value base = s.get("base_color", {0.8, 0.8, 0.8});
   const Value base_weight = s.get("base", 1);
   base = scattered(s, "subsurface", s.get("subsurface", 0), s.get("subsurface_color", kWhite), base);
-  const Color radius = s.color("subsurface_radius", kWhite);
-  (void)radius;
+  s.pass("subsurface_radius");
   s.pass("subsurface_scale");
   s.pass("subsurface_anisotropy");
   const double abbe = s.number("transmission_dispersion", 0);
@@ -238,13 +245,9 @@ void standardSurface(Surface& s) {
   const bool passing = passes.weight.there();
   coverage(s, s.product({passing ? constant(1) : base_weight, base}), opacity);
   diffuseRoughness(s, s.get("diffuse_roughness", 0));
-  // Its roughness across is r^2 sqrt(1 - a), along it r^2 / sqrt(1 - a); OpenPBR's are r^2 sqrt(2 / (1 + (1 -
-  // a)^2)) and 1 - a times as much.
   const double stretch = std::clamp(s.number("specular_anisotropy", 0), 0.0, 0.98);
-  const double ratio = 1 - stretch;
-  const double widening = std::sqrt(std::sqrt((1 + ratio * ratio) / (2 * ratio)));
   metallicRoughness(s, s.get("metalness", 0),
-                    s.product({constant(widening), s.get("specular_roughness", 0.2)}));
+                    s.product({constant(wideningOf(stretch)), s.get("specular_roughness", 0.2)}));
   anisotropy(s, stretch, s.number("specular_rotation", 0));
   specular(s, s.get("specular", 1), s.get("specular_color", kWhite));
   refraction(s, s.number("specular_IOR", 1.5));
@@ -360,6 +363,49 @@ void unlit(Surface& s) {
   s.pass("transmission_color");
 }
 
+void disneyPrincipled(Surface& s) {
+  const Value base = s.get("baseColor", {0.16, 0.16, 0.16});
+  s.baseColor(s.product({base}), s.product({constant(1)}));
+  const double stretch = std::clamp(s.number("anisotropic", 0), 0.0, 0.98);
+  metallicRoughness(s, s.get("metallic", 0),
+                    s.product({constant(wideningOf(stretch)), s.get("roughness", 0.5)}));
+  anisotropy(s, stretch, 0);
+  if (const Value through = s.get("specTrans", 0); through.there()) {
+    const std::string at = "extensions/KHR_materials_transmission/";
+    s.scalar(at + "transmissionFactor", at + "transmissionTexture", 'r', s.product({through}));
+    s.set("extensions/KHR_materials_volume/thicknessFactor", 1.0);
+  }
+  const double ior = s.number("ior", 1.5);
+  refraction(s, ior);
+  // Its boundary reflects 0.08 times `specular` of the tint straight on, and of white at grazing angles.
+  const double r = (std::max(ior, 1.0) - 1) / (std::max(ior, 1.0) + 1);
+  const double tint_by = s.number("specularTint", 0);
+  const Color color = base.source ? kWhite : Color{base.constant[0], base.constant[1], base.constant[2]};
+  const auto tinted = [&](double by) {
+    Value tint = s.get("baseColor", kWhite);
+    tint.source.reset();
+    for (size_t i = 0; i < 3; ++i) tint.constant[i] = 1 + (color[i] - 1) * by;
+    return tint;
+  };
+  if (tint_by != 0 && base.source) s.warn("specularTint", "the tint is that of a pattern", "white is taken");
+  specular(s, s.scaled(s.get("specular", 0.5), 0.08), s.scaled(tinted(tint_by), 1 / std::max(r * r, 1e-4)));
+  const Value sheen_weight = s.get("sheen", 0);
+  const double sheen_tint = s.number("sheenTint", 0.5);
+  if (sheen_weight.there()) {
+    constexpr double kRoughness = 0.3;  // that of MaterialX's `sheen_bsdf`
+    sheen(s, sheen_weight, tinted(sheen_tint), s.product({constant(std::sqrt(kRoughness))}));
+  }
+  const Value clearcoat = s.get("clearcoat", 0);
+  const double gloss = s.number("clearcoatGloss", 1);
+  if (clearcoat.there()) {
+    const std::string at = "extensions/KHR_materials_clearcoat/";
+    s.scalar(at + "clearcoatFactor", at + "clearcoatTexture", 'r', s.product({clearcoat}));
+    s.set(at + "clearcoatRoughnessFactor", std::clamp(1 - gloss, 0.0, 1.0));
+  }
+  s.leave("subsurface", 0);
+  s.pass("subsurfaceDistance");
+}
+
 struct Row {
   std::string_view category;
   void (*translate)(Surface&);
@@ -368,6 +414,7 @@ constexpr Row kRows[] = {{"gltf_pbr", gltfPbr},
                          {"open_pbr_surface", openPbr},
                          {"standard_surface", standardSurface},
                          {"UsdPreviewSurface", usdPreviewSurface},
+                         {"disney_principled", disneyPrincipled},
                          {"surface_unlit", unlit}};
 
 }  // namespace
