@@ -72,7 +72,7 @@ void printTable(const std::vector<ShaderCost>& costs) {
 }
 
 bool holdsMaterials(const std::string& path) {
-  return isGraphFile(path) || path.ends_with(".gltf") || path.ends_with(".glb");
+  return isGraphFile(path) || path.ends_with(".gltf") || path.ends_with(".glb") || path.ends_with(".mtlx");
 }
 
 }  // namespace

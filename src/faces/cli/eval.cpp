@@ -12,7 +12,7 @@
 namespace lacquer::cli {
 
 void addEval(CLI::App& verb, EvalFlags& flags, OptionFlags& options) {
-  verb.add_option("file", flags.file, "a .gltf or .glb file, or a graph: .json")
+  verb.add_option("file", flags.file, "a .gltf, .glb or .mtlx file, or a graph: .json")
       ->required()
       ->check(kNotEmpty);
   verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");

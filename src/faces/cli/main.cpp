@@ -106,7 +106,7 @@ void addGeneration(CLI::App& verb, Flags& flags) {
 }
 
 void addGen(CLI::App& verb, Flags& flags) {
-  auto* files = verb.add_option("files", flags.files, ".gltf or .glb files, graphs: .json");
+  auto* files = verb.add_option("files", flags.files, ".gltf, .glb or .mtlx files, graphs: .json");
   auto* graphs =
       verb.add_option("--graph", flags.graphs, "a graph of any name, in place of files (may be repeated)")
           ->allow_extra_args(false)
@@ -127,7 +127,7 @@ void addGen(CLI::App& verb, Flags& flags) {
 }
 
 void addPlan(CLI::App& verb, Flags& flags) {
-  verb.add_option("files", flags.files, ".gltf or .glb files, graphs: .json")->required();
+  verb.add_option("files", flags.files, ".gltf, .glb or .mtlx files, graphs: .json")->required();
   verb.add_option("--ninja", flags.ninja, "the Ninja file; what its commands read is put beside it")
       ->required()
       ->check(kNotEmpty);
@@ -139,7 +139,7 @@ void addPlan(CLI::App& verb, Flags& flags) {
 
 /// The one material that is looked at.
 void addLook(CLI::App& verb, Flags& flags) {
-  verb.add_option("file", flags.files, "a .gltf or .glb file, or a graph: .json")
+  verb.add_option("file", flags.files, "a .gltf, .glb or .mtlx file, or a graph: .json")
       ->required()
       ->expected(1)
       ->check(kNotEmpty);
@@ -161,7 +161,7 @@ void addDump(CLI::App& verb, Flags& flags) {
 }
 
 void addProve(CLI::App& verb, Flags& flags) {
-  verb.add_option("files", flags.files, ".gltf or .glb files, graphs: .json")->check(kNotEmpty);
+  verb.add_option("files", flags.files, ".gltf, .glb or .mtlx files, graphs: .json")->check(kNotEmpty);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);
   verb.add_flag("--json", flags.json, "as JSON, with everything that is proved");
@@ -189,7 +189,7 @@ void addMerge(CLI::App& verb, Flags& flags) {
 
 void addCost(CLI::App& verb, Flags& flags) {
   verb.add_option("paths", flags.files,
-                  "folders that gen wrote, .spv files, .gltf or .glb files, graphs: .json")
+                  "folders that gen wrote, .spv files, .gltf, .glb or .mtlx files, graphs: .json")
       ->required()
       ->check(kNotEmpty);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
@@ -200,7 +200,7 @@ void addCost(CLI::App& verb, Flags& flags) {
 }
 
 void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
-  verb.add_option("files", flags.files, ".gltf or .glb files")->required()->check(kNotEmpty);
+  verb.add_option("files", flags.files, ".gltf, .glb or .mtlx files")->required()->check(kNotEmpty);
   verb.add_option("-o,--output", lod.lod.output, "the folder to write to")->required()->check(kNotEmpty);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);

@@ -12,7 +12,9 @@
 namespace lacquer::cli {
 
 void addPreview(CLI::App& verb, PreviewFlags& flags, OptionFlags& options) {
-  verb.add_option("files", flags.files, ".gltf or .glb files, graphs: .json")->required()->check(kNotEmpty);
+  verb.add_option("files", flags.files, ".gltf, .glb or .mtlx files, graphs: .json")
+      ->required()
+      ->check(kNotEmpty);
   verb.add_option("-o,--output", flags.preview.output, "the PNG file to write")->required()->check(kNotEmpty);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);

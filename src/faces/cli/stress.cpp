@@ -11,9 +11,10 @@
 namespace lacquer::cli {
 
 void addStress(CLI::App& verb, StressFlags& flags, OptionFlags& options) {
-  verb.add_option("subjects", flags.subjects,
-                  "nodes, extensions, .gltf or .glb files, .json graphs and cases; `nodes` is every node of "
-                  "the library, `extensions` every extension; both when absent")
+  verb.add_option(
+          "subjects", flags.subjects,
+          "nodes, extensions, .gltf, .glb or .mtlx files, .json graphs and cases; `nodes` is every node of "
+          "the library, `extensions` every extension; both when absent")
       ->check(kNotEmpty);
   CLI::Option* samples =
       verb.add_option("--samples", flags.stress.samples, "inputs for each node and each material")

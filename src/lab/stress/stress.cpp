@@ -112,7 +112,7 @@ private:
       Result<void> added;
       if (ends(name, ".json"))
         added = addJson(name);
-      else if (ends(name, ".gltf") || ends(name, ".glb"))
+      else if (ends(name, ".gltf") || ends(name, ".glb") || ends(name, ".mtlx"))
         added = addFile(name);
       else if (name == kNodes && !library_->node(name))
         added = addNodes();
