@@ -68,11 +68,16 @@ std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& 
   Options plain = options;
   plain.optimize = 0;
   plain.optimize_error = 0;
+  const Result<Graph::Impl::Prepared> ready = graph.impl_->prepared(plain, checkOptions);
+  if (!ready) {
+    report(ready.error(), graph.impl_->file, messages);
+    return std::nullopt;
+  }
   ir::Module before;
-  const Result<ir::Module> module =
-      graph.impl_->module(plain, checkOptions, [&](std::string_view pass, const ir::Module& after) {
-        if (pass == "vertex") before = after;
-      });
+  const auto keep = [&](std::string_view pass, const ir::Module& after) {
+    if (pass == "vertex") before = after;
+  };
+  const Result<ir::Module> module = graph.impl_->module(*ready, plain, keep);
   if (!module) {
     report(module.error(), graph.impl_->file, messages);
     return std::nullopt;
