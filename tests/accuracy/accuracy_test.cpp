@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/antialiasing.h"
 #include "accuracy/profiles.h"
 
 namespace lacquer::accuracy {
@@ -205,6 +206,25 @@ TEST(Physical, LetsThePowerOfEmissionOut) {
     double mean = 0;
     for (const double x : transmissions("physical", Light::Emission, queries)) mean += x / kSteps;
     EXPECT_NEAR(mean, 1, 2e-3) << ior;
+  }
+}
+
+/// Where the normals of neighbours are the same nothing is widened.
+TEST(SpecularAntialiasing, LeavesFlatHighlightsAlone) {
+  for (const Bumpy& material : bumpyMaterials()) {
+    const auto [least, most] = flatBrightness(material);
+    EXPECT_GT(least, 0.9999) << material.name;
+    EXPECT_LT(most, 1.0001) << material.name;
+  }
+}
+
+/// The closer the bumps, the more of the error is gone.
+TEST(SpecularAntialiasing, IsNearerToTheMeanOfAPixel) {
+  for (const Bumpy& material : bumpyMaterials()) {
+    for (const double bump : kBumps) {
+      const Aliasing errors = aliasing(material, bump);
+      EXPECT_LT(errors.with, errors.without) << material.name << " " << bump << " " << errors.with;
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/antialiasing.h"
 #include "accuracy/profiles.h"
 
 namespace lacquer::accuracy {
@@ -105,6 +106,7 @@ std::string roughTable() {
 
 std::string table(std::string_view name) {
   if (name == "rough") return roughTable();
+  if (name == "antialiasing") return antialiasingTable();
   for (const Light light : {Light::Direct, Light::Environment}) {
     for (const double tint : {1.0, 0.5}) {
       const std::string kind = light == Light::Direct ? "direct" : "environment";
