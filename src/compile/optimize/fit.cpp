@@ -77,37 +77,37 @@ Range Curve::slope(const Node& node, int c, const Ranges& result) const {
   const auto extremum = [&](bool first, bool second) {
     return first ? d(0) : second ? d(1) : hull(d(0), d(1));
   };
-  switch (node.op) {
-    case Op::Add: return m.add(d(0), d(1));
-    case Op::Mul:
-      if (node.args[0] == node.args[1]) return m.mul(exactly(2), m.mul(x(0), d(0)));
-      return m.add(m.mul(x(0), d(1)), m.mul(x(1), d(0)));
-    case Op::Neg: return m.neg(d(0));
-    case Op::Abs: return x(0).lo >= 0 ? d(0) : x(0).hi <= 0 ? m.neg(d(0)) : hull(d(0), m.neg(d(0)));
-    case Op::Div: return m.neg(m.mul(d(0), m.square(r)));
-    case Op::Sqrt: return m.div(d(0), m.mul(exactly(2), r));
-    case Op::InverseSqrt: return m.mul(exactly(-0.5), m.mul(d(0), m.mul(r, m.square(r))));
-    case Op::Exp2: return m.mul(ln2, m.mul(r, d(0)));
-    case Op::Exp: return m.mul(r, d(0));
-    case Op::Log2: return m.div(d(0), m.mul(ln2, x(0)));
-    case Op::Log: return m.div(d(0), x(0));
-    case Op::Min: return extremum(x(0).hi < x(1).lo, x(1).hi < x(0).lo);
-    case Op::Max: return extremum(x(0).lo > x(1).hi, x(1).lo > x(0).hi);
-    case Op::Clamp:
-      if (x(0).lo > x(1).hi && x(0).hi < x(2).lo) return d(0);
-      if (x(0).hi < x(1).lo) return d(1);
-      if (x(0).lo > x(2).hi) return d(2);
-      return hull(d(0), hull(d(1), d(2)));
-    case Op::Mix: {
-      const Range rest = m.sub(exactly(1), x(2));
-      return m.add(m.add(m.mul(d(0), rest), m.mul(d(1), x(2))), m.mul(m.sub(x(1), x(0)), d(2)));
-    }
-    case Op::Swizzle: {
-      const int from = ir::swizzleComponent(node.payload, c);
-      return optimize::component(boxes_[node.args[0]].slope, plan_.nodes[node.args[0]].type, from);
-    }
-    default: return m.whole(true);
+  const Op op = node.op;
+  if (op == Op::Add) return m.add(d(0), d(1));
+  if (op == Op::Mul && node.args[0] == node.args[1]) return m.mul(exactly(2), m.mul(x(0), d(0)));
+  if (op == Op::Mul) return m.add(m.mul(x(0), d(1)), m.mul(x(1), d(0)));
+  if (op == Op::Neg) return m.neg(d(0));
+  if (op == Op::Abs) return x(0).lo >= 0 ? d(0) : x(0).hi <= 0 ? m.neg(d(0)) : hull(d(0), m.neg(d(0)));
+  if (op == Op::Div) return m.neg(m.mul(d(0), m.square(r)));
+  if (op == Op::Sqrt) return m.div(d(0), m.mul(exactly(2), r));
+  if (op == Op::InverseSqrt) return m.mul(exactly(-0.5), m.mul(d(0), m.mul(r, m.square(r))));
+  if (op == Op::Exp2) return m.mul(ln2, m.mul(r, d(0)));
+  if (op == Op::Exp) return m.mul(r, d(0));
+  if (op == Op::Log2) return m.div(d(0), m.mul(ln2, x(0)));
+  if (op == Op::Log) return m.div(d(0), x(0));
+  if (op == Op::Min) return extremum(x(0).hi < x(1).lo, x(1).hi < x(0).lo);
+  if (op == Op::Max) return extremum(x(0).lo > x(1).hi, x(1).lo > x(0).hi);
+  if (op == Op::Clamp) {
+    if (x(0).lo > x(1).hi && x(0).hi < x(2).lo) return d(0);
+    if (x(0).hi < x(1).lo) return d(1);
+    if (x(0).lo > x(2).hi) return d(2);
+    return hull(d(0), hull(d(1), d(2)));
   }
+  if (op == Op::Mix) {
+    const Range rest = m.sub(exactly(1), x(2));
+    return m.add(m.add(m.mul(d(0), rest), m.mul(d(1), x(2))), m.mul(m.sub(x(1), x(0)), d(2)));
+  }
+  if (op == Op::Swizzle) {
+    const int from = ir::swizzleComponent(node.payload, c);
+    return optimize::component(boxes_[node.args[0]].slope, plan_.nodes[node.args[0]].type, from);
+  }
+  // Nothing is known of the slope of others.
+  return m.whole(true);
 }
 
 namespace {

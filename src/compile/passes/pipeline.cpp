@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 
 #include "ir/canonical.h"
 #include "support/digest.h"
@@ -70,7 +71,9 @@ void optimizeFragment(ir::Module& module, const PipelineOptions& options) {
   std::vector<optimize::Candidate> found = optimize::search(module, options.optimize);
   const optimize::Family& family =
       options.optimize.family != nullptr ? *options.optimize.family : optimize::families()[0];
-  Choice choice{found.size() - 1, "model", found.front().outcome.cycles, found.back().outcome.cycles};
+  // Parts of a cycle tell plans apart that are equally fast.
+  Choice choice{found.size() - 1, "model", std::round(found.front().outcome.cycles),
+                std::round(found.back().outcome.cycles)};
   if (options.choose) {
     const auto here = std::find_if(kPasses.begin(), kPasses.end(),
                                    [](const Pass& pass) { return pass.info.name == "optimize"; });
