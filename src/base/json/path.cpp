@@ -4,7 +4,7 @@ namespace lacquer::json {
 
 namespace {
 
-/// What a file of others names may be as long as the file, and stand in each of a thousand messages.
+/// Untrusted names can be as long as the file, and repeat in a thousand messages.
 constexpr size_t kLongest = 1000;
 constexpr std::string_view kCut = "...";
 

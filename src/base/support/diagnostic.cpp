@@ -26,7 +26,7 @@ std::string_view severityName(Severity severity) {
 
 std::string format(const Diagnostic& diagnostic) {
   const Place& place = diagnostic.place;
-  // Names come from files of others: none may end a line, which would begin a message that nobody wrote.
+  // Names are untrusted: none may end a line, which would begin a message that nobody wrote.
   std::string where = shown(place.file);
   if (place.line != 0) {
     where += fmt::format("{}{}:{}", where.empty() ? "" : ":", place.line, place.column);

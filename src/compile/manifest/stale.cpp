@@ -12,10 +12,19 @@
 
 namespace lacquer {
 
+/// Leaves of a manifest as it is written only what stands behind its files: they are most of it.
+static void dropFiles(std::string& text) {
+  constexpr std::string_view kFirst = "{\n  \"lacquer\": ", kShaders = ",\n  \"shaders\": {";
+  const size_t at = text.rfind(kShaders);
+  const size_t files = text.find(",\n  \"schema\": ");
+  if (text.starts_with(kFirst) && files < at && at != std::string::npos) text.erase(files, at - files);
+}
+
 std::vector<std::string> listedShaders(const std::string& path) {
   std::vector<std::string> listed;
-  const Result<std::string> text = readFile(path);
+  Result<std::string> text = readFile(path);
   if (!text) return listed;
+  dropFiles(*text);
   const Result<json::Json> manifest = json::parse(*text, path);
   if (!manifest || json::member(*manifest, "lacquer") == nullptr) return listed;
   const json::Json* shaders = json::member(*manifest, "shaders");

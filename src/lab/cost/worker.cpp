@@ -1,7 +1,7 @@
 // The driver reads its settings from the environment when it is opened, serves one family for the life of a
 // process, and may crash on a module that no validator has seen. So it lives in a fork: the child alone
-// changes its environment, and sends what it found through a pipe. The validator works there, too: a module
-// of others may break it as well.
+// changes its environment, and sends what it found through a pipe. The validator works there, too: an
+// untrusted module may break it as well.
 #ifdef LACQUER_VULKAN
 #include "cost/worker.h"
 
@@ -109,7 +109,7 @@ void limitMemory() {
   atMost(RLIMIT_CORE, 0);  // a crash leaves no file of that size
 }
 
-/// Why a module of others does not go to the driver; empty when it may.
+/// Why an untrusted module does not go to the driver; empty when it may.
 std::string objection(const Stages& subject) {
   for (const auto& [words, foreign] : {std::pair(subject.vertex, subject.foreign_vertex),
                                        std::pair(subject.fragment, subject.foreign_fragment)}) {
