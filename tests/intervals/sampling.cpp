@@ -6,6 +6,17 @@
 
 namespace lacquer::test {
 
+bool drawable(const lang::NodeDecl& node) {
+  const auto drawn = [](const lang::Param& param) {
+    return !ir::isMatrix(param.type) && !ir::isWhole(ir::partType(param.type));
+  };
+  if (!std::all_of(node.params.begin(), node.params.end(), drawn) ||
+      !std::all_of(node.results.begin(), node.results.end(), drawn))
+    return false;
+  return !node.origin.file.starts_with("nodes/standard/") || node.name.find('<') == std::string_view::npos ||
+         node.name.ends_with("<vec3>");
+}
+
 namespace {
 
 /// splitmix64, by Steele, Lea and Flood.

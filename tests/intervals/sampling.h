@@ -6,10 +6,15 @@
 #include <string_view>
 
 #include "ir/module.h"
+#include "lang/ast.h"
 
 namespace lacquer::test {
 
 using Floats = std::array<float, 4>;
+
+/// Whether a test that draws floats for every node's parameters takes this one: it has no matrices and no
+/// integers, and of a standard node's forms it is the one of three floats, or the only one.
+bool drawable(const lang::NodeDecl& node);
 
 /// One drawing of everything that a module may read, a pure function of the seed: two modules that read the
 /// same inputs see the same numbers. What nodes call N, V, L, T, B, sum, length2, NdotL and so on belongs to

@@ -293,6 +293,7 @@ TEST(IntervalSoundness, AWrongIntervalIsFound) {
 TEST(IntervalSoundness, Nodes) {
   const lang::Library library = lang::Library::embedded();
   for (const std::string_view name : library.names(lang::DeclKind::Node)) {
+    if (!drawable(**library.node(name))) continue;
     const NodeModule made = nodeModule(**library.node(name), {});
     // The geometry's cosines are rounded: inputs that were computed.
     expectSound(made.module, {analysis::Arithmetic::Vulkan, analysis::kSceneLimit, true}, 5000,

@@ -21,6 +21,8 @@ std::vector<Subject> allNodes(size_t points) {
   std::vector<Subject> subjects;
   for (const std::string_view name : library().names(lang::DeclKind::Node)) {
     const lang::NodeDecl& node = **library().node(name);
+    // tests/standard and tests/patterns compare these with what MaterialX defines.
+    if (node.origin.file.starts_with("nodes/standard/")) continue;
     subjects.push_back(nodeSubject(node, {}, points));
     for (const lang::Variant& variant : node.variants)
       subjects.push_back(nodeSubject(node, variant.name, points));

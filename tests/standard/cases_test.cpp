@@ -72,6 +72,7 @@ std::vector<double> resultsOf(const Line& line, const std::string& variant) {
   if (!found) return {};
   const NodeModule made = nodeModule(**found, variant);
   eval::Bindings bindings;
+  bindings.quads = true;
   for (const lang::Param& param : (*found)->params) {
     const auto given = std::find_if(line.inputs.begin(), line.inputs.end(),
                                     [&](const auto& input) { return input.first == param.name; });

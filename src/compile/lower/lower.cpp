@@ -319,10 +319,17 @@ private:
   }
 
   /// What the template gives for a parameter that nothing is connected to; kNoValue for its constant default.
-  ir::ValueId givenFor(const lang::Param& param) const {
+  /// As a graph sees it: what the vertices know is interpolated. (At the vertices that is taken back.)
+  ir::ValueId given(const lang::GivenResult& found) {
+    const ir::ValueId value = slots_[found.given->slot + found.index];
+    const bool between = dag()[value].rate == ir::Rate::Vertex && ir::isFloating(dag()[value].type);
+    return between ? dag().make(ir::Op::Interpolate, {value}) : value;
+  }
+
+  ir::ValueId givenFor(const lang::Param& param) {
     const auto found = param.given.empty() ? std::nullopt : template_->find(param.given);
     if (!found || found->given->results[found->index].type != param.type) return ir::kNoValue;
-    return slots_[found->given->slot + found->index];
+    return given(*found);
   }
 
   /// What a node gives comes from the vertices, in its range: interpolants reach past the ends of triangles.
@@ -416,7 +423,7 @@ private:
   ir::ValueId from(const graph::GivenRef& reference) {
     const auto found = template_->find(reference.name);
     assert(found);
-    return slots_[found->given->slot + found->index];
+    return given(*found);
   }
 
   ir::ValueId from(const graph::NodeRef& reference) {

@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "docs/tables.h"
+#include "lang/library.h"
+
+namespace lacquer::test {
+
+namespace {
+
+/// What stands between the angle brackets of a form's name; of a node that is alone, its result's type.
+std::string typesOf(const lang::NodeDecl& node) {
+  const size_t at = node.name.find('<');
+  if (at == std::string_view::npos)
+    return node.results.size() == 1 ? std::string(ir::typeName(node.results[0].type)) : "";
+  const std::string types(node.name.substr(at + 1, node.name.size() - at - 2));
+  return types.find(',') == std::string::npos ? types : "(" + types + ")";
+}
+
+std::string inputsOf(const lang::NodeDecl& node) {
+  // Of several that differ in a number alone, the first and the last.
+  std::string text;
+  for (size_t i = 0; i < node.params.size(); ++i) {
+    if (node.params.size() > 12 && i == 6) {
+      text += ", …";
+      i = node.params.size() - 2;
+    }
+    text += fmt::format("{}`{}`", text.empty() ? "" : ", ", node.params[i].name);
+  }
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
+}  // namespace
+
+std::string standardNodes() {
+  const lang::Library library = lang::Library::embedded();
+  struct Family {
+    const lang::NodeDecl* first = nullptr;
+    std::vector<std::string> types;
+  };
+  std::map<std::string, std::map<std::string, Family>> categories;
+  size_t forms = 0;
+  for (const std::string_view name : library.names(lang::DeclKind::Node)) {
+    const auto found = library.node(name);
+    EXPECT_TRUE(found) << name;
+    if (!found) continue;
+    const lang::NodeDecl& node = **found;
+    if (!node.origin.file.starts_with("nodes/standard/") || name.starts_with("standard_")) continue;
+    Family& family = categories[std::string(node.category)][std::string(node.family)];
+    if (family.first == nullptr) family.first = &node;
+    family.types.push_back(typesOf(node));
+    ++forms;
+  }
+  size_t families = 0;
+  std::string out;
+  for (const auto& [category, nodes] : categories) {
+    out += fmt::format("\n### {}\n\n| node | inputs | forms | |\n|---|---|---|---|\n", category);
+    for (const auto& [name, family] : nodes) {
+      std::string doc(family.first->doc);
+      std::replace(doc.begin(), doc.end(), '\n', ' ');
+      out +=
+          fmt::format("| `{}` | {} | {} | {} |\n", name, inputsOf(*family.first), joined(family.types), doc);
+      ++families;
+    }
+  }
+  return fmt::format("{} nodes in {} forms.\n", families, forms) + out;
+}
+
+}  // namespace lacquer::test
