@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "graph/contracts.h"
+#include "graph/text.h"
 #include "lang/suggest.h"
 #include "support/text.h"
 
