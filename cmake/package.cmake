@@ -14,7 +14,7 @@ target_include_directories(lacquer_library PUBLIC "$<BUILD_INTERFACE:${public_vi
 target_compile_features(lacquer_library PUBLIC cxx_std_20)
 # What its objects need at link time; lacquer-config.cmake finds the same. Header-only libraries are in the objects.
 target_link_libraries(lacquer_library PRIVATE fmt::fmt glslang::glslang glslang::SPIRV
-                      glslang::glslang-default-resource-limits SPIRV-Tools-opt SPIRV-Tools-static TBB::tbb
+                      glslang::glslang-default-resource-limits SPIRV-Tools-opt SPIRV-Tools-static TBB::tbb pugixml::pugixml
                       PkgConfig::sodium_pc PkgConfig::stb_pc Threads::Threads ${CMAKE_DL_LIBS})
 if(TARGET PkgConfig::spirv_cross_pc)
   set(LACQUER_SPIRV_CROSS ON)

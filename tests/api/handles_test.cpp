@@ -38,7 +38,22 @@ void useEmpty(Graph& graph) {
   EXPECT_FALSE(graph.generate({}, messages));
   EXPECT_EQ(graph.dump({}, "", messages), "");
   EXPECT_FALSE(graph.prove({}, messages));
-  ASSERT_EQ(messages.size(), 10U);
+  EXPECT_TRUE(graph.nodes().empty());
+  EXPECT_TRUE(graph.outputs().empty());
+  EXPECT_TRUE(graph.groups().empty());
+  EXPECT_TRUE(graph.textures().empty());
+  EXPECT_EQ(graph.changes(), Change::Program);
+  EXPECT_FALSE(graph.sockets("a", messages));
+  EXPECT_FALSE(graph.addInstance("a", "worn", messages));
+  EXPECT_FALSE(graph.renameNode("a", "b", messages));
+  EXPECT_FALSE(graph.disconnect("a", "light", messages));
+  EXPECT_FALSE(graph.removeOutput("emission", messages));
+  EXPECT_FALSE(graph.makeGroup({"a"}, "worn", "b", messages));
+  EXPECT_FALSE(graph.addGroup("worn", Graph(), messages));
+  EXPECT_FALSE(graph.expand("a", messages));
+  EXPECT_EQ(graph.edit("{}", messages), "");
+  EXPECT_EQ(graph.structure({}, messages), "");
+  ASSERT_EQ(messages.size(), 20U);
   for (const Message& message : messages) EXPECT_EQ(message.code, "empty-handle");
 }
 

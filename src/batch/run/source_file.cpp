@@ -196,16 +196,16 @@ Diagnostics undeclared(const material::Document& document, const std::string& pa
   for (const lang::ExtensionDecl* decl : schema.extensions) {
     if (!decl->core) known.push_back(decl->name);
   }
-  Diagnostics notes;
+  Diagnostics warnings;
   for (const auto& [name, pointer] : places) {
-    addBounded(notes, {"undeclared-extension",
-                       Severity::Note,
-                       {path, 0, 0, pointer},
-                       fmt::format("no node file declares {}: it does nothing", printable(name)),
-                       lang::didYouMean(name, known),
-                       {}});
+    addBounded(warnings, {"undeclared-extension",
+                          Severity::Warning,
+                          {path, 0, 0, pointer},
+                          fmt::format("no node file declares {}: it does nothing", printable(name)),
+                          lang::didYouMean(name, known),
+                          {}});
   }
-  return notes;
+  return warnings;
 }
 
 FileResult SceneFile::run(const material::Document& document) {
@@ -218,8 +218,8 @@ FileResult SceneFile::run(const material::Document& document) {
   result.diagnostics = document.diagnostics;
   result.ok = !hasError(result.diagnostics);
   if (const auto schema = setting_.library.models.schema()) {
-    const Diagnostics notes = undeclared(document, path_, **schema);
-    result.diagnostics.insert(result.diagnostics.end(), notes.begin(), notes.end());
+    const Diagnostics warnings = undeclared(document, path_, **schema);
+    result.diagnostics.insert(result.diagnostics.end(), warnings.begin(), warnings.end());
   }
   json::JsonText json(manifest::kEntryDepth);
   manifest::beginFile(relativeTo(setting_.folder, path_), json);

@@ -64,6 +64,7 @@ public:
       : language_(language), own_(std::move(own)) {
     for (const lang::EmbeddedFile& file : lang::embeddedNodes()) words_.add(file.text);
     for (const lang::EmbeddedFile& file : lang::embeddedTemplates()) words_.add(file.text);
+    for (const lang::EmbeddedFile& file : lang::embeddedStandard().files) words_.add(file.text);
     for (const lang::SourceFile& file : own_) words_.add(file.text);
   }
 
