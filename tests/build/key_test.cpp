@@ -41,6 +41,10 @@ const std::vector<Row>& rows() {
       {"debug", Decides::SpirvCode, [](Options& o) { o.debug = true; }},
       {"live", Decides::Graph, [](Options& o) { o.live = {"coat.darkening"}; }},
       {"node_directories", Decides::Run, [](Options& o) { o.node_directories = {"nodes"}; }},
+      {"node_texts", Decides::Run,
+       [](Options& o) {
+         o.node_texts = {{"a.node", ""}};
+       }},
       {"jobs", Decides::Nothing, [](Options& o) { o.jobs = 2; }},
       {"cache", Decides::Nothing, [](Options& o) { o.cache = "cache"; }},
       {"cache_size", Decides::Nothing, [](Options& o) { o.cache_size = 1; }},

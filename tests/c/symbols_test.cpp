@@ -66,12 +66,13 @@ TEST(Symbols, areThoseOfTheHeadersAndNoOthers) {
   EXPECT_GT(of_c.size(), 40u);
 }
 
-/// Functions of the C++ headers, without their classes.
+/// Functions of the C++ headers that the library has, without their classes.
 std::set<std::string> declaredInCpp() {
   const std::regex declaration(
       R"(^(?:  )?(?:static )?(?!friend |return |explicit )[A-Za-z][\w:<>, ]* [&*]?([a-z]\w+)\()");
   std::set<std::string> names;
   for (const auto& header : std::filesystem::directory_iterator(sourceFolder() / "src/lacquer")) {
+    if (header.path().filename() == "vulkan.h") continue;  // a header alone: all of it is inline
     std::istringstream lines(readFile(header.path()));
     for (std::string line; std::getline(lines, line);) {
       std::smatch match;

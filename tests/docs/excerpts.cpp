@@ -63,7 +63,7 @@ std::string dustyPart(std::string_view of) {
     }
   }
   const std::string& text = made.shader.fragmentText(Target::Glsl);
-  const std::string term = "// coat.dust:";
+  const std::string term = "// coat_dust:";
   const size_t second = text.find(term, std::min(text.find(term), text.size() - 1) + 1);
   if (of != "field" && second != std::string::npos) {
     // A section may begin behind blanks: take its line whole.

@@ -63,8 +63,8 @@ public:
         const ir::Input& texture = dag_.inputOf(v.args[0]);
         return world_.texel(module_.textures[texture.field].environment, texture.name, b);
       }
-      case Op::DFdx: return spread(world_.difference(a, 0), v.type);
-      case Op::DFdy: return spread(world_.difference(a, 1), v.type);
+      case Op::DFdx: return spread(difference(v.args[0], 0), v.type);
+      case Op::DFdy: return spread(difference(v.args[0], 1), v.type);
       case Op::Column: return a;  // as with a product
       case Op::Interpolate: return a;
       case Op::SumOverLights: {
@@ -85,6 +85,19 @@ public:
   }
 
 private:
+  /// Of neighbours: an input is in its range there, too.
+  Floats difference(ValueId id, int axis) const {
+    const Floats& here = values_[id];
+    Floats out = world_.difference(here, axis);
+    if (dag_[id].op != Op::Input) return out;
+    const ir::Interval& range = dag_.inputOf(id).range;
+    for (size_t c = 0; c < 4; ++c) {
+      const double there = std::clamp<double>(here[c] + out[c], range.lo, range.hi);
+      out[c] = static_cast<float>(there) - here[c];
+    }
+    return out;
+  }
+
   static Floats splat(float x) { return {x, x, x, x}; }
   /// Every component of a scalar is the scalar, so that it may stand beside a vector.
   static Floats spread(const Floats& x, ir::Type type) {

@@ -103,7 +103,8 @@ private:
     const ValueId id = ids_[v];
     size_t count = 0;
     for (size_t c = 0; c < width(id); ++c) {
-      const double x = values[point * width(id) + c];
+      double x = values[point * width(id) + c];
+      if (module_.dag[id].type == ir::Type::UInt && x > INT32_MAX) x -= 0x1p32;  // ir/whole.h
       const analysis::Range& r = intervals.at(id, static_cast<int>(c));
       if (std::isnan(x) ? r.nan : r.contains(x)) continue;
       if (++count > 1 || what == nullptr) continue;

@@ -239,7 +239,7 @@ TEST(ParityWritten, AnotherTexelOrNumberShows) {
     });
   });
   EXPECT_GT(choice.shared.outside, 100U);
-  EXPECT_GT(choice.discarded, 100U);
+  EXPECT_GT(choice.discarded, kPoints / 2);  // one masked material shares its program
 }
 
 }  // namespace

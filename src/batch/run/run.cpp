@@ -230,17 +230,7 @@ bool Run::make(const std::string& folder, const Scratch& scratch, const Receipt*
   const std::vector<MadeShader> made = makeShaders(structures_->shaders(), *setting_, folder, scratch,
                                                    receipt, [&](size_t done) { progress(done, false); });
   progress(made.size(), true);
-  for (const Target target : options_.targets) {
-    if (!options_.validate || made.empty() || !isShader(target) || hasValidator(target)) continue;
-    report({{"not-validated",
-             Severity::Warning,
-             {},
-             fmt::format("nothing here compiles the target {}: its shaders are not validated",
-                         targetName(target)),
-             std::string(check::howToCheck(target)),
-             {}}},
-           {});
-  }
+  if (!made.empty()) report(withoutValidator(options_), {});
   for (const MadeShader& shader : made) {
     report(shader.wrong, {});
     report_.ok &= shader.wrong.empty();

@@ -94,7 +94,8 @@ Strings standIns(const Structure& structure, const gltf::VertexAttributes& attri
 
 void Describer::use(const gltf::VertexAttributes& attributes) {
   std::string key;
-  if (KnownShapes* shapes = structures_.shapes()) {
+  // Patterns are a graph of the material's own: its properties do not say what becomes of it.
+  if (KnownShapes* shapes = material_.patterns ? nullptr : structures_.shapes()) {
     key = shapes->keyOf(material_, attributes, lights_);
     if (known(key, attributes)) return;
   }

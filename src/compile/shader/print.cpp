@@ -30,6 +30,21 @@ int firstStage(Target target, bool has_vertex) {
 
 bool hasValidator(Target target) { return check::canCheck(target); }
 
+Diagnostics withoutValidator(const Options& options) {
+  Diagnostics all;
+  for (const Target target : options.targets) {
+    if (!options.validate || !isShader(target) || hasValidator(target)) continue;
+    all.push_back({"not-validated",
+                   Severity::Warning,
+                   {},
+                   fmt::format("nothing here compiles the target {}: its shaders are not validated",
+                               targetName(target)),
+                   std::string(check::howToCheck(target)),
+                   {}});
+  }
+  return all;
+}
+
 std::string takeBytes(ShaderData& shader, Target target, int file) {
   if (!targets::row(target).words) return std::move(shader.text[static_cast<size_t>(target)][file]);
   std::string bytes;

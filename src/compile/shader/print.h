@@ -49,5 +49,7 @@ int firstStage(Target target, bool has_vertex);
 inline bool isShader(Target target) { return !packsBlock(target); }
 /// Some compiler or validator on this machine checks the target's code.
 bool hasValidator(Target target);
+/// "not-validated", of each target of which shaders are wanted validated and nothing here can.
+Diagnostics withoutValidator(const Options& options);
 
 }  // namespace lacquer

@@ -9,6 +9,7 @@
 #include "run/programs.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "shader/print.h"
 #include "structures/contract.h"
 #include "support/jobs.h"
 
@@ -90,6 +91,7 @@ Contract Making::make(const Strings& materials, const Progress& progress) {
   });
   report(made.diagnostics, document_.path, messages_);
   if (sharing) report(sharing->about(made.shaders.size()), {}, messages_);
+  if (!made.shaders.empty()) report(withoutValidator(options_), {}, messages_);
   contract = std::move(made.values);
   const Result<const material::Schema*> schema = language_->models.schema();
   for (size_t i = 0; i < made.shaders.size(); ++i)

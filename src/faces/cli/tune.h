@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "cli/options.h"
@@ -10,7 +11,8 @@
 namespace lacquer::cli {
 
 struct TuneFlags {
-  std::string subject, material;
+  std::string subject;
+  std::optional<std::string> material;
   bool json = false;
 };
 
