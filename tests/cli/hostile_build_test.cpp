@@ -266,7 +266,7 @@ std::map<const void*, Words> wordsOf(const Options& options) {
           {&options.spirv_route, {"--spirv-from", "glslang"}},
           {&options.relaxed, {"--relaxed", "0.0123"}},
           {&options.optimize, {"--optimize", "1"}},
-          {&options.optimize_error, {"--error", "0.001"}},
+          {&options.optimize_error, {"--optimize", "2", "--error", "0.001"}},
           {&options.optimize_for, {"--optimize-for", optimizeFamilies().back()}},
           {&options.debug, {"--debug"}},
           {&options.argument_buffers, {"--msl-argument-buffers"}}};

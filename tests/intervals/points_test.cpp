@@ -104,9 +104,11 @@ private:
     size_t count = 0;
     for (size_t c = 0; c < width(id); ++c) {
       double x = values[point * width(id) + c];
+      // An integer was read as a float.
+      const double off = ir::isWhole(module_.dag[id].type) ? std::abs(x) * 0x1p-24 : 0;
       if (module_.dag[id].type == ir::Type::UInt && x > INT32_MAX) x -= 0x1p32;  // ir/whole.h
       const analysis::Range& r = intervals.at(id, static_cast<int>(c));
-      if (std::isnan(x) ? r.nan : r.contains(x)) continue;
+      if (std::isnan(x) ? r.nan : x + off >= r.lo && x - off <= r.hi) continue;
       if (++count > 1 || what == nullptr) continue;
       std::ostringstream text;
       text.precision(17);

@@ -216,7 +216,7 @@ double sampledError(Curve& curve, const Range& domain, size_t degree) {
 
 bool prove(Curve& curve, const Range& domain, const std::vector<ir::Components>& coefficients, double most,
            Range& reached) {
-  constexpr size_t kMostBoxes = 3000;
+  constexpr size_t kMostBoxes = 8000;
   const analysis::RangeMath m(analysis::Arithmetic::Real);
   // Small ones from the start, so that what is reached is told closely.
   constexpr int kFirst = 64;

@@ -166,7 +166,7 @@ Result<Shown> shown(const Subject& subject, const Ready& ready, const vulkan::De
 std::string whyNot(const Subject& subject) {
   if (subject.group > 1) return "its samples are each other's neighbours";
   for (const ir::Parameter& parameter : subject.module().parameters) {
-    if (subject.is_node && (parameter.type == ir::Type::Mat4 || parameter.type == ir::Type::Int))
+    if (subject.is_node && (ir::isMatrix(parameter.type) || ir::isWhole(ir::partType(parameter.type))))
       return fmt::format("'{}' is a {}", parameter.name, ir::typeName(parameter.type));
   }
   for (const ir::TextureSlot& slot : subject.module().textures) {

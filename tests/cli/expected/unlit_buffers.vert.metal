@@ -33,7 +33,7 @@ struct spvDescriptorSetBuffer2
 
 struct main0_out
 {
-    float4 gl_Position [[position]];
+    float4 gl_Position [[position, invariant]];
 };
 
 struct main0_in
@@ -44,7 +44,10 @@ struct main0_in
 vertex main0_out main0(main0_in in [[stage_in]], constant spvDescriptorSetBuffer0& spvDescriptorSet0 [[buffer(0)]], constant spvDescriptorSetBuffer2& spvDescriptorSet2 [[buffer(2)]])
 {
     main0_out out = {};
-    out.gl_Position = (*spvDescriptorSet0.frame).view_projection * ((*spvDescriptorSet2.object).model * float4(in.in_position, 1.0));
+    float4 _26 = float4(in.in_position, 1.0);
+    float4 _27 = (*spvDescriptorSet2.object).model * _26;
+    float4 _30 = (*spvDescriptorSet0.frame).view_projection * _27;
+    out.gl_Position = _30;
     return out;
 }
 

@@ -23,7 +23,7 @@ struct Object
 
 struct main0_out
 {
-    float4 gl_Position [[position]];
+    float4 gl_Position [[position, invariant]];
 };
 
 struct main0_in
@@ -34,7 +34,10 @@ struct main0_in
 vertex main0_out main0(main0_in in [[stage_in]], constant Frame& frame [[buffer(0)]], constant Object& object [[buffer(3)]])
 {
     main0_out out = {};
-    out.gl_Position = frame.view_projection * (object.model * float4(in.in_position, 1.0));
+    float4 _26 = float4(in.in_position, 1.0);
+    float4 _27 = object.model * _26;
+    float4 _30 = frame.view_projection * _27;
+    out.gl_Position = _30;
     return out;
 }
 
