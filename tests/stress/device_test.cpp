@@ -53,9 +53,12 @@ TEST(StressDevice, TheLibraryHolds) {
   const json answer = stressed({}, 512);
   expectNone(answer);
   EXPECT_EQ(answer["device"], device()->name());
-  size_t skipped = 0;
-  for (const json& subject : answer["subjects"]) skipped += subject.contains("skipped") ? 1 : 0;
-  EXPECT_LE(skipped, 2U) << "more nodes than those of derivatives were left out";
+  for (const json& subject : answer["subjects"]) {
+    // Ten matrices are more inputs than most devices take.
+    const bool of_matrices = subject["node"].get<std::string>().starts_with("switch<mat4");
+    if (!subject.contains("skipped") || of_matrices) continue;
+    EXPECT_EQ(subject["skipped"], "its samples are each other's neighbours") << subject["node"];
+  }
 }
 
 TEST(StressDevice, TheExamplesHold) {

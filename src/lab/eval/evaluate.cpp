@@ -279,8 +279,11 @@ private:
         }
         if (instruction.whole) {
           Exactly exactly;
-          return mapLanes(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_, exactly);
+          mapLanes(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_, exactly);
+          if constexpr (std::is_same_v<Rounding, Rough>) converted(instruction);
+          return;
         }
+        if constexpr (std::is_same_v<Rounding, Rough>) rounding_.fuses = instruction.fuses;
         return mapLanes(instruction.op, arg(0), arg(1), arg(2), at(out), lanes_, rounding_);
       case Step::Literal:
         return static_cast<void>(
@@ -322,6 +325,18 @@ private:
       case Step::LoopEnd:
       case Step::RoundsBegin:
       case Step::RoundsEnd: return;
+    }
+  }
+
+  /// What no integer is becomes any: Vulkan leaves it open, and devices differ.
+  void converted(const Instruction& instruction) {
+    if (instruction.op != Op::ToInt && instruction.op != Op::ToUInt) return;
+    const double least = instruction.op == Op::ToInt ? -0x1p31 : 0;
+    const double end = instruction.op == Op::ToInt ? 0x1p31 : 0x1p32;
+    const T* from = at(instruction.args[0]);
+    for (size_t i = 0; i < lanes_; ++i) {
+      const bool representable = std::trunc(from[i]) >= least && from[i] < end;
+      if (!representable) at(instruction.outs[0])[i] = whole<T>(rounding_.anything());
     }
   }
 

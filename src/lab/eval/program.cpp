@@ -74,6 +74,7 @@ private:
     std::copy(args.begin(), args.end(), instruction.args.begin());
     instruction.half = half_;
     instruction.whole = whole_;
+    instruction.fuses = fuses_ && (op == Op::Add || op == Op::Sub);
     return emit(instruction, uniform);
   }
   Register map(Op op, Register a, Register b) { return map(op, std::array{a, b}); }
@@ -378,9 +379,23 @@ private:
     // After an error registers are missing; what is left to find is more unbound inputs.
     half_ = dag_.relaxed(id);
     whole_ = ir::isWhole(ir::partType(dag_[id].type));
+    fuses_ = fuses(id);
     const bool known = dag_[id].op == Op::Input && ir::ofLoop(dag_.inputOf(id).kind);
     if (known || ir::makesLoop(dag_[id].op)) return;
     if (wrong_.empty() || dag_[id].op == Op::Input) registers_of_[id] = made(id);
+  }
+
+  bool fuses(ValueId id) const {
+    const ir::Value& value = dag_[id];
+    if (value.op == Op::MatMul) return true;
+    if (value.op != Op::Add && value.op != Op::Sub) return false;
+    // A constant may be a guard, which no regrouping explains.
+    if (dag_.isConstant(value.args[0]) || dag_.isConstant(value.args[1])) return false;
+    const auto of_more = [&](ValueId operand) {
+      const Op op = dag_[operand].op;
+      return op == Op::Mul || op == Op::Add || op == Op::Sub;
+    };
+    return of_more(value.args[0]) || of_more(value.args[1]);
   }
 
   std::vector<Register> made(ValueId id) {
@@ -414,6 +429,7 @@ private:
   Diagnostics wrong_;
   bool half_ = false;   ///< what is being compiled is relaxed
   bool whole_ = false;  ///< it is an integer
+  bool fuses_ = false;  ///< it is a sum of sums or products
   ir::Loops loops_;
   std::vector<Virtual> virtuals_;
   std::vector<std::vector<Register>> registers_of_;

@@ -50,6 +50,7 @@ struct Instruction {
   std::array<Register, 4> args{kNoRegister, kNoRegister, kNoRegister, kNoRegister};
   bool half = false;   ///< of a value that the Dag says is relaxed
   bool whole = false;  ///< of an integer, which nothing rounds (ir/whole.h)
+  bool fuses = false;  ///< a sum of sums or products, which devices may regroup or fuse
 };
 
 /// Holds for every Bindings that gives the same inputs as those that it was compiled for, each per point or

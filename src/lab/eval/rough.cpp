@@ -1,5 +1,6 @@
 #include "eval/rough.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
@@ -64,6 +65,13 @@ double Rough::symmetric() {
   return u < 1.0 / 3 ? -1 : u > 2.0 / 3 ? 1 : 6 * u - 3;
 }
 
+uint32_t Rough::anything() { return static_cast<uint32_t>(drawn(state_) * 0x1p32); }
+
+double Rough::wave() {
+  const double u = drawn(state_);
+  return u < 0.25 ? -1 : u < 0.5 ? 0 : u < 0.75 ? 1 : 8 * u - 7;
+}
+
 double Rough::input(double x) {
   const auto f = static_cast<double>(static_cast<float>(x));
   return std::abs(f) < static_cast<double>(FLT_MIN) && symmetric() > 0 ? std::copysign(0.0, f) : f;
@@ -71,6 +79,10 @@ double Rough::input(double x) {
 
 double Rough::operator()(Op op, double a, double b, double x) {
   if (!std::isfinite(x)) return x;
+  // An angle whose neighbours are more than a turn away: Vulkan promises nothing beyond [-pi, pi].
+  if ((op == Op::Sin || op == Op::Cos) && std::abs(a) * kUlp > 2 * kPi) return wave();
+  // Some devices do, others do not.
+  if (fuses && drawn(state_) < 1.0 / 3) x += symmetric() * kUlp * std::max(std::abs(a), std::abs(b));
   const Allowed allowed = allowedOf(op, a, b, x);
   const auto f = static_cast<double>(static_cast<float>(x));
   if (allowed.exact && f == x) return input(f);

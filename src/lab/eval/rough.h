@@ -15,11 +15,17 @@ public:
   /// float (in a double) within twice the error that Vulkan allows; a sum or a product that is a float stays
   /// as it is, since every device rounds that right. Subnormal numbers may become 0.
   double operator()(ir::Op op, double a, double b, double x);
+  /// Whether the next operations are sums of sums or products: a device that regroups them, or fuses a
+  /// product with the sum, rounds what is as large as the operands elsewhere, however little is left of their
+  /// sum.
+  bool fuses = false;
   /// What a device makes of a number from outside.
   double input(double x);
+  uint32_t anything();
 
 private:
   double symmetric();  ///< in [-1, 1], the ends often
+  double wave();       ///< the same, 0 often, too
 
   uint64_t state_;
 };

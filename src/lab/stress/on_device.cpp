@@ -22,7 +22,17 @@ struct At {
   size_t root = 0;
   size_t first = 0;  ///< number of the first component, four for each colour
   size_t components = 0;
+  ir::Type whole =
+      ir::Type::Float;  ///< Int or UInt where each of the root's numbers is two: its upper and its lower half
 };
+
+/// A float holds 24 bits exactly: integers go in and come out as two halves.
+constexpr uint32_t kHalfBits = 16, kHalfLast = 0xffff;
+/// The halves of two numbers from that one on.
+std::string halvesName(std::string_view name, int first) { return fmt::format("{}_halves_{}", name, first); }
+std::string columnName(std::string_view name, int index) { return fmt::format("{}_column_{}", name, index); }
+/// Of a square matrix.
+int columnCount(ir::Type matrix) { return ir::componentCount(ir::partType(matrix)); }
 
 /// A subject's module with results for colours.
 struct Ready {
@@ -30,21 +40,85 @@ struct Ready {
   std::vector<At> places;
 };
 
-/// A parameter as a fragment's input.
-ValueId varyingOf(passes::Rewriter& r, ir::Input input) {
-  const bool flag = input.type == ir::Type::Bool;
+/// A fragment's input of floats.
+ValueId varyingOf(passes::Rewriter& r, const std::string& name, ir::Type type, const ir::Interval& range) {
   const auto known = std::find_if(r.module().varyings.begin(), r.module().varyings.end(),
-                                  [&](const ir::Varying& varying) { return varying.name == input.name; });
+                                  [&](const ir::Varying& varying) { return varying.name == name; });
   const auto location = static_cast<uint32_t>(known - r.module().varyings.begin());
-  if (flag) {
-    input.type = ir::Type::Float;
-    input.range = {0, 1};
+  if (known == r.module().varyings.end()) r.module().varyings.push_back({name, type, location, ir::kNoValue});
+  return r.dag().input({ir::InputKind::Varying, name, type, ir::Rate::Fragment, range, 0, location});
+}
+
+/// An integer of two halves.
+ValueId wholeOf(ir::Dag& dag, ValueId upper, ValueId lower, ir::Type type) {
+  const ValueId high = dag.make(ir::Op::ToUInt, {upper});
+  const ValueId low = dag.make(ir::Op::ToUInt, {lower});
+  const ValueId bits = dag.uinteger(kHalfBits);
+  const ValueId shifted = dag.make(ir::Op::ShiftLeft, {high, bits});
+  const ValueId both = dag.make(ir::Op::BitOr, {shifted, low});
+  return type == ir::Type::Int ? dag.make(ir::Op::AsInt, {both}) : both;
+}
+
+/// A parameter as a fragment's inputs.
+ValueId parameterOf(passes::Rewriter& r, const ir::Input& input) {
+  ir::Dag& dag = r.dag();
+  std::vector<ValueId> parts;
+  const int n = ir::componentCount(input.type);
+  if (ir::isMatrix(input.type)) {
+    for (int i = 0; i < columnCount(input.type); ++i)
+      parts.push_back(varyingOf(r, columnName(input.name, i), ir::partType(input.type), input.range));
+    return dag.construct(input.type, parts);
   }
-  if (known == r.module().varyings.end())
-    r.module().varyings.push_back({input.name, input.type, location, ir::kNoValue});
-  const ValueId value = r.dag().input(
-      {ir::InputKind::Varying, input.name, input.type, ir::Rate::Fragment, input.range, 0, location});
-  return flag ? r.dag().make(ir::Op::Less, {r.dag().constant(0.5), value}) : value;
+  const ir::Type part = ir::partType(input.type);
+  if (ir::isWhole(part)) {
+    // One and two are side by side: devices take so many inputs.
+    std::vector<ValueId> halves;
+    for (int first = 0; first < n; first += 2) {
+      const int numbers = std::min(2, n - first);
+      const ValueId both =
+          varyingOf(r, halvesName(input.name, first), ir::floatType(2 * numbers), {0, kHalfLast});
+      for (int c = 0; c < 2 * numbers; ++c) halves.push_back(dag.component(both, c));
+    }
+    for (size_t c = 0; c < halves.size(); c += 2)
+      parts.push_back(wholeOf(dag, halves[c], halves[c + 1], part));
+  } else if (part == ir::Type::Bool) {
+    const ValueId value = varyingOf(r, input.name, ir::floatType(n), {0, 1});
+    const ValueId half = dag.constant(0.5);
+    for (int c = 0; c < n; ++c) {
+      const ValueId component = dag.component(value, c);
+      parts.push_back(dag.make(ir::Op::Less, {half, component}));
+    }
+  } else {
+    return varyingOf(r, input.name, input.type, input.range);
+  }
+  return n == 1 ? parts[0] : dag.construct(input.type, parts);
+}
+
+/// Adds a value's numbers, as floats.
+void addNumbers(ir::Dag& dag, ValueId value, std::vector<ValueId>& to) {
+  const ir::Type type = dag[value].type;
+  if (ir::isMatrix(type)) {
+    for (int i = 0; i < columnCount(type); ++i)
+      addNumbers(dag, dag.column(value, static_cast<uint32_t>(i)), to);
+    return;
+  }
+  for (int c = 0; c < ir::componentCount(type); ++c) {
+    ValueId part = dag.component(value, c);
+    if (ir::isWhole(ir::partType(type))) {
+      if (dag[part].type == ir::Type::Int) part = dag.make(ir::Op::AsUInt, {part});
+      const ValueId bits = dag.uinteger(kHalfBits);
+      const ValueId mask = dag.uinteger(kHalfLast);
+      const ValueId upper = dag.make(ir::Op::UIntShiftRight, {part, bits});
+      const ValueId lower = dag.make(ir::Op::BitAnd, {part, mask});
+      to.push_back(dag.make(ir::Op::FromUInt, {upper}));
+      part = dag.make(ir::Op::FromUInt, {lower});
+    } else if (dag[part].type == ir::Type::Bool) {
+      const ValueId one = dag.constant(1);
+      const ValueId zero = dag.constant(0);
+      part = dag.make(ir::Op::Select, {part, one, zero});
+    }
+    to.push_back(part);
+  }
 }
 
 /// The results' numbers, four in a colour.
@@ -52,12 +126,11 @@ void setColors(Ready& ready) {
   ir::Dag& dag = ready.module.dag;
   std::vector<ValueId> parts;
   for (size_t r = 0; r < ready.module.outputs.size(); ++r) {
-    ValueId value = ready.module.outputs[r].value;
-    if (dag[value].type == ir::Type::Bool)
-      value = dag.make(ir::Op::Select, {value, dag.constant(1), dag.constant(0)});
-    const int n = ir::componentCount(dag[value].type);
-    ready.places.push_back({r, parts.size(), static_cast<size_t>(n)});
-    for (int c = 0; c < n; ++c) parts.push_back(dag.component(value, c));
+    const ValueId value = ready.module.outputs[r].value;
+    const ir::Type part = ir::partType(dag[value].type);
+    const size_t first = parts.size();
+    addNumbers(dag, value, parts);
+    ready.places.push_back({r, first, parts.size() - first, ir::isWhole(part) ? part : ir::Type::Float});
   }
   while (parts.size() % 4 != 0) parts.push_back(dag.constant(0));
   ready.module.outputs.clear();
@@ -77,7 +150,7 @@ Ready readyNode(const Subject& subject) {
     if (r.dag()[id].op != ir::Op::Input) return r.copy(id, operands);
     const ir::Input input = r.dag().inputOf(id);
     const bool stays = input.kind == ir::InputKind::Texture || ir::ofLoop(input.kind);
-    return stays ? r.copy(id, operands) : varyingOf(r, input);
+    return stays ? r.copy(id, operands) : parameterOf(r, input);
   });
   ready.module.parameters.clear();
   setColors(ready);
@@ -142,11 +215,50 @@ GpuTextures texturesOf(const Subject& subject, const ir::Module& module, std::sp
   return textures;
 }
 
+/// Adds what the shader has of a parameter that it cannot have as it is.
+void addParts(const ir::Parameter& parameter, eval::Columns& columns) {
+  const auto found = columns.find(parameter.name);
+  if (found == columns.end()) return;
+  const eval::Column whole = found->second;
+  const auto with = [&](int components, const auto& number) {
+    eval::Column made{components, whole.per_point, {}};
+    const auto all = static_cast<size_t>(whole.components);
+    for (size_t point = 0; point * all < whole.values.size(); ++point) {
+      for (size_t c = 0; c < static_cast<size_t>(components); ++c)
+        made.values.push_back(number(point * all, c));
+    }
+    return made;
+  };
+  if (ir::isMatrix(parameter.type)) {
+    const int n = columnCount(parameter.type);
+    for (int i = 0; i < n; ++i) {
+      columns[columnName(parameter.name, i)] = with(
+          n, [&](size_t point, size_t c) { return whole.values[point + static_cast<size_t>(i * n) + c]; });
+    }
+  } else if (ir::isWhole(ir::partType(parameter.type))) {
+    for (int first = 0; first < whole.components; first += 2) {
+      const auto half = [&](size_t point, size_t c) {
+        const double number = whole.values[point + static_cast<size_t>(first) + c / 2];
+        const auto bits = static_cast<uint32_t>(static_cast<int64_t>(number));
+        return c % 2 == 0 ? bits >> kHalfBits : bits & kHalfLast;
+      };
+      columns[halvesName(parameter.name, first)] = with(2 * std::min(2, whole.components - first), half);
+    }
+  }
+}
+
+eval::Bindings inputsOf(const Subject& subject, std::span<const double> samples, size_t count) {
+  eval::Bindings inputs = subject.inputs(samples, count);
+  if (!subject.is_node) return inputs;
+  for (const ir::Parameter& parameter : subject.module().parameters) addParts(parameter, inputs.columns);
+  return inputs;
+}
+
 Result<Shown> shown(const Subject& subject, const Ready& ready, const vulkan::Device& device,
                     FragmentRoute route, std::span<const double> samples, size_t count) {
   Result<vulkan::Work> work =
-      gpuWork(ready.module, subject.inputs(samples, count), texturesOf(subject, ready.module, samples, count),
-              count * subject.lanes, route);
+      gpuWork(ready.module, inputsOf(subject, samples, count),
+              texturesOf(subject, ready.module, samples, count), count * subject.lanes, route);
   if (!work) return tl::make_unexpected(std::move(work.error()));
   const Result<vulkan::Outcome> outcome = device.run(*work);
   if (!outcome) return tl::make_unexpected(outcome.error());
@@ -156,8 +268,20 @@ Result<Shown> shown(const Subject& subject, const Ready& ready, const vulkan::De
   for (const At& place : ready.places) {
     std::vector<double>& values = answer.values[place.root];
     for (size_t i = 0; i < count; ++i) {
-      for (size_t k = place.first; k < place.first + place.components; ++k)
-        values.push_back(static_cast<double>(outcome->outputs[k / 4][4 * i * subject.lanes + k % 4]));
+      const auto number = [&](size_t k) {
+        return static_cast<double>(outcome->outputs[k / 4][4 * i * subject.lanes + k % 4]);
+      };
+      const size_t end = place.first + place.components;
+      if (place.whole == ir::Type::Float) {
+        for (size_t k = place.first; k < end; ++k) values.push_back(number(k));
+      } else {
+        for (size_t k = place.first; k < end; k += 2) {
+          const auto bits =
+              static_cast<uint32_t>(number(k)) << kHalfBits | static_cast<uint32_t>(number(k + 1));
+          values.push_back(place.whole == ir::Type::Int ? static_cast<double>(static_cast<int32_t>(bits))
+                                                        : bits);
+        }
+      }
     }
   }
   return answer;
@@ -165,10 +289,6 @@ Result<Shown> shown(const Subject& subject, const Ready& ready, const vulkan::De
 
 std::string whyNot(const Subject& subject) {
   if (subject.group > 1) return "its samples are each other's neighbours";
-  for (const ir::Parameter& parameter : subject.module().parameters) {
-    if (subject.is_node && (ir::isMatrix(parameter.type) || ir::isWhole(ir::partType(parameter.type))))
-      return fmt::format("'{}' is a {}", parameter.name, ir::typeName(parameter.type));
-  }
   for (const ir::TextureSlot& slot : subject.module().textures) {
     if (slot.type != ir::Type::Texture2D && slot.type != ir::Type::TextureCube &&
         slot.type != ir::Type::Texture2DArray && slot.type != ir::Type::Texture2DShadow)
@@ -183,6 +303,11 @@ DeviceSubject deviceSubject(const Subject& subject, const vulkan::Device& device
   if (std::string why = whyNot(subject); !why.empty()) return {{}, std::move(why)};
   const auto ready =
       std::make_shared<const Ready>(subject.is_node ? readyNode(subject) : readyMaterial(subject));
+  if (ready->module.varyings.size() > device.mostInputs()) {
+    return {{},
+            fmt::format("the device takes {} inputs of a fragment stage, and it has {}", device.mostInputs(),
+                        ready->module.varyings.size())};
+  }
   return {[&subject, ready, &device, route](std::span<const double> samples, size_t count) {
             return shown(subject, *ready, device, route, samples, count);
           },

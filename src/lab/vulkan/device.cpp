@@ -111,6 +111,7 @@ Result<Device> Device::open() {
 const std::string& Device::name() const { return state_->name; }
 const std::string& Device::driver() const { return state_->driver; }
 uint32_t Device::subTexelBits() const { return state_->limits.subTexelPrecisionBits; }
+uint32_t Device::mostInputs() const { return state_->mostInputs(); }
 
 #else
 
@@ -125,6 +126,7 @@ Result<Device> Device::open() {
 const std::string& Device::name() const { return state_->none; }
 const std::string& Device::driver() const { return state_->none; }
 uint32_t Device::subTexelBits() const { return 0; }
+uint32_t Device::mostInputs() const { return 0; }
 Result<Outcome> Device::run(const Work&) const {
   return lacquer::fail("vulkan-unavailable", {}, "there is no device");
 }

@@ -44,6 +44,9 @@ struct Device::State {
   bool filters_floats = false;  ///< bilinear filtering of 32-bit floats
   bool processor = false;       ///< shaders run on the CPU, in this process
   std::string name, driver;
+
+  /// The position is one more.
+  uint32_t mostInputs() const { return limits.maxVertexInputAttributes - 1; }
 };
 
 struct Buffer {

@@ -121,12 +121,11 @@ void Pipeline::make(const std::vector<uint32_t>& vertex, const std::vector<uint3
                     const std::map<uint32_t, uint32_t>& constants) {
   const VkPhysicalDeviceLimits& limits = device_.limits;
   if (outputs() == 0 || outputs() > limits.maxColorAttachments ||
-      fragment_.inputs.size() + 1 > limits.maxVertexInputAttributes) {
+      fragment_.inputs.size() > device_.mostInputs()) {
     return objects_.fail(
         "vulkan-unsupported",
         fmt::format("{} takes 1 to {} outputs and up to {} inputs; the shader has {} and {}", device_.name,
-                    limits.maxColorAttachments, limits.maxVertexInputAttributes - 1, outputs(),
-                    fragment_.inputs.size()));
+                    limits.maxColorAttachments, device_.mostInputs(), outputs(), fragment_.inputs.size()));
   }
   makeLayout();
   makeRenderPass();

@@ -93,6 +93,8 @@ public:
   const std::string& driver() const;  ///< "llvmpipe Mesa 22.3.6 …"
   /// Bits of a texture coordinate's fraction within a texel that the filter's weights are made from.
   uint32_t subTexelBits() const;
+  /// Inputs that a fragment stage may have in run().
+  uint32_t mostInputs() const;
 
   /// Errors: "spirv-reflection"; "vulkan-interface" when `work` lacks what the shader reads;
   /// "vulkan-unsupported" when the device's limits do not suffice; "vulkan-failed" when a call fails. The
