@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "ir/fold.h"
 
@@ -13,7 +14,6 @@ namespace {
 
 constexpr double kHalfUlp = 0x1p-24;
 constexpr double kTwoUlps = 0x1p-22;
-constexpr double kLn2 = 0.6931471805599453;
 
 /// In [0, 1), the same for the same numbers.
 double drawn(uint64_t a, uint64_t b, uint64_t c) {
@@ -192,9 +192,9 @@ void Points::evaluateNode(const Plan& plan, Ref at) {
       if (node.op == Op::Div) slope = x * x;
       if (node.op == Op::Sqrt) slope = 0.5 / x;
       if (node.op == Op::InverseSqrt) slope = 0.5 * std::abs(x * x * x);
-      if (node.op == Op::Exp2) slope = kLn2 * x;
+      if (node.op == Op::Exp2) slope = std::numbers::ln2 * x;
       if (node.op == Op::Exp) slope = x;
-      if (node.op == Op::Log2) slope = 1 / (kLn2 * a[p]), own += 0x1p-24;
+      if (node.op == Op::Log2) slope = 1 / (std::numbers::ln2 * a[p]), own += 0x1p-24;
       if (node.op == Op::Log) slope = 1 / a[p], own += 0x1p-24;
       if (node.op == Op::Sin || node.op == Op::Cos) slope = 1, own += 0x1p-22;
       double off = std::abs(slope) * ea[p];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "analysis/error_math.h"
 #include "ir/facts.h"
@@ -287,7 +288,6 @@ private:
     const Node& node = plan_.nodes[at];
     const auto e = [&](size_t k) -> const Error& { return of(node.args[k], c); };
     const auto x = [&](size_t k) -> const Range& { return range(node.args[k], c); };
-    constexpr double kLn2 = 0.6931471805599453;
     // A literal is rounded, but for what float32 holds.
     if (node.op == Op::Constant) {
       const double value = constants_[node.payload][static_cast<size_t>(c)];
@@ -309,7 +309,7 @@ private:
     }
     if (node.op == Op::Select) return errorOfEither(e(1), e(2));
     if (node.op == Op::SumOverLights) return lights(node, c);
-    if (node.op == Op::Log2) return rounded(at, c, logarithm(x(0), e(0), kLn2));
+    if (node.op == Op::Log2) return rounded(at, c, logarithm(x(0), e(0), std::numbers::ln2));
     if (node.op == Op::Log) return rounded(at, c, logarithm(x(0), e(0), 1));
     if (node.op == Op::Exp) {
       const double off = (e(0).part == 0 ? 0 : e(0).part * largest(x(0))) + e(0).amount;
@@ -320,7 +320,7 @@ private:
       return rounded(at, c, {0, off});
     }
     if (node.op == Op::Pow) {
-      const Error log = logarithm(x(0), e(0), kLn2);
+      const Error log = logarithm(x(0), e(0), std::numbers::ln2);
       const Error exponent = errorOfProduct(x(1), e(1), math_.log2(x(0)), log);
       return rounded(at, c, errorOfPower(math_.mul(x(1), math_.log2(x(0))), exponent));
     }

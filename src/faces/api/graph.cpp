@@ -74,9 +74,9 @@ bool Graph::check(Messages& messages, const Options& options) const {
 }
 
 Result<graph::Graph> Graph::Impl::flat(const Options& options, const lang::Library& library) const {
-  const Result<Limits> limits = limitsOf(options);
-  if (!limits) return tl::make_unexpected(limits.error());
-  if (Diagnostics found = graph::check(graph, library, limits->nodes); lacquer::hasError(found))
+  const Result<Limits> allowed = limitsOf(options);
+  if (!allowed) return tl::make_unexpected(allowed.error());
+  if (Diagnostics found = graph::check(graph, library, allowed->nodes); lacquer::hasError(found))
     return tl::make_unexpected(std::move(found));
   graph::Graph flat = graph::flattened(graph, library);
   if (Result<void> simpler = simplifyBuilt(flat, library, options.simplify); !simpler)

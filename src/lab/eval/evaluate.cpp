@@ -155,7 +155,7 @@ private:
           first_listed_ = at(instruction.args[0]);
           lights_listed_ = at(instruction.args[1]);
           last = 0;
-          for (size_t i = 0; i < lanes_; ++i) last = std::max(last, countOf(lights_listed_[i]));
+          for (size_t k = 0; k < lanes_; ++k) last = std::max(last, countOf(lights_listed_[k]));
         } else {
           last = group.count == ir::LightGroup::kCounted ? bindings_.lights.size()
                                                          : light_ + static_cast<size_t>(group.count);

@@ -20,8 +20,8 @@ bool isXml(std::string_view text) {
 }
 
 std::string_view Procedural::output(std::string_view name) const {
-  for (const auto& [file, group] : outputs) {
-    if (name.empty() || file == name) return group;
+  for (const auto& [in_file, in_group] : outputs) {
+    if (name.empty() || in_file == name) return in_group;
   }
   return {};
 }
