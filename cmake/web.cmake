@@ -1,10 +1,10 @@
 # The library for WebAssembly, by Debian's emscripten: what there is in place of cmake/dependencies.cmake, and what is
 # left out. docs/web.md says what the module is.
 
-# Native only: compilers and validators, GPUs, runs over folders with their cache, attacks, the search for levels. Callers
-# of the first two are linked with web/absent/.
-set(LACQUER_ABSENT check vulkan cost stress cache run lod view)
-set(LACQUER_ABSENT_FILES material/materialx/xml.cpp lab/environment/files.cpp lab/eval/gpu.cpp faces/answer/findings.cpp faces/c/findings.cpp)
+# Native only: the search for cheaper forms, compilers and validators, GPUs, costs, attacks, runs over folders with their
+# cache, the search for levels. Their callers are linked with web/absent/.
+set(LACQUER_ABSENT optimize check vulkan cost stress cache run lod view)
+set(LACQUER_ABSENT_FILES material/materialx/xml.cpp material/materialx/surface_models.cpp lab/environment/files.cpp lab/eval/gpu.cpp faces/answer/findings.cpp faces/c/findings.cpp)
 
 include(headers)
 # What emscripten's standard library of 2022 lacks, and loops without threads, come before the rest.
@@ -31,12 +31,13 @@ function(lacquer_module)
   endforeach()
   target_compile_definitions(lacquer_c PRIVATE LACQUER_NO_CHECK)  # nothing is validated unless it is asked for
   # These hand on, read and report: their time is not worth the bytes.
-  foreach(folder c api environment graph interface manifest programs prove setting structures texture)
+  foreach(folder c api environment gltf graph interface lang manifest material materialx model programs prove setting structures
+                 targets texture)
     target_compile_options(lacquer_${folder} PRIVATE -Os)
   endforeach()
   add_executable(lacquer_wasm ${absent} "${PROJECT_SOURCE_DIR}/web/shim/png.cpp" $<TARGET_OBJECTS:lacquer_c>)
   set_target_properties(lacquer_wasm PROPERTIES OUTPUT_NAME lacquer SUFFIX .wasm)
-  target_link_libraries(lacquer_wasm PRIVATE lacquer_c lacquer_eval lacquer_targets lacquer_check lacquer_vulkan stb
+  target_link_libraries(lacquer_wasm PRIVATE lacquer_c lacquer_eval lacquer_targets lacquer_check lacquer_vulkan lacquer_cost lacquer_run stb
                         lacquer_warnings)
   target_link_options(lacquer_wasm PRIVATE -Os --no-entry "-sEXPORTED_FUNCTIONS=${names}" -sSTANDALONE_WASM=1
                       -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=16777216)

@@ -91,6 +91,32 @@ TEST(Graphs, ShowWhatWasEdited) {
   EXPECT_EQ(errorsOf(messages), "");
 }
 
+std::vector<std::byte> blockOf(const Shader& shader) {
+  std::vector<std::byte> block(shader.uniformSize());
+  EXPECT_TRUE(shader.pack([](std::string_view, std::span<double>) { return false; }, block));
+  return block;
+}
+
+TEST(Graphs, HaveWhatTheyWereBuiltWith) {
+  for (const std::string& file : examples()) {
+    if (!file.ends_with("/coat.gltf")) continue;
+    Options options = quick();
+    options.simplify = {"without:coat", "scale:baseColorFactor=0.5"};
+    Messages messages;
+    const Scene scene = Scene::load(file, options, messages);
+    Graph graph = scene.graph(0, kUnusedAttributes, options, messages);
+    const Shader shader = graph.generate(options, messages);
+    EXPECT_EQ(errorsOf(messages), "");
+    // Once, not twice.
+    options.simplify = {};
+    const Shader again = graph.generate(options, messages);
+    EXPECT_EQ(again.id(), shader.id());
+    EXPECT_EQ(blockOf(again), blockOf(shader));
+    return;
+  }
+  FAIL() << "examples/coat.gltf is not there";
+}
+
 TEST(Graphs, SayWhatTheyCannotBeAskedFor) {
   const Graph graph = paintGraph();
   const auto errors = [&](auto change) {

@@ -55,7 +55,7 @@ std::string coloursOf(const graph::Graph& graph, const Language& language, uint6
   const size_t width = (*subject)->space.width();
   std::vector<double> samples(kSamples * width);
   for (size_t i = 0; i < kSamples; ++i)
-    (*subject)->space.draw(stress::mixed(seed, i), std::span(samples).subspan(i * width, width));
+    (*subject)->space.draw(mixed(seed, i), std::span(samples).subspan(i * width, width));
   const stress::Values values = (*subject)->evaluate(stress::Arithmetic::Double, samples, kSamples);
   for (size_t r = 0; r < values.size(); ++r) {
     const stress::Root& root = (*subject)->roots[r];

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "material/drawn.h"
 #include "stress/forms.h"
 #include "support/cases.h"
 
@@ -27,7 +28,7 @@ std::vector<StressFinding> faultsOf(const Options& options, std::string_view onl
   std::vector<StressFinding> faults;
   for (uint16_t i = 1; i < schema.extensions.size(); ++i) {
     if (!only.empty() && schema.extensions[i]->name != only) continue;
-    const auto material = materialWith(schema, i, 1);
+    const auto material = material::materialWith(schema, i, 1);
     if (!material) continue;
     Result<Forms> forms = compareForms(*material, {}, **library, options, 1, allowed);
     if (!forms) throw std::runtime_error(format(forms.error().front()));

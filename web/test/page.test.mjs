@@ -226,12 +226,17 @@ test('the graph is shown by its rates, leads to the text and back, and is edited
     await page.fill('#editor input >> nth=0', '{"node": "nobody"}');
     await page.keyboard.press('Tab');
     assert.notEqual(await page.textContent('#status'), '');
-    await page.click('#undo');
-    assert.equal(await page.textContent('#status'), '');
+    // Nothing was changed, so there is nothing to take back.
+    assert.ok(await page.isDisabled('#undo'));
     assert.equal(await page.textContent('#id'), before);
     await page.fill('#new-id', 'mine');
     await page.selectOption('#new-type', 'schlick');
     await page.click('#add-node');
+    await page.waitForSelector('#graph [data-node=mine]', { state: 'attached' });
+    assert.equal(await page.textContent('#status'), '');
+    await page.click('#undo');
+    await page.waitForSelector('#graph [data-node=mine]', { state: 'detached' });
+    await page.click('#redo');
     await page.waitForSelector('#graph [data-node=mine]', { state: 'attached' });
     const graph = JSON.parse(await downloaded(page, '#export-graph'));
     assert.ok(graph.nodes.some(({ id }) => id === 'mine'));

@@ -119,6 +119,10 @@ Diagnostics checkReading(const Options& options) {
     add(wrong, "out-of-range", fmt::format("Options::relaxed is {}", options.relaxed),
         "it must be from 0 to 0.5");
   }
+  if (options.optimize > 0 && optimize::families().empty()) {
+    add(wrong, "no-search", "this build of Lacquer does not search for cheaper forms",
+        "leave `optimize` at 0; the program and the native library do");
+  }
   if (options.optimize > 2) {
     add(wrong, "out-of-range", fmt::format("Options::optimize is {}", options.optimize),
         "it must be from 0 to 2");

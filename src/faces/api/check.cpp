@@ -8,10 +8,10 @@
 
 #include "lacquer/tools.h"
 #include "lang/embedded.h"
+#include "material/drawn.h"
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "shader/module.h"
-#include "stress/forms.h"
 #include "structures/describe.h"
 
 namespace lacquer {
@@ -121,7 +121,7 @@ public:
     for (uint16_t i = 1; i < (*schema)->extensions.size(); ++i) {
       const lang::ExtensionDecl& decl = *(*schema)->extensions[i];
       if (textOf(decl.origin.file) == nullptr) continue;
-      std::optional<material::Material> material = materialWith(**schema, i, 0);
+      std::optional<material::Material> material = material::materialWith(**schema, i, 0);
       if (!material) continue;
       addTextures(**schema, *material);
       Diagnostics warnings;

@@ -79,7 +79,11 @@ Result<graph::Graph> Graph::Impl::flat(const Options& options, const lang::Libra
   if (Diagnostics found = graph::check(graph, library, allowed->nodes); lacquer::hasError(found))
     return tl::make_unexpected(std::move(found));
   graph::Graph flat = graph::flattened(graph, library);
-  if (Result<void> simpler = simplifyBuilt(flat, library, options.simplify); !simpler)
+  Strings words;
+  for (const std::string& word : options.simplify) {
+    if (std::find(built_with.begin(), built_with.end(), word) == built_with.end()) words.push_back(word);
+  }
+  if (Result<void> simpler = simplifyBuilt(flat, library, words); !simpler)
     return tl::make_unexpected(std::move(simpler.error()));
   return flat;
 }

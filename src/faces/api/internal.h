@@ -23,6 +23,8 @@ struct Graph::Impl {
   ImagesOf images = ImagesOf::Nothing;
   std::shared_ptr<const std::string> bytes{};  ///< the file's, where it was read from memory
 
+  Strings built_with{};  ///< words of Options::simplify that the graph was built with: they hold already
+
   /// What the last generation was given, and what was edited since.
   struct Made {
     Options options;

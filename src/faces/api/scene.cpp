@@ -126,7 +126,7 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   if (!graph) return report(graph.error(), {}, messages), result;
   result.impl_ = std::make_shared<Graph::Impl>(Graph::Impl{std::move(*graph), document.path, *language,
                                                            *limitsOf(options), lightsOf(document),
-                                                           ImagesOf::Gltf, impl_->bytes});
+                                                           ImagesOf::Gltf, impl_->bytes, options.simplify});
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "eval/material.h"
+#include "material/drawn.h"
 #include "model/thresholds.h"
 #include "setting/messages.h"
 #include "stress/subject.h"
@@ -15,8 +16,11 @@ namespace lacquer {
 
 namespace {
 
+using material::addExtension;
+using material::drawNumbers;
 using material::Material;
 using material::Schema;
+using material::setNumber;
 using model::Threshold;
 using stress::Subject;
 
@@ -27,73 +31,6 @@ constexpr double kNear = 1e-9, kNearer = 1e-12;
 /// A slope shrinks by 1000, the root of the distance by 32.
 constexpr double kShrinks = 0.1;
 constexpr size_t kSamples = 64;
-/// Open ranges of what is drawn end here.
-constexpr double kLargest = 8;
-
-bool names(const std::vector<std::string_view>& list, std::string_view name) {
-  return std::find(list.begin(), list.end(), name) != list.end();
-}
-
-/// Whether either says that it is nothing beside the other.
-bool clash(const lang::ExtensionDecl& a, const lang::ExtensionDecl& b) {
-  const auto out = [](const lang::ExtensionDecl& x, const lang::ExtensionDecl& y) {
-    return names(x.excludes, y.name) || names(x.yields_to, y.name) || names(x.loses_to, y.name);
-  };
-  return out(a, b) || out(b, a);
-}
-
-/// Adds an extension with all that it needs. False where that cannot stand together.
-bool addExtension(const Schema& schema, uint16_t extension, std::vector<uint16_t>& to) {
-  if (extension == 0 || std::find(to.begin(), to.end(), extension) != to.end()) return true;
-  const lang::ExtensionDecl& decl = *schema.extensions[extension];
-  for (const uint16_t other : to) {
-    if (clash(decl, *schema.extensions[other])) return false;
-  }
-  to.push_back(extension);
-  std::vector<std::string_view> needed = decl.needs;
-  if (!decl.inside.empty()) needed.push_back(decl.inside);
-  return std::all_of(needed.begin(), needed.end(), [&](std::string_view name) {
-    const std::optional<uint16_t> found = schema.find(name);
-    return found && addExtension(schema, *found, to);
-  });
-}
-
-double drawn(const lang::PropertyDecl& decl, stress::Random& random) {
-  const double lo = decl.range.gap > 0 ? decl.range.gap : std::max(decl.range.lo, -kLargest);
-  const double hi = std::min(decl.tested.value_or(decl.range.hi), std::max(lo, 0.0) + kLargest);
-  // Inside of the range: its ends are often thresholds.
-  return lo + (hi - lo) * (0.1 + 0.8 * random.unit());
-}
-
-void setNumber(Material& material, uint16_t property, const ir::Components& value) {
-  for (Material::Number& number : material.numbers) {
-    if (number.property == property) {
-      number.value = value;
-      return;
-    }
-  }
-  material.numbers.push_back({property, value});
-}
-
-/// Numbers for all that the extensions have and the file does not say.
-void drawNumbers(const Schema& schema, const std::vector<uint16_t>& extensions, stress::Random& random,
-                 Material& material) {
-  for (size_t i = 0; i < schema.properties.size(); ++i) {
-    const material::Property& row = schema.properties[i];
-    const auto property = static_cast<uint16_t>(i);
-    const bool ours = std::find(extensions.begin(), extensions.end(), row.extension) != extensions.end();
-    if (!ours || row.decl->kind == material::Kind::Texture || material.number(property) != nullptr) continue;
-    ir::Components value{};
-    if (row.decl->kind == material::Kind::Number) {
-      for (int c = 0; c < ir::componentCount(row.decl->type); ++c)
-        value[static_cast<size_t>(c)] = drawn(*row.decl, random);
-    } else {
-      const auto choices = static_cast<uint32_t>(std::max<size_t>(row.decl->choices.size(), 2));
-      value[0] = random.below(choices);
-    }
-    setNumber(material, property, value);
-  }
-}
 
 /// Puts a value where a threshold is; false where the material has no such place.
 bool setAt(const Schema& schema, const Threshold& threshold, const ir::Components& value,
@@ -170,7 +107,7 @@ private:
     std::sort(extensions.begin(), extensions.end());
     Material laid = material;
     laid.extensions = extensions;
-    stress::Random random(stress::mixed(seed_, schema_.extensions[layer]->name));
+    Random random(mixed(seed_, schema_.extensions[layer]->name));
     drawNumbers(schema_, extensions, random, laid);
     const std::string name(schema_.extensions[layer]->name);
     if (Result<void> drawn = atThresholds(laid, name); !drawn) return drawn;
@@ -246,7 +183,7 @@ private:
     const size_t wide = first.space.width();
     const size_t other = second.space.width();
     for (size_t i = 0; i < kSamples; ++i) {
-      const uint64_t seed = stress::mixed(seed_, i);
+      const uint64_t seed = mixed(seed_, i);
       const std::span<double> to = std::span(a).subspan(i * wide, wide);
       const std::span<double> from = std::span(b).subspan(i * other, other);
       first.space.draw(seed, to);
@@ -297,7 +234,7 @@ private:
       const stress::Variable* variable = subject.space.find(slot.name);
       if (slot.environment || variable == nullptr) continue;
       for (size_t i = 0; i < kSamples; ++i) {
-        stress::Random random(stress::mixed(stress::mixed(seed_, slot.name), i));
+        Random random(mixed(mixed(seed_, slot.name), i));
         const std::span<double> texel =
             std::span(samples).subspan(i * subject.space.width() + variable->first, variable->components);
         for (size_t c = 0; c < texel.size(); ++c) texel[c] = (c == 2 ? 0.8 : 0.55) + 0.2 * random.unit();
@@ -373,19 +310,6 @@ private:
 };
 
 }  // namespace
-
-std::optional<Material> materialWith(const Schema& schema, uint16_t extension, uint64_t seed) {
-  Material material;
-  material.index = 0;
-  material.name = schema.extensions[extension]->name;
-  if (!addExtension(schema, extension, material.extensions)) return std::nullopt;
-  std::sort(material.extensions.begin(), material.extensions.end());
-  stress::Random random(stress::mixed(seed, material.name));
-  std::vector<uint16_t> all = material.extensions;
-  all.push_back(0);
-  drawNumbers(schema, all, random, material);
-  return material;
-}
 
 Result<Forms> compareForms(const Material& material, const std::string& file, const Language& library,
                            const Options& options, uint64_t seed, double allowed) {

@@ -31,9 +31,4 @@ Result<Forms> compareForms(const material::Material& material, const std::string
                            const Language& library, const Options& options, uint64_t seed,
                            double allowed = kFormsAllowed);
 
-/// A material with nothing but the extension, what it needs and what it stands in, its numbers drawn in their
-/// ranges. Nothing where there is no such, since it excludes what it needs.
-std::optional<material::Material> materialWith(const material::Schema& schema, uint16_t extension,
-                                               uint64_t seed);
-
 }  // namespace lacquer

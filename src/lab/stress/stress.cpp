@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "eval/material.h"
+#include "material/drawn.h"
 #include "prove/nodes.h"
 #include "setting/language.h"
 #include "setting/messages.h"
@@ -139,7 +140,7 @@ private:
     for (uint16_t i = 1; i < (*schema)->extensions.size(); ++i) {
       const std::string_view own = (*schema)->extensions[i]->name;
       if (!name.empty() && own != name) continue;
-      const std::optional<material::Material> material = materialWith(**schema, i, plan_.seed);
+      const std::optional<material::Material> material = material::materialWith(**schema, i, plan_.seed);
       if (!material) continue;
       StressSubject about;
       about.extension = own;
