@@ -31,8 +31,7 @@ function(lacquer_module)
   endforeach()
   target_compile_definitions(lacquer_c PRIVATE LACQUER_NO_CHECK)  # nothing is validated unless it is asked for
   # These hand on, read and report: their time is not worth the bytes.
-  foreach(folder c api environment gltf graph interface lang manifest material materialx model programs prove setting structures
-                 targets texture)
+  foreach(folder c api environment gltf graph interface lang manifest materialx programs prove setting structures texture)
     target_compile_options(lacquer_${folder} PRIVATE -Os)
   endforeach()
   add_executable(lacquer_wasm ${absent} "${PROJECT_SOURCE_DIR}/web/shim/png.cpp" $<TARGET_OBJECTS:lacquer_c>)

@@ -218,6 +218,10 @@ class Page {
       const key = `${this.of.material} ${made.look.id} ${this.of.names.length}`;
       if (key !== this.othersOf) fillOthers(byId<HTMLSelectElement>('compare'), this.of, made.graph, this.nodes);
       this.othersOf = key;
+    } else {
+      // A graph of its own is shown with what is wrong in it.
+      const text = this.of.graphs.get(this.of.material);
+      if (text !== undefined) this.graphJson = JSON.parse(text);
     }
     tell('took', `${this.took.toFixed(1)} ms`);
     this.compare();

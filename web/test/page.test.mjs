@@ -233,9 +233,9 @@ test('the graph is shown by its rates, leads to the text and back, and is edited
     await page.selectOption('#new-type', 'schlick');
     await page.click('#add-node');
     await page.waitForSelector('#graph [data-node=mine]', { state: 'attached' });
-    assert.equal(await page.textContent('#status'), '');
     await page.click('#undo');
     await page.waitForSelector('#graph [data-node=mine]', { state: 'detached' });
+    assert.equal(await page.textContent('#status'), '');
     await page.click('#redo');
     await page.waitForSelector('#graph [data-node=mine]', { state: 'attached' });
     const graph = JSON.parse(await downloaded(page, '#export-graph'));
