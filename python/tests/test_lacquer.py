@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import subprocess
 import sys
 from pathlib import Path
@@ -92,33 +93,125 @@ def test_pack_takes_values_by_name(coat):
         shader.pack({"coat_roughness_factor": [1, 2]})
 
 
+class Session:
+    """A tool's session: what it does to a graph in its hundred steps, each an edit in its JSON form."""
+
+    def __init__(self, graph):
+        self.graph, self.random = graph, random.Random(3)
+
+    def users(self, node):
+        """What takes values from a node, as the edits that connect it again."""
+        found = [{"do": "connect", "node": user["id"], "input": name, "source": source}
+                 for user in self.graph.nodes() for name, source in user["inputs"].items()]
+        found += [{"do": "set_output", "output": name, "source": source} for name, source in self.graph.outputs().items()]
+        return [edit for edit in found if isinstance(edit["source"], dict) and edit["source"].get("node") == node]
+
+    def set_value(self):
+        parameter = self.random.choice(self.graph.parameters())
+        low, high = parameter.get("range", [None, None])
+        low = 0 if low is None else low
+        high = low + 1 if high is None else high
+        value = parameter["value"]
+        if isinstance(value, bool):
+            value = not value
+        elif isinstance(value, list):
+            value = [self.random.uniform(low, high) for _ in value]
+        else:
+            value = self.random.uniform(low, high)
+        return {"do": "set_value", "parameter": parameter["name"], "value": value}
+
+    def add_copy(self, step):
+        """A node like one that is used, beside it."""
+        model = self.random.choice([node for node in self.graph.nodes() if "node" in node and self.users(node["id"])])
+        self.copied, self.copy = model["id"], f"tool.n{step}"
+        return {"do": "add_node", "node": {"id": self.copy, "node": model["node"], "inputs": model["inputs"]}}
+
+    def use_copy(self):
+        edit = self.random.choice(self.users(self.copied))
+        return {**edit, "source": {**edit["source"], "node": self.copy}}
+
+    def disconnect(self):
+        """An input that has a default; no texture falls out of use."""
+        inputs = [(node["id"], one) for node in self.graph.nodes() for one in self.graph.sockets(node["id"])["inputs"]]
+        plain = [(node, one["name"]) for node, one in inputs if one.get("optional") and (
+            isinstance(one["source"], float) or isinstance(one["source"], dict) and "parameter" in one["source"])]
+        if not plain:
+            return self.set_value()
+        node, name = self.random.choice(plain)
+        return {"do": "disconnect", "node": node, "input": name}
+
+    def edit(self, step):
+        kind = step % 10
+        if kind == 1:
+            return self.add_copy(step)
+        if kind == 2:
+            return self.use_copy()
+        if kind == 3:
+            before, self.copy = self.copy, f"my.n{step}"
+            return {"do": "rename_node", "node": before, "to": self.copy}
+        if kind == 4:
+            self.group = f"group_{step}"
+            return {"do": "make_group", "nodes": [self.copy], "group": self.group, "node": "instance"}
+        if kind == 5:
+            return {"do": "set_ui", "group": self.group, "ui": {"x": step, "note": "ä"}}
+        if kind == 6:
+            return [{"do": "expand", "node": "instance"}, {"do": "remove_group", "group": self.group}]
+        if kind == 7:
+            return self.disconnect()
+        return self.set_value()
+
+    def refused(self):
+        """What cannot be done raises, and changes nothing."""
+        graph, before = self.graph, self.graph.to_text()
+        node = graph.nodes()[0]["id"]
+        for match, wrong in {
+            "duplicate-name": lambda: graph.add_node(node, "schlick"),
+            "unknown-input": lambda: graph.connect(node, "no_such_input", 1),
+            "no-such-node": lambda: graph.rename_node("nobody", "body"),
+            "unknown-port": lambda: graph.set_output("nowhere", 1),
+            "unknown-group": lambda: graph.add_instance("x", "no_such_group"),
+            "unknown-edit": lambda: graph.edit([{"do": "set_name", "name": "x"}, {"do": "fly"}]),
+        }.items():
+            with pytest.raises(lacquer.Error, match=match):
+                wrong()
+        assert graph.to_text() == before
+
+
 def test_graph_is_edited_for_a_hundred_steps(coat):
-    """After each step the colours are those of the file that the graph is saved to."""
+    """After each step the colours are those of the file that the graph is saved to, and all of them are taken back."""
     graph = coat.graph(0, attributes=lacquer.ATTRIBUTES[:7])
+    session = Session(graph)
     texels = {"texels": [f"{texture['name']}=0.2,0.4,0.6,0.8" for texture in graph.textures()]}
     points = [{"v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "env": [0.3, 0.4, 0.5]}]
-    shader = graph.generate({"targets": ["essl"], "validate": False})
-    assert graph.changes() == "nothing"
-    start, back = graph.to_text(), []
+    essl = {"targets": ["essl"], "validate": False}
+    shader = graph.generate(essl)
+    start, back, seen, kept = graph.to_text(), [], set(), 0
     for step in range(100):
-        nodes = graph.nodes()
-        node = nodes[7 * step % len(nodes)]
-        parameters = graph.parameters()
-        parameter = parameters[step % len(parameters)]
-        edits = [
-            {"do": "rename_node", "node": node["id"], "to": f"my.n{step}"},
-            {"do": "set_value", "parameter": parameter["name"], "value": parameter["value"]},
-            {"do": "make_group", "nodes": [node["id"]], "group": f"g{step}", "node": node["id"]},
-            {"do": "set_ui", "node": node["id"], "ui": {"x": step}},
-        ]
-        back.append(graph.edit(edits[step % len(edits)]))
+        if step % 10 == 9:
+            session.refused()
+        else:
+            back.append(graph.edit(session.edit(step)))
         saved = lacquer.Graph.from_json(graph.to_text())
-        assert (graph.evaluate(points, options=texels).rgba == saved.evaluate(points, options=texels).rgba).all()
-        assert graph.changes() in ("nothing", "numbers")
-    assert shader.pack_graph(graph) == shader.pack()
+        colors = saved.evaluate(points, options=texels).rgba.tobytes()
+        assert graph.evaluate(points, options=texels).rgba.tobytes() == colors
+        seen.add(colors)
+        change, old, packed = graph.changes(), shader, b""
+        if change != "program":
+            packed = shader.pack_graph(graph)
+        shader = graph.generate(essl)
+        assert graph.changes() == "nothing"
+        if change != "program":
+            assert shader.id == old.id and shader.pack() == packed
+            kept += 1
+    assert 33 < kept < 100 and len(seen) > 10
     for edit in reversed(back):
         graph.edit(edit)
     assert graph.to_text() == start
+
+
+def test_pack_takes_the_numbers_of_an_edited_graph(coat):
+    graph = coat.graph(0)
+    shader = graph.generate({"targets": ["essl"], "validate": False})
     graph.set_parameter("coat_roughness_factor", 0.75)
     assert graph.changes() == "numbers"
     assert shader.pack_graph(graph) == shader.pack({"coat_roughness_factor": 0.75}) != shader.pack()
