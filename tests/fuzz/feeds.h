@@ -19,6 +19,9 @@ std::string feedGraph(std::string_view bytes);
 std::string judgeGltf(std::string_view bytes);
 std::string judgeGraph(std::string_view bytes);
 
+// edits.cpp
+std::string feedEdits(std::string_view bytes);
+
 // addresses.cpp
 std::string feedAddresses(std::string_view bytes);
 

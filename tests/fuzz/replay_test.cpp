@@ -76,6 +76,18 @@ TEST(Parts, ofRandomBytesHold) {
   }
 }
 
+/// Edits are, too.
+TEST(Edits, ofRandomBytesHold) {
+  const Target* edits = findTarget("edits");
+  ASSERT_NE(edits, nullptr);
+  std::mt19937 random(2);
+  for (int i = 0; i < 400; ++i) {
+    std::string bytes(20 + random() % 400, '\0');
+    for (char& byte : bytes) byte = static_cast<char>(random());
+    ASSERT_EQ(edits->feed(bytes), "") << i;
+  }
+}
+
 /// The folder holds nothing that no target replays.
 TEST(Corpus, everyFolderHasATarget) {
   std::set<std::string> known;

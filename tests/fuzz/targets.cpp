@@ -16,6 +16,7 @@ constexpr Target kTargets[] = {
     {"addresses", "gltf", Form::Gltf, feedAddresses},
     {"graph", "graph", Form::Graph, feedGraph},
     {"graph-oracle", "graph", Form::Graph, judgeGraph},
+    {"edits", "edits", Form::Bytes, feedEdits},
     {"node", "node", Form::Bytes, feedNode},
     {"declaration", "declaration", Form::Bytes, feedDeclaration},
     {"parts", "parts", Form::Bytes, feedPart},

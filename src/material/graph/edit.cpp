@@ -340,9 +340,18 @@ Result<void> Editor::setParameter(const Parameter& parameter) {
   const Parameter before = std::exchange(changed, parameter);
   changed.ui = before.ui;
   const bool same = before.type == parameter.type;
-  Result<void> fine = good([&] { return checkParameter(graph_, library_, *found, same); });
-  if (!fine) changed = before;
-  return fine;
+  const auto wrong = [&] { return checkParameter(graph_, library_, *found, same); };
+  Result<void> fine = good(wrong);
+  if (fine) return fine;
+  // What is wrong with its uses already is none of this edit's doing.
+  Parameter after = std::exchange(changed, before);
+  const Diagnostics already = wrong();
+  const bool brought = std::any_of(fine.error().begin(), fine.error().end(), [&](const Diagnostic& one) {
+    return one.severity == Severity::Error && std::find(already.begin(), already.end(), one) == already.end();
+  });
+  if (brought) return fine;
+  changed = std::move(after);
+  return {};
 }
 
 Result<void> Editor::renameParameter(const std::string& name, const std::string& to) {
