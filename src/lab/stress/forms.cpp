@@ -37,9 +37,9 @@ bool setAt(const Schema& schema, const Threshold& threshold, const ir::Component
            Material& material) {
   if (threshold.member < 0) {
     // It alone has its say: of two properties that mean the same the other would count.
-    const std::string_view role = schema.properties[threshold.property].decl->role;
+    const std::string& role = schema.properties[threshold.property].role;
     std::erase_if(material.numbers, [&](const Material::Number& number) {
-      return schema.properties[number.property].decl->role == role;
+      return schema.properties[number.property].role == role;
     });
     setNumber(material, threshold.property, value);
     return true;

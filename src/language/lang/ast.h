@@ -35,6 +35,10 @@ struct Span {
 struct Origin {
   std::string_view file;
   uint32_t line = 0;
+  /// The first extension that the file declares, within which its names are; empty for a file that declares
+  /// none and for the library's own.
+  std::string_view vendor;
+  bool built_in = false;
 };
 
 struct Expr {

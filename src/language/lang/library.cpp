@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <unordered_map>
 #include <unordered_set>
@@ -49,6 +50,7 @@ constexpr size_t kSpaces =
 struct File {
   std::string owned_name, owned_text;  ///< empty for an embedded file
   std::string_view name, text;
+  std::string_view vendor;  ///< as in Origin
 };
 
 struct Entry {
@@ -58,7 +60,9 @@ struct Entry {
   bool good = false;  ///< it and all that it uses
   const File* file = nullptr;
   std::string_view name;
-  std::string key;  ///< of a form of a node: what `name` views
+  std::string_view said;  ///< the name in the text
+  std::string key;        ///< of a form of a node, and of what two vendors call alike: what `name` views
+  std::string plain;      ///< of what two vendors call alike: its name without the vendor
   TypeBindings bindings;
   uint32_t name_begin = 0;  ///< where the declared name stands
   uint32_t begin = 0, end = 0, line = 0;
@@ -81,14 +85,15 @@ class Library::Impl final : public Surroundings {
 public:
   /// Scans the files from `first` on; on an error everything stays as it was.
   Diagnostics scanFrom(size_t first);
-  Entry* find(DeclKind kind, std::string_view name);
+  Entry* find(DeclKind kind, std::string_view name, std::string_view vendor = {});
   void demand(Entry& entry);
   Diagnostics errorsOf(Entry& entry);
 
   template <class T>
-  Result<const T*> get(DeclKind kind, std::string_view name, std::unique_ptr<T> Entry::*decl) {
+  Result<const T*> get(DeclKind kind, std::string_view name, std::unique_ptr<T> Entry::*decl,
+                       std::string_view vendor = {}) {
     const std::lock_guard lock(mutex);
-    Entry* entry = find(kind, name);
+    Entry* entry = find(kind, name, vendor);
     if (entry == nullptr) return missing(kind, name);
     demand(*entry);
     if (!entry->good) return tl::make_unexpected(errorsOf(*entry));
@@ -122,8 +127,14 @@ private:
   /// before its types.
   void wake(std::string_view name, bool constants_only);
   void wakeFile(size_t number);
-  Entry* known(DeclKind kind, std::string_view name);
-  void scanFile(const File& file, Diagnostics& errors);
+  Entry* known(DeclKind kind, std::string_view name, std::string_view vendor) const;
+  /// Of a name that several vendors have: the one of this vendor; null where there is none.
+  Entry* homonym(size_t space, std::string_view name, std::string_view vendor) const;
+  /// The vendor in whose text names are looked up now.
+  std::string_view here() const { return open_.empty() ? std::string_view{} : open_.back()->file->vendor; }
+  Entry* enter(DeclKind kind, const std::string& name, const File& file, Span span, Reporter& reporter);
+  void distinguish(Entry& entry);
+  void scanFile(File& file, Diagnostics& errors);
   bool index(const ScannedDecl& decl, const File& file, uint32_t line, Reporter& reporter);
   bool indexForms(const ScannedDecl& decl, std::vector<Form> forms, const File& file, uint32_t line,
                   Reporter& reporter);
@@ -131,6 +142,8 @@ private:
   void forget(size_t old_entries);
 
   std::array<std::unordered_map<std::string_view, Entry*>, kSpaces> index_;
+  /// The names that several vendors have, in the order of the texts.
+  std::array<std::map<std::string, std::vector<Entry*>, std::less<>>, kSpaces> homonyms_;
   std::unordered_map<std::string_view, std::vector<Entry*>>
       families_;  ///< by name, in the order of the texts
   std::vector<Entry*> open_;
@@ -147,7 +160,7 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
   default_template = nullptr;
   Diagnostics errors;
   for (size_t i = first; i < files.size(); ++i) {
-    const File& file = files[i];
+    File& file = files[i];
     if (file.text.size() > kLargestFile) {
       errors.push_back({"file-too-large",
                         Severity::Error,
@@ -174,11 +187,15 @@ Diagnostics Library::Impl::scanFrom(size_t first) {
   return errors;
 }
 
-void Library::Impl::scanFile(const File& file, Diagnostics& errors) {
+void Library::Impl::scanFile(File& file, Diagnostics& errors) {
   Reporter reporter(file.name, file.text);
   uint32_t line = 1;
   const char* counted = file.text.data();
-  for (const ScannedDecl& decl : scan(reporter)) {
+  const std::vector<ScannedDecl> declared = scan(reporter);
+  const auto first = std::find_if(declared.begin(), declared.end(),
+                                  [](const ScannedDecl& decl) { return decl.kind == DeclKind::Extension; });
+  if (!file.owned_text.empty() && first != declared.end()) file.vendor = first->name;
+  for (const ScannedDecl& decl : declared) {
     line += static_cast<uint32_t>(std::count(counted, decl.name.data(), '\n'));
     counted = decl.name.data();
     // A standard node of that name comes first, so that the two meet in one order.
@@ -225,16 +242,44 @@ void Library::Impl::wakeAll() {
   for (size_t i = 0; i < embeddedStandard().files.size(); ++i) wakeFile(i);
 }
 
+namespace {
+
+/// What a vendor may call as another one does. All else is named by users.
+bool isVendors(DeclKind kind) {
+  return kind == DeclKind::Const || kind == DeclKind::Node || kind == DeclKind::Part;
+}
+
+void rename(Entry& entry, std::string name) {
+  entry.key = std::move(name);
+  entry.name = entry.key;
+  if (entry.node) entry.node->name = entry.name;
+  if (entry.head) entry.head->name = entry.name;
+  if (entry.part) entry.part->name = entry.name;
+}
+
+}  // namespace
+
 void Library::Impl::forget(size_t old_entries) {
   for (; !woken_.empty() && woken_.back().first >= old_entries; woken_.pop_back())
     woken_.back().second->awake = false;
   while (entries.size() > old_entries) {
-    const Entry& last = entries.back();
-    index_[spaceOf(last.kind)].erase(last.name);
-    const auto family = last.key.empty()
-                            ? families_.end()
-                            : families_.find(last.file->text.substr(last.name_begin, last.name.find('<')));
-    if (family != families_.end()) {
+    Entry& last = entries.back();
+    const size_t space = spaceOf(last.kind);
+    index_[space].erase(last.name);
+    if (!last.plain.empty()) {
+      const auto alike = homonyms_[space].find(last.plain);
+      alike->second.pop_back();
+      if (alike->second.size() == 1) {
+        Entry& alone = *alike->second[0];
+        index_[space].erase(alone.name);
+        rename(alone, std::exchange(alone.plain, {}));
+        index_[space].emplace(alone.name, &alone);
+        homonyms_[space].erase(alike);
+      }
+    }
+    const auto family = families_.find(last.said);
+    const bool form = family != families_.end() && family->second.back() == &last;
+    if (form) {
       family->second.pop_back();
       if (family->second.empty()) families_.erase(family);
     }
@@ -255,21 +300,59 @@ bool Library::Impl::index(const ScannedDecl& decl, const File& file, uint32_t li
     twice(decl.name, span, *family->second[0], reporter);
     return false;
   }
-  const auto [it, fresh] = index_[space].try_emplace(decl.name, nullptr);
-  if (!fresh) {
-    twice(decl.name, span, *it->second, reporter);
-    return false;
+  Entry* entry = enter(decl.kind, std::string(decl.name), file, span, reporter);
+  if (entry == nullptr) return false;
+  entry->said = decl.name;
+  entry->begin = decl.begin;
+  entry->end = decl.end;
+  entry->line = line;
+  return true;
+}
+
+/// Gives an entry the name that others than its vendor call it by.
+void Library::Impl::distinguish(Entry& entry) {
+  const size_t space = spaceOf(entry.kind);
+  entry.plain = entry.name;
+  if (const auto it = index_[space].find(entry.plain); it != index_[space].end() && it->second == &entry)
+    index_[space].erase(it);
+  rename(entry, fmt::format("{}.{}", entry.file->vendor, entry.plain));
+  index_[space].emplace(entry.name, &entry);
+  homonyms_[space][entry.plain].push_back(&entry);
+}
+
+/// A new entry under a name; null, and an error, where the name is another's of the same text, of the library
+/// or of a file that all share.
+Entry* Library::Impl::enter(DeclKind kind, const std::string& name, const File& file, Span span,
+                            Reporter& reporter) {
+  const size_t space = spaceOf(kind);
+  const auto apart = [&](const Entry& other) {
+    return isVendors(kind) && isVendors(other.kind) && !file.vendor.empty() && !other.file->vendor.empty() &&
+           other.file != &file;
+  };
+  const auto alone = index_[space].find(name);
+  Entry* const other = alone == index_[space].end() ? nullptr : alone->second;
+  const auto alike = homonyms_[space].find(name);
+  std::vector<const Entry*> others;
+  if (other != nullptr) others = {other};
+  if (alike != homonyms_[space].end()) others.assign(alike->second.begin(), alike->second.end());
+  for (const Entry* one : others) {
+    if (apart(*one)) continue;
+    twice(name, span, *one, reporter);
+    return nullptr;
   }
   Entry& entry = entries.emplace_back();
-  entry.kind = decl.kind;
+  entry.kind = kind;
   entry.file = &file;
-  entry.name = decl.name;
   entry.name_begin = span.offset;
-  entry.begin = decl.begin;
-  entry.end = decl.end;
-  entry.line = line;
-  it->second = &entry;
-  return true;
+  entry.key = name;
+  entry.name = entry.key;
+  if (others.empty()) {
+    index_[space].emplace(entry.name, &entry);
+    return &entry;
+  }
+  if (other != nullptr) distinguish(*other);
+  distinguish(entry);
+  return &entry;
 }
 
 /// A node for each form, all of one name.
@@ -277,26 +360,21 @@ bool Library::Impl::indexForms(const ScannedDecl& decl, std::vector<Form> forms,
                                uint32_t line, Reporter& reporter) {
   const Span span{static_cast<uint32_t>(decl.name.data() - file.text.data()),
                   static_cast<uint32_t>(decl.name.size())};
-  if (const auto other = index_[0].find(decl.name); other != index_[0].end()) {
-    twice(decl.name, span, *other->second, reporter);
+  const auto single = index_[0].find(decl.name);
+  const auto alike = homonyms_[0].find(decl.name);
+  if (single != index_[0].end() || alike != homonyms_[0].end()) {
+    twice(decl.name, span, single != index_[0].end() ? *single->second : *alike->second[0], reporter);
     return false;
   }
   for (Form& form : forms) {
-    if (const auto other = index_[0].find(form.key); other != index_[0].end()) {
-      twice(form.key, span, *other->second, reporter);
-      return false;
-    }
-    Entry& entry = entries.emplace_back();
-    entry.file = &file;
-    entry.key = std::move(form.key);
-    entry.name = entry.key;
-    entry.bindings = std::move(form.bindings);
-    entry.name_begin = span.offset;
-    entry.begin = decl.begin;
-    entry.end = decl.end;
-    entry.line = line;
-    index_[0].emplace(entry.name, &entry);
-    families_[decl.name].push_back(&entry);
+    Entry* entry = enter(DeclKind::Node, form.key, file, span, reporter);
+    if (entry == nullptr) return false;
+    entry->said = decl.name;
+    entry->bindings = std::move(form.bindings);
+    entry->begin = decl.begin;
+    entry->end = decl.end;
+    entry->line = line;
+    families_[decl.name].push_back(entry);
   }
   return true;
 }
@@ -310,6 +388,8 @@ std::vector<const NodeDecl*> Library::Impl::forms(std::string_view family) {
     all = {one};
   std::vector<const NodeDecl*> heads;
   for (Entry* entry : all) {
+    // A form that another vendor has as well is its vendor's alone.
+    if (!entry->plain.empty() && entry->file->vendor != here()) continue;
     if (!entry->head) {
       // Its body, which begins behind the first brace that follows its name, is not looked at.
       const size_t brace = entry->file->text.find('{', entry->name_begin);
@@ -335,17 +415,26 @@ Surroundings::Found Library::Impl::form(std::string_view key) {
   return found;
 }
 
-Entry* Library::Impl::find(DeclKind kind, std::string_view name) {
-  Entry* entry = known(kind, name);
+Entry* Library::Impl::find(DeclKind kind, std::string_view name, std::string_view vendor) {
+  Entry* entry = known(kind, name, vendor);
   if (entry != nullptr || kind > DeclKind::Node) return entry;
   wake(name, kind == DeclKind::Const);
-  return known(kind, name);
+  return known(kind, name, vendor);
 }
 
-Entry* Library::Impl::known(DeclKind kind, std::string_view name) {
-  const auto& index = index_[spaceOf(kind)];
-  const auto it = index.find(name);
-  return it == index.end() || it->second->kind != kind ? nullptr : it->second;
+Entry* Library::Impl::homonym(size_t space, std::string_view name, std::string_view vendor) const {
+  const auto alike = homonyms_[space].find(name);
+  if (vendor.empty() || alike == homonyms_[space].end()) return nullptr;
+  const auto one = std::find_if(alike->second.begin(), alike->second.end(),
+                                [&](const Entry* entry) { return entry->file->vendor == vendor; });
+  return one == alike->second.end() ? nullptr : *one;
+}
+
+Entry* Library::Impl::known(DeclKind kind, std::string_view name, std::string_view vendor) const {
+  const size_t space = spaceOf(kind);
+  const auto it = index_[space].find(name);
+  Entry* entry = it == index_[space].end() ? homonym(space, name, vendor) : it->second;
+  return entry == nullptr || entry->kind != kind ? nullptr : entry;
 }
 
 std::optional<Surroundings::Found> Library::Impl::find(std::string_view name, bool called) {
@@ -354,13 +443,14 @@ std::optional<Surroundings::Found> Library::Impl::find(std::string_view name, bo
     wake(name, !called);
     it = index_[0].find(name);
   }
-  if (it == index_[0].end()) {
+  const Entry* own = it == index_[0].end() ? homonym(0, name, here()) : it->second;
+  if (own == nullptr) {
     if (!families_.contains(name)) return std::nullopt;
     Found found;
     found.family = true;
     return found;
   }
-  const Entry& entry = *it->second;
+  const Entry& entry = *own;
   Found found;
   found.kind = entry.kind;
   found.open = entry.state == Entry::State::Open;
@@ -394,6 +484,11 @@ tl::unexpected<Diagnostics> Library::Impl::missing(DeclKind kind, std::string_vi
   const auto it = index.find(name);
   std::string help = it == index.end() ? didYouMean(name, names(kind))
                                        : fmt::format("'{}' is {}", name, aKind(it->second->kind));
+  if (const auto alike = homonyms_[spaceOf(kind)].find(name); alike != homonyms_[spaceOf(kind)].end()) {
+    help = "several extensions have one:";
+    for (const Entry* entry : alike->second)
+      help += fmt::format("{} '{}'", entry == alike->second[0] ? "" : " and", entry->name);
+  }
   return fail(fmt::format("unknown-{}", what), {}, fmt::format("there is no {} '{}'", what, name),
               std::move(help));
 }
@@ -452,8 +547,7 @@ void Library::Impl::demand(Entry& entry) {
   Reporter reporter(entry.file->name, entry.file->text);
   parse(entry, reporter);
   if (reporter.count() == 0 && open_.size() > kLongestChain) {
-    const auto offset = static_cast<uint32_t>(entry.name.data() - entry.file->text.data());
-    reporter.error("too-deep", {offset, static_cast<uint32_t>(entry.name.size())},
+    reporter.error("too-deep", {entry.name_begin, static_cast<uint32_t>(entry.said.size())},
                    fmt::format("more than {} declarations use each other in a chain", kLongestChain));
   }
   bool good = true;
@@ -474,7 +568,7 @@ void Library::Impl::demand(Entry& entry) {
 
 void Library::Impl::parse(Entry& entry, Reporter& reporter) {
   Parser parser(reporter, entry.begin, entry.end, entry.bindings);
-  const Origin origin{entry.file->name, entry.line};
+  const Origin origin{entry.file->name, entry.line, entry.file->vendor, entry.file->owned_text.empty()};
   switch (entry.kind) {
     case DeclKind::Const:
       entry.constant = std::make_unique<ConstDecl>(parser.constant());
@@ -496,6 +590,7 @@ void Library::Impl::parse(Entry& entry, Reporter& reporter) {
     case DeclKind::Part:
       entry.part = std::make_unique<PartDecl>(parser.part());
       entry.part->origin = origin;
+      entry.part->name = entry.name;
       break;
     case DeclKind::Profile:
     case DeclKind::Lod:
@@ -514,7 +609,7 @@ void Library::Impl::parse(Entry& entry, Reporter& reporter) {
   const auto use = [&](std::string_view name, DeclKind kind) {
     // What is built in is meant in bodies; a node of such a name is for graphs.
     if (kind == DeclKind::Node && findFunction(name) != nullptr) return;
-    Entry* used = find(kind, name);
+    Entry* used = find(kind, name, entry.file->vendor);
     if (used == nullptr || std::find(entry.uses.begin(), entry.uses.end(), used) != entry.uses.end()) return;
     entry.uses.push_back(used);
   };
@@ -563,7 +658,7 @@ Result<Library> Library::fromFiles(std::vector<SourceFile> files) {
 Library Library::embedded() {
   auto impl = std::make_unique<Impl>();
   for (const auto& list : {embeddedNodes(), embeddedTemplates()}) {
-    for (const EmbeddedFile& file : list) impl->files.push_back({{}, {}, file.name, file.text});
+    for (const EmbeddedFile& file : list) impl->files.push_back({{}, {}, file.name, file.text, {}});
   }
   impl->scan_errors = impl->scanFrom(0);
   impl->has_standard = true;
@@ -585,12 +680,12 @@ Result<void> Library::add(std::vector<SourceFile> files) {
   return {};
 }
 
-Result<const ConstDecl*> Library::constant(std::string_view name) const {
-  return impl_->get(DeclKind::Const, name, &Entry::constant);
+Result<const ConstDecl*> Library::constant(std::string_view name, std::string_view vendor) const {
+  return impl_->get(DeclKind::Const, name, &Entry::constant, vendor);
 }
 
-Result<const NodeDecl*> Library::node(std::string_view name) const {
-  return impl_->get(DeclKind::Node, name, &Entry::node);
+Result<const NodeDecl*> Library::node(std::string_view name, std::string_view vendor) const {
+  return impl_->get(DeclKind::Node, name, &Entry::node, vendor);
 }
 
 Result<const TemplateDecl*> Library::template_(std::string_view name) const {
@@ -601,8 +696,8 @@ Result<const ExtensionDecl*> Library::extension(std::string_view name) const {
   return impl_->get(DeclKind::Extension, name, &Entry::extension);
 }
 
-Result<const PartDecl*> Library::part(std::string_view name) const {
-  return impl_->get(DeclKind::Part, name, &Entry::part);
+Result<const PartDecl*> Library::part(std::string_view name, std::string_view vendor) const {
+  return impl_->get(DeclKind::Part, name, &Entry::part, vendor);
 }
 
 Result<const ProfileDecl*> Library::profile(std::string_view name) const {
@@ -639,9 +734,9 @@ std::vector<const NodeDecl*> Library::forms(std::string_view family) const {
   return impl_->forms(family);
 }
 
-bool Library::has(DeclKind kind, std::string_view name) const {
+bool Library::has(DeclKind kind, std::string_view name, std::string_view vendor) const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->find(kind, name) != nullptr;
+  return impl_->find(kind, name, vendor) != nullptr;
 }
 
 std::vector<std::string_view> Library::names(DeclKind kind) const {

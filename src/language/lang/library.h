@@ -39,15 +39,18 @@ public:
   /// More files, as for `--nodes DIR`. On an error the library stays as it was.
   Result<void> add(std::vector<SourceFile> files);
 
-  Result<const ConstDecl*> constant(std::string_view name) const;
+  // Files that declare extensions have constants, nodes and parts of their own: where two of them say one
+  // name, it means to each its own, and to all others "EXTENSION.name". `vendor`: in whose file it is said,
+  // as Origin has it.
+  Result<const ConstDecl*> constant(std::string_view name, std::string_view vendor = {}) const;
   /// A node, of several under one name by its types: "add<vec3>".
-  Result<const NodeDecl*> node(std::string_view name) const;
+  Result<const NodeDecl*> node(std::string_view name, std::string_view vendor = {}) const;
   /// The nodes of a name: one, or its forms, or none. Each has its parameters and results with their types
   /// and whether there is a default (`default_syntax`); all else is there once node() has checked it.
   std::vector<const NodeDecl*> forms(std::string_view family) const;
   Result<const TemplateDecl*> template_(std::string_view name) const;
   Result<const ExtensionDecl*> extension(std::string_view name) const;
-  Result<const PartDecl*> part(std::string_view name) const;
+  Result<const PartDecl*> part(std::string_view name, std::string_view vendor = {}) const;
   Result<const ProfileDecl*> profile(std::string_view name) const;
   Result<const ProfileDecl*> lod(std::string_view name) const;
   Result<const LayersDecl*> layers(std::string_view name) const;
@@ -57,7 +60,7 @@ public:
   /// there.
   Result<std::string> defaultTemplate() const;
 
-  bool has(DeclKind kind, std::string_view name) const;
+  bool has(DeclKind kind, std::string_view name, std::string_view vendor = {}) const;
 
   /// The declared names of that kind, sorted; of nodes that share a name those with their types.
   std::vector<std::string_view> names(DeclKind kind) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "lang/suggest.h"
@@ -24,17 +25,13 @@ Diagnostic problem(const lang::ExtensionDecl& decl, std::string_view at, std::st
 
 void addProperties(Schema& schema, uint16_t extension, std::span<const lang::PropertyDecl> decls,
                    const std::string& path) {
-  constexpr std::string_view kTexture = "_texture";
   for (const lang::PropertyDecl& decl : decls) {
     const std::string here = path + std::string(decl.name);
     if (decl.kind == Kind::Object) {
       addProperties(schema, extension, decl.members, here + "/");
       continue;
     }
-    std::string name = parameterName(decl.role);
-    if (decl.kind == Kind::Texture && name.ends_with(kTexture)) name.resize(name.size() - kTexture.size());
-    schema.roles[decl.role].push_back(static_cast<uint16_t>(schema.properties.size()));
-    schema.properties.push_back({&decl, extension, here, std::move(name)});
+    schema.properties.push_back({&decl, extension, here, {}, {}});
   }
 }
 
@@ -45,18 +42,66 @@ void addRows(std::vector<Row>& out, std::string_view object, std::span<const lan
   }
 }
 
+/// Without `as` the role is the name itself, in the same place of the text.
+bool isSaid(const lang::PropertyDecl& decl) { return decl.role.data() != decl.name.data(); }
+
+/// The name of an extension as one of a parameter has it.
+std::string lower(std::string_view name) {
+  std::string made(name);
+  std::transform(made.begin(), made.end(), made.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return made;
+}
+
+/// Which properties parts call by one name. To each vendor a name means its own property; what another
+/// property says by `as` is a property of its own text or of the library's, else the only one of that name.
+void addRoles(Schema& schema) {
+  std::map<std::string_view, std::set<std::string_view>> named,
+      meant;  // roles, and the vendors that have one
+  for (const Property& property : schema.properties) {
+    if (!isSaid(*property.decl)) named[property.decl->role].insert(schema.vendorOf(property));
+  }
+  std::vector<std::string_view> owners;
+  for (const Property& property : schema.properties) {
+    const std::string_view vendor = schema.vendorOf(property);
+    const std::set<std::string_view>& others = named[property.decl->role];
+    const bool own = !isSaid(*property.decl) || others.contains(vendor);
+    owners.push_back(own                   ? vendor
+                     : others.contains("") ? std::string_view{}
+                     : others.size() == 1  ? *others.begin()
+                                           : vendor);
+    meant[property.decl->role].insert(owners.back());
+  }
+  for (size_t i = 0; i < schema.properties.size(); ++i) {
+    Property& property = schema.properties[i];
+    const std::string_view role = property.decl->role;
+    const bool alone = owners[i].empty() || meant[role].size() == 1;
+    property.role = alone ? std::string(role) : fmt::format("{}.{}", owners[i], role);
+    property.parameter_name =
+        alone ? parameterName(role) : fmt::format("{}_{}", lower(owners[i]), parameterName(role));
+    constexpr std::string_view kTexture = "_texture";
+    std::string& name = property.parameter_name;
+    if (property.decl->kind == Kind::Texture && name.ends_with(kTexture))
+      name.resize(name.size() - kTexture.size());
+    schema.roles[property.role].push_back(static_cast<uint16_t>(i));
+  }
+}
+
 void checkRoles(const Schema& schema, Diagnostics& wrong) {
-  for (const auto& [role, providers] : schema.roles) {
+  for (const auto& [role, all] : schema.roles) {
+    // What is wrong is wrong in the text of who came later: the library's own come first.
+    std::vector<uint16_t> providers = all;
+    std::stable_partition(providers.begin(), providers.end(), [&](uint16_t property) {
+      return schema.vendorOf(schema.properties[property]).empty();
+    });
     const lang::PropertyDecl& first = *schema.properties[providers[0]].decl;
-    // Without `as` the role is the name itself, in the same place of the text. One may be without it: it is
-    // the one that the others are said to mean.
-    const auto said = [](const lang::PropertyDecl& decl) { return decl.role.data() != decl.name.data(); };
-    bool named = !said(first);
+    // One may be without `as`: it is the one that the others are said to mean.
+    bool named = !isSaid(first);
     for (size_t i = 1; i < providers.size(); ++i) {
       const Property& other = schema.properties[providers[i]];
       const bool alike = other.decl->type == first.type && other.decl->kind == first.kind &&
                          other.decl->members.size() == first.members.size();
-      const bool meant = said(*other.decl) || !std::exchange(named, true);
+      const bool meant = isSaid(*other.decl) || !std::exchange(named, true);
       if (alike && meant) continue;
       wrong.push_back(problem(
           *schema.extensions[other.extension], other.decl->name, "duplicate-name",
@@ -67,30 +112,57 @@ void checkRoles(const Schema& schema, Diagnostics& wrong) {
   }
 }
 
+/// Calls `take` with every name that a property has in shaders.
+template <class Take>
+void forParameterNames(const Property& property, const Take& take) {
+  if (property.decl->kind != Kind::Texture) return take(property.parameter_name);
+  take(property.parameter_name + "_texture");
+  for (const lang::PropertyDecl& member : property.decl->members)
+    take(fmt::format("{}_{}", property.parameter_name, parameterName(member.name)));
+  for (const char* part : {"offset", "rotation", "scale"})
+    take(fmt::format("{}_uv_{}", property.parameter_name, part));
+}
+
+/// Where names of two vendors' properties come to one in shaders, both have their extension's name in front.
+void distinguishParameterNames(Schema& schema) {
+  std::map<std::string, std::set<std::string_view>> owners;  // the names, and the vendors that have them
+  for (const Property& property : schema.properties) {
+    forParameterNames(property,
+                      [&](const std::string& name) { owners[name].insert(schema.vendorOf(property)); });
+  }
+  std::set<std::string_view> shared;
+  for (const Property& property : schema.properties) {
+    if (property.role != property.decl->role || schema.vendorOf(property).empty()) continue;
+    // What several properties mean is one parameter.
+    if (schema.roles.find(property.role)->second.size() > 1) continue;
+    bool clash = false;
+    forParameterNames(property, [&](const std::string& name) { clash = clash || owners[name].size() > 1; });
+    if (clash) shared.insert(property.role);
+  }
+  for (Property& property : schema.properties) {
+    if (shared.contains(property.role))
+      property.parameter_name =
+          fmt::format("{}_{}", lower(schema.vendorOf(property)), property.parameter_name);
+  }
+}
+
 /// Parameters and textures have names of their own, which are made of those of the properties: what one
 /// property takes no other may.
 void checkParameterNames(const Schema& schema, Diagnostics& wrong) {
   std::map<std::string, const Property*> owners;
-  const auto take = [&](const Property& property, const std::string& name) {
-    const auto [owner, fresh] = owners.try_emplace(name, &property);
-    if (fresh || owner->second->decl->role == property.decl->role) return;
-    const Property& other = *owner->second;
-    wrong.push_back(
-        problem(*schema.extensions[property.extension], property.decl->name, "duplicate-name",
-                fmt::format("'{}' and '{}' of {} would both be called '{}' in shaders", property.decl->name,
-                            other.decl->name, schema.extensions[other.extension]->name, name),
-                "give this one another name by `as`"));
-  };
   for (const Property& property : schema.properties) {
-    if (property.decl->kind != Kind::Texture) {
-      take(property, property.parameter_name);
-      continue;
-    }
-    take(property, property.parameter_name + "_texture");
-    for (const lang::PropertyDecl& member : property.decl->members)
-      take(property, fmt::format("{}_{}", property.parameter_name, parameterName(member.name)));
-    for (const char* part : {"offset", "rotation", "scale"})
-      take(property, fmt::format("{}_uv_{}", property.parameter_name, part));
+    forParameterNames(property, [&](const std::string& name) {
+      const auto [owner, fresh] = owners.try_emplace(name, &property);
+      if (fresh || owner->second->role == property.role) return;
+      const bool theirs = schema.vendorOf(property).empty() && !schema.vendorOf(*owner->second).empty();
+      const Property& here = theirs ? *owner->second : property;
+      const Property& other = theirs ? property : *owner->second;
+      wrong.push_back(
+          problem(*schema.extensions[here.extension], here.decl->name, "duplicate-name",
+                  fmt::format("'{}' and '{}' of {} would both be called '{}' in shaders", here.decl->name,
+                              other.decl->name, schema.extensions[other.extension]->name, name),
+                  "give this one another name by `as`"));
+    });
   }
 }
 
@@ -172,6 +244,10 @@ uint16_t Schema::indexOf(const lang::PropertyDecl& decl) const {
   return static_cast<uint16_t>(it - properties.begin());
 }
 
+std::string_view Schema::vendorOf(const Property& property) const {
+  return extensions[property.extension]->origin.vendor;
+}
+
 std::vector<Row> Schema::rows() const {
   std::vector<Row> rows;
   for (const lang::ExtensionDecl* extension : extensions)
@@ -219,6 +295,8 @@ Result<Schema> schemaOf(const lang::Library& library) {
     const std::string path = schema.pathOf(index);
     addProperties(schema, index, schema.extensions[i]->properties, path.empty() ? "" : path + "/");
   }
+  addRoles(schema);
+  distinguishParameterNames(schema);
   checkRoles(schema, wrong);
   checkParameterNames(schema, wrong);
   for (const lang::ExtensionDecl* decl : schema.extensions) checkRelations(schema, *decl, wrong);

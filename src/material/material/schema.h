@@ -22,6 +22,7 @@ struct Property {
   std::string path;        ///< from the material on: "extensions/KHR_materials_ior/ior"
   std::string
       parameter_name;  ///< of the editable parameter, or without "_texture" of the texture: "coat_ior"
+  std::string role;    ///< in Schema::roles
 };
 
 /// One row for whoever shows or checks the table.
@@ -34,8 +35,10 @@ struct Schema {
   const lang::Library* library = nullptr;              ///< that it was collected from
   std::vector<const lang::ExtensionDecl*> extensions;  ///< glTF's own first, then by name
   std::vector<Property> properties;
-  /// By what parts call them: the properties that give it, in the order of the extensions.
-  std::map<std::string_view, std::vector<uint16_t>> roles;
+  /// By what parts call them: the properties that give it, in the order of the extensions. Where several
+  /// vendors (lang::Origin) call different properties alike, each is "EXTENSION.name", but for the library's
+  /// own.
+  std::map<std::string, std::vector<uint16_t>, std::less<>> roles;
 
   /// Of an extension's or draft's name.
   std::optional<uint16_t> find(std::string_view name) const;
@@ -43,13 +46,16 @@ struct Schema {
   std::string pathOf(uint16_t extension) const;
   /// The number of a property by its declaration.
   uint16_t indexOf(const lang::PropertyDecl& decl) const;
+  /// The vendor in whose text a property stands.
+  std::string_view vendorOf(const Property& property) const;
   std::vector<Row> rows() const;
 };
 
 /// "coat_color_factor" of "coatColorFactor".
 std::string parameterName(std::string_view property);
 
-/// Collects the library's extensions. Errors: those of the declarations; a role with two types; an extension
+/// Collects the library's extensions. Errors: those of the declarations; a role with two types, or with two
+/// meanings in one vendor's text; an extension
 /// that stands in one that is not there; more or fewer than one `material`.
 Result<Schema> schemaOf(const lang::Library& library);
 

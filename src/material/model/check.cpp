@@ -211,8 +211,12 @@ void Check::doubles() {
     const auto [other, alone] = of_part.try_emplace(line.id, &placed);
     if (alone || model_.lines[other->second->line].part == line.part) continue;
     const bool profile = line.part == model_.parts.size();
-    error(placed.text, placed.decl->span, "duplicate-name",
-          fmt::format("'{}' is said already in {}", placed.decl->id, other->second->text.file),
+    // The library's own lines are right.
+    const bool library = line.part < model_.parts.size() && model_.parts[line.part].decl->origin.built_in;
+    const Uses::Placed& here = library ? *other->second : placed;
+    const Uses::Placed& there = library ? placed : *other->second;
+    error(here.text, here.decl->span, "duplicate-name",
+          fmt::format("'{}' is said already in {}", placed.decl->id, there.text.file),
           profile
               ? ""
               : fmt::format("give this line another name; `replace {} with ...` puts a value in its place",

@@ -36,12 +36,15 @@ public:
 
 private:
   void collectParts();
-  void declare(const std::vector<LineDecl>& lines);
+  void declare(const std::vector<LineDecl>& lines, bool overlay);
+  void enter(const Part& part);
+  void enter(const lang::ProfileDecl& overlay);
+  void findOverridden();
   void part(uint32_t index);
+  void nameTerms(uint32_t index);
   void lines(uint32_t part, uint32_t first_term);
-  void overridden(const LineDecl& own, const LineDecl& other);
+  void overridden(uint32_t id, const LineDecl& own, const LineDecl& other);
   void addedLines(const lang::ProfileDecl& overlay);
-  static const LineDecl* overriding(const lang::ProfileDecl& overlay, std::string_view id);
   Line line(const LineDecl& decl, uint32_t part, uint32_t term);
   void carry(Line& line, const LineDecl& decl);
   void place(Line line, const LineDecl& decl);
@@ -73,8 +76,9 @@ private:
   Diagnostics wrong_;
   Uses uses_;
   std::vector<const lang::ProfileDecl*> overlays_;  ///< the lods, then the profile: the first has its say
-  std::set<const LineDecl*> placed_;                ///< their lines that stand in place of others
-  std::string_view overlay_;                        ///< the one whose added lines are placed
+  std::vector<std::map<uint32_t, const LineDecl*>> overriding_;  ///< their lines, by id
+  std::set<const LineDecl*> placed_;                             ///< those that stand in place of others
+  std::string_view overlay_;                                     ///< the one whose added lines are placed
 };
 
 void Compiler::error(const Text& source, Span span, std::string code, std::string message, std::string help) {
@@ -130,13 +134,41 @@ void Compiler::collectParts() {
       }
     }
     model_.parts.push_back(std::move(part));
-    declare(decl->lines);
+  }
+  // The names that all share come first, so that a vendor's text is wrong where it takes one.
+  for (const bool vendors : {false, true}) {
+    for (const Part& part : model_.parts) {
+      enter(part);
+      if (vendors != names_.vendor().empty()) declare(part.decl->lines, false);
+    }
   }
 }
 
-void Compiler::declare(const std::vector<LineDecl>& lines) {
+/// What is resolved from now on stands in the text of a part.
+void Compiler::enter(const Part& part) {
+  source_ = {part.decl->origin.file, part.decl->text};
+  std::vector<std::string_view> vendors;
+  const auto add = [&](std::string_view vendor) {
+    if (!vendor.empty() && std::find(vendors.begin(), vendors.end(), vendor) == vendors.end())
+      vendors.push_back(vendor);
+  };
+  add(part.decl->origin.vendor);
+  for (const uint16_t extension : part.of) add(model_.schema->extensions[extension]->origin.vendor);
+  names_.setVendors(std::move(vendors));
+}
+
+void Compiler::enter(const lang::ProfileDecl& overlay) {
+  source_ = {overlay.origin.file, overlay.text};
+  std::vector<std::string_view> vendors;
+  if (!overlay.origin.vendor.empty()) vendors.push_back(overlay.origin.vendor);
+  names_.setVendors(std::move(vendors));
+}
+
+void Compiler::declare(const std::vector<LineDecl>& lines, bool overlay) {
   for (const LineDecl& line : lines) {
-    if (line.kind == LineDecl::Kind::Value || line.kind == LineDecl::Kind::Flag) names_.addId(line.id);
+    const bool value = line.kind == LineDecl::Kind::Value || line.kind == LineDecl::Kind::Flag;
+    // A profile's line stands in place of that line, whosever it is.
+    if (value && (!overlay || !names_.findId(line.id))) names_.addId(line.id);
     if (line.kind == LineDecl::Kind::Flag) names_.addFlag(line.id);
     if (line.kind == LineDecl::Kind::Out) names_.addOut(line.id);
   }
@@ -144,12 +176,15 @@ void Compiler::declare(const std::vector<LineDecl>& lines) {
 
 // -- lines --
 
-const LineDecl* Compiler::overriding(const lang::ProfileDecl& overlay, std::string_view id) {
-  for (const LineDecl& line : overlay.lines) {
-    const bool value = line.kind == LineDecl::Kind::Value || line.kind == LineDecl::Kind::Flag;
-    if (value && line.id == id) return &line;
+void Compiler::findOverridden() {
+  for (const lang::ProfileDecl* overlay : overlays_) {
+    enter(*overlay);
+    std::map<uint32_t, const LineDecl*>& lines = overriding_.emplace_back();
+    for (const LineDecl& line : overlay->lines) {
+      const bool value = line.kind == LineDecl::Kind::Value || line.kind == LineDecl::Kind::Flag;
+      if (value) lines.emplace(names_.id(line.id), &line);
+    }
   }
-  return nullptr;
 }
 
 Line Compiler::line(const LineDecl& decl, uint32_t part, uint32_t term) {
@@ -242,17 +277,22 @@ void Compiler::part(uint32_t index) {
     made.when_reason = term.when_reason;
     made.unless_reason = term.unless_reason;
     made.has_unless = term.unless != nullptr;
-    if (!names_.addTerm(term.name, static_cast<uint32_t>(model_.terms.size()))) {
-      error({decl.origin.file, decl.text}, term.span, "duplicate-name",
-            fmt::format("there is a term or a part '{}' already", term.name), "give this one another name");
-    }
     model_.terms.push_back(std::move(made));
+  }
+}
+
+void Compiler::nameTerms(uint32_t index) {
+  const std::vector<lang::TermDecl>& terms = model_.parts[index].decl->terms;
+  for (size_t i = 0; i < terms.size(); ++i) {
+    if (names_.addTerm(terms[i].name, model_.parts[index].term + static_cast<uint32_t>(i))) continue;
+    error(terms[i].span, "duplicate-name",
+          fmt::format("there is a term or a part '{}' already", terms[i].name), "give this one another name");
   }
 }
 
 void Compiler::lines(uint32_t part, uint32_t first_term) {
   const lang::PartDecl& decl = *model_.parts[part].decl;
-  source_ = {decl.origin.file, decl.text};
+  enter(model_.parts[part]);
   for (size_t i = 0; i < decl.terms.size(); ++i) {
     Term& term = model_.terms[first_term + i];
     if (decl.terms[i].when) term.when = condition(decl.terms[i].when);
@@ -277,24 +317,26 @@ void Compiler::lines(uint32_t part, uint32_t first_term) {
     if (own.light) model_.ids[names_.id(own.id)].light = true;
     bool replaced = false;
     for (size_t k = 0; value && !replaced && k < overlays_.size(); ++k) {
-      const LineDecl* other = overriding(*overlays_[k], own.id);
-      if (other == nullptr) continue;
+      const auto found = overriding_[k].find(names_.id(own.id));
+      if (found == overriding_[k].end()) continue;
+      const LineDecl* other = found->second;
       // Where a lod's line comes to nothing, the one in whose place it stands holds.
       replaced = overlays_[k] == model_.profile;
       if (!placed_.insert(other).second) continue;
-      source_ = {overlays_[k]->origin.file, overlays_[k]->text};
-      overridden(own, *other);
+      const uint32_t id = found->first;
+      enter(*overlays_[k]);
+      overridden(id, own, *other);
       uses_.overlays.insert(static_cast<uint32_t>(model_.lines.size()));
       put(*other);
-      source_ = {decl.origin.file, decl.text};
+      enter(model_.parts[part]);
     }
     if (!replaced) put(own);
   }
 }
 
 /// `other`, of a profile or a lod, stands in place of a part's line.
-void Compiler::overridden(const LineDecl& own, const LineDecl& other) {
-  model_.ids[names_.id(own.id)].overridden = true;
+void Compiler::overridden(uint32_t id, const LineDecl& own, const LineDecl& other) {
+  model_.ids[id].overridden = true;
   if (own.kind == other.kind) return;
   const bool flag = own.kind == LineDecl::Kind::Flag;
   error(other.span, "wrong-type", fmt::format("'{}' is {}", own.id, flag ? "a bool" : "a value, no bool"),
@@ -304,7 +346,7 @@ void Compiler::overridden(const LineDecl& own, const LineDecl& other) {
 /// What a profile or a lod adds beside the lines that it replaces stands outside of all parts.
 void Compiler::addedLines(const lang::ProfileDecl& overlay) {
   overlay_ = overlay.name;
-  source_ = {overlay.origin.file, overlay.text};
+  enter(overlay);
   for (const LineDecl& decl : overlay.lines) {
     if (placed_.contains(&decl)) continue;
     if (decl.kind == LineDecl::Kind::Require) {
@@ -333,8 +375,8 @@ bool Compiler::constant(const Expr& expr, Value& out) {
     for (double& x : out.constant) x = -x;
     return true;
   }
-  if (expr.kind == Expr::Kind::Name && library_.has(lang::DeclKind::Const, expr.name)) {
-    const Result<const lang::ConstDecl*> decl = library_.constant(expr.name);
+  if (expr.kind == Expr::Kind::Name && library_.has(lang::DeclKind::Const, expr.name, names_.vendor())) {
+    const Result<const lang::ConstDecl*> decl = library_.constant(expr.name, names_.vendor());
     if (!decl) return false;
     out.type = (*decl)->type;
     out.constant = (*decl)->value;
@@ -388,9 +430,9 @@ Value Compiler::reference(const Expr& expr) {
 Value Compiler::call(const Expr& expr) {
   Value out;
   out.kind = Value::Kind::Call;
-  const Result<const lang::NodeDecl*> node = library_.node(expr.name);
+  const Result<const lang::NodeDecl*> node = library_.node(expr.name, names_.vendor());
   if (!node) {
-    if (library_.has(lang::DeclKind::Node, expr.name)) {
+    if (library_.has(lang::DeclKind::Node, expr.name, names_.vendor())) {
       wrong_.insert(wrong_.end(), node.error().begin(), node.error().end());
     } else {
       error(expr.span, "unknown-node", fmt::format("there is no node '{}'", expr.name),
@@ -600,15 +642,17 @@ Condition Compiler::named(const Expr& expr) {
 /// A property's name is that of nothing else that a line could mean.
 void Compiler::checkNames() {
   for (const Role& role : model_.roles) {
-    Value other;
-    const char* what = names_.hasGiven(role.name) ? "what templates give"
-                       : names_.hasId(role.name)  ? "a line"
-                                                  : nullptr;
-    if (what == nullptr) continue;
     const material::Property& property = model_.schema->properties[role.providers[0]];
     const lang::ExtensionDecl& extension = *model_.schema->extensions[property.extension];
+    names_.setVendors({});
+    if (!extension.origin.vendor.empty()) names_.setVendors({extension.origin.vendor});
+    const std::string_view name = property.decl->role;
+    const char* what = names_.hasGiven(name) ? "what templates give"
+                       : names_.hasId(name)  ? "a line"
+                                             : nullptr;
+    if (what == nullptr) continue;
     error({extension.origin.file, extension.text}, property.decl->span, "duplicate-name",
-          fmt::format("'{}' is the name of {}, too", role.name, what),
+          fmt::format("'{}' is the name of {}, too", name, what),
           fmt::format("parts can call it otherwise: `{} as NAME`", property.decl->name));
   }
 }
@@ -619,8 +663,14 @@ void Compiler::checkWriterNames() {
     if (property.decl->kind != material::Kind::Texture) continue;
     for (const std::string_view what : {"uv", "texel", "decoded"}) {
       const std::string name = fmt::format("{}.{}", property.parameter_name, what);
-      if (!names_.hasId(name) || (what == "decoded" && !property.decl->srgb)) continue;
+      if (what == "decoded" && !property.decl->srgb) continue;
       const lang::ExtensionDecl& extension = *model_.schema->extensions[property.extension];
+      names_.setVendors({});
+      if (!extension.origin.vendor.empty()) names_.setVendors({extension.origin.vendor});
+      if (!names_.hasId(name)) {
+        names_.keepFree(name);
+        continue;
+      }
       error({extension.origin.file, extension.text}, property.decl->span, "duplicate-name",
             fmt::format("its node '{}' has the name of a line", name), "give the line another name");
     }
@@ -702,8 +752,18 @@ Result<Model> Compiler::run(std::string_view profile, const std::set<std::string
   names_.addRoles();
   names_.addSwitches(wrong_);
   collectParts();
-  for (const lang::ProfileDecl* overlay : overlays_) declare(overlay->lines);
+  for (const lang::ProfileDecl* overlay : overlays_) {
+    enter(*overlay);
+    declare(overlay->lines, true);
+  }
+  findOverridden();
   for (uint32_t i = 0; i < model_.parts.size(); ++i) part(i);
+  for (const bool vendors : {false, true}) {
+    for (uint32_t i = 0; i < model_.parts.size(); ++i) {
+      enter(model_.parts[i]);
+      if (vendors != names_.vendor().empty()) nameTerms(i);
+    }
+  }
   for (uint32_t i = 0; i < model_.parts.size(); ++i) lines(i, model_.parts[i].term);
   for (const lang::ProfileDecl* overlay : overlays_) addedLines(*overlay);
   checkNames();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace lacquer::model {
 
@@ -13,23 +14,93 @@ bool isSwizzle(std::string_view text) {
          text.find_first_not_of("rgba") == std::string_view::npos;
 }
 
+std::optional<uint32_t> VendorNames::add(std::string_view vendor, std::string_view name, uint32_t index,
+                                         const Rename& rename) {
+  const auto known = by_name_.find(name);
+  const bool there = known != by_name_.end();
+  if (there && (known->second.vendor == vendor || known->second.vendor.empty() || vendor.empty()))
+    return known->second.index;
+  const auto [own, fresh] = own_.try_emplace({vendor, name}, index);
+  if (!fresh) return own->second;
+  if (vendor.empty() || (!there && !several_.contains(name))) {
+    by_name_.emplace(name, Meaning{index, vendor});
+    return std::nullopt;
+  }
+  several_.insert(name);
+  if (there) {
+    const Meaning first = known->second;
+    by_name_.erase(known);
+    qualify(first, name, rename);
+  }
+  qualify({index, vendor}, name, rename);
+  return std::nullopt;
+}
+
+void VendorNames::qualify(const Meaning& meaning, std::string_view name, const Rename& rename) {
+  const std::string made = fmt::format("{}.{}", meaning.vendor, name);
+  by_name_.emplace(made, meaning);
+  rename(meaning.index, made);
+}
+
+void VendorNames::move(std::string_view name, const Rename& rename) {
+  const auto known = by_name_.find(name);
+  if (known == by_name_.end() || known->second.vendor.empty()) return;
+  const Meaning meaning = known->second;
+  by_name_.erase(known);
+  qualify(meaning, name, rename);
+}
+
+std::optional<uint32_t> VendorNames::own(const std::vector<std::string_view>& vendors,
+                                         std::string_view name) const {
+  for (const std::string_view vendor : vendors) {
+    if (const auto it = own_.find({vendor, name}); it != own_.end()) return it->second;
+  }
+  return std::nullopt;
+}
+
+std::optional<uint32_t> VendorNames::shared(std::string_view name) const {
+  const auto it = by_name_.find(name);
+  return it == by_name_.end() || !it->second.vendor.empty() ? std::nullopt : std::optional(it->second.index);
+}
+
+std::optional<uint32_t> VendorNames::any(std::string_view name) const {
+  const auto it = by_name_.find(name);
+  return it == by_name_.end() ? std::nullopt : std::optional(it->second.index);
+}
+
+std::optional<uint32_t> VendorNames::find(const std::vector<std::string_view>& vendors,
+                                          std::string_view name) const {
+  const std::optional<uint32_t> mine = own(vendors, name);
+  return mine ? mine : any(name);
+}
+
+std::vector<std::string_view> VendorNames::all() const {
+  std::vector<std::string_view> names;
+  for (const auto& [name, meaning] : by_name_) names.push_back(name);
+  return names;
+}
+
 Names::Names(const lang::Library& library, const material::Schema& schema, Model& model)
     : library_(library), schema_(schema), model_(model) {
   // A template that is wrong says so when it is used; what the others give has names all the same.
-  std::set<std::string> all;
   for (const std::string_view name : library.names(lang::DeclKind::Template)) {
     const Result<const lang::TemplateDecl*> decl = library.template_(name);
     if (!decl) continue;
-    for (const lang::EnvironmentDecl& one : (*decl)->environments) all.emplace(one.name);
+    const auto add = [&](std::string given) {
+      Given& one = givens_[std::move(given)];
+      one.built_in = one.built_in || (*decl)->origin.built_in;
+      one.vendors.insert((*decl)->origin.vendor);
+    };
+    for (const lang::EnvironmentDecl& one : (*decl)->environments) add(std::string(one.name));
     for (const lang::GivenDecl& one : (*decl)->givens) {
-      if (!one.multiple) all.emplace(one.name);
+      if (!one.multiple) add(std::string(one.name));
       for (const lang::Param& result : one.results) {
-        if (one.multiple) all.insert(fmt::format("{}.{}", one.name, result.name));
+        if (one.multiple) add(fmt::format("{}.{}", one.name, result.name));
       }
     }
   }
-  for (const std::string& name : all) {
-    givens_.emplace(name, static_cast<uint32_t>(model_.givens.size()));
+  for (auto& [name, given] : givens_) {
+    given.index = static_cast<uint32_t>(model_.givens.size());
     model_.givens.push_back(name);
   }
 }
@@ -54,17 +125,36 @@ void Names::addSwitches(Diagnostics& wrong) {
   }
 }
 
+std::string_view Names::keep(std::string name) {
+  model_.made_names.push_back(std::make_shared<const std::string>(std::move(name)));
+  return *model_.made_names.back();
+}
+
 void Names::addId(std::string_view name) {
-  const auto [it, fresh] = ids_.emplace(name, static_cast<uint32_t>(model_.ids.size()));
-  if (fresh) model_.ids.push_back({name, {}, {}});
+  const auto index = static_cast<uint32_t>(model_.ids.size());
+  model_.ids.push_back({name, {}, {}});
+  const auto known = ids_.add(vendor(), name, index, [&](uint32_t id, std::string made) {
+    model_.ids[id].name = keep(std::move(made));
+  });
+  if (known) model_.ids.pop_back();
+}
+
+bool Names::addTerm(std::string_view name, uint32_t index) {
+  return !terms_.add(vendor(), name, index, [&](uint32_t term, std::string made) {
+    model_.terms[term].name = keep(std::move(made));
+  });
+}
+
+void Names::keepFree(std::string_view name) {
+  ids_.move(name, [&](uint32_t id, std::string made) { model_.ids[id].name = keep(std::move(made)); });
 }
 
 uint32_t Names::makeId(const std::string& name) {
   std::string free = name;
-  for (int i = 2; ids_.contains(free) || made_.contains(free); ++i) free = fmt::format("{}_{}", name, i);
-  model_.made_names.push_back(std::make_shared<const std::string>(std::move(free)));
-  made_.insert(*model_.made_names.back());
-  model_.ids.push_back({*model_.made_names.back(), {}, {}});
+  for (int i = 2; ids_.any(free) || made_.contains(free); ++i) free = fmt::format("{}_{}", name, i);
+  const std::string_view kept = keep(std::move(free));
+  made_.insert(kept);
+  model_.ids.push_back({kept, {}, {}});
   return static_cast<uint32_t>(model_.ids.size() - 1);
 }
 
@@ -86,7 +176,8 @@ void Names::addOut(std::string_view name) {
 
 bool Names::hasGiven(std::string_view name) const {
   return std::any_of(givens_.begin(), givens_.end(), [&](const auto& given) {
-    return std::string_view(given.first).substr(0, given.first.find('.')) == name;
+    if (std::string_view(given.first).substr(0, given.first.find('.')) != name) return false;
+    return given.second.built_in || (!vendor().empty() && given.second.vendors.contains(vendor()));
   });
 }
 
@@ -113,15 +204,38 @@ const lang::PropertyDecl* Names::choice(const Value& value) const {
   return decl.kind == lang::PropertyDecl::Kind::Choice ? &decl : nullptr;
 }
 
-bool Names::role(std::string_view text, Value& out) const {
-  const std::string_view head = text.substr(0, text.find('.'));
-  const auto it = roles_.find(head);
-  if (it == roles_.end()) return false;
+std::optional<uint32_t> Names::roleOf(std::string_view head, Where where) const {
+  const auto find = [&](std::string_view name) -> std::optional<uint32_t> {
+    const auto it = roles_.find(name);
+    return it == roles_.end() ? std::nullopt : std::optional(it->second);
+  };
+  const auto vendorOf = [&](uint32_t role) {
+    return schema_.vendorOf(schema_.properties[model_.roles[role].providers[0]]);
+  };
+  const std::optional<uint32_t> plain = find(head);
+  if (where == Where::Any || (where == Where::Shared && plain && vendorOf(*plain).empty())) return plain;
+  if (where == Where::Shared) return std::nullopt;
+  for (const std::string_view vendor : vendors_) {
+    if (plain && vendorOf(*plain) == vendor) return plain;
+    if (const auto own = find(fmt::format("{}.{}", vendor, head))) return own;
+  }
+  return std::nullopt;
+}
+
+bool Names::role(std::string_view text, Where where, Value& out) const {
+  std::string_view head = text.substr(0, text.find('.'));
+  std::optional<uint32_t> found = roleOf(head, where);
+  if (!found && where == Where::Any && head.size() < text.size()) {
+    // "EXTENSION.name" of what several vendors have.
+    head = text.substr(0, text.find('.', head.size() + 1));
+    found = roleOf(head, where);
+  }
+  if (!found) return false;
   out.kind = Value::Kind::Role;
-  out.index = it->second;
+  out.index = *found;
   if (head.size() == text.size()) return true;
   const std::string_view rest = text.substr(head.size() + 1);
-  const lang::PropertyDecl& decl = declOf(it->second);
+  const lang::PropertyDecl& decl = declOf(*found);
   if (decl.kind == lang::PropertyDecl::Kind::Texture) {
     if (rest == "uv") return out.coordinate = true;
     for (size_t i = 0; i < decl.members.size(); ++i) {
@@ -139,7 +253,7 @@ bool Names::given(std::string_view text, Value& out) const {
     const auto it = givens_.find(text.substr(0, end));
     if (it == givens_.end()) continue;
     out.kind = Value::Kind::Given;
-    out.index = it->second;
+    out.index = it->second.index;
     out.path = end == text.size() ? std::string_view{} : text.substr(end + 1);
     return out.path.empty() || isSwizzle(out.path);
   }
@@ -158,19 +272,31 @@ bool Names::resolve(std::string_view text, Value& out, std::vector<std::string_v
       return true;
     }
   }
+  // What its own vendor calls so goes before what all share, and that before what another vendor does.
+  for (const Where where : {Where::Own, Where::Shared, Where::Any}) {
+    if (where == Where::Own && vendors_.empty()) continue;
+    if (id(text, where, out) || role(text, where, out)) return true;
+    if (where == Where::Shared && given(text, out)) return true;
+    out = {};
+  }
+  for (const std::string_view name : ids_.all()) candidates.push_back(name);
+  for (const auto& [name, index] : roles_) candidates.push_back(name);
+  for (const auto& [name, given] : givens_) candidates.push_back(name);
+  return false;
+}
+
+bool Names::id(std::string_view text, Where where, Value& out) const {
   for (size_t end = text.size(); end != std::string_view::npos && end > 0; end = text.rfind('.', end - 1)) {
-    const auto it = ids_.find(text.substr(0, end));
-    if (it == ids_.end()) continue;
+    const std::string_view head = text.substr(0, end);
+    const std::optional<uint32_t> found = where == Where::Own      ? ids_.own(vendors_, head)
+                                          : where == Where::Shared ? ids_.shared(head)
+                                                                   : ids_.any(head);
+    if (!found) continue;
     out.kind = Value::Kind::Id;
-    out.index = it->second;
+    out.index = *found;
     out.path = end == text.size() ? std::string_view{} : text.substr(end + 1);
     return true;
   }
-  if (role(text, out) || given(text, out)) return true;
-  out = {};
-  for (const auto& [name, index] : ids_) candidates.push_back(name);
-  for (const auto& [name, index] : roles_) candidates.push_back(name);
-  for (const auto& [name, index] : givens_) candidates.push_back(name);
   return false;
 }
 
@@ -180,9 +306,9 @@ bool Names::condition(std::string_view text, Condition& out) const {
     out.index = index;
     return true;
   };
-  if (const auto it = ids_.find(text); it != ids_.end())
-    return flags_.contains(text) && as(Condition::Kind::Flag, it->second);
-  if (const auto it = terms_.find(text); it != terms_.end()) return as(Condition::Kind::Term, it->second);
+  if (const auto found = ids_.find(vendors_, text))
+    return flags_.contains(*found) && as(Condition::Kind::Flag, *found);
+  if (const auto found = terms_.find(vendors_, text)) return as(Condition::Kind::Term, *found);
   if (const auto it = switches_.find(text); it != switches_.end())
     return as(Condition::Kind::Switch, it->second);
   if (const std::optional<uint16_t> extension = schema_.find(text); extension && *extension != 0)

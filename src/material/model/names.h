@@ -1,6 +1,7 @@
 // What names in parts stand for.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -15,28 +16,69 @@ namespace lacquer::model {
 /// One to four letters of xyzw or rgba.
 bool isSwizzle(std::string_view text);
 
+/// What texts call by a name, where each vendor (lang::Origin) has names of its own. A name that several have
+/// is "VENDOR.name" to all others.
+class VendorNames {
+public:
+  using Rename = std::function<void(uint32_t index, std::string name)>;
+
+  /// What the name means already in a vendor's text: its own, or what all share. Else it means `index` from
+  /// now on, and whoever is to be known by another name is told to `rename`.
+  std::optional<uint32_t> add(std::string_view vendor, std::string_view name, uint32_t index,
+                              const Rename& rename);
+  std::optional<uint32_t> own(const std::vector<std::string_view>& vendors, std::string_view name) const;
+  std::optional<uint32_t> shared(std::string_view name) const;
+  std::optional<uint32_t> any(std::string_view name) const;
+  /// Its own before what all share before another's.
+  std::optional<uint32_t> find(const std::vector<std::string_view>& vendors, std::string_view name) const;
+  std::vector<std::string_view> all() const;
+  /// Gives another name to what a name means, unless all share it.
+  void move(std::string_view name, const Rename& rename);
+
+private:
+  struct Meaning {
+    uint32_t index = 0;
+    std::string_view vendor;
+  };
+  void qualify(const Meaning& meaning, std::string_view name, const Rename& rename);
+
+  std::map<std::string, Meaning, std::less<>> by_name_;
+  std::map<std::pair<std::string_view, std::string_view>, uint32_t> own_;  ///< by vendor and name
+  std::set<std::string_view> several_;
+};
+
 class Names {
 public:
   /// Fills the model's lists of names as they are added.
   Names(const lang::Library& library, const material::Schema& schema, Model& model);
 
+  /// In whose texts names are said from now on, the first one's above all; none: the library's, or a text
+  /// that all share.
+  void setVendors(std::vector<std::string_view> vendors) { vendors_ = std::move(vendors); }
+  std::string_view vendor() const { return vendors_.empty() ? std::string_view{} : vendors_[0]; }
+
   void addRoles();
   void addSwitches(Diagnostics& wrong);
   void addId(std::string_view name);
-  void addFlag(std::string_view name) { flags_.insert(name); }
+  void addFlag(std::string_view name) { flags_.insert(id(name)); }
   void addOut(std::string_view name);
-  /// False when there is one.
-  bool addTerm(std::string_view name, uint32_t index) { return terms_.emplace(name, index).second; }
+  /// Of the model's term `index`. False when there is one.
+  bool addTerm(std::string_view name, uint32_t index);
   void sections(const std::vector<std::string_view>& names) { sections_ = names; }
 
-  uint32_t id(std::string_view name) const { return ids_.at(name); }
+  uint32_t id(std::string_view name) const { return *findId(name); }
+  std::optional<uint32_t> findId(std::string_view name) const { return ids_.find(vendors_, name); }
   uint32_t out(std::string_view name) const { return outs_.at(name); }
   std::optional<uint32_t> findOut(std::string_view name) const;
   std::vector<std::string_view> outs() const;
   /// A line that no text refers to: its name, or the next one with a number behind it that is no other's.
   uint32_t makeId(const std::string& name);
-  bool hasId(std::string_view name) const { return ids_.contains(name); }
-  /// "view", "light_sample" of "light_sample.L", a texture of the environment.
+  /// Whether a line of the vendor's, or one that all share, has that name.
+  bool hasId(std::string_view name) const { return ids_.own(vendors_, name) || ids_.shared(name); }
+  /// Sees to it that no line of another vendor has that name.
+  void keepFree(std::string_view name);
+  /// "view", "light_sample" of "light_sample.L", a texture of the environment: of a template of the library's
+  /// or of the vendor's.
   bool hasGiven(std::string_view name) const;
   /// The place of a section; of none, the first.
   std::optional<uint32_t> section(std::string_view name) const;
@@ -55,7 +97,12 @@ public:
   const lang::PropertyDecl* choice(const Value& value) const;
 
 private:
-  bool role(std::string_view text, Value& out) const;
+  /// Where a name is looked for: its own vendor's text, what all share, everywhere.
+  enum class Where : uint8_t { Own, Shared, Any };
+  bool id(std::string_view text, Where where, Value& out) const;
+  bool role(std::string_view text, Where where, Value& out) const;
+  std::optional<uint32_t> roleOf(std::string_view head, Where where) const;
+  std::string_view keep(std::string name);
   bool given(std::string_view text, Value& out) const;
   const lang::PropertyDecl& declOf(uint32_t role) const;
 
@@ -63,9 +110,17 @@ private:
   const material::Schema& schema_;
   Model& model_;
   std::vector<std::string_view> sections_;
-  std::map<std::string_view, uint32_t> ids_, outs_, roles_, terms_, switches_;
-  std::set<std::string_view> flags_, made_;
-  std::map<std::string, uint32_t, std::less<>> givens_;
+  std::vector<std::string_view> vendors_;
+  VendorNames ids_, terms_;
+  std::map<std::string_view, uint32_t> outs_, roles_, switches_;
+  std::set<uint32_t> flags_;
+  std::set<std::string_view> made_;
+  struct Given {
+    uint32_t index = 0;
+    bool built_in = false;
+    std::set<std::string_view> vendors;  ///< whose templates give it
+  };
+  std::map<std::string, Given, std::less<>> givens_;
 };
 
 }  // namespace lacquer::model

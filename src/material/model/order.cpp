@@ -19,6 +19,14 @@ namespace {
 using Parts = std::vector<const PartDecl*>;
 using ByName = std::map<std::string_view, const PartDecl*>;
 
+/// The part that a name means in another part's text.
+const PartDecl* find(const ByName& parts, const PartDecl& in, std::string_view name) {
+  auto it = parts.find(name);
+  if (it == parts.end() && !in.origin.vendor.empty())
+    it = parts.find(fmt::format("{}.{}", in.origin.vendor, name));
+  return it == parts.end() ? nullptr : it->second;
+}
+
 /// Whether `upper` says, or one of those over which it lies, that it lies over `lower`.
 bool liesOver(const PartDecl& upper, const PartDecl& lower, const ByName& parts) {
   std::vector<const PartDecl*> left{&upper};
@@ -29,7 +37,7 @@ bool liesOver(const PartDecl& upper, const PartDecl& lower, const ByName& parts)
     if (part == &lower) return true;
     if (!seen.insert(part).second) continue;
     for (const std::string_view name : part->over) {
-      if (const auto below = parts.find(name); below != parts.end()) left.push_back(below->second);
+      if (const PartDecl* below = find(parts, *part, name)) left.push_back(below);
     }
   }
   return false;
@@ -40,9 +48,9 @@ bool liesOver(const PartDecl& upper, const PartDecl& lower, const ByName& parts)
 std::optional<size_t> placeOf(const PartDecl& part, const Parts& placed, const ByName& names) {
   Parts below;
   for (const std::string_view name : part.over) {
-    const auto it = names.find(name);
-    if (it == names.end()) return std::nullopt;
-    below.push_back(it->second);
+    const PartDecl* found = find(names, part, name);
+    if (found == nullptr) return std::nullopt;
+    below.push_back(found);
   }
   if (below.empty()) return std::nullopt;
   const auto highest = std::find_if(placed.rbegin(), placed.rend(), [&](const PartDecl* one) {
@@ -57,7 +65,7 @@ void reportUnplaced(const lang::Library& library, const Parts& left, Diagnostics
   for (const PartDecl* part : left) {
     lang::Reporter reporter(part->origin.file, part->text);
     const auto unknown = std::find_if(part->over.begin(), part->over.end(), [&](std::string_view name) {
-      return !library.has(lang::DeclKind::Part, name);
+      return !library.has(lang::DeclKind::Part, name, part->origin.vendor);
     });
     if (part->over.empty()) {
       reporter.error("unknown-part", part->span,
