@@ -73,12 +73,14 @@ public:
     Diagnostics found;
     const auto plain = [&](lang::DeclKind kind, auto get, std::string_view what) {
       for (const std::string_view name : language_.names(kind)) {
-        const auto decl = (language_.*get)(name);
-        if (decl) unusedName(**decl, name, what, found);
+        const auto decl = get(name);
+        if (decl) unusedName(**decl, (*decl)->name, what, found);
       }
     };
-    plain(lang::DeclKind::Const, &lang::Library::constant, "constant");
-    plain(lang::DeclKind::Switch, &lang::Library::switch_, "switch");
+    plain(
+        lang::DeclKind::Const, [&](std::string_view name) { return language_.constant(name); }, "constant");
+    plain(
+        lang::DeclKind::Switch, [&](std::string_view name) { return language_.switch_(name); }, "switch");
     for (const std::string_view name : language_.names(lang::DeclKind::Node)) {
       const Result<const lang::NodeDecl*> decl = language_.node(name);
       // What has a category is for palettes.

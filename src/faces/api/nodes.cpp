@@ -257,7 +257,7 @@ Json operationsJson() {
 template <class Get, class Row>
 Json rowsOf(const lang::Library& library, lang::DeclKind kind, Get get, Row row) {
   Json all = Json::array();
-  for (const std::string_view name : library.names(kind)) all.push_back(row(**(library.*get)(name)));
+  for (const std::string_view name : library.names(kind)) all.push_back(row(**get(library, name)));
   return all;
 }
 
@@ -275,21 +275,28 @@ std::string nodesJson(const Options& options, Messages& messages) {
   const lang::Library& all = **library;
   using lang::DeclKind;
   using lang::Library;
+  const auto by = [](auto get) {
+    return [get](const Library& in, std::string_view name) { return (in.*get)(name); };
+  };
+  // Under the names that users call them by: a vendor's own are among these where they need be.
+  const auto parts = [](const Library& in, std::string_view name) { return in.part(name); };
+  const auto constants = [](const Library& in, std::string_view name) { return in.constant(name); };
+  const auto nodes = [](const Library& in, std::string_view name) { return in.node(name); };
   Json types = Json::array();
   for (const ir::Type type : ir::kTypes) types.push_back(ir::typeName(type));
   const Json json = {{"lacquer", version()},
                      {"schema", kNodesSchema},
                      {"types", std::move(types)},
-                     {"extensions", rowsOf(all, DeclKind::Extension, &Library::extension, extensionJson)},
-                     {"parts", rowsOf(all, DeclKind::Part, &Library::part, partJson)},
-                     {"profiles", rowsOf(all, DeclKind::Profile, &Library::profile, profileJson)},
-                     {"lods", rowsOf(all, DeclKind::Lod, &Library::lod, profileJson)},
-                     {"switches", rowsOf(all, DeclKind::Switch, &Library::switch_, switchJson)},
-                     {"templates", rowsOf(all, DeclKind::Template, &Library::template_, templateJson)},
+                     {"extensions", rowsOf(all, DeclKind::Extension, by(&Library::extension), extensionJson)},
+                     {"parts", rowsOf(all, DeclKind::Part, parts, partJson)},
+                     {"profiles", rowsOf(all, DeclKind::Profile, by(&Library::profile), profileJson)},
+                     {"lods", rowsOf(all, DeclKind::Lod, by(&Library::lod), profileJson)},
+                     {"switches", rowsOf(all, DeclKind::Switch, by(&Library::switch_), switchJson)},
+                     {"templates", rowsOf(all, DeclKind::Template, by(&Library::template_), templateJson)},
                      {"live", liveTerms(options)},
-                     {"constants", rowsOf(all, DeclKind::Const, &Library::constant, constantJson)},
+                     {"constants", rowsOf(all, DeclKind::Const, constants, constantJson)},
                      {"operations", operationsJson()},
-                     {"nodes", rowsOf(all, DeclKind::Node, &Library::node, nodeJson)}};
+                     {"nodes", rowsOf(all, DeclKind::Node, nodes, nodeJson)}};
   return json.dump(2);  // a node file may hold any bytes
 }
 
