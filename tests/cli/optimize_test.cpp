@@ -1,4 +1,5 @@
 // `--optimize` and `tune`: what a search does to a run's files, its cache and its manifest.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "command.h"
@@ -90,6 +91,34 @@ TEST(Tune, ANodesFrontFallsAsItsErrorGrows) {
   EXPECT_NE(table.out.find("coat_absorption: "), std::string::npos) << table.all();
   EXPECT_EQ(place.run({"tune", "no_such_node"}).status, 1);
   EXPECT_NE(place.run({"tune", "coat_absorption.none"}).err.find("[no-such-variant]"), std::string::npos);
+}
+
+TEST(Tune, AFormIsAVariantThatStandsInANodesFile) {
+  const Workplace place;
+  const std::string node =
+      "/// A term.\n/// source: a test\n"
+      "node glow(float x in [0, 1]) -> float in [0, 2] {\n"
+      "    return exp2(0.3 * log2(1 + x)) / (1 + sqrt(x + 1));\n}\n";
+  place.write("mine/glow.node", node);
+  const json front = json::parse(place.run({"tune", "glow", "--nodes", "mine", "--json"}, kLong).out);
+  ASSERT_GT(front["forms"].size(), 2U);
+  const auto written = [&](const Words& more) {
+    return place.run(words({"tune", "glow", "--nodes", "mine", "--variant"}, more), kLong);
+  };
+  const Outcome second = written({"quick", "--form", "2"});
+  ASSERT_EQ(second.status, 0) << second.all();
+  const Outcome last = written({"fastest"});
+  const std::string error = fmt::format("{:.3g}", front["forms"].back()["error"].get<double>());
+  EXPECT_NE(last.out.find("off by at most " + error + " of a result"), std::string::npos) << last.all();
+  place.write("mine/glow.node", node + second.out + last.out);
+  const Outcome checked = place.run({"check", "mine"}, kLong);
+  EXPECT_EQ(checked.status, 0) << checked.all();
+  EXPECT_EQ(
+      json::parse(place.run({"tune", "glow.fastest", "--nodes", "mine", "--json"}, kLong).out)["of_cycles"],
+      front["forms"].back()["cycles"]);
+  EXPECT_NE(written({"quick"}).err.find("[wrong-variant]"), std::string::npos);
+  EXPECT_NE(written({"Quick"}).err.find("[wrong-variant]"), std::string::npos);
+  EXPECT_NE(written({"other", "--form", "99"}).err.find("[no-such-form]"), std::string::npos);
 }
 
 }  // namespace

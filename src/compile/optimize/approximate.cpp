@@ -41,7 +41,12 @@ struct Change {
 class Approximation {
 public:
   Approximation(const ir::Module& module, const Family& family, double error)
-      : module_(module), family_(family), most_(error), counter_(module), proved_(module) {
+      : module_(module),
+        family_(family),
+        most_(error),
+        counter_(module),
+        proved_(module),
+        faults_(ir::verify(module).size()) {
     Plain plain = plainOf(module, constants_);
     least_lights_ = plain.least_lights;
     most_lights_ = plain.most_lights;
@@ -61,7 +66,7 @@ public:
         State next = changed(state_, change);
         ir::Module module = module_;
         replaceFragment(module, next.found.plan, constants_);
-        if (!ir::verify(module).empty() || !Proved(module).keeps(proved_)) {
+        if (ir::verify(module).size() > faults_ || !Proved(module).keeps(proved_)) {
           refused_.insert(keyOf(change.at));
           continue;
         }
@@ -382,6 +387,7 @@ private:
   double most_;
   Counter counter_;
   Proved proved_;
+  size_t faults_;  ///< a node by itself has outputs of types that are no colours
   mutable Constants constants_;
   double least_lights_ = 0, most_lights_ = 1;
   State state_;

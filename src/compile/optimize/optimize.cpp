@@ -88,6 +88,7 @@ public:
     std::vector<Candidate> all;
     all.push_back({module_, {}});
     const Proved proved(module_);
+    const size_t faults = ir::verify(module_).size();
     Counter counter(module_);
     const double plain = planCost(counter, plain_.plan, constants_, family_);
     double best = plain;
@@ -104,7 +105,7 @@ public:
         ir::Module made = module_;
         replaceFragment(made, step.best.plan, constants_);
         // Nothing of a loop's body may stand for what is the same outside of it.
-        if (made.dag.hasLoops() && !ir::verify(made).empty()) continue;
+        if (made.dag.hasLoops() && ir::verify(made).size() > faults) continue;
         // What the plan's ranges promise the module's must keep.
         if (!Proved(made).keeps(proved)) continue;
         best = step.best_cost;
@@ -207,22 +208,22 @@ std::vector<Candidate> search(const ir::Module& module, const Settings& settings
   return all;
 }
 
-std::vector<Outcome> front(const ir::Module& module, const Settings& settings,
-                           std::span<const double> errors) {
+std::vector<Candidate> front(const ir::Module& module, const Settings& settings,
+                             std::span<const double> errors) {
   const Family& family = settings.family != nullptr ? *settings.family : families()[0];
-  const std::vector<Candidate> all = Search(module, settings).run();
-  const Candidate& exact = all.back();
-  std::vector<Outcome> front{exact.outcome};
+  std::vector<Candidate> all = Search(module, settings).run();
+  const Candidate exact = std::move(all.back());
+  std::vector<Candidate> front{exact};
   for (const double error : errors) {
     // Of the plain form other functions of one number are left than of the cheapest one.
     for (const ir::Module* from : {&exact.module, &module}) {
-      const std::optional<Approximated> made = approximate(*from, family, error);
-      if (!made || !(made->cycles < front.back().cycles - kCheaper)) continue;
+      std::optional<Approximated> made = approximate(*from, family, error);
+      if (!made || !(made->cycles < front.back().outcome.cycles - kCheaper)) continue;
       const double growth = from == &module ? 1 : exact.outcome.growth;
       const Outcome outcome{exact.outcome.plain, made->cycles, growth, made->error, made->count};
       // What is cheaper and off by less beats those before it.
-      while (front.size() > 1 && front.back().error >= outcome.error) front.pop_back();
-      front.push_back(outcome);
+      while (front.size() > 1 && front.back().outcome.error >= outcome.error) front.pop_back();
+      front.push_back({std::move(made->module), outcome});
     }
   }
   return front;

@@ -36,7 +36,7 @@ std::vector<Candidate> search(const ir::Module& module, const Settings& settings
 /// The Pareto front of cycles against error by the model: first the cheapest form that is equal in real
 /// numbers, then cheaper ones, each off by more than the one before it and by at most one of `errors`, which
 /// ascend. Settings::error does not count.
-std::vector<Outcome> front(const ir::Module& module, const Settings& settings,
-                           std::span<const double> errors);
+std::vector<Candidate> front(const ir::Module& module, const Settings& settings,
+                             std::span<const double> errors);
 
 }  // namespace lacquer::optimize

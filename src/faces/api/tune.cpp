@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "api/internal.h"
+#include "lacquer/variant.h"
+#include "lang/body_text.h"
 #include "prove/nodes.h"
 #include "setting/language.h"
 #include "setting/messages.h"
@@ -19,23 +21,49 @@ namespace {
 /// The errors that are tried.
 constexpr double kErrors[] = {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1};
 
-Tuned tuned(std::string name, const ir::Module& module, const Options& options) {
+constexpr std::string_view kReason =
+    "stated of the reference body, or proved of what stands for a part of it";
+
+struct Front {
+  std::string family;
+  std::vector<optimize::Candidate> forms;
+};
+
+Front frontOf(const ir::Module& module, const Options& options) {
   optimize::Settings settings = optimization(options);
   settings.level = std::max(settings.level, 1);
+  const std::string family = options.optimize_for.empty() ? optimizeFamilies()[0] : options.optimize_for;
+  return {family, optimize::front(module, settings, kErrors)};
+}
+
+TunedForm formOf(const optimize::Outcome& outcome) {
+  return {outcome.error, std::round(outcome.cycles), outcome.growth,
+          static_cast<size_t>(outcome.approximations)};
+}
+
+Tuned tuned(std::string name, const ir::Module& module, const Options& options) {
+  const Front front = frontOf(module, options);
   Tuned made;
   made.name = std::move(name);
-  made.family = options.optimize_for.empty() ? optimizeFamilies()[0] : options.optimize_for;
-  for (const optimize::Outcome& outcome : optimize::front(module, settings, kErrors)) {
-    made.plain = std::round(outcome.plain);
-    made.forms.push_back({outcome.error, std::round(outcome.cycles), outcome.growth,
-                          static_cast<size_t>(outcome.approximations)});
-  }
+  made.family = front.family;
+  made.plain = std::round(front.forms.front().outcome.plain);
+  for (const optimize::Candidate& form : front.forms) made.forms.push_back(formOf(form.outcome));
   return made;
 }
 
-}  // namespace
+/// A node that is named with or without a variant.
+struct Named {
+  std::shared_ptr<const Language> library;
+  const lang::NodeDecl* node;
+  std::string variant;
+};
 
-std::optional<Tuned> tune(const std::string& name, const Options& options, Messages& messages) {
+bool hasVariant(const lang::NodeDecl& node, std::string_view name) {
+  return std::any_of(node.variants.begin(), node.variants.end(),
+                     [&](const lang::Variant& one) { return one.name == name; });
+}
+
+std::optional<Named> find(const std::string& name, const Options& options, Messages& messages) {
   const auto wrong = [&](Diagnostics found) {
     report(found, {}, messages);
     return std::nullopt;
@@ -52,14 +80,79 @@ std::optional<Tuned> tune(const std::string& name, const Options& options, Messa
                       "`lacquer nodes` lists what there is")
                      .value());
   }
-  const auto named = [&](const lang::Variant& one) { return one.name == variant; };
-  if (!variant.empty() && std::none_of((*decl)->variants.begin(), (*decl)->variants.end(), named)) {
+  if (!variant.empty() && !hasVariant(**decl, variant)) {
     return wrong(fail("no-such-variant", {},
                       fmt::format("the node {} has no variant '{}'", node, printable(variant)),
                       fmt::format("`lacquer nodes {}` lists what there is", node))
                      .value());
   }
-  return tuned(name, nodeModule(**decl, variant).module, options);
+  return Named{*library, *decl, variant};
+}
+
+/// What is wrong with the name of another variant.
+Diagnostics wrongVariant(const lang::NodeDecl& node, const std::string& name) {
+  const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto good = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
+  if (name.empty() || !letter(name[0]) || !std::all_of(name.begin(), name.end(), good)) {
+    return fail("wrong-variant", {}, fmt::format("'{}' names no variant", printable(name)),
+                "small letters, digits and _, a letter first")
+        .value();
+  }
+  if (!hasVariant(node, name)) return {};
+  return fail("wrong-variant", {}, fmt::format("the node {} has a variant '{}'", node.name, name),
+              "take another name")
+      .value();
+}
+
+std::string documentation(const Tuned& tuned, const TunedForm& form) {
+  const std::string error =
+      form.error > 0
+          ? fmt::format(
+                "off by at most {:.3g} of a result, or by as much where that is below 1: proved, for\n"
+                "/// light of at most 1",
+                form.error)
+          : std::string("equal in real numbers");
+  return fmt::format(
+      "/// Found by a search: {}.\n/// {} cycles on {}, of {}; bounds of rounding "
+      "errors grow by "
+      "{:.2f}.\n",
+      error, form.cycles, tuned.family, tuned.plain, form.growth);
+}
+
+}  // namespace
+
+std::optional<Tuned> tune(const std::string& name, const Options& options, Messages& messages) {
+  const std::optional<Named> named = find(name, options, messages);
+  if (!named) return std::nullopt;
+  return tuned(name, nodeModule(*named->node, named->variant).module, options);
+}
+
+std::optional<std::string> variantText(const std::string& node, size_t form, const std::string& variant,
+                                       const Options& options, Messages& messages) {
+  const std::optional<Named> named = find(node, options, messages);
+  if (!named) return std::nullopt;
+  const auto wrong = [&](Diagnostics found) {
+    report(found, {}, messages);
+    return std::nullopt;
+  };
+  if (Diagnostics found = wrongVariant(*named->node, variant); !found.empty()) return wrong(std::move(found));
+  const Front front = frontOf(nodeModule(*named->node, named->variant).module, options);
+  const size_t count = front.forms.size();
+  if (form > count) {
+    return wrong(fail("no-such-form", {}, fmt::format("'{}' has no form {}", printable(node), form),
+                      fmt::format("there are {}", count))
+                     .value());
+  }
+  const optimize::Candidate& chosen = front.forms[form == 0 ? count - 1 : form - 1];
+  const std::optional<std::string> body = lang::bodyText(chosen.module, *named->node, kReason);
+  if (!body) {
+    return wrong(fail("no-variant", {},
+                      fmt::format("this form of '{}' is no body of a node", printable(node)),
+                      "the node language has no word for a loop of the shader or a sum over its lights")
+                     .value());
+  }
+  const Tuned plain{node, front.family, std::round(chosen.outcome.plain), {}};
+  return documentation(plain, formOf(chosen.outcome)) + fmt::format("variant {} {{\n{}}}\n", variant, *body);
 }
 
 std::optional<Tuned> tune(const Graph& graph, const Options& options, Messages& messages) {

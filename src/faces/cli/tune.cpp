@@ -7,6 +7,7 @@
 #include "cli/streams.h"
 #include "cli/table.h"
 #include "json/json.h"
+#include "lacquer/variant.h"
 
 namespace lacquer::cli {
 
@@ -16,7 +17,16 @@ void addTune(CLI::App& verb, TuneFlags& flags, OptionFlags& options) {
       ->required()
       ->check(kNotEmpty);
   verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
-  verb.add_flag("--json", flags.json, "as JSON");
+  CLI::Option* json = verb.add_flag("--json", flags.json, "as JSON");
+  CLI::Option* variant =
+      verb.add_option("--variant", flags.variant,
+                      "of a node: prints a form as a variant of that name, to stand behind the node's bodies")
+          ->check(kNotEmpty)
+          ->excludes(json);
+  verb.add_option("--form", flags.form,
+                  "which line of the table --variant takes, from 1 on; without it the last")
+      ->check(kWhole)
+      ->needs(variant);
   addMaterialFlags(verb, options);
 }
 
@@ -68,6 +78,12 @@ std::optional<Tuned> find(const TuneFlags& flags, const Options& options, Messag
 
 int runTune(const TuneFlags& flags, const Options& options) {
   Messages messages;
+  if (!flags.variant.empty()) {
+    const auto text = variantText(flags.subject, flags.form, flags.variant, options, messages);
+    print(messages);
+    if (text) fmt::print("{}", *text);
+    return text ? 0 : 1;
+  }
   const std::optional<Tuned> tuned = find(flags, options, messages);
   print(messages);
   if (!tuned || hasError(messages)) return 1;
