@@ -30,10 +30,9 @@ constexpr Verb kVerbs[] = {
      lacquer::bench::runEstimate},
     {"loops", "loops written out and kept: instructions and cycles on an AMD GPU", lacquer::bench::runLoops},
     {"optimize",
-     "what the search for cheaper forms saves and takes at level 1; renews bench/optimize.json and "
+     "what the search for cheaper forms saves and takes, in minutes; renews bench/optimize.json and "
      "docs/optimize.md",
      lacquer::bench::runOptimize},
-    {"optimize-long", "the same at all levels, in many minutes", lacquer::bench::runOptimizeLong},
     {"pipeline", "what making shaders takes, against glslang and spirv-opt; renews bench/pipeline.json",
      lacquer::bench::runPipeline},
 };

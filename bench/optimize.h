@@ -3,9 +3,8 @@
 
 namespace lacquer::bench {
 
-/// Searches cheaper forms of all works at level 1, measures them, and writes both files. The exit status.
+/// Searches cheaper forms of all works at each level, which takes minutes, measures them, and writes both
+/// files. The exit status.
 int runOptimize();
-/// The same at all levels, which takes many minutes.
-int runOptimizeLong();
 
 }  // namespace lacquer::bench

@@ -176,8 +176,9 @@ void Counter::fuse(const Plan& plan) {
   absorbed_.assign(plan.nodes.size(), 0);
   const auto product = [&](Ref at) {
     const Node* node = &plan.nodes[at];
-    // A sign on the way costs nothing.
-    while (node->op == Op::Neg && !node->opaque()) at = node->args[0], node = &plan.nodes[at];
+    // A sign on the way costs nothing. The material's is no instruction, and may have no operand here.
+    while (node->op == Op::Neg && !node->opaque() && node->rate > Rate::Material)
+      at = node->args[0], node = &plan.nodes[at];
     return node->op == Op::Mul && !node->opaque() && node->rate > Rate::Material ? at : kNoRef;
   };
   for (Ref at = 0; at < plan.nodes.size(); ++at) {

@@ -61,8 +61,9 @@ struct Plenty {
   int idle;        ///< steps that find nothing, behind which there is no other
   size_t wander;   ///< plans by chance in each of them
   size_t matches;  ///< of one rule in a round of its graph
+  int rounds;      ///< of a graph's growth
 };
-constexpr Plenty kPlenty[] = {{12000, 1, 8, 3, 1000, 12000}, {16000, 3, 8, 3, 2000, 12000}};
+constexpr Plenty kPlenty[] = {{16000, 1, 8, 3, 2000, 16000, 5}, {40000, 3, 8, 4, 6000, 40000, 6}};
 
 /// What differs from one graph to the next, so that they do not all end in the same place.
 struct Taste {
@@ -142,7 +143,7 @@ private:
     std::vector<Ref> plain_classes = seed(graph, plain_, origins);
     std::vector<Ref> classes = seed(graph, from, origins);
     const Taste& taste = kTastes[number % std::size(kTastes)];
-    saturate(graph, {4, plenty_.matches, taste.left_out, number});
+    saturate(graph, {plenty_.rounds, plenty_.matches, taste.left_out, number});
     for (Ref& id : classes) id = graph.find(id);
     for (Ref& id : plain_classes) id = graph.find(id);
     std::vector<Ref> roots;
