@@ -284,5 +284,18 @@ TEST_F(GraphFiles, saySomethingWhereTheyAreWrong) {
   }
 }
 
+TEST_F(GraphFiles, areNoDocuments) {
+  const auto written =
+      place_.run({"graph", example("coat.gltf"), "--material", "Darkening", "--format", "mtlx"});
+  EXPECT_EQ(written.status, 0) << written.err;
+  place_.write("darkening.mtlx", written.out);
+  const auto read = place_.run({"graph", "darkening.mtlx", "--format", "mtlx"});
+  EXPECT_EQ(read.status, 0) << read.err;
+  EXPECT_EQ(read.out, written.out);
+  const auto graph = place_.run({"graph", "paint.json", "--format", "mtlx"});
+  EXPECT_EQ(graph.status, 2);
+  EXPECT_NE(graph.err.find("paint.json is built of a material's terms"), std::string::npos) << graph.err;
+}
+
 }  // namespace
 }  // namespace lacquer::test

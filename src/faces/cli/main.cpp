@@ -27,6 +27,7 @@
 #include "cli/tune.h"
 #include "cli/view.h"
 #include "lacquer.h"
+#include "lacquer/exchange.h"
 #include "support/shown.h"
 
 namespace {
@@ -149,8 +150,9 @@ void addLook(CLI::App& verb, Flags& flags) {
 
 void addGraph(CLI::App& verb, Flags& flags) {
   addLook(verb, flags);
-  verb.add_option("--format", flags.format, "json or dot")
-      ->check(CLI::IsMember({"json", "dot"}))
+  verb.add_option("--format", flags.format,
+                  "json, dot, or mtlx: a document of all materials where none is named")
+      ->check(CLI::IsMember({"json", "dot", "mtlx"}))
       ->capture_default_str();
 }
 
@@ -271,7 +273,24 @@ lacquer::Graph onlyGraph(const Flags& flags, Messages& messages) {
   return scene.graph(*material, uses.empty() ? lacquer::kUnusedAttributes : uses[0], flags.options, messages);
 }
 
+/// The materials of a file as a MaterialX document.
+int document(const Flags& flags) {
+  Messages messages;
+  if (lacquer::isGraphFile(flags.files[0])) {
+    say("graph: {} is built of a material's terms, which MaterialX does not have: name the material's file\n",
+        lacquer::cli::printable(flags.files[0]));
+    return kUsage;
+  }
+  lacquer::Strings materials;
+  if (flags.material) materials.push_back(*flags.material);
+  const std::string text = lacquer::toMaterialX(flags.files[0], materials, {}, flags.options, messages);
+  fmt::print("{}", text);
+  print(messages);
+  return text.empty() || hasError(messages) ? kFailed : kGood;
+}
+
 int graph(const Flags& flags) {
+  if (flags.format == "mtlx") return document(flags);
   Messages messages;
   const lacquer::Graph graph = onlyGraph(flags, messages);
   if (graph) fmt::print("{}", flags.format == "dot" ? graph.toDot() : graph.toJson());

@@ -34,6 +34,44 @@ const Element* Element::child(std::string_view of, std::string_view named) const
   return nullptr;
 }
 
+namespace {
+
+void writeValue(std::string_view value, std::string& text) {
+  for (const char c : value) {
+    switch (c) {
+      case '&': text += "&amp;"; break;
+      case '<': text += "&lt;"; break;
+      case '>': text += "&gt;"; break;
+      case '"': text += "&quot;"; break;
+      case '\n': text += "&#10;"; break;
+      case '\r': text += "&#13;"; break;
+      case '\t': text += "&#9;"; break;
+      default: text += static_cast<unsigned char>(c) < ' ' ? '_' : c;  // XML has no other control characters
+    }
+  }
+}
+
+void writeElement(const Element& element, size_t depth, std::string& text) {
+  text.append(2 * depth, ' ').append("<").append(element.category);
+  for (const auto& [name, value] : element.attributes) {
+    text.append(" ").append(name).append("=\"");
+    writeValue(value, text);
+    text += '"';
+  }
+  if (element.children.empty()) return void(text += "/>\n");
+  text += ">\n";
+  for (const Element& child : element.children) writeElement(child, depth + 1, text);
+  text.append(2 * depth, ' ').append("</").append(element.category).append(">\n");
+}
+
+}  // namespace
+
+std::string toXml(const Element& root) {
+  std::string text = "<?xml version=\"1.0\"?>\n";
+  writeElement(root, 0, text);
+  return text;
+}
+
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kSpaces = " \t\r\n";
   const size_t first = text.find_first_not_of(kSpaces);

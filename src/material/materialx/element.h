@@ -49,6 +49,10 @@ Result<Document> readXml(std::string_view text, const std::string& path, const L
 std::vector<Element> readProcedurals(const json::Json& extension, const std::string& path,
                                      const Limits& limits, Diagnostics& wrong);
 
+/// A document as XML, two spaces of indent, a final newline. Categories and names of attributes are names;
+/// values may be any text.
+std::string toXml(const Element& root);
+
 /// The numbers of a value such as "1, 0.5": without a locale. Nothing for what is no list of finite numbers.
 std::optional<std::vector<double>> numbersOf(std::string_view value);
 /// A text without the spaces around it.

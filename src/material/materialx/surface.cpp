@@ -77,12 +77,38 @@ void Surface::warn(std::string_view name, std::string message, std::string help)
                      {}});
 }
 
-Value Surface::value(std::string_view name, int size, ir::Components by_default) {
+/// A `multiply` beside the surface by numbers from 0 to 1 is glTF's factor in front of a texture.
+bool Surface::takeFactor(const Element& in, Value& value) {
+  const Element* node = patterns_.upstream(scope_, in);
+  if (node == nullptr || node->category != "multiply" || patterns_.definitionOf(*node) != nullptr ||
+      node->get("type") != in.get("type"))
+    return false;
+  const Element* first = node->child("input", "in1");
+  const Element* second = node->child("input", "in2");
+  if (first == nullptr || second == nullptr || !Patterns::isConnected(*first) ||
+      Patterns::isConnected(*second) || first->get("type") != in.get("type"))
+    return false;
+  const std::optional<ir::Type> type = typeOf(second->get("type"));
+  if (!type || ir::isMatrix(*type) || ir::isTexture(*type)) return false;
+  const Result<ir::Components> read = valueOf(*second, *type);
+  const int count = ir::componentCount(*type);
+  const bool fits =
+      read && std::all_of(read->begin(), read->begin() + count, [](double x) { return x > 0 && x <= 1; });
+  if (!fits || (count != 1 && count != value.size)) return false;
+  value.source = patterns_.connected(scope_, *first);
+  value.constant = *read;
+  if (count == 1) value.constant.fill((*read)[0]);
+  return true;
+}
+
+Value Surface::value(std::string_view name, int size, ir::Components by_default, bool factored) {
   Value value{size, by_default, {}};
   const Element* in = input(name);
   if (in == nullptr) return value;
   const ir::Type wanted = size == 1 ? ir::Type::Float : ir::Type::Vec3;
   if (Patterns::isConnected(*in)) {
+    if (factored && takeFactor(*in, value)) return value;
+    value.constant = {1, 1, 1, 1};
     value.source = patterns_.connected(scope_, *in);
     return value;
   }
@@ -98,9 +124,13 @@ Value Surface::value(std::string_view name, int size, ir::Components by_default)
   return value;
 }
 
-Value Surface::get(std::string_view name, double by_default) { return value(name, 1, {by_default}); }
+Value Surface::get(std::string_view name, double by_default) { return value(name, 1, {by_default}, true); }
 Value Surface::get(std::string_view name, std::array<double, 3> by_default) {
-  return value(name, 3, {by_default[0], by_default[1], by_default[2]});
+  return value(name, 3, {by_default[0], by_default[1], by_default[2]}, true);
+}
+Value Surface::whole(std::string_view name, double by_default) { return value(name, 1, {by_default}, false); }
+Value Surface::whole(std::string_view name, std::array<double, 3> by_default) {
+  return value(name, 3, {by_default[0], by_default[1], by_default[2]}, false);
 }
 
 double Surface::number(std::string_view name, double by_default) {
@@ -143,7 +173,6 @@ void Surface::leave(std::string_view name, std::array<double, 3> by_default) {
 Product Surface::product(const std::vector<Value>& values) {
   Product product;
   for (const Value& value : values) {
-    if (value.source) continue;
     for (size_t i = 0; i < 3; ++i) product.factor[i] *= value.constant[value.size == 1 ? 0 : i];
   }
   if (product.factor[0] == 0 && product.factor[1] == 0 && product.factor[2] == 0) return product;
@@ -166,8 +195,10 @@ Product Surface::product(const std::vector<Value>& values) {
 }
 
 Value Surface::scaled(Value value, double by) {
-  for (double& x : value.constant) x *= by;
-  if (!value.source) return value;
+  if (!value.source) {
+    for (double& x : value.constant) x *= by;
+    return value;
+  }
   const graph::Literal factor{ir::Type::Float, {by}};
   const bool color = value.size == 3;
   Source number{factor, color ? "xxx" : ""};

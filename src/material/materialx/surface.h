@@ -13,7 +13,7 @@
 
 namespace lacquer::materialx {
 
-/// What an input comes to: numbers, or what it is connected to.
+/// What an input comes to: numbers, or what it is connected to times numbers.
 struct Value {
   int size = 1;  ///< 1 or 3
   ir::Components constant{};
@@ -38,6 +38,9 @@ public:
   /// An input, or its default in the definition of the surface.
   Value get(std::string_view input, double by_default);
   Value get(std::string_view input, std::array<double, 3> by_default);
+  /// One whose texel is no factor's: a number in front of it stays in the pattern.
+  Value whole(std::string_view input, double by_default);
+  Value whole(std::string_view input, std::array<double, 3> by_default);
   /// One that glTF has as a number alone: what is connected to it is left out, with a warning.
   double number(std::string_view input, double by_default);
   std::array<double, 3> color(std::string_view input, std::array<double, 3> by_default);
@@ -81,7 +84,8 @@ private:
     std::array<std::optional<graph::Source>, 4> channels;
   };
   const Element* input(std::string_view name);
-  Value value(std::string_view name, int size, ir::Components by_default);
+  Value value(std::string_view name, int size, ir::Components by_default, bool factored);
+  bool takeFactor(const Element& in, Value& value);
   void normalTexel(const graph::Source& encoded, const std::string& texture, double scale);
 
   Patterns& patterns_;

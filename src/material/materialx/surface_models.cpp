@@ -125,7 +125,7 @@ void film(Surface& s, const Value& weight, const Value& thickness, double nanome
   Product texel = s.product({thickness});
   texel = s.scaled(texel, nanometers / kMost);
   s.scalar(at + "iridescenceThicknessMaximum", at + "iridescenceThicknessTexture", 'g', texel, true);
-  s.set(at + "iridescenceThicknessMaximum", kMost);
+  s.set(at + "iridescenceThicknessMaximum", kMost * texel.factor[0]);
 }
 
 struct Coat {
@@ -161,7 +161,7 @@ void gltfPbr(Surface& s) {
   metallicRoughness(s, s.get("metallic", 1), s.product({s.get("roughness", 1)}));
   s.normal("normal", "normalTexture");
   s.leave("tangent", 0);
-  if (const Value occlusion = s.get("occlusion", 1); occlusion.source)
+  if (const Value occlusion = s.whole("occlusion", 1); occlusion.source)
     s.scalar("occlusionTexture/strength", "occlusionTexture", 'r', s.product({occlusion}));
   if (const Value transmitted = s.get("transmission", 0); transmitted.there()) {
     const std::string at = "extensions/KHR_materials_transmission/";
@@ -202,7 +202,7 @@ void gltfPbr(Surface& s) {
   const double rotation = s.number("anisotropy_rotation", 0);
   if (strength != 0) {
     s.set("extensions/KHR_materials_anisotropy/anisotropyStrength", std::clamp(strength, 0.0, 1.0));
-    s.set("extensions/KHR_materials_anisotropy/anisotropyRotation", rotation);
+    if (rotation != 0) s.set("extensions/KHR_materials_anisotropy/anisotropyRotation", rotation);
   }
   if (const double dispersion = s.number("dispersion", 0); dispersion > 0)
     s.set("extensions/KHR_materials_dispersion/dispersion", dispersion);
@@ -235,7 +235,7 @@ void standardSurface(Surface& s) {
   s.pass("transmission_scatter");
   s.pass("transmission_scatter_anisotropy");
   s.pass("transmission_extra_roughness");
-  Value opacity = s.get("opacity", kWhite);
+  Value opacity = s.whole("opacity", kWhite);
   if (!opacity.source) {
     const auto& o = opacity.constant;
     opacity = constant(0.2126 * o[0] + 0.7152 * o[1] + 0.0722 * o[2]);
@@ -352,7 +352,7 @@ void usdPreviewSurface(Surface& s) {
   }
   s.tangentSpaceNormal("normal", "normalTexture");
   s.leave("displacement", 0);
-  if (const Value occlusion = s.get("occlusion", 1); occlusion.source)
+  if (const Value occlusion = s.whole("occlusion", 1); occlusion.source)
     s.scalar("occlusionTexture/strength", "occlusionTexture", 'r', s.product({occlusion}));
 }
 

@@ -1,0 +1,50 @@
+#include "exchange/exchange.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "lacquer/exchange.h"
+#include "setting/language.h"
+#include "setting/messages.h"
+#include "support/text.h"
+
+namespace lacquer {
+
+std::string toMaterialX(const std::string& file, const Strings& materials, const std::string& surface,
+                        const Options& options, Messages& messages) {
+  const auto fits = [&](std::string_view one) { return one == surface; };
+  if (!surface.empty() &&
+      std::none_of(std::begin(exchange::kSurfaces), std::end(exchange::kSurfaces), fits)) {
+    report(fail("unknown-surface", {}, fmt::format("no material is written as {}", quote(surface)),
+                "there are " + listOf(exchange::kSurfaces))
+               .value(),
+           file, messages);
+    return {};
+  }
+  const Result<std::shared_ptr<const Language>> language = libraryFor(options);
+  if (!language) return report(language.error(), {}, messages), std::string();
+  const Result<const material::Schema*> schema = (*language)->models.schema();
+  if (!schema) return report(schema.error(), file, messages), std::string();
+  const Result<material::Document> document = readMaterials(file, **language, options);
+  if (!document) return report(document.error(), file, messages), std::string();
+  report(document->diagnostics, file, messages);
+  std::vector<size_t> wanted;
+  for (const std::string& name : materials) {
+    Diagnostics warnings;
+    const Result<size_t> found = material::findMaterial(*document, name, warnings);
+    report(found ? warnings : found.error(), file, messages);
+    if (!found) return {};
+    wanted.push_back(*found);
+  }
+  for (size_t i = 0; materials.empty() && i < document->materials.size(); ++i) wanted.push_back(i);
+  for (const size_t i : wanted) report(document->materials[i].diagnostics, file, messages);
+  std::erase_if(wanted, [&](size_t i) { return lacquer::hasError(document->materials[i].diagnostics); });
+  if (wanted.empty()) return {};
+  exchange::Written written = exchange::toMaterialX(*document, wanted, **schema, surface);
+  report(written.said, file, messages);
+  return std::move(written.text);
+}
+
+}  // namespace lacquer

@@ -1,0 +1,78 @@
+#include "exchange/exchange.h"
+
+#include <fmt/format.h>
+
+#include "exchange/pattern_out.h"
+#include "exchange/surface_out.h"
+
+namespace lacquer::exchange {
+
+using materialx::Element;
+
+namespace {
+
+Element shaderInput(std::string_view shader) {
+  Element input;
+  input.category = "input";
+  input.attributes = {
+      {"name", "surfaceshader"}, {"type", "surfaceshader"}, {"nodename", std::string(shader)}};
+  return input;
+}
+
+}  // namespace
+
+Written toMaterialX(const material::Document& document, const std::vector<size_t>& materials,
+                    const material::Schema& schema, std::string_view surface) {
+  Written written;
+  graph::Graph graph;
+  for (const size_t i : materials) {
+    if (document.materials[i].patterns == nullptr) continue;
+    graph = *document.materials[i].patterns;  // one for all materials of a file
+    break;
+  }
+  graph.nodes.clear();
+  graph.outputs.clear();
+  const Result<std::string> name = schema.library->defaultTemplate();
+  if (name) graph.template_name = *name;
+  std::vector<SurfaceOut> surfaces;
+  for (const size_t i : materials)
+    surfaces.push_back(surfaceOf(document, document.materials[i], schema, graph, surface, written.said));
+  for (size_t i = 0; i < surfaces.size(); ++i) {
+    graph::Group body = surfaces[i].body;
+    body.name = fmt::format("_surface_{}", i);
+    for (const SurfaceInput& input : surfaces[i].inputs) {
+      if (input.source) body.outputs.emplace_back(input.name, *input.source);
+    }
+    graph.groups.push_back(std::move(body));
+  }
+  PatternsOut patterns(graph, *schema.library, document, surfaces, written.said);
+  Element root;
+  root.category = "materialx";
+  root.attributes = {{"version", "1.39"}, {"colorspace", "lin_rec709"}};
+  patterns.write(root);
+  std::vector<Element> shaders;
+  std::vector<Element> surface_materials;
+  for (size_t i = 0; i < materials.size(); ++i) {
+    const std::string& own = document.materials[materials[i]].name;
+    const std::string material = patterns.free(own.empty() ? "material" : own);
+    Element shader;
+    shader.category = surfaces[i].category;
+    shader.attributes = {{"name", patterns.free("SR_" + material)}, {"type", "surfaceshader"}};
+    patterns.inputs(i, shader);
+    Element made;
+    made.category = "surfacematerial";
+    made.attributes = {{"name", material}, {"type", "material"}};
+    made.children.push_back(shaderInput(shader.name()));
+    shaders.push_back(std::move(shader));
+    surface_materials.push_back(std::move(made));
+  }
+  orderElements(root.children, shaders);
+  for (size_t i = 0; i < shaders.size(); ++i) {
+    root.children.push_back(std::move(shaders[i]));
+    root.children.push_back(std::move(surface_materials[i]));
+  }
+  written.text = materialx::toXml(root);
+  return written;
+}
+
+}  // namespace lacquer::exchange

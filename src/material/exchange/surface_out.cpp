@@ -1,0 +1,534 @@
+#include "exchange/surface_out.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "graph/contracts.h"
+#include "graph/text.h"
+#include "ir/types.h"
+#include "materialx/patterns.h"
+
+namespace lacquer::exchange {
+
+using graph::Source;
+using ir::Components;
+
+namespace {
+
+/// An input that is a factor, a texture's channel, or both. Texture channel 4 stands for red, green and blue.
+struct Row {
+  std::string_view input;
+  int size;
+  std::string_view factor, texture;
+  int channel;
+  double neutral = 0;   ///< glTF's default
+  bool always = false;  ///< the surface has another default: written with the extension's other inputs
+};
+
+#define EXT "extensions/KHR_materials_"
+constexpr std::string_view kMetallicRoughness = "pbrMetallicRoughness/metallicRoughnessTexture";
+
+constexpr Row kGltfRows[] = {
+    {"metallic", 1, "pbrMetallicRoughness/metallicFactor", kMetallicRoughness, 2, 1},
+    {"roughness", 1, "pbrMetallicRoughness/roughnessFactor", kMetallicRoughness, 1, 1},
+    {"transmission", 1, EXT "transmission/transmissionFactor", EXT "transmission/transmissionTexture", 0},
+    {"specular", 1, EXT "specular/specularFactor", EXT "specular/specularTexture", 3, 1},
+    {"specular_color", 3, EXT "specular/specularColorFactor", EXT "specular/specularColorTexture", 4, 1},
+    {"ior", 1, EXT "ior/ior", {}, 0, 1.5},
+    {"iridescence", 1, EXT "iridescence/iridescenceFactor", EXT "iridescence/iridescenceTexture", 0},
+    {"iridescence_ior", 1, EXT "iridescence/iridescenceIor", {}, 0, 1.3},
+    {"sheen_color", 3, EXT "sheen/sheenColorFactor", EXT "sheen/sheenColorTexture", 4},
+    {"sheen_roughness", 1, EXT "sheen/sheenRoughnessFactor", EXT "sheen/sheenRoughnessTexture", 3},
+    {"clearcoat", 1, EXT "clearcoat/clearcoatFactor", EXT "clearcoat/clearcoatTexture", 0},
+    {"clearcoat_roughness", 1, EXT "clearcoat/clearcoatRoughnessFactor",
+     EXT "clearcoat/clearcoatRoughnessTexture", 1},
+    {"emissive", 3, "emissiveFactor", "emissiveTexture", 4},
+    {"emissive_strength", 1, EXT "emissive_strength/emissiveStrength", {}, 0, 1},
+    {"thickness", 1, EXT "volume/thicknessFactor", EXT "volume/thicknessTexture", 1},
+    {"attenuation_distance", 1, EXT "volume/attenuationDistance", {}, 0},
+    {"attenuation_color", 3, EXT "volume/attenuationColor", {}, 4, 1},
+    {"anisotropy_strength", 1, EXT "anisotropy/anisotropyStrength", {}, 0},
+    {"anisotropy_rotation", 1, EXT "anisotropy/anisotropyRotation", {}, 0},
+    {"dispersion", 1, EXT "dispersion/dispersion", {}, 0}};
+
+constexpr Row kOpenPbrRows[] = {
+    {"base_metalness", 1, "pbrMetallicRoughness/metallicFactor", kMetallicRoughness, 2, 1, true},
+    {"specular_roughness", 1, "pbrMetallicRoughness/roughnessFactor", kMetallicRoughness, 1, 1, true},
+    {"base_diffuse_roughness", 1, EXT "diffuse_roughness/diffuseRoughnessFactor",
+     EXT "diffuse_roughness/diffuseRoughnessTexture", 0},
+    {"specular_weight", 1, EXT "specular/specularFactor", EXT "specular/specularTexture", 3, 1},
+    {"specular_color", 3, EXT "specular/specularColorFactor", EXT "specular/specularColorTexture", 4, 1},
+    {"specular_ior", 1, EXT "ior/ior", {}, 0, 1.5},
+    {"transmission_weight", 1, EXT "transmission/transmissionFactor", EXT "transmission/transmissionTexture",
+     0},
+    {"transmission_depth", 1, EXT "volume/attenuationDistance", {}, 0},
+    {"transmission_color", 3, EXT "volume/attenuationColor", {}, 4, 1},
+    {"transmission_dispersion_scale", 1, EXT "dispersion/dispersion", {}, 0},
+    {"coat_weight", 1, EXT "coat/coatFactor", EXT "coat/coatTexture", 0},
+    {"coat_roughness", 1, EXT "coat/coatRoughnessFactor", EXT "coat/coatRoughnessTexture", 1},
+    {"coat_color", 3, EXT "coat/coatColorFactor", EXT "coat/coatColorTexture", 4, 1},
+    {"coat_ior", 1, EXT "coat/coatIor", {}, 0, 1.5, true},
+    {"coat_darkening", 1, EXT "coat/coatDarkeningFactor", {}, 0, 1},
+    {"coat_roughness_anisotropy", 1, EXT "coat/coatAnisotropyStrength", {}, 0},
+    {"fuzz_weight", 1, EXT "fuzz/fuzzFactor", EXT "fuzz/fuzzTexture", 0},
+    {"fuzz_color", 3, EXT "fuzz/fuzzColorFactor", EXT "fuzz/fuzzColorTexture", 4, 1},
+    {"fuzz_roughness", 1, EXT "fuzz/fuzzRoughnessFactor", EXT "fuzz/fuzzRoughnessTexture", 3, 0.5},
+    {"thin_film_weight", 1, EXT "iridescence/iridescenceFactor", EXT "iridescence/iridescenceTexture", 0},
+    {"thin_film_ior", 1, EXT "iridescence/iridescenceIor", {}, 0, 1.3, true},
+    {"emission_color", 3, "emissiveFactor", "emissiveTexture", 4}};
+
+/// Terms of these only OpenPBR's surface has.
+constexpr std::string_view kOfOpenPbr[] = {"KHR_materials_coat", "KHR_materials_fuzz",
+                                           "KHR_materials_diffuse_roughness"};
+
+/// The extension that a property's path leads into; empty for glTF's own.
+std::string_view extensionOf(std::string_view path) {
+  return path.starts_with("extensions/") ? path.substr(0, path.rfind('/')) : std::string_view();
+}
+
+class Translation {
+public:
+  Translation(const material::Document& document, const material::Material& material,
+              const material::Schema& schema, graph::Graph& patterns, Diagnostics& said)
+      : document_(document), material_(material), schema_(schema), patterns_(patterns), said_(said) {
+    for (const auto& number : material.numbers)
+      numbers_.emplace(schema.properties[number.property].path, &number.value);
+    for (const auto& texture : material.textures)
+      textures_.emplace(schema.properties[texture.property].path, &texture);
+  }
+
+  SurfaceOut make(std::string_view surface);
+
+private:
+  const Components* number(std::string_view path) {
+    used_.emplace(path);
+    const auto it = numbers_.find(path);
+    return it == numbers_.end() ? nullptr : it->second;
+  }
+  const material::Material::Texture* texture(std::string_view path) {
+    used_.emplace(path);
+    const auto it = textures_.find(path);
+    return it == textures_.end() ? nullptr : it->second;
+  }
+  double numberOr(std::string_view path, double by_default) {
+    const Components* value = number(path);
+    return value == nullptr ? by_default : (*value)[0];
+  }
+  bool has(std::string_view extension) const {
+    const std::optional<uint16_t> found = schema_.find(extension);
+    return found && material_.has(*found);
+  }
+  bool speaksOf(std::string_view extension) const;
+
+  Source channel(const material::Material::Texture& texture, int channel);
+  Source imageChannel(const material::Material::Texture& texture, int channel);
+  Source packed(const Source& texel, int channel);
+  const std::string& image(const material::Material::Texture& texture, std::string_view type);
+  std::string import(const std::string& group);
+  Source imported(const std::string& group, Source source) const;
+  Source add(std::string_view name, std::string type, graph::Inputs inputs);
+  std::optional<Source> times(Source source, const Components& factor, int size);
+  const graph::Node* nodeOf(const Source& source) const;
+
+  void put(std::string_view name, std::string_view type, const Components& value,
+           std::optional<Source> source = {}) {
+    out_.inputs.push_back({name, type, value, std::move(source)});
+  }
+  void row(const Row& row);
+  void base(std::string_view color, std::string_view alpha);
+  void normal(std::string_view input, std::string_view path);
+  void occlusion();
+  void film(std::string_view input, double scale);
+  void emission();
+  void gltfPbr();
+  void openPbr();
+  void unlit();
+  void unsaid();
+
+  const material::Document& document_;
+  const material::Material& material_;
+  const material::Schema& schema_;
+  graph::Graph& patterns_;
+  Diagnostics& said_;
+  SurfaceOut out_;
+  std::map<std::string_view, const Components*> numbers_;
+  std::map<std::string_view, const material::Material::Texture*> textures_;
+  std::set<std::string, std::less<>> used_;
+  materialx::NameSet ids_;
+  std::map<std::string, std::map<std::string, std::string>> imported_;  ///< ids by group and id
+  std::map<std::string, std::string> images_;                           ///< by all that is said of one
+};
+
+/// Whether the material has anything of an extension, by its path.
+bool Translation::speaksOf(std::string_view extension) const {
+  const auto of = [&](const auto& list) {
+    const auto it = list.lower_bound(extension);
+    return it != list.end() && it->first.starts_with(extension);
+  };
+  return of(numbers_) || of(textures_);
+}
+
+// -- sources --
+
+Source Translation::add(std::string_view name, std::string type, graph::Inputs inputs) {
+  graph::Node node;
+  node.id = ids_.free(materialx::graphName(name));
+  node.type = std::move(type);
+  node.inputs = std::move(inputs);
+  out_.body.nodes.push_back(std::move(node));
+  return {graph::NodeRef{out_.body.nodes.back().id, {}}, {}};
+}
+
+const graph::Node* Translation::nodeOf(const Source& source) const {
+  const auto* ref = std::get_if<graph::NodeRef>(&source.from);
+  if (ref == nullptr || !source.swizzle.empty()) return nullptr;
+  for (const graph::Node& node : out_.body.nodes) {
+    if (node.id == ref->node) return &node;
+  }
+  return nullptr;
+}
+
+/// A source of a group, where its nodes stand in the body. What an instance would be given is the default.
+Source Translation::imported(const std::string& group, Source source) const {
+  const auto& ids = imported_.at(group);
+  if (auto* ref = std::get_if<graph::NodeRef>(&source.from)) ref->node = ids.at(ref->node);
+  const auto* input = std::get_if<graph::InputRef>(&source.from);
+  if (input == nullptr) return source;
+  const graph::Group& of = patterns_.groups[*patterns_.findGroup(group)];
+  for (const graph::GroupInput& own : of.inputs) {
+    if (own.name != input->name || !own.by_default) continue;
+    Source value = *own.by_default;
+    value.swizzle = graph::swizzleBehind(value.swizzle, source.swizzle);
+    return value;
+  }
+  return {graph::Literal{}, {}};
+}
+
+/// Puts a group's nodes into the body, once.
+std::string Translation::import(const std::string& group) {
+  const auto [it, fresh] = imported_.try_emplace(group);
+  if (!fresh) return group;
+  const graph::Group& of = patterns_.groups[*patterns_.findGroup(group)];
+  for (const graph::Node& node : of.nodes) it->second.emplace(node.id, ids_.free(node.id));
+  for (const graph::Node& node : of.nodes) {
+    graph::Node copy = node;
+    copy.id = it->second.at(node.id);
+    for (auto& [name, source] : copy.inputs) source = imported(group, std::move(source));
+    out_.body.nodes.push_back(std::move(copy));
+  }
+  return group;
+}
+
+/// The node that looks into one of glTF's images, placed as KHR_texture_transform says.
+const std::string& Translation::image(const material::Material::Texture& texture, std::string_view type) {
+  const gltf::TextureInfo& info = texture.info;
+  const bool srgb = schema_.properties[texture.property].decl->srgb;
+  const gltf::TextureTransform at = info.transform.value_or(gltf::TextureTransform{});
+  std::string key = fmt::format("{} {} {} {} {} {} {} {} {} {}", type, info.texture, srgb, info.texCoord,
+                                at.offset[0], at.offset[1], at.rotation, at.scale[0], at.scale[1],
+                                schema_.properties[texture.property].decl->channels == "a");
+  const auto [it, fresh] = images_.try_emplace(std::move(key));
+  if (!fresh) return it->second;
+  const std::string name = schema_.properties[texture.property].parameter_name;
+  graph::Texture slot;
+  slot.name = name;
+  for (size_t n = 2; patterns_.findTexture(slot.name); ++n) slot.name = fmt::format("{}_{}", name, n);
+  slot.texture = info.texture;
+  slot.srgb = srgb;
+  slot.pointer = info.pointer;
+  const std::string image = slot.name;
+  patterns_.textures.push_back(std::move(slot));
+  graph::Inputs inputs{{"file", Source{graph::TextureRef{image}, {}}}};
+  if (info.texCoord != 0) {
+    const graph::Literal index{ir::Type::Float, {static_cast<double>(info.texCoord)}};
+    inputs.emplace_back("texcoord", add(fmt::format("texcoord_{}", info.texCoord), "texcoord<vec2>",
+                                        {{"index", Source{index, {}}}}));
+  }
+  const auto pair = [](const std::array<double, 2>& x) {
+    return Source{graph::Literal{ir::Type::Vec2, {x[0], x[1]}}, {}};
+  };
+  if (at.scale != std::array<double, 2>{1, 1}) inputs.emplace_back("scale", pair(at.scale));
+  if (at.rotation != 0)
+    inputs.emplace_back("rotate",
+                        Source{graph::Literal{ir::Type::Float, {at.rotation * 180 / std::numbers::pi}}, {}});
+  if (at.offset != std::array<double, 2>{0, 0}) inputs.emplace_back("offset", pair(at.offset));
+  const Source made = add(name, std::string(type), std::move(inputs));
+  it->second = std::get<graph::NodeRef>(made.from).node;
+  return it->second;
+}
+
+Source Translation::imageChannel(const material::Material::Texture& texture, int channel) {
+  const bool base = schema_.properties[texture.property].decl->channels.empty() &&
+                    schema_.properties[texture.property].decl->srgb;
+  if (channel == 3 || base) {
+    const std::string& node = image(texture, "gltf_colorimage");
+    const bool alpha = channel == 3;
+    return {graph::NodeRef{node, alpha ? "outa" : "outcolor"},
+            channel < 3 ? std::string(1, "xyz"[channel]) : std::string()};
+  }
+  const std::string& node = image(texture, "gltf_image<vec3>");
+  if (channel == 4) return {graph::NodeRef{node, {}}, {}};
+  const graph::Literal index{ir::Type::Float, {static_cast<double>(channel)}};
+  const std::string id = fmt::format("{}_{}", node, "rgb"[channel]);
+  for (const graph::Node& own : out_.body.nodes) {
+    if (own.id == id) return {graph::NodeRef{id, {}}, {}};
+  }
+  return add(id, "extract<vec3>",
+             {{"in", Source{graph::NodeRef{node, {}}, {}}}, {"index", Source{index, {}}}});
+}
+
+/// A channel, or the colour, of a node of a procedural's texel.
+Source Translation::packed(const Source& texel, int channel) {
+  const Source one{graph::Literal{ir::Type::Float, {1}}, {}};
+  const graph::Node* node = nodeOf(texel);
+  const auto input = [&](std::string_view name) -> std::optional<Source> {
+    for (const auto& [own, source] : node->inputs) {
+      if (own == name) return source;
+    }
+    return std::nullopt;
+  };
+  const auto component = [&](Source source) {
+    source.swizzle = graph::swizzleBehind(source.swizzle, std::string(1, "xyzw"[channel]));
+    return source;
+  };
+  if (node != nullptr && node->type == "texel_of_color") {
+    const std::optional<Source> color = input("color");
+    if (channel == 3) return input("a").value_or(one);
+    if (!color) return one;
+    return channel == 4 ? *color : component(*color);
+  }
+  if (node != nullptr && node->type == "texel_of_channels") {
+    constexpr const char* kNames[] = {"r", "g", "b", "a"};
+    if (channel < 4) return input(kNames[channel]).value_or(one);
+    const Source r = input("r").value_or(one);
+    const Source g = input("g").value_or(one);
+    const Source b = input("b").value_or(one);
+    return add("channels", "combine3", {{"in1", r}, {"in2", g}, {"in3", b}});
+  }
+  if (node != nullptr && (node->type == "texel_of<float>" || node->type == "texel_of<vec3>")) {
+    const Source value = *input("value");
+    if (channel == 3) return one;
+    const bool color = node->type == "texel_of<vec3>";
+    if (color) return channel == 4 ? value : component(value);
+    return channel == 4 ? graph::widened(value, ir::Type::Vec3) : value;
+  }
+  if (node != nullptr && node->type == "texel_of<vec4>") {
+    Source value = *input("value");
+    if (channel < 4) return component(value);
+    value.swizzle = graph::swizzleBehind(value.swizzle, "xyz");
+    return value;
+  }
+  Source value = texel;
+  value.swizzle = graph::swizzleBehind(value.swizzle, channel == 4 ? "xyz" : std::string(1, "xyzw"[channel]));
+  return value;
+}
+
+Source Translation::channel(const material::Material::Texture& texture, int channel) {
+  if (texture.info.group.empty()) return imageChannel(texture, channel);
+  const std::string group = import(texture.info.group);
+  const graph::Group& of = patterns_.groups[*patterns_.findGroup(group)];
+  for (const auto& [name, source] : of.outputs) {
+    if (name == texture.info.output) return packed(imported(group, source), channel);
+  }
+  return {graph::Literal{ir::Type::Float, {1}}, {}};
+}
+
+/// A source times a factor; nothing where the factor is 0.
+std::optional<Source> Translation::times(Source source, const Components& factor, int size) {
+  const auto all = [&](double x) {
+    return std::all_of(factor.begin(), factor.begin() + size,
+                       [&](double f) { return std::abs(f - x) < 1e-9; });
+  };
+  if (all(0)) return std::nullopt;
+  if (all(1)) return source;
+  // A factor that is there already takes the new one.
+  if (const graph::Node* node = nodeOf(source); node != nullptr && node->type.starts_with("texel_product")) {
+    const auto* own = std::get_if<graph::Literal>(&node->inputs[1].second.from);
+    if (own != nullptr) {
+      Components product = factor;
+      for (int i = 0; i < size; ++i) product[static_cast<size_t>(i)] *= own->value[0];
+      return times(node->inputs[0].second, product, size);
+    }
+  }
+  const auto* ref = std::get_if<graph::NodeRef>(&source.from);
+  const std::string name = ref == nullptr ? "scaled" : ref->node + "_scaled";
+  const bool color = size == 3;
+  return add(name, color ? "multiply<vec3>" : "multiply<float>",
+             {{"in1", std::move(source)},
+              {"in2", Source{graph::Literal{color ? ir::Type::Vec3 : ir::Type::Float, factor}, {}}}});
+}
+
+// -- inputs --
+
+void Translation::row(const Row& row) {
+  const std::string_view type = row.size == 1 ? "float" : "color3";
+  const Components* factor = number(row.factor);
+  const auto* map = row.texture.empty() ? nullptr : texture(row.texture);
+  const std::string_view extension = extensionOf(row.factor);
+  const bool wanted = row.always && (extension.empty() || speaksOf(extension));
+  if (factor == nullptr && map == nullptr && !wanted) return;
+  Components value{row.neutral, row.neutral, row.neutral, row.neutral};
+  if (factor != nullptr) value = *factor;
+  // Without `always` the surface's default is glTF's.
+  const bool neutral =
+      std::all_of(value.begin(), value.begin() + row.size, [&](double x) { return x == row.neutral; });
+  if (map == nullptr && neutral && !row.always) return;
+  if (map == nullptr) return put(row.input, type, value);
+  std::optional<Source> source = times(channel(*map, row.channel), value, row.size);
+  put(row.input, type, {}, std::move(source));
+}
+
+void Translation::base(std::string_view color, std::string_view alpha) {
+  const Components* factor = number("pbrMetallicRoughness/baseColorFactor");
+  const auto* map = texture("pbrMetallicRoughness/baseColorTexture");
+  const Components value = factor == nullptr ? Components{1, 1, 1, 1} : *factor;
+  std::optional<Source> rgb;
+  std::optional<Source> a;
+  if (map != nullptr) {
+    rgb = times(channel(*map, 4), value, 3);
+    const Source own = channel(*map, 3);
+    if (!std::holds_alternative<graph::Literal>(own.from)) a = times(own, {value[3]}, 1);
+  }
+  const bool black = map != nullptr && !rgb;
+  put(color, "color3", black ? Components{} : value, std::move(rgb));
+  if (!alpha.empty() && (a || value[3] != 1)) put(alpha, "float", {value[3]}, std::move(a));
+}
+
+void Translation::normal(std::string_view input, std::string_view path) {
+  const auto* map = texture(path);
+  if (map == nullptr) return;
+  graph::Inputs inputs{{"in", channel(*map, 4)}};
+  const material::Property& property = schema_.properties[map->property];
+  for (size_t i = 0; i < property.decl->members.size() && i < map->info.members.size(); ++i) {
+    if (property.decl->members[i].name != "scale" || map->info.members[i] == 1) continue;
+    inputs.emplace_back("scale", Source{graph::Literal{ir::Type::Float, {map->info.members[i]}}, {}});
+  }
+  put(input, "vector3", {}, add(property.parameter_name + "_map", "normalmap<float>", std::move(inputs)));
+}
+
+void Translation::occlusion() {
+  const auto* map = texture("occlusionTexture");
+  if (map == nullptr) return;
+  Source texel = channel(*map, 0);
+  const double strength = map->info.members.empty() ? 1 : map->info.members[0];
+  if (strength != 1) {
+    const auto number = [](double x) { return Source{graph::Literal{ir::Type::Float, {x}}, {}}; };
+    texel = add("occlusion", "mix<float>", {{"fg", texel}, {"bg", number(1)}, {"mix", number(strength)}});
+  }
+  put("occlusion", "float", {}, texel);
+}
+
+/// glTF has the thickness in nanometres, between two numbers by the texel.
+void Translation::film(std::string_view input, double scale) {
+  const std::string at = EXT "iridescence/";
+  if (!speaksOf(at)) return;
+  const double least = numberOr(at + "iridescenceThicknessMinimum", 100);
+  const double most = numberOr(at + "iridescenceThicknessMaximum", 400);
+  const auto* map = texture(at + "iridescenceThicknessTexture");
+  if (map == nullptr) return put(input, "float", {most * scale});
+  if (least == 0) {
+    std::optional<Source> source = times(channel(*map, 1), {most * scale}, 1);
+    return put(input, "float", {}, std::move(source));
+  }
+  const auto number = [](double x) { return Source{graph::Literal{ir::Type::Float, {x}}, {}}; };
+  put(input, "float", {},
+      add("film_thickness", "mix<float>",
+          {{"fg", number(most * scale)}, {"bg", number(least * scale)}, {"mix", channel(*map, 1)}}));
+}
+
+void Translation::gltfPbr() {
+  out_.category = "gltf_pbr";
+  base("base_color", "alpha");
+  for (const Row& one : kGltfRows) row(one);
+  film("iridescence_thickness", 1);
+  occlusion();
+  normal("normal", "normalTexture");
+  if (speaksOf(EXT "clearcoat/")) normal("clearcoat_normal", EXT "clearcoat/clearcoatNormalTexture");
+  const double mode = numberOr("alphaMode", 0);
+  if (mode != 0) put("alpha_mode", "integer", {mode});
+  if (const Components* cutoff = number("alphaCutoff"); cutoff != nullptr && (*cutoff)[0] != 0.5)
+    put("alpha_cutoff", "float", *cutoff);
+}
+
+void Translation::openPbr() {
+  out_.category = "open_pbr_surface";
+  const bool covers = numberOr("alphaMode", 0) == 2;
+  if (!covers) used_.erase("alphaMode");
+  base("base_color", covers ? "geometry_opacity" : "");
+  for (const Row& one : kOpenPbrRows) row(one);
+  if (speaksOf("emissive"))
+    put("emission_luminance", "float", {numberOr(EXT "emissive_strength/emissiveStrength", 1)});
+  const std::string aniso = EXT "anisotropy/";
+  if (numberOr(aniso + "extensions/EXT_materials_anisotropy_openpbr/openPbrAnisotropyEnabled", 0) != 0)
+    put("specular_roughness_anisotropy", "float", {numberOr(aniso + "anisotropyStrength", 0)});
+  constexpr double kMicronsInNanometer = 1e-3;
+  film("thin_film_thickness", kMicronsInNanometer);
+  normal("geometry_normal", "normalTexture");
+  normal("geometry_coat_normal", EXT "coat/coatNormalTexture");
+  // Its surface is always a volume's unless its walls are thin.
+  if (number(EXT "volume/thicknessFactor") == nullptr && speaksOf(EXT "transmission/"))
+    put("geometry_thin_walled", "boolean", {1});
+}
+
+void Translation::unlit() {
+  out_.category = "surface_unlit";
+  const bool covers = numberOr("alphaMode", 0) == 2;
+  if (!covers) used_.erase("alphaMode");
+  base("emission_color", covers ? "opacity" : "");
+}
+
+/// All that the surface has no input for.
+void Translation::unsaid() {
+  const auto warn = [&](const std::string& path) {
+    const std::string own = material_.index < 0 ? "" : fmt::format("/materials/{}/{}", material_.index, path);
+    addBounded(said_, {"not-said",
+                       Severity::Warning,
+                       {document_.path, 0, 0, own},
+                       fmt::format("{} has no counterpart in {}", path, out_.category),
+                       "it is left out",
+                       {}});
+  };
+  for (const auto& number : material_.numbers) {
+    const material::Property& property = schema_.properties[number.property];
+    if (used_.contains(property.path)) continue;
+    const auto& by_default = property.decl->default_value;
+    const auto count = static_cast<ptrdiff_t>(ir::componentCount(property.decl->type));
+    if (by_default && std::equal(number.value.begin(), number.value.begin() + count, by_default->begin()))
+      continue;
+    warn(property.path);
+  }
+  for (const auto& texture : material_.textures) {
+    const material::Property& property = schema_.properties[texture.property];
+    if (!used_.contains(property.path)) warn(property.path);
+  }
+}
+
+SurfaceOut Translation::make(std::string_view surface) {
+  const bool open = std::any_of(std::begin(kOfOpenPbr), std::end(kOfOpenPbr),
+                                [&](std::string_view extension) { return has(extension); });
+  if (has("KHR_materials_unlit")) {
+    unlit();
+  } else if (surface.empty() ? open : surface == "open_pbr_surface") {
+    openPbr();
+  } else {
+    gltfPbr();
+  }
+  unsaid();
+  return std::move(out_);
+}
+
+#undef EXT
+
+}  // namespace
+
+SurfaceOut surfaceOf(const material::Document& document, const material::Material& material,
+                     const material::Schema& schema, graph::Graph& patterns, std::string_view surface,
+                     Diagnostics& said) {
+  return Translation(document, material, schema, patterns, said).make(surface);
+}
+
+}  // namespace lacquer::exchange

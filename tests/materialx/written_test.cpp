@@ -1,0 +1,190 @@
+// Materials as MaterialX documents: what is written, that it reads back as the same graph, and that MaterialX
+// itself takes it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "exchange/exchange.h"
+#include "graph/graph.h"
+#include "material/material.h"
+#include "support/cases.h"
+#include "support/materials.h"
+
+namespace lacquer::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string allOf(const Diagnostics& diagnostics) {
+  std::string text;
+  for (const Diagnostic& diagnostic : diagnostics) text += format(diagnostic) + "\n";
+  return text;
+}
+
+material::Document documentOf(const std::string& text, const std::string& name) {
+  auto document = material::readText(text, name, builtInSchema(), {});
+  EXPECT_TRUE(document) << (document ? std::string() : allOf(document.error())) << text;
+  return document ? std::move(*document) : material::Document();
+}
+
+exchange::Written writtenOf(const material::Document& document) {
+  std::vector<size_t> all;
+  for (size_t i = 0; i < document.materials.size(); ++i) {
+    EXPECT_FALSE(hasError(document.materials[i].diagnostics)) << allOf(document.materials[i].diagnostics);
+    all.push_back(i);
+  }
+  return exchange::toMaterialX(document, all, builtInSchema());
+}
+
+std::string graphOf(const material::Document& document) {
+  std::string text;
+  for (const material::Material& material : document.materials) {
+    Diagnostics warnings;
+    const graph::Graph graph =
+        buildGraph(material, {true, true, true, {true, true, false, false}}, BuildSetup{}, warnings);
+    EXPECT_EQ(allOf(graph::check(graph, builtInLibrary())), "");
+    text += graph::toJson(graph);
+  }
+  return text;
+}
+
+void runWritten(Case& c, const std::string& name) {
+  const material::Document document = documentOf(c.input(), name);
+  const exchange::Written first = writtenOf(document);
+  c.expect("document", first.text);
+  c.expect("said", allOf(first.said));
+  const material::Document again = documentOf(first.text, "written.mtlx");
+  const exchange::Written second = writtenOf(again);
+  EXPECT_EQ(second.text, first.text);
+  EXPECT_EQ(allOf(second.said), "");
+  // glTF's own images are nodes of the document.
+  if (!name.ends_with(".mtlx")) return;
+  EXPECT_EQ(graphOf(again), graphOf(document));
+}
+
+const bool kWritten =
+    registerCases("Written", sourceFolder() / "tests/materialx/written", ".case",
+                  [](Case& c) { runWritten(c, c.input().starts_with('{') ? "case.gltf" : "case.mtlx"); });
+
+/// What MaterialX says of documents: nothing for those that are valid. Nothing at all where it is not there.
+std::optional<std::string> peerSays(const std::map<std::string, std::string>& documents) {
+  const char* named = std::getenv("LACQUER_MATERIALX");
+  const fs::path folder = named != nullptr ? fs::path(named) : sourceFolder() / "../shared/peers/materialx";
+  if (!fs::exists(folder / "JsMaterialXGenShader.mjs") || std::system("node --version > /dev/null 2>&1") != 0)
+    return std::nullopt;
+  const fs::path files = fs::temp_directory_path() / fmt::format("lacquer_written_{}", getpid());
+  fs::create_directories(files);
+  std::string command =
+      fmt::format("node '{}' '{}'", (sourceFolder() / "tests/materialx/validate.mjs").string(),
+                  fs::canonical(folder).string());
+  for (const auto& [name, text] : documents) {
+    std::ofstream(files / name) << text;
+    command += fmt::format(" '{}'", (files / name).string());
+  }
+  const int status = std::system((command + fmt::format(" > '{}/log' 2>&1", files.string())).c_str());
+  std::string log = readFile(files / "log");
+  fs::remove_all(files);
+  return status == 0 && log.empty() ? std::string() : log + fmt::format("status {}\n", status);
+}
+
+constexpr const char* kNoPeer = "NOT TESTED: there is no MaterialX (LACQUER_MATERIALX), or no node.js";
+
+TEST(WrittenPeer, takesTheCases) {
+  std::map<std::string, std::string> documents;
+  for (const fs::path& file : findFiles(sourceFolder() / "tests/materialx/written", ".case"))
+    documents.emplace(file.stem().string() + ".mtlx", Case(file).section("document"));
+  const std::optional<std::string> said = peerSays(documents);
+  if (!said) GTEST_SKIP() << kNoPeer;
+  EXPECT_EQ(*said, "");
+}
+
+/// Each form of each of the library's nodes that are MaterialX's, with numbers for all that it takes.
+graph::Graph everyNode() {
+  graph::Graph patterns;
+  graph::Group& all = patterns.groups.emplace_back();
+  all.name = "every";
+  for (const std::string_view name : builtInLibrary().names(lang::DeclKind::Node)) {
+    const lang::NodeDecl& decl = **builtInLibrary().node(name);
+    if (!decl.source.starts_with("MaterialX") || decl.category.empty()) continue;
+    graph::Node& node = all.nodes.emplace_back();
+    node.id = fmt::format("n{}", all.nodes.size());
+    node.type = name;
+    for (const lang::Param& param : decl.params) {
+      if (ir::isTexture(param.type) || ir::isMatrix(param.type)) continue;
+      const ir::Components value = param.default_value.value_or(ir::Components{1, 1, 1, 1});
+      const ir::Type type = param.type == ir::Type::Int ? ir::Type::Float : param.type;
+      node.inputs.emplace_back(std::string(param.name), graph::Source{graph::Literal{type, value}, {}});
+    }
+    const std::string_view result = decl.results.size() > 1 ? decl.results[0].name : std::string_view();
+    all.outputs.emplace_back(node.id, graph::Source{graph::NodeRef{node.id, std::string(result)}, {}});
+  }
+  graph::Group& body = patterns.groups.emplace_back();
+  body.name = "body";
+  body.nodes.push_back({"every", "every", {}, {}, true});
+  const graph::Source first{graph::NodeRef{"every", "n1"}, {}};
+  body.nodes.push_back({"texel", "texel_of<float>", {}, {{"value", first}}});
+  body.outputs.emplace_back("texel", graph::Source{graph::NodeRef{"texel", {}}, {}});
+  return patterns;
+}
+
+TEST(WrittenPeer, takesEveryNode) {
+  material::Document document;
+  material::Material& material = document.materials.emplace_back();
+  material.name = "all";
+  const std::vector<material::Property>& properties = builtInSchema().properties;
+  for (uint16_t i = 0; i < properties.size(); ++i) {
+    if (properties[i].path != "emissiveTexture") continue;
+    material::Material::Texture& texture = material.textures.emplace_back();
+    texture.property = i;
+    texture.info.group = "body";
+    texture.info.output = "texel";
+    material.numbers.push_back({static_cast<uint16_t>(i + 1), {1, 1, 1}});
+  }
+  ASSERT_EQ(properties[material.numbers.at(0).property].path, "emissiveFactor");
+  material.patterns = std::make_shared<const graph::Graph>(everyNode());
+  const exchange::Written written = exchange::toMaterialX(document, {0}, builtInSchema());
+  EXPECT_EQ(allOf(written.said), "");
+  EXPECT_GT(std::count(written.text.begin(), written.text.end(), '\n'), 2000);
+  const std::optional<std::string> said = peerSays({{"every.mtlx", written.text}});
+  if (!said) GTEST_SKIP() << kNoPeer;
+  EXPECT_EQ(*said, "");
+}
+
+/// MaterialX's own examples, as glTF's or OpenPBR's surface: MaterialX takes what is written, and what is
+/// read of it is written as the same bytes.
+TEST(WrittenPeer, takesTheExamples) {
+  const char* set = std::getenv("LACQUER_ASSETS");
+  const fs::path folder =
+      (set != nullptr ? fs::path(set) : sourceFolder() / "../shared/assets") / "materialx/examples";
+  if (!fs::exists(folder)) GTEST_SKIP() << "NOT TESTED: no " << folder << "; set LACQUER_ASSETS";
+  std::map<std::string, std::string> documents;
+  for (const fs::path& file : findFiles(folder, ".mtlx")) {
+    const auto document = readMaterials(file.string());
+    if (!document || document->materials.empty() || hasError(document->materials[0].diagnostics)) continue;
+    const exchange::Written first = exchange::toMaterialX(*document, {0}, builtInSchema());
+    const material::Document again = documentOf(first.text, "written.mtlx");
+    ASSERT_EQ(again.materials.size(), 1U) << file;
+    EXPECT_FALSE(hasError(again.materials[0].diagnostics)) << file << allOf(again.materials[0].diagnostics);
+    const exchange::Written second = exchange::toMaterialX(again, {0}, builtInSchema());
+    // What passes through is tinted once more by each translation.
+    const bool passes = first.text.find("\"transmission") != std::string::npos;
+    EXPECT_TRUE(passes || second.text == first.text) << file << diffLines(first.text, second.text);
+    documents.emplace(file.stem().string() + ".mtlx", first.text);
+  }
+  EXPECT_GT(documents.size(), 20U);
+  const std::optional<std::string> said = peerSays(documents);
+  if (!said) GTEST_SKIP() << kNoPeer;
+  EXPECT_EQ(*said, "");
+}
+
+}  // namespace
+}  // namespace lacquer::test
