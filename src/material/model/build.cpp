@@ -1,10 +1,12 @@
 #include "model/build.h"
+#include "model/attributes.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "model/attributes.h"
 #include "model/resolve.h"
 
 namespace lacquer::model {

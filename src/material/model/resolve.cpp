@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "model/attributes.h"
 #include "model/names.h"
 #include "model/order.h"
 
@@ -15,68 +16,9 @@ using material::Kind;
 
 namespace {
 
-/// "TEXCOORD_0" for "TEXCOORD_".
-bool isNumbered(std::string_view name, std::string_view what) {
-  return name.starts_with(what) && name.size() == what.size() + 1;
-}
-
-/// Whether glTF, or an extension, says what an attribute is; all others are the application's.
-bool isGltfs(std::string_view name) {
-  constexpr std::array kNames = {"POSITION",    "NORMAL",   "TANGENT", "COLOR_0",  "MORPH_VERTEX",
-                                 "TRANSLATION", "ROTATION", "SCALE",   "QUANTIZED"};
-  constexpr std::array kSets = {"TEXCOORD_", "JOINTS_", "WEIGHTS_"};
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end() ||
-         std::any_of(kSets.begin(), kSets.end(), [&](std::string_view set) { return isNumbered(name, set); });
-}
-
-/// Whether an expression of the template reads an attribute that the primitive lacks.
-bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr,
-                 const gltf::VertexAttributes& attributes) {
-  if (expr.kind == lang::Expr::Kind::Slot) {
-    for (const lang::AttributeDecl& attribute : decl.attributes) {
-      // What is optional is asked for before it is read.
-      if (attribute.optional && attribute.has_slot == expr.slot) return false;
-      // What is not glTF's is the application's, which has it unless the template asks.
-      if (!attribute.fact && attribute.slot == expr.slot)
-        return !attribute.optional && isGltfs(attribute.name) && !hasAttribute(attributes, attribute.name);
-    }
-    for (const lang::GivenDecl& given : decl.givens) {
-      const bool this_one = expr.slot >= given.slot && expr.slot < given.slot + given.results.size();
-      if (this_one && given.value) return readsAbsent(decl, *given.value, attributes);
-    }
-    return false;
-  }
-  return std::any_of(expr.args.begin(), expr.args.end(),
-                     [&](const lang::ExprPtr& arg) { return arg && readsAbsent(decl, *arg, attributes); });
-}
-
 const Line kNoLine{};
 
 }  // namespace
-
-bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name) {
-  const auto numbered = [&](std::string_view what, const auto& sets, bool& has) {
-    if (!isNumbered(name, what)) return false;
-    const auto set = static_cast<size_t>(name.back() - '0');
-    has = set < sets.size() && sets[set];
-    return true;
-  };
-  if (name == "NORMAL") return attributes.normal;
-  if (name == "TANGENT") return attributes.tangent;
-  if (name == "COLOR_0") return attributes.color0;
-  if (name == "MORPH_VERTEX") return attributes.morph;
-  if (name == "TRANSLATION" || name == "ROTATION" || name == "SCALE") return attributes.instances;
-  if (name == "QUANTIZED") return attributes.quantized;
-  bool has = true;
-  if (numbered("TEXCOORD_", attributes.texCoord, has) || numbered("JOINTS_", attributes.skin, has) ||
-      numbered("WEIGHTS_", attributes.skin, has))
-    return has;
-  if (name == "POSITION") return true;
-  // glTF writes _WETNESS, a template may write WETNESS.
-  name.remove_prefix(name.starts_with('_') ? 1 : 0);
-  return std::any_of(attributes.application.begin(), attributes.application.end(),
-                     [&](std::string_view one) { return one.substr(1) == name; });
-}
 
 Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
                    const material::Material& material, const gltf::VertexAttributes& attributes,
@@ -92,6 +34,7 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
       nodes_(model.ids.size()),
       taken_(model.lines.size()),
       absent_(model.givens.size(), -1),
+      reads_absent_(template_.givens.size(), -1),
       terms_(model.terms.size(), Life::Unknown),
       uniform_(model.ids.size(), -1),
       line_states_(model.lines.size()),
@@ -237,7 +180,9 @@ Found Resolver::given(const Value& value) {
   if (!result) return {};
   signed char& absent = absent_[value.index];
   if (absent < 0)
-    absent = result->given->value && readsAbsent(template_, *result->given->value, attributes_) ? 1 : 0;
+    absent = result->given->value && readsAbsent(template_, *result->given->value, attributes_, reads_absent_)
+                 ? 1
+                 : 0;
   if (absent == 1) return {};
   out.kind = Found::Kind::Given;
   out.type = result->given->results[result->index].type;

@@ -45,10 +45,6 @@ struct Found {
   bool operator==(const Found&) const = default;
 };
 
-/// Whether a primitive has what a template's attribute of that name stands for. One of the application's may
-/// be spelled as in glTF, `_WETNESS`, or without the underscore.
-bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name);
-
 /// Resolves lazily: what nobody asks for is not looked at.
 class Resolver {
 public:
@@ -132,6 +128,7 @@ private:
   std::vector<bool> taken_;  ///< of the lines
   std::vector<signed char>
       absent_;  ///< of what the template gives: -1 unknown, else whether it cannot be had
+  std::vector<signed char> reads_absent_;  ///< of the template's givens, in the same way, by declaration
   enum class Life : uint8_t { Unknown, Asked, Dead, Alive };
   std::vector<Life> terms_;
   std::vector<signed char> uniform_;  ///< of the ids' nodes: -1 unknown, else whether it is

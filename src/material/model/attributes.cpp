@@ -1,0 +1,74 @@
+#include "model/attributes.h"
+
+#include <algorithm>
+#include <array>
+
+namespace lacquer::model {
+
+namespace {
+
+/// "TEXCOORD_0" for "TEXCOORD_".
+bool isNumbered(std::string_view name, std::string_view what) {
+  return name.starts_with(what) && name.size() == what.size() + 1;
+}
+
+/// Whether glTF, or an extension, says what an attribute is; all others are the application's.
+bool isGltfs(std::string_view name) {
+  constexpr std::array kNames = {"POSITION",    "NORMAL",   "TANGENT", "COLOR_0",  "MORPH_VERTEX",
+                                 "TRANSLATION", "ROTATION", "SCALE",   "QUANTIZED"};
+  constexpr std::array kSets = {"TEXCOORD_", "JOINTS_", "WEIGHTS_"};
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end() ||
+         std::any_of(kSets.begin(), kSets.end(), [&](std::string_view set) { return isNumbered(name, set); });
+}
+
+}  // namespace
+
+bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name) {
+  const auto numbered = [&](std::string_view what, const auto& sets, bool& has) {
+    if (!isNumbered(name, what)) return false;
+    const auto set = static_cast<size_t>(name.back() - '0');
+    has = set < sets.size() && sets[set];
+    return true;
+  };
+  if (name == "NORMAL") return attributes.normal;
+  if (name == "TANGENT") return attributes.tangent;
+  if (name == "COLOR_0") return attributes.color0;
+  if (name == "MORPH_VERTEX") return attributes.morph;
+  if (name == "TRANSLATION" || name == "ROTATION" || name == "SCALE") return attributes.instances;
+  if (name == "QUANTIZED") return attributes.quantized;
+  bool has = true;
+  if (numbered("TEXCOORD_", attributes.texCoord, has) || numbered("JOINTS_", attributes.skin, has) ||
+      numbered("WEIGHTS_", attributes.skin, has))
+    return has;
+  if (name == "POSITION") return true;
+  // glTF writes _WETNESS, a template may write WETNESS.
+  name.remove_prefix(name.starts_with('_') ? 1 : 0);
+  return std::any_of(attributes.application.begin(), attributes.application.end(),
+                     [&](std::string_view one) { return one.substr(1) == name; });
+}
+
+bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr,
+                 const gltf::VertexAttributes& attributes, std::vector<signed char>& known) {
+  if (expr.kind == lang::Expr::Kind::Slot) {
+    for (const lang::AttributeDecl& attribute : decl.attributes) {
+      // What is optional is asked for before it is read.
+      if (attribute.optional && attribute.has_slot == expr.slot) return false;
+      // What is not glTF's is the application's, which has it unless the template asks.
+      if (!attribute.fact && attribute.slot == expr.slot)
+        return !attribute.optional && isGltfs(attribute.name) && !hasAttribute(attributes, attribute.name);
+    }
+    for (size_t i = 0; i < decl.givens.size(); ++i) {
+      const lang::GivenDecl& given = decl.givens[i];
+      const bool this_one = expr.slot >= given.slot && expr.slot < given.slot + given.results.size();
+      if (!this_one || !given.value) continue;
+      if (known[i] < 0) known[i] = readsAbsent(decl, *given.value, attributes, known) ? 1 : 0;
+      return known[i] == 1;
+    }
+    return false;
+  }
+  return std::any_of(expr.args.begin(), expr.args.end(), [&](const lang::ExprPtr& arg) {
+    return arg && readsAbsent(decl, *arg, attributes, known);
+  });
+}
+
+}  // namespace lacquer::model
