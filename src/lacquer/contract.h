@@ -101,6 +101,8 @@ struct ContractUse {
   std::vector<std::pair<std::string, std::vector<double>>> uniforms;  ///< the Material block's fields by name
   std::vector<std::byte> block;  ///< the Material block with them: Shader::uniformSize() bytes
   std::vector<UsedTexture> textures;
+  /// With Options::properties, of a material of the file: as Scene::properties() says them.
+  std::vector<PropertyUse> properties;
   bool shares_program = false;  ///< with Options::programs: materials of other structures have its shader
   /// Of such a shader: attributes that it reads and the primitive has not. Any finite constant will do.
   Strings stand_in_attributes;

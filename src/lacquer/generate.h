@@ -70,8 +70,8 @@ public:
               Messages& messages) const;
   /// Which of a material's properties change a number of its block, which a texture, and which the shader, on
   /// primitives with these attributes: those of glTF's own material and of the extensions that it has, first
-  /// what is no change of the shader. A tool that watches some adds their `live` to the options. None where
-  /// graph() gives none.
+  /// what is no change of the shader. A tool that watches some adds their `live`, or their pointers, to the
+  /// options' `live`. None where graph() gives none.
   std::vector<PropertyUse> properties(size_t material, const Attributes& attributes, const Options& options,
                                       Messages& messages) const;
 

@@ -126,6 +126,9 @@ struct Options {
   bool permissive = false;  ///< exclusion violations drop the extension with a warning instead of failing
   bool validate = true;     ///< compile and validate everything with glslang and SPIRV-Tools
   bool unused = false;      ///< also materials that no primitive uses, as with kUnusedAttributes
+  /// A contract and a manifest say of each use which of the material's properties change its block, a texture
+  /// or the program: ContractUse::properties.
+  bool properties = false;
   SpirvRoute spirv_route = SpirvRoute::Direct;
   /// What half precision (`mediump` of Glsl and Essl, RelaxedPrecision of Spirv) may change of a colour, as a
   /// part of the colour, or of the light where that is more: fragment operations have it as far as ranges and
@@ -139,7 +142,9 @@ struct Options {
   std::string
       optimize_for;    ///< the family of GPUs whose cycles count, of optimizeFamilies(); empty for the first
   bool debug = false;  ///< SPIR-V has the names of values and the lines of the nodes (Direct)
-  Strings live;        ///< terms kept though today's value would remove them, of liveTerms()
+  /// What stays editable though today's value would remove it: terms, of liveTerms(), and properties of
+  /// materials by JSON pointer, "/materials/0/emissiveFactor".
+  Strings live;
   Strings node_directories;  ///< folders with more node files (*.node) beside the built-in library
   /// More node files from memory, behind those: what messages call each, and its text. Not of plan(), whose
   /// commands read folders.

@@ -76,5 +76,67 @@ TEST(Properties, ThatAreWatchedAreNumbers) {
   EXPECT_EQ(errorsOf(messages), "no-such-material");
 }
 
+/// A watch list of pointers keeps a material's own numbers, those that are folded at their defaults among
+/// them.
+TEST(Properties, ThatAreWatchedByPointerAreNumbers) {
+  Messages messages;
+  Options options = quick();
+  const std::string two = R"({"asset": {"version": "2.0"}, "materials": [
+    {"extensions": {"KHR_materials_coat": {"coatFactor": 1}, "KHR_materials_ior": {}}}, {"extensions": {"KHR_materials_coat": {"coatFactor": 1}}}]})";
+  const Scene scene = Scene::fromMemory(two, "a.gltf", options, messages);
+  const std::string black = "/materials/0/emissiveFactor";
+  const std::string white = "/materials/0/extensions/KHR_materials_coat/coatColorFactor";
+  for (const std::string& pointer : {black, white}) {
+    options.live.clear();
+    const std::vector<PropertyUse> before = scene.properties(0, kUnusedAttributes, options, messages);
+    ASSERT_TRUE(find(before, pointer));
+    EXPECT_EQ(find(before, pointer)->change, Change::Program) << pointer;
+    options.live = {pointer};
+    const std::vector<PropertyUse> after = scene.properties(0, kUnusedAttributes, options, messages);
+    EXPECT_EQ(find(after, pointer)->change, Change::Numbers) << pointer;
+  }
+  // Of the other material nothing has changed, in a run over both, too.
+  options.live = {black, white};
+  options.targets = {};
+  options.properties = true;
+  const Contract made = contract(scene, {}, options, messages);
+  ASSERT_EQ(made.materials.size(), 2u);
+  const PropertyUse* watched = find(made.materials[0].uses.at(0).properties, black);
+  const PropertyUse* plain = find(made.materials[1].uses.at(0).properties, "/materials/1/emissiveFactor");
+  ASSERT_TRUE(watched != nullptr && plain != nullptr);
+  EXPECT_EQ(watched->change, Change::Numbers);
+  EXPECT_EQ(plain->change, Change::Program);
+  EXPECT_NE(made.materials[0].uses[0].shader_id, made.materials[1].uses[0].shader_id);
+  EXPECT_EQ(errorsOf(messages), "");
+  options.live = {"/materials/0/glow"};
+  EXPECT_FALSE(scene.graph(0, kUnusedAttributes, options, messages));
+  EXPECT_EQ(errorsOf(messages), "unknown-property");
+}
+
+/// With the option a manifest says what the scene says, and reads back so.
+TEST(Properties, AreInTheManifestWhereTheyAreAskedFor) {
+  Messages messages;
+  Options options = quick();
+  options.targets = {};
+  const Scene scene = Scene::fromMemory(withRoughness(0.5), "a.gltf", options, messages);
+  EXPECT_EQ(manifestJson(contract(scene, {}, options, messages), "a.gltf").find("\"properties\""),
+            std::string::npos);
+  options.properties = true;
+  const Contract made = contract(scene, {}, options, messages);
+  const ContractUse& use = made.materials.at(0).uses.at(0);
+  const std::vector<PropertyUse> expected = scene.properties(0, use.attributes, options, messages);
+  ASSERT_EQ(use.properties.size(), expected.size());
+  for (const PropertyUse& one : use.properties) {
+    const PropertyUse* same = find(expected, one.pointer);
+    ASSERT_NE(same, nullptr) << one.pointer;
+    EXPECT_EQ(one.change, same->change) << one.pointer;
+    EXPECT_EQ(one.live, same->live) << one.pointer;
+  }
+  const std::string text = manifestJson(made, "a.gltf");
+  EXPECT_NE(text.find(R"("/materials/0/alphaMode": {"change": "program"})"), std::string::npos) << text;
+  EXPECT_NE(text.find(R"("change": "textures")"), std::string::npos);
+  EXPECT_EQ(errorsOf(messages), "");
+}
+
 }  // namespace
 }  // namespace lacquer::test

@@ -94,8 +94,13 @@ Strings standIns(const Structure& structure, const gltf::VertexAttributes& attri
 
 void Describer::use(const gltf::VertexAttributes& attributes) {
   std::string key;
-  // Patterns are a graph of the material's own: its properties do not say what becomes of it.
-  if (KnownShapes* shapes = material_.patterns ? nullptr : structures_.shapes()) {
+  // Patterns are a graph of the material's own: its properties do not say what becomes of it. What is watched
+  // is this material's.
+  const Strings& live = setting_.options.live;
+  const bool own = material_.patterns || std::any_of(live.begin(), live.end(), [&](const std::string& name) {
+                     return watchedPath(name, material_.index).has_value();
+                   });
+  if (KnownShapes* shapes = own ? nullptr : structures_.shapes()) {
     key = shapes->keyOf(material_, attributes, lights_);
     if (known(key, attributes)) return;
   }
@@ -170,6 +175,10 @@ bool Describer::accept(const Structure& structure, const Filling& filling, const
   ContractUse use = useOf(structure, filling, share.fill);
   use.attributes = toPublic(attributes);
   if (use.shares_program) use.stand_in_attributes = standIns(structure, attributes);
+  if (setting_.options.properties && wanted_.index >= 0 && wanted_.material != nullptr) {
+    if (const Result<const material::Schema*> schema = setting_.library.models.schema(); schema)
+      use.properties = propertiesOf(use, material_, **schema);
+  }
   made_.values.uses.push_back(std::move(use));
   made_.shaders.push_back(structure.shader);
   made_.met.push_back(&structure);

@@ -64,6 +64,10 @@ struct Words<Filter> {
                                               "nearest-mipmap-linear",
                                               "linear-mipmap-linear"};
 };
+template <>
+struct Words<Change> {
+  static constexpr std::string_view kAll[] = {"nothing", "numbers", "textures", "program"};
+};
 /// Empty for what is no enumerator.
 template <class Enum>
 std::string_view wordOf(Enum value) {
@@ -78,6 +82,8 @@ template <>
 inline constexpr std::string UsedParameter::*kKey<UsedParameter> = &UsedParameter::name;
 template <>
 inline constexpr std::string UsedTexture::*kKey<UsedTexture> = &UsedTexture::slot;
+template <>
+inline constexpr std::string PropertyUse::*kKey<PropertyUse> = &PropertyUse::pointer;
 template <>
 inline constexpr std::string StoredAttribute::*kKey<StoredAttribute> = &StoredAttribute::semantic;
 
@@ -172,6 +178,14 @@ void members(A& a, Of<A, UsedTexture>& of) {
 }
 
 template <class A>
+void members(A& a, Of<A, PropertyUse>& of) {
+  a.is("the property");
+  a("change", of.change);
+  a.some("name", of.name);
+  a.some("live", of.live);
+}
+
+template <class A>
 void members(A& a, Of<A, ContractUse>& of) {
   a.is("the use");
   Strings attributes;
@@ -182,6 +196,7 @@ void members(A& a, Of<A, ContractUse>& of) {
   a("parameters", of.parameters);
   a("uniforms", of.uniforms);
   a("textures", of.textures);
+  a.some("properties", of.properties);
   std::optional<Strings> stand_ins;
   if (of.shares_program) stand_ins = of.stand_in_attributes;
   a.some("stand_in_attributes", stand_ins);

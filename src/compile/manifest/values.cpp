@@ -1,6 +1,9 @@
 #include "manifest/values.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 
 namespace lacquer {
 
@@ -133,6 +136,37 @@ std::vector<std::pair<std::string, std::string>> extensionsOf(const material::Ma
     all.emplace_back(decl.name, decl.status);
   }
   return all;
+}
+
+std::vector<PropertyUse> propertiesOf(const ContractUse& use, const material::Material& material,
+                                      const material::Schema& schema) {
+  std::vector<PropertyUse> uses;
+  for (const UsedParameter& parameter : use.parameters) {
+    if (!parameter.pointer.empty()) uses.push_back({parameter.pointer, Change::Numbers, parameter.name});
+  }
+  for (const UsedTexture& texture : use.textures) {
+    if (!texture.pointer.empty()) uses.push_back({texture.pointer, Change::Textures, texture.slot});
+  }
+  addProgramProperties(material, schema, use.facts->absent_parameters, uses);
+  return uses;
+}
+
+void addProgramProperties(const material::Material& material, const material::Schema& schema,
+                          const std::vector<std::pair<std::string, Strings>>& absent,
+                          std::vector<PropertyUse>& uses) {
+  // Several slots and numbers may come of one property: each is listed once.
+  std::set<std::string> known;
+  const auto again = [&](const PropertyUse& use) { return !known.insert(use.pointer).second; };
+  uses.erase(std::remove_if(uses.begin(), uses.end(), again), uses.end());
+  for (const material::Property& row : schema.properties) {
+    if (row.extension != 0 && !material.has(row.extension)) continue;
+    const std::string pointer = fmt::format("/materials/{}/{}", material.index, row.path);
+    if (!known.insert(pointer).second) continue;
+    PropertyUse& use = uses.emplace_back(PropertyUse{pointer, Change::Program});
+    const auto it = std::find_if(absent.begin(), absent.end(),
+                                 [&](const auto& one) { return one.first == row.parameter_name; });
+    if (it != absent.end()) use.live = it->second;
+  }
 }
 
 void addTextureInfo(const gltf::TextureInfo& info, UsedTexture& texture) {

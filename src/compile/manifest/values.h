@@ -22,6 +22,15 @@ DrawState stateOf(const material::Material& material, const material::Schema& sc
 std::vector<std::pair<std::string, std::string>> extensionsOf(const material::Material& material,
                                                               const material::Schema& schema);
 
+/// By the pointers of what a use's shader has: Scene::properties().
+std::vector<PropertyUse> propertiesOf(const ContractUse& use, const material::Material& material,
+                                      const material::Schema& schema);
+/// Adds what is not among them, as changes of the program: of glTF's own material and of the extensions that
+/// it has. `absent`: parameters that are not there, by name, with the terms that bring them back.
+void addProgramProperties(const material::Material& material, const material::Schema& schema,
+                          const std::vector<std::pair<std::string, Strings>>& absent,
+                          std::vector<PropertyUse>& uses);
+
 /// Fills in the UV set and the transform.
 void addTextureInfo(const gltf::TextureInfo& info, UsedTexture& texture);
 

@@ -137,6 +137,16 @@ Result<material::Document> readMaterials(const std::string& path, const Language
   return material::readText(*bytes, path, **schema, {options.permissive, *limits});
 }
 
+std::optional<std::string_view> watchedPath(std::string_view live, std::optional<int> material) {
+  constexpr std::string_view kMaterials = "/materials/";
+  if (!live.starts_with(kMaterials)) return std::nullopt;
+  live.remove_prefix(kMaterials.size());
+  const size_t digits = std::min(live.find_first_not_of("0123456789"), live.size());
+  if (digits == 0 || digits == live.size() || live[digits] != '/') return std::nullopt;
+  if (material && live.substr(0, digits) != fmt::format("{}", *material)) return std::nullopt;
+  return live.substr(digits + 1);
+}
+
 Result<void> resolveNames(const lang::Library& library, Options& options) {
   if (options.template_name.empty()) {
     Result<std::string> name = library.defaultTemplate();

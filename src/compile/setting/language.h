@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lacquer/options.h"
@@ -38,6 +40,10 @@ Result<material::Document> readMaterials(const std::string& path, const Language
 /// The built-in library with the options' own files added. The built-in one alone is made once, and one with
 /// texts alone is kept until it is asked for with others: a tool that edits a text makes it anew.
 Result<std::shared_ptr<const Language>> libraryFor(const Options& options);
+
+/// Of an entry of Options::live that is a JSON pointer: the property, from the material on, where it is one
+/// of this material; without a material of any.
+std::optional<std::string_view> watchedPath(std::string_view live, std::optional<int> material = {});
 
 /// Puts the library's defaults in where no template or no profile is named.
 Result<void> resolveNames(const lang::Library& library, Options& options);

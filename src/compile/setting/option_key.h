@@ -24,10 +24,11 @@ enum class Decides : uint8_t {
 template <class Each>
 void eachOption(const Options& options, Each each) {
   const auto& [profile, simplify, template_name, targets, parameters, lights, switches, ibl,
-               multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, spirv_route,
-               relaxed, optimize, optimize_error, optimize_for, debug, live, node_directories, node_texts,
-               jobs, cache, cache_size, depfile, shard, limits, allow, cache_key, argument_buffers, sync,
-               programs, weights, programs_report, programs_model, pipelines] = options;
+               multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, properties,
+               spirv_route, relaxed, optimize, optimize_error, optimize_for, debug, live, node_directories,
+               node_texts, jobs, cache, cache_size, depfile, shard, limits, allow, cache_key,
+               argument_buffers, sync, programs, weights, programs_report, programs_model, pipelines] =
+      options;
   each(Decides::Graph, profile);
   each(Decides::Graph, simplify);
   each(Decides::Graph, template_name);
@@ -42,6 +43,7 @@ void eachOption(const Options& options, Each each) {
   each(Decides::Graph, permissive);
   each(Decides::Code, validate);
   each(Decides::Graph, unused);
+  each(Decides::Graph, properties);
   each(Decides::SpirvCode, spirv_route);
   each(Decides::Module, relaxed);
   each(Decides::Module, optimize);

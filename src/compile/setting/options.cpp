@@ -39,6 +39,15 @@ std::string namesOf(bool targets::Row::*fact) {
   return fmt::format("{} and {}", fmt::join(names, ", "), last);
 }
 
+/// Whether a JSON pointer leads to a property that some extension declares.
+bool isProperty(const Language& language, const Options& options, std::string_view pointer) {
+  Options named = options;
+  const std::optional<std::string_view> path = watchedPath(pointer);
+  if (!path || !resolveNames(language, named)) return false;
+  const Result<const model::Model*> model = language.models.of(named.profile);
+  return model && (*model)->keeping(*path);
+}
+
 /// What the library says of the options' names.
 void checkNames(const Options& options, Diagnostics& wrong) {
   const auto language = libraryFor(options);
@@ -64,6 +73,12 @@ void checkNames(const Options& options, Diagnostics& wrong) {
   const Strings known = liveTerms(options);
   for (const std::string& term : options.live) {
     if (std::find(known.begin(), known.end(), term) != known.end()) continue;
+    if (term.starts_with('/')) {
+      if (!isProperty(**language, options, term))
+        add(wrong, "unknown-property", fmt::format("'{}' is no property of a material", term),
+            "a JSON pointer to a number or a texture, such as /materials/0/emissiveFactor");
+      continue;
+    }
     add(wrong, "unknown-term", fmt::format("no term that can be kept live is named '{}'", term),
         fmt::format("there are {}", fmt::join(known, ", ")));
   }

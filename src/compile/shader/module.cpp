@@ -38,7 +38,12 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
   build.switches.insert({{"ibl", options.ibl},
                          {"multiple_scattering", options.multiple_scattering},
                          {"dfg_table", options.dfg_table}});
-  build.live = {options.live.begin(), options.live.end()};
+  for (const std::string& name : options.live) {
+    if (!name.starts_with('/')) build.live.insert(name);
+    const std::optional<std::string_view> path = watchedPath(name, material.index);
+    const auto terms = path ? (*model)->keeping(*path) : std::nullopt;
+    if (terms) build.live.insert(terms->begin(), terms->end());
+  }
   build.without = simpler->without;
   build.texels = simpler->texels;
   for (const auto& [name, value] : simpler->switches) build.switches.insert_or_assign(name, value);

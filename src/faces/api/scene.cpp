@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <map>
 #include <set>
 
 #include "api/internal.h"
 #include "eval/in_memory.h"
+#include "manifest/values.h"
 #include "setting/attributes.h"
 #include "setting/language.h"
 #include "setting/messages.h"
@@ -135,14 +135,11 @@ std::vector<PropertyUse> Scene::properties(size_t material, const Attributes& at
   std::vector<PropertyUse> uses;
   const Graph built = graph(material, attributes, options, messages);
   if (!built) return uses;
-  std::set<std::string> known;
   for (const Parameter& parameter : built.parameters()) {
-    if (!parameter.pointer.empty() && known.insert(parameter.pointer).second)
-      uses.push_back({parameter.pointer, Change::Numbers, parameter.name});
+    if (!parameter.pointer.empty()) uses.push_back({parameter.pointer, Change::Numbers, parameter.name});
   }
   for (const TextureUse& texture : built.textures()) {
-    if (!texture.pointer.empty() && known.insert(texture.pointer).second)
-      uses.push_back({texture.pointer, Change::Textures, texture.name});
+    if (!texture.pointer.empty()) uses.push_back({texture.pointer, Change::Textures, texture.name});
   }
   // The rest is not in the graph: the term that would have it is left out.
   const Language& language = *built.impl_->language;
@@ -153,16 +150,7 @@ std::vector<PropertyUse> Scene::properties(size_t material, const Attributes& at
   if (!model) return uses;
   std::set<std::string, std::less<>> skipped;
   for (const graph::Skipped& term : built.impl_->graph.skipped) skipped.insert(term.term);
-  std::map<std::string, Strings> absent;
-  for (const auto& [name, terms] : (*model)->absent(skipped)) absent.emplace(name, terms);
-  const material::Material& of = impl_->document.materials[material];
-  for (const material::Property& row : (*schema)->properties) {
-    if (row.extension != 0 && !of.has(row.extension)) continue;
-    const std::string pointer = fmt::format("/materials/{}/{}", material, row.path);
-    if (!known.insert(pointer).second) continue;
-    PropertyUse& use = uses.emplace_back(PropertyUse{pointer, Change::Program});
-    if (const auto it = absent.find(row.parameter_name); it != absent.end()) use.live = it->second;
-  }
+  addProgramProperties(impl_->document.materials[material], **schema, (*model)->absent(skipped), uses);
   return uses;
 }
 

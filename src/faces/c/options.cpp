@@ -195,6 +195,7 @@ constexpr Row kRows[] = {
     {"limits", kTexts, setStrings<&Options::limits>},
     {"allow", kTexts, setStrings<&Options::allow>},
     {"unused", kTruth, setBool<&Options::unused>},
+    {"properties", kTruth, setBool<&Options::properties>},
     {"cache", "a string", setText<&Options::cache>},
     {"programs", "a whole number",
      [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.programs); }},

@@ -91,6 +91,8 @@ void addGeneration(CLI::App& verb, Flags& flags) {
                 "what programs and the forms of --optimize cost by the model, not by a driver: the same on "
                 "every machine");
   verb.add_flag("--unused", flags.options.unused, "also materials that no primitive uses");
+  verb.add_flag("--properties", flags.options.properties,
+                "the manifest says which properties change a uniform, a texture or the program");
   lacquer::cli::addJobs(verb, flags);
   verb.add_option("--cache", flags.options.cache, "a folder that keeps results between runs")
       ->check(kNotEmpty);

@@ -98,7 +98,8 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
       ->check(kNotEmpty)
       ->capture_default_str();
   // Options that may be repeated take one argument each time: the next one may be a file.
-  verb.add_option("--live", flags.options.live, "terms to keep though today's value would remove them")
+  verb.add_option("--live", flags.options.live,
+                  "terms to keep though today's value would remove them, and properties by JSON pointer")
       ->delimiter(',')
       ->allow_extra_args(false);
   verb.add_option("--simplify", flags.options.simplify,

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -159,6 +160,10 @@ struct Model {
   /// it back when all of them are kept. `skipped`: the terms that a material could have and has not.
   std::vector<std::pair<std::string, std::vector<std::string>>> absent(
       const std::set<std::string, std::less<>>& skipped) const;
+  /// The terms that keep the number at a path from the material on ("emissiveFactor", or a textureInfo's
+  /// member: "normalTexture/scale") editable when they are kept, none where it always is or never; nothing
+  /// where there is no such property.
+  std::optional<std::vector<std::string>> keeping(std::string_view path) const;
   /// The parameters by which the extensions' parts vanish, with the numbers at which they do: "coat_factor",
   /// {0}.
   std::vector<std::pair<std::string, std::vector<double>>> layers() const;

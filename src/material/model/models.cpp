@@ -108,6 +108,38 @@ std::vector<std::pair<std::string, std::vector<std::string>>> Model::absent(
   return {all.begin(), all.end()};
 }
 
+std::optional<std::vector<std::string>> Model::keeping(std::string_view path) const {
+  std::optional<std::vector<std::string>> kept;
+  // The first term that can be kept, with those around it.
+  const auto keep = [&](const std::vector<std::string_view>& live) {
+    if (!kept) kept.emplace();
+    for (const std::string_view name : live) {
+      const auto term =
+          std::find_if(terms.begin(), terms.end(), [&](const Term& one) { return one.name == name; });
+      if (term == terms.end() || !term->has_unless) continue;
+      for (auto at = static_cast<uint32_t>(term - terms.begin()); at != Line::kNone; at = terms[at].parent) {
+        if (terms[at].has_unless) kept->emplace_back(terms[at].name);
+      }
+      return;
+    }
+  };
+  for (const material::Property& property : schema->properties) {
+    if (property.path == path) keep({});
+  }
+  for (const Role& role : roles) {
+    for (const uint16_t provider : role.providers) {
+      const material::Property& property = schema->properties[provider];
+      if (property.path == path) keep(role.live);
+      for (size_t i = 0; i < property.decl->members.size(); ++i) {
+        if (path.starts_with(property.path) &&
+            path.substr(property.path.size()) == "/" + std::string(property.decl->members[i].name))
+          keep(i < role.member_live.size() ? role.member_live[i] : std::vector<std::string_view>());
+      }
+    }
+  }
+  return kept;
+}
+
 std::vector<std::string_view> Model::liveTerms() const {
   std::vector<std::string_view> names;
   for (const Term& term : terms) {
