@@ -289,11 +289,10 @@ Described describeGraph(const graph::Graph& graph, const std::string& file, cons
   const Wanted wanted{nullptr, graph.name, 0, {}, {}};
   const passes::LightFacts lights = lightFacts(setting.options, {});
   Describer describer(wanted, file, lights, setting, structures);
-  // Groups are gone when a structure is made: what is wrong in them is said before.
-  const bool plain = graph.groups.empty() && setting.options.simplify.empty();
+  // Groups and forms are gone when a structure is made: only of a good graph is it known what stands for
+  // them.
   graph::Graph checked = graph;
-  const Diagnostics wrong =
-      plain ? Diagnostics() : graph::check(checked, setting.library, setting.limits.nodes);
+  const Diagnostics wrong = graph::check(checked, setting.library, setting.limits.nodes);
   if (hasError(wrong)) {
     describer.fail(wrong);
     return describer.finish();
