@@ -53,6 +53,7 @@ private:
   Source from(const Found& value);
   Source number(const Found& value);
   Source texel(uint16_t property);
+  Source image(uint16_t property);
   Source computed(const gltf::TextureInfo& info, const std::string& slot);
   void bring(const std::string& group);
   Source coordinate(uint16_t property);
@@ -193,6 +194,23 @@ Source Writer::computed(const gltf::TextureInfo& info, const std::string& slot) 
   return {graph::NodeRef{slot + ".texel", info.output}, {}};
 }
 
+/// The texture of a slot, one for all that sample it.
+Source Writer::image(uint16_t property) {
+  const gltf::TextureInfo& info = *material_.texture(property);
+  const material::Property& row = model_.schema->properties[property];
+  const std::string name = row.parameter_name + "_texture";
+  if (!graph_.findTexture(name)) {
+    graph::Texture texture;
+    texture.name = name;
+    texture.srgb = row.decl->srgb && !options_.decode_srgb;
+    texture.texture = info.texture;
+    texture.pointer = info.pointer;
+    graph_.textures.push_back(texture);
+    origins_.textures.push_back(property);
+  }
+  return {graph::TextureRef{name}, {}};
+}
+
 /// The texel of a texture as a vec4; textures used twice in the same way are sampled once.
 Source Writer::texel(uint16_t property) {
   const gltf::TextureInfo& info = *material_.texture(property);
@@ -203,16 +221,9 @@ Source Writer::texel(uint16_t property) {
   for (const auto& [known, source] : texels_) {
     if (known == key) return source;
   }
-  graph::Texture texture;
-  texture.name = slot + "_texture";
-  texture.srgb = row.decl->srgb && !options_.decode_srgb;
-  texture.texture = info.texture;
-  texture.pointer = info.pointer;
-  graph_.textures.push_back(texture);
-  origins_.textures.push_back(property);
+  const Source sampled = image(property);
   const Source uv = coordinate(property);
-  graph_.add(slot + ".texel", "texture_sample",
-             graph::Inputs{{"image", {graph::TextureRef{texture.name}, {}}}, {"uv", uv}});
+  graph_.add(slot + ".texel", "texture_sample", graph::Inputs{{"image", sampled}, {"uv", uv}});
   Source result{graph::NodeRef{slot + ".texel", {}}, {}};
   if (row.decl->srgb && options_.decode_srgb) {
     graph_.add(slot + ".decoded", "srgb_decode", graph::Inputs{{"encoded", result}});
@@ -231,6 +242,7 @@ Source Writer::from(const Found& value) {
     case Found::Kind::Member: return number(value);
     case Found::Kind::Texel: return texel(value.property);
     case Found::Kind::Uv: return coordinate(value.property);
+    case Found::Kind::Image: return image(value.property);
     case Found::Kind::Given: return {graph::GivenRef{model_.givens[value.index]}, {}};
     case Found::Kind::Texture: return {graph::TextureRef{model_.givens[value.index]}, {}};
     case Found::Kind::Node:

@@ -34,6 +34,7 @@ struct Value {
   uint32_t index = 0;
   int member = -1;          ///< Role: of the textureInfo
   bool coordinate = false;  ///< Role: the texture's coordinate
+  bool image = false;       ///< Role: the texture itself, for a node that samples it
   bool absent = false;      ///< of a Call's argument: not given
   ir::Components constant{};
   std::string_view

@@ -238,6 +238,7 @@ bool Names::role(std::string_view text, Where where, Value& out) const {
   const lang::PropertyDecl& decl = declOf(*found);
   if (decl.kind == lang::PropertyDecl::Kind::Texture) {
     if (rest == "uv") return out.coordinate = true;
+    if (rest == "image") return out.image = true;
     for (size_t i = 0; i < decl.members.size(); ++i) {
       if (decl.members[i].name != rest) continue;
       out.member = static_cast<int>(i);

@@ -143,6 +143,27 @@ Found Resolver::number(const Role& role, const Value& value) {
   return out;
 }
 
+/// The texture itself, which a node samples where it likes. What a group of nodes computes is none.
+Found Resolver::image(Found texture, const gltf::TextureInfo& info) {
+  texture.kind = Found::Kind::Image;
+  texture.type = ir::Type::Texture2D;
+  const lang::PropertyDecl& decl = *model_.schema->properties[texture.property].decl;
+  const bool encoded = decl.srgb && options_.decode_srgb;
+  if (info.group.empty() && !encoded) return texture;
+  if (told_.insert(texture.property).second) {
+    warnings_.push_back(
+        {"no-image",
+         Severity::Warning,
+         {{}, 0, 0, info.pointer},
+         fmt::format("a part samples '{}' itself, which {}", decl.name,
+                     encoded ? "is encoded in this shader" : "nodes compute in place of an image"),
+         encoded ? "give it a format that decodes sRGB; what needs it is left out"
+                 : "give it an image; what needs it is left out",
+         {}});
+  }
+  return {};
+}
+
 Found Resolver::role(const Value& value) {
   const Role& role = model_.roles[value.index];
   const lang::PropertyDecl& decl = *model_.schema->properties[role.providers[0]].decl;
@@ -151,6 +172,7 @@ Found Resolver::role(const Value& value) {
   out.property = provider(role);
   const gltf::TextureInfo* info = material_.texture(out.property);
   if (info == nullptr) return {};
+  if (value.image) return image(std::move(out), *info);
   out.kind = value.coordinate ? Found::Kind::Uv : Found::Kind::Texel;
   if (value.coordinate) {
     // A coordinate that the primitive lacks has no derivatives either.
@@ -439,6 +461,7 @@ bool Resolver::uniform(const Found& value) {
     case Found::Kind::Member: return true;
     case Found::Kind::Texel:
     case Found::Kind::Uv:
+    case Found::Kind::Image:
     case Found::Kind::Given:
     case Found::Kind::Texture: return false;
     case Found::Kind::Node: break;

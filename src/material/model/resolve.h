@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct Found {
     Member,    ///< one of a textureInfo: `property`, `member`
     Texel,     ///< of the texture `property`
     Uv,        ///< the coordinate of the texture `property`
+    Image,     ///< the texture `property` itself
     Given,     ///< `index` in Model::givens
     Texture,   ///< the template's: `index` in Model::givens
     Node,      ///< `output` of the node `index`, an id
@@ -92,6 +94,7 @@ private:
   bool enter(uint32_t part);
   Found found(const Value& value, const Line& line);
   Found role(const Value& value);
+  Found image(Found texture, const gltf::TextureInfo& info);
   Found number(const Role& role, const Value& value);
   Found given(const Value& value);
   bool hasDefault(const lang::Param& param) const;
@@ -137,6 +140,7 @@ private:
   int depth_ = 0;
   std::optional<Dimming> dimming_;       ///< of this material, where it is asked
   std::vector<std::string_view> unmet_;  ///< of a term: why a requirement is not met
+  std::set<uint16_t> told_;              ///< textures without an image that were reported
   std::vector<uint32_t> open_;
 };
 

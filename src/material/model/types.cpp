@@ -98,6 +98,7 @@ std::optional<ir::Type> Types::role(const Value& value) const {
   if (decl.kind != material::Kind::Texture) return swizzled(decl.type, value.path);
   if (value.member >= 0) return decl.members[static_cast<size_t>(value.member)].type;
   if (value.coordinate) return ir::Type::Vec2;
+  if (value.image) return ir::Type::Texture2D;
   const std::string_view read = value.path.empty() ? decl.channels : value.path;
   return swizzled(ir::Type::Vec4, read);
 }
