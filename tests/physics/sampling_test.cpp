@@ -12,6 +12,7 @@
 
 #include "eval/evaluate.h"
 #include "physics/subject.h"
+#include "support/chi_squared.h"
 
 namespace lacquer::physics {
 namespace {
@@ -213,31 +214,6 @@ std::vector<eval::Point> drawn(const eval::Point& at, size_t count, uint64_t see
   return points;
 }
 
-/// How many standard deviations a sum of squared deviations is from what chance makes of it.
-/// Wilson and Hilferty 1931, "The Distribution of Chi-Square": its cube root is nearly normal.
-double deviation(double chi2, double freedom) {
-  const double spread = 2 / (9 * freedom);
-  return (std::cbrt(chi2 / freedom) - (1 - spread)) / std::sqrt(spread);
-}
-
-/// Pearson's test of counts against what a density makes expect, the last cell being what is lost. Cells in
-/// which fewer than ten are expected count together.
-double goodnessOfFit(const std::vector<double>& counts, const std::vector<double>& expected) {
-  std::vector<size_t> order(counts.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return expected[a] < expected[b]; });
-  double chi2 = 0, count = 0, wanted = 0, freedom = -1;
-  for (const size_t i : order) {
-    count += counts[i];
-    wanted += expected[i];
-    if (wanted < 10) continue;
-    chi2 += (count - wanted) * (count - wanted) / wanted;
-    freedom += 1;
-    count = wanted = 0;
-  }
-  return freedom < 1 ? 0 : deviation(chi2, freedom);
-}
-
 TEST(Sampling, SamplesComeAsOftenAsTheirDensitySays) {
   constexpr size_t kCount = 1 << 16;
   uint64_t seed = 1;
@@ -253,7 +229,7 @@ TEST(Sampling, SamplesComeAsOftenAsTheirDensitySays) {
       for (size_t i = 0; i < kCells; ++i) expected[i] = exact.pdf[i] * kCount;
       expected[kCells] = std::max(1 - exact.total(), 0.0) * kCount;
       EXPECT_LT(exact.total(), 1.001) << row.name << " " << cosine;
-      const double off = goodnessOfFit(counts, expected);
+      const double off = test::goodnessOfFit(counts, expected);
       EXPECT_LT(off, kSignificance) << row.name << " " << cosine << ", integral " << exact.total()
                                     << ", lost " << counts[kCells] / kCount;
     }
