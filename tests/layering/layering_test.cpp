@@ -13,6 +13,7 @@
 #include "graph/graph.h"
 #include "lower/lower.h"
 #include "model/build.h"
+#include "passes/pipeline.h"
 #include "support/cases.h"
 #include "support/chi_squared.h"
 
@@ -50,7 +51,9 @@ struct Outcome {
   std::optional<ir::Module> module;
 };
 
-Outcome outcomeOf(const std::string& text, const std::string& gltf, const std::string& name) {
+Outcome outcomeOf(const std::string& text, const std::string& gltf, const std::string& name,
+                  const gltf::VertexAttributes& attributes = {
+                      true, true, false, {true, false, false, false}}) {
   lang::Library library = lang::Library::embedded();
   if (const auto added = library.add({{"frost.node", text}}); !added) return {added.error(), {}};
   if (Diagnostics all = library.checkAll(); !all.empty()) return {std::move(all), {}};
@@ -65,8 +68,7 @@ Outcome outcomeOf(const std::string& text, const std::string& gltf, const std::s
   const auto decl = library.template_(name);
   model::BuildOptions options;
   options.template_name = name;
-  const auto graph = model::build(**model, **decl, material, {true, true, false, {true, false, false, false}},
-                                  options, warnings);
+  const auto graph = model::build(**model, **decl, material, attributes, options, warnings);
   if (!graph) return {graph.error(), {}};
   auto module = lower::lower(*graph, library, {.evaluable = true});
   if (!module) return {module.error(), {}};
@@ -141,6 +143,55 @@ TEST(Layering, ThePagesLayerIsRight) {
     EXPECT_TRUE(outcome.module) << name;
     for (const Diagnostic& one : outcome.found) ADD_FAILURE() << format(one);
   }
+}
+
+/// An attribute of the application's reaches a line by its name, as a value between the stages; a field of
+/// the object's block, as no value.
+TEST(Layering, AttributesAndFieldsOfObjectsReachALayer) {
+  const std::string text = R"(
+/// An engine's own.
+template masked extends forward {
+    extend block object {
+        float wetness in [0, 1] = 0;
+    }
+    optional attribute vec2 _MASK;
+    given vec2 mask in [0, 1] = has_MASK ? clamp(interpolate(_MASK), 0, 1) : vec2(1);
+    given float wetness in [0, 1] = object.wetness;
+}
+/// E.
+/// source: ACME_wet
+extension ACME_wet {
+    float amount in [0, 1] = 0;
+}
+/// P.
+/// source: ACME_wet
+part wet of ACME_wet over coat unless amount == 0 {
+direct:
+    out direct = wetted(below.direct, amount, mask, wetness);
+}
+/// N.
+/// source: ACME_wet
+node wetted(vec3 below in [0, inf], float amount in [0, 1], vec2 mask in [0, 1], float wetness in [0, 1]) -> vec3 in [0, inf] {
+    return below * (1 - amount * mask.x * mask.y * wetness);
+}
+)";
+  const auto varyings = [&](const std::string& of, const gltf::VertexAttributes& attributes) {
+    Outcome outcome =
+        outcomeOf(of, fileOf(R"("extensions": {"ACME_wet": {"amount": 0.5}})"), "masked", attributes);
+    EXPECT_TRUE(outcome.module) << (outcome.found.empty() ? "" : format(outcome.found[0]));
+    if (!outcome.module) return std::string();
+    passes::runPipeline(*outcome.module, {});
+    std::string names;
+    for (const ir::Varying& one : outcome.module->varyings) names += one.name + " ";
+    return names;
+  };
+  gltf::VertexAttributes plain{true, false, false, {true, false, false, false}}, masked = plain;
+  masked.application = {"_MASK"};
+  std::string dry = text;
+  replaceAll(dry, " * wetness)", " * 0.5)");
+  EXPECT_EQ(varyings(text, plain), varyings(dry, plain)) << "a field of the object's costs no varying";
+  EXPECT_EQ(varyings(text, plain).find("MASK"), std::string::npos);
+  EXPECT_NE(varyings(text, masked).find("MASK"), std::string::npos) << varyings(text, masked);
 }
 
 /// The layer over a base, under the template bsdf.

@@ -187,6 +187,24 @@ TEST(Vendors, OthersSayWhoseTheyMean) {
   EXPECT_EQ(unclear.error()[0].help, "several extensions have one: 'ACME_dust.cover' and 'BOLT_dust.cover'");
 }
 
+TEST(Vendors, APartLiesOverAnothersOfTheSameName) {
+  const auto placed = [](std::string_view over) {
+    std::string bolt = layer("BOLT_dust", "vec3", "0.25");
+    constexpr std::string_view kOver = "over coat unless";
+    bolt.replace(bolt.find(kOver), kOver.size(), fmt::format("over {} unless", over));
+    return withVendors({{"acme.node", layer("ACME_dust", "float", "0.75")}, {"bolt.node", bolt}}, kBoth);
+  };
+  const auto codes = [](const Diagnostics& of) {
+    std::string text;
+    for (const Diagnostic& one : of) text += one.code + " ";
+    return text;
+  };
+  EXPECT_EQ(codes(placed("coat").warnings), "unordered-parts ");
+  EXPECT_EQ(codes(placed("coat, ACME_dust.dust").warnings), "");
+  const WithVendors wrong = placed("coat, ACME_dust.rust");
+  EXPECT_EQ(codes(wrong.wrong), "unknown-part ");
+}
+
 TEST(Vendors, AWrongFileLeavesTheNamesAsTheyWere) {
   lang::Library library = lang::Library::embedded();
   ASSERT_TRUE(library.add({{"acme.node", layer("ACME_dust", "float", "0.75")}}).has_value());

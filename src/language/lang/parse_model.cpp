@@ -21,7 +21,7 @@ bool Parser::names(std::vector<std::string_view>& out, std::string_view what) {
   do {
     std::string_view one;
     Span span;
-    if (!name(one, span, what)) return false;
+    if (!dottedName(one, span, what)) return false;
     out.push_back(one);
   } while (accept(","));
   return true;
