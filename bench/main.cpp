@@ -9,6 +9,7 @@
 #include "bench/cost.h"
 #include "bench/error.h"
 #include "bench/estimate.h"
+#include "bench/fronts.h"
 #include "bench/loops.h"
 #include "bench/optimize.h"
 #include "bench/pipeline_bench.h"
@@ -28,6 +29,10 @@ constexpr Verb kVerbs[] = {
     {"estimate",
      "fits the weights of the costs that `lacquer lod` estimates without Mesa, and prints their error",
      lacquer::bench::runEstimate},
+    {"fronts",
+     "run time against error of every node, as `lacquer tune` finds it, in minutes; renews a table of "
+     "docs/error.md",
+     lacquer::bench::runFronts},
     {"loops", "loops written out and kept: instructions and cycles on an AMD GPU", lacquer::bench::runLoops},
     {"optimize",
      "what the search for cheaper forms saves and takes, in minutes; renews bench/optimize.json and "

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace lacquer::bench {
 
-/// Replaces what stands between the marks `<!-- measured: -->` and `<!-- :measured -->` of a page. False
-/// where the page cannot be read or written, or has no such marks.
-bool renewPage(const std::string& path, const std::string& text);
+/// Replaces what stands between the marks `<!-- MARK: -->` and `<!-- :MARK -->` of a page. False where the
+/// page cannot be read or written, or has no such marks.
+bool renewPage(const std::string& path, const std::string& text, std::string_view mark = "measured");
 
 }  // namespace lacquer::bench
