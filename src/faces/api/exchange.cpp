@@ -8,6 +8,8 @@
 #include "lacquer/exchange.h"
 #include "setting/language.h"
 #include "setting/messages.h"
+#include "support/file.h"
+#include "support/outputs.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -45,6 +47,17 @@ std::string toMaterialX(const std::string& file, const Strings& materials, const
   exchange::Written written = exchange::toMaterialX(*document, wanted, **schema, surface);
   report(written.said, file, messages);
   return std::move(written.text);
+}
+
+bool writeMaterialX(const std::string& output, const std::string& file, const Strings& materials,
+                    const std::string& surface, const Options& options, Messages& messages) {
+  if (const Diagnostics wrong = clashes({file}, {output}); !wrong.empty())
+    return report(wrong, file, messages), false;
+  const std::string text = toMaterialX(file, materials, surface, options, messages);
+  if (text.empty()) return false;
+  const Result<bool> written = writeFile(output, text, {nullptr, options.sync});
+  if (!written) report(written.error(), output, messages);
+  return written.has_value();
 }
 
 }  // namespace lacquer

@@ -16,6 +16,7 @@
 #include "cli/dfg.h"
 #include "cli/environment.h"
 #include "cli/eval.h"
+#include "cli/exchange.h"
 #include "cli/lod.h"
 #include "cli/options.h"
 #include "cli/preview.h"
@@ -27,7 +28,6 @@
 #include "cli/tune.h"
 #include "cli/view.h"
 #include "lacquer.h"
-#include "lacquer/exchange.h"
 #include "support/shown.h"
 
 namespace {
@@ -275,24 +275,11 @@ lacquer::Graph onlyGraph(const Flags& flags, Messages& messages) {
   return scene.graph(*material, uses.empty() ? lacquer::kUnusedAttributes : uses[0], flags.options, messages);
 }
 
-/// The materials of a file as a MaterialX document.
-int document(const Flags& flags) {
-  Messages messages;
-  if (lacquer::isGraphFile(flags.files[0])) {
-    say("graph: {} is built of a material's terms, which MaterialX does not have: name the material's file\n",
-        lacquer::cli::printable(flags.files[0]));
-    return kUsage;
-  }
-  lacquer::Strings materials;
-  if (flags.material) materials.push_back(*flags.material);
-  const std::string text = lacquer::toMaterialX(flags.files[0], materials, {}, flags.options, messages);
-  fmt::print("{}", text);
-  print(messages);
-  return text.empty() || hasError(messages) ? kFailed : kGood;
-}
-
 int graph(const Flags& flags) {
-  if (flags.format == "mtlx") return document(flags);
+  if (flags.format == "mtlx") {
+    return lacquer::cli::printDocument(
+        flags, flags.files[0], flags.material ? lacquer::Strings{*flags.material} : lacquer::Strings());
+  }
   Messages messages;
   const lacquer::Graph graph = onlyGraph(flags, messages);
   if (graph) fmt::print("{}", flags.format == "dot" ? graph.toDot() : graph.toJson());
@@ -371,6 +358,7 @@ struct VerbFlags {
   std::string node;
   lacquer::cli::EvalFlags eval;
   lacquer::cli::DfgFlags dfg;
+  lacquer::cli::ExchangeFlags exchange;
   lacquer::cli::EnvironmentFlags environment;
   lacquer::cli::PreviewFlags preview;
   lacquer::cli::LodFlags lod;
@@ -413,6 +401,12 @@ std::vector<Verb> verbsOf(VerbFlags& all) {
       {"preview", "a picture with a lit ball for each material, computed on the CPU",
        [&](CLI::App& verb) { addPreview(verb, all.preview, flags); },
        [&] { return runPreview(all.preview, options); }},
+      {"convert", "the materials of a file as a MaterialX document of one kind of surface",
+       [&](CLI::App& verb) { addConvert(verb, all.exchange, flags); },
+       [&] { return runConvert(all.exchange, flags); }},
+      {"bake", "procedural textures as images, and a glTF file that has them",
+       [&](CLI::App& verb) { addBake(verb, all.exchange, flags); },
+       [&] { return runBake(all.exchange, flags); }},
       {"lod", "levels of detail: cheaper shaders whose difference is seen, not feared",
        [&](CLI::App& verb) { addLevels(verb, flags, all.lod); },
        [&] { return runLod(all.lod, flags.files, flags.materials, options); }},

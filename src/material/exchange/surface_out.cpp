@@ -81,6 +81,15 @@ constexpr Row kOpenPbrRows[] = {
     {"thin_film_ior", 1, EXT "iridescence/iridescenceIor", {}, 0, 1.3, true},
     {"emission_color", 3, "emissiveFactor", "emissiveTexture", 4}};
 
+/// A coat as a clearcoat, and the reverse: what only one of them has is left out.
+constexpr Row kCoatAsClearcoat[] = {
+    {"clearcoat", 1, EXT "coat/coatFactor", EXT "coat/coatTexture", 0},
+    {"clearcoat_roughness", 1, EXT "coat/coatRoughnessFactor", EXT "coat/coatRoughnessTexture", 1}};
+constexpr Row kClearcoatAsCoat[] = {
+    {"coat_weight", 1, EXT "clearcoat/clearcoatFactor", EXT "clearcoat/clearcoatTexture", 0},
+    {"coat_roughness", 1, EXT "clearcoat/clearcoatRoughnessFactor", EXT "clearcoat/clearcoatRoughnessTexture",
+     1}};
+
 /// Terms of these only OpenPBR's surface has.
 constexpr std::string_view kOfOpenPbr[] = {"KHR_materials_coat", "KHR_materials_fuzz",
                                            "KHR_materials_diffuse_roughness"};
@@ -447,7 +456,12 @@ void Translation::gltfPbr() {
   film("iridescence_thickness", 1);
   occlusion();
   normal("normal", "normalTexture");
-  if (speaksOf(EXT "clearcoat/")) normal("clearcoat_normal", EXT "clearcoat/clearcoatNormalTexture");
+  if (speaksOf(EXT "clearcoat/")) {
+    normal("clearcoat_normal", EXT "clearcoat/clearcoatNormalTexture");
+  } else if (speaksOf(EXT "coat/")) {
+    for (const Row& one : kCoatAsClearcoat) row(one);
+    normal("clearcoat_normal", EXT "coat/coatNormalTexture");
+  }
   const double mode = numberOr("alphaMode", 0);
   if (mode != 0) put("alpha_mode", "integer", {mode});
   if (const Components* cutoff = number("alphaCutoff"); cutoff != nullptr && (*cutoff)[0] != 0.5)
@@ -469,6 +483,12 @@ void Translation::openPbr() {
   film("thin_film_thickness", kMicronsInNanometer);
   normal("geometry_normal", "normalTexture");
   normal("geometry_coat_normal", EXT "coat/coatNormalTexture");
+  if (speaksOf(EXT "clearcoat/") && !speaksOf(EXT "coat/")) {
+    for (const Row& one : kClearcoatAsCoat) row(one);
+    put("coat_ior", "float", {1.5});
+    put("coat_darkening", "float", {0});
+    normal("geometry_coat_normal", EXT "clearcoat/clearcoatNormalTexture");
+  }
   // Its surface is always a volume's unless its walls are thin.
   if (number(EXT "volume/thicknessFactor") == nullptr && speaksOf(EXT "transmission/"))
     put("geometry_thin_walled", "boolean", {1});

@@ -1,0 +1,84 @@
+#include "cli/exchange.h"
+
+#include <fmt/format.h>
+
+#include "cli/build.h"
+#include "cli/checks.h"
+#include "cli/streams.h"
+#include "cli/table.h"
+
+namespace lacquer::cli {
+
+namespace {
+
+void addReading(CLI::App& verb, OptionFlags& options) {
+  verb.add_flag("--permissive", options.options.permissive,
+                "drop an extension that must not be there instead of failing");
+  addNodeFolders(verb, options);
+  addLimit(verb, options);
+  addSyncFlag(verb, options);
+}
+
+}  // namespace
+
+void addConvert(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options) {
+  verb.add_option("file", flags.file, "a .gltf, .glb or .mtlx file")->required()->check(kNotEmpty);
+  verb.add_option("-o,--output", flags.output, "the .mtlx file to write")->required()->check(kNotEmpty);
+  verb.add_option("--as", flags.surface,
+                  "gltf_pbr or open_pbr_surface; without it the one that says more of a material")
+      ->check(CLI::IsMember({"gltf_pbr", "open_pbr_surface"}));
+  addReading(verb, options);
+}
+
+int runConvert(const ExchangeFlags& flags, const OptionFlags& options) {
+  Messages messages;
+  const bool written = writeMaterialX(flags.output, flags.file, {}, flags.surface, options.options, messages);
+  print(messages);
+  return written && !hasError(messages) ? 0 : 1;
+}
+
+void addBake(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options) {
+  verb.add_option("file", flags.file, "a .gltf or .mtlx file")->required()->check(kNotEmpty);
+  verb.add_option("-o,--output", flags.bake.output, "the .gltf file to write; images are put beside it")
+      ->required()
+      ->check(kNotEmpty);
+  verb.add_option("--size", flags.bake.size, "texels along each side of an image")
+      ->check(CLI::Range(1, 8192))
+      ->check(kWhole)
+      ->capture_default_str();
+  verb.add_flag("-q,--quiet", flags.quiet, "no table, no progress");
+  addJobs(verb, options);
+  addAllow(verb, options, "images");
+  addReading(verb, options);
+}
+
+int runBake(const ExchangeFlags& flags, const OptionFlags& options) {
+  Messages messages;
+  std::optional<Baked> baked;
+  {
+    ProgressLine line(terminalWidth() > 0 && !flags.quiet, "images");
+    baked = bake(flags.bake, flags.file, {}, options.options, messages,
+                 [&](size_t done, size_t known) { line(done, known); });
+  }
+  print(messages);
+  if (baked && !flags.quiet) {
+    for (const std::string& image : baked->images) fmt::print("{}\n", printable(image));
+    fmt::print("{} textures in {}\n", baked->textures, printable(baked->output));
+  }
+  return baked && !hasError(messages) ? 0 : 1;
+}
+
+int printDocument(const OptionFlags& flags, const std::string& file, const Strings& materials) {
+  Messages messages;
+  if (isGraphFile(file)) {
+    say("graph: {} is built of a material's terms, which MaterialX does not have: name the material's file\n",
+        printable(file));
+    return 2;
+  }
+  const std::string text = toMaterialX(file, materials, {}, flags.options, messages);
+  fmt::print("{}", text);
+  print(messages);
+  return text.empty() || hasError(messages) ? 1 : 0;
+}
+
+}  // namespace lacquer::cli

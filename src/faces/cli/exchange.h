@@ -1,0 +1,26 @@
+// `lacquer convert`, `lacquer bake`, and `lacquer graph --format mtlx`: materials for other tools.
+#pragma once
+
+#include <string>
+
+#include "cli/options.h"
+#include "lacquer/exchange.h"
+
+namespace lacquer::cli {
+
+struct ExchangeFlags {
+  std::string file, output, surface;
+  Bake bake;
+  bool quiet = false;
+};
+
+void addConvert(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options);
+int runConvert(const ExchangeFlags& flags, const OptionFlags& options);
+
+void addBake(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options);
+int runBake(const ExchangeFlags& flags, const OptionFlags& options);
+
+/// Prints the document of a file's materials.
+int printDocument(const OptionFlags& flags, const std::string& file, const Strings& materials);
+
+}  // namespace lacquer::cli

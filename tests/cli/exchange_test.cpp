@@ -1,0 +1,152 @@
+// `lacquer convert` and `lacquer bake`: materials for other tools, and patterns as images.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "command.h"
+
+namespace lacquer::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kDocument = R"(<materialx version="1.39">
+  <nodegraph name="NG">
+    <ramplr name="across" type="color3">
+      <input name="valuel" type="color3" value="0.1, 0.2, 0.9"/>
+      <input name="valuer" type="color3" value="0.8, 0.4, 0.1"/>
+    </ramplr>
+    <ramptb name="along" type="float">
+      <input name="valuet" type="float" value="0.2"/>
+      <input name="valueb" type="float" value="0.9"/>
+    </ramptb>
+    <output name="color" type="color3" nodename="across"/>
+    <output name="roughness" type="float" nodename="along"/>
+  </nodegraph>
+  <standard_surface name="shader" type="surfaceshader">
+    <input name="base" type="float" value="0.5"/>
+    <input name="base_color" type="color3" nodegraph="NG" output="color"/>
+    <input name="specular_roughness" type="float" nodegraph="NG" output="roughness"/>
+    <input name="coat" type="float" value="0.5"/>
+  </standard_surface>
+  <surfacematerial name="Ramp" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shader"/>
+  </surfacematerial>
+</materialx>
+)";
+
+constexpr const char* kProcedural = R"({
+  "asset": {"version": "2.0"},
+  "extensionsUsed": ["KHR_texture_procedurals", "EXT_texture_procedurals_mx_1_39"],
+  "images": [{"uri": "one texel.png"}],
+  "textures": [{"source": 0}],
+  "extensions": {"KHR_texture_procedurals": {"procedurals": [{
+    "name": "graph", "nodetype": "nodegraph", "type": "color3",
+    "nodes": [
+      {"name": "ramp", "nodetype": "ramplr", "type": "color3",
+       "inputs": {"valuel": {"nodetype": "input", "type": "color3", "value": [0, 0.5, 1]},
+                  "valuer": {"nodetype": "input", "type": "color3", "value": [1, 0.5, 0]}},
+       "outputs": {"out": {"nodetype": "output", "type": "color3"}}}],
+    "outputs": {"out": {"nodetype": "output", "type": "color3", "node": "ramp"}}
+  }]}},
+  "materials": [{"name": "Ramp", "extensions": {"KHR_materials_unlit": {}}, "pbrMetallicRoughness": {
+    "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_procedurals": {"index": 0, "output": "out"}}}
+  }}]
+})";
+
+/// In the middles of texels of images of 16 by 16.
+constexpr const char* kPoints = R"([
+  {"v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "uv0": [0.03125, 0.03125]},
+  {"v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "uv0": [0.28125, 0.71875]},
+  {"v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "uv0": [0.96875, 0.53125]}])";
+
+/// The largest difference of two files' colours, of all that eval prints for the points.
+double difference(const Workplace& place, const std::string& a, const std::string& b) {
+  const Outcome of_a = place.run({"eval", a, "--points", "points.json"});
+  const Outcome of_b = place.run({"eval", b, "--points", "points.json"});
+  EXPECT_EQ(of_a.status, 0) << of_a.err;
+  EXPECT_EQ(of_b.status, 0) << of_b.err;
+  const Json first = Json::parse(of_a.out)["rgba"];
+  const Json second = Json::parse(of_b.out)["rgba"];
+  EXPECT_EQ(first.size(), 3U);
+  EXPECT_EQ(second.size(), 3U);
+  double most = 0;
+  for (size_t i = 0; i < first.size(); ++i) {
+    for (size_t c = 0; c < 4; ++c)
+      most = std::max(most, std::abs(first[i][c].get<double>() - second[i][c].get<double>()));
+  }
+  EXPECT_NE(first[0], first[1]);
+  return most;
+}
+
+TEST(Bake, ofADocumentIsItsMaterial) {
+  const Workplace place;
+  place.write("ramp.mtlx", kDocument);
+  place.write("points.json", kPoints);
+  const Outcome baked = place.run({"bake", "ramp.mtlx", "-o", "out/ramp.gltf", "--size", "16"});
+  ASSERT_EQ(baked.status, 0) << baked.err;
+  EXPECT_EQ(baked.out,
+            "out/Ramp_baseColorTexture.png\nout/Ramp_metallicRoughnessTexture.png\n2 textures in "
+            "out/ramp.gltf\n");
+  const Json gltf = Json::parse(place.read("out/ramp.gltf"));
+  EXPECT_EQ(gltf["images"].size(), 2U);
+  EXPECT_EQ(gltf["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"], Json({0.5, 0.5, 0.5, 1.0}));
+  EXPECT_LT(difference(place, "ramp.mtlx", "out/ramp.gltf"), 0.004);
+  const std::string once = place.read("out/Ramp_baseColorTexture.png");
+  EXPECT_EQ(place.run({"bake", "ramp.mtlx", "-o", "out/ramp.gltf", "--size", "16", "--jobs", "1"}).status, 0);
+  EXPECT_EQ(place.read("out/Ramp_baseColorTexture.png"), once);
+}
+
+TEST(Bake, ofProceduralsKeepsThem) {
+  const Workplace place;
+  place.write("in/ramp.gltf", kProcedural);
+  place.write("points.json", kPoints);
+  const Outcome baked = place.run({"bake", "in/ramp.gltf", "-o", "ramp.gltf", "--size", "16", "-q"});
+  ASSERT_EQ(baked.status, 0) << baked.err;
+  EXPECT_EQ(baked.out, "");
+  Json gltf = Json::parse(place.read("ramp.gltf"));
+  EXPECT_EQ(gltf["images"][0]["uri"], "in/one texel.png");
+  EXPECT_EQ(gltf["images"][1]["uri"], "Ramp_baseColorTexture.png");
+  Json& info = gltf["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  EXPECT_EQ(info["index"], 1);
+  EXPECT_EQ(info["extensions"]["KHR_texture_procedurals"]["index"], 0);
+  // Who does not know the extension sees the image. Half a step of eight bits is 0.0044 next to white.
+  info.erase("extensions");
+  place.write("plain.gltf", gltf.dump());
+  EXPECT_LT(difference(place, "in/ramp.gltf", "plain.gltf"), 0.0045);
+}
+
+TEST(Bake, saysWhatIsWrong) {
+  const Workplace place;
+  place.write("plain.gltf", gltfOf({R"({"name": "plain"})"}));
+  const Outcome none = place.run({"bake", "plain.gltf", "-o", "out.gltf"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("[nothing-to-bake]"), std::string::npos) << none.err;
+  place.write("ramp.mtlx", kDocument);
+  const Outcome over = place.run({"bake", "ramp.mtlx", "-o", "ramp.mtlx"});
+  EXPECT_EQ(over.status, 1);
+  EXPECT_NE(over.err.find("[output-clash]"), std::string::npos) << over.err;
+  EXPECT_EQ(place.read("ramp.mtlx"), kDocument);
+}
+
+TEST(Convert, toEachSurface) {
+  const Workplace place;
+  place.write("ramp.mtlx", kDocument);
+  const Outcome open = place.run({"convert", "ramp.mtlx", "-o", "open.mtlx"});
+  EXPECT_EQ(open.status, 0) << open.err;
+  EXPECT_NE(place.read("open.mtlx").find("<open_pbr_surface name=\"SR_Ramp\""), std::string::npos);
+  const Outcome gltf = place.run({"convert", "ramp.mtlx", "-o", "gltf.mtlx", "--as", "gltf_pbr"});
+  EXPECT_EQ(gltf.status, 0) << gltf.err;
+  EXPECT_NE(place.read("gltf.mtlx").find("<gltf_pbr name=\"SR_Ramp\""), std::string::npos);
+  EXPECT_NE(place.read("gltf.mtlx").find("<input name=\"clearcoat\" type=\"float\" value=\"0.5\"/>"),
+            std::string::npos);
+  EXPECT_NE(gltf.err.find("KHR_materials_coat/coatDarkeningFactor has no counterpart in gltf_pbr"),
+            std::string::npos)
+      << gltf.err;
+  const Outcome over = place.run({"convert", "ramp.mtlx", "-o", "ramp.mtlx"});
+  EXPECT_EQ(over.status, 1);
+  EXPECT_NE(over.err.find("[output-clash]"), std::string::npos) << over.err;
+}
+
+}  // namespace
+}  // namespace lacquer::test
