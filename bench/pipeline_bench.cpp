@@ -1,6 +1,7 @@
 // Per material, warm, on one core: from the Material struct to each target; the same through glslang and
-// spirv-opt from our own text; validation apart. And whole runs whose shaders are all cached, against parsing
-// the JSON.
+// spirv-opt from our own text; validation apart; and an edit of its graph, of a number to the bytes of its
+// block and of the structure to SPIR-V. And whole runs whose shaders are all cached, against parsing the
+// JSON.
 #include "bench/pipeline_bench.h"
 
 #include <benchmark/benchmark.h>
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -78,10 +80,14 @@ std::vector<check::Spirv> throughGlslang(const std::vector<std::string>& texts) 
           *check::compile(texts[1], Target::Glsl, check::Stage::Fragment, "bench.frag")};
 }
 
+std::string pathOf(std::string_view work) {
+  return fmt::format("{}/bench/works/{}.gltf", LACQUER_SOURCE_FOLDER, work);
+}
+
 std::vector<Subject> subjects() {
   std::vector<Subject> all;
   for (const char* work : {"w0", "w1", "w2", "w3"}) {
-    const std::string path = fmt::format("{}/bench/works/{}.gltf", LACQUER_SOURCE_FOLDER, work);
+    const std::string path = pathOf(work);
     Result<material::Document> document = test::readMaterials(path);
     if (!document || document->materials.empty()) throw std::runtime_error(path + " cannot be read");
     gltf::VertexAttributes attributes;
@@ -125,6 +131,73 @@ void addMaterial(const Subject& s) {
     return check::validate(direct[0], false, "bench.vert").size() +
            check::validate(direct[1], false, "bench.frag").size();
   });
+}
+
+// -- edits --
+
+/// A tool's graph, which has its shader.
+class Edited {
+public:
+  explicit Edited(std::string_view work) {
+    options_.targets = {Target::Spirv};
+    options_.validate = false;
+    const Scene scene = Scene::load(pathOf(work), options_, messages_);
+    graph_ = scene.graph(0, kUnusedAttributes, options_, messages_);
+    shader_ = graph_.generate(options_, messages_);
+    block_.resize(shader_.uniformSize());
+    // An input that takes its value from a parameter, which the structure's edit makes a number, and back.
+    for (const NodeUse& node : graph_.nodes()) {
+      for (const Connection& input : node.inputs) {
+        for (const Parameter& parameter : graph_.parameters()) {
+          if (!parameter_.name.empty() || parameter.type != "float" ||
+              input.source != fmt::format(R"({{"parameter": "{}"}})", parameter.name))
+            continue;
+          node_ = node.id;
+          input_ = input;
+          parameter_ = parameter;
+        }
+      }
+    }
+    if (!shader_ || node_.empty()) throw std::runtime_error(fmt::format("{} cannot be edited", work));
+  }
+
+  /// A parameter's value to the bytes of the block.
+  std::byte number() {
+    odd_ = !odd_;
+    const double value = parameter_.value[0];
+    const bool done = graph_.setParameter(parameter_.name, {odd_ ? value / 2 : value}, messages_) &&
+                      graph_.changes() <= Change::Numbers && shader_.packGraph(graph_, block_, messages_);
+    if (!done) throw std::runtime_error("a number is not edited");
+    return block_[0];
+  }
+
+  /// Another connection to SPIR-V.
+  size_t structure() {
+    odd_ = !odd_;
+    const std::string source = odd_ ? fmt::format("{}", parameter_.value[0]) : input_.source;
+    if (!graph_.connect(node_, input_.name, source, messages_) || graph_.changes() != Change::Program)
+      throw std::runtime_error("a connection is not edited");
+    const Shader shader = graph_.generate(options_, messages_);
+    if (!shader) throw std::runtime_error("an edited graph makes no shader");
+    return shader.fragmentSpirv().size();
+  }
+
+private:
+  Options options_;
+  Messages messages_;
+  Graph graph_;
+  Shader shader_;
+  std::vector<std::byte> block_;
+  std::string node_;
+  Connection input_;
+  Parameter parameter_;
+  bool odd_ = false;
+};
+
+void addEdits(std::string_view work) {
+  const auto edited = std::make_shared<Edited>(work);
+  add(fmt::format("{}/edit a number", work), [edited] { return edited->number(); });
+  add(fmt::format("{}/edit the structure", work), [edited] { return edited->structure(); });
 }
 
 // -- whole runs --
@@ -188,8 +261,9 @@ nlohmann::ordered_json summary(std::map<std::string, double>& us, const std::vec
   json["unit"] = "microseconds of CPU time, one core, the least of 8 repetitions";
   for (const Subject& s : all) {
     nlohmann::ordered_json& row = json["materials"][s.name];
-    for (const char* stage : {"graph", "graph+lower", "graph+lower+passes", "to spirv", "to glsl", "to hlsl",
-                              "glslang", "spirv-opt -O", "spirv-val"}) {
+    for (const char* stage :
+         {"graph", "graph+lower", "graph+lower+passes", "to spirv", "to glsl", "to hlsl", "glslang",
+          "spirv-opt -O", "spirv-val", "edit a number", "edit the structure"}) {
       row[stage] = rounded(us[s.name + "/" + stage]);
     }
     const double text_route =
@@ -207,7 +281,10 @@ nlohmann::ordered_json summary(std::map<std::string, double>& us, const std::vec
 
 int runPipeline() {
   const std::vector<Subject> all = subjects();
-  for (const Subject& subject : all) addMaterial(subject);
+  for (const Subject& subject : all) {
+    addMaterial(subject);
+    addEdits(subject.name);
+  }
   const RunFiles files(10000, 40);
   files.run();
   if (!files.run()) throw std::runtime_error("the second run is not served from the cache");
@@ -221,11 +298,19 @@ int runPipeline() {
 }
 
 int repeat(std::string_view work, size_t count) {
-  for (const Subject& subject : subjects()) {
-    if (subject.name != work) continue;
-    toSpirv(toPlaced(subject));
-    for (size_t i = 0; i < count; ++i) toSpirv(toPlaced(subject));
+  const size_t slash = std::min(work.find('/'), work.size());
+  const std::string_view edit = work.substr(slash);
+  const auto repeated = [&](const auto& one) {
+    one();
+    for (size_t i = 0; i < count; ++i) one();
     return 0;
+  };
+  for (const Subject& subject : subjects()) {
+    if (subject.name != work.substr(0, slash)) continue;
+    if (edit.empty()) return repeated([&] { toSpirv(toPlaced(subject)); });
+    Edited edited(subject.name);
+    if (edit == "/number") return repeated([&] { edited.number(); });
+    if (edit == "/structure") return repeated([&] { edited.structure(); });
   }
   fmt::print(stderr, "there is no work '{}'\n", work);
   return 2;

@@ -10,7 +10,8 @@ namespace lacquer::bench {
 int runPipeline();
 
 /// A work's way from the Material struct to SPIR-V, once to be warm and `count` times more: what `./dev bench
-/// instructions` runs under callgrind. 2 where there is no such work.
+/// instructions` runs under callgrind. Of "w1/number" and "w1/structure" the edit of its graph, to the bytes
+/// of the block and to SPIR-V. 2 where there is no such work.
 int repeat(std::string_view work, size_t count);
 
 }  // namespace lacquer::bench

@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "inputs.h"
 #include "support/answers.h"
+#include "support/cases.h"
 
 namespace lacquer::test {
 namespace {
@@ -134,6 +137,31 @@ TEST(Graphs, SayWhatTheyCannotBeAskedFor) {
   Messages messages;
   EXPECT_EQ(jsonOf(evaluate(Graph(), kDark, Engine::Double, {}, quick(), messages)), "");
   EXPECT_EQ(errorsOf(messages), "empty-handle");
+}
+
+/// A run over graphs says all that is wrong with one and makes the others.
+TEST(Graphs, ThatAreWrongAreSaidInARun) {
+  const std::filesystem::path folder = emptyFolder();
+  const auto write = [&](const std::string& name, const std::string& parts) {
+    std::ofstream(folder / name) << R"({"lacquer_graph": 1, "template": "bsdf", )" << parts << "}";
+    return (folder / name).string();
+  };
+  const Strings files = {
+      write(
+          "missing.json",
+          R"("nodes": [{"id": "e", "node": "emission", "inputs": {"factor": {"node": "nobody"}, "strength": 1}},
+              {"id": "q", "node": "nothing"}, {"id": "g", "group": "none"}], "outputs": {"alpha": {"node": "z"}})"),
+      write("circle.json",
+            R"("nodes": [{"id": "a", "node": "add", "inputs": {"in1": {"node": "b"}, "in2": 1}},
+              {"id": "b", "node": "add", "inputs": {"in1": {"node": "a"}, "in2": 1}}], "outputs": {"alpha": {"node": "a"}})"),
+      write("good.json", R"("outputs": {"alpha": 0.5})")};
+  Options options = quick();
+  options.sync = false;
+  Messages messages;
+  const Report report = generate(files, {}, (folder / "out").string(), options, messages);
+  EXPECT_FALSE(report.ok);
+  EXPECT_EQ(errorsOf(messages), "unknown-source unknown-node unknown-group unknown-source cycle");
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/manifest.json"));
 }
 
 /// Outside of its file a graph has no images: each is given, or said to be absent.

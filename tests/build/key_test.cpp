@@ -59,6 +59,7 @@ const std::vector<Row>& rows() {
       {"programs", Decides::Run, [](Options& o) { o.programs = 2; }},
       {"weights", Decides::Run, [](Options& o) { o.weights = "weights.json"; }},
       {"programs_report", Decides::Run, [](Options& o) { o.programs_report = "programs.md"; }},
+      {"properties", Decides::Graph, [](Options& o) { o.properties = true; }},
       {"pipelines", Decides::Run, [](Options& o) { o.pipelines = "pipelines.json"; }},
       {"programs_model", Decides::Run, [](Options& o) { o.programs_model = true; }},
   };

@@ -35,15 +35,18 @@ Strings liveTerms(const Options& options) {
 }
 
 Diagnostics Language::check() const {
+  // What is wrong with a declaration hides nothing that is wrong with the parts of other files.
   Diagnostics all = checkAll();
-  if (hasError(all)) return all;
-  const auto profiles = model::profiles(*this);
-  if (!profiles) return profiles.error();
   const auto add = [&](const Diagnostics& found) {
     for (const Diagnostic& one : found) {
       if (std::find(all.begin(), all.end(), one) == all.end()) addBounded(all, one);
     }
   };
+  const auto profiles = model::profiles(*this);
+  if (!profiles) {
+    add(profiles.error());
+    return all;
+  }
   const auto see = [&](std::string_view profile, const std::set<std::string, std::less<>>& lods) {
     const Result<const model::Model*> model = models.of(profile, lods);
     if (!model) return add(model.error());

@@ -222,7 +222,6 @@ struct PatternsOut::Scope {
 PatternsOut::PatternsOut(const graph::Graph& graph, const lang::Library& library, const gltf::Scene& scene,
                          const std::vector<SurfaceOut>& surfaces, Diagnostics& said)
     : graph_(graph),
-      library_(library),
       scene_(scene),
       surfaces_(surfaces),
       said_(said),
@@ -624,9 +623,9 @@ void PatternsOut::element(Scope& scope, size_t place) {
     if (family == "texel_product") port = input == "a" ? "in1" : "in2";
     const bool number_port = isOneOf(port, kNumberPorts);
     if (const auto* choice = std::get_if<graph::Choice>(&source.from)) {
-      const auto place = std::find(param->choices.begin(), param->choices.end(), choice->name);
+      const auto chosen = std::find(param->choices.begin(), param->choices.end(), choice->name);
       made.children.push_back(number_port
-                                  ? valueOf(port, "integer", std::to_string(place - param->choices.begin()))
+                                  ? valueOf(port, "integer", std::to_string(chosen - param->choices.begin()))
                                   : valueOf(port, "string", choice->name));
     } else if (const auto* ref = std::get_if<graph::TextureRef>(&source.from)) {
       const std::optional<size_t> slot = graph_.findTexture(ref->name);
@@ -640,9 +639,9 @@ void PatternsOut::element(Scope& scope, size_t place) {
       Element& last = made.children.back();
       const auto number = constant(source);
       if (param->choices.empty() || number_port || !number) continue;
-      const auto choice = static_cast<size_t>(std::max(number->second[0], 0.0));
+      const auto chosen = static_cast<size_t>(std::max(number->second[0], 0.0));
       last.set("type", "string");
-      last.set("value", std::string(param->choices[std::min(choice, param->choices.size() - 1)]));
+      last.set("value", std::string(param->choices[std::min(chosen, param->choices.size() - 1)]));
     }
   }
   scope.into->children.push_back(std::move(made));

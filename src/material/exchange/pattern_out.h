@@ -80,7 +80,6 @@ private:
   void lost(std::string message, std::string help = {});
 
   const graph::Graph& graph_;
-  const lang::Library& library_;
   const gltf::Scene& scene_;
   const std::vector<SurfaceOut>& surfaces_;
   Diagnostics& said_;
