@@ -7,6 +7,6 @@ namespace lacquer::optimize {
 std::span<const Family> families() { return {}; }
 const Family* findFamily(std::string_view) { return nullptr; }
 std::vector<Candidate> search(const ir::Module&, const Settings&) { return {}; }
-std::vector<Outcome> front(const ir::Module&, const Settings&, std::span<const double>) { return {}; }
+std::vector<Candidate> front(const ir::Module&, const Settings&, std::span<const double>) { return {}; }
 
 }  // namespace lacquer::optimize
