@@ -142,7 +142,7 @@ struct Options {
   std::string
       optimize_for;    ///< the family of GPUs whose cycles count, of optimizeFamilies(); empty for the first
   bool debug = false;  ///< SPIR-V has the names of values and the lines of the nodes (Direct)
-  /// What stays editable though today's value would remove it: terms, of liveTerms(), and properties of
+  /// Terms, of liveTerms(), that stay editable though today's value would remove them, and properties of
   /// materials by JSON pointer, "/materials/0/emissiveFactor".
   Strings live;
   Strings node_directories;  ///< folders with more node files (*.node) beside the built-in library

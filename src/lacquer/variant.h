@@ -1,5 +1,5 @@
-/// What tune() has found of a node, as text for its file. Beside lacquer.h, which says what holds for every
-/// declaration.
+/// Forms of a node that tune() has found, as text for its file. Beside lacquer.h, which says what holds for
+/// every declaration.
 #pragma once
 
 #include <optional>

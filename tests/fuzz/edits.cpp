@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "choices.h"
 #include "feeds.h"
 
 namespace lacquer::fuzz {
@@ -81,22 +82,15 @@ struct Step {
 std::string quoted(std::string_view text) { return fmt::format("\"{}\"", text); }
 
 /// Edits that an input's bytes choose, mostly of what is there.
-class Writer {
+class Writer : Choices {
 public:
-  explicit Writer(std::string_view bytes) : bytes_(bytes) {}
+  explicit Writer(std::string_view bytes) : Choices(bytes) {}
 
-  bool done() const { return bytes_.empty(); }
+  using Choices::done;
   std::string_view start() { return kStarts[next() % kStarts.size()]; }
   Step step(const Graph& graph);
 
 private:
-  uint8_t next() {
-    if (bytes_.empty()) return 0;
-    const auto byte = static_cast<uint8_t>(bytes_[0]);
-    bytes_.remove_prefix(1);
-    return byte;
-  }
-  bool one(uint8_t in) { return next() % in == 1; }
   template <class T, size_t N>
   T pick(const std::array<T, N>& list) {
     return list[next() % N];
@@ -146,7 +140,6 @@ private:
   Step ofGroup();
   Step ofUi();
 
-  std::string_view bytes_;
   const Graph* graph_ = nullptr;
   std::string group_;
 };

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "choices.h"
 #include "feeds.h"
 #include "graph/graph.h"
 #include "lower/lower.h"
@@ -71,9 +72,9 @@ constexpr std::array kConditions = {"oddFactor == 0",
 constexpr std::array kSections = {"surface", "lobes", "direct", "indirect"};
 
 /// Text that an input's bytes choose, well-formed for the most part.
-class Writer {
+class Writer : Choices {
 public:
-  explicit Writer(std::string_view bytes) : bytes_(bytes) {}
+  explicit Writer(std::string_view bytes) : Choices(bytes) {}
 
   std::string run() {
     std::string text = fmt::format("\n/// P.\npart odd of ODD_layer over {}", pick(kParts));
@@ -85,18 +86,11 @@ public:
           "surface:\n    odd.a = odd_color(oddColor, oddFactor);\n    odd.b = oddTexture;\n    odd.c = "
           "odd_scale(oddFactor);\n    odd.pair = odd_pair(oddFactor);\n    bool odd.is = oddTexture;\n";
     }
-    while (!bytes_.empty() && text.size() < 4096) text += line(0);
+    while (!done() && text.size() < 4096) text += line(0);
     return text + "}\n";
   }
 
 private:
-  uint8_t next() {
-    if (bytes_.empty()) return 0;
-    const auto byte = static_cast<uint8_t>(bytes_[0]);
-    bytes_.remove_prefix(1);
-    return byte;
-  }
-  bool one(uint8_t in) { return next() % in == 1; }
   template <size_t N>
   const char* pick(const std::array<const char*, N>& list) {
     return list[next() % N];
@@ -141,7 +135,6 @@ private:
     }
   }
 
-  std::string_view bytes_;
   int lines_ = 0;
 };
 

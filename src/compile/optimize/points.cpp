@@ -67,15 +67,65 @@ void Points::draw(const Node& node, Ref id, Values& values) const {
   }
 }
 
-void Points::evaluateNode(const Plan& plan, Ref at) {
-  const Node& node = plan.nodes[at];
-  Values& out = values_[at];
-  const int width = std::min(ir::componentCount(node.type), 4);
-  const auto wide = [&](size_t k) { return std::min(ir::componentCount(plan.nodes[node.args[k]].type), 4); };
-  const auto of = [&](size_t k) -> const Values& { return values_[node.args[k]]; };
-  const auto place = [&](size_t k, int c) { return static_cast<size_t>(wide(k) == 1 ? 0 : c); };
-  // The sum of products of components, and what it is off.
-  const auto dot = [&](size_t a, size_t b, Row& value, Row& error) {
+/// One node of a plan, at all points.
+class Points::Step {
+public:
+  Step(const EGraph& graph, const Plan& plan, std::vector<Values>& values, Ref at)
+      : graph_(graph),
+        plan_(plan),
+        values_(values),
+        node_(plan.nodes[at]),
+        out_(values[at]),
+        width_(std::min(ir::componentCount(node_.type), 4)) {}
+
+  void run() {
+    switch (node_.op) {
+      case Op::Constant: return constant();
+      case Op::Swizzle: return swizzle();
+      case Op::Construct: return construct();
+      case Op::Dot: return dot(0, 1, out_.value[0], out_.error[0]);
+      case Op::Length:
+      case Op::Normalize: return length();
+      case Op::Cross: return cross();
+      default:
+        for (int c = 0; c < width_; ++c) component(c);
+    }
+  }
+
+private:
+  int wide(size_t k) const { return std::min(ir::componentCount(plan_.nodes[node_.args[k]].type), 4); }
+  const Values& of(size_t k) const { return values_[node_.args[k]]; }
+
+  void constant() {
+    for (size_t k = 0; k < static_cast<size_t>(width_); ++k) {
+      const double x = graph_.constants()[node_.payload][k];
+      out_.value[k].fill(x);
+      out_.error[k].fill(std::abs(x - static_cast<double>(static_cast<float>(x))));
+    }
+  }
+
+  void swizzle() {
+    for (int c = 0; c < width_; ++c) {
+      const auto from = static_cast<size_t>(ir::swizzleComponent(node_.payload, c));
+      out_.value[static_cast<size_t>(c)] = of(0).value[from];
+      out_.error[static_cast<size_t>(c)] = of(0).error[from];
+    }
+  }
+
+  void construct() {
+    size_t next = 0;
+    for (size_t k = 0; k < node_.count; ++k) {
+      for (int c = 0; c < wide(k) && next < 4; ++c, ++next) {
+        out_.value[next] = of(k).value[static_cast<size_t>(c)];
+        out_.error[next] = of(k).error[static_cast<size_t>(c)];
+      }
+    }
+    for (; next < static_cast<size_t>(width_); ++next)
+      out_.value[next] = of(0).value[0], out_.error[next] = of(0).error[0];
+  }
+
+  /// The sum of products of components, and what it is off.
+  void dot(size_t a, size_t b, Row& value, Row& error) const {
     value.fill(0);
     error.fill(0);
     for (int c = 0; c < wide(0); ++c) {
@@ -88,128 +138,115 @@ void Points::evaluateNode(const Plan& plan, Ref at) {
                     kHalfUlp * std::abs(x * y) + (c > 0 ? kHalfUlp * std::abs(value[p]) : 0);
       }
     }
-  };
-  if (node.op == Op::Constant) {
-    for (size_t k = 0; k < static_cast<size_t>(width); ++k) {
-      const double x = graph_.constants()[node.payload][k];
-      out.value[k].fill(x);
-      out.error[k].fill(std::abs(x - static_cast<double>(static_cast<float>(x))));
-    }
-    return;
   }
-  if (node.op == Op::Swizzle) {
-    for (int c = 0; c < width; ++c) {
-      const auto from = static_cast<size_t>(ir::swizzleComponent(node.payload, c));
-      out.value[static_cast<size_t>(c)] = of(0).value[from];
-      out.error[static_cast<size_t>(c)] = of(0).error[from];
-    }
-    return;
-  }
-  if (node.op == Op::Construct) {
-    size_t next = 0;
-    for (size_t k = 0; k < node.count; ++k) {
-      for (int c = 0; c < wide(k) && next < 4; ++c, ++next) {
-        out.value[next] = of(k).value[static_cast<size_t>(c)];
-        out.error[next] = of(k).error[static_cast<size_t>(c)];
-      }
-    }
-    for (; next < static_cast<size_t>(width); ++next)
-      out.value[next] = of(0).value[0], out.error[next] = of(0).error[0];
-    return;
-  }
-  if (node.op == Op::Dot) return dot(0, 1, out.value[0], out.error[0]);
-  if (node.op == Op::Length || node.op == Op::Normalize) {
+
+  /// Op::Length and Op::Normalize.
+  void length() {
     Row squared, off;
     dot(0, 0, squared, off);
     for (size_t p = 0; p < kCount; ++p) {
       const double length = std::sqrt(squared[p]);
       const double part = off[p] / (2 * squared[p]) + kTwoUlps;
-      if (node.op == Op::Length) {
-        out.value[0][p] = length;
-        out.error[0][p] = length * part;
+      if (node_.op == Op::Length) {
+        out_.value[0][p] = length;
+        out_.error[0][p] = length * part;
         continue;
       }
-      for (size_t k = 0; k < static_cast<size_t>(width); ++k) {
-        out.value[k][p] = of(0).value[k][p] / length;
-        out.error[k][p] = std::abs(out.value[k][p]) * (part + kHalfUlp) + of(0).error[k][p] / length;
+      for (size_t k = 0; k < static_cast<size_t>(width_); ++k) {
+        out_.value[k][p] = of(0).value[k][p] / length;
+        out_.error[k][p] = std::abs(out_.value[k][p]) * (part + kHalfUlp) + of(0).error[k][p] / length;
       }
     }
-    return;
   }
-  if (node.op == Op::Cross) {
+
+  void cross() {
+    const Values& a = of(0);
+    const Values& b = of(1);
     for (size_t c = 0; c < 3; ++c) {
       const size_t i = (c + 1) % 3;
       const size_t j = (c + 2) % 3;
       for (size_t p = 0; p < kCount; ++p) {
-        const auto& a = of(0);
-        const auto& b = of(1);
         const double first = a.value[i][p] * b.value[j][p];
         const double second = a.value[j][p] * b.value[i][p];
-        out.value[c][p] = first - second;
-        out.error[c][p] = std::abs(a.value[i][p]) * b.error[j][p] + std::abs(b.value[j][p]) * a.error[i][p] +
-                          std::abs(a.value[j][p]) * b.error[i][p] + std::abs(b.value[i][p]) * a.error[j][p] +
-                          kHalfUlp * (std::abs(first) + std::abs(second) + std::abs(first - second));
+        out_.value[c][p] = first - second;
+        out_.error[c][p] = std::abs(a.value[i][p]) * b.error[j][p] + std::abs(b.value[j][p]) * a.error[i][p] +
+                           std::abs(a.value[j][p]) * b.error[i][p] + std::abs(b.value[i][p]) * a.error[j][p] +
+                           kHalfUlp * (std::abs(first) + std::abs(second) + std::abs(first - second));
       }
     }
-    return;
   }
-  for (int c = 0; c < width; ++c) {
+
+  void component(int c) {
     const auto k = static_cast<size_t>(c);
-    Row& value = out.value[k];
-    Row& error = out.error[k];
-    const Row& a = of(0).value[place(0, c)];
-    const Row& ea = of(0).error[place(0, c)];
-    const Row& b = node.count > 1 ? of(1).value[place(1, c)] : a;
-    const Row& eb = node.count > 1 ? of(1).error[place(1, c)] : ea;
-    if (node.op == Op::Add) {
+    Row& value = out_.value[k];
+    Row& error = out_.error[k];
+    // Numbers stand beside vectors; of fewer operands than three the first stands for the others.
+    const auto operand = [&](size_t i) { return node_.count > i ? i : size_t{0}; };
+    const auto place = [&](size_t i) { return wide(i) == 1 ? 0 : k; };
+    const auto row = [&](size_t i) -> const Row& { return of(operand(i)).value[place(operand(i))]; };
+    const auto off = [&](size_t i) -> const Row& { return of(operand(i)).error[place(operand(i))]; };
+    const Row &a = row(0), &b = row(1), &d = row(2);
+    const Row &ea = off(0), &eb = off(1), &ed = off(2);
+    // Most of a plan is sums and products: loops of their own, which are vectorized.
+    if (node_.op == Op::Add) {
       for (size_t p = 0; p < kCount; ++p) {
         value[p] = a[p] + b[p];
         error[p] = ea[p] + eb[p] + kHalfUlp * std::abs(value[p]);
       }
-      continue;
+      return;
     }
-    if (node.op == Op::Mul) {
+    if (node_.op == Op::Mul) {
       for (size_t p = 0; p < kCount; ++p) {
         value[p] = a[p] * b[p];
         error[p] = std::abs(a[p]) * eb[p] + std::abs(b[p]) * ea[p] + kHalfUlp * std::abs(value[p]);
       }
-      continue;
+      return;
     }
-    if (node.op == Op::Neg || node.op == Op::Abs || node.op == Op::SumOverLights) {
-      for (size_t p = 0; p < kCount; ++p) {
-        value[p] = node.op == Op::Neg ? -a[p] : node.op == Op::Abs ? std::abs(a[p]) : a[p];
-        error[p] = ea[p];
-      }
-      continue;
-    }
-    const Row& d = node.count > 2 ? of(2).value[place(2, c)] : a;
-    const Row& ed = node.count > 2 ? of(2).error[place(2, c)] : ea;
     for (size_t p = 0; p < kCount; ++p) {
-      const double x = node.op == Op::Div ? 1 / a[p] : ir::foldComponent<double>(node.op, a[p], b[p], d[p]);
-      value[p] = x;
-      double slope = 0;
-      double own = kTwoUlps * std::abs(x);
-      if (node.op == Op::Div) slope = x * x;
-      if (node.op == Op::Sqrt) slope = 0.5 / x;
-      if (node.op == Op::InverseSqrt) slope = 0.5 * std::abs(x * x * x);
-      if (node.op == Op::Exp2) slope = std::numbers::ln2 * x;
-      if (node.op == Op::Exp) slope = x;
-      if (node.op == Op::Log2) slope = 1 / (std::numbers::ln2 * a[p]), own += 0x1p-24;
-      if (node.op == Op::Log) slope = 1 / a[p], own += 0x1p-24;
-      if (node.op == Op::Sin || node.op == Op::Cos) slope = 1, own += 0x1p-22;
-      double off = std::abs(slope) * ea[p];
-      if (node.op == Op::Min || node.op == Op::Max) off = x == a[p] ? ea[p] : eb[p], own = 0;
-      if (node.op == Op::Clamp) off = x == a[p] ? ea[p] : x == b[p] ? eb[p] : ed[p], own = 0;
-      if (node.op == Op::Select) off = a[p] != 0 ? eb[p] : ed[p], own = 0;
-      if (node.op == Op::Less || node.op == Op::LessEqual) off = own = 0;
-      if (node.op == Op::Pow) off = std::abs(b[p] * x / a[p]) * ea[p] + std::abs(x * std::log(a[p])) * eb[p];
-      if (node.op == Op::Mix)
-        off = std::abs(1 - d[p]) * ea[p] + std::abs(d[p]) * eb[p] + std::abs(b[p] - a[p]) * ed[p] +
-              kHalfUlp * (2 * std::abs(a[p] * (1 - d[p])) + std::abs(b[p] * d[p]));
-      error[p] = off + own;
+      value[p] = node_.op == Op::Div ? 1 / a[p] : ir::foldComponent<double>(node_.op, a[p], b[p], d[p]);
+      error[p] = errorOf(value[p], {a[p], b[p], d[p]}, {ea[p], eb[p], ed[p]});
     }
   }
-}
+
+  /// What a result x of those operands is off, which are off by so much.
+  double errorOf(double x, std::array<double, 3> of, std::array<double, 3> off) const {
+    const auto [a, b, d] = of;
+    const auto [ea, eb, ed] = off;
+    const double two = kTwoUlps * std::abs(x);
+    switch (node_.op) {
+      case Op::Neg:
+      case Op::Abs:
+      case Op::SumOverLights: return ea;
+      case Op::Div: return x * x * ea + two;
+      case Op::Sqrt: return std::abs(0.5 / x) * ea + two;
+      case Op::InverseSqrt: return 0.5 * std::abs(x * x * x) * ea + two;
+      case Op::Exp2: return std::abs(std::numbers::ln2 * x) * ea + two;
+      case Op::Exp: return std::abs(x) * ea + two;
+      case Op::Log2: return std::abs(1 / (std::numbers::ln2 * a)) * ea + (two + 0x1p-24);
+      case Op::Log: return std::abs(1 / a) * ea + (two + 0x1p-24);
+      case Op::Sin:
+      case Op::Cos: return ea + (two + 0x1p-22);
+      case Op::Min:
+      case Op::Max: return x == a ? ea : eb;
+      case Op::Clamp: return x == a ? ea : x == b ? eb : ed;
+      case Op::Select: return a != 0 ? eb : ed;
+      case Op::Less:
+      case Op::LessEqual: return 0;
+      case Op::Pow: return std::abs(b * x / a) * ea + std::abs(x * std::log(a)) * eb + two;
+      case Op::Mix:
+        return std::abs(1 - d) * ea + std::abs(d) * eb + std::abs(b - a) * ed +
+               kHalfUlp * (2 * std::abs(a * (1 - d)) + std::abs(b * d)) + two;
+      default: return two;
+    }
+  }
+
+  const EGraph& graph_;
+  const Plan& plan_;
+  std::vector<Values>& values_;
+  const Node& node_;
+  Values& out_;
+  int width_;
+};
 
 void Points::evaluate(const Plan& plan, std::span<const Ref> classes) {
   values_.resize(std::max(values_.size(), plan.nodes.size()));
@@ -218,7 +255,7 @@ void Points::evaluate(const Plan& plan, std::span<const Ref> classes) {
     if (node.opaque())
       draw(node, classes[at], values_[at]);
     else
-      evaluateNode(plan, at);
+      Step(graph_, plan, values_, at).run();
   }
 }
 

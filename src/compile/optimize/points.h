@@ -35,9 +35,9 @@ private:
     std::array<Row, 4> error;
   };
 
+  class Step;
   void draw(const Node& node, Ref id, Values& values) const;
   void evaluate(const Plan& plan, std::span<const Ref> classes);
-  void evaluateNode(const Plan& plan, Ref at);
   template <class Visit>
   void ends(const Plan& plan, std::span<const Ref> classes, Visit visit) const;
 

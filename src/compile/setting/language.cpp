@@ -35,7 +35,7 @@ Strings liveTerms(const Options& options) {
 }
 
 Diagnostics Language::check() const {
-  // What is wrong with a declaration hides nothing that is wrong with the parts of other files.
+  // A wrong declaration hides no mistake in the parts of other files.
   Diagnostics all = checkAll();
   const auto add = [&](const Diagnostics& found) {
     for (const Diagnostic& one : found) {

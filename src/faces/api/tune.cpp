@@ -89,7 +89,7 @@ std::optional<Named> find(const std::string& name, const Options& options, Messa
   return Named{*library, *decl, variant};
 }
 
-/// What is wrong with the name of another variant.
+/// Errors in the name of a new variant.
 Diagnostics wrongVariant(const lang::NodeDecl& node, const std::string& name) {
   const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto good = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };

@@ -49,7 +49,8 @@ void addValueLook(CLI::App& verb, ValueLook& look) {
   static const std::map<std::string, As> kWays = {
       {"color", As::Color}, {"vector", As::Vector}, {"grey", As::Grey}};
   verb.add_option("--as", look.as, "how values of --node are drawn; as their types want it when absent")
-      ->transform(CLI::CheckedTransformer(kWays));
+      ->transform(CLI::CheckedTransformer(kWays).description("{color,grey,vector}"))
+      ->type_name("TEXT");
   verb.add_option("--scale", look.scale, "what values of --node are multiplied by")->check(kNumber);
 }
 

@@ -154,7 +154,7 @@ Result<preview::Shading> Baking::shadingOf(const material::Material& material, c
   return preview::Shading::make(std::move(look), studio_);
 }
 
-/// What a material of a document is in glTF, without its textures.
+/// A material of a document as glTF has it, without its textures.
 Json Baking::materialJson(const material::Material& material) const {
   Json made = Json::object();
   made["name"] = material.name;

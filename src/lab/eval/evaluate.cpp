@@ -328,7 +328,8 @@ private:
     }
   }
 
-  /// What no integer is becomes any: Vulkan leaves it open, and devices differ.
+  /// A number beyond the integers' range becomes any integer: Vulkan leaves the conversion open, and devices
+  /// differ.
   void converted(const Instruction& instruction) {
     if (instruction.op != Op::ToInt && instruction.op != Op::ToUInt) return;
     const double least = instruction.op == Op::ToInt ? -0x1p31 : 0;

@@ -244,7 +244,7 @@ void Library::Impl::wakeAll() {
 
 namespace {
 
-/// What a vendor may call as another one does. All else is named by users.
+/// Kinds of declarations whose names two vendors may share. All others are named by users.
 bool isVendors(DeclKind kind) {
   return kind == DeclKind::Const || kind == DeclKind::Node || kind == DeclKind::Part;
 }

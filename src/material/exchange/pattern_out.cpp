@@ -258,7 +258,7 @@ bool PatternsOut::colorOf(const lang::NodeDecl& decl, size_t group, const graph:
   if (isOneOf(family, kOfVectors)) return false;
   if (isOneOf(family, kOfColors) || decl.category == "colortransform") return true;
   for (const auto& [name, source] : node.inputs) {
-    // What is decoded is a colour.
+    // A decoded texture is a colour.
     const auto* ref = std::get_if<graph::TextureRef>(&source.from);
     const std::optional<size_t> place = ref == nullptr ? std::nullopt : graph_.findTexture(ref->name);
     if (place && graph_.textures[*place].srgb) return true;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "graph/contracts.h"
 #include "graph/graph.h"
@@ -17,6 +19,7 @@ public:
       : graph_(graph), contracts_(graph, library), body_(contracts_.main()), also_(also) {}
 
   std::vector<size_t> run() {
+    sources_.resize(graph_.nodes.size());
     // As the ports ask for them, which also says what nobody asks for.
     const std::vector<size_t> reached = from(ports());
     std::vector<size_t> roots;
@@ -49,24 +52,26 @@ private:
     if (place) nodes.push_back(*place);
   }
 
-  /// In the order in which the library declares the inputs.
-  std::vector<size_t> sourcesOf(size_t index) const {
+  /// In the order in which the library declares the inputs; found once for both walks.
+  const std::vector<size_t>& sourcesOf(size_t index) {
+    std::optional<std::vector<size_t>>& nodes = sources_[index];
+    if (nodes) return *nodes;
+    nodes.emplace();
     const Node& node = graph_.nodes[index];
-    std::vector<size_t> nodes;
     const Contract* contract = contracts_.of(body_.nodes()[index]);
     for (size_t i = 0; contract != nullptr && i < contract->params.size(); ++i) {
       for (const auto& [name, source] : node.inputs) {
-        if (name == contract->params[i].name) add(source, nodes);
+        if (name == contract->params[i].name) add(source, *nodes);
       }
     }
-    return nodes;
+    return *nodes;
   }
 
   /// The roots and what they take values from, sources first; no stack, whatever the graph.
-  std::vector<size_t> from(const std::vector<size_t>& roots) const {
+  std::vector<size_t> from(const std::vector<size_t>& roots) {
     struct Visit {
       size_t node;
-      std::vector<size_t> sources;
+      const std::vector<size_t>* sources;
       size_t next = 0;
     };
     std::vector<size_t> order;
@@ -75,14 +80,14 @@ private:
     const auto open = [&](size_t node) {
       if (seen[node]) return;
       seen[node] = true;
-      path.push_back({node, sourcesOf(node)});
+      path.push_back({node, &sourcesOf(node)});
     };
     for (const size_t root : roots) {
       open(root);
       while (!path.empty()) {
         Visit& visit = path.back();
-        if (visit.next < visit.sources.size()) {
-          open(visit.sources[visit.next++]);
+        if (visit.next < visit.sources->size()) {
+          open((*visit.sources)[visit.next++]);
         } else {
           order.push_back(visit.node);
           path.pop_back();
@@ -96,6 +101,7 @@ private:
   Contracts contracts_;
   const Body& body_;
   const Source* also_;
+  std::vector<std::optional<std::vector<size_t>>> sources_;  ///< by node, where they were asked for
 };
 
 }  // namespace
