@@ -129,6 +129,57 @@ TEST(Bake, saysWhatIsWrong) {
   EXPECT_EQ(place.read("ramp.mtlx"), kDocument);
 }
 
+/// A material's name makes the name of an image: none that the file has, whether it is opened or not.
+TEST(Bake, replacesNoFileThatTheFileNames) {
+  const Workplace place;
+  for (const std::string list : {"images", "buffers"}) {
+    Json gltf = Json::parse(kProcedural);
+    gltf["materials"][0]["name"] = "own one";
+    gltf[list].push_back({{"uri", "own%5Fone_baseColorTexture.png"}});
+    if (list == "buffers") gltf[list][0]["byteLength"] = 4;
+    place.write(list + ".gltf", gltf.dump());
+    place.write("own_one_baseColorTexture.png", "mine");
+    const Outcome over = place.run({"bake", list + ".gltf", "-o", "out.gltf", "--size", "4"});
+    EXPECT_EQ(over.status, 1);
+    EXPECT_NE(over.err.find("[output-clash]"), std::string::npos) << over.err;
+    EXPECT_EQ(place.read("own_one_baseColorTexture.png"), "mine");
+  }
+}
+
+TEST(Bake, saysWhatIsNoList) {
+  const Workplace place;
+  Json gltf = Json::parse(kProcedural);
+  gltf["images"] = Json::object();
+  place.write("wrong.gltf", gltf.dump());
+  const Outcome wrong = place.run({"bake", "wrong.gltf", "-o", "out.gltf", "--size", "4"});
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.err.find("wrong.gltf:/images: error"), std::string::npos) << wrong.err;
+  EXPECT_EQ(wrong.err.find("[stopped]"), std::string::npos) << wrong.err;
+}
+
+TEST(Convert, namesImagesFromWhereItLies) {
+  const Workplace place;
+  place.write("look.gltf", R"({"asset": {"version": "2.0"}, "images": [{"uri": "tex/one%20texel%25.png"}],
+    "textures": [{"source": 0}], "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]})");
+  const Outcome beside = place.run({"convert", "look.gltf", "-o", "look.mtlx"});
+  EXPECT_EQ(beside.status, 0) << beside.err;
+  EXPECT_NE(place.read("look.mtlx").find("value=\"tex/one texel%.png\""), std::string::npos);
+  const Outcome below = place.run({"convert", "look.gltf", "-o", "sub/look.mtlx"});
+  EXPECT_EQ(below.status, 0) << below.err;
+  EXPECT_NE(place.read("sub/look.mtlx").find("value=\"../tex/one texel%.png\""), std::string::npos);
+  // And back: a document names files.
+  const Outcome again = place.run({"graph", "look.mtlx"});
+  EXPECT_NE(again.out.find("tex/one texel%25.png"), std::string::npos) << again.out;
+}
+
+TEST(Convert, saysThatThereIsNothing) {
+  const Workplace place;
+  place.write("none.gltf", R"({"asset": {"version": "2.0"}})");
+  const Outcome none = place.run({"convert", "none.gltf", "-o", "none.mtlx"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("[no-such-material]"), std::string::npos) << none.err;
+}
+
 TEST(Convert, toEachSurface) {
   const Workplace place;
   place.write("ramp.mtlx", kDocument);

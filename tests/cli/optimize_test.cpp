@@ -118,7 +118,27 @@ TEST(Tune, AFormIsAVariantThatStandsInANodesFile) {
       front["forms"].back()["cycles"]);
   EXPECT_NE(written({"quick"}).err.find("[wrong-variant]"), std::string::npos);
   EXPECT_NE(written({"Quick"}).err.find("[wrong-variant]"), std::string::npos);
+  for (const char* word : {"true", "vec3", "node"})
+    EXPECT_NE(written({word}).err.find("[wrong-variant]"), std::string::npos) << word;
+  EXPECT_EQ(written({"other", "--form", "0"}).status, 2);
   EXPECT_NE(written({"other", "--form", "99"}).err.find("[no-such-form]"), std::string::npos);
+}
+
+/// Nodes that two vendors call alike have their extensions before their names.
+TEST(Tune, TakesOneVendorsNode) {
+  const Workplace place;
+  for (const std::string vendor : {"ACME_glow", "BOLT_glow"}) {
+    place.write("mine/" + vendor + ".node",
+                "/// A light.\n/// source: a test\nextension " + vendor +
+                    " {\n    float amount in [0, 1] = 0;\n}\n/// A term.\n/// source: a test\n"
+                    "node glow(float x in [0, 1]) -> float in [0, 2] {\n    return exp2(x) / (1 + sqrt(x + "
+                    "1));\n}\n");
+  }
+  const Outcome one = place.run({"tune", "ACME_glow.glow", "--nodes", "mine"}, kLong);
+  EXPECT_EQ(one.status, 0) << one.all();
+  EXPECT_NE(
+      place.run({"tune", "ACME_glow.glow.none", "--nodes", "mine"}, kLong).err.find("[no-such-variant]"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -10,12 +10,16 @@
 #include "setting/messages.h"
 #include "support/file.h"
 #include "support/outputs.h"
+#include "support/relative.h"
 #include "support/text.h"
 
 namespace lacquer {
 
-std::string toMaterialX(const std::string& file, const Strings& materials, const std::string& surface,
-                        const Options& options, Messages& messages) {
+namespace {
+
+/// The document's text, for that folder.
+std::string documentOf(const std::string& file, const std::string& folder, const Strings& materials,
+                       const std::string& surface, const Options& options, Messages& messages) {
   const auto fits = [&](std::string_view one) { return one == surface; };
   if (!surface.empty() &&
       std::none_of(std::begin(exchange::kSurfaces), std::end(exchange::kSurfaces), fits)) {
@@ -41,19 +45,33 @@ std::string toMaterialX(const std::string& file, const Strings& materials, const
     wanted.push_back(*found);
   }
   for (size_t i = 0; materials.empty() && i < document->materials.size(); ++i) wanted.push_back(i);
+  if (wanted.empty()) {
+    report(fail("no-such-material", {}, "the file has no materials", "name one that has").value(), file,
+           messages);
+    return {};
+  }
   for (const size_t i : wanted) report(document->materials[i].diagnostics, file, messages);
   std::erase_if(wanted, [&](size_t i) { return lacquer::hasError(document->materials[i].diagnostics); });
   if (wanted.empty()) return {};
-  exchange::Written written = exchange::toMaterialX(*document, wanted, **schema, surface);
+  exchange::Written written = exchange::toMaterialX(*document, wanted, **schema, surface, folder);
   report(written.said, file, messages);
   return std::move(written.text);
+}
+
+}  // namespace
+
+std::string toMaterialX(const std::string& file, const Strings& materials, const std::string& surface,
+                        const Options& options, Messages& messages) {
+  return documentOf(file, {}, materials, surface, options, messages);
 }
 
 bool writeMaterialX(const std::string& output, const std::string& file, const Strings& materials,
                     const std::string& surface, const Options& options, Messages& messages) {
   if (const Diagnostics wrong = clashes({file}, {output}); !wrong.empty())
     return report(wrong, file, messages), false;
-  const std::string text = toMaterialX(file, materials, surface, options, messages);
+  if (const Result<void> place = hasPlace(folderOf(output), {file}); !place)
+    return report(place.error(), output, messages), false;
+  const std::string text = documentOf(file, folderOf(output), materials, surface, options, messages);
   if (text.empty()) return false;
   const Result<bool> written = writeFile(output, text, {nullptr, options.sync});
   if (!written) report(written.error(), output, messages);

@@ -8,6 +8,8 @@
 #include "api/internal.h"
 #include "lacquer/variant.h"
 #include "lang/body_text.h"
+#include "lang/parser.h"
+#include "lang/words.h"
 #include "prove/nodes.h"
 #include "setting/language.h"
 #include "setting/messages.h"
@@ -72,7 +74,8 @@ std::optional<Named> find(const std::string& name, const Options& options, Messa
   const auto library = libraryFor(options);
   if (!library) return wrong(library.error());
   if (Diagnostics found = (*library)->check(); hasError(found)) return wrong(std::move(found));
-  const std::string node = name.substr(0, name.find('.'));
+  // A vendor's node may have a dot of its own, before that of a variant.
+  const std::string node = (*library)->node(name) ? name : name.substr(0, name.rfind('.'));
   const std::string variant = node.size() < name.size() ? name.substr(node.size() + 1) : "";
   const auto decl = (*library)->node(node);
   if (!decl) {
@@ -89,13 +92,22 @@ std::optional<Named> find(const std::string& name, const Options& options, Messa
   return Named{*library, *decl, variant};
 }
 
+/// Whether a declaration or a statement begins with it.
+bool isWord(std::string_view name) {
+  const auto begins = [&](const lang::DeclWord& one) { return one.word == name; };
+  return std::any_of(std::begin(lang::kDeclWords), std::end(lang::kDeclWords), begins) ||
+         std::find(std::begin(lang::kBodyWords), std::end(lang::kBodyWords), name) !=
+             std::end(lang::kBodyWords);
+}
+
 /// Errors in the name of a new variant.
 Diagnostics wrongVariant(const lang::NodeDecl& node, const std::string& name) {
   const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto good = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-  if (name.empty() || !letter(name[0]) || !std::all_of(name.begin(), name.end(), good)) {
+  if (name.empty() || !letter(name[0]) || !std::all_of(name.begin(), name.end(), good) ||
+      lang::isReserved(name) || isWord(name)) {
     return fail("wrong-variant", {}, fmt::format("'{}' names no variant", printable(name)),
-                "small letters, digits and _, a letter first")
+                "small letters, digits and _, a letter first, and no word of the language")
         .value();
   }
   if (!hasVariant(node, name)) return {};

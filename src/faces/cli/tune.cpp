@@ -26,6 +26,7 @@ void addTune(CLI::App& verb, TuneFlags& flags, OptionFlags& options) {
   verb.add_option("--form", flags.form,
                   "which line of the table --variant takes, from 1 on; without it the last")
       ->check(kWhole)
+      ->check(CLI::Range(1, 1'000'000))
       ->needs(variant);
   addMaterialFlags(verb, options);
 }

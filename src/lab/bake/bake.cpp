@@ -7,6 +7,7 @@
 
 #include "bake/image.h"
 #include "eval/material.h"
+#include "gltf/texture_source.h"
 #include "graph/graph.h"
 #include "json/json.h"
 #include "lacquer/exchange.h"
@@ -96,6 +97,7 @@ private:
   std::vector<size_t> wanted_;
   preview::Studio studio_;
   Json gltf_;
+  Strings inputs_;                          ///< files that are read, or that the written file goes on to name
   std::map<std::string, size_t> textures_;  ///< of the file that is written, by the image
   Baked baked_;
 };
@@ -207,12 +209,18 @@ Result<Json> Baking::frame(const std::string& file) {
   const fs::path from = fs::absolute(fs::path(file)).parent_path();
   const fs::path to = fs::absolute(fs::path(how_.output)).parent_path();
   const std::string way = from == to ? "" : uriOf(from.lexically_relative(to).generic_string() + "/");
-  for (const char* list : {"images", "buffers"}) {
+  for (const char* list : {"images", "buffers", "textures"}) {
     if (!gltf.contains(list)) continue;
+    if (!gltf[list].is_array()) {
+      return fail("wrong-type", {file, 0, 0, fmt::format("/{}", list)},
+                  fmt::format("\"{}\" is no array", list), "glTF has a list of objects there");
+    }
     for (Json& each : gltf[list]) {
       if (!each.is_object() || !each.contains("uri") || !each["uri"].is_string()) continue;
       const std::string uri = each["uri"].text();
-      if (uri.find(':') == std::string::npos) each["uri"] = way + uri;
+      if (uri.find(':') != std::string::npos) continue;
+      inputs_.push_back((from / gltf::percentDecoded(uri)).string());
+      each["uri"] = way + uri;
     }
   }
   return gltf;
@@ -294,9 +302,9 @@ Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
                 fmt::format("they are patterns of a .mtlx file, or {}", kProcedurals));
   Strings outputs{how_.output};
   for (const Image& image : images) outputs.push_back((folder / image.name).string());
-  Strings inputs{file};
-  inputs.insert(inputs.end(), document_.included.begin(), document_.included.end());
-  if (Diagnostics wrong = clashes(inputs, outputs); !wrong.empty())
+  inputs_.push_back(file);
+  inputs_.insert(inputs_.end(), document_.included.begin(), document_.included.end());
+  if (Diagnostics wrong = clashes(inputs_, outputs); !wrong.empty())
     return tl::make_unexpected(std::move(wrong));
   FileImages sources(document_.path, options_);
   for (size_t i = 0; i < images.size(); ++i) {

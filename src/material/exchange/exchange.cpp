@@ -4,6 +4,7 @@
 
 #include "exchange/pattern_out.h"
 #include "exchange/surface_out.h"
+#include "support/relative.h"
 
 namespace lacquer::exchange {
 
@@ -22,7 +23,7 @@ Element shaderInput(std::string_view shader) {
 }  // namespace
 
 Written toMaterialX(const material::Document& document, const std::vector<size_t>& materials,
-                    const material::Schema& schema, std::string_view surface) {
+                    const material::Schema& schema, std::string_view surface, const std::string& folder) {
   Written written;
   graph::Graph graph;
   for (const size_t i : materials) {
@@ -45,7 +46,9 @@ Written toMaterialX(const material::Document& document, const std::vector<size_t
     }
     graph.groups.push_back(std::move(body));
   }
-  PatternsOut patterns(graph, *schema.library, document, surfaces, written.said);
+  const std::string from = folderOf(document.path);
+  const Moved moved(from, folder.empty() ? from : folder);
+  PatternsOut patterns(graph, *schema.library, document, surfaces, moved, written.said);
   Element root;
   root.category = "materialx";
   root.attributes = {{"version", "1.39"}, {"colorspace", "lin_rec709"}};

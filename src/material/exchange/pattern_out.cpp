@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "gltf/texture_source.h"
 #include "graph/text.h"
 #include "ir/types.h"
 #include "materialx/values.h"
@@ -220,10 +221,11 @@ struct PatternsOut::Scope {
 };
 
 PatternsOut::PatternsOut(const graph::Graph& graph, const lang::Library& library, const gltf::Scene& scene,
-                         const std::vector<SurfaceOut>& surfaces, Diagnostics& said)
+                         const std::vector<SurfaceOut>& surfaces, const Moved& moved, Diagnostics& said)
     : graph_(graph),
       scene_(scene),
       surfaces_(surfaces),
+      moved_(moved),
       said_(said),
       contracts_(graph, library),
       bodies_(graph.groups.size() - surfaces.size()) {
@@ -517,12 +519,16 @@ void PatternsOut::give(Scope& scope, Element& element, std::string_view name, co
 // -- elements --
 
 std::string PatternsOut::fileOf(const graph::Texture& texture) {
-  if (texture.texture < 0) return texture.file;
+  // A document names files, not URIs, from where it lies itself.
+  const auto named = [&](const std::string& uri) {
+    return uri.empty() || uri.starts_with("data:") ? uri : moved_(gltf::percentDecoded(uri));
+  };
+  if (texture.texture < 0) return named(texture.file);
   const auto number = static_cast<size_t>(texture.texture);
   const int image = number < scene_.textures.size() ? scene_.textures[number].image() : -1;
   if (image < 0 || static_cast<size_t>(image) >= scene_.images.size()) return {};
   const gltf::Image& found = scene_.images[static_cast<size_t>(image)];
-  if (!found.uri.empty()) return found.uri;
+  if (!found.uri.empty()) return named(found.uri);
   std::string file = fmt::format("image_{}.{}", image, found.mimeType == "image/jpeg" ? "jpg" : "png");
   addBounded(said_, {"embedded-image",
                      Severity::Warning,

@@ -14,6 +14,7 @@
 #include "graph/graph.h"
 #include "materialx/element.h"
 #include "materialx/patterns.h"
+#include "support/relative.h"
 
 namespace lacquer::exchange {
 
@@ -39,7 +40,7 @@ void orderElements(std::vector<materialx::Element>& elements, const std::vector<
 class PatternsOut {
 public:
   PatternsOut(const graph::Graph& graph, const lang::Library& library, const gltf::Scene& scene,
-              const std::vector<SurfaceOut>& surfaces, Diagnostics& said);
+              const std::vector<SurfaceOut>& surfaces, const Moved& moved, Diagnostics& said);
   /// The nodegraphs, definitions, and the nodes of all bodies that their surfaces reach.
   void write(materialx::Element& root);
   /// The surface's inputs, connected to the nodes of its body.
@@ -82,6 +83,7 @@ private:
   const graph::Graph& graph_;
   const gltf::Scene& scene_;
   const std::vector<SurfaceOut>& surfaces_;
+  const Moved& moved_;
   Diagnostics& said_;
   graph::Contracts contracts_;
   size_t bodies_ = 0;                          ///< the number of the first body

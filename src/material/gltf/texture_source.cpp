@@ -57,7 +57,20 @@ std::optional<std::string> fromBase64(std::string_view text) {
   return bytes;
 }
 
-/// "%20" to " ". A percent sign that starts no such code stands for itself.
+/// "http:", "file:"; a drive letter is one, too.
+bool hasScheme(std::string_view uri) {
+  const size_t colon = uri.find(':');
+  return colon != std::string_view::npos && uri.find_first_of("/?#") > colon;
+}
+
+bool isData(std::string_view uri) {
+  constexpr std::string_view kScheme = "data:";
+  return uri.size() > kScheme.size() && std::equal(kScheme.begin(), kScheme.end(), uri.begin(),
+                                                   [](char a, char b) { return (b | 0x20) == a || a == b; });
+}
+
+}  // namespace
+
 std::string percentDecoded(std::string_view uri) {
   const auto digit = [](char c) {
     if (c >= '0' && c <= '9') return c - '0';
@@ -72,20 +85,6 @@ std::string percentDecoded(std::string_view uri) {
   }
   return text;
 }
-
-/// "http:", "file:"; a drive letter is one, too.
-bool hasScheme(std::string_view uri) {
-  const size_t colon = uri.find(':');
-  return colon != std::string_view::npos && uri.find_first_of("/?#") > colon;
-}
-
-bool isData(std::string_view uri) {
-  constexpr std::string_view kScheme = "data:";
-  return uri.size() > kScheme.size() && std::equal(kScheme.begin(), kScheme.end(), uri.begin(),
-                                                   [](char a, char b) { return (b | 0x20) == a || a == b; });
-}
-
-}  // namespace
 
 Result<TextureFile> TextureFile::open(const std::string& path, const TextureAccess& access) {
   const Result<std::string> bytes = readFile(path, access.limits.file);

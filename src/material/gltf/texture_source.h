@@ -14,6 +14,9 @@
 
 namespace lacquer::gltf {
 
+/// A URI's path as the file's name: "%20" is " ". A percent sign that starts no such code stands for itself.
+std::string percentDecoded(std::string_view uri);
+
 /// A texture with the image that is looked into. That is its own, a PNG or a JPEG, even where an extension
 /// gives another: those formats are not decoded here.
 struct TextureSource {

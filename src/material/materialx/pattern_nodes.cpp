@@ -289,6 +289,9 @@ std::string Patterns::fileOf(const Scope& scope, const Element& input) {
   if (replace("<UVTILE>", "u1_v1") || udim)
     warning(input, "first-tile", fmt::format("{} is an image for each tile", quote(input.get("value"))),
             "the first tile's is taken for all");
+  // A document names files, a graph has URIs.
+  for (size_t at = file.find('%'); at != std::string::npos; at = file.find('%', at + 3))
+    file.replace(at, 1, "%25");
   return file;
 }
 
