@@ -14,6 +14,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 # The double evaluation is a reference: no contraction, so that every machine computes the same bits.
 target_compile_options(lacquer_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
+# Nobody replaces a function of the library from outside: so GCC may inline one in the file that defines it, as Clang does.
+target_compile_options(lacquer_warnings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
 
 # The files of a folder are compiled together, up to eight at a time, which takes a third of the time: most of it goes into
 # headers. So a folder's files share their unnamed namespaces.

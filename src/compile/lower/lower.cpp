@@ -43,6 +43,18 @@ std::string joined(std::string_view a, std::string_view b) {
   return text;
 }
 
+/// The input of that name; `next` is where it is looked for first, as most stand in the order in which they
+/// are asked for.
+const graph::Source* inputNamed(const graph::Inputs& inputs, std::string_view name, size_t& next) {
+  for (size_t k = 0; k < inputs.size(); ++k) {
+    const size_t place = next + k < inputs.size() ? next + k : next + k - inputs.size();
+    if (inputs[place].first != name) continue;
+    next = place + 1;
+    return &inputs[place].second;
+  }
+  return nullptr;
+}
+
 /// What ir::LightKind::fill is.
 ir::Module fillOf(const lang::TemplateDecl& decl, const lang::LightKindDecl& kind) {
   ir::Module module;
@@ -277,8 +289,53 @@ private:
     return static_cast<uint32_t>(found - block.fields.begin());
   }
 
+  /// Which of the template's givens its outputs, or the graph, take values from.
+  std::vector<bool> readGivens() const {
+    const std::vector<lang::GivenDecl>& givens = template_->givens;
+    std::vector<uint32_t> of_slot(template_->slots, ~uint32_t{0});
+    for (uint32_t i = 0; i < givens.size(); ++i)
+      std::fill_n(of_slot.begin() + givens[i].slot, givens[i].results.size(), i);
+    std::vector<bool> read(givens.size());
+    std::vector<const lang::Expr*> open;
+    const auto add = [&](std::string_view name) {
+      const auto found = name.empty() ? std::nullopt : template_->find(name);
+      const size_t place = found ? static_cast<size_t>(found->given - givens.data()) : givens.size();
+      if (!found || read[place]) return;
+      read[place] = true;
+      open.push_back(found->given->value.get());
+    };
+    const auto source = [&](const graph::Source& from) {
+      if (const auto* given = std::get_if<graph::GivenRef>(&from.from)) add(given->name);
+    };
+    for (const size_t index : order_) {
+      for (const auto& [name, from] : graph_.nodes[index].inputs) source(from);
+      const Result<const lang::NodeDecl*> decl = library_.node(graph_.nodes[index].type);
+      if (!decl) continue;
+      for (const lang::Param& param : (*decl)->params) add(param.given);
+    }
+    for (const auto& [name, from] : graph_.outputs) source(from);
+    if (options_.shown != nullptr) source(*options_.shown);
+    for (const lang::PortDecl& port : template_->ports) open.push_back(port.default_value.get());
+    for (const lang::OutputDecl& output : template_->outputs) open.push_back(output.value.get());
+    if (template_->light_lists) open.push_back(template_->light_lists->index.get());
+    while (!open.empty()) {
+      const lang::Expr* expr = open.back();
+      open.pop_back();
+      if (expr == nullptr) continue;
+      const uint32_t given = expr->kind == lang::Expr::Kind::Slot ? of_slot[expr->slot] : ~uint32_t{0};
+      if (given < givens.size() && !read[given]) {
+        read[given] = true;
+        open.push_back(givens[given].value.get());
+      }
+      for (const lang::ExprPtr& arg : expr->args) open.push_back(arg.get());
+    }
+    return read;
+  }
+
   void bindGivens() {
+    const std::vector<bool> read = readGivens();
     for (const lang::GivenDecl& decl : template_->givens) {
+      if (!read[static_cast<size_t>(&decl - template_->givens.data())]) continue;
       const lang::NodeDecl* node = decl.value->kind == lang::Expr::Kind::Call ? decl.value->node : nullptr;
       const lang::Origin& origin = node == nullptr ? template_->origin : node->origin;
       dag().setTerm(dag().addTerm({std::string(decl.name), node == nullptr ? "" : node->source,
@@ -294,10 +351,11 @@ private:
       if (!found) return found.error();
       const lang::NodeDecl& decl = **found;
       std::pmr::vector<ir::ValueId> args(&arena_);
+      args.reserve(decl.params.size());
+      size_t next = 0;
       for (const lang::Param& param : decl.params) {
-        const auto it = std::find_if(node.inputs.begin(), node.inputs.end(),
-                                     [&](const auto& input) { return input.first == param.name; });
-        args.push_back(it == node.inputs.end() ? givenFor(param) : argument(it->second, param));
+        const graph::Source* input = inputNamed(node.inputs, param.name, next);
+        args.push_back(input == nullptr ? givenFor(param) : argument(*input, param));
       }
       // What the node is called in the graph is the tool's that made it.
       const std::string_view term = node.term.empty() ? decl.family : std::string_view(node.term);

@@ -1,10 +1,18 @@
 #include "passes/rewrite.h"
 
+#include <utility>
+
 namespace lacquer::passes {
 
 std::vector<ir::ValueId> Rewriter::begin() {
   map_.assign(module_.dag.size(), ir::kNoValue);
-  return ir::reachable(module_.dag, ir::roots(module_));
+  live();
+  return *std::exchange(live_, std::nullopt);
+}
+
+const std::vector<ir::ValueId>& Rewriter::live() {
+  if (!live_) live_ = ir::reachable(module_.dag, ir::roots(module_));
+  return *live_;
 }
 
 void Rewriter::end() {

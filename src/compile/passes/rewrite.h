@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,8 @@ public:
   }
   /// What stands for a value that has been visited already.
   ir::ValueId mapped(ir::ValueId id) const { return map_[id]; }
+  /// The values that run() will visit, before it does.
+  const std::vector<ir::ValueId>& live();
 
 private:
   /// The values to visit.
@@ -54,6 +57,7 @@ private:
 
   ir::Module& module_;
   std::vector<ir::ValueId> map_;
+  std::optional<std::vector<ir::ValueId>> live_;
 };
 
 }  // namespace lacquer::passes

@@ -14,12 +14,6 @@ namespace {
 using ir::Op;
 using ir::ValueId;
 
-std::vector<ValueId> rootsOf(const ir::Module& module) {
-  std::vector<ValueId> roots;
-  for (const ir::Output& output : module.outputs) roots.push_back(output.value);
-  return roots;
-}
-
 /// A vector times a Float, either way round: the vector's position among the operands, or -1.
 int scaledVector(const ir::Dag& dag, ValueId id) {
   const ir::Value& value = dag[id];
@@ -37,7 +31,7 @@ public:
   void run() {
     Rewriter rewriter(module_);
     uses_.assign(rewriter.dag().size(), 0);
-    for (const ValueId id : ir::reachable(rewriter.dag(), rootsOf(module_))) {
+    for (const ValueId id : rewriter.live()) {
       for (const ValueId operand : rewriter.dag()[id].operands()) ++uses_[operand];
     }
     rewriter.run([this](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
@@ -171,7 +165,7 @@ void pullOut(ir::Module& module) {
   const ir::Dag& old = module.dag;
   std::vector<int> dots(old.size(), 0);
   std::vector<bool> needed(old.size(), false);
-  const std::vector<ValueId> live = ir::reachable(old, rootsOf(module));
+  const std::vector<ValueId>& live = rewriter.live();
   for (const ValueId id : live) {
     const ir::Value& value = old[id];
     for (const ValueId operand : value.operands()) {
@@ -218,11 +212,19 @@ void takeMagnitudes(ir::Module& module) {
   Rewriter rewriter(module);
   const ir::Dag& old = module.dag;
   std::vector<bool> needed(old.size(), false);
-  for (const ValueId id : ir::reachable(old, rootsOf(module))) {
+  const std::vector<ValueId>& live = rewriter.live();
+  for (const ValueId id : live) {
     const Op op = old[id].op;
     if (op == Op::Abs || op == Op::Add || op == Op::Sub) continue;
     for (const ValueId operand : old[id].operands()) needed[operand] = true;
   }
+  const auto changes = [&](ValueId id) {
+    if (old[id].op != Op::Abs || needed[old[id].args[0]]) return false;
+    const ir::Value& product = old[old[id].args[0]];
+    return product.op == Op::Mul &&
+           (old[product.args[0]].op == Op::InverseSqrt || old[product.args[1]].op == Op::InverseSqrt);
+  };
+  if (std::none_of(live.begin(), live.end(), changes)) return;
   rewriter.run([&](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
     if (r.dag()[id].op != Op::Abs || needed[old[id].args[0]]) return r.copy(id, operands);
     const ir::Value product = r.dag()[operands[0]];

@@ -142,6 +142,7 @@ Dag::Dag() : constant_table_(kFirstConstantSlots, kNoValue), table_(kFirstSlots,
   terms_.reserve(kFirstTerms);
   terms_.push_back({});
   inputs_.reserve(kFirstTerms);
+  input_keys_.reserve(kFirstTerms);
   names_.reserve(kFirstSlots / 8);
   for (auto* ids : {&term_of_, &name_of_, &fact_of_, &rank_of_}) ids->reserve(kFirstSlots / 2);
   values_.reserve(kFirstSlots / 2);
@@ -364,10 +365,24 @@ uint32_t Dag::constantIndex(const Components& key) {
   return index;
 }
 
+/// Of equal inputs the same number; most of others differ in it.
+static uint64_t keyOf(const Input& input) {
+  uint64_t key = static_cast<uint64_t>(input.kind);
+  for (const uint32_t part : {input.field, input.block, input.index}) key = key * 0x9E3779B97F4A7C15U + part;
+  return key;
+}
+
+void Dag::setInputField(ValueId id, uint32_t field) {
+  Input& input = inputs_[values_[id].payload];
+  input.field = field;
+  input_keys_[values_[id].payload] = keyOf(input);
+}
+
 ValueId Dag::input(const Input& input) {
+  const uint64_t key = keyOf(input);
   for (uint32_t i = 0; i < inputs_.size(); ++i) {
+    if (input_keys_[i] != key) continue;
     const Input& other = inputs_[i];
-    // Names last: numbers differ first.
     if (other.kind == input.kind && other.field == input.field && other.block == input.block &&
         other.element == input.element && other.group == input.group && other.index == input.index &&
         other.name == input.name) {
@@ -375,6 +390,7 @@ ValueId Dag::input(const Input& input) {
     }
   }
   inputs_.push_back(input);
+  input_keys_.push_back(key);
   return intern({Op::Input, input.type, input.rate, 0, static_cast<uint32_t>(inputs_.size() - 1), {}});
 }
 

@@ -250,7 +250,7 @@ public:
   /// equal to another one. The operands may have larger ids; only compact() may follow such values then.
   void substitute(ValueId id, std::span<const ValueId> operands);
   /// Renumbers an input: its index in the module's table of that kind.
-  void setInputField(ValueId id, uint32_t field) { inputs_[values_[id].payload].field = field; }
+  void setInputField(ValueId id, uint32_t field);
 
 private:
   friend class Simplifier;
@@ -264,6 +264,7 @@ private:
   std::vector<Value> values_;
   std::vector<Components> constants_;
   std::vector<Input> inputs_;
+  std::vector<uint64_t> input_keys_;  ///< of their numbers: they are told apart by these before their names
   std::vector<TermId> term_of_;
   std::vector<Term> terms_;
   std::vector<uint32_t> name_of_;  ///< 1 + index into names_, 0 for none

@@ -81,14 +81,23 @@ bool reserved(uint64_t hash) {
 
 /// The printers' own prefixes: attributes, varyings, outputs and what languages keep for themselves.
 bool prefixed(std::string_view name) {
-  constexpr std::array kPrefixes = {"in_", "v_", "out_", "gl_", "lacquer_", "_"};
+  using namespace std::string_view_literals;
+  constexpr std::array kPrefixes = {"in_"sv, "v_"sv, "out_"sv, "gl_"sv, "lacquer_"sv, "_"sv};
   return std::any_of(kPrefixes.begin(), kPrefixes.end(),
-                     [&](std::string_view p) { return name.starts_with(p); });
+                     [&](std::string_view p) { return p[0] == name[0] && name.starts_with(p); });
 }
 
 /// Letters, digits and underscores, in every locale the same.
 bool plain(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  static constexpr auto kPlain = [] {
+    std::array<bool, 256> table{};
+    for (int i = 0; i < 128; ++i) {
+      table[static_cast<size_t>(i)] =
+          (i >= 'a' && i <= 'z') || (i >= 'A' && i <= 'Z') || (i >= '0' && i <= '9') || i == '_';
+    }
+    return table;
+  }();
+  return kPlain[static_cast<unsigned char>(c)];
 }
 
 bool digit(char c) { return c >= '0' && c <= '9'; }
@@ -123,14 +132,14 @@ bool typed(std::string_view name) {
 std::string cleaned(std::string_view wanted) {
   constexpr size_t kLongest = 64;  // a compiler may stop at 255, with all that is put around it
   wanted = wanted.substr(0, kLongest);
-  std::string name;
-  name.reserve(wanted.size());
+  std::string name(wanted);
+  // Two underscores in a row are reserved in GLSL.
+  size_t length = 0;
   for (const char c : wanted) {
     const char kept = plain(c) ? c : '_';
-    // Two underscores in a row are reserved in GLSL.
-    if (kept == '_' && !name.empty() && name.back() == '_') continue;
-    name += kept;
+    if (kept != '_' || length == 0 || name[length - 1] != '_') name[length++] = kept;
   }
+  name.resize(length);
   if (name.empty() || digit(name[0]) || prefixed(name) || typed(name))
     name = (name.starts_with('_') ? "value" : "value_") + name;
   while (name.back() == '_') name.pop_back();

@@ -322,6 +322,8 @@ struct GivenDecl {
   Span span;
   ExprPtr value;
   Ties ties = 0;  ///< whether its values differ for each light or each vertex: tie()
+  /// The attributes that it cannot do without, by their places, in ascending order: tie()
+  std::vector<uint16_t> attributes;
 };
 
 /// One of a given's results.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "lang/composites.h"
@@ -600,10 +601,15 @@ const Builtin* findFunction(std::string_view name, int arity) {
 }
 
 const Builtin* findFunction(std::string_view name) {
-  for (const Builtin& builtin : table()) {
-    if (!builtin.is_operator && builtin.name == name) return &builtin;
-  }
-  return nullptr;
+  static const std::unordered_map<std::string_view, const Builtin*> kFirst = [] {
+    std::unordered_map<std::string_view, const Builtin*> first;
+    for (const Builtin& builtin : table()) {
+      if (!builtin.is_operator) first.emplace(builtin.name, &builtin);
+    }
+    return first;
+  }();
+  const auto found = kFirst.find(name);
+  return found == kFirst.end() ? nullptr : found->second;
 }
 
 const Builtin* findOperator(std::string_view spelling, int arity) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -61,9 +62,12 @@ private:
   bool skipSpace() {
     bool same_line = !tokens_.empty();
     while (!ends()) {
-      if (isSpace(look())) {
-        same_line = same_line && look() != '\n';
+      const char c = text_[at_];
+      if (isSpace(c)) {
+        same_line = same_line && c != '\n';
         ++at_;
+      } else if (c != '/') {
+        return true;
       } else if (starts("/*")) {
         const size_t end = text_.find("*/", at_ + 2);
         if (end == std::string_view::npos) {
@@ -113,8 +117,9 @@ private:
   }
 
   void name() {
-    uint32_t length = 1;
-    while (isNamePart(look(length))) ++length;
+    const char* const begin = text_.data() + at_;
+    const char* const end = text_.data() + text_.size();
+    const auto length = static_cast<uint32_t>(std::find_if_not(begin, end, isNamePart) - begin);
     const Span span{at_, length};
     add(Token::Kind::Name, length);
     if (length <= kLongestName) return;
@@ -179,6 +184,10 @@ private:
     Token& token = tokens_.back();
     token.integer = integer;
     token.without_sign = without_sign;
+    if (integer && length == 1) {
+      token.number = digits[0] - '0';
+      return;
+    }
     // Some readers want a digit on both sides of the point.
     std::string padded = digits.starts_with('.') ? "0" : "";
     padded += digits;

@@ -1,6 +1,7 @@
 // Source text to tokens.
 #pragma once
 
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct Token {
   double number = 0;
 
   bool is(std::string_view symbol) const {
-    return (kind == Kind::Symbol || kind == Kind::Name) && text == symbol;
+    return (kind == Kind::Symbol || kind == Kind::Name) && text.size() == symbol.size() &&
+           text[0] == symbol[0] && text == symbol;
   }
 };
 
@@ -28,7 +30,18 @@ std::vector<Token> tokenize(Reporter& reporter, uint32_t begin, uint32_t end);
 
 inline bool isNameStart(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 inline bool isDigit(char c) { return c >= '0' && c <= '9'; }
-inline bool isNamePart(char c) { return isNameStart(c) || isDigit(c); }
+/// By a table: texts are made of these.
+inline bool isNamePart(char c) {
+  static constexpr auto kParts = [] {
+    std::array<bool, 256> parts{};
+    for (int i = 0; i < 128; ++i) {
+      parts[static_cast<size_t>(i)] =
+          (i >= 'a' && i <= 'z') || (i >= 'A' && i <= 'Z') || i == '_' || (i >= '0' && i <= '9');
+    }
+    return parts;
+  }();
+  return kParts[static_cast<unsigned char>(c)];
+}
 inline bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 /// Without spaces at both ends.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
@@ -42,6 +43,7 @@ ExprPtr Parser::conditional() {
   ExprPtr no = expression();
   if (!no) return nullptr;
   std::vector<ExprPtr> args;
+  args.reserve(3);
   args.push_back(std::move(condition));
   args.push_back(std::move(yes));
   args.push_back(std::move(no));
@@ -51,14 +53,26 @@ ExprPtr Parser::conditional() {
 namespace {
 
 int precedence(const Token& token) {
-  constexpr std::pair<std::string_view, int> kOperators[] = {
-      {"||", 1}, {"&&", 2}, {"|", 3},  {"^", 4},  {"&", 5}, {"==", 6}, {"!=", 6}, {"<", 7},  {"<=", 7},
-      {">", 7},  {">=", 7}, {"<<", 8}, {">>", 8}, {"+", 9}, {"-", 9},  {"*", 10}, {"/", 10}, {"%", 10}};
+  constexpr std::string_view kSingle = "|^&<>+-*/%";
+  constexpr std::array kLevels = {3, 4, 5, 7, 7, 9, 9, 10, 10, 10};
+  constexpr std::array<std::pair<std::string_view, int>, 8> kPairs = {
+      {{"||", 1}, {"&&", 2}, {"==", 6}, {"!=", 6}, {"<=", 7}, {">=", 7}, {"<<", 8}, {">>", 8}}};
   if (token.kind != Token::Kind::Symbol) return 0;
-  for (const auto& [spelling, level] : kOperators) {
-    if (token.text == spelling) return level;
+  if (token.text.size() == 1) {
+    const size_t place = kSingle.find(token.text[0]);
+    return place == std::string_view::npos ? 0 : kLevels[place];
   }
-  return 0;
+  const auto found =
+      std::find_if(kPairs.begin(), kPairs.end(), [&](const auto& row) { return token.is(row.first); });
+  return found == kPairs.end() ? 0 : found->second;
+}
+
+std::vector<ExprPtr> list(ExprPtr a, ExprPtr b = nullptr) {
+  std::vector<ExprPtr> args;
+  args.reserve(b ? 2 : 1);
+  args.push_back(std::move(a));
+  if (b) args.push_back(std::move(b));
+  return args;
 }
 
 }  // namespace
@@ -73,17 +87,17 @@ ExprPtr Parser::binary(int least) {
     ++at_;
     ExprPtr right = binary(level + 1);
     if (!right) return nullptr;
-    std::vector<ExprPtr> args;
-    args.push_back(std::move(left));
-    args.push_back(std::move(right));
-    left = make(Expr::Kind::Operation, begin, op.text, std::move(args));
+    left = make(Expr::Kind::Operation, begin, op.text, list(std::move(left), std::move(right)));
   }
   return left;
 }
 
 ExprPtr Parser::unary() {
   const Token& op = token();
-  if (!op.is("-") && !op.is("+") && !op.is("!") && !op.is("~")) return postfix();
+  constexpr std::string_view kSigns = "-+!~";
+  const bool sign = op.kind == Token::Kind::Symbol && op.text.size() == 1 &&
+                    kSigns.find(op.text[0]) != std::string_view::npos;
+  if (!sign) return postfix();
   if (nesting_ >= kDeepest) {
     tooDeep();
     return nullptr;
@@ -93,9 +107,7 @@ ExprPtr Parser::unary() {
   ExprPtr operand = unary();
   --nesting_;
   if (!operand) return nullptr;
-  std::vector<ExprPtr> args;
-  args.push_back(std::move(operand));
-  return make(Expr::Kind::Operation, op.span.offset, op.text, std::move(args));
+  return make(Expr::Kind::Operation, op.span.offset, op.text, list(std::move(operand)));
 }
 
 ExprPtr Parser::postfix() {
@@ -103,11 +115,9 @@ ExprPtr Parser::postfix() {
   ExprPtr expr = primary();
   while (expr && (is(".") || is("["))) {
     if (accept("[")) {
-      std::vector<ExprPtr> args;
-      args.push_back(std::move(expr));
-      args.push_back(expression());
-      if (!args[1] || !expect("]", "the index")) return nullptr;
-      expr = make(Expr::Kind::Index, begin, {}, std::move(args));
+      ExprPtr place = expression();
+      if (!place || !expect("]", "the index")) return nullptr;
+      expr = make(Expr::Kind::Index, begin, {}, list(std::move(expr), std::move(place)));
       continue;
     }
     ++at_;
@@ -117,9 +127,7 @@ ExprPtr Parser::postfix() {
     }
     const std::string_view member = token().text;
     ++at_;
-    std::vector<ExprPtr> args;
-    args.push_back(std::move(expr));
-    expr = make(Expr::Kind::Member, begin, member, std::move(args));
+    expr = make(Expr::Kind::Member, begin, member, list(std::move(expr)));
   }
   return expr;
 }

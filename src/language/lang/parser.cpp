@@ -11,11 +11,36 @@
 
 namespace lacquer::lang {
 
+namespace {
+
+/// The types by the lengths of their names: rows of one length lie beside each other.
+struct TypeNames {
+  static constexpr size_t kLongest = 16;
+  struct Row {
+    std::string_view name;
+    ir::Type type;
+  };
+  std::array<Row, ir::kTypes.size()> rows{};
+  std::array<uint8_t, kLongest + 2> first{};  ///< of the names of a length
+
+  TypeNames() {
+    for (size_t i = 0; i < rows.size(); ++i) rows[i] = {ir::typeName(ir::kTypes[i]), ir::kTypes[i]};
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const Row& a, const Row& b) { return a.name.size() < b.name.size(); });
+    for (const Row& row : rows) {
+      for (size_t length = row.name.size() + 1; length < first.size(); ++length) ++first[length];
+    }
+  }
+};
+
+}  // namespace
+
 std::optional<ir::Type> findType(std::string_view name) {
-  constexpr std::string_view kFirstLetters = "bifumsv";
-  if (name.empty() || kFirstLetters.find(name[0]) == std::string_view::npos) return std::nullopt;
-  for (const ir::Type type : ir::kTypes) {
-    if (ir::typeName(type) == name) return type;
+  static const TypeNames kNames;
+  if (name.empty() || name.size() > TypeNames::kLongest) return std::nullopt;
+  for (size_t i = kNames.first[name.size()]; i < kNames.first[name.size() + 1]; ++i) {
+    const TypeNames::Row& row = kNames.rows[i];
+    if (row.name[0] == name[0] && row.name == name) return row.type;
   }
   return std::nullopt;
 }
@@ -33,6 +58,9 @@ Parser::Parser(Reporter& reporter, uint32_t begin, uint32_t end, TypeBindings bi
 /// Doc lines belong before the declaration and before its variants. Elsewhere they would be lost without a
 /// word.
 void Parser::dropStrayDocs() {
+  const auto isDoc = [](const Token& token) { return token.kind == Token::Kind::Doc; };
+  const auto declared = std::find_if_not(tokens_.begin(), tokens_.end(), isDoc);
+  if (std::none_of(declared, tokens_.end(), isDoc)) return;
   std::vector<Token> kept;
   kept.reserve(tokens_.size());
   bool leading = true;

@@ -1,6 +1,7 @@
 // Collects what is wrong in one declaration.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,15 +32,19 @@ public:
   std::string_view file() const { return file_; }
   std::string_view text() const { return text_; }
   std::string_view text(Span span) const { return text_.substr(span.offset, span.length); }
+  /// Counted on from where the last question was, as questions come in the order of the text.
   uint32_t lineOf(Span span) const {
-    uint32_t line = 1;
-    for (const char c : text_.substr(0, span.offset)) line += c == '\n' ? 1 : 0;
-    return line;
+    if (span.offset < counted_) counted_ = 0, line_ = 1;
+    const std::string_view more = text_.substr(counted_, span.offset - counted_);
+    line_ += static_cast<uint32_t>(std::count(more.begin(), more.end(), '\n'));
+    counted_ = span.offset;
+    return line_;
   }
   Diagnostics take() { return std::move(diagnostics_); }
 
 private:
   std::string_view file_, text_;
+  mutable uint32_t counted_ = 0, line_ = 1;
   Diagnostics diagnostics_;
 };
 

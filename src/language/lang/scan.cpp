@@ -1,5 +1,6 @@
 #include "lang/scan.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "lang/lexer.h"
@@ -11,7 +12,7 @@ namespace {
 /// What a word at the start of a declaration declares.
 std::optional<DeclKind> declaredBy(std::string_view word) {
   for (const DeclWord& row : kDeclWords) {
-    if (word == row.word) return row.kind;
+    if (word.size() == row.word.size() && word[0] == row.word[0] && word == row.word) return row.kind;
   }
   return std::nullopt;
 }
@@ -41,18 +42,20 @@ private:
 
   void step() {
     const char c = text_[at_];
-    const std::string_view rest = text_.substr(at_, 4);
     if (isSpace(c)) {
       ++at_;
-    } else if (rest.starts_with("///") && !rest.starts_with("////")) {
+      return;
+    }
+    if (isNameStart(c)) return word();
+    if (c != '/') return other(c);
+    const std::string_view rest = text_.substr(at_, 4);
+    if (rest.starts_with("///") && !rest.starts_with("////")) {
       if (!docs_ && (outside() || atLineStart())) docs_ = at_;
       skipTo("\n", at_);
     } else if (rest.starts_with("//")) {
       skipTo("\n", at_);
     } else if (rest.starts_with("/*")) {
       skipTo("*/", at_ + 2);
-    } else if (isNameStart(c)) {
-      word();
     } else {
       other(c);
     }
@@ -74,9 +77,10 @@ private:
   }
 
   std::string_view takeWord() {
-    const size_t begin = at_;
-    while (at_ < text_.size() && isNamePart(text_[at_])) ++at_;
-    return text_.substr(begin, at_ - begin);
+    const char* const begin = text_.data() + at_;
+    const char* const end = std::find_if_not(begin, text_.data() + text_.size(), isNamePart);
+    at_ += static_cast<size_t>(end - begin);
+    return {begin, static_cast<size_t>(end - begin)};
   }
 
   void word() {

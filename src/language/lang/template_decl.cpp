@@ -39,6 +39,7 @@ public:
     for (GivenDecl& given : decl_.givens) {
       given.ties = given.value ? tiesOf(*given.value, {given.inherited}) : Ties{0};
       for (size_t i = 0; i < given.results.size(); ++i) ties_[given.slot + i] = given.ties;
+      if (given.value) needs(*given.value, given);
     }
     if (decl_.light_lists) lightLists(*decl_.light_lists);
     for (const PortDecl& port : decl_.ports) port_[port.slot] = true;
@@ -74,6 +75,29 @@ private:
       if (!attribute.fact) ties_[attribute.slot] = vertex_stage_ ? kVertex : kFragment;
     }
     if (decl_.front_facing) ties_[*decl_.front_facing] = kFragment;
+  }
+
+  /// What is optional is asked for before it is read, so that it is not needed.
+  void needs(const Expr& expr, GivenDecl& given) {
+    std::vector<uint16_t>& needed = given.attributes;
+    const auto add = [&](uint16_t attribute) {
+      const auto place = std::lower_bound(needed.begin(), needed.end(), attribute);
+      if (place == needed.end() || *place != attribute) needed.insert(place, attribute);
+    };
+    if (expr.kind == Expr::Kind::Slot) {
+      for (size_t i = 0; i < decl_.attributes.size(); ++i) {
+        const AttributeDecl& attribute = decl_.attributes[i];
+        if (!attribute.optional && attribute.slot == expr.slot) add(static_cast<uint16_t>(i));
+      }
+      for (const GivenDecl& other : decl_.givens) {
+        if (&other == &given) break;
+        if (expr.slot < other.slot || expr.slot >= other.slot + other.results.size()) continue;
+        for (const uint16_t attribute : other.attributes) add(attribute);
+      }
+    }
+    for (const ExprPtr& arg : expr.args) {
+      if (arg) needs(*arg, given);
+    }
   }
 
   void lightLists(const LightListsDecl& lists) {

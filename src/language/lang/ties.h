@@ -31,7 +31,8 @@ constexpr Ties tiedBy(ir::Op op) {
 struct TemplateDecl;
 class Reporter;
 
-/// Finds what the givens of a checked template are tied to, and what its ports refuse. Reports outputs that
+/// Finds what the givens of a checked template are tied to and which attributes they need, and what its ports
+/// refuse. Reports outputs that
 /// are tied, and what is interpolated or a position without being a value of a vertex.
 void tie(TemplateDecl& decl, Reporter& reporter);
 

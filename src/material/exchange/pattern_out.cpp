@@ -280,7 +280,7 @@ void PatternsOut::classify(size_t group) {
     const auto it = output_color_[group].find(name);
     mark(group, source, it != output_color_[group].end());
   }
-  const std::vector<size_t> order = graph::orderOf(body).order;
+  const std::vector<size_t> order = body.order().order;
   for (auto place = order.rbegin(); place != order.rend(); ++place) {
     if (!reached_[group][*place]) continue;
     const graph::Node& node = body.nodes()[*place];

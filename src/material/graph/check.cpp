@@ -294,7 +294,7 @@ void GraphCheck::rates() {
   const Contracts& contracts = of_flat ? *of_flat : contracts_;
   const Body& body = contracts.main();
   std::vector<Tied> nodes(graph.nodes.size());
-  for (const size_t index : orderOf(body).order) {
+  for (const size_t index : body.order().order) {
     Tied& tied = nodes[index];
     for (const auto& [name, source] : graph.nodes[index].inputs) {
       const Tied from = tiedOf(source, body, nodes);

@@ -86,19 +86,8 @@ void BodyCheck::head(size_t index, Connected& libraries) {
                                           return std::string_view(g.name);
                                         })));
     }
-  } else if (!library_.has(lang::DeclKind::Node, node.type) && !library_.forms(node.type).empty()) {
-    if (std::string why = contracts_.whyNoForm(node, body_); !why.empty()) {
-      findings_.error(
-          spot, nodePointer(index, "node"), "no-form",
-          fmt::format("it is not clear which {} the node {} is", inQuotes(node.type), inQuotes(node.id)),
-          std::move(why));
-    }
-  } else if (!library_.has(lang::DeclKind::Node, node.type)) {
-    findings_.error(spot, nodePointer(index, "node"), "unknown-node",
-                    fmt::format("the library has no node {}", inQuotes(node.type)),
-                    findings_.suggest(node.type, [&] { return library_.names(lang::DeclKind::Node); }));
-  } else if (contract == nullptr && libraries.insert(node.type)) {
-    findings_.forward(spot, library_.node(node.type).error());
+  } else if (contract == nullptr) {
+    noNode(index, libraries);
   }
   if (!isDottedName(node.id)) {
     findings_.error(spot, nodePointer(index, "id"), "wrong-name",
@@ -115,6 +104,23 @@ void BodyCheck::head(size_t index, Connected& libraries) {
                     "it is names joined by dots, such as coat.absorption");
   }
   if (contract != nullptr && contract->decl != nullptr) variant(index, *contract->decl);
+}
+
+void BodyCheck::noNode(size_t index, Connected& libraries) {
+  const Node& node = body_.nodes()[index];
+  const Spot spot = spotOf(Section::Nodes, index);
+  if (library_.has(lang::DeclKind::Node, node.type)) {
+    if (libraries.insert(node.type)) findings_.forward(spot, library_.node(node.type).error());
+  } else if (library_.forms(node.type).empty()) {
+    findings_.error(spot, nodePointer(index, "node"), "unknown-node",
+                    fmt::format("the library has no node {}", inQuotes(node.type)),
+                    findings_.suggest(node.type, [&] { return library_.names(lang::DeclKind::Node); }));
+  } else if (std::string why = contracts_.whyNoForm(node, body_); !why.empty()) {
+    findings_.error(
+        spot, nodePointer(index, "node"), "no-form",
+        fmt::format("it is not clear which {} the node {} is", inQuotes(node.type), inQuotes(node.id)),
+        std::move(why));
+  }
 }
 
 void BodyCheck::variant(size_t index, const lang::NodeDecl& decl) {
@@ -506,7 +512,7 @@ void BodyCheck::wrongSwizzle(Type type, const std::string& swizzle, const Sink& 
 
 void BodyCheck::cycles(const size_t* node) {
   const std::vector<Node>& nodes = body_.nodes();
-  const Order order = orderOf(body_);
+  const Order& order = body_.order();
   for (const Cycle& cycle : order.cycles) {
     const auto& of_cycle = cycle.nodes;
     if (node != nullptr && std::find(of_cycle.begin(), of_cycle.end(), *node) == of_cycle.end()) continue;

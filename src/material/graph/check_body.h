@@ -138,6 +138,8 @@ private:
   std::string inGroup() const;
   void error(const Sink& sink, std::string_view code, std::string message, std::string help = {});
 
+  /// Says why a node that is none of a group has no contract.
+  void noNode(size_t index, Connected& libraries);
   void variant(size_t index, const lang::NodeDecl& decl);
   void inputs(size_t index);
   void outputs();

@@ -1,9 +1,12 @@
 // The order in which a graph's nodes become code: a function of what is connected, of terms and of names that
 // the library gives, and of nothing else.
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <bit>
+#include <charconv>
+#include <iterator>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "graph/contracts.h"
@@ -15,8 +18,8 @@ namespace {
 
 class CodeOrder {
 public:
-  CodeOrder(const Graph& graph, const lang::Library& library, const Source* also)
-      : graph_(graph), contracts_(graph, library), body_(contracts_.main()), also_(also) {}
+  CodeOrder(const Graph& graph, const Contracts& contracts, const Source* also)
+      : graph_(graph), contracts_(contracts), body_(contracts_.main()), also_(also) {}
 
   std::vector<size_t> run() {
     sources_.resize(graph_.nodes.size());
@@ -57,13 +60,26 @@ private:
     std::optional<std::vector<size_t>>& nodes = sources_[index];
     if (nodes) return *nodes;
     nodes.emplace();
-    const Node& node = graph_.nodes[index];
+    const Inputs& inputs = graph_.nodes[index].inputs;
     const Contract* contract = contracts_.of(body_.nodes()[index]);
-    for (size_t i = 0; contract != nullptr && i < contract->params.size(); ++i) {
-      for (const auto& [name, source] : node.inputs) {
-        if (name == contract->params[i].name) add(source, *nodes);
-      }
+    if (contract == nullptr) return *nodes;
+    const std::span<const lang::Param> params = contract->params;
+    std::vector<std::pair<size_t, size_t>> found;  // a parameter's place, and its source's
+    size_t expected = 0;
+    for (size_t i = 0; i < inputs.size(); ++i) {
+      const std::optional<size_t> source = body_.source(index, i);
+      const auto named = [&](const lang::Param& param) { return param.name == inputs[i].first; };
+      // Inputs mostly stand in the order of the parameters.
+      auto param = std::find_if(params.begin() + static_cast<ptrdiff_t>(expected), params.end(), named);
+      if (param == params.end()) param = std::find_if(params.begin(), params.end(), named);
+      if (param == params.end()) continue;
+      expected = static_cast<size_t>(param - params.begin());
+      if (source) found.emplace_back(expected, *source);
     }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    nodes->reserve(found.size());
+    for (const auto& [of, source] : found) nodes->push_back(source);
     return *nodes;
   }
 
@@ -98,7 +114,7 @@ private:
   }
 
   const Graph& graph_;
-  Contracts contracts_;
+  const Contracts& contracts_;
   const Body& body_;
   const Source* also_;
   std::vector<std::optional<std::vector<size_t>>> sources_;  ///< by node, where they were asked for
@@ -107,7 +123,8 @@ private:
 }  // namespace
 
 std::vector<size_t> codeOrder(const Graph& graph, const lang::Library& library, const Source* also) {
-  return CodeOrder(graph, library, also).run();
+  const Contracts contracts(graph, library);
+  return CodeOrder(graph, contracts, also).run();
 }
 
 namespace {
@@ -116,7 +133,7 @@ namespace {
 class ProgramKey {
 public:
   ProgramKey(const Graph& graph, const lang::Library& library) : graph_(graph), contracts_(graph, library) {
-    const std::vector<size_t> order = codeOrder(graph, library);
+    const std::vector<size_t> order = CodeOrder(graph, contracts_, nullptr).run();
     places_.resize(graph.nodes.size());
     for (size_t i = 0; i < order.size(); ++i) places_[order[i]] = i;
     word(graph.template_name);
@@ -131,7 +148,20 @@ public:
   std::string take() { return std::move(key_); }
 
 private:
-  void word(std::string_view text) { key_ += fmt::format("{}:{} ", text.size(), text); }
+  void number(uint64_t x) {
+    char digits[24];
+    key_.append(digits, std::to_chars(digits, std::end(digits), x).ptr);
+    key_ += ' ';
+  }
+  void bits(double x) { number(std::bit_cast<uint64_t>(x)); }
+  void bits(const ir::Components& x) {
+    for (const double component : x) bits(component);
+  }
+  void word(std::string_view text) {
+    number(text.size());
+    key_ += text;
+    key_ += ' ';
+  }
 
   void node(const Node& node) {
     key_ += '\n';
@@ -154,29 +184,31 @@ private:
   }
 
   void from(const Literal& literal) {
-    key_ += fmt::format("{} {} {} {} {} ", ir::typeName(literal.type), literal.value[0], literal.value[1],
-                        literal.value[2], literal.value[3]);
+    word(ir::typeName(literal.type));
+    bits(literal.value);
   }
   void from(const ParameterRef& ref) {
     word(ref.name);
     const Parameter* p = contracts_.parameter(ref.name);
     if (p == nullptr) return;
-    key_ +=
-        fmt::format("{} {} {} {} {} {} {} {} {} ", ir::typeName(p->type), p->range.lo, p->range.hi,
-                    p->range.gap, p->animated, p->neutral[0], p->neutral[1], p->neutral[2], p->neutral[3]);
+    word(ir::typeName(p->type));
+    for (const double end : {p->range.lo, p->range.hi, p->range.gap}) bits(end);
+    word(p->animated ? "animated" : "");
+    bits(p->neutral);
   }
   void from(const TextureRef& ref) {
     word(ref.name);
     const std::optional<size_t> place = graph_.findTexture(ref.name);
-    if (place)
-      key_ += fmt::format("{} {} ", ir::typeName(graph_.textures[*place].type), graph_.textures[*place].srgb);
+    if (!place) return;
+    word(ir::typeName(graph_.textures[*place].type));
+    word(graph_.textures[*place].srgb ? "srgb" : "");
   }
   void from(const GivenRef& ref) { word("given"), word(ref.name); }
   void from(const InputRef& ref) { word("input"), word(ref.name); }
   void from(const Choice& choice) { word("choice"), word(choice.name); }
   void from(const NodeRef& ref) {
     const std::optional<size_t> place = contracts_.main().find(ref.node);
-    key_ += fmt::format("#{} ", place ? places_[*place] : 0);
+    number(place ? places_[*place] : 0);
     word(ref.output);
   }
 

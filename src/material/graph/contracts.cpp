@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "graph/text.h"
@@ -29,6 +30,19 @@ Body::Body(const Graph& graph, const Group* group)
       nodes_(group == nullptr ? &graph.nodes : &group->nodes),
       outputs_(group == nullptr ? &graph.outputs : &group->outputs) {
   for (size_t i = 0; i < nodes_->size(); ++i) places_.emplace((*nodes_)[i].id, i);
+  first_.reserve(nodes_->size());
+  for (const Node& node : *nodes_) {
+    first_.push_back(sources_.size());
+    for (const auto& [name, source] : node.inputs) {
+      const auto* ref = std::get_if<NodeRef>(&source.from);
+      sources_.push_back(ref == nullptr ? kNone : find(ref->node).value_or(kNone));
+    }
+  }
+}
+
+std::optional<size_t> Body::source(size_t node, size_t input) const {
+  const size_t place = sources_[first_[node] + input];
+  return place == kNone ? std::nullopt : std::optional(place);
 }
 
 std::optional<size_t> Body::find(std::string_view id) const {
@@ -36,17 +50,18 @@ std::optional<size_t> Body::find(std::string_view id) const {
   return it == places_.end() ? std::nullopt : std::optional(it->second);
 }
 
-Order orderOf(const Body& body) {
-  const std::vector<Node>& nodes = body.nodes();
-  std::vector<std::vector<Edge>> edges(nodes.size());
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    for (size_t k = 0; k < nodes[i].inputs.size(); ++k) {
-      const auto* ref = std::get_if<NodeRef>(&nodes[i].inputs[k].second.from);
-      if (ref == nullptr) continue;
-      if (const std::optional<size_t> place = body.find(ref->node)) edges[i].push_back({k, *place});
+const Order& Body::order() const {
+  if (order_) return *order_;
+  std::vector<std::vector<Edge>> edges(nodes_->size());
+  for (size_t i = 0; i < edges.size(); ++i) {
+    const size_t inputs = (*nodes_)[i].inputs.size();
+    edges[i].reserve(inputs);
+    for (size_t k = 0; k < inputs; ++k) {
+      if (const std::optional<size_t> place = source(i, k)) edges[i].push_back({k, *place});
     }
   }
-  return sourcesFirst(edges);
+  order_ = sourcesFirst(edges);
+  return *order_;
 }
 
 std::optional<Type> swizzled(Type type, std::string_view swizzle) {
@@ -102,7 +117,7 @@ Offer ofLiteral(const Literal& literal) {
 }  // namespace
 
 Contracts::Contracts(const Graph& graph, const lang::Library& library)
-    : graph_(graph), library_(library), main_(graph, nullptr) {
+    : graph_(graph), library_(library), main_(graph, nullptr), of_main_(graph.nodes.size()) {
   index(graph.groups, groups_);
   index(graph.parameters, parameters_);
   index(graph.textures, textures_);
@@ -178,7 +193,7 @@ void Contracts::chooseForms(const Body& body) {
     return !node.group && !library_.has(lang::DeclKind::Node, node.type);
   };
   if (std::none_of(body.nodes().begin(), body.nodes().end(), several)) return;
-  for (const size_t place : orderOf(body).order) {
+  for (const size_t place : body.order().order) {
     const Node& node = body.nodes()[place];
     if (!several(node)) continue;
     const std::vector<const lang::NodeDecl*> forms = candidates(node, body);
@@ -271,6 +286,16 @@ void Contracts::close(size_t place) {
 }
 
 const Contract* Contracts::of(const Node& node) const {
+  const std::vector<Node>& nodes = main_.nodes();
+  const bool in_main = !nodes.empty() && !std::less<>{}(&node, nodes.data()) &&
+                       std::less<>{}(&node, nodes.data() + nodes.size());
+  if (!in_main) return found(node);
+  const Contract*& known = of_main_[static_cast<size_t>(&node - nodes.data())];
+  if (known == nullptr) known = found(node);
+  return known;
+}
+
+const Contract* Contracts::found(const Node& node) const {
   const auto form = forms_.find(&node);
   return of(form == forms_.end() ? std::string_view(node.type) : form->second->name, node.group);
 }

@@ -37,16 +37,22 @@ public:
   const Outputs& outputs() const { return *outputs_; }
   /// The first node of that id.
   std::optional<size_t> find(std::string_view id) const;
+  /// The node that an input of a node takes its value from, by their places; nothing where it takes it from
+  /// elsewhere.
+  std::optional<size_t> source(size_t node, size_t input) const;
+  /// Its nodes behind what they take values from; found once.
+  const Order& order() const;
 
 private:
   const Group* group_;
   const std::vector<Node>* nodes_;
   const Outputs* outputs_;
+  static constexpr size_t kNone = ~size_t{0};
   NameMap<size_t> places_;
+  std::vector<size_t> sources_;  ///< by node and input, or kNone
+  std::vector<size_t> first_;    ///< of a node in `sources_`
+  mutable std::optional<Order> order_;
 };
-
-/// Its nodes behind what they take values from.
-Order orderOf(const Body& body);
 
 /// What a source is declared to give.
 struct Offer {
@@ -93,6 +99,7 @@ private:
     std::vector<bool> known;
     Contract contract;
   };
+  const Contract* found(const Node& node) const;
   void orderGroups();
   void chooseForms(const Body& body);
   std::vector<const lang::NodeDecl*> candidates(const Node& node, const Body& body) const;
@@ -107,6 +114,7 @@ private:
   Order order_;
   mutable Arena arena_;
   mutable NameMap<Contract> of_library_{&arena_};
+  mutable std::vector<const Contract*> of_main_;  ///< by the graph's node; null as long as there is none
   std::unordered_map<const Node*, const lang::NodeDecl*> forms_;  ///< of nodes that have several
   NameMap<size_t> groups_{&arena_}, parameters_{&arena_}, textures_{&arena_};
 };

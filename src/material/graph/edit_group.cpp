@@ -149,7 +149,7 @@ Result<void> Editor::makeGroup(const std::vector<std::string>& nodes, const std:
   graph_.groups.push_back(gathering.takeGroup());
   const Contracts contracts(graph_, library_);
   const Body& body = of.empty() ? contracts.main() : contracts.body(*graph_.findGroup(of));
-  if (orderOf(body).cycles.empty()) return {};
+  if (body.order().cycles.empty()) return {};
   graph_ = std::move(before);
   return fail("cycle", {}, "a node that stays takes values from some of these nodes and gives some to others",
               "take it into the group, too");

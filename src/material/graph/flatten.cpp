@@ -57,7 +57,7 @@ private:
     const std::vector<Node>& nodes = scope.body.nodes();
     scope.ids.resize(nodes.size());
     scope.outputs.resize(nodes.size());
-    for (const size_t place : orderOf(scope.body).order) {
+    for (const size_t place : scope.body.order().order) {
       const Node& node = nodes[place];
       const std::string path = scope.path.empty() ? node.id : scope.path + "/" + node.id;
       if (node.group) {

@@ -47,27 +47,12 @@ bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view nam
                      [&](std::string_view one) { return one.substr(1) == name; });
 }
 
-bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr,
-                 const gltf::VertexAttributes& attributes, std::vector<signed char>& known) {
-  if (expr.kind == lang::Expr::Kind::Slot) {
-    for (const lang::AttributeDecl& attribute : decl.attributes) {
-      // What is optional is asked for before it is read.
-      if (attribute.optional && attribute.has_slot == expr.slot) return false;
-      // What is not glTF's is the application's, which has it unless the template asks.
-      if (!attribute.fact && attribute.slot == expr.slot)
-        return !attribute.optional && isGltfs(attribute.name) && !hasAttribute(attributes, attribute.name);
-    }
-    for (size_t i = 0; i < decl.givens.size(); ++i) {
-      const lang::GivenDecl& given = decl.givens[i];
-      const bool this_one = expr.slot >= given.slot && expr.slot < given.slot + given.results.size();
-      if (!this_one || !given.value) continue;
-      if (known[i] < 0) known[i] = readsAbsent(decl, *given.value, attributes, known) ? 1 : 0;
-      return known[i] == 1;
-    }
-    return false;
-  }
-  return std::any_of(expr.args.begin(), expr.args.end(), [&](const lang::ExprPtr& arg) {
-    return arg && readsAbsent(decl, *arg, attributes, known);
+bool needsAbsent(const lang::TemplateDecl& decl, const lang::GivenDecl& given,
+                 const gltf::VertexAttributes& attributes) {
+  return std::any_of(given.attributes.begin(), given.attributes.end(), [&](uint16_t place) {
+    // What is not glTF's is the application's, which has it unless the template asks.
+    const std::string_view name = decl.attributes[place].name;
+    return isGltfs(name) && !hasAttribute(attributes, name);
   });
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string_view>
-#include <vector>
 
 #include "gltf/facts.h"
 #include "lang/library.h"
@@ -13,9 +12,8 @@ namespace lacquer::model {
 /// be spelled as in glTF, `_WETNESS`, or without the underscore.
 bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name);
 
-/// Whether an expression of the template reads an attribute that the primitive lacks. `known` has a place for
-/// each given of the template: -1 as long as nobody asked.
-bool readsAbsent(const lang::TemplateDecl& decl, const lang::Expr& expr,
-                 const gltf::VertexAttributes& attributes, std::vector<signed char>& known);
+/// Whether a given of the template needs an attribute that the primitive lacks.
+bool needsAbsent(const lang::TemplateDecl& decl, const lang::GivenDecl& given,
+                 const gltf::VertexAttributes& attributes);
 
 }  // namespace lacquer::model

@@ -1,5 +1,4 @@
 #include "model/build.h"
-#include "model/attributes.h"
 
 #include <fmt/format.h>
 
@@ -254,7 +253,7 @@ Source Writer::from(const Found& value) {
 
 Source Writer::source(const Found& value) {
   Source source = from(value);
-  source.swizzle = value.swizzle;
+  source.swizzle = value.swizzle.view();
   return source;
 }
 
@@ -267,6 +266,7 @@ void Writer::write(uint32_t id) {
     if (input.kind == Found::Kind::Node) write(input.index);
   }
   graph::Inputs inputs;
+  inputs.reserve(node.inputs.size());
   for (size_t i = 0; i < node.inputs.size(); ++i) {
     const Found& input = node.inputs[i];
     const lang::Param& param = node.decl->params[i];

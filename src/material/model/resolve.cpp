@@ -34,7 +34,6 @@ Resolver::Resolver(const Model& model, const lang::TemplateDecl& template_decl,
       nodes_(model.ids.size()),
       taken_(model.lines.size()),
       absent_(model.givens.size(), -1),
-      reads_absent_(template_.givens.size(), -1),
       terms_(model.terms.size(), Life::Unknown),
       uniform_(model.ids.size(), -1),
       line_states_(model.lines.size()),
@@ -182,10 +181,10 @@ Found Resolver::role(const Value& value) {
   }
   out.type = ir::Type::Vec4;
   const lang::PropertyDecl& texture = *model_.schema->properties[out.property].decl;
-  out.swizzle = std::string(texture.channels);
-  if (!value.path.empty()) out.swizzle = std::string(value.path);
+  out.swizzle = Letters(texture.channels);
+  if (!value.path.empty()) out.swizzle = Letters(value.path);
   const auto texel = options_.texels.find(texture.name);
-  return texel == options_.texels.end() ? out : constantTexel(texel->second, out.swizzle);
+  return texel == options_.texels.end() ? out : constantTexel(texel->second, out.swizzle.view());
 }
 
 Found Resolver::given(const Value& value) {
@@ -201,10 +200,7 @@ Found Resolver::given(const Value& value) {
   const std::optional<lang::GivenResult> result = template_.find(name);
   if (!result) return {};
   signed char& absent = absent_[value.index];
-  if (absent < 0)
-    absent = result->given->value && readsAbsent(template_, *result->given->value, attributes_, reads_absent_)
-                 ? 1
-                 : 0;
+  if (absent < 0) absent = needsAbsent(template_, *result->given, attributes_) ? 1 : 0;
   if (absent == 1) return {};
   out.kind = Found::Kind::Given;
   out.type = result->given->results[result->index].type;
@@ -227,7 +223,7 @@ Found Resolver::behind(Found value, std::string_view path) const {
     if (nodes_[value.index].decl->results.size() > 1) return {};
   }
   if (!isSwizzle(path) || !value.swizzle.empty()) return {};
-  value.swizzle = std::string(path);
+  value.swizzle = Letters(path);
   return value;
 }
 
@@ -243,6 +239,7 @@ Found Resolver::call(const Value& value, const Line& line) {
   node.variant = value.variant;
   node.shared = line.shared;
   node.order = line.order;
+  node.inputs.reserve(value.args.size());
   for (size_t i = 0; i < value.args.size(); ++i) {
     node.inputs.push_back(value.args[i].absent ? Found{} : found(value.args[i], line));
     if (!node.inputs.back() && !hasDefault(value.node->params[i])) return {};

@@ -1,6 +1,9 @@
 // What the lines of a model come to for one material: which are there, and what each is made of.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cassert>
 #include <optional>
 #include <set>
 #include <string>
@@ -10,6 +13,23 @@
 #include "model/dimming.h"
 
 namespace lacquer::model {
+
+/// Up to four letters of a swizzle.
+class Letters {
+public:
+  Letters() = default;
+  explicit Letters(std::string_view letters) : count_(static_cast<uint8_t>(letters.size())) {
+    assert(letters.size() <= letters_.size());
+    std::copy(letters.begin(), letters.end(), letters_.begin());
+  }
+  std::string_view view() const { return {letters_.data(), count_}; }
+  bool empty() const { return count_ == 0; }
+  bool operator==(const Letters&) const = default;
+
+private:
+  std::array<char, 4> letters_{};
+  uint8_t count_ = 0;
+};
 
 /// What a name comes to. A swizzle may stand behind any of them.
 struct Found {
@@ -34,7 +54,7 @@ struct Found {
   bool animated = false;  ///< a number whose value today says nothing of its value tomorrow
   ir::Components constant{};
   std::string_view output;
-  std::string swizzle;
+  Letters swizzle;
 
   static Found of(Kind kind, ir::Type type = ir::Type::Float, const ir::Components& constant = {}) {
     Found found;
@@ -131,7 +151,6 @@ private:
   std::vector<bool> taken_;  ///< of the lines
   std::vector<signed char>
       absent_;  ///< of what the template gives: -1 unknown, else whether it cannot be had
-  std::vector<signed char> reads_absent_;  ///< of the template's givens, in the same way, by declaration
   enum class Life : uint8_t { Unknown, Asked, Dead, Alive };
   std::vector<Life> terms_;
   std::vector<signed char> uniform_;  ///< of the ids' nodes: -1 unknown, else whether it is
