@@ -7,8 +7,8 @@ namespace lacquer::test {
 namespace {
 
 template <class T>
-const T& orThrow(const Result<T>& result) {
-  if (result) return *result;
+T orThrow(Result<T> result) {
+  if (result) return *std::move(result);
   throw std::runtime_error(format(result.error().at(0)));
 }
 

@@ -106,10 +106,15 @@ public:
     module_.spec_constants = options_.parameters == ParameterMode::Spec;
     slots_.assign(template_->slots, ir::kNoValue);
     order_ = graph::codeOrder(graph_, library_, options_.shown);
+    for (const size_t index : order_) {
+      const Result<const lang::NodeDecl*> decl = library_.node(graph_.nodes[index].type);
+      if (!decl) return tl::make_unexpected(decl.error());
+      decls_.push_back(*decl);
+    }
     declareInterface();
     bindGivens();
     bindLightRange();
-    if (Diagnostics wrong = nodes(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
+    nodes();
     ports();
     if (Diagnostics wrong = outputs(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     if (Diagnostics wrong = rates(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
@@ -217,7 +222,7 @@ private:
                         index,
                         i};
         input.index = k;
-        slots_[field.slot + k] = dag().input(input);
+        slots_[field.slot + k] = dag().input(std::move(input));
       }
     }
     if (decl.role == lang::BlockRole::Lights) declareLights(decl);
@@ -289,8 +294,15 @@ private:
     return static_cast<uint32_t>(found - block.fields.begin());
   }
 
+  /// What the template gives under a name; looked for once.
+  std::optional<lang::GivenResult> givenNamed(std::string_view name) {
+    const auto known = givens_.find(name);
+    if (known != givens_.end()) return known->second;
+    return givens_.emplace(name, template_->find(name)).first->second;
+  }
+
   /// Which of the template's givens its outputs, or the graph, take values from.
-  std::vector<bool> readGivens() const {
+  std::vector<bool> readGivens() {
     const std::vector<lang::GivenDecl>& givens = template_->givens;
     std::vector<uint32_t> of_slot(template_->slots, ~uint32_t{0});
     for (uint32_t i = 0; i < givens.size(); ++i)
@@ -298,7 +310,7 @@ private:
     std::vector<bool> read(givens.size());
     std::vector<const lang::Expr*> open;
     const auto add = [&](std::string_view name) {
-      const auto found = name.empty() ? std::nullopt : template_->find(name);
+      const auto found = name.empty() ? std::nullopt : givenNamed(name);
       const size_t place = found ? static_cast<size_t>(found->given - givens.data()) : givens.size();
       if (!found || read[place]) return;
       read[place] = true;
@@ -309,9 +321,9 @@ private:
     };
     for (const size_t index : order_) {
       for (const auto& [name, from] : graph_.nodes[index].inputs) source(from);
-      const Result<const lang::NodeDecl*> decl = library_.node(graph_.nodes[index].type);
-      if (!decl) continue;
-      for (const lang::Param& param : (*decl)->params) add(param.given);
+    }
+    for (const lang::NodeDecl* decl : decls_) {
+      for (const lang::Param& param : decl->params) add(param.given);
     }
     for (const auto& [name, from] : graph_.outputs) source(from);
     if (options_.shown != nullptr) source(*options_.shown);
@@ -344,12 +356,10 @@ private:
     }
   }
 
-  Diagnostics nodes() {
-    for (const size_t index : order_) {
-      const graph::Node& node = graph_.nodes[index];
-      const Result<const lang::NodeDecl*> found = library_.node(node.type);
-      if (!found) return found.error();
-      const lang::NodeDecl& decl = **found;
+  void nodes() {
+    for (size_t i = 0; i < order_.size(); ++i) {
+      const graph::Node& node = graph_.nodes[order_[i]];
+      const lang::NodeDecl& decl = *decls_[i];
       std::pmr::vector<ir::ValueId> args(&arena_);
       args.reserve(decl.params.size());
       size_t next = 0;
@@ -366,7 +376,6 @@ private:
       if (node.at_vertices) moveToVertices(decl, term, results);
       results_.emplace(node.id, Lowered{&decl, std::move(results)});
     }
-    return {};
   }
 
   ir::ValueId argument(const graph::Source& source, const lang::Param& param) {
@@ -385,7 +394,7 @@ private:
   }
 
   ir::ValueId givenFor(const lang::Param& param) {
-    const auto found = param.given.empty() ? std::nullopt : template_->find(param.given);
+    const auto found = param.given.empty() ? std::nullopt : givenNamed(param.given);
     if (!found || found->given->results[found->index].type != param.type) return ir::kNoValue;
     return given(*found);
   }
@@ -479,7 +488,7 @@ private:
     return ir::kNoValue;
   }
   ir::ValueId from(const graph::GivenRef& reference) {
-    const auto found = template_->find(reference.name);
+    const auto found = givenNamed(reference.name);
     assert(found);
     return given(*found);
   }
@@ -627,7 +636,8 @@ private:
   Inliner inliner_;
   const lang::TemplateDecl* template_ = nullptr;
   std::vector<ir::ValueId> slots_;
-  std::vector<size_t> order_;  ///< of the graph's nodes
+  std::vector<size_t> order_;                 ///< of the graph's nodes
+  std::vector<const lang::NodeDecl*> decls_;  ///< of the nodes in that order
   struct Lowered {
     const lang::NodeDecl* decl;
     Values results;
@@ -635,6 +645,7 @@ private:
   Arena arena_;
   NameMap<Lowered> results_{&arena_};  ///< of the graph's nodes
   NameMap<ir::ValueId> textures_{&arena_}, parameters_{&arena_};
+  NameMap<std::optional<lang::GivenResult>> givens_{&arena_};
 };
 
 }  // namespace

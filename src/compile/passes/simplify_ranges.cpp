@@ -23,10 +23,10 @@ struct Decision {
 /// GPUs.
 class Decider {
 public:
-  explicit Decider(const ir::Module& module) : dag_(module.dag), intervals_(module) {
+  Decider(const ir::Module& module, std::span<const ValueId> live) : dag_(module.dag), intervals_(module) {
     // Only what a decision rests on.
     std::vector<ValueId> asked;
-    for (const ValueId id : ir::reachable(dag_, ir::roots(module))) {
+    for (const ValueId id : live) {
       if (decidable(dag_[id].op)) asked.push_back(id);
     }
     intervals_.run(ir::reachable(dag_, asked));
@@ -122,19 +122,19 @@ void settleDiscards(ir::Module& module) {
 }  // namespace
 
 void simplifyRanges(ir::Module& module) {
-  std::vector<Decision> decisions;
-  const Decider decide(module);
-  decisions.reserve(module.dag.size());
-  for (ValueId id = 0; id < module.dag.size(); ++id) decisions.push_back(decide(id));
-  Rewriter(module).run([&](Rewriter& rewriter, ValueId id, std::span<const ValueId> operands) {
+  Rewriter rewriter(module);
+  std::vector<Decision> decisions(module.dag.size());
+  const Decider decide(module, rewriter.live());
+  for (const ValueId id : rewriter.live()) decisions[id] = decide(id);
+  rewriter.run([&](Rewriter& r, ValueId id, std::span<const ValueId> operands) {
     const Decision& decision = decisions[id];
-    if (decision.kind == Decision::Kind::Keep) return rewriter.copy(id, operands);
-    if (decision.kind == Decision::Kind::True) return rewriter.dag().boolean(true);
-    if (decision.kind == Decision::Kind::False) return rewriter.dag().boolean(false);
+    if (decision.kind == Decision::Kind::Keep) return r.copy(id, operands);
+    if (decision.kind == Decision::Kind::True) return r.dag().boolean(true);
+    if (decision.kind == Decision::Kind::False) return r.dag().boolean(false);
     ValueId result = operands[decision.operand];
-    if (decision.kind == Decision::Kind::NegatedOperand) result = rewriter.dag().make(Op::Neg, {result});
-    const ir::Type type = rewriter.dag()[id].type;
-    return rewriter.dag()[result].type == type ? result : rewriter.dag().construct(type, {result});
+    if (decision.kind == Decision::Kind::NegatedOperand) result = r.dag().make(Op::Neg, {result});
+    const ir::Type type = r.dag()[id].type;
+    return r.dag()[result].type == type ? result : rewriter.dag().construct(type, {result});
   });
   settleDiscards(module);
 }

@@ -38,6 +38,7 @@ public:
   Scheduler(const ir::Module& module, ir::Stage stage)
       : module_(module), dag_(module.dag), live_(ir::reachable(module, stage)), loops_(dag_, live_) {
     program_.stage = stage;
+    program_.statements.reserve(live_.size());
     program_.names.resize(dag_.size());
     for (uint32_t i = 0; i < module_.outputs.size(); ++i) {
       if (module_.outputs[i].stage == stage) outputs_.push_back(i);

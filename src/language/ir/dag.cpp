@@ -144,7 +144,7 @@ Dag::Dag() : constant_table_(kFirstConstantSlots, kNoValue), table_(kFirstSlots,
   inputs_.reserve(kFirstTerms);
   input_keys_.reserve(kFirstTerms);
   names_.reserve(kFirstSlots / 8);
-  for (auto* ids : {&term_of_, &name_of_, &fact_of_, &rank_of_}) ids->reserve(kFirstSlots / 2);
+  about_.reserve(kFirstSlots / 2);
   values_.reserve(kFirstSlots / 2);
 }
 
@@ -199,10 +199,7 @@ ValueId Dag::intern(const Value& value) {
   const auto id = static_cast<ValueId>(values_.size());
   table_[slot] = id;
   values_.push_back(value);
-  term_of_.push_back(current_term_);
-  name_of_.push_back(0);
-  fact_of_.push_back(0);
-  rank_of_.push_back(current_rank_ == kOwnRank ? id : current_rank_);
+  about_.push_back({current_term_, 0, 0, current_rank_ == kOwnRank ? id : current_rank_});
   return id;
 }
 
@@ -378,7 +375,7 @@ void Dag::setInputField(ValueId id, uint32_t field) {
   input_keys_[values_[id].payload] = keyOf(input);
 }
 
-ValueId Dag::input(const Input& input) {
+ValueId Dag::input(Input input) {
   const uint64_t key = keyOf(input);
   for (uint32_t i = 0; i < inputs_.size(); ++i) {
     if (input_keys_[i] != key) continue;
@@ -389,9 +386,10 @@ ValueId Dag::input(const Input& input) {
       return intern({Op::Input, other.type, other.rate, 0, i, {}});
     }
   }
-  inputs_.push_back(input);
+  inputs_.push_back(std::move(input));
   input_keys_.push_back(key);
-  return intern({Op::Input, input.type, input.rate, 0, static_cast<uint32_t>(inputs_.size() - 1), {}});
+  const Input& made = inputs_.back();
+  return intern({Op::Input, made.type, made.rate, 0, static_cast<uint32_t>(inputs_.size() - 1), {}});
 }
 
 bool Dag::isConstant(ValueId id, double x) const {
@@ -410,19 +408,19 @@ TermId Dag::addTerm(Term term) {
 
 void Dag::name(ValueId id, std::string_view name) {
   const Op op = values_[id].op;
-  if (op == Op::Constant || op == Op::Input || name_of_[id] != 0 || name.empty()) return;
+  if (op == Op::Constant || op == Op::Input || about_[id].name != 0 || name.empty()) return;
   names_.emplace_back(name);
-  name_of_[id] = static_cast<uint32_t>(names_.size());
+  about_[id].name = static_cast<uint32_t>(names_.size());
 }
 
 std::string_view Dag::nameOf(ValueId id) const {
-  return name_of_[id] == 0 ? std::string_view{} : std::string_view(names_[name_of_[id] - 1]);
+  return about_[id].name == 0 ? std::string_view{} : std::string_view(names_[about_[id].name - 1]);
 }
 
 void Dag::inherit(ValueId id, ValueId from) {
   const Op op = values_[id].op;
-  if (name_of_[id] == 0 && op != Op::Constant && op != Op::Input) name_of_[id] = name_of_[from];
-  if (fact_of_[from] != 0) assume(id, Interval(facts_[fact_of_[from] - 1]));
+  if (about_[id].name == 0 && op != Op::Constant && op != Op::Input) about_[id].name = about_[from].name;
+  if (about_[from].fact != 0) assume(id, Interval(facts_[about_[from].fact - 1]));
 }
 
 void Dag::relax(ValueId id) {
@@ -435,28 +433,28 @@ void Dag::assume(ValueId id, Interval range) {
   const Value& value = values_[id];
   if (value.op == Op::Construct && value.count == 1 && !isConstant(value.args[0]))
     assume(value.args[0], range);
-  if (fact_of_[id] == 0) {
+  if (about_[id].fact == 0) {
     facts_.push_back(range);
-    fact_of_[id] = static_cast<uint32_t>(facts_.size());
+    about_[id].fact = static_cast<uint32_t>(facts_.size());
     return;
   }
-  Interval& fact = facts_[fact_of_[id] - 1];
+  Interval& fact = facts_[about_[id].fact - 1];
   fact.lo = std::max(fact.lo, range.lo);
   fact.hi = std::min(fact.hi, range.hi);
 }
 
 std::optional<Interval> Dag::assumed(ValueId id) const {
-  if (fact_of_[id] == 0) return std::nullopt;
-  return facts_[fact_of_[id] - 1];
+  if (about_[id].fact == 0) return std::nullopt;
+  return facts_[about_[id].fact - 1];
 }
 
 /// Ascending ids by rank; of equal rank they keep their order.
 std::vector<ValueId> Dag::byRank(std::span<const ValueId> ids) const {
   std::vector<uint32_t> place(values_.size() + 1, 0);
-  for (const ValueId id : ids) ++place[rank_of_[id] + 1];
+  for (const ValueId id : ids) ++place[about_[id].rank + 1];
   for (size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
   std::vector<ValueId> sorted(ids.size());
-  for (const ValueId id : ids) sorted[place[rank_of_[id]]++] = id;
+  for (const ValueId id : ids) sorted[place[about_[id].rank]++] = id;
   return sorted;
 }
 
@@ -518,12 +516,11 @@ std::vector<ValueId> Dag::compact(std::span<const ValueId> roots) {
     from = std::move(to);
   };
   if (anyRelaxed()) relaxed_.resize(moved.size(), false), take(relaxed_);
-  take(values_), take(term_of_), take(name_of_), take(fact_of_);
+  take(values_), take(about_);
   for (Value& value : values_) {
     for (size_t k = 0; k < value.count; ++k) value.args[k] = moved[value.args[k]];
   }
-  rank_of_.resize(order.size());
-  for (ValueId id = 0; id < order.size(); ++id) rank_of_[id] = id;
+  for (ValueId id = 0; id < order.size(); ++id) about_[id].rank = id;
   table_.clear();
   return moved;
 }
@@ -541,7 +538,13 @@ std::vector<ValueId> reachable(const Dag& dag, std::span<const ValueId> roots) {
     if (seen[i] == 0) continue;
     result[--first] = i;
     const Value& value = dag[i];
-    for (size_t k = 0; k < value.count; ++k) seen[value.args[k]] = 1;
+    switch (value.count) {
+      case 4: seen[value.args[3]] = 1; [[fallthrough]];
+      case 3: seen[value.args[2]] = 1; [[fallthrough]];
+      case 2: seen[value.args[1]] = 1; [[fallthrough]];
+      case 1: seen[value.args[0]] = 1; break;
+      default: break;
+    }
   }
   result.erase(result.begin(), result.begin() + first);
   return result;

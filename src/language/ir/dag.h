@@ -194,7 +194,7 @@ public:
   ValueId boolean(bool b) { return constant(Type::Bool, {b ? 1.0 : 0.0}); }
   ValueId integer(int32_t i) { return constant(Type::Int, {static_cast<double>(i)}); }
   ValueId uinteger(uint32_t i);
-  ValueId input(const Input& input);
+  ValueId input(Input input);
 
   bool isConstant(ValueId id) const { return values_[id].op == Op::Constant; }
   const Components& constantOf(ValueId id) const { return constants_[values_[id].payload]; }
@@ -213,7 +213,7 @@ public:
   void setTerm(TermId term) { current_term_ = term; }
   TermId currentTerm() const { return current_term_; }
   const std::vector<Term>& terms() const { return terms_; }
-  TermId termOf(ValueId id) const { return term_of_[id]; }
+  TermId termOf(ValueId id) const { return about_[id].term; }
   /// Names a value if it has no name yet. Constants and inputs are never named.
   void name(ValueId id, std::string_view name);
   std::string_view nameOf(ValueId id) const;
@@ -236,7 +236,7 @@ public:
   // rank, which is their id unless setRank() gave another. It never takes part in identity.
   static constexpr uint32_t kOwnRank = ~uint32_t{0};
   void setRank(uint32_t rank) { current_rank_ = rank; }
-  uint32_t rankOf(ValueId id) const { return rank_of_[id]; }
+  uint32_t rankOf(ValueId id) const { return about_[id].rank; }
   /// Ascending ids in the order of their ranks.
   std::vector<ValueId> byRank(std::span<const ValueId> ids) const;
   /// Drops what `roots` do not reach and numbers the rest by rank, operands first. Returns the new id of
@@ -265,15 +265,19 @@ private:
   std::vector<Components> constants_;
   std::vector<Input> inputs_;
   std::vector<uint64_t> input_keys_;  ///< of their numbers: they are told apart by these before their names
-  std::vector<TermId> term_of_;
+  /// What is known of a value beside what it is.
+  struct About {
+    TermId term;
+    uint32_t name;  ///< 1 + index into names_, 0 for none
+    uint32_t fact;  ///< 1 + index into facts_, 0 for none
+    uint32_t rank;
+  };
+  std::vector<About> about_;
   std::vector<Term> terms_;
-  std::vector<uint32_t> name_of_;  ///< 1 + index into names_, 0 for none
   std::vector<std::string> names_;
   std::vector<uint32_t> constant_table_;  ///< open addressing over constants_; a power of two
-  std::vector<uint32_t> fact_of_;         ///< 1 + index into facts_, 0 for none
   std::vector<Interval> facts_;
-  std::vector<bool> relaxed_;  ///< empty where no value is
-  std::vector<uint32_t> rank_of_;
+  std::vector<bool> relaxed_;   ///< empty where no value is
   std::vector<ValueId> table_;  ///< open addressing over values_, by content; a power of two; empty after
                                 ///< compact() until a value is made
   uint32_t loops_ = 0;          ///< numbers that are given

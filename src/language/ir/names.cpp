@@ -1,7 +1,5 @@
 #include "ir/names.h"
 
-#include <fmt/format.h>
-
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -87,17 +85,21 @@ bool prefixed(std::string_view name) {
                      [&](std::string_view p) { return p[0] == name[0] && name.starts_with(p); });
 }
 
-/// Letters, digits and underscores, in every locale the same.
-bool plain(char c) {
-  static constexpr auto kPlain = [] {
-    std::array<bool, 256> table{};
+// What a character is in a name, in every locale the same.
+constexpr uint8_t kPlain = 1, kUnderscore = 2, kMark = 4;  // a mark is a digit or a capital
+
+uint8_t classOf(char c) {
+  static constexpr auto kClasses = [] {
+    std::array<uint8_t, 256> classes{};
     for (int i = 0; i < 128; ++i) {
-      table[static_cast<size_t>(i)] =
-          (i >= 'a' && i <= 'z') || (i >= 'A' && i <= 'Z') || (i >= '0' && i <= '9') || i == '_';
+      const bool mark = (i >= 'A' && i <= 'Z') || (i >= '0' && i <= '9');
+      const bool plain = mark || (i >= 'a' && i <= 'z') || i == '_';
+      classes[static_cast<size_t>(i)] =
+          static_cast<uint8_t>((plain ? kPlain : 0) | (i == '_' ? kUnderscore : 0) | (mark ? kMark : 0));
     }
-    return table;
+    return classes;
   }();
-  return kPlain[static_cast<unsigned char>(c)];
+  return kClasses[static_cast<unsigned char>(c)];
 }
 
 bool digit(char c) { return c >= '0' && c <= '9'; }
@@ -128,15 +130,31 @@ bool typed(std::string_view name) {
   return digit(name.back()) && std::any_of(kNumbered.begin(), kNumbered.end(), numbered);
 }
 
+/// Whether cleaned() leaves a name as it is; of few names that it leaves, false.
+bool clean(std::string_view name) {
+  uint8_t all = kPlain, any = 0, twice = 0, before = 0;
+  for (const char c : name) {
+    const uint8_t one = classOf(c);
+    all &= one;
+    any |= one;
+    twice |= one & before & kUnderscore;
+    before = one;
+  }
+  if (name.empty() || all == 0 || twice != 0 || (before & kUnderscore) != 0 || (any & kMark) != 0)
+    return false;
+  return !prefixed(name) && !name.ends_with("_of");
+}
+
 /// The name with only characters that every target takes, and none of the printers' prefixes.
 std::string cleaned(std::string_view wanted) {
   constexpr size_t kLongest = 64;  // a compiler may stop at 255, with all that is put around it
   wanted = wanted.substr(0, kLongest);
+  if (clean(wanted)) return std::string(wanted);
   std::string name(wanted);
   // Two underscores in a row are reserved in GLSL.
   size_t length = 0;
   for (const char c : wanted) {
-    const char kept = plain(c) ? c : '_';
+    const char kept = (classOf(c) & kPlain) != 0 ? c : '_';
     if (kept != '_' || length == 0 || name[length - 1] != '_') name[length++] = kept;
   }
   name.resize(length);
@@ -181,11 +199,11 @@ std::string Names::pick(std::string_view wanted, std::string_view layer) {
   const bool of_layer =
       base.starts_with(layer) && base.substr(std::min(layer.size(), base.size())).starts_with('_');
   if (!layer.empty() && !of_layer) {
-    base = cleaned(fmt::format("{}_{}", layer, base));
+    base = cleaned(std::string(layer) + '_' + base);
     if (grab(base)) return base;
   }
   for (int k = 2;; ++k) {
-    std::string name = fmt::format("{}_{}", base, k);
+    std::string name = base + '_' + std::to_string(k);
     if (grab(name)) return name;
   }
 }

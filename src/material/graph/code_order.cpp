@@ -16,10 +16,17 @@ namespace lacquer::graph {
 
 namespace {
 
+/// What a node of a flat graph takes, which names the forms of nodes that it has; none of an unknown node.
+std::span<const lang::Param> paramsOf(const Node& node, const lang::Library& library) {
+  if (node.group) return {};
+  const Result<const lang::NodeDecl*> found = library.node(node.type);
+  return found ? std::span<const lang::Param>((*found)->params) : std::span<const lang::Param>();
+}
+
 class CodeOrder {
 public:
-  CodeOrder(const Graph& graph, const Contracts& contracts, const Source* also)
-      : graph_(graph), contracts_(contracts), body_(contracts_.main()), also_(also) {}
+  CodeOrder(const Graph& graph, const lang::Library& library, const Body& body, const Source* also)
+      : graph_(graph), library_(library), body_(body), also_(also) {}
 
   std::vector<size_t> run() {
     sources_.resize(graph_.nodes.size());
@@ -39,10 +46,12 @@ public:
 private:
   std::vector<size_t> ports() const {
     std::vector<size_t> nodes;
-    const lang::TemplateDecl* decl = contracts_.templateDecl();
-    for (size_t i = 0; decl != nullptr && i < decl->ports.size(); ++i) {
-      for (const auto& [name, source] : graph_.outputs) {
-        if (name == decl->ports[i].param.name) add(source, nodes);
+    if (library_.has(lang::DeclKind::Template, graph_.template_name)) {
+      const Result<const lang::TemplateDecl*> decl = library_.template_(graph_.template_name);
+      for (size_t i = 0; decl && i < (*decl)->ports.size(); ++i) {
+        for (const auto& [name, source] : graph_.outputs) {
+          if (name == (*decl)->ports[i].param.name) add(source, nodes);
+        }
       }
     }
     if (also_ != nullptr) add(*also_, nodes);
@@ -61,10 +70,8 @@ private:
     if (nodes) return *nodes;
     nodes.emplace();
     const Inputs& inputs = graph_.nodes[index].inputs;
-    const Contract* contract = contracts_.of(body_.nodes()[index]);
-    if (contract == nullptr) return *nodes;
-    const std::span<const lang::Param> params = contract->params;
-    std::vector<std::pair<size_t, size_t>> found;  // a parameter's place, and its source's
+    const std::span<const lang::Param> params = paramsOf(graph_.nodes[index], library_);
+    found_.clear();
     size_t expected = 0;
     for (size_t i = 0; i < inputs.size(); ++i) {
       const std::optional<size_t> source = body_.source(index, i);
@@ -74,12 +81,13 @@ private:
       if (param == params.end()) param = std::find_if(params.begin(), params.end(), named);
       if (param == params.end()) continue;
       expected = static_cast<size_t>(param - params.begin());
-      if (source) found.emplace_back(expected, *source);
+      if (source) found_.emplace_back(expected, *source);
     }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    nodes->reserve(found.size());
-    for (const auto& [of, source] : found) nodes->push_back(source);
+    const auto before = [](const auto& a, const auto& b) { return a.first < b.first; };
+    if (!std::is_sorted(found_.begin(), found_.end(), before))
+      std::stable_sort(found_.begin(), found_.end(), before);
+    nodes->reserve(found_.size());
+    for (const auto& [of, source] : found_) nodes->push_back(source);
     return *nodes;
   }
 
@@ -114,17 +122,18 @@ private:
   }
 
   const Graph& graph_;
-  const Contracts& contracts_;
+  const lang::Library& library_;
   const Body& body_;
   const Source* also_;
+  std::vector<std::pair<size_t, size_t>> found_;  ///< of a node: a parameter's place, and its source's
   std::vector<std::optional<std::vector<size_t>>> sources_;  ///< by node, where they were asked for
 };
 
 }  // namespace
 
 std::vector<size_t> codeOrder(const Graph& graph, const lang::Library& library, const Source* also) {
-  const Contracts contracts(graph, library);
-  return CodeOrder(graph, contracts, also).run();
+  const Body body(graph, nullptr);
+  return CodeOrder(graph, library, body, also).run();
 }
 
 namespace {
@@ -133,7 +142,7 @@ namespace {
 class ProgramKey {
 public:
   ProgramKey(const Graph& graph, const lang::Library& library) : graph_(graph), contracts_(graph, library) {
-    const std::vector<size_t> order = CodeOrder(graph, contracts_, nullptr).run();
+    const std::vector<size_t> order = CodeOrder(graph, library, contracts_.main(), nullptr).run();
     places_.resize(graph.nodes.size());
     for (size_t i = 0; i < order.size(); ++i) places_[order[i]] = i;
     word(graph.template_name);

@@ -52,13 +52,13 @@ std::optional<size_t> Body::find(std::string_view id) const {
 
 const Order& Body::order() const {
   if (order_) return *order_;
-  std::vector<std::vector<Edge>> edges(nodes_->size());
-  for (size_t i = 0; i < edges.size(); ++i) {
-    const size_t inputs = (*nodes_)[i].inputs.size();
-    edges[i].reserve(inputs);
-    for (size_t k = 0; k < inputs; ++k) {
-      if (const std::optional<size_t> place = source(i, k)) edges[i].push_back({k, *place});
+  Edges edges;
+  edges.reserve(nodes_->size(), sources_.size());
+  for (size_t i = 0; i < nodes_->size(); ++i) {
+    for (size_t k = 0; k < (*nodes_)[i].inputs.size(); ++k) {
+      if (const std::optional<size_t> place = source(i, k)) edges.add({k, *place});
     }
+    edges.close();
   }
   order_ = sourcesFirst(edges);
   return *order_;
@@ -227,14 +227,13 @@ std::string Contracts::whyNoForm(const Node& node, const Body& body) const {
 }
 
 void Contracts::orderGroups() {
-  std::vector<std::vector<Edge>> edges(graph_.groups.size());
-  for (size_t g = 0; g < edges.size(); ++g) {
-    const std::vector<Node>& nodes = graph_.groups[g].nodes;
-    for (size_t i = 0; i < nodes.size(); ++i) {
-      if (!nodes[i].group) continue;
-      if (const auto it = groups_.find(nodes[i].type); it != groups_.end())
-        edges[g].push_back({i, it->second});
+  Edges edges;
+  for (const Group& group : graph_.groups) {
+    for (size_t i = 0; i < group.nodes.size(); ++i) {
+      if (!group.nodes[i].group) continue;
+      if (const auto it = groups_.find(group.nodes[i].type); it != groups_.end()) edges.add({i, it->second});
     }
+    edges.close();
   }
   order_ = sourcesFirst(edges);
 }

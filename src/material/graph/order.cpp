@@ -4,29 +4,30 @@
 
 namespace lacquer::graph {
 
-Order sourcesFirst(const std::vector<std::vector<Edge>>& edges) {
+Order sourcesFirst(const Edges& edges) {
   enum class State : uint8_t { Fresh, Open, Done };
   struct Visit {
     size_t node;
     size_t next = 0;  ///< the edge to follow next
   };
   Order result;
-  std::vector<State> states(edges.size(), State::Fresh);
-  std::vector<bool> in_cycle(edges.size());
+  result.order.reserve(edges.nodes());
+  std::vector<State> states(edges.nodes(), State::Fresh);
+  std::vector<bool> in_cycle(edges.nodes());
   std::vector<Visit> path;
-  for (size_t root = 0; root < edges.size(); ++root) {
+  for (size_t root = 0; root < edges.nodes(); ++root) {
     if (states[root] != State::Fresh) continue;
     states[root] = State::Open;
     path.push_back({root});
     while (!path.empty()) {
       Visit& visit = path.back();
-      if (visit.next == edges[visit.node].size()) {
+      if (visit.next == edges.of(visit.node).size()) {
         states[visit.node] = State::Done;
         result.order.push_back(visit.node);
         path.pop_back();
         continue;
       }
-      const Edge edge = edges[visit.node][visit.next++];
+      const Edge edge = edges.of(visit.node)[visit.next++];
       if (states[edge.source] == State::Fresh) {
         states[edge.source] = State::Open;
         path.push_back({edge.source});

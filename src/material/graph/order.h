@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace lacquer::graph {
@@ -10,6 +11,24 @@ namespace lacquer::graph {
 struct Edge {
   size_t input = 0;   ///< which of the node's inputs
   size_t source = 0;  ///< the other node
+};
+
+/// The edges of nodes, node after node.
+class Edges {
+public:
+  void reserve(size_t nodes, size_t edges) { first_.reserve(nodes + 1), all_.reserve(edges); }
+  /// One of the node at hand.
+  void add(Edge edge) { all_.push_back(edge); }
+  /// The node at hand has no more.
+  void close() { first_.push_back(all_.size()); }
+  size_t nodes() const { return first_.size() - 1; }
+  std::span<const Edge> of(size_t node) const {
+    return std::span(all_).subspan(first_[node], first_[node + 1] - first_[node]);
+  }
+
+private:
+  std::vector<Edge> all_;
+  std::vector<size_t> first_{0};
 };
 
 struct Cycle {
@@ -24,6 +43,6 @@ struct Order {
 
 /// Stable: an order that is good already stays, and a node moves forward only to stand before its first user.
 /// Takes time in proportion to nodes and edges, and no stack.
-Order sourcesFirst(const std::vector<std::vector<Edge>>& edges);
+Order sourcesFirst(const Edges& edges);
 
 }  // namespace lacquer::graph

@@ -15,13 +15,28 @@ using graph::Source;
 
 namespace {
 
-/// Texture transforms and UV sets are equal when the coordinates are, and stay so: an animated one is like no
-/// other.
-std::string coordinateKey(const gltf::TextureInfo& info) {
-  const gltf::TextureTransform t = info.transform.value_or(gltf::TextureTransform{});
-  return fmt::format("{} {} {} {} {} {} {}", info.texCoord, t.offset[0], t.offset[1], t.rotation, t.scale[0],
-                     t.scale[1], info.animated.transform() ? info.pointer : "");
+/// Where a texture is looked up: equal where the coordinates are, and stay so. An animated transform is like
+/// no other.
+struct Place {
+  int uv_set;
+  gltf::TextureTransform transform;
+  std::string_view pointer;  ///< of an animated one
+  bool operator==(const Place&) const = default;
+};
+
+Place placeOf(const gltf::TextureInfo& info) {
+  return {info.texCoord, info.transform.value_or(gltf::TextureTransform{}),
+          info.animated.transform() ? std::string_view(info.pointer) : std::string_view()};
 }
+
+/// A texel: of a texture at a place, or of a group that computes it.
+struct Texel {
+  std::string_view group;
+  int texture = -1;
+  bool srgb = false;
+  Place place{};
+  bool operator==(const Texel&) const = default;
+};
 
 /// Puts out what the ports of the template reach: nodes, and before them the parameters and textures that
 /// they need.
@@ -68,9 +83,9 @@ private:
   Diagnostics& warnings_;
   Origins& origins_;
   std::vector<bool> marked_;
-  std::vector<std::string> written_;                         ///< the node's id in the graph, once it is there
-  std::vector<std::pair<std::string, Source>> texels_;       ///< texture, UV and colour space -> texel
-  std::vector<std::pair<std::string, Source>> coordinates_;  ///< UV set and transform -> coordinate
+  std::vector<std::string> written_;  ///< the node's id in the graph, once it is there
+  std::vector<std::pair<Texel, Source>> texels_;
+  std::vector<std::pair<Place, Source>> coordinates_;
 };
 
 void Writer::mark(const Found& value) {
@@ -114,7 +129,7 @@ Source Writer::number(const Found& value) {
 Source Writer::coordinate(uint16_t property) {
   const gltf::TextureInfo& info = *material_.texture(property);
   const std::string& slot = model_.schema->properties[property].parameter_name;
-  const std::string key = coordinateKey(info);
+  const Place key = placeOf(info);
   for (const auto& [known, source] : coordinates_) {
     if (known == key) return source;
   }
@@ -183,7 +198,7 @@ void Writer::bring(const std::string& group) {
 
 /// The texel that a group computes; one instance for all of its outputs.
 Source Writer::computed(const gltf::TextureInfo& info, const std::string& slot) {
-  const std::string key = "group " + info.group;
+  const Texel key{info.group};
   for (const auto& [known, source] : texels_) {
     if (known == key) return {graph::NodeRef{std::get<graph::NodeRef>(source.from).node, info.output}, {}};
   }
@@ -216,7 +231,7 @@ Source Writer::texel(uint16_t property) {
   const material::Property& row = model_.schema->properties[property];
   const std::string& slot = row.parameter_name;
   if (!info.group.empty()) return computed(info, slot);
-  const std::string key = fmt::format("{} {} {}", info.texture, row.decl->srgb, coordinateKey(info));
+  const Texel key{{}, info.texture, row.decl->srgb, placeOf(info)};
   for (const auto& [known, source] : texels_) {
     if (known == key) return source;
   }
@@ -297,18 +312,17 @@ void Writer::writeOrdered() {
 
 /// Terms that the material has, whose values no port of the template takes.
 void Writer::notTaken() {
-  std::vector<bool> used(model_.terms.size()), made(model_.terms.size());
+  std::vector<bool> used(model_.terms.size());
   for (const Line& line : model_.lines) {
     const bool value = line.kind == lang::LineDecl::Kind::Value;
     if (line.term == Line::kNone || (!value && line.kind != lang::LineDecl::Kind::Out)) continue;
     const bool taken = value ? marked_[line.id] : resolver_.taken(line);
-    for (uint32_t term = line.term; term != Line::kNone; term = model_.terms[term].parent) {
-      used[term] = used[term] || taken;
-      made[term] = made[term] || value;
-    }
+    if (!taken) continue;
+    for (uint32_t term = line.term; term != Line::kNone && !used[term]; term = model_.terms[term].parent)
+      used[term] = true;
   }
   for (uint32_t i = 0; i < model_.terms.size(); ++i) {
-    if (!made[i] || used[i] || !resolver_.alive(i)) continue;
+    if (!model_.terms[i].valued || used[i] || !resolver_.alive(i)) continue;
     const uint32_t parent = model_.terms[i].parent;
     if (parent != Line::kNone && !used[parent]) continue;
     if (!resolver_.gives(i)) {

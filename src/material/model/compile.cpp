@@ -261,6 +261,9 @@ void Compiler::place(Line line, const LineDecl& decl) {
       if (line.term != Line::kNone) model_.terms[line.term].requirements.push_back(index);
       break;
   }
+  for (uint32_t term = line.kind == LineDecl::Kind::Value ? line.term : Line::kNone; term != Line::kNone;
+       term = model_.terms[term].parent)
+    model_.terms[term].valued = true;
   model_.lines.push_back(std::move(line));
   uses_.lines.push_back({index, &decl, source_});
 }

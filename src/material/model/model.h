@@ -112,6 +112,7 @@ struct Term {
   bool has_unless = false;
   std::string_view when_reason, unless_reason;
   std::vector<uint32_t> requirements;  ///< lines
+  bool valued = false;                 ///< it, or a term within it, has a line that makes a value
 };
 
 struct Part {
