@@ -15,6 +15,7 @@ interface Snapshot {
   material: string; // JSON
   extensionsUsed: string; // JSON
   graph: string | null;
+  layout: string;
 }
 
 export class Document {
@@ -25,6 +26,8 @@ export class Document {
   material = 0;
   /** The graph in its JSON form where it was edited itself; then the material only gives its parameters' values. */
   graphs = new Map<number, string>();
+  /** JSON: where the boxes are of graphs that are made of properties. */
+  private readonly layouts = new Map<number, string>();
   private past: Snapshot[] = [];
   private future: Snapshot[] = [];
   private last = '';
@@ -102,6 +105,15 @@ export class Document {
     else this.graphs.set(this.material, text);
   }
 
+  get layout(): string {
+    return this.layouts.get(this.material) ?? '';
+  }
+  setLayout(text: string): void {
+    this.keep(`layout ${performance.now()}`);
+    this.layouts.set(this.material, text);
+    this.settle();
+  }
+
   // ---- the way back
 
   get canUndo(): boolean {
@@ -132,6 +144,7 @@ export class Document {
       material: JSON.stringify(this.json.materials[index]),
       extensionsUsed: JSON.stringify(this.json.extensionsUsed ?? []),
       graph: this.graphs.get(index) ?? null,
+      layout: this.layouts.get(index) ?? '',
     };
   }
   private travel(from: Snapshot[], to: Snapshot[]): void {
@@ -143,6 +156,7 @@ export class Document {
     this.json.extensionsUsed = JSON.parse(target.extensionsUsed);
     if (target.graph === null) this.graphs.delete(target.index);
     else this.graphs.set(target.index, target.graph);
+    this.layouts.set(target.index, target.layout);
     this.settle();
   }
 

@@ -1,6 +1,6 @@
 // The page of `lacquer view`: a material's properties, its picture, its shaders and its node graph, all from one file that
 // is edited in place.
-import { LacquerError, type GraphJson, type Lacquer, type Level, type Message, type Options } from '../src/index';
+import { LacquerError, type Graph, type GraphJson, type Lacquer, type Level, type Message, type Options } from '../src/index';
 import { hexOf, selectTerm, showCode } from './code';
 import { fillOthers, optionsOf, parseOther } from './compare';
 import { compiler, graphOf, lookOf, withShader } from './compile';
@@ -13,8 +13,9 @@ import { fromBase64 } from '../src/gltf';
 import { GpuPainter } from './gpu';
 import { radianceOf, readHdr } from './hdr';
 import { fileLights, kStudioLights, type Light } from './lights';
-import { kRates, NodeGraph, nodeEditor, ratesOf } from './nodegraph';
+import { GraphPane } from './graph';
 import { Properties } from './properties';
+import { kRates, ratesOf } from './rates';
 import { Viewport, type Look } from './viewport';
 
 const kTargets = ['essl', 'wgsl', 'glsl', 'glsl-gl', 'hlsl', 'spirv', 'cpp', 'js'];
@@ -35,13 +36,13 @@ interface Figures {
   options: Options;
 }
 
-class Page {
+export class Page {
   private of: Document | null = null;
   private readonly properties: Properties;
-  private readonly graph: NodeGraph;
-  private readonly nodes: any;
-  private graphJson: GraphJson | null = null;
-  private selected = '';
+  private readonly graph: GraphPane;
+  readonly nodes: any;
+  graphJson: GraphJson | null = null;
+  selected = '';
   private panelsPending = 0;
   private messages: Message[] = [];
   private ownLights: Light[] = [];
@@ -62,7 +63,7 @@ class Page {
       if (structure) this.properties.show(this.of!);
       this.compile();
     });
-    this.graph = new NodeGraph(byId('graph'), (node) => this.select(node, 'graph'));
+    this.graph = new GraphPane(this);
     byId('version').textContent = lacquer.version;
     this.fillSelects();
     this.connectControls();
@@ -111,7 +112,8 @@ class Page {
     byId<HTMLSelectElement>('compare').replaceChildren(h('option', { value: '' }, 'nothing'));
     byId('comparing').hidden = true;
     this.properties.clear();
-    for (const id of ['code', 'graph', 'editor', 'skipped', 'measured', 'errors-of-terms']) byId(id).replaceChildren();
+    this.graph.clear();
+    for (const id of ['code', 'skipped', 'measured', 'errors-of-terms']) byId(id).replaceChildren();
     for (const id of ['id', 'took', 'size', 'operations', 'sizes']) byId(id).textContent = '';
     for (const id of ['undo', 'redo']) byId<HTMLButtonElement>(id).disabled = true;
     clearTimeout(this.panelsPending);
@@ -227,10 +229,15 @@ class Page {
     this.compare();
     this.viewport.redraw();
     this.showMessages();
-    byId<HTMLButtonElement>('undo').disabled = !this.of.canUndo;
-    byId<HTMLButtonElement>('redo').disabled = !this.of.canRedo;
+    this.showWays();
     clearTimeout(this.panelsPending);
     this.panelsPending = window.setTimeout(() => this.showPanels(), 120);
+  }
+
+  /** Whether there is something to take back. */
+  showWays(): void {
+    byId<HTMLButtonElement>('undo').disabled = !this.of?.canUndo;
+    byId<HTMLButtonElement>('redo').disabled = !this.of?.canRedo;
   }
 
   /** Another look of the material, right of the cut, and how far it is from the first. */
@@ -268,20 +275,24 @@ class Page {
     if (!this.of || !this.graphJson) return;
     const tab = document.querySelector<HTMLElement>('[role=tab][aria-selected=true]')!.dataset.tab;
     if (tab === 'code') this.showText();
-    if (tab === 'graph' && this.isNew('graph', this.structure())) this.showGraph();
+    if (tab === 'graph') {
+      if (this.isNew('graph', `${this.structure()} ${this.of.layout}`)) this.showGraph();
+      else this.graph.follow();
+    }
     if (tab === 'cost' && this.isNew('cost', `${this.structure()} ${this.otherId}`)) this.showCost();
     if (this.isNew('skipped', JSON.stringify(this.graphJson.skipped))) this.showSkipped();
   }
   private shownOf = new Map<string, string>();
-  private isNew(panel: string, of: string): boolean {
+  isNew(panel: string, of: string): boolean {
     const before = this.shownOf.get(panel);
     this.shownOf.set(panel, of);
     return before !== of;
   }
   /** Equal where code and graph are; numbers of the material are in neither. */
-  private structure(): string {
-    const { nodes, outputs, textures } = this.graphJson!;
-    return JSON.stringify([this.of!.file.name, this.of!.material, byId('id').textContent, nodes, outputs, textures]);
+  structure(): string {
+    const { parameters, skipped: _, ...rest } = this.graphJson!;
+    const kinds = Object.entries(parameters).map(([name, { value: _value, ...kind }]) => [name, kind]);
+    return JSON.stringify([this.of!.file.name, this.of!.material, byId('id').textContent, rest, kinds]);
   }
 
   /** The text of the chosen target and stage, as `lacquer gen` writes it. */
@@ -321,9 +332,8 @@ class Page {
 
   private showGraph(): void {
     const { terms } = ratesOf(this.dump());
-    this.graph.show(this.graphJson!, terms);
-    if (this.selected) this.graph.select(this.selected, false);
-    this.showEditor();
+    this.graph.show(`${this.of!.file.name} ${this.of!.material}`, terms);
+    this.graph.mark(this.messages);
   }
 
   private showCost(): void {
@@ -364,27 +374,13 @@ class Page {
   select(term: string, from: 'code' | 'graph'): void {
     this.selected = term;
     selectTerm(byId('code'), term, from === 'graph');
-    this.graph.select(term, from === 'code');
-    this.showEditor();
+    if (from === 'code') this.graph.lead(term);
   }
 
-  private showEditor(): void {
-    const place = byId('editor');
-    const id = this.selected;
-    if (!this.graphJson?.nodes.some((node) => node.id === id)) {
-      place.replaceChildren(h('p', { class: 'doc' }, 'Choose a node to see its inputs.'));
-      return;
-    }
-    const act = {
-      connect: (input: string, source: string) => this.editGraph((graph) => graph.connect(id, input, JSON.parse(source))),
-      remove: () => this.editGraph((graph) => graph.removeNode(id)),
-    };
-    place.replaceChildren(nodeEditor(this.graphJson!, id, this.nodes.nodes, act));
-  }
-
-  /** Edits the graph itself: from then on the material's numbers are its parameters, and its terms stay. */
-  editGraph(edit: (graph: ReturnType<typeof graphOf>) => void): void {
-    if (!this.of?.names.length) return;
+  /** Edits the graph itself: from then on the material's numbers are its parameters, and its terms stay. What is wrong, where
+   * nothing was changed. */
+  editGraph(edit: (graph: Graph) => void): Message[] {
+    if (!this.of?.names.length) return [];
     const graph = graphOf(this.lacquer, this.of, this.options(), []);
     try {
       edit(graph);
@@ -392,12 +388,43 @@ class Page {
       this.of.settle();
       this.graphJson = graph.toJson();
     } catch (error) {
-      return this.fail(error);
+      if (!(error instanceof LacquerError)) throw error;
+      return error.messages;
     } finally {
       graph.free();
     }
     this.compile();
     this.showPanels();
+    return [];
+  }
+
+  /** A number of the graph: of the property where it is one. Numbers in a row of one parameter are one step back. */
+  setParameter(name: string, value: number | number[], done = true): void {
+    const { of } = this;
+    if (!of) return;
+    const pointer = this.graphJson?.parameters[name]?.pointer;
+    if (pointer && of.get(pointer) !== undefined) of.set(pointer, value, `set ${pointer}`);
+    else {
+      const graph = graphOf(this.lacquer, of, this.options(), []);
+      try {
+        graph.setParameter(name, value);
+        of.setGraph(graph.toText(), `set ${name}`);
+      } catch (error) {
+        return this.fail(error);
+      } finally {
+        graph.free();
+      }
+    }
+    if (done) of.settle();
+    this.properties.update();
+    this.compile();
+  }
+
+  /** Says it in the line below the picture. */
+  note(text: string): void {
+    this.messages = [...this.messages, messageOf(text, 'note')];
+    this.showMessages();
+    tell('status', text, '');
   }
 
   private showMessages(): void {
@@ -425,7 +452,6 @@ class Page {
     byId<HTMLSelectElement>('profile').value = this.figures.options.profile ?? profiles[0].name;
     byId('environment').replaceChildren(...Object.keys(kEnvironments).map((name) => h('option', {}, name)));
     byId('target').replaceChildren(...kTargets.map((name) => h('option', {}, name)));
-    byId('new-type').replaceChildren(...this.nodes.nodes.map(({ name, doc }: any) => h('option', { value: name, title: doc }, name)));
   }
 
   private light(): void {
@@ -503,14 +529,6 @@ class Page {
       this.of.settle();
       this.compile();
     });
-    this.on('add-node', 'click', () => {
-      const type = byId<HTMLSelectElement>('new-type').value;
-      const id = byId<HTMLInputElement>('new-id').value || `my.${type}`;
-      this.selected = id;
-      this.editGraph((graph) => graph.addNode(id, type));
-    });
-    this.on('zoom-in', 'click', () => this.graph.setZoom(this.graph.zoomed * 1.25));
-    this.on('zoom-out', 'click', () => this.graph.setZoom(this.graph.zoomed / 1.25));
     this.on('environment', 'change', () => {
       this.viewport.environment = byId<HTMLSelectElement>('environment').value;
       this.compare();

@@ -6,7 +6,7 @@ import { chromium } from 'playwright-core';
 
 const kChromium = process.env.LACQUER_CHROMIUM ?? '/usr/bin/chromium';
 /** Milliseconds after which a page is given up: a machine may have much other work. */
-export const kPatience = 120_000;
+export const kPatience = Number(process.env.LACQUER_PATIENCE ?? 120_000);
 
 export const launch = (...more) => chromium.launch({
   executablePath: kChromium,
