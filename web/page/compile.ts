@@ -13,10 +13,16 @@ export async function compiler(packed: string): Promise<Lacquer> {
 export function graphOf(lacquer: Lacquer, of: Document, options: Options, messages: Message[]): Graph {
   const text = of.graphs.get(of.material);
   if (text !== undefined) {
-    const graph = lacquer.graph(text, 'graph.json', messages);
+    const graph = lacquer.graph(text, 'graph.json', messages, options.node_texts && { node_texts: options.node_texts });
     for (const { name, pointer } of graph.parameters()) {
       const value = pointer ? of.get(pointer) : undefined;
       if (typeof value === 'number' || Array.isArray(value)) graph.setParameter(name, value, messages);
+    }
+    for (const { name, pointer, texture } of graph.textures()) {
+      const index = pointer ? of.get(`${pointer}/index`) : undefined;
+      if (typeof index !== 'number' || index === texture) continue;
+      const { [name]: as } = graph.toJson().textures;
+      graph.edit({ do: 'set_texture', texture: name, as: { ...as, texture: index } }, messages);
     }
     return graph;
   }

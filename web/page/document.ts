@@ -2,6 +2,7 @@
 import type { Attribute, Lacquer } from '../src/index';
 import { geometry, openGltf, type Drawable, type GltfFile } from '../src/gltf';
 import { list } from '../src/json';
+import { kOwnNodes } from './nodetext';
 
 export interface Input {
   name: string;
@@ -23,6 +24,10 @@ export class Document {
   readonly drawables: Drawable[];
   readonly uses: Attribute[][] = [];
   readonly names: string[] = [];
+  /** A node file of the document's own, which its graphs may use. */
+  nodeText = '';
+  /** What its `extras` had of graphs that cannot be read. */
+  readonly refused: string[] = [];
   material = 0;
   /** The graph in its JSON form where it was edited itself; then the material only gives its parameters' values. */
   graphs = new Map<number, string>();
@@ -43,7 +48,40 @@ export class Document {
     scene.free();
     this.file = openGltf(input.name, input.bytes, input.resources);
     this.drawables = geometry(this.file);
+    this.takeExtras(lacquer);
   }
+
+  /** Graphs and nodes that an exported file has in its `extras`: here they are the document's. */
+  private takeExtras(lacquer: Lacquer): void {
+    const nodes = this.json.extras?.lacquer?.nodes;
+    if (typeof nodes === 'string') this.nodeText = nodes;
+    const options = this.nodeText ? { node_texts: { [kOwnNodes]: this.nodeText } } : undefined;
+    forget(this.json);
+    list(this.json.materials).forEach((material, i) => {
+      const graph = material?.extras?.lacquer?.graph;
+      if (graph === undefined) return;
+      try {
+        const read = lacquer.graph(JSON.stringify(graph), `${this.file.name}: the graph in extras of material ${i}`, [], options);
+        const wrong = read.check(options).find(({ level }) => level === 'error');
+        if (!wrong) this.graphs.set(i, read.toText());
+        read.free();
+        if (wrong) this.refused.push(wrong.text);
+        else forget(material);
+      } catch (error) {
+        this.refused.push(error instanceof Error ? error.message : String(error));
+      }
+    });
+  }
+  /** The JSON with graphs and nodes of the document's own in `extras`. */
+  private withExtras(): any {
+    const materials = this.json.materials && list(this.json.materials).map((material, i) => {
+      const graph = this.graphs.get(i);
+      return graph === undefined ? material : withLacquer(material, { graph: JSON.parse(graph) });
+    });
+    const json = materials ? { ...this.json, materials } : this.json;
+    return this.nodeText ? withLacquer(json, { nodes: this.nodeText }) : json;
+  }
+
 
   get json(): any {
     return this.file.json;
@@ -164,7 +202,7 @@ export class Document {
 
   /** The edited file in the form that it came in: a .glb stays one. */
   export(): { name: string; bytes: Uint8Array<ArrayBuffer> } {
-    const text = new TextEncoder().encode(JSON.stringify(this.json, null, this.file.binary ? 0 : 2));
+    const text = new TextEncoder().encode(JSON.stringify(this.withExtras(), null, this.file.binary ? 0 : 2));
     if (!this.file.binary) return { name: this.file.name, bytes: new Uint8Array(text) };
     const chunk = (kind: number, bytes: Uint8Array, pad: number) => {
       const size = Math.ceil(bytes.length / 4) * 4;
@@ -182,6 +220,16 @@ export class Document {
     bytes.set(chunks[1], 12 + chunks[0].length);
     return { name: this.file.name, bytes };
   }
+}
+
+const withLacquer = (of: any, what: object) => ({ ...of, extras: { ...of.extras, lacquer: { ...of.extras?.lacquer, ...what } } });
+/** Takes out of `extras` what the document keeps itself. */
+function forget(of: any): void {
+  if (typeof of?.extras?.lacquer !== 'object' || of.extras.lacquer === null) return;
+  delete of.extras.lacquer.graph;
+  delete of.extras.lacquer.nodes;
+  if (Object.keys(of.extras.lacquer).length === 0) delete of.extras.lacquer;
+  if (Object.keys(of.extras).length === 0) delete of.extras;
 }
 
 /** Whether a part of a pointer may lead on from there: to any key of an object, but the one that sets its prototype, and to

@@ -14,6 +14,7 @@ import { GpuPainter } from './gpu';
 import { radianceOf, readHdr } from './hdr';
 import { fileLights, kStudioLights, type Light } from './lights';
 import { GraphPane } from './graph';
+import { kOwnNodes, NodeText } from './nodetext';
 import { Properties } from './properties';
 import { kRates, ratesOf } from './rates';
 import { Viewport, type Look } from './viewport';
@@ -40,7 +41,8 @@ export class Page {
   private of: Document | null = null;
   private readonly properties: Properties;
   private readonly graph: GraphPane;
-  readonly nodes: any;
+  nodes: any;
+  private readonly nodeText: NodeText;
   graphJson: GraphJson | null = null;
   selected = '';
   private panelsPending = 0;
@@ -50,6 +52,7 @@ export class Page {
   private othersOf = ''; // the structure whose words `compare` offers
   private painter: GpuPainter | null = null;
   private turns = 0;
+  private nodesOf = ''; // the text whose nodes `nodes` has
   /** Done when all that is seen has its look. */
   others: Promise<void> = Promise.resolve();
   /** Milliseconds that the last compilation took, from the edited file to the block. */
@@ -57,18 +60,39 @@ export class Page {
 
   constructor(readonly lacquer: Lacquer, readonly viewport: Viewport, private readonly figures: Figures) {
     this.nodes = lacquer.nodes();
-    const order = (name: string) => (name === 'gltf' ? '' : name);
-    const extensions = [...this.nodes.extensions].sort((a, b) => (order(a.name) < order(b.name) ? -1 : 1));
-    this.properties = new Properties(byId('properties'), extensions, (structure) => {
-      if (structure) this.properties.show(this.of!);
-      this.compile();
+    this.properties = new Properties(byId('properties'), this.extensions(), {
+      changed: (structure) => {
+        if (structure) this.properties.show(this.of!);
+        this.compile();
+      },
+      setParameter: (name, value, done) => this.setParameter(name, value, done),
+      forgetGraph: () => this.forgetGraph(),
     });
+    this.nodeText = new NodeText(lacquer, () => this.useNodes());
     this.graph = new GraphPane(this);
     byId('version').textContent = lacquer.version;
     this.fillSelects();
     this.connectControls();
     connectPointer(viewport);
     this.connectFiles();
+  }
+
+  /** glTF's own first. */
+  private extensions(): any[] {
+    const order = (name: string) => (name === 'gltf' ? '' : name);
+    return [...this.nodes.extensions].sort((a, b) => (order(a.name) < order(b.name) ? -1 : 1));
+  }
+  /** The library with the nodes of the document's own. */
+  private useNodes(): void {
+    if (!this.of) return;
+    this.of.nodeText = this.nodesOf = this.nodeText.good;
+    this.nodes = this.lacquer.nodes(this.texts());
+    this.properties.extensions = this.extensions();
+    if (this.of.names.length > 0) this.properties.show(this.of);
+    this.compile();
+  }
+  private texts(): Options {
+    return this.of?.nodeText ? { node_texts: { [kOwnNodes]: this.of.nodeText } } : {};
   }
 
   // ---- files
@@ -81,6 +105,12 @@ export class Page {
       return false;
     }
     const { of, viewport } = this;
+    this.nodeText.set(of.nodeText);
+    if (this.nodesOf !== of.nodeText) {
+      this.nodes = this.lacquer.nodes(this.texts());
+      this.properties.extensions = this.extensions();
+    }
+    this.nodesOf = of.nodeText;
     viewport.forgetTextures();
     viewport.looks.clear();
     viewport.useBall = of.drawables.length === 0;
@@ -99,6 +129,7 @@ export class Page {
     if (of.names.length > 0) this.choose(0);
     else this.showNoMaterial();
     this.compileOthers();
+    if (of.refused.length > 0) this.note(`${of.refused[0]}; the properties are shown`);
     return true;
   }
 
@@ -185,7 +216,7 @@ export class Page {
 
   options(): Options {
     const profile = byId<HTMLSelectElement>('profile').value;
-    return { ...this.figures.options, profile, targets: this.viewport.gpu ? ['essl', 'wgsl'] : ['essl'] };
+    return { ...this.figures.options, ...this.texts(), profile, targets: this.viewport.gpu ? ['essl', 'wgsl'] : ['essl'] };
   }
 
   /** The look of the current material; null, and what is wrong in `messages`, when it has an error. */
@@ -214,8 +245,9 @@ export class Page {
     this.took = performance.now() - begin;
     if (made) {
       this.graphJson = made.graph;
-      const pointers = new Set(Object.values(made.graph.parameters).map(({ pointer }) => pointer ?? ''));
-      this.properties.mark({ pointers });
+      const { parameters, textures } = made.graph;
+      const pointers = new Set([...Object.values(parameters), ...Object.values(textures)].map(({ pointer }) => pointer ?? ''));
+      this.properties.mark({ pointers, own: this.of.graphs.has(this.of.material) });
       tell('id', made.look.id);
       const key = `${this.of.material} ${made.look.id} ${this.of.names.length}`;
       if (key !== this.othersOf) fillOthers(byId<HTMLSelectElement>('compare'), this.of, made.graph, this.nodes);
@@ -393,6 +425,7 @@ export class Page {
     } finally {
       graph.free();
     }
+    this.properties.show(this.of);
     this.compile();
     this.showPanels();
     return [];
@@ -417,6 +450,15 @@ export class Page {
     }
     if (done) of.settle();
     this.properties.update();
+    this.compile();
+  }
+
+  /** The graph is made of the properties again. */
+  private forgetGraph(): void {
+    if (!this.of?.graphs.has(this.of.material)) return;
+    this.of.setGraph(null, `graph ${performance.now()}`);
+    this.of.settle();
+    this.properties.show(this.of);
     this.compile();
   }
 
@@ -516,6 +558,8 @@ export class Page {
       if (!this.of) return;
       const { name, bytes } = this.of.export();
       download(name, bytes, name.endsWith('.glb') ? 'model/gltf-binary' : 'model/gltf+json');
+      const own = [...this.of.graphs.keys()].map((material) => this.of!.names[material] || `material ${material}`);
+      if (own.length > 0) this.note(`the graph of ${own.join(', ')} is in the file's extras: this page reads it, other programs see the properties alone`);
     });
     this.on('export-graph', 'click', () => {
       if (!this.of?.names.length) return;
@@ -523,12 +567,7 @@ export class Page {
       download(`${this.of.names[this.of.material] || 'material'}.json`, graph.toText(), 'application/json');
       graph.free();
     });
-    this.on('forget-graph', 'click', () => {
-      if (!this.of?.names.length) return;
-      this.of.setGraph(null, `graph ${performance.now()}`);
-      this.of.settle();
-      this.compile();
-    });
+    this.on('forget-graph', 'click', () => this.forgetGraph());
     this.on('environment', 'change', () => {
       this.viewport.environment = byId<HTMLSelectElement>('environment').value;
       this.compare();
@@ -579,12 +618,13 @@ export class Page {
     if (graph && this.of?.names.length) {
       const text = await graph.text();
       try {
-        this.lacquer.graph(text, graph.name).free();
+        this.lacquer.graph(text, graph.name, [], this.texts()).free();
       } catch (error) {
         return this.fail(error);
       }
       this.of.setGraph(text, `graph ${graph.name}`);
       this.of.settle();
+      this.properties.show(this.of);
       return this.compile();
     }
     const around = files.find(({ name }) => /\.hdr$/i.test(name));

@@ -1,4 +1,5 @@
 // The material's properties as the node library declares them, with sliders.
+import type { GraphJson } from '../src/index';
 import type { Document } from './document';
 import { h } from './dom';
 import { sourceOf } from '../src/gltf';
@@ -21,6 +22,10 @@ export interface Extension {
   doc: string;
   status?: string;
   inside?: string;
+  needs?: string[];
+  excludes?: string[];
+  yields_to?: string[];
+  loses_to?: string[];
   properties: Property[];
 }
 
@@ -28,7 +33,18 @@ export interface Extension {
 export interface InShader {
   /** Pointers of the parameters that it has. */
   pointers: Set<string>;
+  /** It is a graph of its own: what has no place in it acts no more. */
+  own: boolean;
 }
+
+/** What the page does. */
+export interface Acts {
+  changed: (structure: boolean) => void;
+  setParameter: (name: string, value: number | number[], done: boolean) => void;
+  forgetGraph: () => void;
+}
+
+type Parameter = { type: string; value: number | number[]; range?: (number | null)[]; pointer?: string };
 
 interface Row {
   pointer: string;
@@ -39,14 +55,35 @@ interface Row {
 const kComponents: Record<string, number> = { float: 1, vec2: 2, vec3: 3, vec4: 4 };
 const kLetters: Record<string, string[]> = { color: ['red', 'green', 'blue', 'alpha'], other: ['x', 'y', 'z', 'w'] };
 
+const kTaken = 'taken over by the graph';
+const kTakenTitle = 'The graph is no longer made of this property: it is kept in the file, and acts no more';
+const kLeft = 'left the shader';
+const kLeftTitle = 'At this value the term needs no code: the slider brings it back';
+/** What is also for those who draw. */
+const kInPart: Record<string, [string, string]> = {
+  alphaMode: ['blending alone', "It still says whether the picture is blended; alpha itself is the graph's"],
+  doubleSided: ['culling alone', "It still says which sides are drawn; their normals are the graph's"],
+};
+
+/** Whether that is something else than before. */
+function showTag(tag: HTMLElement, text: string, title: string): boolean {
+  if (tag.hidden === (text === '') && (text === '' || tag.textContent === text)) return false;
+  tag.hidden = text === '';
+  if (text !== '') {
+    tag.textContent = text;
+    tag.title = title;
+  }
+  return true;
+}
+
 export class Properties {
   private rows: Row[] = [];
   private readonly closed = new Set<string>();
 
   constructor(
     private readonly root: HTMLElement,
-    private readonly extensions: Extension[],
-    private readonly changed: (structure: boolean) => void,
+    public extensions: Extension[],
+    private readonly acts: Acts,
   ) {}
 
   /** Builds the groups of a material anew; the focus stays, and so do groups that were closed. */
@@ -60,7 +97,7 @@ export class Properties {
       groups.push(this.group(of, extension, pointer));
     }
     const focused = this.root.contains(document.activeElement) ? document.activeElement!.id : '';
-    this.root.replaceChildren(...groups, this.adder(of, at));
+    this.root.replaceChildren(...this.ownGraph(of), ...groups, this.adder(of, at));
     if (focused) document.getElementById(focused)?.focus();
   }
   clear(): void {
@@ -75,6 +112,35 @@ export class Properties {
     for (const row of this.rows) row.mark(shader);
   }
 
+  /** Of a graph of the document's own: that it is one, and its parameters that are no properties. */
+  private ownGraph(of: Document): Node[] {
+    const text = of.graphs.get(of.material);
+    if (text === undefined) return [];
+    const { parameters = {} } = JSON.parse(text) as GraphJson;
+    const rows = Object.entries(parameters).filter(([, { pointer, type }]) => type !== 'bool' && (!pointer || of.get(pointer) === undefined)).map(([name, parameter]) => {
+      const { type, value, range = [null, null] } = parameter as Parameter;
+      const count = kComponents[type] ?? 1;
+      let now = [value].flat() as number[];
+      const property: Property = { name, type, range: [range[0] ?? null, range[1] ?? null], default: now };
+      const change = (i: number, x: number, done: boolean) => {
+        now = now.map((each, k) => (k === i ? x : each));
+        this.acts.setParameter(name, count === 1 ? now[0] : now, done);
+        lines.forEach((line, k) => line.show(now[k]));
+      };
+      const lines = now.map((x, i) => {
+        const line = sliderLine(property, count === 1 ? name : `${name} ${kLetters.other[i]}`, count === 1 ? `g:${name}` : `g:${name}/${i}`, (next, done) => change(i, next, done));
+        line.show(x);
+        return line;
+      });
+      return h('div', { class: 'row numbers', 'data-parameter': name }, h('div', { class: 'head' }, h('span', { class: 'name' }, name)), ...lines.map(({ element }) => element));
+    });
+    return [
+      h('div', { class: 'taken', role: 'note' }, 'This material is drawn by a graph of its own. Properties that have a place in it still act; the others are taken over by the graph. ',
+        h('br'), h('button', { type: 'button', click: () => this.acts.forgetGraph() }, 'Back to the properties')),
+      ...(rows.length > 0 ? [h('details', { open: true, class: 'group', 'data-extension': 'graph' }, h('summary', {}, h('span', {}, 'Graph')), ...rows)] : []),
+    ];
+  }
+
   private group(of: Document, extension: Extension, pointer: string): HTMLElement {
     const rows: Node[] = [];
     this.addRows(of, extension.properties, pointer, rows);
@@ -82,11 +148,12 @@ export class Properties {
     const remove = h(
       'button',
       {
-        class: 'quiet', type: 'button', 'aria-label': `Remove ${extension.name}`, title: 'Remove the extension',
+        class: 'quiet', type: 'button', 'aria-label': `Remove ${extension.name}`, disabled: of.graphs.has(of.material),
+        title: of.graphs.has(of.material) ? 'The graph has taken over: go back to the properties first' : 'Remove the extension',
         click: (event: Event) => {
           event.preventDefault();
           of.setExtension(pointer, extension.name, false);
-          this.changed(true);
+          this.acts.changed(true);
         },
       },
       '×',
@@ -123,7 +190,7 @@ export class Properties {
     const name = image?.name ?? (typeof image?.uri === 'string' && !image.uri.startsWith('data:') ? image.uri : `texture ${index}`);
     const remove = () => {
       of.set(pointer, undefined, `remove ${pointer}`);
-      this.changed(true);
+      this.acts.changed(true);
     };
     return h(
       'div',
@@ -144,11 +211,19 @@ export class Properties {
     select.addEventListener('change', () => {
       of.set(pointer, property.type === 'bool' ? select.value === 'true' : select.value, `set ${pointer}`);
       of.settle();
-      this.changed(false);
+      this.acts.changed(false);
     });
     update();
-    this.rows.push({ pointer, update, mark: () => undefined });
-    return h('div', { class: 'row', title: pointer }, h('label', { class: 'name', for: select.id }, property.name), select);
+    const tag = h('span', { class: 'gone', hidden: true });
+    const [word, title] = kInPart[property.name] ?? [kTaken, kTakenTitle];
+    this.rows.push({
+      pointer, update,
+      mark: ({ own }) => {
+        select.disabled = own && word === kTaken;
+        showTag(tag, own ? word : '', title);
+      },
+    });
+    return h('div', { class: 'row', title: pointer }, h('label', { class: 'name', for: select.id }, property.name), tag, select);
   }
 
   private numbers(of: Document, property: Property, pointer: string): HTMLElement {
@@ -166,7 +241,7 @@ export class Properties {
       of.set(pointer, count === 1 ? next[0] : next, `set ${pointer}`);
       if (done) of.settle();
       update();
-      this.changed(false);
+      this.acts.changed(false);
     };
     const lines = Array.from({ length: count }, (_, i) => {
       const label = count === 1 ? property.name : `${property.name} ${kLetters[isColor ? 'color' : 'other'][i]}`;
@@ -178,7 +253,7 @@ export class Properties {
       for (let i = 0; i < 3; ++i) next[i] = toLinear(parseInt(swatch.value.slice(1 + 2 * i, 3 + 2 * i), 16) / 255);
       of.set(pointer, next, `set ${pointer}`);
       update();
-      this.changed(false);
+      this.acts.changed(false);
     });
     swatch.addEventListener('change', () => of.settle());
     const update = () => {
@@ -186,7 +261,7 @@ export class Properties {
       lines.forEach((line, i) => line.show(now[i]));
       if (isColor) swatch.value = `#${now.slice(0, 3).map((x) => toByte(x).toString(16).padStart(2, '0')).join('')}`;
     };
-    const tag = h('span', { class: 'gone', hidden: true, title: 'At this value the term needs no code: the slider brings it back' }, 'left the shader');
+    const tag = h('span', { class: 'gone', hidden: true });
     const row = h(
       'div',
       { class: 'row numbers', 'data-pointer': pointer, title: [property.meaning, pointer].filter(Boolean).join('\n') },
@@ -198,37 +273,57 @@ export class Properties {
     this.rows.push({
       pointer,
       update,
-      mark: ({ pointers }) => {
+      mark: ({ pointers, own }) => {
         const there = pointers.has(pointer);
-        if (tag.hidden === there) return;
-        tag.hidden = there;
+        if (!showTag(tag, there ? '' : own ? kTaken : kLeft, own ? kTakenTitle : kLeftTitle)) return;
         row.classList.toggle('absent', !there);
+        for (const field of row.querySelectorAll('input')) field.disabled = own && !there;
       },
     });
     return row;
   }
 
+  /** Extensions that can stand with what is there, and the others with what is against it. */
   private adder(of: Document, at: string): HTMLElement {
-    const addable = this.extensions.filter(
-      (each) =>
-        each.name !== 'gltf' && of.get(pointerOf(at, each)) === undefined &&
-        (!each.inside || of.get(`${at}/extensions/${each.inside}`) !== undefined),
-    );
+    if (of.graphs.has(of.material)) {
+      return h('div', { class: 'row adder' }, h('select', { disabled: true, 'aria-label': 'Add an extension' }, h('option', {}, 'The graph has taken over: no extension would act')));
+    }
+    const has = (each: Extension) => of.get(pointerOf(at, each)) !== undefined;
+    const there = new Set(this.extensions.filter((each) => each.name !== 'gltf' && has(each)).map(({ name }) => name));
+    const offers = this.extensions.filter((each) => each.name !== 'gltf' && !has(each)).map((each) => ({ each, against: against(each, there, this.extensions) }));
+    const option = ({ each: { name, doc, yields_to: _ }, against: why }: (typeof offers)[number]) => {
+      const replaced = this.extensions.find((other) => there.has(other.name) && other.yields_to?.includes(name));
+      const text = why ? `${name}: ${why}` : replaced ? `${name}, in place of ${replaced.name}` : name;
+      return h('option', { value: name, title: [doc, why].filter(Boolean).join('\n'), disabled: why !== '' }, text);
+    };
+    const some = (label: string, list: typeof offers) => (list.length > 0 ? [h('optgroup', { label }, ...list.map(option))] : []);
     const select = h(
       'select',
       { 'aria-label': 'Add an extension' },
       h('option', { value: '' }, 'Add an extension…'),
-      ...addable.map(({ name, doc }) => h('option', { value: name, title: doc }, name)),
+      ...some('These can stand with what is there', offers.filter(({ against: why }) => !why)),
+      ...some('These cannot', offers.filter(({ against: why }) => why)),
     );
     select.addEventListener('change', () => {
-      const chosen = addable.find(({ name }) => name === select.value);
+      const chosen = offers.find(({ each, against: why }) => each.name === select.value && !why)?.each;
       if (!chosen) return;
       of.setExtension(pointerOf(at, chosen), chosen.name, true);
       of.settle();
-      this.changed(true);
+      this.acts.changed(true);
     });
     return h('div', { class: 'row adder' }, select);
   }
+}
+
+/** Why an extension cannot stand with those that are there; empty where it can. */
+export function against({ name, inside, needs = [], excludes = [], yields_to = [], loses_to = [] }: Extension, there: Set<string>, all: Extension[]): string {
+  if (inside && !there.has(inside)) return `it stands in ${inside}`;
+  const lacking = needs.find((each) => !there.has(each));
+  if (lacking) return `it needs ${lacking}`;
+  const not = excludes.find((each) => there.has(each)) ?? all.find((each) => there.has(each.name) && each.excludes?.includes(name))?.name;
+  if (not) return `not with ${not}`;
+  const stronger = [...yields_to, ...loses_to].find((each) => there.has(each));
+  return stronger ? `${stronger} stands in its place` : '';
 }
 
 function pointerOf(material: string, extension: Extension): string {

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { begin, downloaded, end, folder, library, open } from './page.mjs';
+import { begin, downloaded, drop, end, folder, library, middle, open, set } from './page.mjs';
 import { lacquer, read } from './native.mjs';
 
 before(begin);
@@ -247,4 +247,103 @@ test('the palette finds nodes by name, by prose and by category, says what they 
     await page.click('.palette [data-entry=reflection]');
     await page.waitForSelector('#graph [data-box="node reflection"]');
     assert.deepEqual(Object.values(await inputsOf(page, 'reflection')).filter((source) => source.node), [{ node: 'normal.unit' }]);
+  }));
+
+const kTwice = `/// Twice the light.
+/// source: a test
+node twice(vec3 light in [0, 1]) -> vec3 in [0, 2] {
+    return light * 2;
+}
+`;
+const told = (page) => page.evaluate(() => [...document.querySelectorAll('#node-messages li')].map((row) => row.textContent));
+
+test('a node of one\'s own is written on the page: errors at line and column as it is written, then it is in the palette and in the file', () =>
+  open(['examples/core.gltf'], async (page) => {
+    await page.click('[data-tab=nodes]');
+    await page.click('#node-text');
+    await page.keyboard.insertText(kTwice.replace('light * 2', 'lite * 2'));
+    await page.waitForSelector('#node-messages .error');
+    const [first] = await told(page);
+    assert.match(first, /^4:12 .*lite/);
+    assert.equal(await page.evaluate(() => document.querySelector('#node-lines .wrong').textContent), '4');
+    await page.click('#node-messages button');
+    await page.keyboard.press('Shift+End');
+    await page.keyboard.type('light * 2;');
+    await page.waitForFunction(() => document.querySelector('#node-messages').children.length === 0);
+    assert.equal(await page.textContent('#node-told'), 'The palette has twice.');
+    await openGraph(page);
+    await add(page, 'twice');
+    await wire(page, port('node twice', 'out', ''), port('outputs ', 'in', 'emission'));
+    assert.equal(await page.textContent('#status'), '');
+    const id = await page.textContent('#id');
+    // A text that is wrong takes nothing away.
+    await page.click('[data-tab=nodes]');
+    await page.click('#node-text');
+    await page.keyboard.press('Control+End');
+    await page.keyboard.type('node');
+    await page.waitForSelector('#node-messages .error');
+    assert.equal(await page.textContent('#id'), id);
+    assert.match(await page.textContent('#node-told'), /as it was before/);
+    for (let i = 0; i < 4; ++i) await page.keyboard.press('Backspace');
+    await page.waitForFunction(() => document.querySelector('#node-messages').children.length === 0);
+    const exported = await downloaded(page, '#export');
+    await drop(page, [['again.gltf', exported]]);
+    assert.equal(await page.textContent('#id'), id);
+    assert.equal(await page.inputValue('#node-text'), kTwice);
+    await drop(page, [['core.gltf', read('examples/core.gltf')]]);
+    assert.equal(await page.inputValue('#node-text'), '');
+    assert.ok(!(await page.evaluate(() => window.lacquerPage.nodes.nodes.some(({ name }) => name === 'twice'))));
+  }));
+
+test('after an edit of the graph properties that have a place in it act, the others say that it has taken over; the file keeps both', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    const row = (name) => `[data-pointer="/materials/0/${name}"]`;
+    const coat = 'extensions/KHR_materials_clearcoat/clearcoatFactor';
+    assert.equal(await page.locator('.taken').count(), 0);
+    await openGraph(page);
+    // The coat is no parameter any more: its weight is a number.
+    await page.click('#graph [data-box="node coat.surface"] .head');
+    await page.selectOption('#editor [data-field="source weight_factor"]', { label: 'a number' });
+    await page.fill('#editor [data-field="weight_factor 0"]', '0.25');
+    await page.keyboard.press('Tab');
+    assert.ok(await page.isVisible('.taken'));
+    assert.equal(await page.textContent(`${row(coat)} .gone`), '');
+    const id = await page.textContent('#id');
+    const shown = await middle(page);
+    await page.click('#graph [data-box="parameter coat_factor"] .head');
+    await page.keyboard.press('Delete');
+    assert.equal(await page.textContent(`${row(coat)} .gone`), 'taken over by the graph');
+    assert.ok(await page.isDisabled(`${row(coat)} input[type=range]`));
+    assert.equal(await page.textContent('.row[title="/materials/0/alphaMode"] .gone'), 'blending alone');
+    assert.ok(await page.isDisabled('.adder select'));
+    assert.deepEqual(await middle(page), shown);
+    // One that is in the graph acts as before.
+    await set(page, 'p:/materials/0/pbrMetallicRoughness/metallicFactor', 1);
+    assert.notDeepEqual(await middle(page), shown);
+    assert.equal(await page.textContent('#id'), id);
+    // A new parameter is a slider, too.
+    await page.click('#add-node');
+    await page.keyboard.type('parameter: float');
+    await page.keyboard.press('Enter');
+    await page.waitForSelector('[data-parameter=parameter]');
+    await page.focus('[id="g:parameter"]');
+    await page.keyboard.press('End');
+    assert.equal((await graphNow(page)).parameters.parameter.value, 1);
+    const exported = JSON.parse(await downloaded(page, '#export'));
+    assert.match(await page.textContent('#status'), /the graph of Varnish is in the file's extras/);
+    assert.equal(exported.materials[0].extras.lacquer.graph.parameters.parameter.value, 1);
+    assert.equal(exported.materials[0].pbrMetallicRoughness.metallicFactor, 1);
+    const graph = await graphNow(page);
+    await drop(page, [['again.gltf', Buffer.from(JSON.stringify(exported))]]);
+    assert.equal(await page.textContent('#id'), id);
+    assert.deepEqual(await graphNow(page), graph);
+    assert.ok(await page.isVisible('.taken'));
+    exported.materials[0].extras.lacquer.graph.nodes[0].node = 'nobody';
+    await drop(page, [['broken.gltf', Buffer.from(JSON.stringify(exported))]]);
+    assert.match(await page.textContent('#status'), /no node 'nobody'.*the properties are shown/s);
+    assert.notDeepEqual(await middle(page), [0, 0, 0, 0]);
+    assert.equal(await page.locator('.taken').count(), 0);
+    await drop(page, [['again.gltf', Buffer.from(JSON.stringify({ ...exported, materials: [exported.materials[0], {}] }))]]);
+    await page.selectOption('#material', '1');
+    assert.equal(await page.locator('.taken').count(), 0);
   }));

@@ -424,7 +424,7 @@ test('it opens from a static server, and its tabs from the keyboard', async () =
   try {
     await open(['examples/core.gltf'], async (page) => {
       await page.focus('[data-tab=code]');
-      for (const tab of ['graph', 'cost', 'notes', 'code']) {
+      for (const tab of ['graph', 'nodes', 'cost', 'notes', 'code']) {
         await page.keyboard.press('ArrowRight');
         assert.ok(await page.isVisible(`#panel-${tab}`), tab);
       }
@@ -495,7 +495,7 @@ test('a file without materials is seen as the default one, and so is geometry wi
     });
     assert.notDeepEqual((await middle(page)).slice(0, 3), background);
     for (const button of ['#undo', '#redo']) assert.ok(await page.isDisabled(button));
-    for (const tab of ['graph', 'cost', 'notes', 'code']) await page.click(`[data-tab=${tab}]`);
+    for (const tab of ['graph', 'nodes', 'cost', 'notes', 'code']) await page.click(`[data-tab=${tab}]`);
     assert.match(await page.textContent('#messages'), /no materials/);
     assert.deepEqual(JSON.parse(await downloaded(page, '#export')), bare);
     // Among others that have one.
@@ -591,7 +591,7 @@ for (const scheme of ['light', 'dark']) {
       const dark = () => page.evaluate(() => getComputedStyle(document.body).colorScheme === 'dark');
       assert.equal(await dark(), scheme === 'dark');
       for (const other of [false, true]) {
-        for (const tab of ['graph', 'cost', 'notes', 'code']) {
+        for (const tab of ['graph', 'nodes', 'cost', 'notes', 'code']) {
           await page.click(`[data-tab=${tab}]`);
           const { ratio, text } = await leastContrast(page);
           assert.ok(ratio >= 4.5, `${tab}: ${ratio.toFixed(2)}: ${text}`);
