@@ -37,6 +37,19 @@ TEST(LangLibrary, ErrorsOfWhatIsCalledAreTold) {
   EXPECT_EQ(outer.error()[0].place.line, 6U);
 }
 
+TEST(LangLibrary, TheDefaultProfileIsKnownByItsHead) {
+  const auto of = [](const std::string& text) {
+    const auto library = Library::fromFiles({{"a.node", text}});
+    const auto found = library->defaultProfile();
+    return found ? *found : found.error()[0].code + " at " + std::to_string(found.error()[0].place.line);
+  };
+  const std::string plain = "/// P.\nprofile plain {}\n";
+  EXPECT_EQ(of(plain + "/// D.\nprofile other /* { */ default { what is wrong }\n"), "other");
+  EXPECT_EQ(of(plain), "wrong-profile at 2");
+  EXPECT_EQ(of(plain + "profile a default {}\nprofile b default {}\n"), "wrong-profile at 4");
+  EXPECT_EQ(of(plain + "profile defaults {}\n"), "wrong-profile at 3");
+}
+
 TEST(LangLibrary, UnknownNames) {
   const auto library =
       Library::fromFiles({{"a.node", node("schlick", "return x;") + "const float K = 1;\n"}});

@@ -157,9 +157,9 @@ Result<void> resolveNames(const lang::Library& library, Options& options) {
     options.template_name = std::move(*name);
   }
   if (options.profile.empty()) {
-    const auto profiles = model::profiles(library);
-    if (!profiles) return tl::make_unexpected(profiles.error());
-    options.profile = (*profiles)[0]->name;
+    Result<std::string> name = library.defaultProfile();
+    if (!name) return tl::make_unexpected(std::move(name.error()));
+    options.profile = std::move(*name);
   }
   return {};
 }

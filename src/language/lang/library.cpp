@@ -15,6 +15,7 @@
 #include "lang/checker.h"
 #include "lang/embedded.h"
 #include "lang/forms.h"
+#include "lang/lexer.h"
 #include "lang/parser.h"
 #include "lang/scan.h"
 #include "lang/suggest.h"
@@ -727,6 +728,25 @@ Result<std::string> Library::defaultTemplate() const {
   if (known != nullptr) return std::string(known->name);
   return fail("unknown-template", {}, "no template is named, and none is the default",
               "a template is that which says `default;`");
+}
+
+Result<std::string> Library::defaultProfile() const {
+  const std::lock_guard lock(impl_->mutex);
+  std::vector<const Entry*> found;
+  const Entry* last = nullptr;
+  for (const Entry& entry : impl_->entries) {
+    if (entry.kind != DeclKind::Profile) continue;
+    last = &entry;
+    const auto behind = static_cast<uint32_t>(entry.name_begin + entry.said.size());
+    Reporter silent(entry.file->name, entry.file->text);
+    if (tokenize(silent, behind, entry.end)[0].is("default")) found.push_back(&entry);
+  }
+  if (found.size() == 1) return std::string(found[0]->name);
+  const Entry* shown = found.empty() ? last : found[1];
+  Place place;
+  if (shown != nullptr) place = {std::string(shown->file->name), shown->line, 0, {}};
+  return fail("wrong-profile", place, "one profile must be the default, and only one",
+              "say `profile NAME default { ... }` of it");
 }
 
 std::vector<const NodeDecl*> Library::forms(std::string_view family) const {

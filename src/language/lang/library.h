@@ -60,6 +60,10 @@ public:
   /// there.
   Result<std::string> defaultTemplate() const;
 
+  /// The profile that says `default`, by its head alone: it may be wrong elsewhere. Fails where there is
+  /// none, or more than one.
+  Result<std::string> defaultProfile() const;
+
   bool has(DeclKind kind, std::string_view name, std::string_view vendor = {}) const;
 
   /// The declared names of that kind, sorted; of nodes that share a name those with their types.

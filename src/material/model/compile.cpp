@@ -11,7 +11,6 @@
 #include "lang/reporter.h"
 #include "lang/suggest.h"
 #include "model/check.h"
-#include "model/dimming.h"
 #include "model/model.h"
 #include "model/names.h"
 #include "model/order.h"
@@ -62,7 +61,6 @@ private:
   bool comparable(const Value& left, const Value& right, const Expr& expr);
   void checkNames();
   void checkWriterNames();
-  void findDimmed();
   void findLive();
   void order();
 
@@ -724,14 +722,6 @@ void Compiler::findLive() {
 
 /// Which of the values that a dimmed port is given scale with the light lines whatever the material has. Of
 /// the others it is found for each material.
-void Compiler::findDimmed() {
-  model_.scales.resize(model_.lines.size());
-  Dimming dimming(model_, [](uint32_t) { return true; });
-  for (const Out& out : model_.outs) {
-    for (const uint32_t line : out.lines) model_.scales[line] = out.dimmed && dimming.scales(line);
-  }
-}
-
 void Compiler::order() {
   for (size_t i = 0; i < model_.lines.size(); ++i) {
     const Line& line = model_.lines[i];
@@ -774,7 +764,6 @@ Result<Model> Compiler::run(std::string_view profile, const std::set<std::string
   // What is made of a wrong line is wrong as well.
   if (wrong_.empty()) wrong_ = check(library_, model_, uses_);
   if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
-  findDimmed();
   findLive();
   order();
   model_.unordered = findUnordered(model_, library_);

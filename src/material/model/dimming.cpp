@@ -13,6 +13,18 @@ using lang::Scaling;
 Dimming::Dimming(const Model& model, std::function<bool(uint32_t part)> counts)
     : model_(model), counts_(std::move(counts)) {}
 
+bool Model::scales(uint32_t line) const {
+  std::call_once(found_scales->asked, [this] {
+    std::vector<bool>& of_line = found_scales->of_line;
+    of_line.resize(lines.size());
+    Dimming dimming(*this, [](uint32_t) { return true; });
+    for (const Out& out : outs) {
+      for (const uint32_t index : out.lines) of_line[index] = out.dimmed && dimming.scales(index);
+    }
+  });
+  return found_scales->of_line[line];
+}
+
 bool Dimming::there(const Line& line) const { return line.part >= model_.parts.size() || counts_(line.part); }
 
 bool Dimming::scales(uint32_t index) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -151,8 +152,14 @@ struct Model {
   std::vector<std::string_view> switches;
   std::vector<bool> switch_defaults;
   std::vector<uint32_t> ordered;  ///< lines of Kind::Value with an order, sorted by it
-  /// Of each line: an Out that scales with the light lines in every material, whatever else is there.
-  std::vector<bool> scales;
+  /// Of each line: an Out that scales with the light lines in every material, whatever else is there. Found
+  /// when a material first asks: few do.
+  struct Scales {
+    std::once_flag asked;
+    std::vector<bool> of_line;
+  };
+  std::shared_ptr<Scales> found_scales = std::make_shared<Scales>();
+  bool scales(uint32_t line) const;
   /// Names of lines that the text gives none; Id::name views them.
   std::vector<std::shared_ptr<const std::string>> made_names;
 

@@ -45,12 +45,11 @@ Result<std::vector<const lang::ProfileDecl*>> profiles(const lang::Library& libr
     if (!found) return tl::make_unexpected(found.error());
     all.push_back(*found);
   }
-  const auto rest = std::stable_partition(all.begin(), all.end(),
-                                          [](const lang::ProfileDecl* decl) { return decl->by_default; });
-  if (rest - all.begin() == 1) return all;
-  const lang::Origin origin = all.size() > 1 ? all[1]->origin : lang::Origin{};
-  return fail("wrong-profile", {std::string(origin.file), origin.line, 0, {}},
-              "one profile must be the default, and only one", "say `profile NAME default { ... }` of it");
+  const Result<std::string> by_default = library.defaultProfile();
+  if (!by_default) return tl::make_unexpected(by_default.error());
+  std::stable_partition(all.begin(), all.end(),
+                        [&](const lang::ProfileDecl* decl) { return decl->name == *by_default; });
+  return all;
 }
 
 namespace {

@@ -306,7 +306,7 @@ Found Resolver::dimmed(uint32_t id, uint32_t part) {
 const Line* Resolver::undimmed(uint32_t out, uint32_t part) {
   for (const uint32_t index : model_.outs[out].lines) {
     const Line& line = model_.lines[index];
-    if (line.part >= part || model_.scales[index]) continue;
+    if (line.part >= part || model_.scales(index)) continue;
     if (line.term != Line::kNone && !alive(line.term)) continue;
     // Not with all that a material could have; perhaps with what this one has.
     if (!dimming_) dimming_.emplace(model_, [this](uint32_t p) { return alive(model_.parts[p].term); });
