@@ -17,6 +17,7 @@ interface Snapshot {
   extensionsUsed: string; // JSON
   graph: string | null;
   layout: string;
+  state: number;
 }
 
 export class Document {
@@ -33,6 +34,10 @@ export class Document {
   graphs = new Map<number, string>();
   /** JSON: where the boxes are of graphs that are made of properties. */
   private readonly layouts = new Map<number, string>();
+  /** A number for each state that the document was in; a step back leads to the number that was. */
+  state = 0;
+  private states = 0;
+  private savedState = 0;
   private past: Snapshot[] = [];
   private future: Snapshot[] = [];
   private last = '';
@@ -62,11 +67,9 @@ export class Document {
       if (graph === undefined) return;
       try {
         const read = lacquer.graph(JSON.stringify(graph), `${this.file.name}: the graph in extras of material ${i}`, [], options);
-        const wrong = read.check(options).find(({ level }) => level === 'error');
-        if (!wrong) this.graphs.set(i, read.toText());
+        this.graphs.set(i, read.toText());
         read.free();
-        if (wrong) this.refused.push(wrong.text);
-        else forget(material);
+        forget(material);
       } catch (error) {
         this.refused.push(error instanceof Error ? error.message : String(error));
       }
@@ -175,6 +178,21 @@ export class Document {
     if (this.past.length > 500) this.past.shift();
     this.future = [];
     this.last = key;
+    this.touch();
+  }
+  /** Something of it is to be another from now on. */
+  touch(): void {
+    this.state = ++this.states;
+  }
+  /** Whether it has edits that are in no file. */
+  get isEdited(): boolean {
+    return this.state !== this.savedState;
+  }
+  saved(): void {
+    this.savedState = this.state;
+  }
+  unsaved(): void {
+    this.savedState = -1;
   }
   private snapshot(index: number): Snapshot {
     return {
@@ -183,6 +201,7 @@ export class Document {
       extensionsUsed: JSON.stringify(this.json.extensionsUsed ?? []),
       graph: this.graphs.get(index) ?? null,
       layout: this.layouts.get(index) ?? '',
+      state: this.state,
     };
   }
   private travel(from: Snapshot[], to: Snapshot[]): void {
@@ -195,6 +214,7 @@ export class Document {
     if (target.graph === null) this.graphs.delete(target.index);
     else this.graphs.set(target.index, target.graph);
     this.layouts.set(target.index, target.layout);
+    this.state = target.state;
     this.settle();
   }
 

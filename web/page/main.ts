@@ -7,8 +7,9 @@ import { compiler, graphOf, lookOf, withShader } from './compile';
 import { connectPointer, connectTabs } from './controls';
 import { costTable, errorTable, type Costs, type Errors } from './costs';
 import { Document, type Input } from './document';
-import { byId, download, h, tell } from './dom';
+import { byId, h, tell } from './dom';
 import { addEnvironment, kEnvironments } from './environment';
+import { Files } from './files';
 import { fromBase64 } from '../src/gltf';
 import { GpuPainter } from './gpu';
 import { radianceOf, readHdr } from './hdr';
@@ -43,10 +44,12 @@ export class Page {
   private readonly graph: GraphPane;
   nodes: any;
   private readonly nodeText: NodeText;
+  readonly files: Files;
   graphJson: GraphJson | null = null;
   selected = '';
   private panelsPending = 0;
   private messages: Message[] = [];
+  private notice: Message[] = []; // of what was done last, and not of the material
   private ownLights: Light[] = [];
   private otherId = '';
   private othersOf = ''; // the structure whose words `compare` offers
@@ -74,7 +77,7 @@ export class Page {
     this.fillSelects();
     this.connectControls();
     connectPointer(viewport);
-    this.connectFiles();
+    this.files = new Files(this);
   }
 
   /** glTF's own first. */
@@ -85,6 +88,7 @@ export class Page {
   /** The library with the nodes of the document's own. */
   private useNodes(): void {
     if (!this.of) return;
+    this.of.touch();
     this.of.nodeText = this.nodesOf = this.nodeText.good;
     this.nodes = this.lacquer.nodes(this.texts());
     this.properties.extensions = this.extensions();
@@ -97,14 +101,22 @@ export class Page {
 
   // ---- files
 
-  open(input: Input): boolean {
+  /** The document of a file; null, and a message, where it cannot be read. */
+  read(input: Input): Document | null {
     try {
-      this.of = new Document(this.lacquer, input);
+      return new Document(this.lacquer, input);
     } catch (error) {
       this.fail(error);
-      return false;
+      return null;
     }
-    const { of, viewport } = this;
+  }
+  open(input: Input): void {
+    const of = this.read(input);
+    if (of) this.show(of);
+  }
+  show(of: Document): void {
+    this.of = of;
+    const { viewport } = this;
     this.nodeText.set(of.nodeText);
     if (this.nodesOf !== of.nodeText) {
       this.nodes = this.lacquer.nodes(this.texts());
@@ -123,14 +135,13 @@ export class Page {
     lamps.options[1].disabled = this.ownLights.length === 0;
     if (lamps.value === 'own' && this.ownLights.length === 0) lamps.value = 'studio';
     this.light();
-    byId('file').textContent = input.name;
     const materials = byId<HTMLSelectElement>('material');
     materials.replaceChildren(...of.names.map((name, i) => h('option', { value: i }, name || `(material ${i})`)));
     if (of.names.length > 0) this.choose(0);
     else this.showNoMaterial();
     this.compileOthers();
     if (of.refused.length > 0) this.note(`${of.refused[0]}; the properties are shown`);
-    return true;
+    this.files.changed();
   }
 
   /** A file without materials is seen as glTF's default one; there is nothing to edit. */
@@ -148,6 +159,7 @@ export class Page {
     for (const id of ['id', 'took', 'size', 'operations', 'sizes']) byId(id).textContent = '';
     for (const id of ['undo', 'redo']) byId<HTMLButtonElement>(id).disabled = true;
     clearTimeout(this.panelsPending);
+    this.notice = [];
     this.messages = [messageOf('this file has no materials: it is seen with the default one', 'note')];
     this.showMessages();
     this.viewport.redraw();
@@ -241,6 +253,7 @@ export class Page {
     if (!this.of?.names.length) return this.viewport.redraw();
     const begin = performance.now();
     this.messages = [];
+    this.notice = [];
     const made = this.compileLook(this.messages);
     this.took = performance.now() - begin;
     if (made) {
@@ -256,6 +269,7 @@ export class Page {
       // A graph of its own is shown with what is wrong in it.
       const text = this.of.graphs.get(this.of.material);
       if (text !== undefined) this.graphJson = JSON.parse(text);
+      if (text !== undefined && !this.viewport.looks.has(this.of.material)) this.compileProperties(text);
     }
     tell('took', `${this.took.toFixed(1)} ms`);
     this.compare();
@@ -266,10 +280,19 @@ export class Page {
     this.panelsPending = window.setTimeout(() => this.showPanels(), 120);
   }
 
+  /** Of a graph that was wrong from the start: what the properties say is seen. */
+  private compileProperties(graph: string): void {
+    const { graphs, material } = this.of!;
+    graphs.delete(material);
+    this.compileLook([]);
+    graphs.set(material, graph);
+  }
+
   /** Whether there is something to take back. */
   showWays(): void {
     byId<HTMLButtonElement>('undo').disabled = !this.of?.canUndo;
     byId<HTMLButtonElement>('redo').disabled = !this.of?.canRedo;
+    this.files.changed();
   }
 
   /** Another look of the material, right of the cut, and how far it is from the first. */
@@ -464,24 +487,22 @@ export class Page {
 
   /** Says it in the line below the picture. */
   note(text: string): void {
-    this.messages = [...this.messages, messageOf(text, 'note')];
+    this.notice = [messageOf(text, 'note')];
     this.showMessages();
-    tell('status', text, '');
   }
 
   private showMessages(): void {
-    const wrong = this.messages.some(({ level }) => level === 'error');
-    if (this.isNew('messages', JSON.stringify(this.messages)))
-      byId('messages').replaceChildren(...this.messages.map(({ level, text }) => h('li', { class: level }, text)));
-    const count = this.messages.length;
-    const told = count > 0 ? `${count} message${count > 1 ? 's' : ''}` : '';
-    tell('status', this.messages.find(({ level }) => level === 'error')?.message ?? told, wrong ? 'error' : '');
+    const all = [...this.notice, ...this.messages];
+    if (this.isNew('messages', JSON.stringify(all)))
+      byId('messages').replaceChildren(...all.map(({ level, text }) => h('li', { class: level }, text)));
+    const error = all.find(({ level }) => level === 'error');
+    const told = all.length > 0 ? `${all.length} message${all.length > 1 ? 's' : ''}` : '';
+    tell('status', error?.message ?? this.notice[0]?.message ?? told, error ? 'error' : '');
   }
 
   /** Says what is wrong and leaves everything as it is. */
   fail(error: unknown): void {
-    if (error instanceof LacquerError) this.messages = error.messages;
-    else this.messages = [messageOf(error)];
+    this.notice = error instanceof LacquerError ? error.messages : [messageOf(error)];
     this.showMessages();
   }
 
@@ -554,19 +575,6 @@ export class Page {
     });
     this.on('painter', 'change', () => void this.paintWith(byId<HTMLSelectElement>('painter').value));
     for (const id of ['target', 'stage']) this.on(id, 'change', () => this.showText());
-    this.on('export', 'click', () => {
-      if (!this.of) return;
-      const { name, bytes } = this.of.export();
-      download(name, bytes, name.endsWith('.glb') ? 'model/gltf-binary' : 'model/gltf+json');
-      const own = [...this.of.graphs.keys()].map((material) => this.of!.names[material] || `material ${material}`);
-      if (own.length > 0) this.note(`the graph of ${own.join(', ')} is in the file's extras: this page reads it, other programs see the properties alone`);
-    });
-    this.on('export-graph', 'click', () => {
-      if (!this.of?.names.length) return;
-      const graph = graphOf(this.lacquer, this.of, this.options(), []);
-      download(`${this.of.names[this.of.material] || 'material'}.json`, graph.toText(), 'application/json');
-      graph.free();
-    });
     this.on('forget-graph', 'click', () => this.forgetGraph());
     this.on('environment', 'change', () => {
       this.viewport.environment = byId<HTMLSelectElement>('environment').value;
@@ -590,55 +598,22 @@ export class Page {
     connectTabs(() => this.showPanels());
   }
 
-  private connectFiles(): void {
-    const picker = byId<HTMLInputElement>('picker');
-    this.on('open', 'click', () => picker.click());
-    picker.addEventListener('change', () => {
-      void this.take([...(picker.files ?? [])]);
-      picker.value = '';
-    });
-    for (const event of ['dragover', 'dragenter']) {
-      addEventListener(event, (drag) => {
-        drag.preventDefault();
-        document.body.classList.add('dropping');
-      });
+  /** A graph in JSON in the place of the material's. */
+  openGraph(name: string, text: string): void {
+    if (!this.of) return;
+    try {
+      this.lacquer.graph(text, name, [], this.texts()).free();
+    } catch (error) {
+      return this.fail(error);
     }
-    addEventListener('dragleave', () => document.body.classList.remove('dropping'));
-    addEventListener('drop', (event) => {
-      event.preventDefault();
-      document.body.classList.remove('dropping');
-      void this.take([...(event.dataTransfer?.files ?? [])]);
-    });
-  }
-
-  /** Files that were dropped or picked: a .gltf with its buffers and images, a .glb, a graph in JSON, or an environment. */
-  async take(files: File[]): Promise<void> {
-    const bytesOf = async (file: File) => new Uint8Array(await file.arrayBuffer());
-    const graph = files.find(({ name }) => name.endsWith('.json'));
-    if (graph && this.of?.names.length) {
-      const text = await graph.text();
-      try {
-        this.lacquer.graph(text, graph.name, [], this.texts()).free();
-      } catch (error) {
-        return this.fail(error);
-      }
-      this.of.setGraph(text, `graph ${graph.name}`);
-      this.of.settle();
-      this.properties.show(this.of);
-      return this.compile();
-    }
-    const around = files.find(({ name }) => /\.hdr$/i.test(name));
-    if (around) return this.surround(around.name, await bytesOf(around));
-    const main = files.find(({ name }) => /\.(gltf|glb)$/i.test(name)) ?? files[0];
-    if (!main) return;
-    const resources = new Map<string, Uint8Array>();
-    for (const file of files) if (file !== main) resources.set(file.name, await bytesOf(file));
-    this.open({ name: main.name, bytes: await bytesOf(main), resources });
-    await this.others;
+    this.of.setGraph(text, `graph ${name}`);
+    this.of.settle();
+    this.properties.show(this.of);
+    this.compile();
   }
 
   /** An environment of the user's own. */
-  private surround(name: string, bytes: Uint8Array): void {
+  surround(name: string, bytes: Uint8Array): void {
     try {
       addEnvironment(name, radianceOf(readHdr(bytes)), kOwnEnvironment);
     } catch (error) {
@@ -689,8 +664,13 @@ async function start(): Promise<void> {
   const all = [...own, ...samples];
   const choice = byId<HTMLSelectElement>('sample');
   choice.replaceChildren(...all.map(({ name }, i) => h('option', { value: i }, name)));
-  choice.addEventListener('change', () => page.open(inputOf(all[Number(choice.value)])));
+  let chosen = choice.value;
+  choice.addEventListener('change', () => void page.files.replace(inputOf(all[Number(choice.value)])).then((opened) => {
+    if (!opened) choice.value = chosen;
+    chosen = choice.value;
+  }));
   if (all.length > 0) page.open(inputOf(all[0]));
+  await page.files.begin();
   document.body.classList.add('ready');
 }
 

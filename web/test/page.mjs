@@ -114,7 +114,7 @@ export const middle = (page) => page.evaluate(() => {
 export async function drop(page, files) {
   await page.evaluate(async (files) => {
     const bytesOf = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-    await window.lacquerPage.take(files.map(([name, base64]) => new File([bytesOf(base64)], name)));
+    await window.lacquerPage.files.take(files.map(([name, base64]) => new File([bytesOf(base64)], name)));
   }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]));
 }
 

@@ -196,7 +196,7 @@ test('images together have no more texels than a page can hold, and those of a f
       })], 'wide.gltf');
       const found = [];
       for (const images of [1, 20]) {
-        await it.take([file(images), new File([wide], 'wide.png')]);
+        await it.files.take([file(images), new File([wide], 'wide.png')]);
         await it.viewport.loadTextures(it.document.file, it.lookNow());
         found.push([...it.viewport.bitmaps.values()].map(({ bitmap }) => [bitmap.width, bitmap.height]));
       }
@@ -518,7 +518,11 @@ test('a long session of edits takes no more memory', () =>
       const sample = document.getElementById('sample');
       for (let round = 0; round < rounds; ++round) {
         sample.value = String(round % 2);
+        const before = it.document;
         sample.dispatchEvent(new Event('change'));
+        await null;
+        document.querySelector('.ask [value=replace]')?.click();
+        while (it.document === before) await new Promise((done) => requestAnimationFrame(done));
         const sliders = [...document.querySelectorAll('#properties input[type=range]')];
         for (let i = 0; i < 40; ++i) {
           const { id, min, max } = sliders[(7 * i + round) % sliders.length];

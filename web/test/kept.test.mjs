@@ -1,0 +1,127 @@
+// What a person has made is not lost: drafts, questions, messages, and what is offered.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { read } from './native.mjs';
+import { begin, downloaded, drop, end, open, painted, set } from './page.mjs';
+
+before(begin);
+after(end);
+
+const kRoughness = 'p:/materials/0/pbrMetallicRoughness/roughnessFactor';
+const roughness = (page) => page.evaluate(() => window.lacquerPage.document.get('/materials/0/pbrMetallicRoughness/roughnessFactor'));
+const kept = (page) => page.evaluate(async () => {
+  const base = await new Promise((done) => Object.assign(indexedDB.open('lacquer', 1), { onsuccess: ({ target }) => done(target.result) }));
+  const all = base.transaction('drafts').objectStore('drafts').getAll();
+  await new Promise((done) => (all.onsuccess = done));
+  base.close();
+  return all.result.length;
+});
+async function untilKept(page, count) {
+  const upToDate = () => page.evaluate(() => {
+    const { document: of, files } = window.lacquerPage;
+    return !of.isEdited || files.kept === of.state;
+  });
+  for (let i = 0; i < 100 && !((await upToDate()) && (await kept(page)) === count); ++i) await page.waitForTimeout(100);
+  assert.equal(await kept(page), count);
+}
+async function reload(page) {
+  await page.reload();
+  await page.waitForSelector('body.ready');
+}
+
+test('a draft of what was edited is kept and offered after a reload; it goes when it is exported, discarded or taken back', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    assert.equal(await page.textContent('#file'), 'clearcoat.gltf');
+    await page.focus(`[id="${kRoughness}"]`);
+    await page.keyboard.press('End');
+    assert.ok(await page.isVisible('#file.edited'));
+    await untilKept(page, 1);
+    await page.keyboard.press('Control+z');
+    assert.ok(await page.isHidden('#file.edited'));
+    await untilKept(page, 0);
+    await set(page, kRoughness, 0.125);
+    await page.evaluate(() => window.lacquerPage.editGraph((graph) => graph.addNode('mine', 'schlick')));
+    await untilKept(page, 1);
+    await reload(page);
+    assert.equal(await roughness(page), 0.7);
+    assert.match(await page.textContent('#drafts'), /A draft of clearcoat\.gltf from .* was kept/);
+    // Another edit before the offer is answered takes nothing away from it.
+    await set(page, kRoughness, 0.5);
+    await untilKept(page, 2);
+    await reload(page);
+    assert.equal(await page.locator('#drafts > div').count(), 2);
+    await page.click('#drafts > div >> nth=1 >> text=Open the draft');
+    await page.waitForFunction(() => document.querySelectorAll('#drafts > div').length === 1);
+    assert.equal(await roughness(page), 0.125);
+    assert.ok(await page.evaluate(() => JSON.parse(window.lacquerPage.document.graphs.get(0)).nodes.some(({ id }) => id === 'mine')));
+    assert.ok(await page.isVisible('#file.edited'));
+    await page.click('#drafts >> text=Discard it');
+    await untilKept(page, 1);
+    await downloaded(page, '#export');
+    await untilKept(page, 0);
+    await reload(page);
+    assert.ok(await page.isHidden('#drafts'));
+  }));
+
+test('a file that takes the place of edits asks; one that cannot be read does not, and its message goes with the next edit', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    await set(page, kRoughness, 0.125);
+    await drop(page, [['cut.gltf', Buffer.from('{"asset"')]]);
+    assert.match(await page.textContent('#status'), /JSON/);
+    assert.equal(await page.locator('.ask').count(), 0);
+    await set(page, kRoughness, 0.25);
+    assert.equal(await page.textContent('#status'), '');
+    for (const [answer, name, value] of [['', 'clearcoat.gltf', 0.25], ['replace', 'other.gltf', undefined]]) {
+      const dropped = drop(page, [['other.gltf', Buffer.from('{"asset": {"version": "2.0"}, "materials": [{}]}')]]);
+      await page.waitForSelector('.ask');
+      assert.match(await page.textContent('.ask p'), /clearcoat\.gltf has edits that are in no file/);
+      await page.click(`.ask button[value="${answer}"]`);
+      await dropped;
+      assert.equal(await page.textContent('#file'), name);
+      assert.equal(await roughness(page), value);
+    }
+    await drop(page, [['third.gltf', read('examples/core.gltf')]]);
+    assert.equal(await page.textContent('#file'), 'third.gltf');
+    // The sample that is chosen again stays what it was where the answer is no.
+    await set(page, kRoughness, 0.125);
+    const before = await page.inputValue('#sample');
+    await page.selectOption('#sample', '2');
+    await page.keyboard.press('Escape');
+    await page.waitForSelector('.ask', { state: 'detached' });
+    assert.equal(await page.inputValue('#sample'), before);
+    assert.equal(await page.textContent('#file'), 'third.gltf');
+    await page.click('#undo');
+    await drop(page, [['m.mtlx', Buffer.from('<materialx version="1.39"/>')]]);
+    assert.match(await page.textContent('#status'), /m\.mtlx: the module on this page has no reader of MaterialX/);
+    assert.equal(await page.textContent('#file'), 'third.gltf');
+  }));
+
+test('extensions are offered that can stand with what is there, the others with what is against them', () =>
+  open([], async (page) => {
+    const material = (extensions) => Buffer.from(JSON.stringify({ asset: { version: '2.0' }, extensionsUsed: Object.keys(extensions), materials: [{ extensions }] }));
+    const option = (name) => page.evaluate((name) => {
+      const { disabled, textContent } = [...document.querySelectorAll('.adder option')].find(({ value }) => value === name);
+      return [disabled, textContent];
+    }, name);
+    await drop(page, [['clear.gltf', material({ KHR_materials_clearcoat: { clearcoatFactor: 1 } })]]);
+    assert.deepEqual(await option('KHR_materials_sheen'), [false, 'KHR_materials_sheen']);
+    assert.deepEqual(await option('KHR_materials_coat'), [false, 'KHR_materials_coat, in place of KHR_materials_clearcoat']);
+    assert.deepEqual(await option('KHR_materials_scatter'), [true, 'KHR_materials_scatter: it needs KHR_materials_transmission']);
+    assert.deepEqual(await option('EXT_materials_specular_edge_color'), [true, 'EXT_materials_specular_edge_color: it stands in KHR_materials_specular']);
+    assert.deepEqual(await option('KHR_materials_unlit'), [true, 'KHR_materials_unlit: not with KHR_materials_clearcoat']);
+    await page.selectOption('.adder select', 'KHR_materials_sheen');
+    assert.ok(await page.isVisible('[data-extension=KHR_materials_sheen]'));
+  }));
+
+test('on a phone the picture is on top and stays there', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    const tops = () => page.evaluate(() => ['middle', 'left', 'right'].map((id) => document.getElementById(id).getBoundingClientRect().top));
+    const [picture, properties, panels] = await tops();
+    assert.ok(picture < properties && properties < panels, `${[picture, properties, panels]}`);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= 400, `${wide} pixels wide`);
+    await page.locator('#right').scrollIntoViewIfNeeded();
+    await painted(page);
+    const [after] = await tops();
+    assert.ok(after >= 0 && after <= picture, `${after}`);
+  }, { size: { width: 400, height: 820 } }));
