@@ -41,6 +41,7 @@ export class Document {
   private past: Snapshot[] = [];
   private future: Snapshot[] = [];
   private last = '';
+  private readonly own: { textures: number; images: number }; // how many the file came with
   private around: string | null = null; // what slim() begins with
 
   /** Throws a LacquerError for what the library cannot read. */
@@ -53,6 +54,7 @@ export class Document {
     scene.free();
     this.file = openGltf(input.name, input.bytes, input.resources);
     this.drawables = geometry(this.file);
+    this.own = { textures: list(this.json.textures).length, images: list(this.json.images).length };
     this.takeExtras(lacquer);
   }
 
@@ -81,7 +83,9 @@ export class Document {
       const graph = this.graphs.get(i);
       return graph === undefined ? material : withLacquer(material, { graph: JSON.parse(graph) });
     });
-    const json = materials ? { ...this.json, materials } : this.json;
+    const used = new Set<number>();
+    indicesIn(materials, used);
+    const json = materials ? withoutUnused({ ...this.json, materials }, this.own, used) : this.json;
     return this.nodeText ? withLacquer(json, { nodes: this.nodeText }) : json;
   }
 
@@ -139,6 +143,26 @@ export class Document {
     const used = new Set<string>(list(this.json.extensionsUsed));
     if (on) used.add(name);
     this.json.extensionsUsed = [...used];
+  }
+  /** Says that the file uses an extension. */
+  use(name: string): void {
+    this.json.extensionsUsed = [...new Set([...list(this.json.extensionsUsed), name])];
+  }
+  /** A picture as a new texture, which the exported file has in itself where something uses it. */
+  addTexture(name: string, mimeType: string, bytes: Uint8Array): number {
+    const uri = `data:${mimeType};base64,${toBase64(bytes)}`;
+    const source = push(this.json, 'images', { name, mimeType, uri });
+    this.around = null;
+    return push(this.json, 'textures', { source });
+  }
+  /** The same picture with another sampler: other slots keep the one that they have. */
+  resampled(texture: number, sampler: object): number {
+    const same = list(this.json.samplers).findIndex((each) => JSON.stringify(each) === JSON.stringify(sampler));
+    const index = same >= 0 ? same : push(this.json, 'samplers', sampler);
+    const next = { ...this.json.textures[texture], sampler: index };
+    const there = list(this.json.textures).findIndex((each) => JSON.stringify(each) === JSON.stringify(next));
+    this.around = null;
+    return there >= 0 ? there : push(this.json, 'textures', next);
   }
   setGraph(text: string | null, key: string): void {
     this.keep(key);
@@ -240,6 +264,36 @@ export class Document {
     bytes.set(chunks[1], 12 + chunks[0].length);
     return { name: this.file.name, bytes };
   }
+}
+
+function push(json: any, list: string, what: object): number {
+  return (json[list] = Array.isArray(json[list]) ? json[list] : []).push(what) - 1;
+}
+function toBase64(bytes: Uint8Array): string {
+  let text = '';
+  for (let i = 0; i < bytes.length; i += 0x8000) text += String.fromCharCode(...bytes.subarray(i, i + 0x8000));
+  return btoa(text);
+}
+/** Of textures that a page has added those that are used; the others were taken back. Added ones are the last. */
+function withoutUnused(json: any, first: { textures: number; images: number }, used: Set<number>): any {
+  const end = (all: any[], least: number, isUsed: (i: number) => boolean) => {
+    let size = all.length;
+    while (size > least && !isUsed(size - 1)) --size;
+    return size === 0 ? undefined : all.slice(0, size);
+  };
+  const { textures, images, ...rest } = json;
+  if (!Array.isArray(textures) || (textures.length === first.textures && images?.length === first.images)) return json;
+  const kept = end(textures, first.textures, (i) => used.has(i));
+  const pictures = new Set((kept ?? []).map((each) => each?.source));
+  const seen = end(list(images), first.images, (i) => pictures.has(i));
+  return { ...rest, ...(kept && { textures: kept }), ...(seen && { images: seen }) };
+}
+/** What textureInfos name. */
+function indicesIn(of: unknown, to: Set<number>): void {
+  if (typeof of !== 'object' || of === null) return;
+  const { index, texture } = of as { index?: unknown; texture?: unknown };
+  for (const each of [index, texture]) if (typeof each === 'number') to.add(each);
+  for (const each of Object.values(of)) indicesIn(each, to);
 }
 
 const withLacquer = (of: any, what: object) => ({ ...of, extras: { ...of.extras, lacquer: { ...of.extras?.lacquer, ...what } } });

@@ -4,6 +4,7 @@ import type { Input } from './document';
 import { byId, download, h } from './dom';
 import { Drafts, kMostBytes, type Draft } from './drafts';
 import type { Page } from './main';
+import { kPictures } from './textures';
 
 /** Milliseconds after an edit until its draft is kept. */
 const kRest = 400;
@@ -64,6 +65,7 @@ export class Files {
     if (around) return page.surround(around.name, await bytesOf(around));
     const foreign = files.find(({ name }) => /\.mtlx$/i.test(name));
     if (foreign) return page.fail(new Error(`${foreign.name}: the module on this page has no reader of MaterialX; lacquer view ${foreign.name} -o page.html makes a page of it, lacquer convert a glTF file`));
+    if (files.length > 0 && files.every(({ name }) => kPictures.test(name))) return page.fail(new Error(`${files[0].name} is a picture: drop it on the slot of a texture, at the left`));
     const main = files.find(({ name }) => /\.(gltf|glb)$/i.test(name)) ?? files[0];
     if (!main) return;
     const resources = new Map<string, Uint8Array>();
@@ -134,9 +136,10 @@ export class Files {
     if (!of.isEdited) return this.forget();
     const { state, material, file: { name, resources: all } } = of;
     const resources = [...all].filter(([uri]) => !uri.startsWith('data:'));
-    if (resources.reduce((sum, [, each]) => sum + each.length, of.file.bytes.length) > kMostBytes) return this.page.note(`${name} is too large for a draft: export it to keep its edits`);
+    const bytes = of.file.bytes.length > kMostBytes ? null : of.export().bytes;
+    if (!bytes || resources.reduce((sum, [, each]) => sum + each.length, bytes.length) > kMostBytes) return this.page.note(`${name} is too large for a draft: export it to keep its edits`);
     try {
-      await this.drafts.keep({ name, bytes: of.export().bytes, resources, material, time: Date.now() });
+      await this.drafts.keep({ name, bytes, resources, material, time: Date.now() });
       this.kept = state;
     } catch (error) {
       this.page.note(`no draft can be kept here: ${error instanceof Error ? error.message : String(error)}`);

@@ -6,6 +6,7 @@ import * as actions from './editor/actions';
 import { Editor, type Host, type LibraryNode } from './editor/editor';
 import type { Place } from './editor/view';
 import type { Page } from './main';
+import { texturesOf } from './textures';
 
 export class GraphPane implements Host {
   readonly editor: Editor;
@@ -106,6 +107,9 @@ export class GraphPane implements Host {
   }
   givens(template: string): { name: string; type: string }[] {
     return this.page.nodes.templates.find(({ name }: { name: string }) => name === template)?.gives ?? [];
+  }
+  textures(): { index: number; name: string }[] {
+    return this.page.document ? texturesOf(this.page.document) : [];
   }
   say(text: string): void {
     this.page.note(text);

@@ -70,6 +70,7 @@ export class Page {
       },
       setParameter: (name, value, done) => this.setParameter(name, value, done),
       forgetGraph: () => this.forgetGraph(),
+      fail: (error) => this.fail(error),
     });
     this.nodeText = new NodeText(lacquer, () => this.useNodes());
     this.graph = new GraphPane(this);

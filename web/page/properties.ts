@@ -2,8 +2,7 @@
 import type { GraphJson } from '../src/index';
 import type { Document } from './document';
 import { h } from './dom';
-import { sourceOf } from '../src/gltf';
-import { item } from '../src/json';
+import { slotRow } from './textures';
 
 interface Property {
   name: string;
@@ -15,6 +14,8 @@ interface Property {
   default?: number | number[] | string;
   meaning?: string;
   values?: string[];
+  color_space?: string;
+  channels?: string;
   members?: Property[];
 }
 export interface Extension {
@@ -42,6 +43,7 @@ export interface Acts {
   changed: (structure: boolean) => void;
   setParameter: (name: string, value: number | number[], done: boolean) => void;
   forgetGraph: () => void;
+  fail: (error: unknown) => void;
 }
 
 type Parameter = { type: string; value: number | number[]; range?: (number | null)[]; pointer?: string };
@@ -175,30 +177,26 @@ export class Properties {
       const pointer = `${at}/${property.name}`;
       if (property.type === 'object') this.addRows(of, property.members ?? [], pointer, rows);
       else if (property.type === 'texture') {
-        if (of.get(pointer) === undefined) continue;
         rows.push(this.texture(of, property, pointer));
-        this.addRows(of, property.members ?? [], pointer, rows);
+        if (of.get(pointer) !== undefined) this.addRows(of, property.members ?? [], pointer, rows);
       } else if (property.type === 'choice' || property.type === 'bool') rows.push(this.choice(of, property, pointer));
       else rows.push(this.numbers(of, property, pointer));
     }
   }
 
   private texture(of: Document, property: Property, pointer: string): HTMLElement {
-    const index = of.get(`${pointer}/index`);
-    const source = sourceOf(item(of.json.textures, index));
-    const image = item(of.json.images, source);
-    const name = image?.name ?? (typeof image?.uri === 'string' && !image.uri.startsWith('data:') ? image.uri : `texture ${index}`);
-    const remove = () => {
-      of.set(pointer, undefined, `remove ${pointer}`);
-      this.acts.changed(true);
-    };
-    return h(
-      'div',
-      { class: 'row texture', title: pointer },
-      h('span', { class: 'name' }, property.name),
-      h('span', { class: 'image' }, name),
-      h('button', { class: 'quiet', type: 'button', 'aria-label': `Remove ${property.name}`, click: remove }, '×'),
-    );
+    const slot = { name: property.name, pointer, srgb: property.color_space === 'srgb', channels: property.channels ?? 'rgba', meaning: property.meaning ?? '' };
+    const { element, mark } = slotRow(of, slot, this.acts);
+    const tag = element.querySelector<HTMLElement>('.gone')!;
+    this.rows.push({
+      pointer, update: () => undefined,
+      mark: ({ pointers, own }) => {
+        const taken = own && !pointers.has(pointer);
+        mark(taken);
+        showTag(tag, taken ? kTaken : '', kTakenTitle);
+      },
+    });
+    return element;
   }
 
   private choice(of: Document, property: Property, pointer: string): HTMLElement {

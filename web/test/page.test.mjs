@@ -609,7 +609,7 @@ for (const scheme of ['light', 'dark']) {
 test('it is used without a mouse: every control has a name and is reached, a slider is moved and the edit undone', () =>
   open(['examples/clearcoat.gltf'], async (page) => {
     const nameless = await page.evaluate(() =>
-      [...document.querySelectorAll('button, input:not([hidden]), select, canvas, [tabindex="0"]')]
+      [...document.querySelectorAll('button, input:not([hidden]), select, canvas:not([aria-hidden]), [tabindex="0"]')]
         .filter((it) => !(it.getAttribute('aria-label') || it.labels?.length || it.textContent.trim() || it.title))
         .map((it) => it.outerHTML));
     assert.deepEqual(nameless, []);

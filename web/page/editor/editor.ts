@@ -42,6 +42,8 @@ export interface Host {
   nodes(): LibraryNode[];
   /** Names of what the template gives, with their types. */
   givens(template: string): { name: string; type: string }[];
+  /** The file's. */
+  textures(): { index: number; name: string }[];
   say(text: string): void;
 }
 

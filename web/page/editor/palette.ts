@@ -109,6 +109,18 @@ function parameterEntries(port: PortAt | null): Entry[] {
   }));
 }
 
+/** Pictures of the file, as colours and as data. */
+function textureEntries(editor: Editor): Entry[] {
+  return editor.host.textures().flatMap(({ index, name }) => [true, false].map((srgb): Entry => ({
+    name: `texture: ${name}${srgb ? '' : ', data'}`, kind: 'new', doc: srgb ? 'A picture of the file, a colour: it is decoded from sRGB.' : 'A picture of the file: its numbers as they are.', category: 'textures',
+    takes: [], gives: ['sampler2D'], details: () => [h('p', {}, 'texture_sample reads it at texture coordinates.')],
+    make: (at, place) => {
+      const texture = fresh(name.replace(/\.\w+$/, '').replace(/\W+/g, '_').replace(/^(?=\d)/, '_').toLowerCase() || 'picture', new Set(Object.keys(at.json?.textures ?? {})));
+      return { edits: [{ do: 'add_texture', texture, as: { type: 'sampler2D', srgb, texture: index, ui: place } }], key: `texture ${texture}`, source: { texture } };
+    },
+  })));
+}
+
 /** What the template gives: no box, but what is written at an input. */
 function givenEntries(editor: Editor, port: PortAt | null): Entry[] {
   if (port?.side !== 'in') return [];
@@ -144,7 +156,7 @@ export function rank(entry: Entry, words: string[]): number {
 export function openPalette(editor: Editor, clientX: number, clientY: number, port: PortAt | null, done: (entry: Entry) => void): void {
   const wanted = port?.port.type ?? '';
   const fits = (entry: Entry) => !wanted || (port!.side === 'in' ? entry.gives.some((type) => type === '' || type === wanted || (type === 'float' && converts(type, wanted))) : entry.takes.some((type) => type === wanted || (wanted === 'float' && converts(wanted, type))));
-  const all = [...parameterEntries(port), ...givenEntries(editor, port), ...groupEntries(editor), ...(port ? [] : [commentEntry()]), ...editor.host.nodes().map(nodeEntry)].filter(fits);
+  const all = [...parameterEntries(port), ...givenEntries(editor, port), ...groupEntries(editor), ...textureEntries(editor), ...(port ? [] : [commentEntry()]), ...editor.host.nodes().map(nodeEntry)].filter(fits);
   const field = h('input', { type: 'text', role: 'combobox', 'aria-label': 'Search nodes', 'aria-expanded': 'true', 'aria-controls': 'palette-list', placeholder: 'Search nodes…', spellcheck: 'false' });
   const categories = [...new Set(all.map(({ category }) => category))].sort();
   const category = h('select', { 'aria-label': 'Category' }, h('option', { value: '' }, 'all'), ...categories.map((name) => h('option', {}, name)));
