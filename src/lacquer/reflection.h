@@ -90,7 +90,8 @@ struct ShaderInput {
 struct ShaderOutput {
   std::string name;
   uint32_t location = 0;
-  Strings holds;  ///< of a colour that packs components of several: their names; else empty
+  Strings holds;              ///< of a colour that packs components of several: their names; else empty
+  std::string type = "vec4";  ///< or "float", "vec2", "vec3", "int", "uint": the format's channels and kind
 };
 /// An editable number: what any material of this shader may give it. A material's own is Parameter::value.
 struct ReflectedParameter {
@@ -136,7 +137,10 @@ struct Reflection {
   std::vector<ReflectedTexture> textures;
   std::vector<ShaderInput> inputs;
   std::vector<ShaderOutput> outputs;
-  size_t proved = 0;                     ///< operations that are defined for all inputs
+  std::string
+      depth;  ///< the output that is the fragment's depth, in [0, 1]; empty where the triangle's stays
+  Strings displaces;  ///< what the vertices have elsewhere: "object_position", so that bounds must be wider
+  size_t proved = 0;  ///< operations that are defined for all inputs
   std::vector<OperationProof> unproved;  ///< the others that have a domain (docs/intervals.md)
   std::optional<RelaxedFigures> relaxed;
   std::optional<OptimizedFigures> optimized;

@@ -59,10 +59,12 @@ public:
       case Op::MatMul: return splat(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]);
       case Op::Select: return a[0] != 0 ? b : values_[v.args[2]];
       case Op::Texture:
-      case Op::TextureLod: {
+      case Op::TextureLod:
+      case Op::TextureGrad: {
         const ir::Input& texture = dag_.inputOf(v.args[0]);
         return world_.texel(module_.textures[texture.field].environment, texture.name, b);
       }
+      case Op::TextureSize: return splat(7);
       case Op::DFdx: return spread(difference(v.args[0], 0), v.type);
       case Op::DFdy: return spread(difference(v.args[0], 1), v.type);
       case Op::Column: return a;  // as with a product

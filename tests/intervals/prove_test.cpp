@@ -69,6 +69,20 @@ TEST_F(Prove, AnEnvironmentMapMayHoldAnything) {
   EXPECT_TRUE(safe(root));
 }
 
+TEST_F(Prove, AFirstLevelHasTexels) {
+  ir::TextureSlot slot;
+  slot.type = Type::Texture2D;
+  module_.textures.push_back(slot);
+  const ValueId map =
+      dag().input({ir::InputKind::Texture, "t", Type::Texture2D, ir::Rate::Frame, {0, 1}, 0, 0});
+  const auto texel = [&](ValueId level) {
+    const ValueId size = dag().make(Op::TextureSize, {map, level}, 1);
+    return dag().div(dag().constant(1), dag().make(Op::FromInt, {size}));
+  };
+  EXPECT_TRUE(safe(texel(dag().integer(0))));
+  EXPECT_FALSE(safe(texel(dag().integer(1)))) << "of a level that is not there a target may say 0";
+}
+
 /// A compiler may add the guard to the constant before it, and nothing of it is left.
 TEST_F(Prove, AGuardThatMeetsAConstantIsNone) {
   const ValueId x = input("x", {0.5, 1});

@@ -103,7 +103,14 @@ void Enclosure::value(ValueId id) {
       return;
     case Op::MatMul: return matrixTimesVector(id);
     case Op::Texture:
-    case Op::TextureLod: return texture(id);
+    case Op::TextureLod:
+    case Op::TextureGrad: return texture(id);
+    case Op::TextureSize: {
+      const eval::Sampler& sampler =
+          bindings_.textures.find(module_.textures[dag_.inputOf(v.args[0]).field].name)->second;
+      const double texels = sampler.size.at(v.payload);
+      return out.fill({texels, texels, false});
+    }
     case Op::DFdx: return derivative(id, 1);
     case Op::DFdy: return derivative(id, 2);
     case Op::SumOverLights: return sumOverLights(id);

@@ -26,7 +26,7 @@ std::array<double, 4> texelAt(double u, double v) {
 
 template <class T>
 std::vector<std::vector<T>> runNode(const std::string& form, const Arguments& arguments, size_t points,
-                                    const std::string& variant, bool quads) {
+                                    const std::string& variant, bool quads, const eval::Sampler& image) {
   const auto found = standardLibrary().node(form);
   if (!found) throw std::runtime_error(format(found.error().at(0)));
   const lang::NodeDecl& node = **found;
@@ -45,6 +45,10 @@ std::vector<std::vector<T>> runNode(const std::string& form, const Arguments& ar
       module.textures.push_back(slot);
       values.push_back(module.dag.input(
           {ir::InputKind::Texture, slot.name, param.type, ir::Rate::Frame, {0, 1}, 0, index}));
+      if (image) {
+        bindings.textures[slot.name] = image;
+        continue;
+      }
       bindings.textures[slot.name] = [](size_t, const std::array<double, 3>& uv, double) {
         return texelAt(uv[0], uv[1]);
       };
@@ -80,9 +84,9 @@ std::vector<std::vector<T>> runNode(const std::string& form, const Arguments& ar
 }
 
 template std::vector<std::vector<float>> runNode(const std::string&, const Arguments&, size_t,
-                                                 const std::string&, bool);
+                                                 const std::string&, bool, const eval::Sampler&);
 template std::vector<std::vector<double>> runNode(const std::string&, const Arguments&, size_t,
-                                                  const std::string&, bool);
+                                                  const std::string&, bool, const eval::Sampler&);
 
 std::vector<Place> somePlaces(size_t count, int dimensions, float largest, uint64_t seed) {
   std::mt19937_64 engine(seed);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/bindings.h"
 #include "lang/library.h"
 #include "patterns/reference.h"
 
@@ -21,10 +22,11 @@ std::array<double, 4> texelAt(double u, double v);
 
 /// The results of a node, each the components of all points side by side. What has no argument has its
 /// default, or that of what is given where there is no template. `quads`: points stand in fours, as pixels
-/// do. T is float or double.
+/// do. T is float or double. `image` stands behind every texture in place of texelAt().
 template <class T>
 std::vector<std::vector<T>> runNode(const std::string& form, const Arguments& arguments, size_t points,
-                                    const std::string& variant = {}, bool quads = false);
+                                    const std::string& variant = {}, bool quads = false,
+                                    const eval::Sampler& image = {});
 
 /// Places of all sizes: within a few cells, on and beside corners, negative ones, and large ones, up to
 /// `largest`.

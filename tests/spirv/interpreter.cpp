@@ -176,6 +176,7 @@ private:
       case spv::OpLoopMerge:
       case spv::OpSelectionMerge: return at + 1;
       case spv::OpLoad: load(a[1], pointers_.at(a[2])); return at + 1;
+      case spv::OpImage: textures_[a[1]] = textures_.at(a[2]); return at + 1;
       default: cells_[a[1]] = compute(in); return at + 1;
     }
   }
@@ -345,7 +346,15 @@ private:
         return result;
       }
       case spv::OpImageSampleImplicitLod: return texel(a[0], cell(a[1]), -1);
-      case spv::OpImageSampleExplicitLod: return texel(a[0], cell(a[1]), scalar(a[3]));
+      case spv::OpImageSampleExplicitLod:
+        // A made-up level tells the two derivatives apart.
+        if (a[2] == spv::ImageOperandsGradMask)
+          return texel(a[0], cell(a[1]), cell(a[3]).at(0) + 3 * cell(a[4]).at(1));
+        return texel(a[0], cell(a[1]), scalar(a[3]));
+      case spv::OpImageQuerySizeLod: {
+        const Variable& v = variables_.at(textures_.at(a[0]));
+        return world_.size(v.set, v.binding, scalar(a[1]));
+      }
       // Derivatives of a flat picture would hide a mistake; these tell the two, and the value, apart.
       case spv::OpDPdx: return each(a, 1, [](double x, double, double) { return x * 0.5 + 1; });
       case spv::OpDPdy: return each(a, 1, [](double x, double, double) { return x * 0.25 + 2; });

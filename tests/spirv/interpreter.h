@@ -23,6 +23,8 @@ struct World {
   std::map<std::pair<uint32_t, uint32_t>, std::vector<uint8_t>> blocks;  ///< by set and binding
   /// A texel, by the texture's set and binding; `lod` is -1 for implicit derivatives.
   std::function<Cell(uint32_t set, uint32_t binding, const Cell& at, double lod)> texel;
+  /// The size of a texture's level.
+  std::function<Cell(uint32_t set, uint32_t binding, double level)> size;
 };
 
 struct Outcome {

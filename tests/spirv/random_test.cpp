@@ -282,6 +282,12 @@ private:
     if (op == Op::TextureLod) {
       return dag().make(op, {pick(pool, Type::TextureCube), pick(pool, Type::Vec3), pick(pool, Type::Float)});
     }
+    if (op == Op::TextureGrad) {
+      return dag().make(op, {pick(pool, Type::TextureCube), pick(pool, Type::Vec3), pick(pool, Type::Vec3),
+                             pick(pool, Type::Vec3)});
+    }
+    if (op == Op::TextureSize)
+      return dag().make(op, {pick(pool, Type::Texture2D), pick(pool, Type::Int)}, below(2));
     if (op == Op::Swizzle) {
       std::vector<int> components(1 + below(4));
       for (int& c : components)

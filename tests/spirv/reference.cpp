@@ -106,6 +106,12 @@ private:
       }
     } else if (v.op == Op::Column) {
       result.assign(x[0].begin() + 4 * v.payload, x[0].begin() + 4 * v.payload + 4);
+    } else if (v.op == Op::TextureSize) {
+      const ir::Binding at = module_.textures[dag_.inputOf(v.args[0]).field].binding;
+      result = {world_.size(at.set, at.binding, x[1][0]).at(v.payload)};
+    } else if (v.op == Op::TextureGrad) {
+      const ir::Binding at = module_.textures[dag_.inputOf(v.args[0]).field].binding;
+      result = world_.texel(at.set, at.binding, x[1], x[2][0] + 3 * x[3][1]);
     } else if (ir::facts(v.op).kind == ir::Kind::Components) {
       result = {ir::foldComponent<double>(v.op, x[0][0], 0, 0)};
     } else {
@@ -271,6 +277,9 @@ World makeWorld(const ir::Module& module, uint32_t seed, int32_t light_count) {
     for (size_t i = 0; i < 4; ++i) texel[i] += at[i % at.size()] * (0.5 + 0.25 * static_cast<double>(i));
     return texel;
   };
+  world.size = [](uint32_t set, uint32_t binding, double level) {
+    return Cell{4 + set + 2.0 * binding + std::fmod(level, 8), 2 + 3.0 * set + binding};
+  };
   return world;
 }
 
@@ -283,6 +292,7 @@ Outcome evaluate(const ir::Module& module, ir::Stage stage, const World& world) 
     const Cell& value = evaluator.value(output.value);
     switch (output.kind) {
       case ir::OutputKind::Position: outcome.outputs["gl_Position"] = value; break;
+      case ir::OutputKind::Depth: outcome.outputs["gl_FragDepth"] = value; break;
       case ir::OutputKind::Color: outcome.outputs[targets::outputName(output)] = value; break;
       case ir::OutputKind::Discard: outcome.dropped |= value[0] != 0; break;
       case ir::OutputKind::Varying:

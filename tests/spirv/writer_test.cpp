@@ -88,6 +88,7 @@ struct Lit : Builder {
 TEST(Writer, LitFragment) { expectText("lit", targets::litSample({}), Stage::Fragment); }
 TEST(Writer, LitVertex) { expectText("lit", targets::litSample({}), Stage::Vertex); }
 TEST(Writer, FixedFragment) { expectText("fixed", targets::fixedSample(), Stage::Fragment); }
+TEST(Writer, Lookups) { expectText("lookups", targets::lookupsSample(), Stage::Fragment); }
 TEST(Writer, EveryOp) { expectText("every_op", targets::everyOpSample(), Stage::Fragment); }
 TEST(Writer, DebugFragment) { expectText("lit_debug", targets::litSample({3, 2}), Stage::Fragment, true); }
 

@@ -29,6 +29,7 @@ void expectTexts(const std::string& name, const ir::Module& module, Stage stage)
 TEST(Dialect, LitVertex) { expectTexts("lit", litSample({}), Stage::Vertex); }
 TEST(Dialect, LitFragment) { expectTexts("lit", litSample({}), Stage::Fragment); }
 TEST(Dialect, FixedFragment) { expectTexts("fixed", fixedSample(), Stage::Fragment); }
+TEST(Dialect, Lookups) { expectTexts("lookups", lookupsSample(), Stage::Fragment); }
 TEST(Dialect, EveryOp) { expectTexts("every_op", everyOpSample(), Stage::Fragment); }
 
 TEST(Dialect, ALightGroupRunsFromItsFirstLight) {

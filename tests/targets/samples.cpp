@@ -273,6 +273,47 @@ ir::Module everyOpSample() {
   return b.module;
 }
 
+ir::Module lookupsSample() {
+  Builder b;
+  ir::Dag& dag = b.dag();
+  const ValueId uv = b.varying("uv", b.attribute("TEXCOORD_1", Type::Vec2));
+  const ValueId way = b.varying("way", b.attribute("NORMAL", Type::Vec3));
+  b.module.outputs.clear();
+  const ValueId along_x = dag.make(Op::DFdx, {uv});
+  const ValueId along_y = dag.make(Op::DFdy, {uv});
+  ValueId total = dag.constant(Type::Vec4, {});
+  ValueId sizes = dag.integer(0);
+  const std::array kTypes = {std::pair{Type::Texture2D, "map"}, std::pair{Type::TextureCube, "around"},
+                             std::pair{Type::Texture2DShadow, "depths"},
+                             std::pair{Type::Texture2DArray, "tiles"}, std::pair{Type::Texture3D, "volume"}};
+  for (const auto& [type, name] : kTypes) {
+    const ValueId texture = b.texture(name, type, type != Type::Texture2D);
+    if (type != Type::Texture2DShadow) {
+      const bool flat = ir::derivativeType(type) == Type::Vec2;
+      const ValueId at = ir::coordinateType(type) == Type::Vec2 ? uv : way;
+      const ValueId x = flat ? along_x : dag.make(Op::DFdx, {way});
+      const ValueId y = flat ? along_y : dag.make(Op::DFdy, {way});
+      total =
+          dag.add(total, b.named(dag.make(Op::TextureGrad, {texture, at, x, y}), fmt::format("of_{}", name)));
+    }
+    const ValueId level = dag.make(Op::ToInt, {dag.component(uv, 0)});
+    for (int axis = 0; axis < ir::sizeCount(type); ++axis) {
+      const ValueId asked = axis == 0 ? level : dag.integer(0);
+      sizes = dag.make(Op::WholeAdd,
+                       {sizes, dag.make(Op::TextureSize, {texture, asked}, static_cast<uint32_t>(axis))});
+    }
+  }
+  b.color("color", total, 0);
+  b.color("weight", dag.component(uv, 1), 1);
+  b.color("place", uv, 2);
+  b.color("texels", sizes, 3);
+  b.color("bits", dag.make(Op::AsUInt, {sizes}), 4);
+  b.module.outputs.push_back(
+      {ir::OutputKind::Depth, Stage::Fragment, "nearness", 0,
+       dag.make(Op::Clamp, {dag.component(way, 2), dag.constant(0), dag.constant(1)})});
+  return b.module;
+}
+
 std::string print(ir::Module module, Stage stage, Target target, std::string_view head) {
   targets::legalize(module);
   return printText(module, schedule::schedule(module, stage), target, head);

@@ -52,6 +52,10 @@ ir::Module fixedSample();
 /// that is spelled in its own way.
 ir::Module everyOpSample();
 
+/// Lookups over a footprint, and sizes, of every type of texture; a depth, and colours of one number and of
+/// integers.
+ir::Module lookupsSample();
+
 /// The text of a stage, legalized for the target.
 std::string print(ir::Module module, ir::Stage stage, Target target, std::string_view head = {});
 

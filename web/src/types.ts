@@ -82,7 +82,7 @@ export interface Parameter {
 /** A texture of a material. */
 export interface GraphTexture {
   name: string;
-  type: 'sampler2D' | 'samplerCube';
+  type: 'sampler2D' | 'samplerCube' | 'sampler2DArray';
   srgb: boolean;
   /** Index in the file's `textures`; -1 for none. */
   texture: number;

@@ -196,8 +196,11 @@ export function frameSamplerOf(texture: Interface['textures'][number]): GPUSampl
 
 // ---- states
 
+/** Where a colour is not a vec4. */
+const kOutputFormats: Record<string, GPUTextureFormat> = { float: 'r16float', vec2: 'rg16float', int: 'r32sint', uint: 'r32uint' };
+
 /** What createRenderPipeline() is given beside the stages' modules and the layout. `mirrored`: the object's matrix mirrors().
- * `format`: of all of the shader's colours. */
+ * `format`: of the shader's colours that are a vec4. */
 export function pipelineStates(
   shader: Interface,
   material: Pick<ContractMaterial, 'double_sided' | 'depth_write' | 'blend'>,
@@ -220,7 +223,11 @@ export function pipelineStates(
     depthStencil: {
       format: depthFormat, depthWriteEnabled: material.depth_write, depthCompare: 'less-equal',
     } satisfies GPUDepthStencilState,
-    targets: ((shader.outputs ?? []) as unknown[]).map(() => target),
+    targets: ((shader.outputs ?? []) as { type?: string }[]).map(({ type = 'vec4' }) => {
+      const own = kOutputFormats[type];
+      if (own === undefined) return target;
+      return type.endsWith('int') ? { format: own } : { ...target, format: own };
+    }),
   };
 }
 

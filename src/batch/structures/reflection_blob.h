@@ -44,7 +44,7 @@ void fields(Archive& archive, ShaderInput& of) {
 }
 template <class Archive>
 void fields(Archive& archive, ShaderOutput& of) {
-  archive(of.name, of.location, of.holds);
+  archive(of.name, of.location, of.holds, of.type);
 }
 template <class Archive>
 void fields(Archive& archive, Range& of) {
@@ -66,7 +66,7 @@ void fields(Archive& archive, OperationProof& of) {
 template <class Archive>
 void fields(Archive& archive, Reflection& of) {
   archive(of.template_name, of.blocks, of.parameters, of.has_spec_constants, of.spec_constants, of.textures,
-          of.inputs, of.outputs, of.proved, of.unproved, of.webgpu_limits);
+          of.inputs, of.outputs, of.depth, of.displaces, of.proved, of.unproved, of.webgpu_limits);
   RelaxedFigures figures = of.relaxed.value_or(RelaxedFigures());
   bool relaxed = of.relaxed.has_value();
   archive(relaxed, figures.bound, figures.operations, figures.of_operations, figures.cycles,

@@ -114,7 +114,8 @@ Proofs prove(const ir::Module& module, const IntervalOptions& options) {
   }
   Proofs proofs{prove(module, intervals, ids), {}};
   for (uint32_t i = 0; i < module.outputs.size(); ++i) {
-    if (module.outputs[i].kind != ir::OutputKind::Color) continue;
+    const ir::OutputKind kind = module.outputs[i].kind;
+    if (kind != ir::OutputKind::Color && kind != ir::OutputKind::Depth) continue;
     proofs.outputs.push_back({i, intervals.all(module.outputs[i].value)});
   }
   return proofs;

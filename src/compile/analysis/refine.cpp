@@ -46,8 +46,8 @@ public:
 
 private:
   static bool isOpaque(Op op) {
-    return ir::readsTexture(op) || ir::takesDerivatives(op) || op == Op::Interpolate ||
-           op == Op::SumOverLights || op == Op::Element || op == Op::Carried;
+    return ir::readsTexture(op) || op == Op::TextureSize || ir::takesDerivatives(op) ||
+           op == Op::Interpolate || op == Op::SumOverLights || op == Op::Element || op == Op::Carried;
   }
 
   void markGeometric() {

@@ -31,6 +31,9 @@ Range counts(const Range& count) { return count.lo >= 0 && count.hi <= 31 ? coun
 
 }  // namespace
 
+Range textureSize(const Range& level) {
+  return level.lo == 0 && level.hi == 0 ? Range{1, ir::kLargestTexture, false} : kWholes;
+}
 Range wholeSum(const Range& a, const Range& b) { return wrapped(a.lo + b.lo, a.hi + b.hi); }
 
 Range wholeDifference(const Range& a, const Range& b) { return wrapped(a.lo - b.hi, a.hi - b.lo); }

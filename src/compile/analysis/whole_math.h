@@ -8,6 +8,8 @@ namespace lacquer::analysis {
 
 inline constexpr Range kWholes{-2147483648.0, 2147483647.0, false};
 
+/// A size of a texture's level. The first is there, and no other surely.
+Range textureSize(const Range& level);
 Range wholeSum(const Range& a, const Range& b);
 Range wholeDifference(const Range& a, const Range& b);
 Range wholeProduct(const Range& a, const Range& b);

@@ -229,8 +229,11 @@ Reflection reflect(const ir::Module& module, bool has_vertex, const material::Sc
   addInputs(made, module, used, has_vertex);
   for (const ir::Output& output : module.outputs) {
     if (output.kind == ir::OutputKind::Color)
-      made.outputs.push_back({output.name, output.location, output.holds});
+      made.outputs.push_back({output.name, output.location, output.holds,
+                              std::string(ir::typeName(module.dag[output.value].type))});
+    if (output.kind == ir::OutputKind::Depth) made.depth = output.name;
   }
+  made.displaces = module.displaces;
   made.proved = proofsOf(module, made.unproved);
   if (module.dag.anyRelaxed()) {
     const analysis::RelaxedCost cost = analysis::relaxedCost(module);

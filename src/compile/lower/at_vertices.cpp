@@ -24,21 +24,20 @@ std::vector<ValueId> aboveInterpolation(const ir::Dag& dag, ValueId root) {
   return all;
 }
 
-bool knownToVertices(const ir::Dag& dag, ValueId id) {
-  const ir::Value& value = dag[id];
-  if (value.rate <= ir::Rate::Vertex || value.op == Op::Interpolate) return true;
-  if (value.op == Op::Input && !ir::ofLoop(dag.inputOf(id).kind)) return false;
-  const bool implicit = value.op == Op::Texture || value.op == Op::TextureCompare;
-  return value.rate == ir::Rate::Fragment && value.op != Op::SumOverLights && !implicit &&
-         !ir::takesDerivatives(value.op);
-}
-
 }  // namespace
+
+bool AtVertices::knownToVertices(ValueId id) const {
+  const ir::Value& value = dag_[id];
+  if (value.rate <= ir::Rate::Vertex || value.op == Op::Interpolate) return true;
+  if (value.op == Op::Input && !ir::ofLoop(dag_.inputOf(id).kind)) return false;
+  if (value.rate != ir::Rate::Fragment || value.op == Op::SumOverLights) return false;
+  return first_level_ && ir::readsTexture(value.op) ? true : !ir::takesDerivatives(value.op);
+}
 
 std::optional<ValueId> AtVertices::operator()(ValueId root) {
   const std::vector<ValueId> all = aboveInterpolation(dag_, root);
   for (const ValueId id : all) {
-    if (!knownToVertices(dag_, id)) return std::nullopt;
+    if (!knownToVertices(id)) return std::nullopt;
   }
   // Operands stand before what is made of them.
   for (const ValueId id : all) {

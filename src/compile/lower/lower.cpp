@@ -116,6 +116,7 @@ public:
     bindLightRange();
     nodes();
     ports();
+    if (Diagnostics wrong = displace(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     if (Diagnostics wrong = outputs(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     if (Diagnostics wrong = rates(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     assert(ir::verify(module_).empty());
@@ -344,7 +345,8 @@ private:
     return read;
   }
 
-  void bindGivens() {
+  using Moved = std::vector<std::pair<const lang::GivenDecl*, ir::ValueId>>;
+  void bindGivens(const Moved& moved = {}) {
     const std::vector<bool> read = readGivens();
     for (const lang::GivenDecl& decl : template_->givens) {
       if (!read[static_cast<size_t>(&decl - template_->givens.data())]) continue;
@@ -353,6 +355,9 @@ private:
       dag().setTerm(dag().addTerm({std::string(decl.name), node == nullptr ? "" : node->source,
                                    std::string(origin.file), origin.line}));
       inliner_.bind(decl, slots_);
+      for (const auto& [given, value] : moved) {
+        if (given == &decl) slots_[decl.slot] = value;
+      }
     }
   }
 
@@ -526,6 +531,43 @@ private:
                        [&](const lang::ExprPtr& arg) { return arg && delivers(*arg); });
   }
 
+  /// The givens that the template displaces become what it says, for all that is put out: the rest is made of
+  /// the moved ones. What the displacement itself is made of sees them where they were.
+  Diagnostics displace() {
+    Moved moved;
+    for (const lang::OutputDecl& decl : template_->outputs) {
+      if (decl.role != lang::OutputRole::Displacement) continue;
+      if (decl.optional && !delivers(*decl.value)) continue;
+      const lang::GivenDecl* given = template_->find(decl.name)->given;
+      dag().setTerm(
+          dag().addTerm({"displacement", "", std::string(template_->origin.file), template_->origin.line}));
+      const ir::ValueId value = inliner_.evaluate(*decl.value, slots_);
+      if (value == slots_[given->slot]) continue;
+      AtVertices at_vertices(dag(), true);
+      const std::optional<ir::ValueId> there = at_vertices(value);
+      if (!there) {
+        return {
+            {"wrong-rate",
+             Severity::Error,
+             {std::string(template_->origin.file), template_->origin.line, 0, {}},
+             fmt::format("the displacement of '{}' in the template '{}' is not known to the vertices",
+                         decl.name, template_->name),
+             "made at the vertices: what has no sum_over_lights(), dFdx(), dFdy() and gl_FrontFacing in it",
+             {}}};
+      }
+      if (*there == slots_[given->slot]) continue;
+      moved.emplace_back(given, *there);
+      module_.displaces.emplace_back(decl.name);
+    }
+    if (moved.empty()) return {};
+    bindGivens(moved);
+    bindLightRange();
+    results_.clear();
+    nodes();
+    ports();
+    return {};
+  }
+
   /// What the template's slots are where the graph delivers nothing that it may leave out.
   std::vector<ir::ValueId> slotsWithoutPorts() {
     std::vector<ir::ValueId> slots = slots_;
@@ -564,12 +606,13 @@ private:
     dag().setTerm(dag().addTerm({"output", "", std::string(template_->origin.file), template_->origin.line}));
     if (options_.shown != nullptr) show(*options_.shown);
     for (const lang::OutputDecl& decl : template_->outputs) {
+      if (decl.role == lang::OutputRole::Displacement) continue;  // displace() has made it
       if (options_.shown != nullptr && decl.role != lang::OutputRole::Position) continue;
       if (decl.optional && !delivers(*decl.value)) {
         color += decl.role == lang::OutputRole::Color && !packs ? 1 : 0;
         continue;
       }
-      if (packs && decl.optional && decl.role == lang::OutputRole::Color) {
+      if (packs && decl.optional && decl.role == lang::OutputRole::Color && ir::isFloating(decl.type)) {
         packer.add(decl, inliner_.evaluate(*decl.value, slots_), inliner_.evaluate(*decl.value, without));
         continue;
       }
@@ -583,11 +626,19 @@ private:
         case lang::OutputRole::Color:
           output.location = color++;
           if (packs && output.value == inliner_.evaluate(*decl.value, without)) packer.idle(decl.name);
+          // No format has three channels everywhere.
+          if (decl.type == ir::Type::Vec3)
+            output.value = dag().construct(ir::Type::Vec4, {{output.value, dag().constant(1)}});
           break;
         case lang::OutputRole::Discard:
           output.kind = ir::OutputKind::Discard;
           if (dag().isConstant(output.value, 0)) continue;
           break;
+        case lang::OutputRole::Depth:
+          output.kind = ir::OutputKind::Depth;
+          output.value = dag().make(ir::Op::Clamp, {output.value, dag().constant(0), dag().constant(1)});
+          break;
+        case lang::OutputRole::Displacement: continue;
       }
       module_.outputs.push_back(output);
     }

@@ -31,7 +31,7 @@ std::string nameOf(const lang::TemplateDecl& decl, const lang::OutputDecl& outpu
       if (index < at) break;
     }
   }
-  return componentName(output.name, kComponents, index);
+  return componentName(output.name, ir::componentCount(output.type), index);
 }
 
 }  // namespace
@@ -43,9 +43,10 @@ bool packsOutputs(const lang::TemplateDecl& decl) {
 }
 
 void OutputPacker::add(const lang::OutputDecl& output, ir::ValueId value, ir::ValueId without) {
-  for (int i = 0; i < kComponents; ++i) {
-    const ir::ValueId component = dag_.component(value, i);
-    if (component == dag_.component(without, i)) continue;
+  const int components = ir::componentCount(output.type);
+  for (int i = 0; i < components; ++i) {
+    const ir::ValueId component = components == 1 ? value : dag_.component(value, i);
+    if (component == (components == 1 ? without : dag_.component(without, i))) continue;
     components_.push_back({component, nameOf(decl_, output, i), &output});
   }
 }

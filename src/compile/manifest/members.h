@@ -420,8 +420,7 @@ template <class A>
 void members(A& a, Of<A, ShaderOutput>& of) {
   a.is("the output");
   a("name", of.name);
-  std::string type = "vec4";
-  a("type", type);
+  a("type", of.type);
   a("location", of.location);
   a.some("holds", of.holds);
 }
@@ -484,6 +483,8 @@ void members(A& a, Of<A, Reflection>& of) {
   a("textures", of.textures);
   a("inputs", of.inputs);
   a("outputs", of.outputs);
+  a.some("depth", of.depth);
+  a.some("displaces", of.displaces);
   ProofsOf<A> proofs{of};
   a("proofs", proofs);
   a.some("relaxed", of.relaxed);

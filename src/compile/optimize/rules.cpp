@@ -71,7 +71,7 @@ void chained(EGraph& graph, NodeId id, std::vector<Ref>& equal) {
 /// The direction of a lookup of a cube map has no length: a positive factor goes.
 void directed(EGraph& graph, NodeId id, std::vector<Ref>& equal) {
   const Node lookup = graph.node(id);
-  if (!lookup.opaque() || !ir::readsTexture(lookup.op)) return;
+  if (!lookup.opaque() || !ir::readsTexture(lookup.op) || lookup.op == Op::TextureGrad) return;
   if (graph[lookup.args[0]].type != Type::TextureCube) return;
   const std::vector<NodeId> inner = graph[lookup.args[1]].nodes;
   for (const NodeId of : inner) {

@@ -113,7 +113,9 @@ class Directions {
 public:
   static bool lookup(const ir::Dag& dag, ValueId id) {
     const ir::Value& value = dag[id];
-    return ir::readsTexture(value.op) && dag[value.args[0]].type == ir::Type::TextureCube;
+    // Derivatives are those of the direction as it is.
+    return ir::readsTexture(value.op) && value.op != Op::TextureGrad &&
+           dag[value.args[0]].type == ir::Type::TextureCube;
   }
 
   static ValueId stripped(ir::Dag& dag, ValueId direction) {

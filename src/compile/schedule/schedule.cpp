@@ -97,7 +97,8 @@ private:
     }
     for (const uint32_t o : outputs_) {
       if (module_.outputs[o].kind == ir::OutputKind::Varying) varyings.insert(module_.outputs[o].location);
-      if (module_.outputs[o].kind == ir::OutputKind::Color) program_.outputs.push_back(o);
+      const ir::OutputKind kind = module_.outputs[o].kind;
+      if (kind == ir::OutputKind::Color || kind == ir::OutputKind::Depth) program_.outputs.push_back(o);
     }
     program_.blocks = blocks.ascending();
     program_.textures = textures.ascending();

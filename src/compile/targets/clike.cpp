@@ -140,6 +140,14 @@ Expression Printer::compute(ValueId id) const {
     return {dialect_.texture(dag_[value.args[0]].type, argument(value.args[0]), use(value.args[1]),
                              argument(value.args[2]))};
   }
+  if (value.op == Op::TextureGrad) {
+    return {dialect_.textureGrad(dag_[value.args[0]].type, argument(value.args[0]), use(value.args[1]),
+                                 argument(value.args[2]), argument(value.args[3]))};
+  }
+  if (value.op == Op::TextureSize) {
+    return {dialect_.textureSize(dag_[value.args[0]].type, argument(value.args[0]), argument(value.args[1]),
+                                 value.payload)};
+  }
   if (value.op == Op::TextureCompare || value.op == Op::TextureCompareLod) {
     const bool top = !implicit || value.op == Op::TextureCompareLod;
     return {dialect_.comparison(argument(value.args[0]), use(value.args[1]), top)};
@@ -331,6 +339,7 @@ std::string Printer::target(const ir::Output& output) const {
   switch (output.kind) {
     case OutputKind::Position: return std::string(dialect_.position());
     case OutputKind::Color: return dialect_.assigned(outputName(output));
+    case OutputKind::Depth: return dialect_.depth(outputName(output));
     case OutputKind::Varying: return dialect_.assigned(varyingName(module_.varyings[output.location]));
     case OutputKind::Discard: break;  // a statement of its own
   }
@@ -487,6 +496,15 @@ std::string Dialect::parameter(const ir::Input& input) const { return input.name
 
 std::string Dialect::swizzle(Type, std::string_view vector, std::string_view picks) const {
   return fmt::format("{}.{}", vector, picks);
+}
+
+std::string Dialect::textureGrad(Type, std::string_view name, const Expression& at, std::string_view along_x,
+                                 std::string_view along_y) const {
+  return fmt::format("textureGrad({}, {}, {}, {})", name, at.text, along_x, along_y);
+}
+
+std::string Dialect::textureSize(Type, std::string_view name, std::string_view level, uint32_t axis) const {
+  return fmt::format("textureSize({}, {}).{}", name, level, "xyz"[axis]);
 }
 
 std::string Dialect::column(std::string_view matrix, uint32_t index) const {

@@ -92,6 +92,12 @@ public:
   /// A texel of a texture of a type; `lod` is empty for implicit derivatives.
   virtual std::string texture(ir::Type type, std::string_view name, const Expression& at,
                               std::string_view lod) const = 0;
+  /// The same over the footprint of two derivatives.
+  virtual std::string textureGrad(ir::Type type, std::string_view name, const Expression& at,
+                                  std::string_view along_x, std::string_view along_y) const;
+  /// How many texels, or layers, a level has along an axis, as an Int; `level` is one.
+  virtual std::string textureSize(ir::Type type, std::string_view name, std::string_view level,
+                                  uint32_t axis) const;
   /// What a depth map gives for the place `at`, whose third component is compared; `top`: at level 0.
   virtual std::string comparison(std::string_view name, const Expression& at, bool top) const = 0;
   /// A column of a Mat4.
@@ -125,6 +131,8 @@ public:
   virtual std::string listLength(const ir::Block&) const { return {}; }
   /// A member of a block; `array`: 0 or the number of elements.
   virtual std::string member(ir::Type type, std::string_view name, uint32_t array) const;
+  /// The fragment's depth, of an output of that name, where it is assigned.
+  virtual std::string depth(std::string_view name) const { return assigned(name); }
   /// A fragment output or an interpolant where it is assigned.
   virtual std::string assigned(std::string_view name) const { return std::string(name); }
 

@@ -38,6 +38,7 @@ public:
   std::string_view spelling(ir::Op op) const override { return ir::info(op).glsl; }
   std::string_view position() const override { return "gl_Position"; }
   std::string_view frontFacing() const override { return "gl_FrontFacing"; }
+  std::string depth(std::string_view) const override { return "gl_FragDepth"; }
 
   bool precisions() const override { return row_.half; }
 
@@ -256,9 +257,11 @@ private:
       text.blank();
       text.line("invariant gl_Position;");
     }
-    if (!program.outputs.empty()) text.blank();
+    bool first = true;
     for (uint32_t index : program.outputs) {
       const ir::Output& o = module.outputs[index];
+      if (o.kind == ir::OutputKind::Depth) continue;
+      if (std::exchange(first, false)) text.blank();
       const Type type = module.dag[o.value].type;
       text.line(
           fmt::format("layout(location = {}) out {} {};", o.location, ir::typeName(type), outputName(o)));

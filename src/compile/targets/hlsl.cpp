@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <set>
 #include <vector>
 
 #include "targets/clike.h"
@@ -16,6 +17,9 @@ namespace lacquer::targets {
 using ir::Type;
 
 namespace {
+
+/// The function that says how large a texture is.
+constexpr std::string_view kSize = "lacquer_size";
 
 /// glTF numbers its semantics as TEXCOORD_0, HLSL as TEXCOORD0.
 std::string semantic(const ir::Attribute& attribute) {
@@ -79,6 +83,15 @@ public:
                        : fmt::format("{0}.SampleLevel({0}_sampler, {1}, {2})", name, at.text, lod);
   }
 
+  std::string textureGrad(Type, std::string_view name, const Expression& at, std::string_view along_x,
+                          std::string_view along_y) const override {
+    return fmt::format("{0}.SampleGrad({0}_sampler, {1}, {2}, {3})", name, at.text, along_x, along_y);
+  }
+
+  std::string textureSize(Type, std::string_view name, std::string_view level, uint32_t axis) const override {
+    return fmt::format("{}({}, {}).{}", kSize, name, level, "xyz"[axis]);
+  }
+
   std::string comparison(std::string_view name, const Expression& at, bool top) const override {
     const std::string place = parenthesized(at, Precedence::Postfix);
     return fmt::format("{0}.{1}({0}_sampler, {2}.xy, {2}.z)", name, top ? "SampleCmpLevelZero" : "SampleCmp",
@@ -112,11 +125,32 @@ public:
     }
     if (!program.textures.empty()) blank();
     for (uint32_t index : program.textures) texture(text, module.textures[index]);
+    sizes(text, module, program);
     blank();
     openMain(text, parameters(module, program));
   }
 
 private:
+  /// GetDimensions is no expression: a function for each type of texture whose size is asked for.
+  void sizes(Text& text, const ir::Module& module, const schedule::Program& program) const {
+    std::set<std::string_view> known;
+    for (const ir::ValueId id : ir::reachable(module, program.stage)) {
+      if (module.dag[id].op != ir::Op::TextureSize) continue;
+      const Type texture = module.dag[module.dag[id].args[0]].type;
+      if (!known.insert(type(texture)).second) continue;
+      const bool third = ir::sizeCount(texture) == 3;
+      text.blank();
+      text.line(fmt::format("{} {}({} map, int level) {{", third ? "int3" : "int2", kSize, type(texture)));
+      text.indent();
+      text.line(fmt::format("uint width, height, {}levels;", third ? "depth, " : ""));
+      text.line(
+          fmt::format("map.GetDimensions(uint(level), width, height, {}levels);", third ? "depth, " : ""));
+      text.line(fmt::format("return {}(width, height{});", third ? "int3" : "int2", third ? ", depth" : ""));
+      text.outdent();
+      text.line("}");
+    }
+  }
+
   void block(Text& text, const ir::Block& block) const {
     const bool array = block.array != 0;
     const std::string structure = block.plural() ? block.name : block.name + "Block";
@@ -165,8 +199,10 @@ private:
     if (program.front_facing) list.push_back(fmt::format("bool {} : SV_IsFrontFace", frontFacing()));
     for (uint32_t index : program.outputs) {
       const ir::Output& o = module.outputs[index];
+      const std::string semantic_of =
+          o.kind == ir::OutputKind::Depth ? "SV_Depth" : fmt::format("SV_Target{}", o.location);
       list.push_back(
-          fmt::format("out {} {} : SV_Target{}", type(module.dag[o.value].type), outputName(o), o.location));
+          fmt::format("out {} {} : {}", type(module.dag[o.value].type), outputName(o), semantic_of));
     }
     return list;
   }

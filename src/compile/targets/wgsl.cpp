@@ -164,6 +164,18 @@ public:
                        : fmt::format("textureSampleLevel({0}, {0}_sampler, {1}, {2})", name, place, lod);
   }
 
+  std::string textureGrad(Type type, std::string_view name, const Expression& at, std::string_view along_x,
+                          std::string_view along_y) const override {
+    return fmt::format("textureSampleGrad({0}, {0}_sampler, {1}, {2}, {3})", name, coordinates(type, at),
+                       along_x, along_y);
+  }
+
+  std::string textureSize(Type type, std::string_view name, std::string_view level,
+                          uint32_t axis) const override {
+    if (type == Type::Texture2DArray && axis == 2) return fmt::format("i32(textureNumLayers({}))", name);
+    return fmt::format("i32(textureDimensions({}, {}).{})", name, level, "xyz"[axis]);
+  }
+
   std::string comparison(std::string_view name, const Expression& at, bool top) const override {
     const std::string place = parenthesized(at, Precedence::Postfix);
     return fmt::format("textureSampleCompare{0}({1}, {1}_sampler, {2}.xy, {2}.z)", top ? "Level" : "", name,
@@ -374,8 +386,9 @@ private:
     }
     for (const uint32_t index : program.outputs) {
       const ir::Output& o = module.outputs[index];
-      members.push_back(
-          fmt::format("@location({}) {}: {}", o.location, outputName(o), type(module.dag[o.value].type)));
+      const std::string place =
+          o.kind == ir::OutputKind::Depth ? "@builtin(frag_depth)" : fmt::format("@location({})", o.location);
+      members.push_back(fmt::format("{} {}: {}", place, outputName(o), type(module.dag[o.value].type)));
     }
     return members;
   }

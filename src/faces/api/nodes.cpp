@@ -213,6 +213,8 @@ Json outputJson(const lang::OutputDecl& output) {
     case lang::OutputRole::Position: json["role"] = "position"; break;
     case lang::OutputRole::Color: json["role"] = "color"; break;
     case lang::OutputRole::Discard: json["role"] = "discard"; break;
+    case lang::OutputRole::Depth: json["role"] = "depth"; break;
+    case lang::OutputRole::Displacement: json["role"] = "displacement"; break;
   }
   if (output.optional) json["optional"] = true;
   if (!output.prose.empty()) json["meaning"] = output.prose;

@@ -78,8 +78,8 @@ int lacquer_shader_input(const lacquer_shader* shader, size_t index, lacquer_pla
 int lacquer_shader_output(const lacquer_shader* shader, size_t index, lacquer_place* to, size_t size) {
   const Reflection& all = reflectionOf(shader);
   if (index >= all.outputs.size()) return 0;
-  return fillRow(lacquer_place{all.outputs[index].name.c_str(), "vec4", all.outputs[index].location}, to,
-                 size);
+  const lacquer::ShaderOutput& of = all.outputs[index];
+  return fillRow(lacquer_place{of.name.c_str(), of.type.c_str(), of.location}, to, size);
 }
 
 size_t lacquer_graph_texture_count(const lacquer_graph* graph) {

@@ -31,8 +31,13 @@ using Columns = std::map<std::string, Column, std::less<>>;
 /// A texel, linear (an sRGB slot's sampler decodes). `coordinate` is a UV in x and y, or a direction for a
 /// cube map; `lod` is the level of an explicit lookup, and 0 for an implicit one: points have no neighbours
 /// to take it from.
-using Sampler =
+using Texels =
     std::function<std::array<double, 4>(size_t point, const std::array<double, 3>& coordinate, double lod)>;
+struct Sampler : Texels {
+  using Texels::Texels;
+  /// Width, height, and of an array the layers, of a volume the depth, of the first level.
+  std::array<int, 3> size{1, 1, 1};
+};
 
 /// Columns are found by the name of the input: "coat_roughness_factor" (a parameter), "frame.camera_position"
 /// or "material.alpha" (a block's field), "TEXCOORD_0" (an attribute), "gl_FrontFacing", a varying's name. A

@@ -144,7 +144,7 @@ vulkan::Texture constantOf(const std::array<double, 4>& value, ir::Type type) {
 }
 
 /// Decoded here, as the device's sRGB format would before it filters.
-vulkan::Texture imageOf(const eval::Image& image, const eval::Lookup& lookup) {
+vulkan::Texture imageOf(const eval::Image& image, const eval::Lookup& lookup, ir::Type type) {
   std::vector<vulkan::Texel> texels(image.size());
   for (size_t i = 0; i < texels.size(); ++i) texels[i] = image.at(i);
   for (size_t i = 0; lookup.srgb && i < texels.size(); ++i) {
@@ -152,7 +152,7 @@ vulkan::Texture imageOf(const eval::Image& image, const eval::Lookup& lookup) {
       texels[i][c] = static_cast<float>(eval::decodeSrgb(static_cast<double>(texels[i][c])));
     }
   }
-  vulkan::Texture texture;
+  vulkan::Texture texture = textureFor(type);
   texture.width = static_cast<uint32_t>(image.width);
   texture.height = static_cast<uint32_t>(image.height);
   texture.s = static_cast<vulkan::Wrap>(lookup.s);
@@ -166,8 +166,8 @@ GpuTextures gpuTextures(const EvalMaterial& material, const EvalPoints& points) 
   GpuTextures textures;
   for (const ir::TextureSlot* slot : material.environments()) textures[slot->name] = environmentOf(points);
   for (const auto& [name, bound] : material.textures()) {
-    textures[name] =
-        bound.constant ? constantOf(*bound.constant, bound.type) : imageOf(*bound.image, bound.lookup);
+    textures[name] = bound.constant ? constantOf(*bound.constant, bound.type)
+                                    : imageOf(*bound.image, bound.lookup, bound.type);
   }
   return textures;
 }

@@ -254,6 +254,20 @@ private:
     }
   }
 
+  /// Of a level that is not there: 0.
+  void textureSize(const Instruction& instruction) {
+    const std::array<int, 3>& size = samplers_[instruction.payload]->size;
+    const int longest = std::max(size[0], size[1]);
+    for (size_t i = 0; i < lanes_; ++i) {
+      const auto level = static_cast<int32_t>(bits(at(instruction.args[0])[i]));
+      const bool there = level >= 0 && level < 31 && longest >> level > 0;
+      // An array has its layers at every level.
+      const int along = size.at(instruction.component);
+      const int texels = instruction.component == 2 || !there ? along : std::max(along >> level, 1);
+      at(instruction.outs[0])[i] = whole<T>(static_cast<uint32_t>(there ? texels : 0));
+    }
+  }
+
   /// `step` is 1 along x and 2 along y. A quad that the last points do not fill has no neighbours there.
   void derivative(const Instruction& instruction, size_t step) {
     const T* a = at(instruction.args[0]);
@@ -319,6 +333,7 @@ private:
         }
         return;
       case Step::Texture: return texture(instruction);
+      case Step::TextureSize: return textureSize(instruction);
       case Step::DerivativeX: return derivative(instruction, 1);
       case Step::DerivativeY: return derivative(instruction, 2);
       case Step::LoopBegin:

@@ -142,7 +142,7 @@ Result<Image> imageOf(const Number* pixels, int width, int height, const ImageSi
   if (width != size.width || height != size.height) return unreadable(place, "the image is damaged");
   Image::Texels<Number> texels(size.pixels());
   std::memcpy(texels.data(), pixels, texels.size() * sizeof texels[0]);
-  return Image{width, height, std::move(texels)};
+  return Image{width, height, 1, std::move(texels)};
 }
 
 struct Free {
@@ -216,6 +216,48 @@ Result<Image> decodeImage(std::string_view bytes, uint64_t most, const Place& pl
   return imageOf(pixels.get(), width, height, *size, place);
 }
 
+Result<Image> layered(const std::vector<std::shared_ptr<const Image>>& layers,
+                      const std::array<double, 4>& missing, const Place& place) {
+  const Image* first = nullptr;
+  bool bytes = true;
+  for (const auto& layer : layers) {
+    if (layer == nullptr) continue;
+    bytes = bytes && std::holds_alternative<Image::Texels<uint8_t>>(layer->texels);
+    if (first == nullptr) first = layer.get();
+    if (layer->width == first->width && layer->height == first->height) continue;
+    return fail("image-size", place,
+                fmt::format("one image has {} by {} pixels, another {} by {}", first->width, first->height,
+                            layer->width, layer->height),
+                "the layers of a texture are of one size");
+  }
+  Image made;
+  made.width = first == nullptr ? 1 : first->width;
+  made.height = first == nullptr ? 1 : first->height;
+  const size_t each = made.size();
+  const auto fill = [&]<class Number>(Image::Texels<Number> texels, const auto& of) {
+    constexpr double kMost =
+        std::is_same_v<Number, float> ? 1.0 : static_cast<double>(std::numeric_limits<Number>::max());
+    std::array<Number, 4> absent{};
+    for (size_t c = 0; c < 4; ++c) {
+      const double x = missing[c] * kMost;
+      absent[c] =
+          static_cast<Number>(std::is_same_v<Number, float> ? x : std::round(std::clamp(x, 0.0, kMost)));
+    }
+    texels.reserve(each * layers.size());
+    for (const auto& layer : layers) {
+      for (size_t i = 0; i < each; ++i) texels.push_back(layer == nullptr ? absent : of(*layer, i));
+    }
+    made.texels = std::move(texels);
+  };
+  if (bytes)
+    fill(Image::Texels<uint8_t>(),
+         [](const Image& image, size_t i) { return std::get<Image::Texels<uint8_t>>(image.texels)[i]; });
+  else
+    fill(Image::Texels<float>(), [](const Image& image, size_t i) { return image.at(i); });
+  made.layers = static_cast<int>(layers.size());
+  return made;
+}
+
 double decodeSrgb(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
@@ -245,6 +287,9 @@ public:
   std::array<double, 4> operator()(size_t, const std::array<double, 3>& uv, double) const {
     const double x = std::isfinite(uv[0]) ? uv[0] * image_->width : 0;
     const double y = std::isfinite(uv[1]) ? uv[1] * image_->height : 0;
+    const double z =
+        std::isfinite(uv[2]) ? std::clamp(std::floor(uv[2] + 0.5), 0.0, image_->layers - 1.0) : 0;
+    const auto texel = [&](double column, double row) { return at(column, row, static_cast<size_t>(z)); };
     if (lookup_.nearest) return texel(std::floor(x), std::floor(y));
     const double left = std::floor(x - 0.5);
     const double top = std::floor(y - 0.5);
@@ -262,9 +307,9 @@ public:
   }
 
 private:
-  std::array<double, 4> texel(double x, double y) const {
+  std::array<double, 4> at(double x, double y, size_t layer) const {
     const size_t column = wrapped(x, image_->width, lookup_.s);
-    const size_t row = wrapped(y, image_->height, lookup_.t);
+    const size_t row = wrapped(y, image_->height, lookup_.t) + layer * static_cast<size_t>(image_->height);
     const std::array<float, 4> stored = image_->at(row * static_cast<size_t>(image_->width) + column);
     std::array<double, 4> result{};
     for (size_t i = 0; i < 4; ++i) {
@@ -281,7 +326,10 @@ private:
 }  // namespace
 
 Sampler makeSampler(std::shared_ptr<const Image> image, const Lookup& lookup) {
-  return ImageSampler(std::move(image), lookup);
+  const std::array<int, 3> size{image->width, image->height, image->layers};
+  Sampler sampler = ImageSampler(std::move(image), lookup);
+  sampler.size = size;
+  return sampler;
 }
 
 }  // namespace lacquer::eval

@@ -31,6 +31,10 @@ bool isTextureProperty(const material::Schema& schema, const std::string& name) 
                      });
 }
 
+/// Tiles have the numbers 1001 to 1100: ten columns of ten rows.
+constexpr size_t kFirstTile = 1001;
+constexpr size_t kMostTiles = 100;
+
 eval::Wrap wrapOf(int gl) {
   constexpr int kClamp = 33071;
   constexpr int kMirror = 33648;
@@ -160,6 +164,7 @@ Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
 
 Result<FileImages::Loaded> FileImages::load(const graph::Texture& texture) {
   if (Result<void> opened = open(); !opened) return tl::make_unexpected(std::move(opened.error()));
+  if (texture.file.find(graph::kUdim) != std::string::npos) return loadTiles(texture);
   const std::string pointer = fmt::format("/textures/{}/file", texture.name);
   Result<std::shared_ptr<const eval::Image>> found =
       image("uri " + texture.file, {file_, 0, 0, pointer},
@@ -167,6 +172,49 @@ Result<FileImages::Loaded> FileImages::load(const graph::Texture& texture) {
   if (!found) return tl::make_unexpected(std::move(found.error()));
   const auto wrap = [&](size_t i) { return static_cast<eval::Wrap>(texture.wrap[i]); };
   return Loaded{std::move(*found), {wrap(0), wrap(1), texture.nearest, texture.srgb}};
+}
+
+Result<FileImages::Loaded> FileImages::loadTiles(const graph::Texture& texture) {
+  const std::string pointer = fmt::format("/textures/{}/file", texture.name);
+  const Place place{file_, 0, 0, pointer};
+  const std::string key = "tiles " + texture.file;
+  const auto wrap = [&](size_t i) { return static_cast<eval::Wrap>(texture.wrap[i]); };
+  const eval::Lookup lookup{wrap(0), wrap(1), texture.nearest, texture.srgb};
+  if (const auto known = images_.find(key); known != images_.end()) {
+    known->second.used = ++uses_;
+    return Loaded{known->second.image, lookup};
+  }
+  std::vector<std::shared_ptr<const eval::Image>> layers;
+  for (size_t n = 0; n < kMostTiles; ++n) {
+    std::string uri = texture.file;
+    uri.replace(uri.find(graph::kUdim), graph::kUdim.size(), std::to_string(kFirstTile + n));
+    Result<std::string> bytes = opened_->fileBytes(uri, pointer);
+    if (!bytes && bytes.error()[0].code == "image-missing") continue;
+    Result<std::shared_ptr<const eval::Image>> found =
+        image("uri " + uri, place, [&] { return std::move(bytes); });
+    if (!found) return tl::make_unexpected(std::move(found.error()));
+    layers.resize(n + 1);
+    layers[n] = std::move(*found);
+  }
+  if (layers.empty()) {
+    return fail("image-missing", place,
+                fmt::format("no tile from {} to {} is there", kFirstTile, kFirstTile + kMostTiles - 1), {});
+  }
+  const auto first = std::find_if(layers.begin(), layers.end(), [](const auto& l) { return l != nullptr; });
+  const uint64_t pixels = (*first)->size() * layers.size();
+  if (!makeRoom(pixels)) {
+    return fail("image-too-large", place,
+                fmt::format("the material's images together have more than {} pixels (of 8 bits per channel)",
+                            access_.limits.images),
+                raising("images"));
+  }
+  std::array<double, 4> missing{0, 0, 0, 1};
+  if (texture.color) std::copy_n(texture.color->begin(), 4, missing.begin());
+  Result<eval::Image> made = eval::layered(layers, missing, place);
+  if (!made) return tl::make_unexpected(std::move(made.error()));
+  Held held{std::make_shared<const eval::Image>(std::move(*made)), pixels, ++uses_};
+  held_ += pixels;
+  return Loaded{images_.emplace(key, std::move(held)).first->second.image, lookup};
 }
 
 Result<EvalMaterial::Texel> EvalMaterial::parseTexel(const std::string& text) {
@@ -232,7 +280,22 @@ Result<void> EvalMaterial::lower(const EvalSubject& subject, const Language& lib
   Result<ir::Module> module = lower::lower(graph, library, how);
   if (!module) return tl::make_unexpected(std::move(module.error()));
   module_ = std::move(*module);
+  widenColors(module_);
   return checkTexels(**library.models.schema());
+}
+
+/// As a texture of one channel or two is read: what is not there is 0, and alpha 1.
+void widenColors(ir::Module& module) {
+  ir::Dag& dag = module.dag;
+  for (ir::Output& output : module.outputs) {
+    if (output.kind != ir::OutputKind::Color || dag[output.value].type == ir::Type::Vec4) continue;
+    if (dag[output.value].type == ir::Type::Int) output.value = dag.make(ir::Op::FromInt, {output.value});
+    if (dag[output.value].type == ir::Type::UInt) output.value = dag.make(ir::Op::FromUInt, {output.value});
+    std::vector<ir::ValueId> parts{output.value};
+    for (int c = ir::componentCount(dag[output.value].type); c < 4; ++c)
+      parts.push_back(dag.constant(c == 3 ? 1 : 0));
+    output.value = dag.construct(ir::Type::Vec4, parts);
+  }
 }
 
 /// Values in place of today's.

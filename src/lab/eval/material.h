@@ -57,6 +57,8 @@ private:
   /// Its images are files that the document names, and it has no geometry.
   bool isMaterialX() const { return file_.ends_with(".mtlx"); }
   Result<void> open();
+  /// A graph's texture with an image for each tile, as an array with a layer for each.
+  Result<Loaded> loadTiles(const graph::Texture& texture);
   Result<Held> decode(const Result<std::string>& bytes, const Place& place);
   template <class Bytes>
   Result<std::shared_ptr<const eval::Image>> image(const std::string& key, const Place& place, Bytes bytes);
@@ -164,6 +166,9 @@ private:
   Strings changed_;
   std::map<std::string, BoundTexture> bound_;
 };
+
+/// Makes each colour of a module a vec4, so that it can be put out as one.
+void widenColors(ir::Module& module);
 
 /// The last part of the slot's pointer, "coatNormalTexture"; without one the slot's name.
 std::string propertyOf(const ir::TextureSlot& slot);

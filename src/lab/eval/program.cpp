@@ -17,6 +17,9 @@ using ir::Op;
 using ir::Rate;
 using ir::ValueId;
 
+/// A cube map's direction is no shorter, where a level follows from it.
+constexpr double kLeastDirection = 1e-30;
+
 /// What is known of a register while compiling: it is written once, or it is a sum's.
 struct Virtual {
   bool uniform = false;
@@ -210,6 +213,7 @@ private:
     const std::vector<Register>& coordinate = of(value.args[1]);
     std::copy(coordinate.begin(), coordinate.end(), instruction.args.begin());
     if (value.op == Op::TextureLod) instruction.args[3] = of(value.args[2])[0];
+    if (value.op == Op::TextureGrad) instruction.args[3] = footprintLod(value, instruction.payload);
     for (Register& out : instruction.outs) out = fresh(false);
     program_.body.push_back(instruction);
     if (value.op == Op::TextureCompare || value.op == Op::TextureCompareLod) {
@@ -218,6 +222,49 @@ private:
       return {map(Op::Select, std::array{passes, literal(1), literal(0)})};
     }
     return {instruction.outs.begin(), instruction.outs.end()};
+  }
+
+  std::vector<Register> textureSize(const ir::Value& value) {
+    const ir::Input& slot = dag_.inputOf(value.args[0]);
+    const auto texture = static_cast<uint32_t>(indexOf(program_.textures, module_.textures[slot.field].name));
+    return {sizeAlong(value.payload, texture, of(value.args[1])[0])};
+  }
+
+  Register sizeAlong(uint32_t axis, uint32_t texture, Register level) {
+    Instruction size{Step::TextureSize, Op::TextureSize, static_cast<uint8_t>(axis), -1, texture};
+    size.args[0] = level;
+    size.whole = true;
+    return emit(size, virtuals_[level].uniform);
+  }
+
+  /// The level at which the longer of two derivatives is one texel long, 0 where it is shorter (Vulkan 1.3,
+  /// "Scale Factor Operation"). Of a cube map: as seen where the direction's largest component is 1, half a
+  /// face.
+  Register footprintLod(const ir::Value& value, uint32_t texture) {
+    const ir::Type type = dag_[value.args[0]].type;
+    const bool cube = type == ir::Type::TextureCube;
+    const size_t axes = of(value.args[2]).size();
+    const Register first = literal(0);
+    std::vector<Register> scales;
+    for (uint32_t axis = 0; axis < axes; ++axis)
+      scales.push_back(map(Op::FromInt, std::array{sizeAlong(cube ? 0 : axis, texture, first)}));
+    if (cube) {
+      Register largest = map(Op::Abs, std::array{of(value.args[1])[0]});
+      for (size_t c = 1; c < 3; ++c)
+        largest = map(Op::Max, largest, map(Op::Abs, std::array{of(value.args[1])[c]}));
+      const Register half = map(Op::Mul, scales[0], literal(0.5));
+      scales.assign(3, map(Op::Div, half, map(Op::Max, largest, literal(kLeastDirection))));
+    }
+    std::array<Register, 2> squares{};
+    for (size_t k = 0; k < 2; ++k) {
+      for (size_t c = 0; c < axes; ++c) {
+        const Register texels = map(Op::Mul, of(value.args[2 + k])[c], scales[c]);
+        const Register square = map(Op::Mul, texels, texels);
+        squares[k] = c == 0 ? square : map(Op::Add, squares[k], square);
+      }
+    }
+    const Register longest = map(Op::Max, map(Op::Max, squares[0], squares[1]), literal(1));
+    return map(Op::Mul, map(Op::Log2, std::array{longest}), literal(0.5));
   }
 
   std::vector<Register> derivative(const ir::Value& value, Step step) {
@@ -402,6 +449,7 @@ private:
     const ir::Value& value = dag_[id];
     if (ir::facts(value.op).kind != ir::Kind::Surroundings) return folded(value);
     if (ir::readsTexture(value.op)) return texture(value);
+    if (value.op == Op::TextureSize) return textureSize(value);
     if (value.op == Op::Input) return input(dag_.inputOf(id));
     if (value.op == Op::Interpolate) return of(value.args[0]);
     if (value.op == Op::MatMul) return matrixTimesVector(value.args[0], value.args[1]);

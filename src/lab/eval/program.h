@@ -25,6 +25,7 @@ enum class Step : uint8_t {
   Listed,       ///< out = lists[payload] at args[0]
   AddListed,    ///< out += args[1] where the loop's turn is one of the point's
   Texture,  ///< out … out+3 (outs) = textures[payload] at args[0…2], level args[3] (kNoRegister: implicit)
+  TextureSize,  ///< out = the size of textures[payload] along the axis `component`, of the level args[0]
   DerivativeX,  ///< out = difference to the neighbour along x
   DerivativeY,  ///< the same along y
   LoopBegin,    ///< over the lights of light_groups[payload]; of listed ones args[1] from place args[0] on

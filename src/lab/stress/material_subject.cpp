@@ -34,6 +34,12 @@ public:
     material->name = std::move(name);
     material->is_node = false;
     material->module_ = std::move(module);
+    for (ir::Output& output : material->module_.outputs) {
+      ir::Dag& dag = material->module_.dag;
+      if (!ir::isWhole(dag[output.value].type)) continue;
+      const bool integer = dag[output.value].type == ir::Type::Int;
+      output.value = dag.make(integer ? ir::Op::FromInt : ir::Op::FromUInt, {output.value});
+    }
     material->layers = std::move(layers);
     material->lanes = takesDerivatives(material->module_) ? 4 : 1;
     material->makeSpace();

@@ -97,7 +97,7 @@ private:
     number(value.count);
     text(dag_.nameOf(id));
     if (value.op == Op::Swizzle || value.op == Op::Column || value.op == Op::SumOverLights ||
-        value.op == Op::Carried)
+        value.op == Op::Carried || value.op == Op::TextureSize)
       number(value.payload);
     if (value.op == Op::Element) {
       const ListField from = ListField::of(value);

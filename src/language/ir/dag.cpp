@@ -60,6 +60,8 @@ std::optional<Type> specialType(Op op, std::span<const Type> operands) {
   }
   if (op == Op::Column) return isMatrix(operands[0]) ? std::optional(partType(operands[0])) : std::nullopt;
   if (op == Op::MatMul && isMatrix(operands[0]) && operands[1] == partType(operands[0])) return operands[1];
+  if (op == Op::TextureSize)
+    return isTexture(operands[0]) && operands[1] == Type::Int ? std::optional(Type::Int) : std::nullopt;
   const bool lookup =
       operands.size() > 1 && isTexture(operands[0]) && operands[1] == coordinateType(operands[0]);
   if (!lookup) return std::nullopt;
@@ -69,6 +71,8 @@ std::optional<Type> specialType(Op op, std::span<const Type> operands) {
   if (compares) return std::nullopt;
   if (op == Op::Texture) return Type::Vec4;
   if (op == Op::TextureLod && operands[2] == Type::Float) return Type::Vec4;
+  const Type derivative = derivativeType(operands[0]);
+  if (op == Op::TextureGrad && operands[2] == derivative && operands[3] == derivative) return Type::Vec4;
   return std::nullopt;
 }
 

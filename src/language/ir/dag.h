@@ -68,7 +68,8 @@ constexpr bool takesDerivatives(Op op) {
 }
 /// Whether it is a lookup of a texture, its first operand.
 constexpr bool readsTexture(Op op) {
-  return op == Op::Texture || op == Op::TextureLod || op == Op::TextureCompare || op == Op::TextureCompareLod;
+  return op == Op::Texture || op == Op::TextureLod || op == Op::TextureGrad || op == Op::TextureCompare ||
+         op == Op::TextureCompareLod;
 }
 
 /// The op of that name in the node language or a dump.
@@ -125,7 +126,7 @@ struct Value {
   uint8_t count;     ///< number of operands
   uint32_t payload;  ///< Constant: into constants; Input: into inputs; Swizzle: two bits a component, first
                      ///< lowest; SumOverLights: the light group; Element: ListField::payload(); Column,
-                     ///< Carried: its number
+                     ///< Carried: its number; TextureSize: the axis
   std::array<ValueId, 4> args;
   std::span<const ValueId> operands() const { return {args.data(), count}; }
 };

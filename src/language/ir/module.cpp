@@ -259,8 +259,12 @@ private:
 
   void checkOutput(const Output& output) {
     const Value& value = dag_[output.value];
-    const bool vec4 = output.kind == OutputKind::Position || output.kind == OutputKind::Color;
-    if (vec4 && value.type != Type::Vec4) complain("output {} is not a vec4", output.name);
+    if (output.kind == OutputKind::Position && value.type != Type::Vec4)
+      complain("output {} is not a vec4", output.name);
+    if (output.kind == OutputKind::Color && !isFloating(value.type) && !isWhole(value.type))
+      complain("output {} is no number and no vector of floats", output.name);
+    if (output.kind == OutputKind::Depth && value.type != Type::Float)
+      complain("output {} is not a float", output.name);
     if (output.kind == OutputKind::Discard && value.type != Type::Bool) {
       complain("output {} is not a bool", output.name);
     }
@@ -320,7 +324,7 @@ void spell(const Module& module, const Numbers& numbers, ValueId id, std::string
     text += '.';
     for (int i = 0; i < componentCount(value.type); ++i) text += "xyzw"[swizzleComponent(value.payload, i)];
   }
-  if (value.op == Op::Column || value.op == Op::Carried)
+  if (value.op == Op::Column || value.op == Op::Carried || value.op == Op::TextureSize)
     append(text, "[", fmt::format_int(value.payload).c_str(), "]");
   if (value.op == Op::SumOverLights) append(text, "[", fmt::format_int(value.payload).c_str(), "]");
   if (value.op == Op::Element) {

@@ -16,8 +16,9 @@ enum class Stage : uint8_t { Vertex, Fragment };
 
 enum class OutputKind : uint8_t {
   Position,  ///< Vec4, clip space; vertex stage
-  Color,     ///< a fragment output at `location`
+  Color,     ///< a fragment output at `location`: a Float, a vector of them, an Int or a UInt
   Discard,   ///< Bool: the fragment is dropped when true
+  Depth,     ///< Float in [0, 1]: the fragment's depth in place of its triangle's
   Varying,   ///< vertex stage: the value of varyings[location]; made by the place pass
 };
 
@@ -188,7 +189,8 @@ struct Module {
   uint32_t material_textures = 0;  ///< the flat number of the material's first texture
   double relaxed_bound = 0;        ///< what its relaxed operations may change of a colour (analysis/relax.h)
   std::optional<Optimized> optimized{};
-  bool sums_lights = false;  ///< an output of the template is a sum over the lights
+  std::vector<std::string> displaces{};  ///< the template's givens that the vertices have elsewhere
+  bool sums_lights = false;              ///< an output of the template is a sum over the lights
   bool spec_constants =
       false;  ///< parameters are specialization constants: only the animated ones are in a material block
 };

@@ -70,6 +70,19 @@ Type vectorType(Type component, int count);
 /// w.
 inline Type coordinateType(Type texture) { return texture == Type::Texture2D ? Type::Vec2 : Type::Vec3; }
 
+/// A derivative of that: layers have none.
+inline Type derivativeType(Type texture) {
+  return texture == Type::TextureCube || texture == Type::Texture3D ? Type::Vec3 : Type::Vec2;
+}
+/// How many numbers a texture's size has: width and height, and of an array the layers, of a volume the
+/// depth.
+inline int sizeCount(Type texture) {
+  return texture == Type::Texture2DArray || texture == Type::Texture3D ? 3 : 2;
+}
+
+/// No target has textures with longer sides, or more layers.
+inline constexpr int kLargestTexture = 32768;
+
 /// Float, Vec2, Vec3 or Vec4 for 1 to 4 components.
 Type floatType(int components);
 

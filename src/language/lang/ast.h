@@ -341,7 +341,13 @@ struct PortDecl {
   Ties refused = 0;       ///< what its value may not be tied to: tie()
 };
 
-enum class OutputRole : uint8_t { Position, Color, Discard };
+enum class OutputRole : uint8_t {
+  Position,
+  Color,
+  Discard,
+  Depth,
+  Displacement,  ///< what the given of its name is for all that is put out
+};
 
 struct OutputDecl {
   OutputRole role = OutputRole::Color;

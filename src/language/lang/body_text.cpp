@@ -206,6 +206,8 @@ private:
     }
     if (value.op == Op::Column)
       return Text{fmt::format("{}[{}]", operand(value.args[0], kCall), value.payload)};
+    if (value.op == Op::TextureSize)
+      return Text{fmt::format("textureSize({}).{}", arguments(value), "xyz"[value.payload])};
     static constexpr Op kConversions[] = {Op::Construct, Op::ToInt, Op::ToUInt, Op::FromInt,
                                           Op::FromUInt,  Op::AsInt, Op::AsUInt};
     if (std::find(std::begin(kConversions), std::end(kConversions), value.op) != std::end(kConversions))

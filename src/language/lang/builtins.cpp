@@ -436,6 +436,27 @@ ValueId makeLookup(const Builtin& builtin, Dag& dag, Values args) {
   return dag.make(op, args.first(static_cast<size_t>(ir::info(op).arity)));
 }
 
+std::optional<Type> typeOfTextureSize(const Builtin&, Types types) {
+  if (!ir::isTexture(types[0]) || types[1] != Type::Int) return std::nullopt;
+  return ir::vectorType(Type::Int, ir::sizeCount(types[0]));
+}
+/// Of a level that may not be there targets say different things, which are taken into what a size can be.
+ValueId makeTextureSize(const Builtin&, Dag& dag, Values args) {
+  std::array<ValueId, 3> sizes{};
+  const int count = ir::sizeCount(dag[args[0]].type);
+  const bool first = dag.isConstant(args[1]) && dag.constantOf(args[1])[0] == 0;
+  for (int c = 0; c < count; ++c) {
+    ValueId& size = sizes.at(static_cast<size_t>(c));
+    size = dag.make(Op::TextureSize, args, static_cast<uint32_t>(c));
+    if (first) continue;
+    const ValueId one = dag.integer(1);
+    const ValueId most = dag.integer(ir::kLargestTexture);
+    size = dag.make(Op::Select, {dag.make(Op::IntLess, {size, one}), one, size});
+    size = dag.make(Op::Select, {dag.make(Op::IntLess, {most, size}), most, size});
+  }
+  return dag.construct(ir::vectorType(Type::Int, count), std::span(sizes).first(static_cast<size_t>(count)));
+}
+
 std::string_view shapeOf(ir::Signature signature) {
   switch (signature) {
     case ir::Signature::Map: return "floats or vectors of one size";
@@ -543,6 +564,11 @@ std::vector<Builtin> makeTable() {
          op == Op::Texture ? kLookup : "a sampler2D and a vec2, or another sampler and a vec3; a float", op,
          typeOfLookup, makeLookup});
   }
+  const ir::OpInfo& grad = ir::info(Op::TextureGrad);
+  table.push_back({"textureGrad", grad.arity, false, grad.prose,
+                   "a sampler2D and three vec2, a sampler2DArray, a vec3 and two vec2, or a samplerCube or a "
+                   "sampler3D and three vec3",
+                   Op::TextureGrad, typeOfOp, makeOp});
 
   const auto derived = [&](std::string_view name, int arity, std::string_view shape, auto type, auto make,
                            std::string_view prose) {
@@ -558,6 +584,8 @@ std::vector<Builtin> makeTable() {
   derived("degrees", 1, kNumbers, typeOfMap, makeDegrees, "of radians");
   derived("tan", 1, kNumbers, typeOfMap, makeTan, "tangent of radians");
   derived("atan", 1, kNumbers, typeOfMap, makeAtan, "angle of a tangent");
+  derived("textureSize", 2, "a sampler and an int", typeOfTextureSize, makeTextureSize,
+          "texels of a level, of an array the layers behind them");
   derived("fwidth", 1, "a float or a vector", typeOfSame, makeFwidth, "abs(dFdx(x)) + abs(dFdy(x))");
   derived("refract", 3, "two vectors of one size and a float", typeOfRefract, makeRefract,
           "i bent at n by the ratio eta of the indices of refraction, 0 where all is reflected");

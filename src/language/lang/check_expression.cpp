@@ -373,8 +373,9 @@ bool Checker::settle(Expr& expr, std::vector<ExprPtr>& args) {
     }
   }
   for (size_t i = 0; i < args.size(); ++i) {
-    const bool count = i == 1 && (expr.name == "<<" || expr.name == ">>");
-    if (whole == Type::Float)
+    const bool level = i == 1 && expr.name == "textureSize";
+    const bool count = level || (i == 1 && (expr.name == "<<" || expr.name == ">>"));
+    if (whole == Type::Float && !level)
       makeFloat(*args[i]);
     else if (!keepWhole(*args[i], count ? Type::Int : whole))
       return false;

@@ -92,7 +92,7 @@ void Checker::templateNames(const AttributeDecl& decl) {
 }
 
 void Checker::templateNames(const OutputDecl& decl) {
-  if (!doubled(decl.name)) return;
+  if (!doubled(decl.name) || decl.role == OutputRole::Displacement) return;
   reporter_.error("reserved-name", decl.span, fmt::format("'{}' is no name in every target", decl.name),
                   std::string(kDoubled) + "; give it another");
 }

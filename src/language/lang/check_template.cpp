@@ -253,6 +253,21 @@ void Checker::outputRules(TemplateDecl& decl) {
     reporter_.error("no-output", decl.span, fmt::format("the template '{}' puts nothing out", decl.name),
                     "end it with an `output color vec4 NAME = ...;` or another output");
   }
+  const bool vertex_stage = std::any_of(decl.outputs.begin(), decl.outputs.end(),
+                                        [](const OutputDecl& o) { return o.role == OutputRole::Position; });
+  for (const OutputDecl& output : decl.outputs) {
+    if (output.role != OutputRole::Displacement || vertex_stage) continue;
+    reporter_.error("wrong-rate", output.inherited ? decl.span : output.span,
+                    fmt::format("'{}' is moved where there are no vertices", output.name),
+                    "a displacement stands beside an `output position`");
+  }
+  const auto depths = std::count_if(decl.outputs.begin(), decl.outputs.end(),
+                                    [](const OutputDecl& o) { return o.role == OutputRole::Depth; });
+  if (depths > 1) {
+    reporter_.error("duplicate-name", decl.span,
+                    fmt::format("the template '{}' puts {} depths out", decl.name, depths),
+                    "a fragment has one");
+  }
   const bool lit = std::any_of(decl.blocks.begin(), decl.blocks.end(),
                                [](const BlockDecl& block) { return block.role == BlockRole::Lights; });
   for (const GivenDecl& given : decl.givens) {
@@ -637,11 +652,35 @@ void Checker::port(PortDecl& decl, uint32_t& slots) {
 
 void Checker::output(OutputDecl& decl) {
   templateNames(decl);
-  const Type wanted = decl.role == OutputRole::Discard ? Type::Bool : Type::Vec4;
-  if (decl.type != wanted) {
+  const Type type = decl.type;
+  const auto must = [&](std::string_view be) {
     reporter_.error("wrong-type", decl.span,
-                    fmt::format("'{}' is {} and must be {}", decl.name, aType(decl.type), aType(wanted)));
-    return;
+                    fmt::format("'{}' is {} and must be {}", decl.name, aType(type), be));
+  };
+  switch (decl.role) {
+    case OutputRole::Position:
+      if (type != Type::Vec4) return must(aType(Type::Vec4));
+      break;
+    case OutputRole::Color:
+      if (!ir::isFloating(type) && !ir::isWhole(type))
+        return must("a float, a vec2, a vec3, a vec4, an int or a uint");
+      break;
+    case OutputRole::Discard:
+      if (type != Type::Bool) return must(aType(Type::Bool));
+      break;
+    case OutputRole::Depth:
+      if (type != Type::Float) return must(aType(Type::Float));
+      break;
+    case OutputRole::Displacement: {
+      const Name* of = find(decl.name);
+      if (of == nullptr || of->kind != Name::Kind::Given || of->multiple) {
+        reporter_.error("unknown-value", decl.span, fmt::format("there is no given '{}' to move", decl.name),
+                        "a displacement has the name of the given that it is of, such as object_position");
+        return;
+      }
+      if (type != of->type) return must(fmt::format("{}, as the given is", aType(of->type)));
+      break;
+    }
   }
   ports_allowed_ = true;
   typed(decl.value, decl.type, fmt::format("'{}'", decl.name));

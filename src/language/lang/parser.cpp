@@ -662,11 +662,16 @@ bool Parser::port(TemplateDecl& decl) {
 }
 
 bool Parser::output(TemplateDecl& decl) {
-  constexpr std::array<std::pair<std::string_view, OutputRole>, 3> kRoles = {
-      {{"position", OutputRole::Position}, {"color", OutputRole::Color}, {"discard", OutputRole::Discard}}};
+  constexpr std::array<std::pair<std::string_view, OutputRole>, 5> kRoles = {
+      {{"position", OutputRole::Position},
+       {"color", OutputRole::Color},
+       {"discard", OutputRole::Discard},
+       {"depth", OutputRole::Depth},
+       {"displacement", OutputRole::Displacement}}};
   OutputDecl item;
   const auto role = std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return is(r.first); });
-  if (role == kRoles.end()) return syntax("expected what is put out", "it is position, color or discard");
+  if (role == kRoles.end())
+    return syntax("expected what is put out", "it is position, color, discard, depth or displacement");
   ++at_;
   item.role = role->second;
   if (!type(item.type, "the output's type") || !name(item.name, item.span, "the output's name")) return false;

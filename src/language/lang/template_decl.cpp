@@ -111,9 +111,11 @@ private:
   }
 
   void output(const OutputDecl& output) {
-    const bool vertex = output.role == OutputRole::Position;
+    // A displacement is made of what is interpolated as it is before that: lowering sees to it.
+    const bool displaces = output.role == OutputRole::Displacement;
+    const bool vertex = output.role == OutputRole::Position || displaces;
     const Place place{output.inherited, vertex ? kLight : Ties{kLight | kVertex},
-                      vertex ? kFragment : Ties{0}, vertex};
+                      vertex && !displaces ? kFragment : Ties{0}, vertex};
     const Ties ties = tiesOf(*output.value, place);
     const Span span = output.inherited ? decl_.span : output.span;
     if ((ties & kLight) != 0) {

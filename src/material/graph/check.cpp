@@ -168,7 +168,14 @@ void GraphCheck::texture(size_t i) {
   }
   if (!ir::isTexture(t.type)) {
     error(spot, at("/type"), "wrong-type", fmt::format("a texture cannot be {}", article(t.type)),
-          "it is a sampler2D or a samplerCube");
+          "it is a sampler2D, a samplerCube or a sampler2DArray");
+  }
+  const bool tiles = t.file.find(kUdim) != std::string::npos;
+  if (!t.file.empty() && tiles != (t.type == ir::Type::Texture2DArray)) {
+    error(spot, at("/file"), "wrong-texture",
+          fmt::format("{} is {} and {}", inQuotes(t.name), article(t.type),
+                      tiles ? "an image for each tile" : "one image"),
+          fmt::format("a sampler2DArray has {} in the name of its file, and a sampler2D has not", kUdim));
   }
   if (t.texture < -1) {
     error(spot, at("/texture"), "out-of-range", fmt::format("there is no texture {}", t.texture),

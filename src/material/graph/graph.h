@@ -125,6 +125,9 @@ struct Parameter : ir::Parameter {
 
 enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
 
+/// Stands in the name of a file for the number of a tile: 1001 + floor(u) + 10 floor(v).
+inline constexpr std::string_view kUdim = "<UDIM>";
+
 struct Texture : ir::TextureSlot {
   /// A file below the folder of the graph's; empty for glTF's texture, whose sampler says the rest.
   std::string file{};

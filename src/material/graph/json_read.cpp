@@ -408,7 +408,7 @@ void Reader::texture(std::string_view name, const Json& json, const Path& path) 
   Texture slot;
   slot.name = name;
   const std::optional<ir::Type> known =
-      typeOf(json, path, "texture", textureType, "it is a sampler2D or a samplerCube");
+      typeOf(json, path, "texture", textureType, "it is a sampler2D, a samplerCube or a sampler2DArray");
   slot.type = known.value_or(ir::Type::Texture2D);
   slot.srgb = flag(json, path, "srgb");
   if (const Json* index = json::member(json, "texture")) textureIndex(*index, Path(path, "texture"), slot);

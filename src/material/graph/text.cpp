@@ -33,7 +33,7 @@ std::optional<Type> valueType(std::string_view name) {
 }
 
 std::optional<Type> textureType(std::string_view name) {
-  return oneOf(name, {Type::Texture2D, Type::TextureCube});
+  return oneOf(name, {Type::Texture2D, Type::TextureCube, Type::Texture2DArray});
 }
 
 std::optional<Type> inputType(std::string_view name) {

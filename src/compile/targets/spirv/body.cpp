@@ -165,6 +165,7 @@ uint32_t Body::special(ValueId id) {
   if (op == Op::Element) return element(id);
   if (op == Op::Column) return column(id);
   if (ir::readsTexture(op)) return texture(id);
+  if (op == Op::TextureSize) return textureSize(id);
   return operation(id);
 }
 
@@ -366,7 +367,11 @@ uint32_t Body::texture(ValueId id) {
   std::array<uint32_t, 5> operands = {value(v.args[0]), value(v.args[1])};
   size_t count = 2;
   if (compares) operands[count++] = component(operands[1], 2);
-  if (!implicit) {
+  if (v.op == Op::TextureGrad) {
+    operands[count++] = spv::ImageOperandsGradMask;
+    operands[count++] = value(v.args[2]);
+    operands[count++] = value(v.args[3]);
+  } else if (!implicit) {
     operands[count++] = spv::ImageOperandsLodMask;
     operands[count++] = v.op == Op::TextureLod ? value(v.args[2]) : globals_.number(0);
   }
@@ -375,6 +380,23 @@ uint32_t Body::texture(ValueId id) {
       : implicit ? spv::OpImageSampleImplicitLod
                  : spv::OpImageSampleExplicitLod;
   return instruction(id, {ir::SpirvSet::Core, static_cast<uint32_t>(opcode)}, operands.data(), count);
+}
+
+/// The query takes an image, without its sampler, and gives all of its axes.
+uint32_t Body::textureSize(ValueId id) {
+  const ir::Value& v = dag_[id];
+  const Type type = dag_[v.args[0]].type;
+  globals_.asksForSizes();
+  const uint32_t sampled = value(v.args[0]);
+  const uint32_t level = value(v.args[1]);
+  const uint32_t image_type = globals_.type(imageKindOf(type));
+  const uint32_t size_type = globals_.type(ir::vectorType(Type::Int, ir::sizeCount(type)));
+  const uint32_t image = globals_.newId();
+  code_.op(spv::OpImage, image_type, image, sampled);
+  const uint32_t size = globals_.newId();
+  code_.op(spv::OpImageQuerySizeLod, size_type, size, image, level);
+  const std::array<uint32_t, 2> operands = {size, v.payload};
+  return instruction(id, {ir::SpirvSet::Core, spv::OpCompositeExtract}, operands.data(), operands.size());
 }
 
 /// A component of a vector that no value of the DAG stands for.

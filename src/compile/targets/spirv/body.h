@@ -59,6 +59,7 @@ private:
   uint32_t construct(ir::ValueId id);
   uint32_t swizzle(ir::ValueId id);
   uint32_t texture(ir::ValueId id);
+  uint32_t textureSize(ir::ValueId id);
   uint32_t component(uint32_t vector, uint32_t index);
   std::pair<uint32_t, uint32_t> boundsOf(const ir::LightGroup& group, const ir::Value& sum);
   uint32_t lightCount();

@@ -37,6 +37,16 @@ Kind kindOf(ir::Type type) {
   return Kind::Void;
 }
 
+Kind imageKindOf(ir::Type texture) {
+  switch (texture) {
+    case ir::Type::TextureCube: return Kind::ImageCube;
+    case ir::Type::Texture2DShadow: return Kind::ImageShadow;
+    case ir::Type::Texture2DArray: return Kind::ImageArray;
+    case ir::Type::Texture3D: return Kind::Image3D;
+    default: assert(texture == ir::Type::Texture2D); return Kind::Image2D;
+  }
+}
+
 Kind boolKind(ir::Type like) {
   constexpr std::array kByWidth = {Kind::Bool, Kind::Bool2, Kind::Bool3, Kind::Bool4};
   assert(ir::componentCount(like) <= 4);

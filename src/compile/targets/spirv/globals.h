@@ -45,6 +45,9 @@ inline constexpr size_t kKinds = static_cast<size_t>(Kind::Main) + 1;
 
 Kind kindOf(ir::Type type);
 
+/// The image that a texture's type has beside a sampler.
+Kind imageKindOf(ir::Type texture);
+
 /// The Bool type with as many components as a float type has.
 Kind boolKind(ir::Type like);
 
@@ -80,6 +83,10 @@ public:
   uint32_t glslSet();
   bool importsGlsl() const { return glsl_set_ != 0; }
 
+  /// The module asks for the sizes of images, which is a capability.
+  void asksForSizes() { sizes_ = true; }
+  bool sizesAsked() const { return sizes_; }
+
   /// A string for OpLine.
   uint32_t string(std::string_view text);
   void name(uint32_t id, std::string_view text);
@@ -99,6 +106,7 @@ private:
 
   uint32_t next_id_ = 1;
   uint32_t glsl_set_ = 0;
+  bool sizes_ = false;
   std::array<uint32_t, kKinds> types_{};
   /// The storage classes in use are 0 to 3, and that of storage buffers, which is put at 4.
   std::array<std::array<uint32_t, kKinds>, 5> pointers_{};

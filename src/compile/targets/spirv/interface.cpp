@@ -167,6 +167,11 @@ private:
     }
     for (const uint32_t index : program_.outputs) {
       const ir::Output& o = module_.outputs[index];
+      if (o.kind == ir::OutputKind::Depth) {
+        made_.outputs[index] =
+            io(out, ir::Type::Float, "gl_FragDepth", spv::DecorationBuiltIn, spv::BuiltInFragDepth);
+        continue;
+      }
       made_.outputs[index] =
           io(out, module_.dag[o.value].type, outputName(o), spv::DecorationLocation, o.location);
     }

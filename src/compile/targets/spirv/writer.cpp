@@ -26,6 +26,7 @@ std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Progr
     head.word(word);
   }
   head.op(spv::OpCapability, spv::CapabilityShader);
+  if (globals.sizesAsked()) head.op(spv::OpCapability, spv::CapabilityImageQuery);
   if (globals.importsGlsl()) {
     head.begin(spv::OpExtInstImport);
     head.word(globals.glslSet());
@@ -40,6 +41,9 @@ std::vector<uint32_t> writeSpirv(const ir::Module& module, const schedule::Progr
   for (const uint32_t variable : interface.entry_point) head.word(variable);
   head.end();
   if (fragment) head.op(spv::OpExecutionMode, main, spv::ExecutionModeOriginUpperLeft);
+  const bool depth = std::any_of(program.outputs.begin(), program.outputs.end(),
+                                 [&](uint32_t o) { return module.outputs[o].kind == ir::OutputKind::Depth; });
+  if (depth) head.op(spv::OpExecutionMode, main, spv::ExecutionModeDepthReplacing);
 
   std::vector<uint32_t> words;
   const std::array<const Words*, 6> sections = {
