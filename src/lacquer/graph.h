@@ -173,10 +173,10 @@ public:
   /// Everything that generation relies on: types, ranges, names, cycles. True when there is no error. Of the
   /// options, what the library is made of, and `limits`.
   bool check(Messages& messages, const Options& options = {}) const;
-  /// The address of the graph's structure under these options, 64 hexadecimal digits: equal for graphs whose
-  /// shaders are the same, so that one of them is generated and packs the blocks of all: Shader::pack() is
-  /// given each one's parameters(). With Parameters::Baked the numbers belong to it. Cheap: nothing is
-  /// generated. The same in every process of one build of the library. Empty on an error of the options.
+  /// The address of the structure, 64 hexadecimal digits: one of those that share it is generated, and packs
+  /// the blocks of all, with each one's parameters(). Ids, orders, groups, `ui`, images and what no output
+  /// reaches change nothing; names of parameters and textures do, with Parameters::Baked numbers, too. Cheap,
+  /// and the same in every process of one build. Empty on an error, which those of check() are, too.
   std::string structure(const Options& options, Messages& messages) const;
   /// Checks, lowers, optimises and prints every target. Empty on an error, but for code that a compiler or
   /// validator refuses: that is a bug of Lacquer, said in a message, and the shader is there to be looked at.

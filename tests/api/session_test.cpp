@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "inputs.h"
@@ -296,6 +297,7 @@ TEST(Session, GroupsAndStructures) {
   EXPECT_TRUE(graph.makeGroup({"base.direct"}, "lit", "base.direct", messages));
   const std::string grouped = graph.structure(options, messages);
   EXPECT_EQ(grouped.size(), 64u);
+  EXPECT_EQ(grouped, flat);
   // Another group's contents are another structure.
   const std::vector<NodeUse> nodes = graph.nodes("lit");
   ASSERT_EQ(nodes.size(), 1u);
@@ -309,7 +311,73 @@ TEST(Session, GroupsAndStructures) {
   }
   EXPECT_NE(graph.structure(options, messages), grouped);
   EXPECT_EQ(errorsOf(messages), "");
-  EXPECT_NE(flat, "");
+}
+
+/// The graph with the lists of its file in reverse.
+Graph reversed(const Graph& graph, const Options& options, Messages& messages) {
+  auto json = nlohmann::ordered_json::parse(graph.toJson());
+  for (const char* list : {"nodes", "attributes"}) {
+    if (json.contains(list)) std::reverse(json[list].begin(), json[list].end());
+  }
+  const auto turned = [](const nlohmann::ordered_json& of) {
+    auto made = nlohmann::ordered_json::object();
+    for (auto it = of.rbegin(); it != of.rend(); ++it) made[it.key()] = it.value();
+    return made;
+  };
+  for (const char* names : {"parameters", "textures", "outputs"}) json[names] = turned(json[names]);
+  for (auto& node : json["nodes"]) {
+    if (node.contains("inputs")) node["inputs"] = turned(node["inputs"]);
+  }
+  return Graph::fromJson(json.dump(), "reversed", messages, options);
+}
+
+/// The key of the structure is equal where the shader is: not the ways in which a tool keeps a graph count.
+TEST(Session, StructuresAreCanonical) {
+  const Options options = quick();
+  for (const std::string& file : examples()) {
+    SCOPED_TRACE(file);
+    Messages messages;
+    const Scene scene = Scene::load(file, options, messages);
+    Graph graph = scene.graph(0, kUnusedAttributes, options, messages);
+    const std::string structure = graph.structure(options, messages);
+    const std::string shader = graph.generate(options, messages).id();
+    const auto expectSame = [&](Graph other) {
+      EXPECT_EQ(other.structure(options, messages), structure);
+      EXPECT_EQ(other.generate(options, messages).id(), shader);
+    };
+    expectSame(reversed(graph, options, messages));
+    Graph edited = Graph::fromJson(graph.toJson(), "edited", messages, options);
+    size_t count = 0;
+    for (const NodeUse& node : graph.nodes())
+      EXPECT_TRUE(edited.renameNode(node.id, fmt::format("tool.n{}", ++count), messages));
+    EXPECT_NE(edited.edit(R"({"do": "set_ui", "ui": {"x": 1}})", messages), "");
+    EXPECT_NE(edited.edit(R"({"do": "set_name", "name": "Another"})", messages), "");
+    EXPECT_TRUE(edited.addNode("tool.unused", "emission", messages));
+    EXPECT_TRUE(edited.connect("tool.unused", "factor", "1", messages));
+    EXPECT_TRUE(edited.connect("tool.unused", "strength", "1", messages));
+    expectSame(edited);
+    EXPECT_TRUE(edited.makeGroup({edited.nodes().front().id}, "folded", "tool.folded", messages));
+    expectSame(edited);
+    // Numbers are of it where they are of the code.
+    ASSERT_FALSE(graph.parameters().empty());
+    const Parameter parameter = graph.parameters().front();
+    Graph other = Graph::fromJson(graph.toJson(), "other", messages, options);
+    std::vector<double> value = parameter.value;
+    for (double& x : value) x = x > 0.5 ? 0.25 : 0.75;
+    Options baked = options;
+    baked.parameters = Parameters::Baked;
+    EXPECT_EQ(other.structure(baked, messages), graph.structure(baked, messages));
+    EXPECT_TRUE(other.setParameter(parameter.name, value, messages));
+    expectSame(other);
+    EXPECT_NE(other.structure(baked, messages), graph.structure(baked, messages));
+    // Names of parameters are an interface.
+    EXPECT_NE(other.edit(fmt::format(R"({{"do": "rename_parameter", "parameter": "{}", "to": "another"}})",
+                                     parameter.name),
+                         messages),
+              "");
+    EXPECT_NE(other.structure(options, messages), structure);
+    EXPECT_EQ(errorsOf(messages), "");
+  }
 }
 
 }  // namespace

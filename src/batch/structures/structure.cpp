@@ -8,6 +8,7 @@
 #include "cost/choose.h"
 #include "cost/cost.h"
 #include "graph/edit.h"
+#include "graph/program_key.h"
 #include "interface/interface.h"
 #include "lower/lower.h"
 #include "manifest/values.h"
@@ -181,11 +182,9 @@ Result<ir::Module> modulate(const graph::Graph& graph, const passes::LightFacts&
 
 }  // namespace
 
-Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting) {
-  KeyBuilder key;  // none that a thread keeps: the C library ends the process where it has no memory to note
-                   // its destructor
-  const bool baked = setting.options.parameters == Parameters::Baked;
-  key.text("structure").key(setting.base);
+/// Of everything that the code depends on beside the graph.
+static void addSetting(const passes::LightFacts& lights, const Setting& setting, KeyBuilder& key) {
+  key.key(setting.base);
   addOptions(setting.options, {Decides::Module}, key);
   key.number(lights.any).number(lights.counts.size());
   for (const auto& [kind, count] : lights.counts) key.text(kind).number(count);
@@ -193,8 +192,23 @@ Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, co
   if (cost::choosesByDriver(setting.options)) key.text(cost::driverIdentity());
   // They decide what is said of the shader.
   for (const Target target : setting.options.targets) key.number(target);
-  StructureKey(key, baked).graph(graph);
+}
+
+Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting) {
+  KeyBuilder key;  // none that a thread keeps: the C library ends the process where it has no memory to note
+                   // its destructor
+  addSetting(lights, setting, key.text("structure"));
+  StructureKey(key, setting.options.parameters == Parameters::Baked).graph(graph);
   return setting.keys->of(key.take());
+}
+
+Key programKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting) {
+  KeyBuilder key;
+  addSetting(lights, setting, key.text("program"));
+  const bool baked = setting.options.parameters == Parameters::Baked;
+  const std::string program =
+      baked ? graph::programKeyWithValues(graph, setting.library) : graph::programKey(graph, setting.library);
+  return keyOf(key.text(program).take());
 }
 
 std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes::LightFacts& lights,
@@ -210,6 +224,7 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
   describe(plain, structure);
   structure.facts = std::make_shared<StructureFacts>(factsOf(plain, setting));
   if (hasError(structure.diagnostics)) return std::nullopt;
+  structure.program = programKey(plain, lights, setting);
   Result<ir::Module> module = modulate(plain, lights, setting);
   if (!module) {
     structure.diagnostics.insert(structure.diagnostics.end(), module.error().begin(), module.error().end());
@@ -279,7 +294,7 @@ static TextureSampler samplerOf(const graph::Texture& texture) {
 ContractUse useOf(const Structure& structure, const Filling& filling, const programs::Fill* fill) {
   ContractUse use;
   use.facts = structure.facts;
-  use.structure = structure.key.text();
+  use.structure = structure.program.text();
   use.shader_id = structure.shader;
   use.shares_program = fill != nullptr;
   use.parameters.reserve(structure.parameters.size());
@@ -346,8 +361,8 @@ static void fields(Archive& archive, Structure::Number& number) {
 
 template <class Archive>
 static void fields(Archive& archive, Structure& s) {
-  archive(s.content, s.module, s.diagnostics, s.shader, s.has_vertex, s.looks_through, s.facts, s.reflection,
-          s.terms, s.preshader, s.parameters, s.textures, s.numbers, s.graph, s.lights);
+  archive(s.content, s.program, s.module, s.diagnostics, s.shader, s.has_vertex, s.looks_through, s.facts,
+          s.reflection, s.terms, s.preshader, s.parameters, s.textures, s.numbers, s.graph, s.lights);
 }
 
 std::string toBlob(const Structure& structure) {

@@ -28,6 +28,7 @@ void fields(Archive& archive, MaterialTerms& t) {
 /// What is the same for every material of one structure.
 struct Structure {
   Key key;
+  Key program;              ///< programKey()
   std::string content;      ///< what the key is of; empty where it is known (Setting::keys)
   Digest module{};          ///< of the module behind `shader`
   Diagnostics diagnostics;  ///< of the structure, whatever the numbers are
@@ -96,12 +97,17 @@ struct Setting {
   std::string folder = {};     ///< that the manifest lies in: sources are relative to it
   Sharing* sharing = nullptr;  ///< null where every structure has a program of its own
   std::shared_ptr<Keys> keys = std::make_shared<Keys>();
+  bool several = false;         ///< the run has more files than one: options may be of another
   size_t id_bits = Keys::kAll;  ///< of a module's digest; fewer are for tests, in which ids meet
 };
 
 /// The address of a graph without what belongs to one material: names, JSON pointers, texture indices and,
 /// where the numbers stay editable, the parameters' values. Of its content there is one in Setting::keys.
 Key structureKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting);
+
+/// Graph::structure() of a flat, checked graph: of what the shader is made of and of nothing else, so that
+/// graphs have one whose ids and orders differ.
+Key programKey(const graph::Graph& graph, const passes::LightFacts& lights, const Setting& setting);
 
 /// The graph, its numbers replaced by others that the check accepts, lowered and through the passes. On an
 /// error, the reasons are in `structure.diagnostics`.

@@ -113,10 +113,9 @@ std::string Graph::structure(const Options& options, Messages& messages) const {
   if (!library) return report(library.error(), {}, messages), std::string();
   const Setting setting{options, **library, baseOf(options)};
   const passes::LightFacts lights = lightFacts(options, impl_->scene_lights);
-  if (impl_->graph.groups.empty()) return structureKey(impl_->graph, lights, setting).text();
   const Result<graph::Graph> flat = impl_->flat(options, **library);
   if (!flat) return report(flat.error(), impl_->file, messages), std::string();
-  return structureKey(*flat, lights, setting).text();
+  return programKey(*flat, lights, setting).text();
 }
 
 Shader Graph::generate(const Options& options, Messages& messages) {

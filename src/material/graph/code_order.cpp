@@ -11,6 +11,7 @@
 
 #include "graph/contracts.h"
 #include "graph/graph.h"
+#include "graph/program_key.h"
 
 namespace lacquer::graph {
 
@@ -141,7 +142,8 @@ namespace {
 /// A text of what a graph's code is made of, in the order of the code.
 class ProgramKey {
 public:
-  ProgramKey(const Graph& graph, const lang::Library& library) : graph_(graph), contracts_(graph, library) {
+  ProgramKey(const Graph& graph, const lang::Library& library, bool values)
+      : graph_(graph), contracts_(graph, library), values_(values) {
     const std::vector<size_t> order = CodeOrder(graph, library, contracts_.main(), nullptr).run();
     places_.resize(graph.nodes.size());
     for (size_t i = 0; i < order.size(); ++i) places_[order[i]] = i;
@@ -174,11 +176,12 @@ private:
 
   void node(const Node& node) {
     key_ += '\n';
-    word(node.type);
+    const Contract* contract = contracts_.of(node);
+    word(contract != nullptr && contract->decl != nullptr ? std::string_view(contract->decl->name)
+                                                          : node.type);
     word(node.variant);
     word(node.term);
     key_ += node.at_vertices ? "v " : "";
-    const Contract* contract = contracts_.of(node);
     for (size_t i = 0; contract != nullptr && i < contract->params.size(); ++i)
       named(node.inputs, contract->params[i].name);
   }
@@ -204,6 +207,7 @@ private:
     for (const double end : {p->range.lo, p->range.hi, p->range.gap}) bits(end);
     word(p->animated ? "animated" : "");
     bits(p->neutral);
+    if (values_ && !p->animated) bits(p->value);
   }
   void from(const TextureRef& ref) {
     word(ref.name);
@@ -223,6 +227,7 @@ private:
 
   const Graph& graph_;
   Contracts contracts_;
+  const bool values_;
   std::vector<size_t> places_;
   std::string key_;
 };
@@ -230,7 +235,11 @@ private:
 }  // namespace
 
 std::string programKey(const Graph& graph, const lang::Library& library) {
-  return ProgramKey(graph, library).take();
+  return ProgramKey(graph, library, false).take();
+}
+
+std::string programKeyWithValues(const Graph& graph, const lang::Library& library) {
+  return ProgramKey(graph, library, true).take();
 }
 
 }  // namespace lacquer::graph
