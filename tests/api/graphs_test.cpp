@@ -1,9 +1,14 @@
 // A graph is a material: what it shows is what the material shows that it was built of, to the last bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "inputs.h"
@@ -30,30 +35,110 @@ std::string colorsOf(std::string answer) {
   return answer;
 }
 
-TEST(Graphs, HaveTheColorsOfTheirMaterials) {
+/// A file's JSON, of a .glb its first chunk.
+nlohmann::json gltfOf(const std::string& file) {
+  std::string text = readFile(file);
+  if (text.starts_with("glTF")) {
+    uint32_t size = 0;
+    std::memcpy(&size, text.data() + 12, sizeof size);
+    text = text.substr(20, size);
+  }
+  return nlohmann::json::parse(text);
+}
+
+/// Another constant for each image.
+std::string texelOf(const std::string& name, int image) {
+  return name + "=0." + std::to_string(3 + (image + 5) % 5) + ",0.5,0.9,0.8";
+}
+
+/// For each textureInfo below an object, by the property's name.
+void addTexels(const nlohmann::json& object, Strings& texels) {
+  for (const auto& [name, value] : object.items()) {
+    if (!value.is_object()) continue;
+    if (name.ends_with("exture") && value.contains("index")) texels.push_back(texelOf(name, value["index"]));
+    addTexels(value, texels);
+  }
+}
+
+/// Compares each material of a file, and counts what it has compared.
+size_t compareGraphsOf(const std::string& file, const Options& options, bool without_images = false) {
   size_t compared = 0;
-  const Options options = quick();
-  for (const std::string& file : examples()) {
-    Messages messages;
-    const Scene scene = Scene::load(file, options, messages);
-    for (size_t i = 0; i < scene.materialCount(); ++i) {
-      SCOPED_TRACE(file + ": " + scene.materialName(i));
-      for (const char* points : {kLit, kDark}) {
-        // For points without an environment a material is built without one.
-        Options built = options;
-        built.ibl = points == kLit;
-        const Graph graph = scene.graph(i, kAll, built, messages);
-        for (const Engine engine : {Engine::Double, Engine::Float}) {
-          const std::string expected = jsonOf(evaluate(scene, i, points, engine, {}, options, messages));
-          EXPECT_NE(expected, "");
-          EXPECT_EQ(jsonOf(evaluate(graph, points, engine, {}, options, messages)), colorsOf(expected));
-          ++compared;
+  Messages messages;
+  const Scene scene = Scene::load(file, options, messages);
+  const nlohmann::json gltf = gltfOf(file);
+  for (size_t i = 0; i < scene.materialCount(); ++i) {
+    SCOPED_TRACE(file + ": " + scene.materialName(i));
+    for (const char* points : {kLit, kDark}) {
+      // For points without an environment a material is built without one.
+      Options built = options;
+      built.ibl = points == kLit;
+      const Graph graph = scene.graph(i, kAll, built, messages);
+      Strings texels;
+      if (without_images) {
+        addTexels(gltf["materials"][i], texels);
+        for (const TextureUse& texture : graph.textures()) {
+          const std::string property = texture.pointer.substr(texture.pointer.rfind('/') + 1);
+          if (!property.ends_with("exture")) texels.push_back(texelOf(property, texture.texture));
         }
       }
+      for (const Engine engine : {Engine::Double, Engine::Float}) {
+        const std::string expected = jsonOf(evaluate(scene, i, points, engine, texels, options, messages));
+        EXPECT_NE(expected, "");
+        EXPECT_EQ(jsonOf(evaluate(graph, points, engine, texels, options, messages)), colorsOf(expected));
+        ++compared;
+      }
     }
-    EXPECT_EQ(errorsOf(messages), "");
   }
+  EXPECT_EQ(errorsOf(messages), "") << file;
+  return compared;
+}
+
+TEST(Graphs, HaveTheColorsOfTheirMaterials) {
+  size_t compared = 0;
+  for (const std::string& file : examples()) compared += compareGraphsOf(file, quick());
   EXPECT_GT(compared, 100u);
+}
+
+/// The same of a folder of files that is no part of the project, LACQUER_ASSETS or ../shared/assets.
+TEST(Graphs, HaveTheColorsOfTheirMaterialsInRealFiles) {
+  const char* named = std::getenv("LACQUER_ASSETS");
+  const std::filesystem::path folder = named != nullptr ? named : sourceFolder() / "../shared/assets";
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there";
+  Strings files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    const std::string path = entry.path().string();
+    if (path.ends_with(".gltf") || path.ends_with(".glb")) files.push_back(path);
+  }
+  std::sort(files.begin(), files.end());
+  // Their images need not be there.
+  for (const std::string& file : files) compareGraphsOf(file, quick(), true);
+}
+
+/// An image that several properties have goes by one of them, whatever the graph is built for, so that a
+/// constant for that one reaches it.
+TEST(Graphs, NameSharedImagesAsTheirMaterialsDo) {
+  const std::string text = R"({"asset": {"version": "2.0"}, "images": [{"uri": "absent.png"}],
+    "textures": [{"source": 0}], "extensionsUsed": ["KHR_materials_clearcoat", "KHR_materials_anisotropy"],
+    "materials": [{"name": "Lamp", "normalTexture": {"index": 0}, "extensions": {
+      "KHR_materials_anisotropy": {"anisotropyStrength": 0.75},
+      "KHR_materials_clearcoat": {"clearcoatFactor": 0.25, "clearcoatNormalTexture": {"index": 0}}}}]})";
+  Messages messages;
+  const Options options = quick();
+  const Scene scene = Scene::fromMemory(text, "lamp.gltf", options, messages);
+  Options built = options;
+  built.ibl = false;
+  Attributes bare{true, false, false, {true, false, false, false}, {}, false, false, false, {}};
+  for (const Attributes& attributes : {kAll, kUnusedAttributes, bare}) {
+    const Graph graph = scene.graph(0, attributes, built, messages);
+    ASSERT_EQ(graph.textures().size(), 1U);
+    EXPECT_EQ(graph.textures()[0].name, "normal_texture");
+  }
+  const Graph graph = scene.graph(0, kAll, built, messages);
+  const Strings texels{"normalTexture=0.6,0.5,0.9,1", "clearcoatNormalTexture=0.6,0.5,0.9,1"};
+  const std::string expected = jsonOf(evaluate(scene, 0, kDark, Engine::Double, texels, options, messages));
+  EXPECT_NE(expected, "");
+  EXPECT_EQ(jsonOf(evaluate(graph, kDark, Engine::Double, texels, options, messages)), colorsOf(expected));
+  EXPECT_EQ(errorsOf(messages), "");
 }
 
 TEST(Graphs, LookLikeTheirMaterials) {

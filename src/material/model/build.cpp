@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "model/attributes.h"
@@ -60,13 +61,14 @@ public:
 
 private:
   void mark(const Found& value);
+  Texel texelOf(uint16_t property) const;
   void write(uint32_t id);
   void writeOrdered();
   void notTaken();
   Source source(const Found& value);
   Source from(const Found& value);
   Source number(const Found& value);
-  Source texel(uint16_t property);
+  Source texel(uint16_t wanted);
   Source image(uint16_t property);
   Source computed(const gltf::TextureInfo& info, const std::string& slot);
   void bring(const std::string& group);
@@ -85,10 +87,28 @@ private:
   std::vector<bool> marked_;
   std::vector<std::string> written_;  ///< the node's id in the graph, once it is there
   std::vector<std::pair<Texel, Source>> texels_;
+  /// Of the properties that the ports reach the first of the library that has a texel: the texture is called
+  /// by that one, in whichever order parts ask for it.
+  std::vector<std::pair<Texel, uint16_t>> sharers_;
   std::vector<std::pair<Place, Source>> coordinates_;
 };
 
+/// Equal for properties whose texels are.
+Texel Writer::texelOf(uint16_t property) const {
+  const gltf::TextureInfo& info = *material_.texture(property);
+  return {{}, info.texture, model_.schema->properties[property].decl->srgb, placeOf(info)};
+}
+
 void Writer::mark(const Found& value) {
+  if (value.kind == Found::Kind::Texel && material_.texture(value.property)->group.empty()) {
+    const Texel texel = texelOf(value.property);
+    const auto known = std::find_if(sharers_.begin(), sharers_.end(),
+                                    [&](const auto& one) { return one.first == texel; });
+    if (known == sharers_.end())
+      sharers_.emplace_back(texel, value.property);
+    else
+      known->second = std::min(known->second, value.property);
+  }
   if (value.kind != Found::Kind::Node || marked_[value.index]) return;
   marked_[value.index] = true;
   for (const Found& input : resolver_.node(value.index)->inputs) mark(input);
@@ -226,15 +246,18 @@ Source Writer::image(uint16_t property) {
 }
 
 /// The texel of a texture as a vec4; textures used twice in the same way are sampled once.
-Source Writer::texel(uint16_t property) {
-  const gltf::TextureInfo& info = *material_.texture(property);
-  const material::Property& row = model_.schema->properties[property];
-  const std::string& slot = row.parameter_name;
-  if (!info.group.empty()) return computed(info, slot);
-  const Texel key{{}, info.texture, row.decl->srgb, placeOf(info)};
+Source Writer::texel(uint16_t wanted) {
+  const gltf::TextureInfo& info = *material_.texture(wanted);
+  if (!info.group.empty()) return computed(info, model_.schema->properties[wanted].parameter_name);
+  const Texel key = texelOf(wanted);
   for (const auto& [known, source] : texels_) {
     if (known == key) return source;
   }
+  const auto sharer = std::find_if(sharers_.begin(), sharers_.end(),
+                                   [&](const auto& one) { return one.first == key; });
+  const uint16_t property = sharer == sharers_.end() ? wanted : sharer->second;
+  const material::Property& row = model_.schema->properties[property];
+  const std::string& slot = row.parameter_name;
   const Source sampled = image(property);
   const Source uv = coordinate(property);
   graph_.add(slot + ".texel", "texture_sample", graph::Inputs{{"image", sampled}, {"uv", uv}});
