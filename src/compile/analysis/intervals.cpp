@@ -189,7 +189,9 @@ void Intervals::varying(ValueId id, const ir::Input& input) {
   if (source == ir::kNoValue || !known(source)) return;
   facets_[id].alike = facets_[source].alike;
   for (int c = 0; c < ir::componentCount(dag_[id].type); ++c) {
-    rangesOf(id)[static_cast<size_t>(c)] = interpolated(at(source, c));
+    const Range& at_vertices = at(source, c);
+    rangesOf(id)[static_cast<size_t>(c)] =
+        ir::isFloating(dag_[id].type) ? interpolated(at_vertices) : at_vertices;
   }
 }
 

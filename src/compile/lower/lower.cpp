@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "ir/names.h"
+#include "lang/composites.h"
 #include "lower/at_vertices.h"
 #include "lower/inline.h"
 #include "lower/pack_outputs.h"
@@ -391,11 +392,13 @@ private:
   }
 
   /// What the template gives for a parameter that nothing is connected to; kNoValue for its constant default.
-  /// As a graph sees it: what the vertices know is interpolated. (At the vertices that is taken back.)
+  /// As a graph sees it: what the vertices know is interpolated, and of integers one vertex's. (At the
+  /// vertices that is taken back.)
   ir::ValueId given(const lang::GivenResult& found) {
     const ir::ValueId value = slots_[found.given->slot + found.index];
-    const bool between = dag()[value].rate == ir::Rate::Vertex && ir::isFloating(dag()[value].type);
-    return between ? dag().make(ir::Op::Interpolate, {value}) : value;
+    const ir::Value& of = dag()[value];
+    const bool between = of.rate == ir::Rate::Vertex && !ir::isMatrix(of.type) && !ir::isTexture(of.type);
+    return between ? lang::interpolated(dag(), value) : value;
   }
 
   ir::ValueId givenFor(const lang::Param& param) {

@@ -57,7 +57,7 @@ private:
 
   bool affine(ValueId id) const {
     const ir::Value& value = dag_[id];
-    if (value.op == Op::Interpolate) return true;
+    if (value.op == Op::Interpolate) return ir::isFloating(value.type);
     if (value.rate != ir::Rate::Fragment || !ir::isFloating(value.type)) return false;
     const auto fits = [&](ValueId operand) { return affine_[operand] || uniform(operand); };
     if (ir::facts(value.op).linear == ir::Linear::All) {

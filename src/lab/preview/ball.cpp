@@ -255,6 +255,10 @@ std::vector<Rgba> Shading::samples(std::span<const Coverage::Sample> samples, co
     const auto width = static_cast<size_t>(ir::componentCount(varyings_[v]->type));
     std::vector<double> values(samples.size() * width, 0.0);
     for (size_t i = 0; i < samples.size(); ++i) {
+      if (!ir::isFloating(varyings_[v]->type)) {  // the first corner's, as Vulkan has it
+        std::copy_n(&vertices[v][samples[i].corners[0] * width], width, &values[i * width]);
+        continue;
+      }
       for (size_t k = 0; k < 3; ++k) {
         const double* corner = &vertices[v][samples[i].corners[k] * width];
         for (size_t c = 0; c < width; ++c)

@@ -108,7 +108,8 @@ std::optional<Type> resultType(Op op, std::span<const Type> operands) {
       if (!isFloating(operands[0])) return std::nullopt;
       return Type::Float;
     case Signature::Same:
-      if (!isFloating(operands[0])) return std::nullopt;
+      // An integer between the stages is one vertex's.
+      if (!isFloating(operands[0]) && !(op == Op::Interpolate && isWhole(operands[0]))) return std::nullopt;
       return operands[0];
     case Signature::Compare:
       if (operands[0] != Type::Float || operands[1] != Type::Float) return std::nullopt;

@@ -322,6 +322,11 @@ ValueId makeFwidth(const Builtin&, Dag& dag, Values args) {
 std::optional<Type> typeOfSame(const Builtin&, Types types) {
   return ir::isFloating(types[0]) ? std::optional(types[0]) : std::nullopt;
 }
+/// What goes from stage to stage: all but matrices and textures.
+std::optional<Type> typeOfInterpolated(const Builtin&, Types types) {
+  return ir::isTexture(types[0]) || ir::isMatrix(types[0]) ? std::nullopt : std::optional(types[0]);
+}
+ValueId makeInterpolated(const Builtin&, Dag& dag, Values args) { return interpolated(dag, args[0]); }
 ValueId makeAtan(const Builtin&, Dag& dag, Values args) {
   return dag.make(Op::Atan2, {args[0], dag.constant(1)});
 }
@@ -546,6 +551,8 @@ void addOps(std::vector<Builtin>& table) {
     if (builtin.op == Op::Clamp) takes(typeOfNumbers, makeClamp, kEither);
     if (builtin.op == Op::Abs || builtin.op == Op::Sign)
       takes(typeOfSigned, makeSigned, "a float or an int, or a vector of them");
+    if (builtin.op == Op::Interpolate)
+      takes(typeOfInterpolated, makeInterpolated, "a number, a bool or a vector");
     if (builtin.op == Op::Mix)
       takes(typeOfMix, makeMix,
             "floats or vectors of one size, or two equal types and a bool or one for each component");

@@ -56,6 +56,16 @@ ValueId converted(Dag& dag, ValueId scalar, Type type) {
   return dag.make(type == Type::Int ? Op::AsInt : Op::AsUInt, {scalar});
 }
 
+ValueId interpolated(Dag& dag, ValueId value) {
+  const Type type = dag[value].type;
+  if (ir::isFloating(type)) return dag.make(Op::Interpolate, {value});
+  return byComponent(dag, type, {&value, 1}, [&](Values parts) {
+    const Type part = dag[parts[0]].type;
+    const ValueId whole = part == Type::Bool ? converted(dag, parts[0], Type::Int) : parts[0];
+    return converted(dag, dag.make(Op::Interpolate, {whole}), part);
+  });
+}
+
 bool constructible(Type type, std::span<const Type> args) {
   if (args.empty() || ir::isTexture(type)) return false;
   for (const Type arg : args) {

@@ -30,6 +30,8 @@ ValueId converted(ir::Dag& dag, ValueId scalar, ir::Type type);
 /// `type(args)`, as GLSL has it: vectors of the components of all, matrices of columns, of their components,
 /// of another matrix, or of one number for the diagonal.
 ValueId constructed(ir::Dag& dag, ir::Type type, Values args);
+/// A vertex value as the fragment sees it: interpolated, and of an integer or a Bool that of one vertex.
+ValueId interpolated(ir::Dag& dag, ValueId value);
 /// Whether there is such a constructor.
 bool constructible(ir::Type type, std::span<const ir::Type> args);
 /// A matrix of these components, column by column.

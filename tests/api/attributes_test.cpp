@@ -1,0 +1,159 @@
+// What vertices and objects have of an application's own reaches a layer in every target, checked by those
+// compilers that are there: of any type, integers and bools one vertex's, fields of objects as no value of a
+// vertex at all.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "inputs.h"
+
+namespace lacquer::test {
+namespace {
+
+constexpr const char* kFile = R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ACME_wet"],
+  "materials": [{"name": "Wet", "extensions": {"ACME_wet": {"amount": 0.5}}}]})";
+
+std::string replaced(std::string text, std::string_view what, std::string_view with) {
+  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
+    text.replace(at, what.size(), with);
+  return text;
+}
+
+/// A layer that takes the attribute, of type T in the file and M in lines.
+std::string textOf(const std::string& type, const std::string& read, const std::string& otherwise,
+                   const std::string& given_type, const std::string& number) {
+  std::string text = R"(
+/// An engine's own.
+template masked extends forward {
+    extend block object {
+        float wetness in [0, 1] = 0;
+    }
+    optional attribute T _MASK;
+    given M mask = has_MASK ? READ : OTHERWISE;
+    given float wetness in [0, 1] = object.wetness;
+}
+/// E.
+/// source: ACME_wet
+extension ACME_wet {
+    float amount in [0, 1] = 0;
+}
+/// P.
+/// source: ACME_wet
+part wet of ACME_wet over coat unless amount == 0 {
+direct:
+    out direct = wetted(below.direct, amount, mask, wetness);
+}
+/// N.
+/// source: ACME_wet
+node wetted(vec3 below in [0, inf], float amount in [0, 1], M mask, float wetness in [0, 1]) -> vec3 in [0, inf] {
+    float taken = clamp(NUMBER, 0, 1);
+    return below * (1 - amount * taken * wetness);
+}
+)";
+  text = replaced(text, "attribute T", "attribute " + type);
+  text = replaced(text, "given M", "given " + given_type);
+  text = replaced(text, ", M mask", ", " + given_type + " mask");
+  text = replaced(text, "READ", read);
+  text = replaced(text, "OTHERWISE", otherwise);
+  return replaced(text, "NUMBER", number);
+}
+
+struct Made {
+  Shader shader;
+  std::string errors;
+};
+
+Made made(const std::string& text, bool has_mask) {
+  Options options;
+  options.targets.clear();
+  for (const std::string& name : targetNames()) {
+    Target target{};
+    EXPECT_TRUE(findTarget(name, target));
+    options.targets.push_back(target);
+  }
+  options.node_texts = {{"wet.node", text}};
+  options.template_name = "masked";
+  Messages messages;
+  const Scene scene = Scene::fromMemory(kFile, "wet.gltf", options, messages);
+  Attributes attributes = kUnusedAttributes;
+  if (has_mask) attributes.application = {"_MASK"};
+  Graph graph = scene.graph(0, attributes, options, messages);
+  Made result;
+  result.shader = graph.generate(options, messages);
+  for (const Message& message : messages) {
+    if (message.level == Message::Level::Error) result.errors += message.text + "\n";
+  }
+  return result;
+}
+
+size_t countOf(const std::string& text, std::string_view what) {
+  size_t count = 0;
+  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+struct Kind {
+  std::string type, read, otherwise, given_type, number;
+  size_t flat = 0;  ///< values between the stages that are one vertex's
+};
+
+TEST(OwnAttributes, OfAnyTypeReachEveryTarget) {
+  const Kind kinds[] = {
+      {"float", "interpolate(_MASK)", "1", "float", "mask", 0},
+      {"vec2", "interpolate(_MASK)", "vec2(1)", "vec2", "mask.x * mask.y", 0},
+      {"vec3", "interpolate(_MASK)", "vec3(1)", "vec3", "mask.x * mask.z", 0},
+      {"vec4", "interpolate(_MASK)", "vec4(1)", "vec4", "mask.x * mask.w", 0},
+      {"int", "interpolate(_MASK)", "1", "int", "float(mask)", 1},
+      {"uint", "interpolate(_MASK)", "1u", "uint", "float(mask & 3u)", 1},
+      {"ivec2", "interpolate(_MASK)", "ivec2(1)", "ivec2", "float(mask.x + mask.y)", 2},
+      {"ivec3", "interpolate(_MASK)", "ivec3(1)", "ivec3", "float(mask.x + mask.z)", 2},
+      {"ivec4", "interpolate(_MASK)", "ivec4(1)", "ivec4", "float(mask.w)", 1},
+      {"uvec2", "interpolate(_MASK)", "uvec2(1u)", "uvec2", "float(mask.x)", 1},
+      {"uvec3", "interpolate(_MASK + uvec3(1u))", "uvec3(1u)", "uvec3", "float(mask.y)", 1},
+      {"uvec4", "interpolate(_MASK)", "uvec4(1u)", "uvec4", "float(mask.z)", 1},
+      {"float", "interpolate(_MASK > 0.5)", "true", "bool", "mask ? 1.0 : 0.5", 1},
+      {"uint", "interpolate((_MASK & 4u) != 0u)", "true", "bool", "mask ? 1.0 : 0.5", 1},
+  };
+  for (const Kind& kind : kinds) {
+    SCOPED_TRACE(kind.type + " " + kind.read);
+    const std::string text = textOf(kind.type, kind.read, kind.otherwise, kind.given_type, kind.number);
+    const Made masked = made(text, true);
+    ASSERT_TRUE(masked.shader) << masked.errors;
+    EXPECT_EQ(masked.errors, "");
+    const auto codeOf = [&](Target target) { return masked.shader.fragmentText(target); };
+    EXPECT_EQ(countOf(codeOf(Target::Glsl), "flat in "), kind.flat) << codeOf(Target::Glsl);
+    EXPECT_EQ(countOf(codeOf(Target::Essl), "flat in "), kind.flat);
+    EXPECT_EQ(countOf(codeOf(Target::Hlsl), "nointerpolation "), kind.flat);
+    EXPECT_EQ(countOf(codeOf(Target::Wgsl), "@interpolate(flat) "), kind.flat);
+    // Metal has no other integers between the stages, and does not ask for the word.
+    EXPECT_GE(countOf(codeOf(Target::Msl), "[[user("), kind.flat) << codeOf(Target::Msl);
+    EXPECT_GE(countOf(codeOf(Target::Msl), "mask"), 2U);
+    // Without the attribute nothing is between the stages.
+    const Made plain = made(text, false);
+    ASSERT_TRUE(plain.shader) << plain.errors;
+    EXPECT_EQ(plain.errors, "");
+    const std::string glsl = plain.shader.fragmentText(Target::Glsl);
+    EXPECT_EQ(countOf(glsl, "flat in "), 0U);
+    EXPECT_EQ(countOf(plain.shader.vertexText(Target::Glsl), "in_mask"), 0U);
+  }
+}
+
+TEST(OwnAttributes, FieldsOfObjectsAreNoValuesOfVertices) {
+  const std::string text = textOf("float", "interpolate(_MASK)", "1", "float", "mask");
+  const Made wet = made(text, false);
+  const Made dry = made(replaced(text, "taken * wetness", "taken * 0.5"), false);
+  ASSERT_TRUE(wet.shader && dry.shader) << wet.errors << dry.errors;
+  EXPECT_EQ(wet.errors + dry.errors, "");
+  const auto inputs = [](const Shader& shader) {
+    return countOf(shader.fragmentText(Target::Glsl), ") in ");
+  };
+  EXPECT_EQ(inputs(wet.shader), inputs(dry.shader));
+  for (const Target target : {Target::Glsl, Target::Essl, Target::Hlsl, Target::Wgsl, Target::Msl}) {
+    EXPECT_EQ(countOf(dry.shader.fragmentText(target), "object.wetness"), 0U);
+    EXPECT_GE(countOf(wet.shader.fragmentText(target), "wetness"), 2U) << targetName(target);
+  }
+}
+
+}  // namespace
+}  // namespace lacquer::test
