@@ -611,6 +611,26 @@ LACQUER_C_NATIVE size_t lacquer_sheet_difference_count(const lacquer_sheet* shee
 LACQUER_C_NATIVE int lacquer_sheet_difference(const lacquer_sheet* sheet, size_t index,
                                               lacquer_difference* to, size_t size);
 
+/* ---- materials for other tools (docs/materialx.md). Scenes are read of .mtlx documents, too. `materials`:
+ * the names of those that are wanted; all where `count` is 0. */
+
+/* A MaterialX document of a .gltf, .glb or .mtlx file's materials. `surface` is "gltf_pbr",
+ * "open_pbr_surface", or empty for the one that says more of a material. NULL on an error; what it cannot say
+ * is a warning. */
+LACQUER_C_NATIVE lacquer_text* lacquer_materialx(const char* file, const char* const* materials, size_t count,
+                                                 const char* surface, const lacquer_options* options,
+                                                 lacquer_messages* messages);
+/* The same as a file. 1 when it was written. */
+LACQUER_C_NATIVE int lacquer_convert(const char* output, const char* file, const char* const* materials,
+                                     size_t count, const char* surface, const lacquer_options* options,
+                                     lacquer_messages* messages);
+/* Procedural textures of a .gltf or .mtlx file as PNG files of `size` by `size` texels, from 1 to 8192,
+ * beside the .gltf file `output`, which has them. JSON: "output", "images", and how many "textures" have one.
+ */
+LACQUER_C_NATIVE lacquer_text* lacquer_bake(const char* output, const char* file,
+                                            const char* const* materials, size_t count, uint32_t size,
+                                            const lacquer_options* options, lacquer_messages* messages);
+
 /* ---- the library of nodes, and tables */
 
 /* Nodes, templates, profiles, extensions and their properties as JSON, as `lacquer nodes --json`. */

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from ._native import Value, load
 
 __all__ = [
-    "ATTRIBUTES", "Error", "Evaluation", "Graph", "Message", "Scene", "Shader", "check_nodes", "environment_dfg", "environment_sheen",
-    "nodes", "version",
+    "ATTRIBUTES", "Error", "Evaluation", "Graph", "Message", "Scene", "Shader", "bake", "check_nodes", "convert", "environment_dfg",
+    "environment_sheen", "nodes", "to_materialx", "version",
 ]
 
 _lib = load()
@@ -323,7 +323,7 @@ class Graph(_Handle):
     def make_group(self, nodes: Sequence[str], group: str, instance: str,
                    messages: Optional[List[Message]] = None) -> None:
         """Puts nodes into a new group, and an instance of it in their place."""
-        names = (c_char_p * len(nodes))(*map(_text, nodes))
+        names = _names(nodes)
         _calling(None, messages, lambda said, _: _lib.lacquer_graph_make_group(
             self._at, names, len(names), _text(group), _text(instance), said))
 
@@ -395,14 +395,14 @@ class Graph(_Handle):
 
 
 class Scene(_Handle):
-    """The materials of a glTF file."""
+    """The materials of a glTF file, or of a MaterialX document."""
 
     _free = _lib.lacquer_scene_free
 
     @classmethod
     def load(cls, path: Union[str, Path], options: Optional[Options] = None,
              messages: Optional[List[Message]] = None) -> "Scene":
-        """Reads .gltf or .glb; buffers and images need not exist."""
+        """Reads .gltf, .glb or .mtlx; buffers and images need not exist."""
         name = _path(path)
         return cls(_calling(options, messages, lambda said, how: _lib.lacquer_scene_load(name, how, said)))
 
@@ -491,6 +491,38 @@ def check_nodes(options: Options) -> List[Message]:
 def nodes(options: Optional[Options] = None) -> Dict[str, Any]:
     """Nodes, templates, profiles, extensions and their properties, as `lacquer nodes --json`."""
     return json.loads(_taken(_calling(options, None, lambda said, how: _lib.lacquer_nodes(how, said))))
+
+
+def _names(names: Sequence[str]) -> Any:
+    return (c_char_p * len(names))(*map(_text, names))
+
+
+def to_materialx(file: Union[str, Path], materials: Sequence[str] = (), surface: str = "",
+                 options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> str:
+    """A MaterialX document of a .gltf, .glb or .mtlx file's materials: those of the names, or all. `surface` is "gltf_pbr",
+    "open_pbr_surface", or empty for the one that says more of a material."""
+    source, names = _path(file), _names(materials)
+    return _taken(_calling(options, messages, lambda said, how: _lib.lacquer_materialx(
+        source, names, len(names), _text(surface), how, said)))
+
+
+def convert(output: Union[str, Path], file: Union[str, Path], materials: Sequence[str] = (), surface: str = "",
+            options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> None:
+    """The same as a file."""
+    to, source, names = _path(output), _path(file), _names(materials)
+    _calling(options, messages, lambda said, how: _lib.lacquer_convert(
+        to, source, names, len(names), _text(surface), how, said))
+
+
+def bake(output: Union[str, Path], file: Union[str, Path], materials: Sequence[str] = (), size: int = 512,
+         options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> Dict[str, Any]:
+    """Procedural textures of a .gltf or .mtlx file as PNG files of `size` by `size` texels beside the .gltf file `output`,
+    which has them. "output", "images", and how many "textures" have one."""
+    to, source, names, texels = _path(output), _path(file), _names(materials), _index(size)
+    if texels > 0xFFFFFFFF:
+        raise ValueError(f"{size} is no size of an image")
+    return json.loads(_taken(_calling(options, messages, lambda said, how: _lib.lacquer_bake(
+        to, source, names, len(names), texels, how, said))))
 
 
 def _table(function: Callable[..., int], size: int) -> NDArray[np.float32]:

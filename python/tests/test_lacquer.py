@@ -326,6 +326,30 @@ def test_tables_and_nodes():
     assert lacquer.version().count(".") == 2
 
 
+def test_materials_of_other_tools(tmp_path):
+    coat = ROOT / "examples/coat.gltf"
+    text = lacquer.to_materialx(coat, ["Darkening"], "open_pbr_surface")
+    assert text.count("<surfacematerial") == 1 and "<open_pbr_surface" in text
+    lacquer.convert(tmp_path / "coat.mtlx", coat)
+    scene = lacquer.Scene.load(tmp_path / "coat.mtlx")
+    assert scene.materials == lacquer.Scene.load(coat).materials
+    with pytest.raises(lacquer.Error) as error:
+        lacquer.to_materialx(coat, surface="phong")
+    assert error.value.messages[0].code == "unknown-surface"
+
+    (tmp_path / "ramp.mtlx").write_text("""<materialx version="1.39">
+      <ramplr name="across" type="color3"><input name="valuel" type="color3" value="0.1, 0.2, 0.9"/></ramplr>
+      <gltf_pbr name="shader" type="surfaceshader">
+        <input name="base_color" type="color3" nodename="across"/></gltf_pbr>
+      <surfacematerial name="Ramp" type="material">
+        <input name="surfaceshader" type="surfaceshader" nodename="shader"/></surfacematerial></materialx>""")
+    baked = lacquer.bake(tmp_path / "ramp.gltf", tmp_path / "ramp.mtlx", size=8)
+    assert baked["textures"] == 1 and Path(baked["output"]) == tmp_path / "ramp.gltf"
+    assert [Path(image).is_file() for image in baked["images"]] == [True]
+    with pytest.raises(lacquer.Error):
+        lacquer.bake(tmp_path / "coat.gltf", coat)
+
+
 def test_handles_are_freed():
     # Two hundred scenes, graphs and shaders: what is not freed shows as memory of the process.
     import resource

@@ -42,12 +42,6 @@ struct lacquer_sheet {
 
 namespace {
 
-Strings stringsOf(const char* const* texts, size_t count) {
-  Strings all;
-  for (size_t i = 0; texts != nullptr && i < count; ++i) all.push_back(textOf(texts[i]));
-  return all;
-}
-
 /// The row at `index` of a list of a handle's, as `make` has it; `list` gives the list.
 template <class Handle, class List, class Row, class Make>
 int rowOf(const Handle* handle, List list, size_t index, Row* to, size_t size, const Make& make) {

@@ -51,6 +51,11 @@ const Shader& shaderOf(const lacquer_shader* shader);
 
 /// A text that comes in; NULL is an empty one.
 inline std::string textOf(const char* text) { return text == nullptr ? std::string() : std::string(text); }
+inline Strings stringsOf(const char* const* texts, size_t count) {
+  Strings all;
+  for (size_t i = 0; texts != nullptr && i < count; ++i) all.push_back(textOf(texts[i]));
+  return all;
+}
 inline std::string_view bytesOf(const char* bytes, size_t size) {
   return bytes == nullptr ? std::string_view() : std::string_view(bytes, size);
 }

@@ -1,0 +1,87 @@
+// Materials of other tools, in and out, from C: what C++ reads, writes and bakes.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "handle.h"
+#include "lacquer.h"
+#include "lacquer/exchange.h"
+#include "support/cases.h"
+
+namespace lacquer::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CExchange : public testing::Test {
+protected:
+  CExchange() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    std::ofstream(document_) << R"(<materialx version="1.39">
+      <nodegraph name="NG">
+        <ramplr name="across" type="color3">
+          <input name="valuel" type="color3" value="0.1, 0.2, 0.9"/>
+          <input name="valuer" type="color3" value="0.8, 0.4, 0.1"/>
+        </ramplr>
+        <output name="color" type="color3" nodename="across"/>
+      </nodegraph>
+      <gltf_pbr name="shader" type="surfaceshader">
+        <input name="base_color" type="color3" nodegraph="NG" output="color"/>
+        <input name="roughness" type="float" value="0.25"/>
+      </gltf_pbr>
+      <surfacematerial name="Ramp" type="material">
+        <input name="surfaceshader" type="surfaceshader" nodename="shader"/>
+      </surfacematerial></materialx>)";
+  }
+  ~CExchange() override { fs::remove_all(folder_); }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) / "lacquer_c_exchange";
+  const std::string document_ = (folder_ / "ramp.mtlx").string();
+  const std::string coat_ = (sourceFolder() / "examples/coat.gltf").string();
+  Messages messages_;
+  CMessages c_messages_;
+};
+
+TEST_F(CExchange, DocumentsAreRead) {
+  const CScene scene(lacquer_scene_load(document_.c_str(), nullptr, c_messages_));
+  ASSERT_EQ(lacquer_scene_material_count(scene.get()), 1U);
+  const CGraph graph(lacquer_scene_graph(scene.get(), 0, LACQUER_UNUSED_ATTRIBUTES, nullptr, c_messages_));
+  const Scene expected = Scene::load(document_, {}, messages_);
+  EXPECT_EQ(textOf(CText(lacquer_graph_json(graph.get()))),
+            expected.graph(0, kUnusedAttributes, {}, messages_).toJson());
+  EXPECT_EQ(c_messages_.takeCodes(), "");
+}
+
+TEST_F(CExchange, MaterialsAreWritten) {
+  const char* names[] = {"Darkening"};
+  const std::string expected = toMaterialX(coat_, {"Darkening"}, "open_pbr_surface", {}, messages_);
+  EXPECT_NE(expected, "");
+  const CText text(lacquer_materialx(coat_.c_str(), names, 1, "open_pbr_surface", nullptr, c_messages_));
+  EXPECT_EQ(textOf(text), expected);
+  const std::string output = (folder_ / "coat.mtlx").string();
+  EXPECT_EQ(lacquer_convert(output.c_str(), coat_.c_str(), nullptr, 0, "", nullptr, c_messages_), 1);
+  const CScene again(lacquer_scene_load(output.c_str(), nullptr, c_messages_));
+  EXPECT_EQ(lacquer_scene_material_count(again.get()), Scene::load(coat_, {}, messages_).materialCount());
+  c_messages_.takeCodes();
+  EXPECT_EQ(lacquer_materialx(coat_.c_str(), nullptr, 0, "phong", nullptr, c_messages_), nullptr);
+  EXPECT_EQ(lacquer_convert(coat_.c_str(), coat_.c_str(), nullptr, 0, "", nullptr, c_messages_), 0);
+  EXPECT_EQ(lacquer_materialx(nullptr, nullptr, 0, nullptr, nullptr, c_messages_), nullptr);
+  EXPECT_EQ(c_messages_.takeCodes(), "unknown-surface, output-clash, file-unreadable");
+}
+
+TEST_F(CExchange, PatternsAreBaked) {
+  const std::string output = (folder_ / "ramp.gltf").string();
+  const CText text(lacquer_bake(output.c_str(), document_.c_str(), nullptr, 0, 8, nullptr, c_messages_));
+  EXPECT_NE(textOf(text).find("\"textures\": 1"), std::string::npos) << textOf(text);
+  EXPECT_TRUE(fs::exists(output));
+  EXPECT_TRUE(fs::exists(folder_ / "Ramp_baseColorTexture.png"));
+  EXPECT_EQ(lacquer_bake(output.c_str(), document_.c_str(), nullptr, 0, 0, nullptr, c_messages_), nullptr);
+  EXPECT_EQ(lacquer_bake(output.c_str(), coat_.c_str(), nullptr, 0, 8, nullptr, c_messages_), nullptr);
+  EXPECT_EQ(c_messages_.takeCodes(), "out-of-range, nothing-to-bake");
+}
+
+}  // namespace
+}  // namespace lacquer::test
