@@ -129,6 +129,98 @@ TEST(Bake, saysWhatIsWrong) {
   EXPECT_EQ(place.read("ramp.mtlx"), kDocument);
 }
 
+TEST(Bake, refusesWhatNoReaderFollows) {
+  const Workplace place;
+  Json gltf = Json::parse(kProcedural);
+  gltf["images"][0]["uri"] = "/etc/passwd";
+  place.write("absolute.gltf", gltf.dump());
+  const Outcome refused = place.run({"bake", "absolute.gltf", "-o", "out/absolute.gltf", "--size", "4"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("absolute.gltf:/images/0/uri: error: \"/etc/passwd\" is no relative path "
+                             "[image-missing]"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(place.has("out/absolute.gltf"));
+  // A whole address stays where it leads.
+  gltf["images"][0]["uri"] = "https://example.com/a.png";
+  place.write("far.gltf", gltf.dump());
+  EXPECT_EQ(place.run({"bake", "far.gltf", "-o", "out/far.gltf", "--size", "4", "-q"}).status, 0);
+  EXPECT_EQ(Json::parse(place.read("out/far.gltf"))["images"][0]["uri"], "https://example.com/a.png");
+}
+
+/// A part that samples a texture itself takes the image that is beside the nodes.
+TEST(Bake, givesImagesToWhatSamplesThemItself) {
+  const Workplace place;
+  place.write("nodes/moss.node", R"(/// E.
+/// source: ACME_moss
+extension ACME_moss {
+    texture mossTexture .rgb;
+}
+/// P.
+/// source: ACME_moss
+part moss of ACME_moss over coat {
+surface:
+    moss.light = moss_light(mossTexture.image, mossTexture.uv);
+    out emission = moss.light;
+}
+/// N.
+/// source: ACME_moss
+node moss_light(sampler2D image, vec2 uv) -> vec3 in [0, inf] {
+    return max(texture(image, uv).rgb, vec3(0));
+}
+)");
+  Json gltf = Json::parse(kProcedural);
+  Json info = gltf["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  info.erase("index");
+  gltf["materials"][0] = {{"name", "Moss"}, {"extensions", {{"ACME_moss", {{"mossTexture", info}}}}}};
+  gltf["extensionsUsed"].push_back("ACME_moss");
+  place.write("moss.gltf", gltf.dump());
+  const Outcome before = place.run({"graph", "moss.gltf", "--nodes", "nodes"});
+  EXPECT_EQ(before.status, 0) << before.err;
+  EXPECT_NE(before.err.find("[no-image]"), std::string::npos) << before.err;
+  EXPECT_NE(before.err.find("`lacquer bake`"), std::string::npos) << before.err;
+  const Outcome baked =
+      place.run({"bake", "moss.gltf", "-o", "out/moss.gltf", "--size", "4", "--nodes", "nodes"});
+  EXPECT_EQ(baked.status, 0) << baked.err;
+  EXPECT_NE(baked.out.find("\n1 texture in out/moss.gltf\n"), std::string::npos) << baked.out;
+  const Outcome after = place.run({"graph", "out/moss.gltf", "--nodes", "nodes"});
+  EXPECT_EQ(after.status, 0) << after.err;
+  EXPECT_EQ(after.err.find("[no-image]"), std::string::npos) << after.err;
+  EXPECT_NE(after.out.find("moss_texture"), std::string::npos) << after.out;
+}
+
+/// Graphs are built of a material's terms: neither verb has a use for one, and says so.
+TEST(Convert, takesNoGraph) {
+  const Workplace place;
+  place.write("paint.json", place.run({"graph", example("core.gltf"), "--material", "Metal"}).out);
+  for (const char* verb : {"convert", "bake"}) {
+    const Outcome outcome = place.run({verb, "paint.json", "-o", "out.mtlx"});
+    EXPECT_EQ(outcome.status, 2) << verb;
+    EXPECT_NE(outcome.err.find("[graph-is-built]"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("asset"), std::string::npos) << outcome.err;
+  }
+}
+
+/// MaterialX has letters and digits in names; what a material is called stands beside them.
+TEST(Convert, keepsNamesOutsideOfAscii) {
+  const Workplace place;
+  place.write("names.gltf", R"({"asset": {"version": "2.0"}, "materials": [
+    {"name": "床"}, {"name": "Café au lait"}, {"name": "Лак 2"}, {"name": "plain"}, {"name": "..."}]})");
+  const Outcome converted = place.run({"convert", "names.gltf", "-o", "names.mtlx"});
+  EXPECT_EQ(converted.status, 0) << converted.err;
+  const std::string text = place.read("names.mtlx");
+  EXPECT_NE(text.find("<surfacematerial name=\"u5e8a\" type=\"material\" uiname=\"床\">"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("name=\"Caf_u00e9_au_lait\""), std::string::npos) << text;
+  EXPECT_NE(text.find("name=\"u041b_u0430_u043a_2\""), std::string::npos) << text;
+  EXPECT_NE(text.find("<surfacematerial name=\"plain\" type=\"material\">"), std::string::npos) << text;
+  for (const char* name : {"床", "Café au lait", "Лак 2", "plain", "..."}) {
+    const Outcome graph = place.run({"graph", "names.mtlx", "--material", name});
+    EXPECT_EQ(graph.status, 0) << graph.err;
+    EXPECT_NE(graph.out.find("\"name\": \"" + std::string(name) + "\""), std::string::npos) << graph.out;
+  }
+}
+
 /// A material's name makes the name of an image: none that the file has, whether it is opened or not.
 TEST(Bake, replacesNoFileThatTheFileNames) {
   const Workplace place;

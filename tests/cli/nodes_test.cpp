@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "command.h"
 #include "support/cases.h"
@@ -229,6 +230,51 @@ TEST(Undeclared, ExtensionsAreNamed) {
        at = said.err.find("[undeclared-extension]", at + 1))
     ++count;
   EXPECT_EQ(count, 2u) << said.err;
+}
+
+/// The plain name of a node that two vendors have names neither; who says it is told of both.
+TEST(Nodes, OfTwoVendorsAreNamedBoth) {
+  const Workplace place;
+  place.write("nodes/acme.node", kMoss);
+  std::string bolt = kMoss;
+  while (bolt.find("ACME_materials_moss") != std::string::npos)
+    bolt = replaced(bolt, "ACME_materials_moss", "BOLT_moss");
+  place.write("nodes/bolt.node", replaced(bolt, "over coat unless", "over ACME_materials_moss.moss unless"));
+  const std::string both = "'ACME_materials_moss.moss_cover' and 'BOLT_moss.moss_cover'";
+  const auto expectBoth = [&](const std::vector<std::string>& words, int status) {
+    const Outcome outcome = place.run(words);
+    EXPECT_EQ(outcome.status, status) << outcome.all();
+    const bool said =
+        outcome.err.find(both) != std::string::npos ||
+        outcome.err.find("'ACME_materials_moss.moss_cover' or 'BOLT_moss.moss_cover'") != std::string::npos;
+    EXPECT_TRUE(said) << outcome.err;
+  };
+  expectBoth({"nodes", "moss_cover", "--nodes", "nodes"}, 1);
+  expectBoth({"tune", "moss_cover", "--nodes", "nodes"}, 2);
+  expectBoth({"stress", "moss_cover", "--nodes", "nodes"}, 1);
+  place.write("graph.json", R"({"lacquer_graph": 1, "template": "bsdf", "nodes": [
+    {"id": "a", "node": "moss_cover", "inputs": {"factor": 0.5}}], "outputs": {"alpha": {"node": "a"}}})");
+  expectBoth({"dump", "graph.json", "--nodes", "nodes"}, 1);
+  EXPECT_EQ(place.run({"nodes", "BOLT_moss.moss_cover", "--nodes", "nodes"}).status, 0);
+}
+
+/// Hints of the node language come out, and the library's own nodes have some.
+TEST(Nodes, HaveLabelsWhereNamesSayLittle) {
+  const Workplace place;
+  const Outcome outcome = place.run({"nodes", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json all = Json::parse(outcome.out);
+  std::map<std::string, std::string> labels;
+  for (const Json& node : all["nodes"]) {
+    for (const Json& input : node["inputs"]) {
+      if (input.contains("label")) labels[input["name"]] = input["label"];
+    }
+  }
+  EXPECT_EQ(labels["fg"], "Foreground");
+  EXPECT_EQ(labels["uvtiling"], "Tiling");
+  EXPECT_EQ(labels["texcoord"], "Texture coordinates");
+  place.write("nodes.json", outcome.out);
+  EXPECT_EQ(schemaErrors({place / "nodes.json"}, "nodes").value_or(""), "");
 }
 
 }  // namespace

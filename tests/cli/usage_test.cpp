@@ -44,6 +44,63 @@ TEST(Usage, versionEverywhere) {
   }
 }
 
+/// Words that the node library does not know are wrong usage, with what is known.
+TEST(Usage, wrongWordsAreTwo) {
+  const Workplace place;
+  const std::string coat = example("coat.gltf");
+  const std::pair<Words, std::string> kCases[] = {
+      {{"gen", coat, "-o", "out", "--live", "varnish"}, "unknown-term"},
+      {{"gen", coat, "-o", "out", "--live", "/materials/00/emissiveFactor"}, "unknown-property"},
+      {{"gen", coat, "-o", "out", "--live", "/emissiveFactor"}, "unknown-property"},
+      {{"graph", coat, "--simplify", "coat"}, "bad-simplification"},
+      {{"graph", coat, "--simplify", "without:coat.darkning"}, "unknown-term"},
+      {{"dump", coat, "--switch", "varnish=on"}, "unknown-switch"},
+      {{"dump", coat, "--profile", "varnish"}, "unknown-profile"},
+      {{"tune", "varnish"}, "no-such-node"},
+      {{"tune", "coat_absorption.varnish"}, "no-such-variant"},
+      {{"tune", "coat_absorption", "--live", "varnish"}, "unknown-term"},
+  };
+  for (const auto& [words, code] : kCases) {
+    const Outcome outcome = place.run(words);
+    EXPECT_EQ(outcome.status, 2) << joined(words) << "\n" << outcome.all();
+    EXPECT_EQ(outcome.out, "") << joined(words);
+    EXPECT_NE(outcome.err.find("[" + code + "]"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("\n  help: "), std::string::npos) << joined(words) << outcome.err;
+  }
+  EXPECT_TRUE(place.names().empty());
+  // A file that is not there is none.
+  EXPECT_EQ(place.run({"tune", "varnish.gltf"}).status, 1);
+  EXPECT_EQ(place.run({"gen", "varnish.gltf", "-o", "out", "--live", "coat"}).status, 1);
+}
+
+/// A property of a material that the file does not have stays live nowhere, which is said; of several files
+/// another may have it.
+TEST(Usage, liveNamesMaterialsThatAreThere) {
+  const Workplace place;
+  place.write("one.gltf", gltfOf({R"({"name": "one"})"}));
+  place.write("two.gltf", gltfOf({R"({"name": "a"})", R"({"name": "b"})"}));
+  const std::string live = "/materials/1/emissiveFactor";
+  for (const Words& verb : {Words{"gen", "one.gltf", "-o", "out"}, Words{"graph", "one.gltf"},
+                            Words{"dump", "one.gltf"}, Words{"preview", "one.gltf", "-o", "one.png"}}) {
+    Words words = verb;
+    words.insert(words.end(), {"--live", live});
+    const Outcome outcome = place.run(words);
+    EXPECT_EQ(outcome.status, 1) << joined(words) << outcome.all();
+    EXPECT_NE(outcome.err.find("[no-such-material]\n  help: the file has one: /materials/0\n"),
+              std::string::npos)
+        << joined(words) << outcome.err;
+  }
+  EXPECT_EQ(place.run({"gen", "two.gltf", "-o", "out", "--unused", "--live", live}).status, 0);
+  const Outcome both =
+      place.run({"gen", "one.gltf", "two.gltf", "-o", "out", "--unused", "--live", live, "--target", "glsl"});
+  EXPECT_EQ(both.status, 0) << both.err;
+  EXPECT_NE(both.err.find("one.gltf: warning: "), std::string::npos) << both.err;
+  EXPECT_NE(both.out.find("\n3 materials, "), std::string::npos) << both.out;
+  const Outcome single = place.run({"gen", "one.gltf", "-o", "single", "--unused", "--target", "glsl"});
+  EXPECT_NE(single.out.find("\n1 material, 1 distinct shader, 1 validated\n"), std::string::npos)
+      << single.out;
+}
+
 /// Nothing is written, nothing goes to stdout, and stderr says what is wrong.
 TEST(Usage, wrongUsageIsTwo) {
   const Workplace place;

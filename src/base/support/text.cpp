@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/plain_name.h"
 #include "support/shown.h"
 
 namespace lacquer {
@@ -153,6 +154,42 @@ std::string listOf(std::span<const std::string_view> names, std::string_view las
 
 std::string pluralOf(std::string_view noun) {
   return std::string(noun) + (noun.ends_with("sh") ? "es" : "s");
+}
+
+std::string plainName(std::string_view text) {
+  constexpr size_t kLongest = 80;
+  std::string name;
+  bool apart = false;  // what comes next is a word of its own
+  const auto add = [&](const std::string& word) {
+    const bool joined = apart && !name.empty();
+    if (name.size() + word.size() + (joined ? 1 : 0) > kLongest) return false;
+    if (joined) name += '_';
+    name += word;
+    return true;
+  };
+  for (size_t i = 0; i < text.size();) {
+    const Character character = firstOf(text.substr(i));
+    const char c = text[i];
+    i += std::max<size_t>(character.length, 1);
+    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (good) {
+      if (!add(std::string(1, c))) break;
+      apart = false;
+      continue;
+    }
+    apart = true;
+    if (character.code >= 0x80 && !add(fmt::format("u{:04x}", character.code))) break;
+  }
+  return name;
+}
+
+bool isPlainText(std::string_view text) {
+  while (!text.empty()) {
+    const Character character = firstOf(text);
+    if (character.length == 0 || character.code < 0x20 || character.code == 0x7F) return false;
+    text.remove_prefix(character.length);
+  }
+  return true;
 }
 
 std::string countOf(size_t count, std::string_view noun) {

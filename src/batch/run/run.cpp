@@ -87,6 +87,7 @@ bool Run::open(const std::string& folder) {
     return false;
   }
   setting_.emplace(Setting{options_, *library_, base_, cache_.get(), &times_, *limitsOf(options_), folder});
+  setting_->several = inputs_.size() > 1;
   structures_.emplace(*setting_);
   return true;
 }

@@ -17,6 +17,7 @@
 #include "setting/messages.h"
 #include "setting/option_key.h"
 #include "setting/options.h"
+#include "setting/watched.h"
 #include "shader/module.h"
 #include "structures/describe.h"
 #include "structures/reflection_blob.h"
@@ -216,6 +217,11 @@ FileResult SceneFile::run(const material::Document& document) {
     if (!only_.empty()) result.names.push_back(material.name);
   }
   result.diagnostics = document.diagnostics;
+  for (Diagnostic& absent : checkWatched(setting_.options, document.materials.size())) {
+    absent.place.file = path_;
+    if (setting_.several) absent.severity = Severity::Warning;  // another file may have it
+    result.diagnostics.push_back(std::move(absent));
+  }
   result.ok = !hasError(result.diagnostics);
   if (const auto schema = setting_.library.models.schema()) {
     const Diagnostics warnings = undeclared(document, path_, **schema);
@@ -290,7 +296,7 @@ Key fileKey(const std::string& path, const Key& content, const Setting& setting)
   key.text("file").key(setting.base).text(path).text(relativeTo(setting.folder, path)).key(content);
   addOptions(setting.options, {Decides::Graph, Decides::Module}, key);
   if (setting.sharing != nullptr) key.key(setting.sharing->digest());
-  key.number(setting.options.pipelines.empty());
+  key.number(setting.options.pipelines.empty()).number(setting.several);
   return key.finish();
 }
 

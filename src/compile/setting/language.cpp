@@ -9,8 +9,10 @@
 
 #include "model/order.h"
 #include "setting/options.h"
+#include "setting/watched.h"
 #include "support/file.h"
 #include "support/stack.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -137,7 +139,12 @@ Result<material::Document> readMaterials(const std::string& path, const Language
   if (!limits) return tl::make_unexpected(limits.error());
   const Result<std::string> bytes = readFile(path, limits->file, links);
   if (!bytes) return tl::make_unexpected(bytes.error());
-  return material::readText(*bytes, path, **schema, {options.permissive, *limits});
+  Result<material::Document> document =
+      material::readText(*bytes, path, **schema, {options.permissive, *limits});
+  if (!document) return document;
+  if (Diagnostics wrong = checkWatched(options, document->materials.size()); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  return document;
 }
 
 std::optional<std::string_view> watchedPath(std::string_view live, std::optional<int> material) {
@@ -146,8 +153,33 @@ std::optional<std::string_view> watchedPath(std::string_view live, std::optional
   live.remove_prefix(kMaterials.size());
   const size_t digits = std::min(live.find_first_not_of("0123456789"), live.size());
   if (digits == 0 || digits == live.size() || live[digits] != '/') return std::nullopt;
+  if (digits > 1 && live[0] == '0') return std::nullopt;  // as JSON Pointer (RFC 6901) has it
   if (material && live.substr(0, digits) != fmt::format("{}", *material)) return std::nullopt;
   return live.substr(digits + 1);
+}
+
+Diagnostics checkWatched(const Options& options, size_t materials) {
+  Diagnostics wrong;
+  for (const std::string& live : options.live) {
+    const std::optional<std::string_view> path = watchedPath(live);
+    if (!path) continue;
+    const std::string_view rest = std::string_view(live).substr(std::string_view("/materials/").size());
+    const std::string_view index = rest.substr(0, rest.find('/'));
+    constexpr size_t kDigits = 9;
+    size_t number = 0;
+    for (const char c : index.substr(0, kDigits)) number = number * 10 + static_cast<size_t>(c - '0');
+    if (index.size() <= kDigits && number < materials) continue;
+    wrong.push_back({"no-such-material",
+                     Severity::Error,
+                     {},
+                     fmt::format("{} is to stay live, and there is no material {}", quote(live), index),
+                     materials == 0 ? std::string("the file has no materials")
+                     : materials == 1
+                         ? std::string("the file has one: /materials/0")
+                         : fmt::format("the file has /materials/0 to /materials/{}", materials - 1),
+                     {}});
+  }
+  return wrong;
 }
 
 Result<void> resolveNames(const lang::Library& library, Options& options) {

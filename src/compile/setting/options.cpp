@@ -76,7 +76,9 @@ void checkNames(const Options& options, Diagnostics& wrong) {
     if (term.starts_with('/')) {
       if (!isProperty(**language, options, term))
         add(wrong, "unknown-property", fmt::format("'{}' is no property of a material", term),
-            "a JSON pointer to a number or a texture, such as /materials/0/emissiveFactor");
+            "a JSON pointer to a number or a texture, such as /materials/0/emissiveFactor, whose index has "
+            "no "
+            "leading zeros");
       continue;
     }
     add(wrong, "unknown-term", fmt::format("no term that can be kept live is named '{}'", term),

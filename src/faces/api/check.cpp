@@ -6,11 +6,13 @@
 #include <map>
 #include <set>
 
+#include "lacquer/check.h"
 #include "lacquer/tools.h"
 #include "lang/embedded.h"
 #include "material/drawn.h"
 #include "setting/language.h"
 #include "setting/messages.h"
+#include "setting/options.h"
 #include "shader/module.h"
 #include "structures/describe.h"
 
@@ -200,6 +202,12 @@ private:
 };
 
 }  // namespace
+
+bool checkOptions(const Options& options, Messages& messages) {
+  const Diagnostics found = checkOptions(options);
+  report(found, {}, messages);
+  return !lacquer::hasError(found);
+}
 
 bool checkNodes(const Options& options, Messages& messages) {
   const size_t before = messages.size();

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "lacquer/exchange.h"
+#include "lacquer/graph.h"
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "support/file.h"
@@ -27,6 +28,14 @@ std::string documentOf(const std::string& file, const std::string& folder, const
                 "there are " + listOf(exchange::kSurfaces))
                .value(),
            file, messages);
+    return {};
+  }
+  if (isGraphFile(file)) {
+    report(
+        fail("graph-is-built", {}, "a graph is built of a material's terms, for which MaterialX has no nodes",
+             "name the material's file: .gltf, .glb or .mtlx")
+            .value(),
+        file, messages);
     return {};
   }
   const Result<std::shared_ptr<const Language>> language = libraryFor(options);

@@ -9,6 +9,7 @@
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "setting/watched.h"
 #include "shader/module.h"
 
 namespace lacquer {
@@ -71,6 +72,8 @@ Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const
     report(document.error(), name, messages);
     return scene;
   }
+  if (const Diagnostics wrong = checkWatched(options, document->materials.size()); !wrong.empty())
+    return report(wrong, name, messages), scene;
   report(document->diagnostics, name, messages);
   scene.impl_ = std::make_shared<Impl>(
       Impl{std::move(*document), schema->language, std::make_shared<const std::string>(bytes)});
@@ -111,7 +114,9 @@ Graph Scene::graph(size_t material, const Attributes& attributes, const Options&
   const material::Material& m = *found;
   report(m.diagnostics, document.path, messages);
   if (lacquer::hasError(m.diagnostics)) return result;
-  if (const Diagnostics wrong = checkReading(options); !wrong.empty()) {
+  Diagnostics wrong = checkReading(options);
+  if (wrong.empty()) wrong = checkWatched(options, document.materials.size());
+  if (!wrong.empty()) {
     report(wrong, {}, messages);
     return result;
   }

@@ -79,8 +79,10 @@ std::optional<Named> find(const std::string& name, const Options& options, Messa
   const std::string variant = node.size() < name.size() ? name.substr(node.size() + 1) : "";
   const auto decl = (*library)->node(node);
   if (!decl) {
+    if ((*library)->has(lang::DeclKind::Node, node)) return wrong(decl.error());
+    const std::string& help = decl.error().front().help;
     return wrong(fail("no-such-node", {}, fmt::format("there is no node '{}'", printable(node)),
-                      "`lacquer nodes` lists what there is")
+                      help.empty() ? "`lacquer nodes` lists what there is" : help)
                      .value());
   }
   if (!variant.empty() && !hasVariant(**decl, variant)) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/streams.h"
+#include "support/text.h"
 
 namespace lacquer::cli {
 
@@ -42,8 +43,8 @@ void printTimes(const Report& report, double wall) {
     total += seconds;
   }
   say("{:<20} {:>10.3f} ms\n{:<20} {:>10.3f} ms\n", "all threads", total * 1e3, "wall clock", wall * 1e3);
-  say("{} shaders made, {} from the cache, {} files written\n", report.made,
-      report.shaders.size() - report.made, report.written);
+  say("{} made, {} from the cache, {} written\n", countOf(report.made, "shader"),
+      report.shaders.size() - report.made, countOf(report.written, "file"));
 }
 
 ProgressLine::~ProgressLine() {

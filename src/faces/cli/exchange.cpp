@@ -6,6 +6,7 @@
 #include "cli/checks.h"
 #include "cli/streams.h"
 #include "cli/table.h"
+#include "support/text.h"
 
 namespace lacquer::cli {
 
@@ -18,6 +19,9 @@ void addReading(CLI::App& verb, OptionFlags& options) {
   addLimit(verb, options);
   addSyncFlag(verb, options);
 }
+
+/// Of a call that has failed: a graph is no input of these verbs.
+int statusFor(const std::string& file) { return isGraphFile(file) ? 2 : 1; }
 
 }  // namespace
 
@@ -34,7 +38,7 @@ int runConvert(const ExchangeFlags& flags, const OptionFlags& options) {
   Messages messages;
   const bool written = writeMaterialX(flags.output, flags.file, {}, flags.surface, options.options, messages);
   print(messages);
-  return written && !hasError(messages) ? 0 : 1;
+  return written && !hasError(messages) ? 0 : statusFor(flags.file);
 }
 
 void addBake(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options) {
@@ -63,22 +67,17 @@ int runBake(const ExchangeFlags& flags, const OptionFlags& options) {
   print(messages);
   if (baked && !flags.quiet) {
     for (const std::string& image : baked->images) fmt::print("{}\n", printable(image));
-    fmt::print("{} textures in {}\n", baked->textures, printable(baked->output));
+    fmt::print("{} in {}\n", countOf(baked->textures, "texture"), printable(baked->output));
   }
-  return baked && !hasError(messages) ? 0 : 1;
+  return baked && !hasError(messages) ? 0 : statusFor(flags.file);
 }
 
 int printDocument(const OptionFlags& flags, const std::string& file, const Strings& materials) {
   Messages messages;
-  if (isGraphFile(file)) {
-    say("graph: {} is built of a material's terms, which MaterialX does not have: name the material's file\n",
-        printable(file));
-    return 2;
-  }
   const std::string text = toMaterialX(file, materials, {}, flags.options, messages);
   fmt::print("{}", text);
   print(messages);
-  return text.empty() || hasError(messages) ? 1 : 0;
+  return text.empty() || hasError(messages) ? statusFor(file) : 0;
 }
 
 }  // namespace lacquer::cli

@@ -29,6 +29,7 @@
 #include "cli/view.h"
 #include "lacquer.h"
 #include "support/shown.h"
+#include "support/text.h"
 
 namespace {
 
@@ -250,8 +251,9 @@ int plan(const Flags& flags) {
   print(messages);
   const bool good = report.ok && !hasError(messages);
   if (!flags.quiet && good) {
-    fmt::print("{} materials, {} distinct shaders: run ninja -f {}\n", report.materials.size(),
-               report.shaders.size(), lacquer::cli::printable(flags.ninja));
+    fmt::print("{}, {}: run ninja -f {}\n", lacquer::countOf(report.materials.size(), "material"),
+               lacquer::countOf(report.shaders.size(), "distinct shader"),
+               lacquer::cli::printable(flags.ninja));
   }
   if (flags.time) lacquer::cli::printTimes(report, wall.count());
   return good ? kGood : kFailed;
@@ -323,7 +325,8 @@ int check(const Flags& flags) {
   if (good) {
     std::string folders;
     for (const std::string& folder : flags.files) folders += (folders.empty() ? "" : ", ") + folder;
-    fmt::print("{}: good, {} warnings\n", lacquer::cli::printable(folders), messages.size());
+    fmt::print("{}: good, {}\n", lacquer::cli::printable(folders),
+               lacquer::countOf(messages.size(), "warning"));
   }
   print(messages);
   return good ? kGood : kFailed;
@@ -457,6 +460,7 @@ int run(int argc, char** argv) {
     say("{}\n", wrong);
     return kUsage;
   }
+  if (!lacquer::cli::haveGoodWords(all.flags.options)) return kUsage;
   const std::string called = app.get_subcommands()[0]->get_name();
   return std::find_if(verbs.begin(), verbs.end(), [&](const Verb& verb) { return verb.name == called; })
       ->run();

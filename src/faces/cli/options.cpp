@@ -1,5 +1,7 @@
 #include "cli/options.h"
 
+#include "cli/streams.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +9,7 @@
 #include <sstream>
 
 #include "cli/checks.h"
+#include "lacquer/check.h"
 #include "support/shown.h"
 
 namespace lacquer::cli {
@@ -175,6 +178,17 @@ void addLimit(CLI::App& verb, OptionFlags& flags) {
           "NAME=NUMBER: what an input may be at most, such as images=1G (docs/security.md; may be repeated)")
       ->check(kLimit)
       ->allow_extra_args(false);
+}
+
+bool haveGoodWords(const Options& options) {
+  if (options.live.empty() && options.simplify.empty() && options.switches.empty() && options.profile.empty())
+    return true;
+  Messages wrong;
+  if (checkOptions(options, wrong)) return true;
+  if (std::any_of(wrong.begin(), wrong.end(), [](const Message& one) { return !one.file.empty(); }))
+    return true;
+  print(wrong);
+  return false;
 }
 
 std::string finish(OptionFlags& flags) {

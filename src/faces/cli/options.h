@@ -34,5 +34,8 @@ void addLimit(CLI::App& verb, OptionFlags& flags);
 
 /// What CLI11 cannot know; an empty text when all is well.
 std::string finish(OptionFlags& flags);
+/// False, and errors on stderr, where --live, --simplify, --switch or --profile has a word that the node
+/// library does not know. Node files that are wrong are the verb's to say.
+bool haveGoodWords(const Options& options);
 
 }  // namespace lacquer::cli

@@ -8,6 +8,7 @@
 #include "cli/checks.h"
 #include "cli/table.h"
 #include "cli/trial.h"
+#include "support/text.h"
 
 namespace lacquer::cli {
 
@@ -62,7 +63,7 @@ void printMeasured(const PreviewSheet& sheet) {
     fmt::print("{:>12} {:>12} {:>12}  {}\n", number(of.largest), number(of.mean), number(of.root_mean_square),
                printable(of.material));
   }
-  fmt::print("{} materials in {}\n", sheet.materials, printable(sheet.output));
+  fmt::print("{} in {}\n", countOf(sheet.materials, "material"), printable(sheet.output));
 }
 
 }  // namespace

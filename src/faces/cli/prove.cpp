@@ -9,6 +9,7 @@
 #include "cli/graphs.h"
 #include "cli/streams.h"
 #include "cli/table.h"
+#include "support/text.h"
 
 namespace lacquer::cli {
 
@@ -67,7 +68,7 @@ bool proveNodes(const ProveFlags& flags, const Options& options, Messages& messa
   if (flags.json)
     fmt::print("{}\n", answerJson(*nodes));
   else
-    fmt::print("{} nodes: {} of {} claims proved\n", nodes->size(), good, all);
+    fmt::print("{}: {} of {} proved\n", countOf(nodes->size(), "node"), good, countOf(all, "claim"));
   return good == all;
 }
 

@@ -144,8 +144,8 @@ void printReport(const Report& report, const Options& options) {
   }
   size_t valid = 0;
   for (const ShaderReport& shader : report.shaders) valid += shader.validated ? 1 : 0;
-  fmt::print("\n{} materials, {} distinct shaders, {} validated\n", report.materials.size(),
-             report.shaders.size(), valid);
+  fmt::print("\n{}, {}, {} validated\n", countOf(report.materials.size(), "material"),
+             countOf(report.shaders.size(), "distinct shader"), valid);
 }
 
 bool printNodes(const std::string& text, const std::string& name, bool as_json) {
@@ -160,10 +160,17 @@ bool printNodes(const std::string& text, const std::string& name, bool as_json) 
     if (!name.empty() && !as_json) printNode(node);
   }
   if (name.empty() && as_json) fmt::print("{}\n", all.dump(2));
-  if (!found)
-    say("lacquer: error: there is no node '{}'; `lacquer nodes` lists them [unknown-node]\n",
-        printable(name));
-  return found;
+  if (found) return true;
+  // What two vendors call alike has the vendor before it.
+  std::vector<std::string> alike;
+  for (const auto& node : all["nodes"]) {
+    if (node["name"].get<std::string>().ends_with("." + name))
+      alike.push_back(node["name"].get<std::string>());
+  }
+  say("lacquer: error: there is no node '{}'; {} [unknown-node]\n", printable(name),
+      alike.empty() ? "`lacquer nodes` lists them"
+                    : fmt::format("several extensions have one: '{}'", fmt::join(alike, "' and '")));
+  return false;
 }
 
 }  // namespace lacquer::cli

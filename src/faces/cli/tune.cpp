@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/checks.h"
 #include "cli/graphs.h"
 #include "cli/streams.h"
@@ -75,6 +77,15 @@ std::optional<Tuned> find(const TuneFlags& flags, const Options& options, Messag
   return graph ? tune(graph, options, messages) : found;
 }
 
+/// A node, a variant, a name or a line that is not there is wrong usage; files have errors of their own.
+int statusOf(const TuneFlags& flags, const Messages& messages) {
+  constexpr int kFailed = 1;
+  constexpr int kUsage = 2;
+  const bool own = std::all_of(messages.begin(), messages.end(),
+                               [](const Message& message) { return message.file.empty(); });
+  return own && !isFile(flags.subject) ? kUsage : kFailed;
+}
+
 }  // namespace
 
 int runTune(const TuneFlags& flags, const Options& options) {
@@ -83,11 +94,11 @@ int runTune(const TuneFlags& flags, const Options& options) {
     const auto text = variantText(flags.subject, flags.form, flags.variant, options, messages);
     print(messages);
     if (text) fmt::print("{}", *text);
-    return text ? 0 : 1;
+    return text ? 0 : statusOf(flags, messages);
   }
   const std::optional<Tuned> tuned = find(flags, options, messages);
   print(messages);
-  if (!tuned || hasError(messages)) return 1;
+  if (!tuned || hasError(messages)) return statusOf(flags, messages);
   if (flags.json)
     printJson(*tuned);
   else

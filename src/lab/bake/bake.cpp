@@ -7,10 +7,11 @@
 
 #include "bake/image.h"
 #include "eval/material.h"
-#include "gltf/texture_source.h"
+#include "gltf/uri.h"
 #include "graph/graph.h"
 #include "json/json.h"
 #include "lacquer/exchange.h"
+#include "lacquer/graph.h"
 #include "preview/studio.h"
 #include "setting/language.h"
 #include "setting/messages.h"
@@ -18,6 +19,7 @@
 #include "support/file.h"
 #include "support/jobs.h"
 #include "support/outputs.h"
+#include "support/plain_name.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -30,17 +32,6 @@ namespace fs = std::filesystem;
 
 constexpr uint32_t kMostTexels = 8192;
 constexpr std::string_view kProcedurals = "KHR_texture_procedurals";
-
-/// Letters, digits and underscores of a name: it becomes a file's.
-std::string fileName(std::string_view text) {
-  std::string name;
-  for (const char c : text) {
-    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (good || (!name.empty() && name.back() != '_')) name += good ? c : '_';
-  }
-  constexpr size_t kLongest = 80;
-  return name.empty() ? "material" : name.substr(0, kLongest);
-}
 
 /// A path as the beginning of a URI.
 std::string uriOf(const std::string& path) {
@@ -218,8 +209,11 @@ Result<Json> Baking::frame(const std::string& file) {
     for (Json& each : gltf[list]) {
       if (!each.is_object() || !each.contains("uri") || !each["uri"].is_string()) continue;
       const std::string uri = each["uri"].text();
-      if (uri.find(':') != std::string::npos) continue;
-      inputs_.push_back((from / gltf::percentDecoded(uri)).string());
+      if (gltf::hasScheme(uri)) continue;
+      const Result<std::string> relative =
+          gltf::relativePath(uri, {file, 0, 0, fmt::format("/{}/{}/uri", list, &each - gltf[list].begin())});
+      if (!relative) return tl::make_unexpected(relative.error());
+      inputs_.push_back((from / *relative).string());
       each["uri"] = way + uri;
     }
   }
@@ -248,6 +242,10 @@ Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
     return tl::make_unexpected(std::move(path.error()));
   if (Result<void> size = inRange("the size of an image", how_.size, 1, kMostTexels, "texels"); !size)
     return tl::make_unexpected(std::move(size.error()));
+  if (isGraphFile(file))
+    return fail("graph-is-built", {file, 0, 0, {}},
+                "a graph is built of a material's terms: it has no procedural textures to bake",
+                "name the material's file: .gltf or .mtlx");
   Result<std::shared_ptr<const Language>> language = libraryFor(options_);
   if (!language) return tl::make_unexpected(language.error());
   language_ = std::move(*language);
@@ -281,7 +279,7 @@ Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
           fmt::format("{} {} {}", texture.info.group, texture.info.output, property.decl->srgb);
       const auto [it, fresh] = names.try_emplace(key);
       if (fresh) {
-        const std::string stem = fileName(fmt::format("{}_{}", material.name, property.decl->name));
+        const std::string stem = plainName(fmt::format("{}_{}", material.name, property.decl->name));
         std::string name = stem + ".png";
         for (size_t n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}.png", stem, n);
         it->second = name;

@@ -168,6 +168,11 @@ private:
 
   Result<std::unique_ptr<Subject>> nodeSubject(const std::string& name, const std::string& variant) {
     const Result<const lang::NodeDecl*> found = library_->node(name);
+    if (!found && !library_->has(lang::DeclKind::Node, name)) {
+      const std::string& help = found.error().front().help;
+      return fail("unknown-node", {}, fmt::format("there is no node '{}'", printable(name)),
+                  help.empty() ? "`lacquer nodes` lists them" : help);
+    }
     if (!found || (*found)->find(variant) == nullptr) {
       return fail("unknown-node", {}, fmt::format("there is no node '{}'", printable(name)),
                   "`lacquer nodes` lists them");

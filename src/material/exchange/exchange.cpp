@@ -4,6 +4,7 @@
 
 #include "exchange/pattern_out.h"
 #include "exchange/surface_out.h"
+#include "support/plain_name.h"
 #include "support/relative.h"
 
 namespace lacquer::exchange {
@@ -65,6 +66,8 @@ Written toMaterialX(const material::Document& document, const std::vector<size_t
     Element made;
     made.category = "surfacematerial";
     made.attributes = {{"name", material}, {"type", "material"}};
+    // MaterialX has letters, digits and underscores in names, and any text beside them.
+    if (material != own && !own.empty() && isPlainText(own)) made.attributes.emplace_back("uiname", own);
     made.children.push_back(shaderInput(shader.name()));
     shaders.push_back(std::move(shader));
     surface_materials.push_back(std::move(made));

@@ -1,4 +1,5 @@
 #include "gltf/texture_source.h"
+#include "gltf/uri.h"
 
 #include <fmt/format.h>
 
@@ -57,12 +58,6 @@ std::optional<std::string> fromBase64(std::string_view text) {
   return bytes;
 }
 
-/// "http:", "file:"; a drive letter is one, too.
-bool hasScheme(std::string_view uri) {
-  const size_t colon = uri.find(':');
-  return colon != std::string_view::npos && uri.find_first_of("/?#") > colon;
-}
-
 bool isData(std::string_view uri) {
   constexpr std::string_view kScheme = "data:";
   return uri.size() > kScheme.size() && std::equal(kScheme.begin(), kScheme.end(), uri.begin(),
@@ -70,6 +65,20 @@ bool isData(std::string_view uri) {
 }
 
 }  // namespace
+
+bool hasScheme(std::string_view uri) {
+  const size_t colon = uri.find(':');
+  return colon != std::string_view::npos && uri.find_first_of("/?#") > colon;
+}
+
+Result<std::string> relativePath(std::string_view uri, const Place& place) {
+  std::string relative = percentDecoded(uri);
+  if (!hasScheme(uri) && !std::filesystem::path(relative).is_absolute() &&
+      relative.find('\0') == std::string::npos)
+    return relative;
+  return fail("image-missing", place, fmt::format("{} is no relative path", quote(uri)),
+              "images are looked for beside the file");
+}
 
 std::string percentDecoded(std::string_view uri) {
   const auto digit = [](char c) {
@@ -134,14 +143,10 @@ Result<std::string> TextureFile::uriBytes(const std::string& uri, const Place& p
     return missing(fmt::format("{} is a file, and what names it was read from memory", quote(uri)),
                    "images must be in it, as data URIs or buffer views");
   }
-  const std::string relative = percentDecoded(uri);
-  if (hasScheme(uri) || std::filesystem::path(relative).is_absolute() ||
-      relative.find('\0') != std::string::npos) {
-    return missing(fmt::format("{} is no relative path", quote(uri)),
-                   "images are looked for beside the file");
-  }
+  const Result<std::string> relative = relativePath(uri, place);
+  if (!relative) return tl::make_unexpected(relative.error());
   const std::string folder = std::filesystem::path(path_).parent_path().string();
-  const std::optional<std::string> file = resolveBelow(folder, relative, access_.allow);
+  const std::optional<std::string> file = resolveBelow(folder, *relative, access_.allow);
   if (!file) {
     return fail("image-outside", place, fmt::format("{} leads out of the file's folder", quote(uri)),
                 "--allow DIR lets images lie in another folder, too");

@@ -176,7 +176,8 @@ Result<Materials> MaterialsReader::read() {
                       "it is left out",
                       {}});
     }
-    material(child, child.name(), shaderOf(child), std::move(said));
+    const std::string_view shown = child.get("uiname");
+    material(child, shown.empty() ? child.name() : shown, shaderOf(child), std::move(said));
   }
   if (made_.empty()) {
     for (const Element& child : root.children) {

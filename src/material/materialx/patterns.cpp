@@ -9,6 +9,7 @@
 #include "graph/contracts.h"
 #include "graph/text.h"
 #include "lang/suggest.h"
+#include "support/plain_name.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {
@@ -42,18 +43,7 @@ std::string_view givenOf(std::string_view geomprop) {
 }  // namespace
 
 std::string graphName(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (good) {
-      text += c;
-    } else if (!text.empty() && text.back() != '_') {
-      text += '_';
-    }
-    constexpr size_t kLongest = 80;
-    if (text.size() == kLongest) break;
-  }
-  while (text.ends_with('_')) text.pop_back();
+  std::string text = plainName(name);
   if (text.empty()) return "unnamed";
   return text[0] >= '0' && text[0] <= '9' ? "n" + text : text;
 }

@@ -142,13 +142,14 @@ Found Resolver::number(const Role& role, const Value& value) {
   return out;
 }
 
-/// The texture itself, which a node samples where it likes. What a group of nodes computes is none.
+/// The texture itself, which a node samples where it likes. What a group of nodes computes is none; the image
+/// that a file has beside it is taken.
 Found Resolver::image(Found texture, const gltf::TextureInfo& info) {
   texture.kind = Found::Kind::Image;
   texture.type = ir::Type::Texture2D;
   const lang::PropertyDecl& decl = *model_.schema->properties[texture.property].decl;
   const bool encoded = decl.srgb && options_.decode_srgb;
-  if (info.group.empty() && !encoded) return texture;
+  if ((info.group.empty() || info.texture >= 0) && !encoded) return texture;
   if (told_.insert(texture.property).second) {
     warnings_.push_back(
         {"no-image",
@@ -157,7 +158,7 @@ Found Resolver::image(Found texture, const gltf::TextureInfo& info) {
          fmt::format("a part samples '{}' itself, which {}", decl.name,
                      encoded ? "is encoded in this shader" : "nodes compute in place of an image"),
          encoded ? "give it a format that decodes sRGB; what needs it is left out"
-                 : "give it an image; what needs it is left out",
+                 : "give it an image beside the nodes, as `lacquer bake` does; what needs it is left out",
          {}});
   }
   return {};
