@@ -138,7 +138,7 @@ private:
 
   Source source() {
     Source source;
-    switch (pick(6)) {
+    switch (pick(7)) {
       case 0: {
         const Type type = valueType();
         source.from = graph::Literal{type, components(type)};
@@ -148,6 +148,7 @@ private:
       case 2: source.from = graph::TextureRef{text()}; break;
       case 3: source.from = graph::GivenRef{text()}; break;
       case 4: source.from = graph::InputRef{text()}; break;
+      case 5: source.from = graph::AttributeRef{text(), ir::floatType(static_cast<int>(pick(4)) + 1)}; break;
       default: source.from = graph::NodeRef{text(), pick(2) == 0 ? std::string() : text()}; break;
     }
     if (pick(3) == 0) source.swizzle = pick(2) == 0 ? "xyz" : text();

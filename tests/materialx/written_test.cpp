@@ -122,6 +122,10 @@ graph::Graph everyNode() {
       if (ir::isTexture(param.type) || ir::isMatrix(param.type)) continue;
       const ir::Components value = param.default_value.value_or(ir::Components{1, 1, 1, 1});
       const ir::Type type = param.type == ir::Type::Int ? ir::Type::Float : param.type;
+      if (param.name == "geomprop") {
+        node.inputs.emplace_back("geomprop", graph::Source{graph::AttributeRef{"_WETNESS", type}, {}});
+        continue;
+      }
       node.inputs.emplace_back(std::string(param.name), graph::Source{graph::Literal{type, value}, {}});
     }
     const std::string_view result = decl.results.size() > 1 ? decl.results[0].name : std::string_view();

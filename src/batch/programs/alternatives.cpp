@@ -26,6 +26,9 @@ struct Text {
   std::string operator()(const graph::ParameterRef& ref) const { return "p" + ref.name; }
   std::string operator()(const TextureRef& ref) const { return "t" + ref.name; }
   std::string operator()(const graph::GivenRef& ref) const { return "g" + ref.name; }
+  std::string operator()(const graph::AttributeRef& ref) const {
+    return fmt::format("a{} {}", ref.name, static_cast<int>(ref.type));
+  }
   std::string operator()(const NodeRef& ref) const { return "n" + ref.node + " " + ref.output; }
   std::string operator()(const graph::InputRef& ref) const { return "i" + ref.name; }
   std::string operator()(const graph::Choice& choice) const { return "c" + choice.name; }

@@ -34,6 +34,7 @@ public:
   void operator()(const graph::ParameterRef& ref) { key_.number('p').text(ref.name); }
   void operator()(const graph::TextureRef& ref) { key_.number('t').text(ref.name); }
   void operator()(const graph::GivenRef& ref) { key_.number('g').text(ref.name); }
+  void operator()(const graph::AttributeRef& ref) { key_.number('a').text(ref.name).number(ref.type); }
   void operator()(const graph::NodeRef& ref) { key_.number('n').text(ref.node).text(ref.output); }
   void operator()(const graph::Choice& choice) { key_.number('c').text(choice.name); }
   void operator()(const graph::InputRef& ref) { key_.number('i').text(ref.name); }  // of no flat graph

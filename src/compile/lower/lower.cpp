@@ -119,6 +119,7 @@ public:
     ports();
     if (Diagnostics wrong = displace(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     if (Diagnostics wrong = outputs(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
+    placeOwnAttributes();
     if (Diagnostics wrong = rates(); !wrong.empty()) return tl::make_unexpected(std::move(wrong));
     assert(ir::verify(module_).empty());
     return std::move(module_);
@@ -130,8 +131,8 @@ private:
   void declareInterface() {
     for (const lang::BlockDecl& block : template_->blocks) declareBlock(block);
     if (template_->light_lists) listLights(*template_->light_lists);
-    const bool vertex_stage = std::any_of(template_->outputs.begin(), template_->outputs.end(),
-                                          [](const auto& o) { return o.role == lang::OutputRole::Position; });
+    vertex_stage_ = std::any_of(template_->outputs.begin(), template_->outputs.end(),
+                                [](const auto& o) { return o.role == lang::OutputRole::Position; });
     for (const lang::AttributeDecl& attribute : template_->attributes) {
       const std::string name(attribute.name);
       if (attribute.optional) {
@@ -139,28 +140,9 @@ private:
             std::find(graph_.attributes.begin(), graph_.attributes.end(), name) != graph_.attributes.end();
         slots_[attribute.has_slot] = dag().boolean(there);
       }
-      if (attribute.fact) continue;
-      if (vertex_stage) {
-        slots_[attribute.slot] = dag().input({ir::InputKind::Attribute,
-                                              name,
-                                              attribute.type,
-                                              ir::Rate::Vertex,
-                                              {},
-                                              0,
-                                              static_cast<uint32_t>(module_.attributes.size())});
-        module_.attributes.push_back({name, attribute.type, attribute.location});
-      } else {
-        // Without a vertex stage the fragment's inputs come from outside as they are.
-        slots_[attribute.slot] = dag().input({ir::InputKind::Varying,
-                                              name,
-                                              attribute.type,
-                                              ir::Rate::Fragment,
-                                              {},
-                                              0,
-                                              static_cast<uint32_t>(module_.varyings.size())});
-        module_.varyings.push_back({name, attribute.type, attribute.location, ir::kNoValue});
-      }
+      if (!attribute.fact) slots_[attribute.slot] = declare(name, attribute.type, attribute.location);
     }
+    of_template_ = std::max(module_.attributes.size(), module_.varyings.size());
     for (const lang::EnvironmentDecl& environment : template_->environments) {
       ir::TextureSlot slot;
       slot.name = environment.name;
@@ -175,6 +157,80 @@ private:
     if (template_->front_facing) {
       slots_[*template_->front_facing] =
           dag().input({ir::InputKind::FrontFacing, "gl_FrontFacing", ir::Type::Bool, ir::Rate::Fragment, {}});
+    }
+  }
+
+  ir::ValueId declare(const std::string& name, ir::Type type, uint32_t location) {
+    if (vertex_stage_) {
+      module_.attributes.push_back({name, type, location});
+      return dag().input({ir::InputKind::Attribute,
+                          name,
+                          type,
+                          ir::Rate::Vertex,
+                          {},
+                          0,
+                          static_cast<uint32_t>(module_.attributes.size() - 1)});
+    }
+    // Without a vertex stage the fragment's inputs come from outside as they are.
+    module_.varyings.push_back({name, type, location, ir::kNoValue});
+    return dag().input({ir::InputKind::Varying,
+                        name,
+                        type,
+                        ir::Rate::Fragment,
+                        {},
+                        0,
+                        static_cast<uint32_t>(module_.varyings.size() - 1)});
+  }
+
+  /// An attribute that a graph or a node of the library names; kNoValue where it has another type.
+  ir::ValueId attribute(std::string_view name, ir::Type type) {
+    const auto found = std::find_if(own_.begin(), own_.end(),
+                                    [&](const auto& own) { return graph::sameAttribute(own.first, name); });
+    ir::ValueId value = found == own_.end() ? ir::kNoValue : found->second;
+    for (const lang::AttributeDecl& known : template_->attributes) {
+      if (known.fact || !graph::sameAttribute(known.name, name)) continue;
+      value = slots_[known.slot];
+      named_.push_back(known.location);
+    }
+    if (value == ir::kNoValue) {
+      value = declare(std::string(name), type, 0);
+      own_.emplace_back(name, value);
+    }
+    if (dag()[value].type != type) return ir::kNoValue;
+    return dag()[value].rate == ir::Rate::Vertex ? dag().make(ir::Op::Interpolate, {value}) : value;
+  }
+
+  /// Those that are read in the order of their names, behind the attributes that every primitive has: devices
+  /// take sixteen, and an optional one that this primitive lacks leaves its place.
+  void placeOwnAttributes() {
+    std::vector<uint32_t> taken = named_;
+    for (const lang::AttributeDecl& known : template_->attributes) {
+      if (known.fact) continue;
+      if (!known.optional || graph_.hasAttribute(known.name)) taken.push_back(known.location);
+    }
+    std::vector<size_t> own;
+    const size_t count = vertex_stage_ ? module_.attributes.size() : module_.varyings.size();
+    for (size_t i = of_template_; i < count; ++i) own.push_back(i);
+    const auto nameOf = [&](size_t i) -> const std::string& {
+      return vertex_stage_ ? module_.attributes[i].name : module_.varyings[i].name;
+    };
+    if (own.empty()) return;
+    std::vector<bool> idle(count, true);
+    std::vector<ir::ValueId> roots;
+    for (const ir::Output& output : module_.outputs) roots.push_back(output.value);
+    for (const ir::ValueId id : ir::reachable(module_.dag, roots)) {
+      if (module_.dag[id].op != ir::Op::Input) continue;
+      const ir::Input& input = module_.dag.inputOf(id);
+      if (input.kind == ir::InputKind::Attribute || input.kind == ir::InputKind::Varying)
+        idle[input.field] = false;
+    }
+    std::sort(own.begin(), own.end(), [&](size_t a, size_t b) {
+      return std::pair(idle[a], nameOf(a)) < std::pair(idle[b], nameOf(b));
+    });
+    uint32_t location = 0;
+    for (const size_t i : own) {
+      while (std::find(taken.begin(), taken.end(), location) != taken.end()) ++location;
+      (vertex_stage_ ? module_.attributes[i].location : module_.varyings[i].location) = location++;
     }
   }
 
@@ -362,7 +418,22 @@ private:
     }
   }
 
+  /// Before nodes ask for some by their own types: what the graph says counts.
+  void nameAttributes() {
+    std::vector<const graph::AttributeRef*> named;
+    const auto name = [&](const graph::Source& source) {
+      if (const auto* ref = std::get_if<graph::AttributeRef>(&source.from)) named.push_back(ref);
+    };
+    for (const size_t index : order_) {
+      for (const auto& [input, source] : graph_.nodes[index].inputs) name(source);
+    }
+    for (const auto& [output, source] : graph_.outputs) name(source);
+    std::sort(named.begin(), named.end(), [](const auto* a, const auto* b) { return a->name < b->name; });
+    for (const graph::AttributeRef* ref : named) from(*ref);
+  }
+
   void nodes() {
+    nameAttributes();
     for (size_t i = 0; i < order_.size(); ++i) {
       const graph::Node& node = graph_.nodes[order_[i]];
       const lang::NodeDecl& decl = *decls_[i];
@@ -402,6 +473,8 @@ private:
   }
 
   ir::ValueId givenFor(const lang::Param& param) {
+    if (graph::isAttributeName(param.given))
+      return graph_.hasAttribute(param.given) ? attribute(param.given, param.type) : ir::kNoValue;
     const auto found = param.given.empty() ? std::nullopt : givenNamed(param.given);
     if (!found || found->given->results[found->index].type != param.type) return ir::kNoValue;
     return given(*found);
@@ -499,6 +572,12 @@ private:
     const auto found = givenNamed(reference.name);
     assert(found);
     return given(*found);
+  }
+
+  ir::ValueId from(const graph::AttributeRef& reference) {
+    const ir::ValueId value = attribute(reference.name, reference.type);
+    assert(value != ir::kNoValue);
+    return value;
   }
 
   ir::ValueId from(const graph::NodeRef& reference) {
@@ -692,6 +771,10 @@ private:
   std::vector<ir::ValueId> slots_;
   std::vector<size_t> order_;                 ///< of the graph's nodes
   std::vector<const lang::NodeDecl*> decls_;  ///< of the nodes in that order
+  bool vertex_stage_ = false;
+  size_t of_template_ = 0;                                ///< of the attributes, or of the varyings
+  std::vector<std::pair<std::string, ir::ValueId>> own_;  ///< of the graph's own attributes
+  std::vector<uint32_t> named_;                           ///< locations of the template's that it names, too
   struct Lowered {
     const lang::NodeDecl* decl;
     Values results;

@@ -28,8 +28,12 @@ Attributes attributesOf(const Strings& names) {
   a.morph = has("MORPH_VERTEX");
   a.instances = has("TRANSLATION");
   a.quantized = has("QUANTIZED");
-  std::copy_if(names.begin(), names.end(), std::back_inserter(a.application),
-               [](const std::string& name) { return name.starts_with('_'); });
+  std::copy_if(names.begin(), names.end(), std::back_inserter(a.application), [](const std::string& name) {
+    const auto beyond = [&](std::string_view set, char last) {
+      return name.starts_with(set) && name.size() == set.size() + 1 && name.back() > last;
+    };
+    return name.starts_with('_') || beyond("COLOR_", '0') || beyond("TEXCOORD_", '3');
+  });
   return a;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lower/lower.h"
+#include "model/attributes.h"
 #include "model/build.h"
 #include "setting/options.h"
 #include "setting/simplify.h"
@@ -21,6 +22,26 @@ passes::LightFacts lightsOf(const gltf::Scene& scene) {
            {"point", count(gltf::LightType::Point)},
            {"spot", count(gltf::LightType::Spot)}}};
 }
+
+namespace {
+
+/// Notes what nodes of patterns ask for by `given _NAME` and the primitive has.
+void askAttributes(graph::Graph& graph, const gltf::VertexAttributes& attributes,
+                   const graph::Graph& patterns, const lang::Library& library) {
+  for (const graph::Node& node : graph.nodes) {
+    const Result<const lang::NodeDecl*> decl = library.node(node.type);
+    for (size_t i = 0; decl && i < (*decl)->params.size(); ++i) {
+      const lang::Param& param = (*decl)->params[i];
+      const bool connected = std::any_of(node.inputs.begin(), node.inputs.end(),
+                                         [&](const auto& input) { return input.first == param.name; });
+      if (connected || !graph::isAttributeName(param.given) || graph.hasAttribute(param.given)) continue;
+      if (model::hasAttribute(attributes, param.given) || patterns.hasAttribute(param.given))
+        graph.attributes.emplace_back(param.given);
+    }
+  }
+}
+
+}  // namespace
 
 Result<graph::Graph> buildGraph(const material::Material& material, const gltf::VertexAttributes& attributes,
                                 const Language& language, const Options& options, Diagnostics& warnings,
@@ -57,6 +78,7 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
         hasError(wrong))
       return tl::make_unexpected(std::move(wrong));
     *graph = graph::flattened(std::move(*graph), language);
+    askAttributes(*graph, attributes, *material.patterns, language);
   }
   simplify(*graph, language, *simpler);
   return graph;

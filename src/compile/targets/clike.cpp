@@ -587,7 +587,9 @@ std::string attributeName(const ir::Attribute& attribute) {
   return (attribute.name.starts_with('_') ? "in" : "in_") + lower(attribute.name);
 }
 
-std::string varyingName(const ir::Varying& varying) { return "v_" + varying.name; }
+std::string varyingName(const ir::Varying& varying) {
+  return (varying.name.starts_with('_') ? "v" : "v_") + varying.name;
+}
 
 std::string outputName(const ir::Output& output) { return "out_" + output.name; }
 

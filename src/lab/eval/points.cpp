@@ -72,6 +72,25 @@ Columns lightOf(const ir::Module& module, std::string_view kind, Columns propert
   return columns;
 }
 
+namespace {
+
+/// What vertices have beyond the template's attributes.
+void bindNamed(std::string_view name, ir::Type type, std::span<const Point> points, Columns& to) {
+  if (to.contains(std::string(name))) return;
+  const double otherwise = name.starts_with("COLOR_") ? 1 : 0;
+  const auto components = static_cast<size_t>(ir::componentCount(type));
+  std::vector<double> values;
+  values.reserve(points.size() * components);
+  for (const Point& point : points) {
+    const auto found = point.attributes.find(name);
+    for (size_t i = 0; i < components; ++i)
+      values.push_back(found == point.attributes.end() ? otherwise : found->second[i]);
+  }
+  to[std::string(name)] = Column::perPoint(static_cast<int>(components), std::move(values));
+}
+
+}  // namespace
+
 void bindPoints(const ir::Module& module, std::span<const Point> points, Bindings& bindings) {
   Columns& to = bindings.columns;
   for (const ir::Block& block : module.blocks) {
@@ -99,6 +118,11 @@ void bindPoints(const ir::Module& module, std::span<const Point> points, Binding
   to["CHANNEL"] = numbers(points, [](const Point& p) { return p.channel; });
   to["RANDOM"] = column(points, 3, [](const Point& p) { return p.random; });
   to["gl_FrontFacing"] = numbers(points, [](const Point& p) { return p.front_facing ? 1.0 : 0.0; });
+  for (const ir::Attribute& attribute : module.attributes)
+    bindNamed(attribute.name, attribute.type, points, to);
+  for (const ir::Varying& varying : module.varyings) {
+    if (varying.source == ir::kNoValue) bindNamed(varying.name, varying.type, points, to);
+  }
   Columns light;
   light["direction"] = column(points, 3, [](const Point& p) { return Vec3{-p.l[0], -p.l[1], -p.l[2]}; });
   light["color"] = column(points, 3, [](const Point& p) { return p.light; });

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <span>
+#include <string>
 
 #include "eval/bindings.h"
 #include "ir/module.h"
@@ -25,6 +27,9 @@ struct Point {
   double surrounding_ior = 1;  ///< around the body
   double channel = -1;         ///< whose index the body has; -1: the material's own
   std::array<double, 3> random{0.5, 0.5, 0.5};
+  /// Of attributes by name, "_WETNESS", whatever the template knows of: what is not there is 0, of a
+  /// colour 1.
+  std::map<std::string, std::array<double, 4>, std::less<>> attributes{};
 };
 
 /// Binds what the module's template is given: the glTF attributes, those of the template `bsdf`; every field

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "graph/graph.h"
 #include "json/report.h"
 #include "setting/messages.h"
 #include "support/text.h"
@@ -64,6 +65,10 @@ public:
     for (const auto& [key, value] : json.items()) {
       const Path here(path, key);
       if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys)) continue;
+      if (graph::isAttributeName(key)) {
+        attribute(value, here, key, point);
+        continue;
+      }
       const std::string_view close = closest(key, kKeys);
       report_.error("unknown-property", here, fmt::format("a point has no {}", quote(key)),
                     close.empty() ? fmt::format("it has {}", listOf(kKeys))
@@ -121,6 +126,15 @@ private:
     if (json == nullptr || !numbers(*json, Path(path, name), name, value)) return false;
     to = value;
     return true;
+  }
+
+  /// A number, or two to four of them.
+  void attribute(const Json& json, const Path& path, const std::string& name, eval::Point& to) {
+    const Json list = json.is_array() ? json : Json::array({json});
+    std::array<double, 4> value{0, 0, 0, 1};
+    if (list.size() < 1 || list.size() > value.size())
+      return report_.wrongType(path, name, json, "a number or an array of 2 to 4 numbers");
+    if (numbers(list, path, name, {value.data(), list.size()})) to.attributes[name] = value;
   }
 
   void flag(const Json& point, const Path& path, std::string_view name, bool& to) {

@@ -225,6 +225,7 @@ struct BlockDecl {
   BlockRole role = BlockRole::Frame;
   bool extension = false;      ///< `extend block`: fields of a block of the base; gone after checking
   bool optional = false;       ///< its place lies behind all others'
+  bool late = false;           ///< optional, and its place lies behind those of all other optional ones
   std::string_view type_name;  ///< "Light"
   std::string_view instance;   ///< "light"
   uint32_t array = 0;          ///< 0: not an array

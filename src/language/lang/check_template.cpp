@@ -83,11 +83,17 @@ public:
       }
     };
     for (BlockDecl& block : decl.blocks) {
-      if (!block.optional || (block.role == BlockRole::Object) != object) continue;
+      if (!block.optional || block.late || (block.role == BlockRole::Object) != object) continue;
       texturesBefore(block.span.offset);
       number(block);
     }
     texturesBefore(~uint32_t{0});
+  }
+  /// Behind all of that: a block that is added there moves no number of templates that extend this one.
+  void takeLate(TemplateDecl& decl) {
+    for (BlockDecl& block : decl.blocks) {
+      if (block.late) number(block);
+    }
   }
   /// Lists' units, behind the required environment's: they are textures where there are no storage buffers.
   void takeLists(TemplateDecl& decl) {
@@ -174,6 +180,8 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
     for (TemplateDecl& base : bases) places.takeOptional(base, object);
     places.takeOptional(decl, object);
   }
+  for (TemplateDecl& base : bases) places.takeLate(base);
+  places.takeLate(decl);
   decl.material_textures = places.materialTextures();
   locate(decl, false);
   for (TemplateDecl& base : bases) locate(base, true);

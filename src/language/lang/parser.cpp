@@ -456,6 +456,11 @@ bool Parser::templateItem(TemplateDecl& decl) {
   if (is("attribute") || is("fact")) return attribute(decl);
   constexpr std::array<std::string_view, 5> kOptional = {"block", "environment", "object", "output",
                                                          "attribute"};
+  if (is("late") && token(1).is("optional") && token(2).is("block")) {
+    ++at_;
+    if (!templateItem(decl)) return false;
+    return decl.blocks.back().late = true;
+  }
   const std::string_view what = token(1).text;
   if (is("optional") && std::find(kOptional.begin(), kOptional.end(), what) != kOptional.end()) {
     ++at_;
@@ -486,7 +491,8 @@ bool Parser::templateItem(TemplateDecl& decl) {
       "expected a part of a template",
       "its parts are default, block, extend block, light kind, lights from, attribute, fact, environment, "
       "object, given, "
-      "port, output, optional block, optional attribute, optional environment, optional object, optional "
+      "port, output, optional block, late optional block, optional attribute, optional environment, optional "
+      "object, optional "
       "output, replace output and without output");
 }
 

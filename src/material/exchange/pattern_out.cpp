@@ -59,6 +59,9 @@ constexpr std::string_view kOfVectors[] = {"acos",
                                            "tangent",
                                            "texcoord",
                                            "transformmatrix",
+                                           "transformnormal",
+                                           "transformpoint",
+                                           "transformvector",
                                            "unifiednoise3d",
                                            "viewdirection",
                                            "worleynoise2d",
@@ -386,6 +389,8 @@ PatternsOut::Link PatternsOut::given(Scope& scope, const std::string& name) {
   if (isOneOf(what, kGiven))
     return helper(scope, what, name, {Type::Vec3, false},
                   {valueOf("space", "string", object ? "object" : "world")});
+  if (name == "time" || name == "frame_number")
+    return helper(scope, name == "time" ? name : "frame", name, {Type::Float, false}, {});
   lost(fmt::format("a pattern takes {} from the template, which MaterialX has no node for", name));
   return {{{"value", "0"}}, {Type::Float, false}};
 }
@@ -475,6 +480,9 @@ PatternsOut::Link PatternsOut::link(Scope& scope, const Source& source) {
     made = given(scope, from->name);
     // The vertices' tangent has its side as the fourth.
     if (from->name.ends_with("tangent") && source.swizzle == "xyz") return made;
+  } else if (const auto* attribute = std::get_if<graph::AttributeRef>(&source.from)) {
+    made = helper(scope, "geompropvalue", attribute->name.substr(attribute->name.starts_with('_') ? 1 : 0),
+                  {attribute->type, false}, {valueOf("geomprop", "string", attribute->name)});
   }
   return source.swizzle.empty() ? made : swizzled(scope, std::move(made), source.swizzle);
 }
@@ -633,6 +641,11 @@ void PatternsOut::element(Scope& scope, size_t place) {
       made.children.push_back(number_port
                                   ? valueOf(port, "integer", std::to_string(chosen - param->choices.begin()))
                                   : valueOf(port, "string", choice->name));
+    } else if (const auto* attribute = std::get_if<graph::AttributeRef>(&source.from);
+               attribute != nullptr && family == "geompropvalue" && source.swizzle.empty()) {
+      made.children.push_back(valueOf(port, "string", attribute->name));
+    } else if (family == "geompropvalue" && port == "geomprop") {
+      lost("MaterialX's geompropvalue takes the name of an attribute", "its input is left out");
     } else if (const auto* ref = std::get_if<graph::TextureRef>(&source.from)) {
       const std::optional<size_t> slot = graph_.findTexture(ref->name);
       if (!slot) continue;

@@ -54,7 +54,8 @@ struct VertexAttributes {
   bool instances = false;      ///< a node has instances of its mesh (EXT_mesh_gpu_instancing)
   /// POSITION or a TEXCOORD_n is stored as integers that stand for themselves (KHR_mesh_quantization).
   bool quantized = false;
-  /// The application's own, sorted, at most kMostApplicationAttributes: "_WETNESS".
+  /// The application's own, "_WETNESS", and sets beyond those above, "COLOR_1": sorted, at most
+  /// kMostApplicationAttributes.
   std::vector<std::string> application{};
   bool operator==(const VertexAttributes&) const = default;
   /// Some total order. By hand: the vectors of LLVM's library have no <=> before version 16.

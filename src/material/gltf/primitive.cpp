@@ -142,8 +142,17 @@ private:
       if (name == fmt::format("JOINTS_{}", i)) return joints_[i] = true;
       if (name == fmt::format("WEIGHTS_{}", i)) return weights_[i] = true;
     }
-    if (name.starts_with('_')) return application(name);
+    if (name.starts_with('_') || isMore(name)) return application(name);
     return name == "POSITION";
+  }
+
+  /// A set beyond those that every shader may read, which patterns read by name.
+  static bool isMore(std::string_view name) {
+    const auto within = [&](std::string_view set, char first) {
+      return name.starts_with(set) && name.size() == set.size() + 1 && name.back() >= first &&
+             name.back() <= '9';
+    };
+    return within("COLOR_", '1') || within("TEXCOORD_", '4');
   }
 
   /// glTF 2.0, section 3.7.2.1: application-specific semantics begin with an underscore.

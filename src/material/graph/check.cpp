@@ -61,6 +61,7 @@ private:
   void group(size_t index);
   void groupInput(size_t index, size_t input);
   void nesting();
+  void attributes();
   void rates();
   Tied tiedOf(const Source& source, const Body& body, const std::vector<Tied>& nodes) const;
 
@@ -274,6 +275,75 @@ void GraphCheck::nesting() {
         raising("nodes"));
 }
 
+// -- attributes --
+
+/// Attributes of one name have one type, and there are not too many.
+void GraphCheck::attributes() {
+  std::vector<const AttributeRef*> known;
+  const auto take = [&](const Source& source, const Spot& spot, const std::string& pointer) {
+    const auto* ref = std::get_if<AttributeRef>(&source.from);
+    if (ref == nullptr) return;
+    const lang::TemplateDecl* decl = contracts_.templateDecl();
+    for (size_t i = 0; decl != nullptr && i < decl->attributes.size(); ++i) {
+      const lang::AttributeDecl& own = decl->attributes[i];
+      if (own.fact || !sameAttribute(own.name, ref->name) || own.type == ref->type) continue;
+      return error(spot, pointer, "wrong-type",
+                   fmt::format("{} is {} of the template", inQuotes(ref->name), article(own.type)),
+                   "say the same type");
+    }
+    const auto same = std::find_if(known.begin(), known.end(), [&](const AttributeRef* other) {
+      return sameAttribute(other->name, ref->name);
+    });
+    if (same == known.end()) {
+      known.push_back(ref);
+      if (known.size() == kMostOwnAttributes + 1) {
+        error(spot, pointer, "too-many-attributes",
+              fmt::format("the graph reads more than {} attributes by name", kMostOwnAttributes));
+      }
+    } else if ((*same)->name != ref->name) {
+      error(spot, pointer, "duplicate-name",
+            fmt::format("{} and {} are one name in shaders", inQuotes((*same)->name), inQuotes(ref->name)),
+            "give one of the attributes another name");
+    } else if ((*same)->type != ref->type) {
+      error(spot, pointer, "wrong-type",
+            fmt::format("{} is {} here and {} elsewhere", inQuotes(ref->name), article(ref->type),
+                        article((*same)->type)),
+            "an attribute has one type; a swizzle takes components of it");
+    }
+  };
+  const auto body = [&](const Body& one, const std::string& root) {
+    const bool nested = one.group() != nullptr;
+    const size_t group = nested ? static_cast<size_t>(one.group() - graph_.groups.data()) : 0;
+    const auto spot = [&](Section section, size_t item, size_t input) {
+      return nested ? Spot{Section::Groups, group, section, item, input}
+                    : Spot{section, item, Section::Template, 0, input};
+    };
+    for (size_t i = 0; i < one.nodes().size(); ++i) {
+      for (size_t k = 0; k < one.nodes()[i].inputs.size(); ++k) {
+        const auto& [name, source] = one.nodes()[i].inputs[k];
+        take(source, spot(Section::Nodes, i, k + 1),
+             fmt::format("{}/nodes/{}{}", root, i, pointerTo("inputs", name)));
+      }
+    }
+    for (size_t i = 0; i < one.outputs().size(); ++i) {
+      const auto& [name, source] = one.outputs()[i];
+      take(source, spot(Section::Outputs, i, 0), root + pointerTo("outputs", name));
+    }
+  };
+  for (size_t g = 0; g < graph_.groups.size(); ++g) {
+    const std::string root = pointerTo("groups", graph_.groups[g].name);
+    for (size_t i = 0; i < graph_.groups[g].inputs.size(); ++i) {
+      const GroupInput& input = graph_.groups[g].inputs[i];
+      if (input.by_default) {
+        take(*input.by_default, {Section::Groups, g, Section::Parameters, i, 0},
+             root + pointerTo("inputs", input.name) + "/default");
+      }
+    }
+    body(contracts_.body(g), root);
+  }
+  body(contracts_.main(), {});
+}
+
 // -- rates --
 
 GraphCheck::Tied GraphCheck::tiedOf(const Source& source, const Body& body,
@@ -363,6 +433,7 @@ Diagnostics GraphCheck::run() {
   findings_.nextStep();
   for (size_t i = 0; i < of_groups; ++i) bodies[i].defaults();
   for (BodyCheck& body : bodies) body.connections();
+  attributes();
   findings_.nextStep();
   for (BodyCheck& body : bodies) body.cycles();
   if (findings_.empty()) rates();

@@ -426,6 +426,15 @@ void BodyCheck::unknown(const TextureRef& ref, const Sink& sink) {
         findings_.suggest(ref.name, names));
 }
 
+void BodyCheck::unknown(const AttributeRef& ref, const Sink& sink) {
+  if (!isAttributeName(ref.name)) {
+    return error(sink, "wrong-name", fmt::format("{} cannot be the name of an attribute", inQuotes(ref.name)),
+                 "it is COLOR_n, TEXCOORD_n or one of the application's own, \"_WETNESS\"");
+  }
+  error(sink, "wrong-type", fmt::format("an attribute cannot be {}", article(ref.type)),
+        "it is float, vec2, vec3 or vec4");
+}
+
 void BodyCheck::unknown(const GivenRef& ref, const Sink& sink) {
   const lang::TemplateDecl* decl = contracts_.templateDecl();
   if (decl == nullptr) return;

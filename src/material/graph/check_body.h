@@ -153,6 +153,7 @@ private:
   void unknown(const ParameterRef& ref, const Sink& sink);
   void unknown(const TextureRef& ref, const Sink& sink);
   void unknown(const GivenRef& ref, const Sink& sink);
+  void unknown(const AttributeRef& ref, const Sink& sink);
   void unknown(const NodeRef& ref, const Sink& sink);
   void unknown(const InputRef& ref, const Sink& sink);
   void unknown(const Choice& choice, const Sink& sink);

@@ -217,6 +217,7 @@ private:
     word(graph_.textures[*place].srgb ? "srgb" : "");
   }
   void from(const GivenRef& ref) { word("given"), word(ref.name); }
+  void from(const AttributeRef& ref) { word("attribute"), word(ref.name), word(ir::typeName(ref.type)); }
   void from(const InputRef& ref) { word("input"), word(ref.name); }
   void from(const Choice& choice) { word("choice"), word(choice.name); }
   void from(const NodeRef& ref) {

@@ -317,6 +317,7 @@ const Contract* Contracts::of(std::string_view type, bool group) const {
 
 bool Contracts::hasDefault(const lang::Param& param) const {
   if (param.hasConstantDefault() || param.given.empty() || template_ == nullptr) return param.hasDefault();
+  if (isAttributeName(param.given)) return graph_.hasAttribute(param.given);
   const auto given = template_->find(param.given);
   return given && given->given->results[given->index].type == param.type;
 }
@@ -350,6 +351,11 @@ std::optional<Offer> Contracts::base(const Source& source, const Body& body) con
   if (const auto* ref = std::get_if<GivenRef>(&source.from)) {
     const auto found = template_ == nullptr ? std::nullopt : template_->find(ref->name);
     return found ? std::optional(ofParam(found->given->results[found->index])) : std::nullopt;
+  }
+  if (const auto* ref = std::get_if<AttributeRef>(&source.from)) {
+    if (!isAttributeName(ref->name) || !ir::isFloating(ref->type) || ir::isMatrix(ref->type))
+      return std::nullopt;
+    return Offer{ref->type};
   }
   if (const auto* ref = std::get_if<InputRef>(&source.from)) {
     if (body.group() == nullptr) return std::nullopt;

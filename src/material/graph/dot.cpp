@@ -149,6 +149,8 @@ private:
       from = idOf("texture", t->name);
     } else if (const auto* g = std::get_if<GivenRef>(&source.from)) {
       from = idOf("given", g->name);
+    } else if (const auto* a = std::get_if<AttributeRef>(&source.from)) {
+      from = idOf("attribute", a->name);
     } else if (const auto* i = std::get_if<InputRef>(&source.from)) {
       from = idOf("input", i->name);
     }
@@ -163,7 +165,7 @@ private:
     const auto it = ids_.find(key(kind, name));
     if (it != ids_.end()) return it->second;
     std::string id = fmt::format("g{}", others_++);
-    if (kind == "given")
+    if (kind == "given" || kind == "attribute")
       leaf(kind, name, id, html(name), "#e1d5e7");
     else if (kind == "texture")
       leaf(kind, name, id, html(name) + "<br/>environment", "#e1d5e7");

@@ -51,6 +51,33 @@ std::optional<size_t> Graph::findGroup(std::string_view wanted) const {
   return placeOf(groups, &Group::name, wanted);
 }
 
+bool Graph::hasAttribute(std::string_view wanted) const {
+  return std::any_of(attributes.begin(), attributes.end(),
+                     [&](const std::string& name) { return sameAttribute(name, wanted); });
+}
+
+bool isAttributeName(std::string_view name) {
+  constexpr size_t kLongest = 64;
+  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto isLetter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  for (const std::string_view set : {"COLOR_", "TEXCOORD_"}) {
+    if (name.starts_with(set) && name.size() == set.size() + 1) return isDigit(name.back());
+  }
+  if (name.size() < 2 || name.size() > kLongest || name[0] != '_' || !isLetter(name[1])) return false;
+  // Direct3D's own semantics begin so, and two underscores in a row are GLSL's own.
+  if (name.starts_with("_SV_") || name.starts_with("_sv_") || name.find("__") != std::string_view::npos)
+    return false;
+  return name.back() != '_' &&
+         std::all_of(name.begin(), name.end(), [&](char c) { return c == '_' || isDigit(c) || isLetter(c); });
+}
+
+bool sameAttribute(std::string_view a, std::string_view b) {
+  for (std::string_view* name : {&a, &b}) name->remove_prefix(name->starts_with('_') ? 1 : 0);
+  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return small(x) == small(y); });
+}
+
 Texture bare(const Texture& texture) {
   Texture slot;
   slot.name = texture.name;

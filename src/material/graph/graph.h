@@ -45,6 +45,23 @@ struct GivenRef {
   bool operator==(const GivenRef&) const = default;
 };
 
+/// An attribute of the vertices, whatever the template knows of: the application's own, "_WETNESS", or a set
+/// of colours or texture coordinates, "COLOR_1". Interpolated.
+struct AttributeRef {
+  std::string name;
+  ir::Type type = ir::Type::Float;  ///< or a vector of floats
+  bool operator==(const AttributeRef&) const = default;
+};
+
+/// Whether a name is one that an AttributeRef may have: it begins with an underscore and goes on with letters
+/// and digits, or with underscores between, 64 characters at most; or it is COLOR_n or TEXCOORD_n.
+bool isAttributeName(std::string_view name);
+/// Whether two names mean one attribute: a template may write WETNESS for glTF's _WETNESS, and shaders do not
+/// tell capitals from small letters.
+bool sameAttribute(std::string_view a, std::string_view b);
+/// At most so many of them in one graph; no device takes more attributes.
+inline constexpr size_t kMostOwnAttributes = 16;
+
 /// An output of another node. `output` is empty for a node with a single result.
 struct NodeRef {
   std::string node;
@@ -67,7 +84,7 @@ struct Choice {
 /// Where an input or a port gets its value from, with an optional swizzle ("rgb", "g") on the way. A float
 /// goes to every component where a vector is wanted; its only swizzles are "x", "xx" and so on.
 struct Source {
-  std::variant<Literal, ParameterRef, TextureRef, GivenRef, NodeRef, InputRef, Choice> from;
+  std::variant<Literal, ParameterRef, TextureRef, GivenRef, NodeRef, InputRef, Choice, AttributeRef> from;
   std::string swizzle;
   bool operator==(const Source&) const = default;
 };
@@ -148,7 +165,8 @@ struct Skipped {
 struct Graph {
   std::string name;           ///< the material's name
   std::string template_name;  ///< "forward"
-  /// Of the template's optional attributes, those that the primitive has.
+  /// Of the template's optional attributes, those that the primitive has; and those that nodes of the library
+  /// ask for by `given _NAME`.
   std::vector<std::string> attributes;
   std::vector<Parameter> parameters;
   std::vector<Texture> textures;
@@ -183,6 +201,8 @@ struct Graph {
   std::optional<size_t> findGroup(std::string_view wanted) const;
   /// Removes a node; its users keep dangling edges, which check() reports.
   bool remove(std::string_view id);
+  /// Whether the primitive has an attribute that not every one has: by `attributes`.
+  bool hasAttribute(std::string_view wanted) const;
   /// Says why a term is not there. A term that several parts have is named once, with the first reason.
   void skip(std::string_view term, std::string reason);
 };

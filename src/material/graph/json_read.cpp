@@ -32,6 +32,13 @@ Result<Json> parse(std::string_view text, const std::string& file, const Limits&
   return json;
 }
 
+std::optional<ir::Type> attributeType(std::string_view name) {
+  for (int count = 1; count <= 4; ++count) {
+    if (ir::typeName(ir::floatType(count)) == name) return ir::floatType(count);
+  }
+  return std::nullopt;
+}
+
 class Reader {
 public:
   Reader(const std::string& file, const Limits& limits, Diagnostics& out)
@@ -177,9 +184,9 @@ std::optional<Source> Reader::source(const Json& json, const Path& path) {
 }
 
 std::optional<Source> Reader::reference(const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 8> kKeys = {"value", "parameter", "texture", "given",
-                                                     "node",  "input",     "output",  "swizzle"};
-  constexpr size_t kKinds = 6;
+  constexpr std::array<std::string_view, 10> kKeys = {"value", "parameter", "texture", "given", "node",
+                                                      "input", "attribute", "output",  "type",  "swizzle"};
+  constexpr size_t kKinds = 7;
   if (!object(json, path, "a source", kKeys)) return std::nullopt;
   std::vector<std::string_view> kinds;
   for (const std::string_view kind : Keys(kKeys).first(kKinds)) {
@@ -211,12 +218,22 @@ std::optional<Source> Reader::reference(const Json& json, const Path& path) {
     if (kind == "texture") result.from = TextureRef{name};
     if (kind == "given") result.from = GivenRef{name};
     if (kind == "input") result.from = InputRef{name};
+    if (kind == "attribute") {
+      const std::optional<ir::Type> type =
+          typeOf(json, path, "attribute", &attributeType, "it is float, vec2, vec3 or vec4");
+      if (!type) return std::nullopt;
+      result.from = AttributeRef{name, *type};
+    }
     if (kind == "node") result.from = NodeRef{name, optionalText(json, path, "output")};
   }
   if (kind != "node" && json::member(json, "output") != nullptr) {
     report_.error("wrong-source", Path(path, "output"), fmt::format("a {} has no \"output\"", kind),
                   kind == "given" ? "write the result behind a dot: {\"given\": \"light_sample.L\"}"
                                   : "only a node has outputs");
+  }
+  if (kind != "attribute" && json::member(json, "type") != nullptr) {
+    report_.error("wrong-source", Path(path, "type"), fmt::format("a {} has no \"type\"", kind),
+                  "an attribute alone says its type");
   }
   result.swizzle = optionalText(json, path, "swizzle");
   return result;

@@ -43,6 +43,10 @@ std::string source(const Source& source) {
       return "\"texture\": " + json::quotedText(ref.name);
     }
     std::string operator()(const GivenRef& ref) const { return "\"given\": " + json::quotedText(ref.name); }
+    std::string operator()(const AttributeRef& ref) const {
+      return fmt::format("\"attribute\": {}, \"type\": \"{}\"", json::quotedText(ref.name),
+                         ir::typeName(ref.type));
+    }
     std::string operator()(const Choice& choice) const {
       return "\"value\": " + json::quotedText(choice.name);
     }

@@ -225,7 +225,7 @@ Result<Materials> readMaterials(std::string_view text, const std::string& path, 
   Result<Document> document = readXml(text, path, limits);
   if (!document) return tl::make_unexpected(document.error());
   addTangentSpace(document->root);
-  return MaterialsReader(*document, library, {true, limits.nodes, {}, reserved}).read();
+  return MaterialsReader(*document, library, {true, limits.nodes, {}, reserved, true}).read();
 }
 
 Procedurals readProcedurals(const Json& extension, const std::string& path, const lang::Library& library,

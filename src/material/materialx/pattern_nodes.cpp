@@ -135,8 +135,12 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
     if (ir::isTexture(param->type)) {
       source = image(scope, element, input);
       space = input.get("colorspace");
-    } else if (!param->choices.empty() && input.get("type") == "string") {
-      source = literal(scope, element, input, *param);
+    } else if (input.get("type") == "string") {
+      // MaterialX's own default is an empty text.
+      const bool empty = !isConnected(input) && input.get("value").empty() && !param->choices.empty();
+      if (!empty)
+        source = param->choices.empty() ? attribute(scope, input, param->type)
+                                        : literal(scope, element, input, *param);
     } else if (isConnected(input)) {
       source = connected(scope, input);
     } else if (input.find("value") != nullptr) {
@@ -144,6 +148,10 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
                                          : literal(scope, element, input, *param);
     }
     if (source) made.inputs.emplace_back(std::string(input.name()), std::move(*source));
+  }
+  for (const lang::Param& param : form->params) {
+    if (options_.has_attributes && graph::isAttributeName(param.given) && !graph_.hasAttribute(param.given))
+      graph_.attributes.emplace_back(param.given);
   }
   const std::string_view type = element.get("type");
   const bool color = type == "color3" || type == "color4";
@@ -244,6 +252,23 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
   ir::Range range;
   if (param.has_range) range = param.range;
   return Source{graph::ParameterRef{parameter(input, std::move(name), pointer, type, *value, range)}, {}};
+}
+
+/// An attribute of the vertices by the text that names it, its own or that of the interface. glTF begins the
+/// application's names with an underscore.
+std::optional<Source> Patterns::attribute(const Scope& scope, const Element& input, ir::Type type) {
+  const Element* from = &input;
+  if (const std::string* name = input.find("interfacename")) from = scope.input(*name);
+  const std::string_view text = from == nullptr ? std::string_view() : from->get("value");
+  std::string name(text);
+  if (!graph::isAttributeName(name)) name = "_" + graphName(text);
+  if (text.empty() || !graph::isAttributeName(name)) {
+    error(input, "wrong-name", fmt::format("{} is {}", quote(input.name()), quote(text)),
+          "it names an attribute of the vertices: wetness for glTF's _WETNESS or _wetness, COLOR_1");
+    return std::nullopt;
+  }
+  if (options_.has_attributes && !graph_.hasAttribute(name)) graph_.attributes.push_back(name);
+  return Source{graph::AttributeRef{std::move(name), type}, {}};
 }
 
 /// A matrix by its rows, which the node `creatematrix` takes.

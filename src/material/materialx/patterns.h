@@ -24,6 +24,7 @@ struct PatternOptions {
   uint64_t most = 0;                                 ///< nodes of all bodies together
   std::set<std::string, std::less<>> animated = {};  ///< JSON pointers of inputs whose numbers change
   std::set<std::string, std::less<>> reserved = {};  ///< names that no parameter may have
+  bool has_attributes = false;  ///< primitives have what the documents read of them; else a file says it
 };
 
 /// Names that are given once.
@@ -122,6 +123,7 @@ private:
                                        const lang::Param& param);
   std::optional<graph::Source> matrix(Scope& scope, const Element& element, const Element& input,
                                       ir::Type type);
+  std::optional<graph::Source> attribute(const Scope& scope, const Element& input, ir::Type type);
   std::optional<graph::Source> image(Scope& scope, const Element& element, const Element& input);
   std::optional<graph::Source> refer(Scope& scope, const Element& input, Referred referred, size_t depth);
   std::optional<Referred> find(const Scope& scope, const Element& input);

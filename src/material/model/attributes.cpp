@@ -25,9 +25,9 @@ bool isGltfs(std::string_view name) {
 
 bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view name) {
   const auto numbered = [&](std::string_view what, const auto& sets, bool& has) {
-    if (!isNumbered(name, what)) return false;
     const auto set = static_cast<size_t>(name.back() - '0');
-    has = set < sets.size() && sets[set];
+    if (!isNumbered(name, what) || set >= sets.size()) return false;
+    has = sets[set];
     return true;
   };
   if (name == "NORMAL") return attributes.normal;
@@ -43,8 +43,10 @@ bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view nam
   if (name == "POSITION") return true;
   // glTF writes _WETNESS, a template may write WETNESS.
   name.remove_prefix(name.starts_with('_') ? 1 : 0);
-  return std::any_of(attributes.application.begin(), attributes.application.end(),
-                     [&](std::string_view one) { return one.substr(1) == name; });
+  return std::any_of(attributes.application.begin(), attributes.application.end(), [&](std::string_view one) {
+    one.remove_prefix(one.starts_with('_') ? 1 : 0);
+    return one == name;
+  });
 }
 
 bool needsAbsent(const lang::TemplateDecl& decl, const lang::GivenDecl& given,

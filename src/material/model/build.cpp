@@ -62,6 +62,7 @@ private:
   void mark(const Found& value);
   Texel texelOf(uint16_t property) const;
   void write(uint32_t id);
+  void ask(const lang::Param& param);
   void writeOrdered();
   void notTaken();
   Source source(const Found& value);
@@ -185,6 +186,23 @@ Source Writer::coordinate(uint16_t property) {
   return uv;
 }
 
+/// Attributes are spelled as the primitive has them. In the place of one that it lacks stands what the node
+/// has for that.
+void chooseAttributes(graph::Node& node, const gltf::VertexAttributes& attributes, const Graph& patterns) {
+  for (auto& [name, source] : node.inputs) {
+    auto* ref = std::get_if<graph::AttributeRef>(&source.from);
+    if (ref == nullptr) continue;
+    const auto& own = attributes.application;
+    const auto spelled = std::find_if(
+        own.begin(), own.end(), [&](const std::string& one) { return graph::sameAttribute(one, ref->name); });
+    if (spelled != own.end()) ref->name = *spelled;
+    if (hasAttribute(attributes, ref->name) || patterns.hasAttribute(ref->name)) continue;
+    const auto other = std::find_if(node.inputs.begin(), node.inputs.end(),
+                                    [](const auto& input) { return input.first == "default"; });
+    source = other != node.inputs.end() ? other->second : Source{graph::Literal{ref->type, {}}, {}};
+  }
+}
+
 /// A group of the file's, with the groups, parameters and textures that it has.
 void Writer::bring(const std::string& group) {
   const Graph& patterns = *material_.patterns;
@@ -204,6 +222,7 @@ void Writer::bring(const std::string& group) {
     if (graph_.findGroup(name)) continue;
     const graph::Group& found = patterns.groups[*patterns.findGroup(name)];
     graph_.groups.push_back(found);
+    for (graph::Node& node : graph_.groups.back().nodes) chooseAttributes(node, attributes_, patterns);
     for (const graph::GroupInput& input : found.inputs) {
       if (input.by_default) take(*input.by_default);
     }
@@ -296,6 +315,13 @@ Source Writer::source(const Found& value) {
 
 // -- nodes --
 
+/// Notes an attribute that a node asks for by `given _NAME` and the primitive has.
+void Writer::ask(const lang::Param& param) {
+  if (graph::isAttributeName(param.given) && hasAttribute(attributes_, param.given) &&
+      !graph_.hasAttribute(param.given))
+    graph_.attributes.emplace_back(param.given);
+}
+
 void Writer::write(uint32_t id) {
   if (!written_[id].empty()) return;
   const Resolver::Node& node = *resolver_.node(id);
@@ -311,6 +337,7 @@ void Writer::write(uint32_t id) {
     const bool same = input.kind == Found::Kind::Constant && param.default_value &&
                       input.type == param.type && *param.default_value == input.constant;
     if (input && !same) inputs.emplace_back(param.name, source(input));
+    if (!input) ask(param);
   }
   if (node.shared) {
     for (const graph::Node& other : graph_.nodes) {
@@ -427,8 +454,8 @@ private:
 };
 
 /// Of the attributes that not every primitive has.
-LeftOut chooseAttributes(const lang::TemplateDecl& template_decl, const gltf::VertexAttributes& attributes,
-                         const BuildOptions& options, Graph& graph) {
+LeftOut optionalAttributes(const lang::TemplateDecl& template_decl, const gltf::VertexAttributes& attributes,
+                           const BuildOptions& options, Graph& graph) {
   LeftOut left_out(graph);
   gltf::VertexAttributes common = attributes;
   common.skin = {};
@@ -446,7 +473,8 @@ LeftOut chooseAttributes(const lang::TemplateDecl& template_decl, const gltf::Ve
       left_out.add(attribute.name, fmt::format("it is left out (--switch {}=off)", choice.off));
   }
   for (const std::string& name : attributes.names()) {
-    if (name.starts_with('_')) continue;  // the application's, which knows what it has them for
+    // Those that are read by name alone. Of its own the application knows what it has them for.
+    if (std::binary_search(attributes.application.begin(), attributes.application.end(), name)) continue;
     const bool taken = hasAttribute(common, name) ||
                        std::any_of(template_decl.attributes.begin(), template_decl.attributes.end(),
                                    [&](const lang::AttributeDecl& one) { return one.name == name; });
@@ -467,7 +495,7 @@ Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
   // Room for a coat with all of its terms.
   graph.nodes.reserve(64);
   graph.parameters.reserve(48);
-  chooseAttributes(template_decl, attributes, options, graph).report(material.index, warnings);
+  optionalAttributes(template_decl, attributes, options, graph).report(material.index, warnings);
   Resolver resolver(model, template_decl, material, attributes, options, warnings);
   Writer(model, resolver, material, attributes, options, graph, warnings,
          origins == nullptr ? unwanted : *origins)

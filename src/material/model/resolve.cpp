@@ -231,7 +231,9 @@ Found Resolver::behind(Found value, std::string_view path) const {
 /// Whether something stands for a parameter that nothing is connected to: a constant, or what the template
 /// gives.
 bool Resolver::hasDefault(const lang::Param& param) const {
-  return param.hasConstantDefault() || (!param.given.empty() && template_.find(param.given));
+  return param.hasConstantDefault() ||
+         (graph::isAttributeName(param.given) ? hasAttribute(attributes_, param.given)
+                                              : !param.given.empty() && template_.find(param.given));
 }
 
 Found Resolver::call(const Value& value, const Line& line) {
