@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "patterns/run.h"
 
@@ -38,14 +39,24 @@ TEST(Hash, TheReferenceIsLookup3) {
   EXPECT_EQ(hashOfText("Four score and seven years ago", 1), 0xcd628161U);
 }
 
-TEST(Hash, ShortOnesHaveTheLowBits) {
-  const Arguments words{{"x", {1, 2, 4294967295.0}}, {"y", {5, 6, 7}}, {"z", {8, 9, 4000000000.0}}};
-  const auto all = runNode<double>("hash_final", words, 3)[0];
-  const auto low = runNode<double>("hash_final_24", words, 3)[0];
-  const auto least = runNode<double>("hash_final_6", words, 3)[0];
-  for (size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(static_cast<uint32_t>(all[i]) & 0xffffffU, static_cast<uint32_t>(low[i]) & 0xffffffU);
-    EXPECT_EQ(static_cast<uint32_t>(all[i]) & 63U, static_cast<uint32_t>(least[i]) & 63U);
+TEST(Hash, ShortOnesHaveTheLowBitsOfTheComplement) {
+  constexpr size_t kWords = 10000;
+  std::mt19937 random(3);
+  Arguments words, complements;
+  for (size_t i = 0; i < kWords; ++i) {
+    for (const char* word : {"x", "y", "z"}) {
+      const uint32_t bits = i == 0 ? 0xffffffffU : static_cast<uint32_t>(random());
+      words[word].push_back(bits);
+      complements[*word == 'y' ? "y" : std::string("not_") + word].push_back(*word == 'y' ? bits : ~bits);
+    }
+  }
+  const auto all = runNode<double>("hash_final", words, kWords)[0];
+  const auto low = runNode<double>("hash_final_24", complements, kWords)[0];
+  const auto least = runNode<double>("hash_final_6", complements, kWords)[0];
+  for (size_t i = 0; i < kWords; ++i) {
+    const uint32_t complement = ~static_cast<uint32_t>(all[i]);
+    EXPECT_EQ(complement & 0xffffffU, static_cast<uint32_t>(low[i]) & 0xffffffU);
+    EXPECT_EQ(complement & 63U, static_cast<uint32_t>(least[i]) & 63U);
   }
 }
 

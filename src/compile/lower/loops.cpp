@@ -166,16 +166,21 @@ ValueId Inliner::carry(const Statement& statement, Frame& frame, const Rounds& r
   // Rounds that there may not be, and those whose values are not chosen.
   const bool conditional = !rounds.even() || !(rounds.count || statement.surely);
   if (conditional) ++conditional_;
+  const auto before = static_cast<ValueId>(dag_.size());
   [[maybe_unused]] const bool returned = run(statement.body, frame);
   assert(!returned);
   if (conditional) --conditional_;
+  // Each point runs its own rounds, unless what it does needs its neighbours beside it.
+  bool apart = true;
+  for (ValueId id = before; id < dag_.size(); ++id) apart = apart && !ir::takesDerivatives(dag_[id].op);
+  const bool ends = rounds.even() || apart;
   const ValueId last = dag_.integer(rounds.first + static_cast<int32_t>(rounds.most));
-  ValueId chain = dag_.make(Op::Loop, {rounds.even() ? rounds.end : last, index});
+  ValueId chain = dag_.make(Op::Loop, {ends ? rounds.end : last, index});
   size_t next_part = 0;
   for (const uint32_t slot : statement.assigned) {
     for (ValueId next : partsOf(dag_, frame.slots[slot])) {
       const Part& part = parts[next_part++];
-      if (!rounds.even()) {
+      if (!ends) {
         const ValueId runs = dag_.make(Op::IntLess, {index, rounds.end});
         next = dag_.make(Op::Select, {runs, next, part.value});
       }
