@@ -1,5 +1,6 @@
 // Generated text with its words coloured, in the sections that its comments begin: one for each term.
-import { h } from './dom';
+import { byId, download, h } from './dom';
+import type { Page } from './main';
 
 const kWords =
   /(\/\/[^\n]*)|(#[^\n]*)|\b(const|in|out|inout|uniform|layout|precision|highp|struct|if|else|for|return|void|cbuffer|register|static|let|fn|var|switch|case)\b|\b(float[1-4]?(?:x[34])?|vec[234]|mat[34]|int|uint|bool|sampler\w*|Texture\w+|SamplerState|double)\b|(\b\d[\w.]*(?:e[+-]?\d+)?\b)/g;
@@ -40,7 +41,8 @@ export function showCode(root: HTMLElement, text: string, chosen: (term: string)
   root.replaceChildren(...made);
 }
 
-export function selectTerm(root: HTMLElement, term: string, scroll: boolean): void {
+/** Whether there were lines of it. */
+export function selectTerm(root: HTMLElement, term: string, scroll: boolean): boolean {
   let first = true;
   for (const section of root.querySelectorAll<HTMLElement>('.section.term')) {
     const selected = section.dataset.term === term;
@@ -48,6 +50,7 @@ export function selectTerm(root: HTMLElement, term: string, scroll: boolean): vo
     if (selected && first && scroll) section.scrollIntoView({ block: 'center' });
     if (selected) first = false;
   }
+  return !first;
 }
 
 /** SPIR-V as numbers: it has no text of its own. */
@@ -57,4 +60,42 @@ export function hexOf(words: Uint32Array): string {
     lines.push(Array.from(words.subarray(i, i + 8), (word) => word.toString(16).padStart(8, '0')).join(' '));
   }
   return lines.join('\n');
+}
+
+/** As `lacquer gen` calls its files. */
+const kEndings: Record<string, string> = { essl: 'glsl', glsl: 'glsl', 'glsl-gl': 'glsl', hlsl: 'hlsl', wgsl: 'wgsl', spirv: 'spv' };
+const kWhole: Record<string, string> = { cpp: 'h', js: 'js' }; // of both stages
+
+/** The buttons that take the text away: to the clipboard, or as the file that `lacquer gen` writes. */
+export function connectCode(page: Page): void {
+  const chosen = () => ({ target: byId<HTMLSelectElement>('target').value, stage: byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment' });
+  const told = byId('code-told');
+  const say = (text: string) => {
+    told.textContent = text;
+    setTimeout(() => told.textContent === text && (told.textContent = ''), 4000);
+  };
+  byId('copy-code').addEventListener('click', () => void copy(byId('code').textContent ?? '').then((done) => say(done ? 'copied' : 'the browser lets nothing be copied')));
+  byId('download-code').addEventListener('click', () => {
+    const { target, stage } = chosen();
+    const ending = kWhole[target] ?? `${stage === 'fragment' ? 'frag' : 'vert'}.${kEndings[target] ?? 'txt'}`;
+    const name = `${byId('id').textContent}.${ending}`;
+    const bytes = page.bytes(target, stage);
+    if (bytes) download(name, bytes, target === 'spirv' ? 'application/octet-stream' : 'text/plain');
+  });
+}
+
+/** Also where the browser has no clipboard for the page. */
+export async function copy(text: string): Promise<boolean> {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    const field = h('textarea', { 'aria-hidden': 'true', class: 'away' });
+    field.value = text;
+    document.body.append(field);
+    field.select();
+    const done = document.execCommand('copy');
+    field.remove();
+    return done;
+  }
 }

@@ -1,9 +1,11 @@
 // Files in and out: dropped, chosen, offered as drafts, replaced with a question, exported.
 import { LacquerError } from '../src/index';
+import { copy } from './code';
 import type { Input } from './document';
 import { byId, download, h } from './dom';
 import { Drafts, kMostBytes, type Draft } from './drafts';
 import type { Page } from './main';
+import { inputFrom, shared } from './share';
 import { kPictures } from './textures';
 
 /** Milliseconds after an edit until its draft is kept. */
@@ -24,6 +26,8 @@ export class Files {
       picker.value = '';
     });
     byId('export').addEventListener('click', () => this.export());
+    byId('share').addEventListener('click', () => void this.share());
+    addEventListener('hashchange', () => void this.openAddress());
     for (const event of ['dragover', 'dragenter']) {
       addEventListener(event, (drag) => {
         drag.preventDefault();
@@ -111,6 +115,33 @@ export class Files {
     this.showName();
     const own = [...of.graphs.keys()].map((material) => of.names[material] || `material ${material}`);
     if (own.length > 0) this.page.note(`the graph of ${own.join(', ')} is in the file's extras: this page reads it, other programs see the properties alone`);
+  }
+
+  // ---- addresses
+
+  /** The address has the material from now on, and is copied. */
+  private async share(): Promise<void> {
+    const { document: of } = this.page;
+    if (!of?.names.length) return;
+    const { hash, left } = await shared(of);
+    this.address = hash;
+    history.replaceState(null, '', hash);
+    const copied = await copy(location.href);
+    const without = left.length > 0 ? `; without its textures (${left.join(', ')}): an address has no room for pictures` : '';
+    this.page.note(`the address of the page has ${of.names[of.material] || 'the material'}, ${location.href.length} characters${copied ? ', and is copied' : ''}${without}`);
+  }
+  private address = '';
+  /** Opens what the address has, asking first; whether it had something. */
+  async openAddress(): Promise<boolean> {
+    if (location.hash === this.address) return false;
+    this.address = location.hash;
+    try {
+      const input = await inputFrom(location.hash);
+      return input !== null && (await this.replace(input));
+    } catch (error) {
+      this.page.fail(error);
+      return false;
+    }
   }
 
   // ---- drafts

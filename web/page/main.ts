@@ -1,7 +1,7 @@
 // The page of `lacquer view`: a material's properties, its picture, its shaders and its node graph, all from one file that
 // is edited in place.
 import { LacquerError, type Graph, type GraphJson, type Lacquer, type Level, type Message, type Options } from '../src/index';
-import { hexOf, selectTerm, showCode } from './code';
+import { connectCode, hexOf, selectTerm, showCode } from './code';
 import { fillOthers, optionsOf, parseOther } from './compare';
 import { compiler, graphOf, lookOf, withShader } from './compile';
 import { connectPointer, connectTabs } from './controls';
@@ -79,6 +79,7 @@ export class Page {
     this.connectControls();
     connectPointer(viewport);
     this.files = new Files(this);
+    connectCode(this);
   }
 
   /** glTF's own first. */
@@ -358,6 +359,18 @@ export class Page {
     );
   }
 
+  /** The file that `lacquer gen` writes of it; null where the material has an error. */
+  bytes(target: string, stage: 'vertex' | 'fragment'): Uint8Array<ArrayBuffer> | null {
+    try {
+      return withShader(this.lacquer, this.of!, { ...this.options(), targets: [target] }, [], (shader) =>
+        target === 'spirv' ? new Uint8Array(shader.spirv(stage).slice().buffer) : new TextEncoder().encode(shader.text(target, stage)),
+      );
+    } catch (error) {
+      this.fail(error);
+      return null;
+    }
+  }
+
   private showText(): void {
     const target = byId<HTMLSelectElement>('target').value;
     const stage = byId<HTMLSelectElement>('stage').value as 'vertex' | 'fragment';
@@ -366,8 +379,8 @@ export class Page {
     try {
       const text = this.text(target, stage);
       showCode(code, text, (term) => this.select(term, 'code'));
-      byId('size').textContent = target === 'spirv' ? `${text.split(/\s+/).length} words` : `${text.length} bytes`;
-      if (this.selected) selectTerm(code, this.selected, false);
+      byId('size').textContent = target === 'spirv' ? `${text.split(/\s+/).length} words` : `${new TextEncoder().encode(text).length} bytes`;
+      if (this.selected) this.showTerm(true);
     } catch (error) {
       if (!(error instanceof LacquerError)) throw error;
       code.replaceChildren();
@@ -427,10 +440,30 @@ export class Page {
     );
   }
 
-  select(term: string, from: 'code' | 'graph'): void {
-    this.selected = term;
-    selectTerm(byId('code'), term, from === 'graph');
-    if (from === 'code') this.graph.lead(term);
+  /** A term of the code is that of a node, or a node's: its lines and its box are shown. */
+  select(name: string, from: 'code' | 'graph'): void {
+    this.selected = from === 'graph' ? this.termOf(name) : name;
+    this.showTerm(from === 'graph');
+    if (from === 'code') this.graph.lead(this.nodeOf(name));
+  }
+  private showTerm(scroll: boolean): void {
+    const found = selectTerm(byId('code'), this.selected, scroll);
+    tell('code-told', found || !this.nodeIs(this.selected) ? '' : `${this.selected} has no lines here: it is computed once for the material, or in another stage`);
+  }
+  private nodeIs(term: string): boolean {
+    return this.nodesNow().some(({ id }) => this.termOf(id) === term);
+  }
+  /** The comments of the code have a node's term, or the library's name of it. */
+  private termOf(id: string): string {
+    const node = this.nodesNow().find((each) => each.id === id);
+    return node?.term ?? node?.node ?? id;
+  }
+  private nodeOf(term: string): string {
+    const nodes = this.nodesNow();
+    return (nodes.find((node) => node.term === term) ?? nodes.find((node) => !node.term && node.node === term))?.id ?? term;
+  }
+  private nodesNow(): { id: string; node?: string; term?: string }[] {
+    return this.graphJson?.nodes ?? [];
   }
 
   /** Edits the graph itself: from then on the material's numbers are its parameters, and its terms stay. What is wrong, where
@@ -671,6 +704,7 @@ async function start(): Promise<void> {
     chosen = choice.value;
   }));
   if (all.length > 0) page.open(inputOf(all[0]));
+  await page.files.openAddress();
   await page.files.begin();
   document.body.classList.add('ready');
 }

@@ -1,0 +1,98 @@
+// The generated text, taken away, and the material in the page's address.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { lacquer, read } from './native.mjs';
+import { begin, drop, end, folder, open, set } from './page.mjs';
+
+before(begin);
+after(end);
+
+const graphNow = (page) => page.evaluate(() => JSON.parse(window.lacquerPage.document.graphs.get(0) ?? 'null'));
+const address = (page) => page.evaluate(() => location.hash);
+
+test('the text is copied and saved as `lacquer gen` writes it, under its name', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+    const out = join(folder, 'code');
+    lacquer('gen', 'examples/clearcoat.gltf', '-o', out, '-q', '--target', 'essl,hlsl,spirv,cpp');
+    const id = await page.textContent('#id');
+    await page.click('#copy-code');
+    await page.waitForFunction(() => document.getElementById('code-told').textContent === 'copied');
+    assert.equal(await page.evaluate(() => navigator.clipboard.readText()), readFileSync(join(out, 'essl', `${id}.frag.glsl`), 'utf8'));
+    for (const [target, stage, ending] of [['essl', 'vertex', 'vert.glsl'], ['hlsl', 'fragment', 'frag.hlsl'], ['spirv', 'fragment', 'frag.spv'], ['cpp', 'fragment', 'h']]) {
+      await page.selectOption('#target', target);
+      await page.selectOption('#stage', stage);
+      const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download-code')]);
+      assert.equal(download.suggestedFilename(), `${id}.${ending}`);
+      assert.deepEqual(readFileSync(await download.path()), readFileSync(join(out, target, `${id}.${ending}`)), target);
+    }
+    await page.selectOption('#target', 'essl');
+    await page.selectOption('#stage', 'fragment');
+    assert.equal(await page.textContent('#size'), `${readFileSync(join(out, 'essl', `${id}.frag.glsl`)).length} bytes`);
+  }));
+
+test('a node of a graph leads to its lines, whatever it is called, and its lines to it', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    await page.evaluate(() => window.lacquerPage.editGraph((graph) => graph.edit([
+      { do: 'add_node', node: { id: 'glow', node: 'occluded', inputs: { light: { node: 'coat.layer_ibl' }, visible: 0.1 } } },
+      { do: 'set_output', output: 'emission', source: { node: 'glow' } },
+    ])));
+    await page.click('[data-tab=graph]');
+    await page.click('#graph [data-box="node glow"] .head');
+    await page.click('[data-tab=code]');
+    await page.waitForSelector('#code .section.selected[data-term=occluded]');
+    await page.click('#code [data-term="coat.fresnel"]');
+    await page.click('#code [data-term=occluded]');
+    await page.click('[data-tab=graph]');
+    await page.waitForSelector('#graph [data-box="node glow"].selected');
+    await page.click('#graph [data-box="node base.alpha"] .head');
+    await page.click('[data-tab=code]');
+    assert.match(await page.textContent('#code-told'), /base\.alpha has no lines here/);
+  }));
+
+test("a material with its graph and nodes is shared by the page's address, without its pictures, which is said", () =>
+  open(['examples/car_paint.gltf'], async (page) => {
+    const nodes = '/// Half of it.\n/// source: a test\nnode halved(vec3 light in [0, 1]) -> vec3 in [0, 1] {\n    return light / 2;\n}\n';
+    await drop(page, [['clear.gltf', read('examples/clearcoat.gltf')]]);
+    await set(page, 'p:/materials/0/pbrMetallicRoughness/roughnessFactor', 0.25);
+    await page.click('[data-tab=nodes]');
+    await page.click('#node-text');
+    await page.keyboard.insertText(nodes);
+    await page.waitForFunction(() => window.lacquerPage.document.nodeText !== '');
+    await page.evaluate(() => window.lacquerPage.editGraph((graph) => graph.edit([
+      { do: 'add_node', node: { id: 'half', node: 'halved', inputs: { light: 0.5 } } }, { do: 'set_output', output: 'emission', source: { node: 'half' } },
+    ].map((each) => (each.node?.id === 'half' ? { ...each, node: { ...each.node, id: 'mine' } } : { ...each, source: { node: 'mine' } })))));
+    const [id, graph] = [await page.textContent('#id'), await graphNow(page)];
+    await page.click('#share');
+    await page.waitForFunction(() => location.hash.startsWith('#share='));
+    await page.waitForFunction(() => document.getElementById('status').textContent !== '');
+    assert.match(await page.textContent('#status'), /the address of the page has Varnish, \d+ characters/);
+    assert.ok(!/without its textures/.test(await page.textContent('#status')));
+    const hash = await address(page);
+    assert.ok(hash.length < 8000, `${hash.length} characters`);
+    await page.reload();
+    await page.waitForSelector('body.ready');
+    assert.equal(await page.textContent('#file'), 'Varnish.gltf');
+    assert.equal(await page.textContent('#id'), id);
+    assert.deepEqual(await graphNow(page), graph);
+    assert.equal(await page.inputValue('#node-text'), nodes);
+    // One with textures: what it names is left out.
+    await page.selectOption('#sample', '0');
+    await page.click('#share');
+    await page.waitForFunction((before) => location.hash !== before, hash);
+    await page.waitForFunction(() => /textures/.test(document.getElementById('status').textContent));
+    assert.match(await page.textContent('#status'), /without its textures \(.*normalTexture/i);
+    await page.reload();
+    await page.waitForSelector('body.ready');
+    assert.equal(await page.textContent('#status'), '');
+    assert.equal(await page.evaluate(() => JSON.stringify(window.lacquerPage.document.json).includes('Texture')), false);
+    // What is no address of ours leaves what is there.
+    const shown = await page.textContent('#id');
+    for (const bad of ['#share=abc', '#share=!!', `#share=${hash.slice(7, 60)}`]) {
+      await page.evaluate((to) => (location.hash = to), bad);
+      await page.waitForFunction(() => /no material that can be read/.test(document.getElementById('status').textContent));
+      assert.equal(await page.textContent('#id'), shown);
+    }
+  }));
