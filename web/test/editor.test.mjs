@@ -208,6 +208,21 @@ test('nodes are moved, aligned, commented, put into a group, looked at there and
     // A new result of the group.
     await wire(page, port(one, 'out', 'NdotL'), port('outputs ', 'in', '+'));
     assert.deepEqual((await graphNow(page)).groups.group.outputs.NdotL_2, { node: 'coat.cosines', output: 'NdotL' });
+    // And a new input, at an input that had none of the group's: instances have its default.
+    await drag(page, await middleOf(page, port(one, 'in', 'V')), await emptyPlace(page));
+    await page.waitForSelector('.palette');
+    await page.keyboard.type('group input');
+    await page.keyboard.press('Enter');
+    await page.waitForSelector('#graph [data-box="input V"]');
+    assert.deepEqual((await graphNow(page)).groups.group.nodes[0].inputs.V, { input: 'V' });
+    await page.click('#undo');
+    await page.waitForSelector('#graph [data-box="input V"]', { state: 'detached' });
+    // A value in a group is that of the instance.
+    await page.waitForFunction((key) => {
+      const copy = new OffscreenCanvas(56, 56).getContext('2d');
+      copy.drawImage(document.querySelector(`[data-box="${key}"] canvas`), 0, 0);
+      return new Set(new Uint32Array(copy.getImageData(0, 0, 56, 56).data.buffer)).size > 20;
+    }, one);
     await page.click('#path button >> nth=0');
     await page.click(head('group group'));
     await page.click('#dissolve');

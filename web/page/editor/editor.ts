@@ -63,6 +63,8 @@ export class Editor {
   wire: Wire | null = null;
   /** Groups that were entered, the last one innermost. */
   path: string[] = [];
+  /** The instances through which they were entered. */
+  private instances: string[] = [];
   private bubble: HTMLElement | null = null;
   private fitted = '';
   private leading = ''; // a node that the code led to while this was not seen
@@ -72,7 +74,7 @@ export class Editor {
     this.canvas = new Canvas(root);
     this.inspector = new Inspector(inspector, this);
     this.thumbs = new Thumbs(
-      () => this.graph && this.view && { graph: this.graph, view: this.view, options: this.host.options(), values: this.host.values() },
+      () => this.graph && this.view && { graph: this.graph, view: this.view, within: this.instances, options: this.host.options(), values: this.host.values() },
       (box) => root.offsetParent !== null && this.canvas.isSeen(box),
     );
     this.canvas.drawValue = (box, canvas) => this.thumbs.hold(box, canvas);
@@ -198,10 +200,11 @@ export class Editor {
 
   enter(instance: Box): void {
     if (instance.kind !== 'group') return;
-    this.goTo([...this.path, instance.type]);
+    this.goTo([...this.path, instance.type], [...this.instances, instance.name]);
   }
-  goTo(path: string[]): void {
+  goTo(path: string[], instances = this.instances.slice(0, path.length)): void {
     this.path = path;
+    this.instances = instances;
     this.closeBubble();
     this.thumbs.forget();
     this.selection.clear();

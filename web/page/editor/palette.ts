@@ -89,6 +89,23 @@ function groupEntries(editor: Editor): Entry[] {
   }));
 }
 
+/** In a group: what its instances are given, with a default so that those that are there stay good. */
+function inputEntries(editor: Editor, port: PortAt | null): Entry[] {
+  if (!editor.group || port?.side === 'out') return [];
+  return kNewTypes.filter((type) => !port || type === port.port.type).map((type) => ({
+    name: `group input: ${type}`, kind: 'new', doc: 'What each instance of the group may be given.', category: 'groups', takes: [], gives: [type],
+    details: () => [h('p', {}, 'A new input of the group. Instances that are there have its default.')],
+    make: (at, place) => {
+      const name = fresh(port ? port.port.name : 'input', new Set(Object.keys(at.json?.groups?.[at.group]?.inputs ?? {})));
+      const source = port?.port.source;
+      const start = typeof source === 'number' || Array.isArray(source) ? source : port?.port.low ?? 0;
+      const as: Record<string, unknown> = { type, default: type === 'bool' ? false : start, ui: place };
+      if (port && (port.port.low !== null || port.port.high !== null)) as.range = [port.port.low, port.port.high];
+      return { edits: [{ do: 'add_input', input: pathOf(at.group, name), as }], key: `input ${name}`, source: { input: name } };
+    },
+  }));
+}
+
 /** Parameters of a type; where an input asks, of its name, its range and its value now. */
 function parameterEntries(port: PortAt | null): Entry[] {
   const types = port?.side === 'in' && kNewTypes.includes(port.port.type) ? [port.port.type] : kNewTypes;
@@ -156,7 +173,7 @@ export function rank(entry: Entry, words: string[]): number {
 export function openPalette(editor: Editor, clientX: number, clientY: number, port: PortAt | null, done: (entry: Entry) => void): void {
   const wanted = port?.port.type ?? '';
   const fits = (entry: Entry) => !wanted || (port!.side === 'in' ? entry.gives.some((type) => type === '' || type === wanted || (type === 'float' && converts(type, wanted))) : entry.takes.some((type) => type === wanted || (wanted === 'float' && converts(wanted, type))));
-  const all = [...parameterEntries(port), ...givenEntries(editor, port), ...groupEntries(editor), ...textureEntries(editor), ...(port ? [] : [commentEntry()]), ...editor.host.nodes().map(nodeEntry)].filter(fits);
+  const all = [...inputEntries(editor, port), ...parameterEntries(port), ...givenEntries(editor, port), ...groupEntries(editor), ...textureEntries(editor), ...(port ? [] : [commentEntry()]), ...editor.host.nodes().map(nodeEntry)].filter(fits);
   const field = h('input', { type: 'text', role: 'combobox', 'aria-label': 'Search nodes', 'aria-expanded': 'true', 'aria-controls': 'palette-list', placeholder: 'Search nodes…', spellcheck: 'false' });
   const categories = [...new Set(all.map(({ category }) => category))].sort();
   const category = h('select', { 'aria-label': 'Category' }, h('option', { value: '' }, 'all'), ...categories.map((name) => h('option', {}, name)));

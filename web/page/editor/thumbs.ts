@@ -1,7 +1,7 @@
 // The value of each box: on a small ball, or as a number where it is the same everywhere. One is drawn at a time when
 // nothing else is to be done.
 import { LacquerError, type Graph, type Options } from '../../src/index';
-import { pathOf, type Box, type View } from './view';
+import type { Box, View } from './view';
 
 /** Pixels of a ball's side. */
 const kPixels = 28;
@@ -26,7 +26,7 @@ export class Thumbs {
   drawn = 0;
 
   constructor(
-    private readonly graph: () => { graph: Graph; view: View; options: Options; values: Record<string, Value> } | null,
+    private readonly graph: () => { graph: Graph; view: View; within: string[]; options: Options; values: Record<string, Value> } | null,
     private readonly isSeen: (box: Box) => boolean,
   ) {}
 
@@ -70,9 +70,9 @@ export class Thumbs {
     ++this.drawn;
     if (box.kind === 'parameter') return show(context, of.values[box.name] ?? 0);
     if (box.kind === 'texture') return symbol(context, '▦');
-    if (box.kind === 'input' || of.view.group !== '') return symbol(context, '·');
+    if (box.kind === 'input') return symbol(context, '·');
     const type = box.outputs[0]?.type ?? '';
-    const options = { node_texts: of.options.node_texts, node: namedOutput(of.view.group, box), values: numbersOf(of.values) } as Options;
+    const options = { node_texts: of.options.node_texts, node: namedOutput(of.within, box), values: numbersOf(of.values) } as Options;
     try {
       const flat = type === 'float' || type === 'int' || type === 'bool' ? constant(of.graph, options) : null;
       if (flat !== null) return show(context, flat);
@@ -89,9 +89,10 @@ export class Thumbs {
 
 const numbersOf = (values: Record<string, Value>) => Object.fromEntries(Object.entries(values).filter(([, x]) => typeof x === 'number' || Array.isArray(x)));
 
-function namedOutput(group: string, box: Box): string {
+/** Of a group that was entered it is the value in the instance that one came through. */
+function namedOutput(within: string[], box: Box): string {
   const name = box.outputs[0]?.name;
-  return `${pathOf(group, box.name)}${name ? `.${name}` : ''}`;
+  return `${[...within, box.name].join('/')}${name ? `.${name}` : ''}`;
 }
 
 /** The number, where it is the same at all points; null where it is not. */
