@@ -236,6 +236,18 @@ test('nodes are moved, aligned, commented, put into a group, looked at there and
     });
   }));
 
+test('where only a node between would do, it is offered and put there', () =>
+  open(['examples/car_paint.gltf'], async (page) => {
+    await openGraph(page);
+    await wire(page, port('texture normal_texture', 'out', ''), port('node base.color', 'in', 'texel'));
+    assert.match(await page.textContent('#graph .bubble'), /is a vec4, its source is a sampler2D/);
+    await page.click('#graph .bubble .offers button >> nth=0');
+    await page.waitForSelector('#graph [data-box="node gltf_image_vec4"]');
+    assert.deepEqual(await inputsOf(page, 'gltf_image_vec4'), { file: { texture: 'normal_texture' } });
+    assert.deepEqual((await inputsOf(page, 'base.color')).texel, { node: 'gltf_image_vec4' });
+    assert.equal(await page.textContent('#status'), '');
+  }));
+
 test('the palette finds nodes by name, by prose and by category, says what they take, and at a port offers what fits it', () =>
   open(['examples/clearcoat.gltf'], async (page) => {
     await openGraph(page);

@@ -643,9 +643,8 @@ test('the page is drawn: a picture of the car paint', () =>
   open(['examples/car_paint.gltf'], async (page) => {
     await settled(page);
     await painted(page);
-    const file = process.env.LACQUER_SCREENSHOT ?? join(folder, 'page.png');
-    const picture = await page.screenshot({ path: file });
-    assert.ok(picture.length > 50_000);
+    const pictures = process.env.LACQUER_SCREENSHOTS ?? folder; // docs/images has both
+    assert.ok((await page.screenshot({ path: join(pictures, 'page.png') })).length > 50_000);
     const colors = await page.evaluate(() => {
       const { gl } = window.lacquerPage.viewport;
       window.lacquerPage.viewport.draw();
@@ -654,4 +653,16 @@ test('the page is drawn: a picture of the car paint', () =>
       return [...rgba];
     });
     assert.ok(colors[0] > colors[1] + 20, `a red paint: ${colors}`);
+    await page.click('[data-tab=graph]');
+    await page.click('#wide');
+    await page.focus('#graph [data-box="node base.color"]');
+    await page.evaluate(() => {
+      const { editor } = window.lacquerPage.graph;
+      const near = editor.view.wires.filter(({ from, to }) => [from.key, to.key].includes('node base.color')).flatMap(({ from, to }) => [from.key, to.key]);
+      editor.canvas.fit(new Set(near));
+      editor.thumbs.later();
+    });
+    const seen = () => page.evaluate(() => window.lacquerPage.graph.editor.thumbs.isDone);
+    while (!(await seen())) await page.waitForTimeout(100);
+    await page.screenshot({ path: join(pictures, 'graph_editor.png') });
   }));

@@ -269,10 +269,12 @@ export class Editor {
       for (const swizzle of all) offers.push({ label: `.${swizzle}`, act: () => connect({ ...source, swizzle }) });
     }
     const between = [...error.help.matchAll(/'([^']+)'/g)].map((match) => match[1]);
-    for (const name of between) {
-      const node = this.host.nodes().find((each) => each.name === name);
-      const input = node?.inputs.find(({ type }) => type === from.port.type);
-      if (!node || !input) continue;
+    const nodes = between.map((name) => this.host.nodes().find((each) => each.name === name)).filter((node) => node !== undefined);
+    const gives = (node: LibraryNode) => node.outputs.some(({ type }) => type === to.port.type);
+    for (const node of nodes.sort((a, b) => Number(gives(b)) - Number(gives(a)))) {
+      const { name } = node;
+      const input = node.inputs.find(({ type }) => type === from.port.type);
+      if (!input) continue;
       offers.push({
         label: `through ${name}`,
         act: () => {

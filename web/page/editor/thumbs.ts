@@ -30,6 +30,11 @@ export class Thumbs {
     private readonly isSeen: (box: Box) => boolean,
   ) {}
 
+  /** Whether all that is seen has its value. */
+  get isDone(): boolean {
+    return this.timer === 0 && this.waiting.length === 0 && this.idle === 0;
+  }
+
   forget(): void {
     this.canvases.clear();
     this.waiting = [];
@@ -43,6 +48,7 @@ export class Thumbs {
     clearTimeout(this.timer);
     this.waiting = [];
     this.timer = window.setTimeout(() => {
+      this.timer = 0;
       const of = this.graph();
       if (!of) return;
       this.waiting = [...of.view.boxes.values()].filter((box) => box.kind !== 'outputs' && this.isSeen(box));
