@@ -66,7 +66,7 @@ export function slotRow(of: Document, slot: Slot, acts: SlotActs): { element: HT
     'div', { class: `row texture${is ? '' : ' empty'}`, 'data-slot': slot.pointer, title: [slot.meaning, slot.pointer].filter(Boolean).join('\n') },
     thumbnail,
     h('div', { class: 'about' }, h('label', { class: 'name', for: choice.id }, slot.name), tag, h('small', {}, `${space}, ${slot.channels}${slot.meaning ? `: ${slot.meaning}` : ''}`), choice, picker),
-    ...(is ? [lying(of, slot, acts)] : []),
+    ...(is ? [lying(of, slot, acts)] : []), ...packing(of, slot, acts),
   );
   element.addEventListener('dragover', () => element.classList.add('over'));
   element.addEventListener('dragleave', () => element.classList.remove('over'));
@@ -82,7 +82,7 @@ export function slotRow(of: Document, slot: Slot, acts: SlotActs): { element: HT
   return {
     element,
     mark: (taken) => {
-      for (const field of element.querySelectorAll<HTMLInputElement | HTMLSelectElement>('input, select')) if (field.disabled !== taken) field.disabled = taken;
+      for (const field of element.querySelectorAll<HTMLInputElement | HTMLSelectElement | HTMLButtonElement>('input, select, button')) if (field.disabled !== taken) field.disabled = taken;
     },
   };
 }
@@ -100,6 +100,53 @@ async function put(of: Document, slot: Slot, file: File, acts: SlotActs): Promis
   of.set(slot.pointer, { ...of.get(slot.pointer), index: texture }, `texture ${slot.pointer} ${texture}`);
   of.settle();
   acts.changed(true);
+}
+
+const kPacked = ['red', 'green', 'blue'];
+
+/** For data in channels: each may come from a grey picture of its own, the others stay as they are, or 1. */
+function packing(of: Document, slot: Slot, acts: SlotActs): HTMLElement[] {
+  const channels = kPacked.filter((name) => slot.channels.includes(name[0]));
+  if (slot.srgb || channels.length < 2 || /normal/i.test(slot.name)) return [];
+  const rows = channels.map((name) => {
+    const picker = h('input', { type: 'file', hidden: true, accept: 'image/png,image/jpeg,image/webp,image/avif', 'aria-label': `${slot.name}, ${name} from a grey picture` });
+    picker.addEventListener('change', () => picker.files?.[0] && void fill(of, slot, kPacked.indexOf(name), picker.files[0], acts));
+    return h('div', {}, h('span', {}, name), h('button', { type: 'button', 'aria-label': `${slot.name}, ${name}: choose a grey picture`, click: () => picker.click() }, 'Grey picture…'), picker);
+  });
+  return [h('details', { class: 'lying' }, h('summary', {}, 'channels from grey pictures'), ...rows)];
+}
+
+/** The red of a picture as one channel of the slot's; the larger of both gives the size. What is made is opaque: a canvas
+ * keeps no colours where alpha is 0. */
+async function fill(of: Document, slot: Slot, channel: number, file: File, acts: SlotActs): Promise<void> {
+  const untouched = { premultiplyAlpha: 'none', colorSpaceConversion: 'none' } as const;
+  let grey: ImageBitmap;
+  try {
+    grey = await createImageBitmap(file, untouched);
+  } catch {
+    return acts.fail(new Error(`${file.name} is no picture that this browser reads: PNG, JPEG, WebP or AVIF`));
+  }
+  const index = of.get(`${slot.pointer}/index`);
+  const before = typeof index === 'number' ? await image(of.file, sourceOf(item(of.json.textures, index))) : null;
+  const [width, height] = [Math.max(grey.width, before?.width ?? 1), Math.max(grey.height, before?.height ?? 1)];
+  const pixelsOf = (bitmap: ImageBitmap): Uint8ClampedArray => {
+    const context = new OffscreenCanvas(width, height).getContext('2d')!;
+    context.drawImage(bitmap, 0, 0, width, height);
+    return context.getImageData(0, 0, width, height).data;
+  };
+  const made = before ? pixelsOf(before) : new Uint8ClampedArray(4 * width * height).fill(255);
+  const from = pixelsOf(grey);
+  if (slot.channels.includes('a') && made.some((x, i) => i % 4 === 3 && x < 255)) return acts.fail(new Error(`the picture of ${slot.name} has an alpha of its own, which filling a channel would lose: take it away first`));
+  for (let i = 0; i < made.length; i += 4) {
+    made[i + channel] = from[i];
+    made[i + 3] = 255;
+  }
+  const canvas = new OffscreenCanvas(width, height);
+  canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(made), width, height), 0, 0);
+  const packed = new File([await canvas.convertToBlob({ type: 'image/png' })], `${slot.name}.png`, { type: 'image/png' });
+  grey.close();
+  before?.close();
+  await put(of, slot, packed, acts);
 }
 
 /** Set, transform and sampler of a slot's texture. */

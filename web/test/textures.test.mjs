@@ -115,3 +115,29 @@ test('a picture is chosen by its file or from those of the file, refused where i
     const exported = JSON.parse(await downloaded(page, '#export'));
     assert.deepEqual(exported, original);
   }));
+
+test('channels of one picture are filled from grey ones, each for itself', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    const pointer = '/materials/0/pbrMetallicRoughness/metallicRoughnessTexture';
+    const pixel = () => page.evaluate(async (at) => {
+      const { document: of } = window.lacquerPage;
+      const { uri } = of.json.images[of.json.textures[of.get(`${at}/index`)].source];
+      const bytes = Uint8Array.from(atob(uri.split(',')[1]), (c) => c.charCodeAt(0));
+      const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+      const copy = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+      copy.drawImage(bitmap, 0, 0);
+      return [...copy.getImageData(0, 0, 1, 1).data];
+    }, pointer);
+    const fill = async (channel, value, expected) => {
+      const before = await page.evaluate((at) => window.lacquerPage.document.get(`${at}/index`) ?? -1, pointer);
+      await page.setInputFiles(`[aria-label="metallicRoughnessTexture, ${channel} from a grey picture"]`, { name: 'grey.png', mimeType: 'image/png', buffer: plain(value, value, value) });
+      await page.waitForFunction(([at, was]) => (window.lacquerPage.document.get(`${at}/index`) ?? -1) !== was, [pointer, before]);
+      assert.deepEqual(await pixel(), expected);
+    };
+    await fill('green', 128, [255, 128, 255, 255]);
+    await fill('blue', 51, [255, 128, 51, 255]);
+    await page.click('#undo');
+    assert.deepEqual(await pixel(), [255, 128, 255, 255]);
+    assert.equal(await page.textContent('#status'), '');
+    assert.equal(await page.locator(`${slot(kBase)} >> text=channels from`).count(), 0, 'a colour is no packed data');
+  }));
