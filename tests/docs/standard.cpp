@@ -7,6 +7,7 @@
 
 #include "docs/tables.h"
 #include "lang/library.h"
+#include "support/cases.h"
 
 namespace lacquer::test {
 
@@ -76,6 +77,25 @@ std::string standardNodes() {
     }
   }
   return fmt::format("{} nodes in {} forms.\n", families, forms) + out;
+}
+
+/// bench/pictures.py draws them.
+TEST(StandardPictures, AreThereForEachNode) {
+  const lang::Library library = lang::Library::embedded();
+  const std::string page = readFile(sourceFolder() / "docs/standard-pictures.md");
+  size_t nodes = 0;
+  for (const std::string_view name : library.names(lang::DeclKind::Node)) {
+    const auto node = library.node(name);
+    ASSERT_TRUE(node) << name;
+    if (!(*node)->origin.file.starts_with("nodes/standard/") || (*node)->category.empty()) continue;
+    const size_t section = page.find(fmt::format("## {}\n", (*node)->category));
+    const size_t end = page.find("\n## ", section);
+    const size_t at = page.find(fmt::format("`{}`", (*node)->family), section);
+    EXPECT_TRUE(section != std::string::npos && at < end) << "./dev bench pictures draws " << name;
+    EXPECT_TRUE(fs::exists(sourceFolder() / fmt::format("docs/images/standard-{}.png", (*node)->category)));
+    ++nodes;
+  }
+  EXPECT_GT(nodes, 500U);
 }
 
 }  // namespace lacquer::test
