@@ -83,6 +83,8 @@ constexpr Known kKnown[] = {
     {"line", "radius < length", "a shape has an edge"},
     {"grid", "", "a shape has an edge"},
     {"crosshatch", "", "a shape has an edge"},
+    {"texture_within", "", "an image has an edge"},
+    {"texture_tiles", "", "a tile has an edge, and what is beyond the last one is of another colour"},
     {"gooch_shade", "", "powers of 0 and of what is below are 0"},
 };
 

@@ -14,12 +14,13 @@ namespace lacquer::ir {
 
 enum class Stage : uint8_t { Vertex, Fragment };
 
+/// Shaders' ids are made of these numbers: what is new stands last.
 enum class OutputKind : uint8_t {
   Position,  ///< Vec4, clip space; vertex stage
   Color,     ///< a fragment output at `location`: a Float, a vector of them, an Int or a UInt
   Discard,   ///< Bool: the fragment is dropped when true
-  Depth,     ///< Float in [0, 1]: the fragment's depth in place of its triangle's
   Varying,   ///< vertex stage: the value of varyings[location]; made by the place pass
+  Depth,     ///< Float in [0, 1]: the fragment's depth in place of its triangle's
 };
 
 struct Output {
