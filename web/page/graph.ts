@@ -44,6 +44,10 @@ export class GraphPane implements Host {
       this.clear();
     }
   }
+  /** Numbers are changing: no value is drawn before they rest. */
+  pause(): void {
+    this.editor.thumbs.stop();
+  }
   /** Nothing of it changed but numbers. */
   follow(): void {
     this.editor.resume();

@@ -254,6 +254,7 @@ export class Page {
   compile(): void {
     if (!this.of?.names.length) return this.viewport.redraw();
     const begin = performance.now();
+    this.graph.pause();
     this.messages = [];
     this.notice = [];
     const made = this.compileLook(this.messages);
@@ -587,7 +588,7 @@ export class Page {
     this.on('undo', 'click', step((of) => of.undo()));
     this.on('redo', 'click', step((of) => of.redo()));
     addEventListener('keydown', (event) => {
-      if (!(event.ctrlKey || event.metaKey) || (event.target as HTMLElement).matches?.('input[type=text], input[type=number]')) return;
+      if (!(event.ctrlKey || event.metaKey) || (event.target as HTMLElement).matches?.('input[type=text], input[type=number], textarea')) return;
       if (event.key.toLowerCase() !== 'z' && event.key.toLowerCase() !== 'y') return;
       event.preventDefault();
       step((of) => (event.key.toLowerCase() === 'y' || event.shiftKey ? of.redo() : of.undo()))();

@@ -311,6 +311,14 @@ test('a node of one\'s own is written on the page: errors at line and column as 
     await page.waitForSelector('#node-messages .error');
     assert.equal(await page.textContent('#id'), id);
     assert.match(await page.textContent('#node-told'), /as it was before/);
+    // Ctrl+Z is the text's there, and takes back no edit of the material.
+    const state = () => page.evaluate(() => window.lacquerPage.document.state);
+    const [edits, text] = [await state(), await page.inputValue('#node-text')];
+    await page.keyboard.press('Control+z');
+    assert.notEqual(await page.inputValue('#node-text'), text);
+    assert.equal(await state(), edits);
+    await page.keyboard.press('Control+y');
+    await page.keyboard.press('Control+End');
     for (let i = 0; i < 4; ++i) await page.keyboard.press('Backspace');
     await page.waitForFunction(() => document.querySelector('#node-messages').children.length === 0);
     const exported = await downloaded(page, '#export');
@@ -378,4 +386,33 @@ test('after an edit of the graph properties that have a place in it act, the oth
     await drop(page, [['again.gltf', Buffer.from(JSON.stringify({ ...exported, materials: [exported.materials[0], {}] }))]]);
     await page.selectOption('#material', '1');
     assert.equal(await page.locator('.taken').count(), 0);
+  }));
+
+test('values of nodes wait while a slider moves, and follow it when it rests', () =>
+  open(['examples/clearcoat.gltf'], async (page) => {
+    await openGraph(page);
+    const done = () => page.waitForFunction(() => window.lacquerPage.graph.editor.thumbs.isDone);
+    await done();
+    const color = () => page.evaluate(() => {
+      const copy = new OffscreenCanvas(56, 56).getContext('2d');
+      copy.drawImage(document.querySelector('[data-box="node base.color"] canvas'), 0, 0);
+      return [...copy.getImageData(28, 28, 1, 1).data];
+    });
+    const before = await color();
+    const drawnMoving = await page.evaluate(async () => {
+      const { thumbs } = window.lacquerPage.graph.editor;
+      const begin = thumbs.drawn;
+      const slider = document.getElementById('p:/materials/0/pbrMetallicRoughness/baseColorFactor/1');
+      for (let i = 0; i <= 20; ++i) {
+        slider.value = String(0.2 + i * 0.035);
+        slider.dispatchEvent(new Event('input', { bubbles: true }));
+        await new Promise((wait) => setTimeout(wait, 10));
+      }
+      return thumbs.drawn - begin;
+    });
+    assert.equal(drawnMoving, 0);
+    await page.waitForTimeout(400);
+    await done();
+    const after = await color();
+    assert.ok(after[1] > before[1] + 60, `${before} ${after}`);
   }));

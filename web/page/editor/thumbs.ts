@@ -43,10 +43,16 @@ export class Thumbs {
     this.canvases.set(box.key, canvas);
   }
 
+  /** Something is being changed: values wait. */
+  stop(): void {
+    clearTimeout(this.timer);
+    this.timer = 0;
+    this.waiting = [];
+  }
+
   /** Draws all that are seen once nothing has changed for a while. */
   later(): void {
-    clearTimeout(this.timer);
-    this.waiting = [];
+    this.stop();
     this.timer = window.setTimeout(() => {
       this.timer = 0;
       const of = this.graph();
