@@ -386,7 +386,10 @@ private:
     for (const auto& [name, from] : graph_.outputs) source(from);
     if (options_.shown != nullptr) source(*options_.shown);
     for (const lang::PortDecl& port : template_->ports) open.push_back(port.default_value.get());
-    for (const lang::OutputDecl& output : template_->outputs) open.push_back(output.value.get());
+    for (const lang::OutputDecl& output : template_->outputs) {
+      open.push_back(output.value.get());
+      if (output.role == lang::OutputRole::Displacement) add(output.name);
+    }
     if (template_->light_lists) open.push_back(template_->light_lists->index.get());
     while (!open.empty()) {
       const lang::Expr* expr = open.back();
