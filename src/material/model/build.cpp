@@ -102,8 +102,8 @@ Texel Writer::texelOf(uint16_t property) const {
 void Writer::mark(const Found& value) {
   if (value.kind == Found::Kind::Texel && material_.texture(value.property)->group.empty()) {
     const Texel texel = texelOf(value.property);
-    const auto known = std::find_if(sharers_.begin(), sharers_.end(),
-                                    [&](const auto& one) { return one.first == texel; });
+    const auto known =
+        std::find_if(sharers_.begin(), sharers_.end(), [&](const auto& one) { return one.first == texel; });
     if (known == sharers_.end())
       sharers_.emplace_back(texel, value.property);
     else
@@ -271,8 +271,8 @@ Source Writer::texel(uint16_t wanted) {
   for (const auto& [known, source] : texels_) {
     if (known == key) return source;
   }
-  const auto sharer = std::find_if(sharers_.begin(), sharers_.end(),
-                                   [&](const auto& one) { return one.first == key; });
+  const auto sharer =
+      std::find_if(sharers_.begin(), sharers_.end(), [&](const auto& one) { return one.first == key; });
   const uint16_t property = sharer == sharers_.end() ? wanted : sharer->second;
   const material::Property& row = model_.schema->properties[property];
   const std::string& slot = row.parameter_name;
