@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <vector>
 
@@ -92,7 +93,8 @@ TEST(StandardPictures, AreThereForEachNode) {
     const size_t end = page.find("\n## ", section);
     const size_t at = page.find(fmt::format("`{}`", (*node)->family), section);
     EXPECT_TRUE(section != std::string::npos && at < end) << "./dev bench pictures draws " << name;
-    EXPECT_TRUE(fs::exists(sourceFolder() / fmt::format("docs/images/standard-{}.png", (*node)->category)));
+    EXPECT_TRUE(std::filesystem::exists(sourceFolder() /
+                                        fmt::format("docs/images/standard-{}.png", (*node)->category)));
     ++nodes;
   }
   EXPECT_GT(nodes, 500U);
