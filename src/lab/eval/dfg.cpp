@@ -100,7 +100,9 @@ std::shared_ptr<const Image> environmentTable(std::string_view name) {
 }
 
 Sampler environmentSampler(std::string_view name) {
-  return makeSampler(environmentTable(name), {Wrap::Clamp, Wrap::Clamp, false, false});
+  std::shared_ptr<const Image> table = environmentTable(name);
+  if (!table) return {};
+  return makeSampler(std::move(table), {Wrap::Clamp, Wrap::Clamp, false, false});
 }
 
 }  // namespace lacquer::eval

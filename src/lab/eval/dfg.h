@@ -24,7 +24,7 @@ std::vector<float> environmentDfgTable(uint32_t size);
 /// The table behind a template's texture, "environment_dfg" or "environment_sheen" (eval/sheen.h): its first
 /// two channels, to be looked up bilinearly and clamped to its edge. Null for every other name.
 std::shared_ptr<const Image> environmentTable(std::string_view name);
-/// Such a lookup, for one of the two names.
+/// Such a lookup, for one of the two names; none, which is not to be called, for every other.
 Sampler environmentSampler(std::string_view name);
 
 }  // namespace lacquer::eval
