@@ -50,7 +50,7 @@ TEST_F(Manifest, namesTheProfile) {
   EXPECT_EQ(coated["profile"], "openpbr");
   EXPECT_NE(coated["uses"][0]["shader"], material(0)["uses"][0]["shader"]);
   const Outcome wrong = place_.run({"gen", "car.gltf", "-o", "wrong", "--profile", "pbr"});
-  EXPECT_EQ(wrong.status, 1) << wrong.all();
+  EXPECT_EQ(wrong.status, 2) << wrong.all();
   EXPECT_NE(wrong.err.find("there are khr, khr_2025_10_13, openpbr, physical"), std::string::npos)
       << wrong.err;
   EXPECT_FALSE(place_.has("wrong"));

@@ -89,7 +89,7 @@ TEST(Tune, ANodesFrontFallsAsItsErrorGrows) {
   }
   const Outcome table = place.run({"tune", "coat_absorption"}, kLong);
   EXPECT_NE(table.out.find("coat_absorption: "), std::string::npos) << table.all();
-  EXPECT_EQ(place.run({"tune", "no_such_node"}).status, 1);
+  EXPECT_EQ(place.run({"tune", "no_such_node"}).status, 2);
   EXPECT_NE(place.run({"tune", "coat_absorption.none"}).err.find("[no-such-variant]"), std::string::npos);
 }
 

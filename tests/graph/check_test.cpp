@@ -78,7 +78,7 @@ TEST(GraphCheck, parametersAndTexturesHaveTypesOfAGraph) {
             "  help: write the lowest value, then the highest\n"
             "/textures/t: error: there are two textures 't' [duplicate-name]\n"
             "/textures/t/type: error: a texture cannot be a vec2 [wrong-type]\n"
-            "  help: it is a sampler2D or a samplerCube\n"
+            "  help: it is a sampler2D, a samplerCube or a sampler2DArray\n"
             "/textures/t/texture: error: there is no texture -7 [out-of-range]\n"
             "  help: it is the index of a glTF texture, or -1 for none\n"
             "/textures/u: error: 'u' is marked as a texture of the environment [wrong-texture]\n"

@@ -64,7 +64,7 @@ public:
         const ir::Input& texture = dag_.inputOf(v.args[0]);
         return world_.texel(module_.textures[texture.field].environment, texture.name, b);
       }
-      case Op::TextureSize: return splat(7);
+      case Op::TextureSize: return splat(ir::whole<float>(uint32_t{7}));
       case Op::DFdx: return spread(difference(v.args[0], 0), v.type);
       case Op::DFdy: return spread(difference(v.args[0], 1), v.type);
       case Op::Column: return a;  // as with a product

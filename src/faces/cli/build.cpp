@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "cli/streams.h"
-#include "support/text.h"
 
 namespace lacquer::cli {
 
@@ -43,8 +42,9 @@ void printTimes(const Report& report, double wall) {
     total += seconds;
   }
   say("{:<20} {:>10.3f} ms\n{:<20} {:>10.3f} ms\n", "all threads", total * 1e3, "wall clock", wall * 1e3);
-  say("{} made, {} from the cache, {} written\n", countOf(report.made, "shader"),
-      report.shaders.size() - report.made, countOf(report.written, "file"));
+  // Programs read this line: numbers, whatever they count.
+  say("{} shaders made, {} from the cache, {} files written\n", report.made,
+      report.shaders.size() - report.made, report.written);
 }
 
 ProgressLine::~ProgressLine() {

@@ -53,7 +53,7 @@ std::optional<size_t> Graph::findGroup(std::string_view wanted) const {
 
 bool Graph::hasAttribute(std::string_view wanted) const {
   return std::any_of(attributes.begin(), attributes.end(),
-                     [&](const std::string& name) { return sameAttribute(name, wanted); });
+                     [&](const std::string& one) { return sameAttribute(one, wanted); });
 }
 
 bool isAttributeName(std::string_view name) {
