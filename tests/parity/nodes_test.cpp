@@ -55,21 +55,21 @@ TEST(ParityNodes, CpuAndAllRoutesAgree) {
   EXPECT_LT(all.vague, all.numbers / 20);
 }
 
-/// Lookups over a footprint, and sizes, which few of the library's nodes ask for. Not the footprint of a
-/// cube: lavapipe's compiler ends in it.
+/// Lookups over a footprint, and sizes, which few of the library's nodes ask for. Not those of a
+/// cube: lavapipe's compiler ends in them.
 TEST(ParityLookups, CpuAndAllRoutesAgree) {
   if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
   const auto texts = lang::Library::fromFiles({{"lookups.node", R"(/// D.
 /// source: S
 node looked_up(
-    sampler2D map, samplerCube around, sampler2DArray tiles,
+    sampler2D map, sampler2DArray tiles,
     vec2 uv in [-2, 2], vec2 along in [-0.1, 0.1], vec2 up in [-0.1, 0.1]
 ) -> (vec4 flat, vec4 tile, vec3 sizes, float other) {
     ivec2 size = textureSize(map, 0);
     ivec3 layers = textureSize(tiles, 0);
     return (textureGrad(map, uv, along, up), textureGrad(tiles, vec3(uv, 0), along, up),
             vec3(float(size.x), float(size.y), float(layers.z)),
-            float(textureSize(around, 0).x));
+            float(textureSize(tiles, 0).x));
 }
 )"}});
   ASSERT_TRUE(texts);
