@@ -352,7 +352,7 @@ private:
     return static_cast<uint32_t>(found - block.fields.begin());
   }
 
-  /// What the template gives under a name; looked for once.
+  /// The template's given of a name; looked for once.
   std::optional<lang::GivenResult> givenNamed(std::string_view name) {
     const auto known = givens_.find(name);
     if (known != givens_.end()) return known->second;

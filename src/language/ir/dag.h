@@ -266,7 +266,7 @@ private:
   std::vector<Components> constants_;
   std::vector<Input> inputs_;
   std::vector<uint64_t> input_keys_;  ///< of their numbers: they are told apart by these before their names
-  /// What is known of a value beside what it is.
+  /// A value's provenance, name, facts and rank.
   struct About {
     TermId term;
     uint32_t name;  ///< 1 + index into names_, 0 for none

@@ -85,7 +85,7 @@ bool prefixed(std::string_view name) {
                      [&](std::string_view p) { return p[0] == name[0] && name.starts_with(p); });
 }
 
-// What a character is in a name, in every locale the same.
+// Classes of characters in names, in every locale the same.
 constexpr uint8_t kPlain = 1, kUnderscore = 2, kMark = 4;  // a mark is a digit or a capital
 
 uint8_t classOf(char c) {
