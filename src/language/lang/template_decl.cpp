@@ -77,7 +77,7 @@ private:
     if (decl_.front_facing) ties_[*decl_.front_facing] = kFragment;
   }
 
-  /// What is optional is asked for before it is read, so that it is not needed.
+  /// Adds the attributes that an expression reads. An optional one is asked for first, so it is not needed.
   void needs(const Expr& expr, GivenDecl& given) {
     std::vector<uint16_t>& needed = given.attributes;
     const auto add = [&](uint16_t attribute) {

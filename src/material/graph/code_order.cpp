@@ -17,7 +17,7 @@ namespace lacquer::graph {
 
 namespace {
 
-/// What a node of a flat graph takes, which names the forms of nodes that it has; none of an unknown node.
+/// The parameters of a node of a flat graph, which names forms of nodes; none of an unknown node.
 std::span<const lang::Param> paramsOf(const Node& node, const lang::Library& library) {
   if (node.group) return {};
   const Result<const lang::NodeDecl*> found = library.node(node.type);

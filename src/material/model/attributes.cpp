@@ -52,7 +52,7 @@ bool hasAttribute(const gltf::VertexAttributes& attributes, std::string_view nam
 bool needsAbsent(const lang::TemplateDecl& decl, const lang::GivenDecl& given,
                  const gltf::VertexAttributes& attributes) {
   return std::any_of(given.attributes.begin(), given.attributes.end(), [&](uint16_t place) {
-    // What is not glTF's is the application's, which has it unless the template asks.
+    // An attribute that is not glTF's is the application's, which has it unless the template asks.
     const std::string_view name = decl.attributes[place].name;
     return isGltfs(name) && !hasAttribute(attributes, name);
   });
