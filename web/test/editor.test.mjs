@@ -117,7 +117,8 @@ test('the graph is edited from the keyboard: added, connected, disconnected, mov
     await page.keyboard.press('a');
     await page.keyboard.type('schlick');
     await page.keyboard.press('Enter');
-    await page.waitForSelector('#graph [data-box="node schlick"]:focus');
+    await page.waitForSelector('dialog.palette', { state: 'detached' });
+    assert.equal(await page.evaluate(() => document.activeElement.dataset.box), 'node schlick');
     await page.keyboard.press('Enter');
     await page.keyboard.press('ArrowDown');
     assert.deepEqual(await focusedPort(page), ['node schlick', 'in', 'cosine']);

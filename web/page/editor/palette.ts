@@ -218,10 +218,8 @@ export function openPalette(editor: Editor, clientX: number, clientY: number, po
     if (step && event.target === field) (event.preventDefault(), point(at + step));
   });
   dialog.addEventListener('click', (event) => event.target === dialog && dialog.close());
-  dialog.addEventListener('close', () => {
-    dialog.remove();
-    editor.root.focus();
-  });
+  // The dialog gives the focus back when it is closed, and the box that was added takes it then. This event comes later: it must leave the focus alone.
+  dialog.addEventListener('close', () => dialog.remove());
   document.body.append(dialog);
   dialog.showModal();
   dialog.style.left = `${Math.max(8, Math.min(clientX, innerWidth - dialog.offsetWidth - 8))}px`;
