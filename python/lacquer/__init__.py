@@ -271,7 +271,7 @@ class Graph(_Handle):
         return json.loads(_taken(_lib.lacquer_graph_parameters(self._at)))
 
     def textures(self) -> List[Dict[str, Any]]:
-        """name, type, srgb, texture (-1: none), pointer, file, ui of each."""
+        """name, type, srgb, texture (-1: none), pointer, file, ui, also (pointers of other properties that have its texel) of each."""
         return json.loads(_taken(_lib.lacquer_graph_textures(self._at)))
 
     def groups(self) -> List[str]:

@@ -44,6 +44,9 @@ struct TextureUse {
   std::string pointer;  ///< JSON pointer of the textureInfo; may be empty
   std::string file{};   ///< of a graph's own: the image below the folder of the graph; else empty
   std::string ui{};     ///< the tool's own words, JSON; may be empty
+  /// Beside `pointer` the textureInfos of other properties that have the same texel, in order. One of them
+  /// that is changed alone has a texture of its own then: another program.
+  Strings also{};
 };
 
 /// What something is connected to.

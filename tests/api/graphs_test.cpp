@@ -5,10 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "inputs.h"
@@ -35,29 +32,15 @@ std::string colorsOf(std::string answer) {
   return answer;
 }
 
-/// A file's JSON, of a .glb its first chunk.
-nlohmann::json gltfOf(const std::string& file) {
-  std::string text = readFile(file);
-  if (text.starts_with("glTF")) {
-    uint32_t size = 0;
-    std::memcpy(&size, text.data() + 12, sizeof size);
-    text = text.substr(20, size);
+/// Another constant for each texel, by its property's name or by that of another property that has it.
+Strings texelsOf(const Graph& graph) {
+  Strings texels;
+  for (const TextureUse& texture : graph.textures()) {
+    const std::string& pointer = texture.also.empty() ? texture.pointer : texture.also.back();
+    texels.push_back(pointer.substr(pointer.rfind('/') + 1) + "=0." + std::to_string(3 + texels.size() % 5) +
+                     ",0.5,0.9,0.8");
   }
-  return nlohmann::json::parse(text);
-}
-
-/// Another constant for each image.
-std::string texelOf(const std::string& name, int image) {
-  return name + "=0." + std::to_string(3 + (image + 5) % 5) + ",0.5,0.9,0.8";
-}
-
-/// For each textureInfo below an object, by the property's name.
-void addTexels(const nlohmann::json& object, Strings& texels) {
-  for (const auto& [name, value] : object.items()) {
-    if (!value.is_object()) continue;
-    if (name.ends_with("exture") && value.contains("index")) texels.push_back(texelOf(name, value["index"]));
-    addTexels(value, texels);
-  }
+  return texels;
 }
 
 /// Compares each material of a file, and counts what it has compared.
@@ -65,7 +48,6 @@ size_t compareGraphsOf(const std::string& file, const Options& options, bool wit
   size_t compared = 0;
   Messages messages;
   const Scene scene = Scene::load(file, options, messages);
-  const nlohmann::json gltf = gltfOf(file);
   for (size_t i = 0; i < scene.materialCount(); ++i) {
     SCOPED_TRACE(file + ": " + scene.materialName(i));
     for (const char* points : {kLit, kDark}) {
@@ -73,14 +55,7 @@ size_t compareGraphsOf(const std::string& file, const Options& options, bool wit
       Options built = options;
       built.ibl = points == kLit;
       const Graph graph = scene.graph(i, kAll, built, messages);
-      Strings texels;
-      if (without_images) {
-        addTexels(gltf["materials"][i], texels);
-        for (const TextureUse& texture : graph.textures()) {
-          const std::string property = texture.pointer.substr(texture.pointer.rfind('/') + 1);
-          if (!property.ends_with("exture")) texels.push_back(texelOf(property, texture.texture));
-        }
-      }
+      const Strings texels = without_images ? texelsOf(graph) : Strings();
       for (const Engine engine : {Engine::Double, Engine::Float}) {
         const std::string expected = jsonOf(evaluate(scene, i, points, engine, texels, options, messages));
         EXPECT_NE(expected, "");
@@ -114,6 +89,8 @@ TEST(Graphs, HaveTheColorsOfTheirMaterialsInRealFiles) {
   for (const std::string& file : files) compareGraphsOf(file, quick(), true);
 }
 
+constexpr const char* kCoatNormal = "/materials/0/extensions/KHR_materials_clearcoat/clearcoatNormalTexture";
+
 /// An image that several properties have goes by one of them, whatever the graph is built for, so that a
 /// constant for that one reaches it.
 TEST(Graphs, NameSharedImagesAsTheirMaterialsDo) {
@@ -132,13 +109,31 @@ TEST(Graphs, NameSharedImagesAsTheirMaterialsDo) {
     const Graph graph = scene.graph(0, attributes, built, messages);
     ASSERT_EQ(graph.textures().size(), 1U);
     EXPECT_EQ(graph.textures()[0].name, "normal_texture");
+    EXPECT_EQ(graph.textures()[0].also, Strings{kCoatNormal});
   }
   const Graph graph = scene.graph(0, kAll, built, messages);
-  const Strings texels{"normalTexture=0.6,0.5,0.9,1", "clearcoatNormalTexture=0.6,0.5,0.9,1"};
-  const std::string expected = jsonOf(evaluate(scene, 0, kDark, Engine::Double, texels, options, messages));
-  EXPECT_NE(expected, "");
-  EXPECT_EQ(jsonOf(evaluate(graph, kDark, Engine::Double, texels, options, messages)), colorsOf(expected));
+  EXPECT_EQ(Graph::fromJson(graph.toJson(), "lamp.json", messages).textures()[0].also, Strings{kCoatNormal});
+  const std::string white =
+      jsonOf(evaluate(scene, 0, kDark, Engine::Double, {"normalTexture=0.5,0.5,1,1"}, options, messages));
+  // Each name reaches it.
+  for (const Strings& texels :
+       {Strings{"normalTexture=0.6,0.5,0.9,1"}, Strings{"clearcoatNormalTexture=0.6,0.5,0.9,1"},
+        Strings{"normalTexture=0.6,0.5,0.9,1", "clearcoatNormalTexture=0.6,0.5,0.9,1"}}) {
+    const std::string expected = jsonOf(evaluate(scene, 0, kDark, Engine::Double, texels, options, messages));
+    EXPECT_NE(expected, "");
+    EXPECT_NE(expected, white);
+    EXPECT_EQ(jsonOf(evaluate(graph, kDark, Engine::Double, texels, options, messages)), colorsOf(expected));
+  }
   EXPECT_EQ(errorsOf(messages), "");
+  const Strings two{"normalTexture=0.6,0.5,0.9,1", "clearcoatNormalTexture=0.5,0.5,1,1"};
+  EXPECT_FALSE(evaluate(scene, 0, kDark, Engine::Double, two, options, messages));
+  EXPECT_FALSE(evaluate(graph, kDark, Engine::Double, two, options, messages));
+  ASSERT_EQ(messages.size(), 2u);
+  for (const Message& message : messages) {
+    EXPECT_EQ(message.code, "texels-differ");
+    EXPECT_NE(message.message.find("clearcoatNormalTexture and normalTexture are one texel"),
+              std::string::npos);
+  }
 }
 
 TEST(Graphs, LookLikeTheirMaterials) {

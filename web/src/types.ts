@@ -91,6 +91,8 @@ export interface GraphTexture {
   /** The image of a graph's own, a URI; may be empty. */
   file: string;
   ui: unknown;
+  /** Pointers of the textureInfos of other properties that have the same texel. */
+  also: string[];
 }
 
 /** A node of a graph: a `node` of the library, or a `group` of the graph. */

@@ -65,7 +65,9 @@ std::string texturesJson(const std::vector<TextureUse>& textures) {
     json.key("srgb").boolean(texture.srgb).key("texture").integer(texture.texture);
     json.key("pointer").string(texture.pointer).key("file").string(texture.file);
     rawOrNull("ui", texture.ui, json);
-    json.endObject();
+    json.key("also").beginArray();
+    for (const std::string& pointer : texture.also) json.string(pointer);
+    json.endArray().endObject();
   }
   return json.endArray().take();
 }

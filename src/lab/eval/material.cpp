@@ -43,8 +43,10 @@ eval::Wrap wrapOf(int gl) {
 
 }  // namespace
 
+static std::string_view lastPart(std::string_view pointer) { return pointer.substr(pointer.rfind('/') + 1); }
+
 std::string propertyOf(const ir::TextureSlot& slot) {
-  return slot.pointer.empty() ? slot.name : slot.pointer.substr(slot.pointer.rfind('/') + 1);
+  return slot.pointer.empty() ? slot.name : std::string(lastPart(slot.pointer));
 }
 
 std::array<double, 4> neutralTexel(const ir::TextureSlot& slot) {
@@ -417,9 +419,33 @@ Result<void> EvalMaterial::bindTextures(const Substitute& substitute, eval::Bind
   return {};
 }
 
-bool EvalMaterial::names(const std::string& name, const ir::TextureSlot& slot) {
+/// By its name, its property's or that of another property that has the same texel.
+bool EvalMaterial::names(const std::string& name, const ir::TextureSlot& slot) const {
   if (slot.environment) return name == slot.name && slot.type != ir::Type::TextureCube;
-  return name == propertyOf(slot) || name == slot.name;
+  if (name == propertyOf(slot) || name == slot.name) return true;
+  const std::vector<std::string>& also = originals_[static_cast<size_t>(slot.texture)].also;
+  return std::any_of(also.begin(), also.end(),
+                     [&](const std::string& pointer) { return lastPart(pointer) == name; });
+}
+
+/// One texel has one value, whichever of its properties names it. Of one name the last counts.
+Result<void> EvalMaterial::checkAgreement() const {
+  for (const ir::TextureSlot& slot : module_.textures) {
+    if (slot.environment) continue;
+    std::map<std::string_view, const Texel*> given;
+    for (const Texel& texel : texels_) {
+      if (names(texel.slot, slot)) given[texel.slot] = &texel;
+    }
+    for (const auto& [name, texel] : given) {
+      const Texel& first = *given.begin()->second;
+      if (texel->value == first.value) continue;
+      return fail("texels-differ", {},
+                  fmt::format("--texel: {} and {} are one texel, and are given {} and {}", first.slot, name,
+                              fmt::join(first.value, ","), fmt::join(texel->value, ",")),
+                  "give it one constant");
+    }
+  }
+  return {};
 }
 
 /// A texel for a texture that this material does not have is not used; a name that no texture has is a
@@ -438,7 +464,7 @@ Result<void> EvalMaterial::checkTexels(const material::Schema& schema) const {
                 slots.empty() ? "the material has no textures"
                               : fmt::format("the material has {}", fmt::join(slots, ", ")));
   }
-  return {};
+  return checkAgreement();
 }
 
 /// A texture of the template's: a constant that is given, a table of factors, or a depth map in which

@@ -147,7 +147,8 @@ private:
   Result<graph::Source> look(const graph::Graph& graph, const Language& library,
                              const graph::FlatOutputs& outputs);
   static Result<Texel> parseTexel(const std::string& text);
-  static bool names(const std::string& name, const ir::TextureSlot& slot);
+  bool names(const std::string& name, const ir::TextureSlot& slot) const;
+  Result<void> checkAgreement() const;
   Result<void> checkTexels(const material::Schema& schema) const;
   Result<BoundTexture> environmentOf(const ir::TextureSlot& slot) const;
   Result<BoundTexture> textureOf(const ir::TextureSlot& slot, const Substitute& substitute);

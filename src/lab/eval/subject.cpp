@@ -11,30 +11,6 @@
 
 namespace lacquer {
 
-namespace {
-
-Result<graph::Graph> graphOf(material::Material material, const gltf::VertexAttributes& attributes,
-                             const Language& library, const Options& options,
-                             std::vector<graph::Texture>& originals, Diagnostics& warnings) {
-  // Every use of a texture gets a slot of its own, so that each can be given a texel.
-  for (material::Material::Texture& texture : material.textures) {
-    originals.emplace_back().texture = texture.info.texture;
-    texture.info.texture = static_cast<int>(originals.size()) - 1;
-  }
-  Result<graph::Graph> graph = buildGraph(material, attributes, library, options, warnings);
-  if (!graph || !material.patterns) return graph;
-  // And those of patterns, which the file names itself.
-  for (graph::Texture& slot : graph->textures) {
-    if (!material.patterns->findTexture(slot.name)) continue;
-    originals.push_back(slot);
-    slot.file.clear();
-    slot.texture = static_cast<int>(originals.size()) - 1;
-  }
-  return graph;
-}
-
-}  // namespace
-
 const std::string& EvalSubject::name() const {
   return std::visit([](const auto* of) -> const std::string& { return of->name; }, of_);
 }
@@ -80,11 +56,6 @@ Result<graph::Graph> EvalSubject::built(const gltf::VertexAttributes& attributes
 Result<graph::Graph> EvalSubject::graph(const gltf::VertexAttributes& attributes, const Language& library,
                                         const Options& options, std::vector<graph::Texture>& originals,
                                         Diagnostics& warnings, graph::FlatOutputs* outputs) const {
-  if (!isGraph()) {
-    Result<graph::Graph> made = graphOf(*material(), attributes, library, options, originals, warnings);
-    if (made && outputs != nullptr) (void)graph::flattened(*made, library, outputs);
-    return made;
-  }
   Result<graph::Graph> graph = built(attributes, library, options, warnings, outputs);
   if (!graph) return graph;
   for (graph::Texture& slot : graph->textures) {

@@ -35,8 +35,7 @@ public:
   Result<graph::Graph> built(const gltf::VertexAttributes& attributes, const Language& library,
                              const Options& options, Diagnostics& warnings,
                              graph::FlatOutputs* outputs = nullptr) const;
-  /// The same with a slot of its own for every use of a texture, whose index is that of the file's texture in
-  /// `originals`.
+  /// The same with the index of each texture being that of what it was in `originals`.
   Result<graph::Graph> graph(const gltf::VertexAttributes& attributes, const Language& library,
                              const Options& options, std::vector<graph::Texture>& originals,
                              Diagnostics& warnings, graph::FlatOutputs* outputs = nullptr) const;

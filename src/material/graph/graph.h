@@ -152,6 +152,8 @@ struct Texture : ir::TextureSlot {
   bool nearest = false;        ///< else linear
   /// What is there without an image: linear, or encoded where `srgb` says so for its RGB.
   std::optional<ir::Components> color{};
+  /// Beside `pointer` the textureInfos of other properties that have the same texel, in order.
+  std::vector<std::string> also{};
   std::string ui{};
 };
 

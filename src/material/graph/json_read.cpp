@@ -70,6 +70,7 @@ private:
   /// The member's text; empty when there is none.
   std::string optionalText(const Json& json, const Path& path, std::string_view name);
   std::string textOf(const Json& json, const Path& path, std::string_view name);
+  std::vector<std::string> optionalTexts(const Json& json, const Path& path, std::string_view name);
   bool numbers(const Json& json, const Path& path, ir::Components& out);
   double bound(const Json& json, const Path& path, double infinite);
 
@@ -142,6 +143,19 @@ std::string Reader::requiredText(const Json& json, const Path& path, std::string
 std::string Reader::optionalText(const Json& json, const Path& path, std::string_view name) {
   const Json* found = json::member(json, name);
   return found == nullptr ? std::string() : textOf(*found, Path(path, name), name);
+}
+
+std::vector<std::string> Reader::optionalTexts(const Json& json, const Path& path, std::string_view name) {
+  std::vector<std::string> texts;
+  const Json* found = json::member(json, name);
+  if (found == nullptr) return texts;
+  const Path here(path, name);
+  if (!found->is_array()) {
+    report_.wrongType(here, fmt::format("\"{}\"", name), *found, "an array of strings");
+    return texts;
+  }
+  for (size_t i = 0; i < found->size(); ++i) texts.push_back(textOf((*found)[i], Path(here, i), name));
+  return texts;
 }
 
 /// The elements of an array of at most four numbers.
@@ -419,8 +433,8 @@ void Reader::sampler(const Json& json, const Path& path, Texture& texture) {
 }
 
 void Reader::texture(std::string_view name, const Json& json, const Path& path) {
-  constexpr std::array<std::string_view, 9> kKeys = {"type",   "srgb",    "texture", "file", "wrap",
-                                                     "filter", "default", "pointer", "ui"};
+  constexpr std::array<std::string_view, 10> kKeys = {"type",   "srgb",    "texture", "file", "wrap",
+                                                      "filter", "default", "pointer", "also", "ui"};
   if (!object(json, path, "a texture", kKeys)) return;
   Texture slot;
   slot.name = name;
@@ -434,6 +448,7 @@ void Reader::texture(std::string_view name, const Json& json, const Path& path) 
   if (const Json* color = json::member(json, "default"))
     parameterValue(*color, Path(path, "default"), "default", ir::Type::Vec4, slot.color.emplace());
   slot.pointer = optionalText(json, path, "pointer");
+  slot.also = optionalTexts(json, path, "also");
   slot.ui = ui(json, path);
   graph_.textures.push_back(std::move(slot));
 }

@@ -123,6 +123,11 @@ std::string texture(const Texture& slot) {
   if (slot.nearest) text += ", \"filter\": \"nearest\"";
   if (slot.color) text += ", " + member("default", value(ir::Type::Vec4, *slot.color));
   if (!slot.pointer.empty()) text += ", " + member("pointer", json::quotedText(slot.pointer));
+  if (!slot.also.empty()) {
+    std::vector<std::string> pointers;
+    for (const std::string& pointer : slot.also) pointers.push_back(json::quotedText(pointer));
+    text += fmt::format(", \"also\": [{}]", fmt::join(pointers, ", "));
+  }
   return text + uiMember(slot.ui) + "}";
 }
 

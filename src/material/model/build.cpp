@@ -69,6 +69,7 @@ private:
   Source from(const Found& value);
   Source number(const Found& value);
   Source texel(uint16_t wanted);
+  void alsoOf(uint16_t property, const std::string& pointer);
   Source image(uint16_t property);
   Source computed(const gltf::TextureInfo& info, const std::string& slot);
   void bring(const std::string& group);
@@ -268,12 +269,14 @@ Source Writer::texel(uint16_t wanted) {
   const gltf::TextureInfo& info = *material_.texture(wanted);
   if (!info.group.empty()) return computed(info, model_.schema->properties[wanted].parameter_name);
   const Texel key = texelOf(wanted);
-  for (const auto& [known, source] : texels_) {
-    if (known == key) return source;
-  }
   const auto sharer =
       std::find_if(sharers_.begin(), sharers_.end(), [&](const auto& one) { return one.first == key; });
   const uint16_t property = sharer == sharers_.end() ? wanted : sharer->second;
+  for (const auto& [known, source] : texels_) {
+    if (known != key) continue;
+    if (wanted != property) alsoOf(property, info.pointer);
+    return source;
+  }
   const material::Property& row = model_.schema->properties[property];
   const std::string& slot = row.parameter_name;
   const Source sampled = image(property);
@@ -285,7 +288,16 @@ Source Writer::texel(uint16_t wanted) {
     result = {graph::NodeRef{slot + ".decoded", {}}, {}};
   }
   texels_.emplace_back(key, result);
+  if (wanted != property) alsoOf(property, info.pointer);
   return result;
+}
+
+/// Another property has the texel of this one.
+void Writer::alsoOf(uint16_t property, const std::string& pointer) {
+  const std::string name = model_.schema->properties[property].parameter_name + "_texture";
+  std::vector<std::string>& also = graph_.textures[*graph_.findTexture(name)].also;
+  const auto at = std::lower_bound(also.begin(), also.end(), pointer);
+  if (at == also.end() || *at != pointer) also.insert(at, pointer);
 }
 
 Source Writer::from(const Found& value) {
