@@ -486,6 +486,11 @@ LACQUER_C int lacquer_shader_input(const lacquer_shader* shader, size_t index, l
 LACQUER_C size_t lacquer_shader_output_count(const lacquer_shader* shader);
 LACQUER_C int lacquer_shader_output(const lacquer_shader* shader, size_t index, lacquer_place* to,
                                     size_t size);
+/* The output that is the fragment's depth, in [0, 1]; empty where the triangle's stays. */
+LACQUER_C const char* lacquer_shader_depth(const lacquer_shader* shader);
+/* Each that the vertices have elsewhere, "object_position", so that bounds must be wider; NULL behind the
+ * last. */
+LACQUER_C const char* lacquer_shader_displaced(const lacquer_shader* shader, size_t index);
 /* Bytes of the material's uniform block, a multiple of 16; 0 when there is none. */
 LACQUER_C size_t lacquer_shader_uniform_size(const lacquer_shader* shader);
 /* A parameter's numbers. */

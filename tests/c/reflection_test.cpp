@@ -209,6 +209,43 @@ TEST(Reflection, TexturesOfTheMaterialLeadToTheFile) {
   EXPECT_EQ(found, textures.size());
 }
 
+/// A fragment's depth, and vertices that are elsewhere.
+TEST(Reflection, SaysWhatIsMoved) {
+  constexpr const char* kText = R"(/// A surface that is lifted.
+template lifted extends mesh {
+    port float height = 0;
+    output displacement vec3 object_position = object_position + object_normal * height;
+    output color vec4 shown = vec4(position, 1);
+    output depth float near = height;
+}
+)";
+  const CMessages said;
+  const COptions options = optionsFrom(
+      json{{"targets", json::array()}, {"validate", false}, {"node_texts", {{"lifted.node", kText}}}}.dump(),
+      said);
+  const auto shaderOf = [&](double height) {
+    const json graph = {{"lacquer_graph", 1},
+                        {"name", "lifted"},
+                        {"template", "lifted"},
+                        {"parameters", json::object()},
+                        {"textures", json::object()},
+                        {"nodes", json::array()},
+                        {"outputs", {{"height", height}}},
+                        {"skipped", json::object()}};
+    const std::string text = graph.dump();
+    const CGraph read(lacquer_graph_read_with(text.data(), text.size(), "lifted.json", options.get(), said));
+    return CShader(lacquer_graph_generate(read.get(), options.get(), said));
+  };
+  const CShader lifted = shaderOf(0.5);
+  ASSERT_NE(lifted, nullptr);
+  EXPECT_STREQ(lacquer_shader_depth(lifted.get()), "near");
+  EXPECT_STREQ(lacquer_shader_displaced(lifted.get(), 0), "object_position");
+  EXPECT_EQ(lacquer_shader_displaced(lifted.get(), 1), nullptr);
+  const CShader still = shaderOf(0);
+  ASSERT_NE(still, nullptr);
+  EXPECT_EQ(lacquer_shader_displaced(still.get(), 0), nullptr);
+}
+
 TEST(Reflection, AnEarlierCallerIsNotGivenMoreThanItKnows) {
   const CMessages said;
   const std::string path = (sourceFolder() / "examples/coat.gltf").string();

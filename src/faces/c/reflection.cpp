@@ -82,6 +82,13 @@ int lacquer_shader_output(const lacquer_shader* shader, size_t index, lacquer_pl
   return fillRow(lacquer_place{of.name.c_str(), of.type.c_str(), of.location}, to, size);
 }
 
+const char* lacquer_shader_depth(const lacquer_shader* shader) { return reflectionOf(shader).depth.c_str(); }
+
+const char* lacquer_shader_displaced(const lacquer_shader* shader, size_t index) {
+  const lacquer::Strings& all = reflectionOf(shader).displaces;
+  return index < all.size() ? all[index].c_str() : nullptr;
+}
+
 size_t lacquer_graph_texture_count(const lacquer_graph* graph) {
   return guarded(nullptr, size_t{0}, [&](lacquer::Messages&) { return graphOf(graph).textures().size(); });
 }
