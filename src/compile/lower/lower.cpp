@@ -129,6 +129,7 @@ private:
   ir::Dag& dag() { return module_.dag; }
 
   void declareInterface() {
+    module_.blocks.reserve(template_->blocks.size() + 1);  // and the material's
     for (const lang::BlockDecl& block : template_->blocks) declareBlock(block);
     if (template_->light_lists) listLights(*template_->light_lists);
     vertex_stage_ = std::any_of(template_->outputs.begin(), template_->outputs.end(),
@@ -261,6 +262,7 @@ private:
     ir::Block block{
         roleOf(decl.role), std::string(decl.type_name), std::string(decl.instance), {}, decl.array, 0};
     block.binding = decl.binding;
+    block.fields.reserve(decl.fields.size());
     for (const lang::BlockFieldDecl& field : decl.fields) {
       block.fields.push_back({std::string(field.name), field.type, 0, field.range, std::string(field.prose),
                               field.array, field.default_value.value_or(ir::Components{})});
@@ -437,6 +439,7 @@ private:
 
   void nodes() {
     nameAttributes();
+    results_.reserve(order_.size());
     for (size_t i = 0; i < order_.size(); ++i) {
       const graph::Node& node = graph_.nodes[order_[i]];
       const lang::NodeDecl& decl = *decls_[i];

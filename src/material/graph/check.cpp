@@ -280,9 +280,9 @@ void GraphCheck::nesting() {
 /// Attributes of one name have one type, and there are not too many.
 void GraphCheck::attributes() {
   std::vector<const AttributeRef*> known;
+  const auto byName = [](const Source& source) { return std::holds_alternative<AttributeRef>(source.from); };
   const auto take = [&](const Source& source, const Spot& spot, const std::string& pointer) {
-    const auto* ref = std::get_if<AttributeRef>(&source.from);
-    if (ref == nullptr) return;
+    const auto* ref = &std::get<AttributeRef>(source.from);
     const lang::TemplateDecl* decl = contracts_.templateDecl();
     for (size_t i = 0; decl != nullptr && i < decl->attributes.size(); ++i) {
       const lang::AttributeDecl& own = decl->attributes[i];
@@ -321,12 +321,14 @@ void GraphCheck::attributes() {
     for (size_t i = 0; i < one.nodes().size(); ++i) {
       for (size_t k = 0; k < one.nodes()[i].inputs.size(); ++k) {
         const auto& [name, source] = one.nodes()[i].inputs[k];
+        if (!byName(source)) continue;
         take(source, spot(Section::Nodes, i, k + 1),
              fmt::format("{}/nodes/{}{}", root, i, pointerTo("inputs", name)));
       }
     }
     for (size_t i = 0; i < one.outputs().size(); ++i) {
       const auto& [name, source] = one.outputs()[i];
+      if (!byName(source)) continue;
       take(source, spot(Section::Outputs, i, 0), root + pointerTo("outputs", name));
     }
   };
@@ -334,7 +336,7 @@ void GraphCheck::attributes() {
     const std::string root = pointerTo("groups", graph_.groups[g].name);
     for (size_t i = 0; i < graph_.groups[g].inputs.size(); ++i) {
       const GroupInput& input = graph_.groups[g].inputs[i];
-      if (input.by_default) {
+      if (input.by_default && byName(*input.by_default)) {
         take(*input.by_default, {Section::Groups, g, Section::Parameters, i, 0},
              root + pointerTo("inputs", input.name) + "/default");
       }

@@ -98,7 +98,7 @@ void BodyCheck::head(size_t index, Connected& libraries) {
     findings_.error(spot, nodePointer(index, "id"), "duplicate-name",
                     fmt::format("there are two nodes {}{}", inQuotes(node.id), inGroup()));
   }
-  if (!node.term.empty() && !isDottedName(node.term)) {
+  if (!node.term.empty() && node.term != node.id && !isDottedName(node.term)) {
     findings_.error(spot, nodePointer(index, "term"), "wrong-name",
                     fmt::format("{} cannot be the name of a term", inQuotes(node.term)),
                     "it is names joined by dots, such as coat.absorption");

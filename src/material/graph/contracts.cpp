@@ -29,8 +29,10 @@ Body::Body(const Graph& graph, const Group* group)
     : group_(group),
       nodes_(group == nullptr ? &graph.nodes : &group->nodes),
       outputs_(group == nullptr ? &graph.outputs : &group->outputs) {
+  places_.reserve(nodes_->size());
   for (size_t i = 0; i < nodes_->size(); ++i) places_.emplace((*nodes_)[i].id, i);
   first_.reserve(nodes_->size());
+  sources_.reserve(3 * nodes_->size());
   for (const Node& node : *nodes_) {
     first_.push_back(sources_.size());
     for (const auto& [name, source] : node.inputs) {

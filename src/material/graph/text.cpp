@@ -54,12 +54,12 @@ bool isName(std::string_view text) {
 }
 
 bool isDottedName(std::string_view text) {
-  while (true) {
-    const size_t dot = text.find('.');
-    if (!isName(text.substr(0, dot))) return false;
-    if (dot == std::string_view::npos) return true;
-    text.remove_prefix(dot + 1);
+  bool begins = true;
+  for (const char c : text) {
+    if (c == '.' ? begins : !isLetter(c) && (begins || !isDigit(c))) return false;
+    begins = c == '.';
   }
+  return !begins;
 }
 
 std::string swizzleComponents(std::string_view swizzle) {
