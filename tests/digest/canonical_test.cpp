@@ -28,7 +28,7 @@ Made made(const std::function<void(ir::Dag&)>& before = {}) {
   out.module.textures.emplace_back();
   out.module.textures[0].name = "map";
   out.module.light_groups.push_back({0, 2});
-  dag.setTerm(dag.addTerm({"term", "source"}));
+  dag.setTerm(dag.addTerm("term", "source"));
   out.tint = dag.input({ir::InputKind::Parameter, "tint", Type::Vec3, ir::Rate::Material, {}, 0, 0});
   const ir::ValueId map =
       dag.input({ir::InputKind::Texture, "map", Type::Texture2D, ir::Rate::Frame, {}, 0, 0});

@@ -59,7 +59,7 @@ public:
 
   ir::Module make(int operations) {
     for (int i = 0; i < operations; ++i) {
-      dag().setTerm(dag().addTerm({fmt::format("term.{}", i / 7), "a \"source\" \\"}));
+      dag().setTerm(dag().addTerm(fmt::format("term.{}", i / 7), "a \"source\" \\"));
       operation();
     }
     module_.template_name = "random";

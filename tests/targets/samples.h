@@ -37,9 +37,7 @@ public:
   void position(ir::ValueId clip_position);
   void discard(ir::ValueId condition);
   ir::ValueId named(ir::ValueId value, std::string_view name);
-  void term(std::string name, std::string source) {
-    dag().setTerm(dag().addTerm({std::move(name), std::move(source)}));
-  }
+  void term(std::string name, std::string source) { dag().setTerm(dag().addTerm(name, source)); }
 };
 
 /// A sum over `group` of lights, with textures, a vertex stage and both sides of the surface.

@@ -322,7 +322,7 @@ private:
   /// Which lights the sums run over: after the givens, before all that sums.
   void bindLightRange() {
     if (!template_->light_lists) return;
-    dag().setTerm(dag().addTerm({"lights", "", std::string(template_->origin.file), template_->origin.line}));
+    dag().setTerm(dag().addTerm("lights", "", template_->origin.file, template_->origin.line));
     const ir::ValueId index = inliner_.evaluate(*template_->light_lists->index, slots_);
     const ir::ValueId range = dag().make(ir::Op::ToInt, {index});
     dag().name(range, "light_range");
@@ -414,8 +414,8 @@ private:
       if (!read[static_cast<size_t>(&decl - template_->givens.data())]) continue;
       const lang::NodeDecl* node = decl.value->kind == lang::Expr::Kind::Call ? decl.value->node : nullptr;
       const lang::Origin& origin = node == nullptr ? template_->origin : node->origin;
-      dag().setTerm(dag().addTerm({std::string(decl.name), node == nullptr ? "" : node->source,
-                                   std::string(origin.file), origin.line}));
+      dag().setTerm(dag().addTerm(decl.name, node == nullptr ? std::string_view() : node->source, origin.file,
+                                  origin.line));
       inliner_.bind(decl, slots_);
       for (const auto& [given, value] : moved) {
         if (given == &decl) slots_[decl.slot] = value;
@@ -452,8 +452,7 @@ private:
       }
       // What the node is called in the graph is the tool's that made it.
       const std::string_view term = node.term.empty() ? decl.family : std::string_view(node.term);
-      dag().setTerm(
-          dag().addTerm({std::string(term), decl.source, std::string(decl.origin.file), decl.origin.line}));
+      dag().setTerm(dag().addTerm(term, decl.source, decl.origin.file, decl.origin.line));
       Values results = inliner_.call(decl, node.variant, args);
       if (results.size() == 1) dag().name(results[0], term.substr(term.rfind('.') + 1));
       if (node.at_vertices) moveToVertices(decl, term, results);
@@ -494,8 +493,8 @@ private:
       lifted.push_back(ir::isFloating(dag()[id_of].type) ? at_vertices(id_of) : std::nullopt);
       if (!lifted.back()) return;
     }
-    const ir::TermId term = dag().addTerm({fmt::format("{}.at_vertices", term_name), decl.source,
-                                           std::string(decl.origin.file), decl.origin.line});
+    const ir::TermId term = dag().addTerm(fmt::format("{}.at_vertices", term_name), decl.source,
+                                          decl.origin.file, decl.origin.line);
     std::vector<ir::ValueId> moved(results.begin(), results.end());
     for (size_t i = 0; i < moved.size(); ++i) {
       if (dag()[moved[i]].rate <= ir::Rate::Vertex) continue;
@@ -627,8 +626,7 @@ private:
       if (decl.role != lang::OutputRole::Displacement) continue;
       if (decl.optional && !delivers(*decl.value)) continue;
       const lang::GivenDecl* given = template_->find(decl.name)->given;
-      dag().setTerm(
-          dag().addTerm({"displacement", "", std::string(template_->origin.file), template_->origin.line}));
+      dag().setTerm(dag().addTerm("displacement", "", template_->origin.file, template_->origin.line));
       const ir::ValueId value = inliner_.evaluate(*decl.value, slots_);
       if (value == slots_[given->slot]) continue;
       AtVertices at_vertices(dag(), true);
@@ -691,7 +689,7 @@ private:
     const bool packs = packsOutputs(*template_);
     OutputPacker packer(dag(), *template_);
     const std::vector<ir::ValueId> without = packs ? slotsWithoutPorts() : std::vector<ir::ValueId>();
-    dag().setTerm(dag().addTerm({"output", "", std::string(template_->origin.file), template_->origin.line}));
+    dag().setTerm(dag().addTerm("output", "", template_->origin.file, template_->origin.line));
     if (options_.shown != nullptr) show(*options_.shown);
     for (const lang::OutputDecl& decl : template_->outputs) {
       if (decl.role == lang::OutputRole::Displacement) continue;  // displace() has made it

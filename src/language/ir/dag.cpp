@@ -406,8 +406,8 @@ bool Dag::isConstant(ValueId id, double x) const {
   return true;
 }
 
-TermId Dag::addTerm(Term term) {
-  terms_.push_back(std::move(term));
+TermId Dag::addTerm(std::string_view name, std::string_view source, std::string_view file, uint32_t line) {
+  terms_.push_back({std::string(name), std::string(source), std::string(file), line});
   return static_cast<TermId>(terms_.size() - 1);
 }
 

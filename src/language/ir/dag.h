@@ -210,7 +210,8 @@ public:
   ValueId div(ValueId a, ValueId b) { return make(Op::Div, {a, b}); }
 
   // Provenance. It never takes part in identity: a value keeps the term and the name of its first making.
-  TermId addTerm(Term term);
+  TermId addTerm(std::string_view name, std::string_view source, std::string_view file = {},
+                 uint32_t line = 0);
   void setTerm(TermId term) { current_term_ = term; }
   TermId currentTerm() const { return current_term_; }
   const std::vector<Term>& terms() const { return terms_; }

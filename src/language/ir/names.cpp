@@ -171,25 +171,24 @@ std::string cleaned(std::string_view wanted) {
 bool Names::grab(std::string_view name) {
   const uint64_t hash = hashOf(name);
   if (reserved(hash)) return false;
-  const size_t slot = slotOf(taken_, hash);
-  if (taken_[slot] != 0) return false;
-  take(name);
-  return true;
+  return take(hash);
 }
 
 bool Names::taken(std::string_view name) const { return taken_[slotOf(taken_, hashOf(name))] != 0; }
 
-void Names::take(std::string_view name) {
-  const uint64_t hash = hashOf(name);
+void Names::take(std::string_view name) { take(hashOf(name)); }
+
+bool Names::take(uint64_t hash) {
   uint64_t& entry = taken_[slotOf(taken_, hash)];
-  if (entry != 0) return;
+  if (entry != 0) return false;
   entry = hash;
-  if (++count_ * 2 < taken_.size()) return;
+  if (++count_ * 2 < taken_.size()) return true;
   std::vector<uint64_t> wider(taken_.size() * 2, 0);
   for (const uint64_t old : taken_) {
     if (old != 0) wider[slotOf(wider, old)] = old;
   }
   taken_ = std::move(wider);
+  return true;
 }
 
 std::string Names::pick(std::string_view wanted, std::string_view layer) {

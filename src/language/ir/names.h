@@ -23,6 +23,8 @@ public:
 private:
   /// Takes the name when it is free.
   bool grab(std::string_view name);
+  /// By its hash; false where it is taken.
+  bool take(uint64_t hash);
 
   /// Hashes of the taken names, open addressing, 0 for none; a power of two. Two names with one hash of 64
   /// bits would cost the second a number behind it, nothing else.
