@@ -74,6 +74,46 @@ TEST(Dialect, NothingUnusedIsDeclared) {
   }
 }
 
+/// A language may compute one operand alone where a language of nodes computes both, and derivatives are of
+/// the neighbours, too: none stands behind a choice.
+TEST(Dialect, DerivativesStandBeforeChoices) {
+  Builder b;
+  ir::Dag& dag = b.dag();
+  const ir::ValueId position = b.attribute("POSITION", ir::Type::Vec4);
+  b.position(position);
+  const ir::ValueId uv = b.varying("uv", b.attribute("TEXCOORD_0", ir::Type::Vec2));
+  const ir::ValueId image = b.texture("image", ir::Type::Texture2D);
+  constexpr std::array kFirst = {0};
+  const auto x = [&](double scale) {
+    return dag.swizzle(dag.make(ir::Op::Mul, {uv, dag.constant(scale)}), kFirst);
+  };
+  const auto texel = [&](double scale) {
+    return dag.make(ir::Op::Texture, {image, dag.make(ir::Op::Mul, {uv, dag.constant(scale)})});
+  };
+  const auto above = [&](ir::ValueId value) { return dag.make(ir::Op::Less, {dag.constant(0.5), value}); };
+  const ir::ValueId both = dag.make(ir::Op::And, {above(x(3)), above(dag.swizzle(texel(2), kFirst))});
+  const ir::ValueId either = dag.make(ir::Op::Or, {both, above(dag.make(ir::Op::DFdx, {x(5)}))});
+  const ir::ValueId color = dag.make(ir::Op::Mul, {dag.constant(0.25), texel(7)});
+  b.color("color", dag.make(ir::Op::Select, {either, color, texel(11)}));
+  for (const Target target : kTextTargets) {
+    const std::string text = print(b.module, Stage::Fragment, target);
+    size_t lookups = 0;
+    for (size_t from = 0; from < text.size();) {
+      const size_t end = std::min(text.find('\n', from), text.size());
+      const std::string line = text.substr(from, end - from);
+      from = end + 1;
+      bool derives = false;
+      for (const char* word : {"texture(", "image.Sample(", "textureSample(", "dFdx(", "ddx(", "dpdx("})
+        derives |= line.find(word) != std::string::npos;
+      lookups += derives ? 1 : 0;
+      for (const char* choice : {" ? ", "&&", "||", "select("})
+        EXPECT_FALSE(derives && line.find(choice) != std::string::npos) << line;
+    }
+    EXPECT_EQ(lookups, 4u) << text;
+    expectCompiles(text, Stage::Fragment, target);
+  }
+}
+
 /// Direct3D has no Sample in a vertex shader; glslang takes it all the same.
 TEST(Dialect, AVertexSamplesTheFirstLevel) {
   Builder b;

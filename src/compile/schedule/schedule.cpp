@@ -176,8 +176,19 @@ private:
         makeVariable(dag_[id].args[0]);
         size_[id] = 1;
       }
+      // Texts compute these operands only where they are needed, and derivatives need the neighbours, too.
+      if (ir::leavesOut(dag_[id].op)) {
+        for (size_t k = 1; k < dag_[id].count; ++k) takeOutDerivatives(dag_[id].args[k]);
+      }
       if (wantsVariable(id)) makeVariable(id);
     }
+  }
+
+  /// Of an expression that would be written out; it is small.
+  void takeOutDerivatives(ir::ValueId id) {
+    if (leaf(id) || variable_[id]) return;
+    if (needsDerivatives(id)) return makeVariable(id);
+    for (const ir::ValueId operand : dag_[id].operands()) takeOutDerivatives(operand);
   }
 
   void makeVariable(ir::ValueId id) {

@@ -66,6 +66,8 @@ const OpInfo& info(Op op);
 constexpr bool takesDerivatives(Op op) {
   return op == Op::Texture || op == Op::TextureCompare || op == Op::DFdx || op == Op::DFdy;
 }
+/// Whether languages may leave an operand behind the first uncomputed: `a && b`, `a || b`, `a ? b : c`.
+constexpr bool leavesOut(Op op) { return op == Op::And || op == Op::Or || op == Op::Select; }
 /// Whether it is a lookup of a texture, its first operand.
 constexpr bool readsTexture(Op op) {
   return op == Op::Texture || op == Op::TextureLod || op == Op::TextureGrad || op == Op::TextureCompare ||
