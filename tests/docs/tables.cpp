@@ -367,7 +367,8 @@ std::string deviceLimitsTable() {
                              {"uniform blocks of a stage", &targets::DeviceLimits::blocks},
                              {"bytes of a block", &targets::DeviceLimits::block_bytes},
                              {"textures of a stage", &targets::DeviceLimits::textures},
-                             {"values between the stages", &targets::DeviceLimits::varyings}};
+                             {"values between the stages", &targets::DeviceLimits::varyings},
+                             {"locations of vertex attributes", &targets::DeviceLimits::attributes}};
   std::string out = "| |", rule = "\n|---|";
   for (const targets::Row& row : targets::rows()) {
     if (row.limits == nullptr) continue;

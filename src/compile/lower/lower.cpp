@@ -201,17 +201,22 @@ private:
     return dag()[value].rate == ir::Rate::Vertex ? dag().make(ir::Op::Interpolate, {value}) : value;
   }
 
-  /// Those that are read in the order of their names, behind the attributes that every primitive has: devices
-  /// take sixteen, and an optional one that this primitive lacks leaves its place.
+  /// Those that are read, in the order of their names, where no attribute of the template lies that the
+  /// primitive has: devices take sixteen, and an optional one that this primitive lacks leaves its place.
   void placeOwnAttributes() {
+    constexpr uint32_t kLocations = 16;
     std::vector<uint32_t> taken = named_;
     for (const lang::AttributeDecl& known : template_->attributes) {
-      if (known.fact) continue;
+      if (known.fact || known.location >= kLocations) continue;
       if (!known.optional || graph_.hasAttribute(known.name)) taken.push_back(known.location);
     }
     std::vector<size_t> own;
     const size_t count = vertex_stage_ ? module_.attributes.size() : module_.varyings.size();
-    for (size_t i = of_template_; i < count; ++i) own.push_back(i);
+    // A template that extends another has some behind all of that one's.
+    for (size_t i = 0; i < count; ++i) {
+      const uint32_t location = vertex_stage_ ? module_.attributes[i].location : module_.varyings[i].location;
+      if (i >= of_template_ || location >= kLocations) own.push_back(i);
+    }
     const auto nameOf = [&](size_t i) -> const std::string& {
       return vertex_stage_ ? module_.attributes[i].name : module_.varyings[i].name;
     };

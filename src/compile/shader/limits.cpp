@@ -62,7 +62,7 @@ private:
 
 /// By index: the blocks and textures that a stage reads.
 struct Read {
-  std::set<uint32_t> blocks, textures;
+  std::set<uint32_t> blocks, textures, attributes;
 
   Read(const ir::Module& module, ir::Stage stage) {
     std::vector<ir::ValueId> roots;
@@ -74,6 +74,7 @@ struct Read {
       if (module.dag[id].op != ir::Op::Input) continue;
       const ir::Input& input = module.dag.inputOf(id);
       if (input.kind == ir::InputKind::Texture) textures.insert(input.field);
+      if (input.kind == ir::InputKind::Attribute) attributes.insert(input.field);
     }
   }
 };
@@ -90,7 +91,7 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
       fmt::format("the shader has {} colour outputs", outputs), outputs, &DeviceLimits::outputs,
       "put fewer out: `without output NAME;` in a template of your own, or `optional` ones, which share "
       "places where there are too many");
-  uint32_t uniforms = 0, textures = 0;
+  uint32_t uniforms = 0, textures = 0, locations = 0;
   std::set<uint32_t> blocks;
   for (const ir::Stage stage : {ir::Stage::Vertex, ir::Stage::Fragment}) {
     const Read read(module, stage);
@@ -100,6 +101,8 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
         read.blocks.begin(), read.blocks.end(), [&](uint32_t i) { return module.blocks[i].list; }));
     uniforms = std::max(uniforms, static_cast<uint32_t>(read.blocks.size()) - lists);
     textures = std::max(textures, static_cast<uint32_t>(read.textures.size()) + lists);
+    for (const uint32_t index : read.attributes)
+      locations = std::max(locations, module.attributes[index].location + 1);
   }
   for (const uint32_t index : blocks) {
     const ir::Block& block = module.blocks[index];
@@ -112,6 +115,8 @@ Diagnostics overLimits(const ir::Module& module, std::span<const Target> targets
                &DeviceLimits::blocks, "put what is filled together into one block");
   limits.check(fmt::format("a stage of the shader reads {} textures", textures), textures,
                &DeviceLimits::textures, "textures of one size can be the layers of an array");
+  limits.check(fmt::format("the vertex stage's inputs take {} locations", locations), locations,
+               &DeviceLimits::attributes, "several numbers can be one attribute, a vector");
   const auto varyings = static_cast<uint32_t>(module.varyings.size());
   limits.check(fmt::format("the stages have {} values between them", varyings), varyings,
                &DeviceLimits::varyings, "several numbers can be interpolated as one vector");

@@ -13,24 +13,28 @@ namespace {
 constexpr Bound kColors = {ir::kMostColors, ir::kMostColors};
 
 /// Vulkan 1.1, "Required Limits": maxPerStageDescriptorUniformBuffers, maxUniformBufferRange,
-/// maxPerStageDescriptorSamplers, maxVertexOutputComponents (64). Of colours it promises 4 (so does OpenGL
-/// ES), but a device with fewer than 8 is not found any more, and every G-buffer has more than 4.
-constexpr DeviceLimits kVulkan = {kColors, {12}, {16384}, {16}, {16}};
+/// maxPerStageDescriptorSamplers, maxVertexOutputComponents (64), maxVertexInputAttributes. Of colours it
+/// promises 4 (so does OpenGL ES), but a device with fewer than 8 is not found any more, and every G-buffer
+/// has more than 4.
+constexpr DeviceLimits kVulkan = {kColors, {12}, {16384}, {16}, {16}, {16}};
 /// OpenGL 4.5, "Implementation Dependent Values": MAX_DRAW_BUFFERS, MAX_FRAGMENT_UNIFORM_BLOCKS,
-/// MAX_UNIFORM_BLOCK_SIZE, MAX_TEXTURE_IMAGE_UNITS, MAX_VARYING_VECTORS.
-constexpr DeviceLimits kOpenGl = {kColors, {14}, {16384}, {16}, {15}};
+/// MAX_UNIFORM_BLOCK_SIZE, MAX_TEXTURE_IMAGE_UNITS, MAX_VARYING_VECTORS, MAX_VERTEX_ATTRIBS.
+constexpr DeviceLimits kOpenGl = {kColors, {14}, {16384}, {16}, {15}, {16}};
 /// OpenGL ES 3.0, the same; so WebGL 2.
-constexpr DeviceLimits kEs = {kColors, {12}, {16384}, {16}, {15}};
+constexpr DeviceLimits kEs = {kColors, {12}, {16384}, {16}, {15}, {16}};
 /// Direct3D 11 and 12: D3D11_COMMONSHADER_CONSTANT_BUFFER_API_SLOT_COUNT,
 /// D3D11_REQ_CONSTANT_BUFFER_ELEMENT_COUNT, D3D11_COMMONSHADER_SAMPLER_SLOT_COUNT (of Direct3D 12 on hardware
-/// of tier 1), and D3D11_VS_OUTPUT_REGISTER_COUNT, of which SV_Position takes one.
-constexpr DeviceLimits kDirect3d = {kColors, {14}, {65536, 65536}, {16}, {31, 31}};
+/// of tier 1), D3D11_VS_OUTPUT_REGISTER_COUNT, of which SV_Position takes one, and
+/// D3D11_IA_VERTEX_INPUT_STRUCTURE_ELEMENT_COUNT.
+constexpr DeviceLimits kDirect3d = {kColors, {14}, {65536, 65536}, {16}, {31, 31}, {32, 32}};
 /// WebGPU, "Limits", what a device has without asking: maxUniformBuffersPerShaderStage,
-/// maxUniformBufferBindingSize, maxSamplersPerShaderStage, maxInterStageShaderVariables.
-constexpr DeviceLimits kWebGpu = {kColors, {12}, {65536}, {16}, {16}};
+/// maxUniformBufferBindingSize, maxSamplersPerShaderStage, maxInterStageShaderVariables,
+/// maxVertexAttributes.
+constexpr DeviceLimits kWebGpu = {kColors, {12}, {65536}, {16}, {16}, {16}};
 /// Metal's feature set tables: the entries of the tables of buffers and of sampler states, and the inputs of
-/// a fragment function of the family Mac 2. Of the constant address space 64 KiB are sure.
-constexpr DeviceLimits kMetal = {kColors, {31}, {65536}, {16}, {31}};
+/// a fragment function of the family Mac 2; and vertex attributes. Of the constant address space 64 KiB are
+/// sure.
+constexpr DeviceLimits kMetal = {kColors, {31}, {65536}, {16}, {31}, {31}};
 
 constexpr std::array<File, 2> filesOf(std::string_view vertex, std::string_view fragment) {
   return {{{"vert", vertex}, {"frag", fragment}}};

@@ -31,6 +31,7 @@ struct DeviceLimits {
   Bound block_bytes;  ///< of one
   Bound textures;     ///< of a stage, each with its sampler
   Bound varyings;     ///< between the stages, each of up to four components
+  Bound attributes;   ///< locations of the vertex stage's inputs
 };
 
 /// How the text of a stage is to be printed.
