@@ -300,6 +300,28 @@ LACQUER_C_NATIVE size_t lacquer_scene_colors(const lacquer_scene* scene, size_t 
                                              size_t size, int engine, double* rgba, uint8_t* discarded,
                                              size_t capacity, const lacquer_options* options,
                                              lacquer_messages* messages);
+/* Numbers for the points of an evaluation where the caller has them, as lacquer::PointArray says: by the name
+ * of a point's member (docs/eval.md), of a parameter, or of a field of the template's blocks. */
+typedef struct lacquer_array {
+  const char* name;
+  const void* numbers; /* of the first point: floats, or doubles */
+  int is_double;
+  size_t components; /* 1 to 4, side by side */
+  ptrdiff_t stride;  /* bytes from a point's numbers to the next's; 0: one for all points */
+} lacquer_array;
+/* Where colours go: four floats or doubles for each point, `stride` bytes apart. */
+typedef struct lacquer_colors {
+  void* rgba;
+  int is_double;
+  ptrdiff_t stride;   /* 0: side by side */
+  uint8_t* discarded; /* NULL, or a byte for each point */
+} lacquer_colors;
+/* A material's linear colours at `points` points from arrays: no text on the way. A parameter may differ from
+ * point to point. 0 on an error. */
+LACQUER_C_NATIVE int lacquer_scene_colors_of(const lacquer_scene* scene, size_t material,
+                                             const lacquer_array* arrays, size_t count, size_t points,
+                                             int engine, const lacquer_colors* to,
+                                             const lacquer_options* options, lacquer_messages* messages);
 /* Draws a lit ball of `pixels` by `pixels`, from 16 to 2048, into `rgb`: rows from the top, three bytes of
  * sRGB for each pixel. `capacity`, the bytes that there are, is at least 3 * pixels * pixels. */
 LACQUER_C int lacquer_scene_preview(const lacquer_scene* scene, size_t material, uint32_t pixels,
@@ -402,6 +424,10 @@ LACQUER_C lacquer_text* lacquer_graph_evaluate(const lacquer_graph* graph, const
 LACQUER_C_NATIVE size_t lacquer_graph_colors(const lacquer_graph* graph, const char* points, size_t size,
                                              int engine, double* rgba, uint8_t* discarded, size_t capacity,
                                              const lacquer_options* options, lacquer_messages* messages);
+LACQUER_C_NATIVE int lacquer_graph_colors_of(const lacquer_graph* graph, const lacquer_array* arrays,
+                                             size_t count, size_t points, int engine,
+                                             const lacquer_colors* to, const lacquer_options* options,
+                                             lacquer_messages* messages);
 LACQUER_C int lacquer_graph_preview(const lacquer_graph* graph, uint32_t pixels, uint8_t* rgb,
                                     size_t capacity, const lacquer_options* options,
                                     lacquer_messages* messages);

@@ -18,7 +18,7 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from ._native import Value, load
+from ._native import Array, Colors, Value, load
 
 __all__ = [
     "ATTRIBUTES", "Error", "Evaluation", "Graph", "Message", "Scene", "Shader", "bake", "check_nodes", "convert", "environment_dfg",
@@ -229,6 +229,57 @@ def _plain(value: Any) -> Any:
 Points = Union[Sequence[Mapping[str, Any]], Mapping[str, Any]]
 
 
+def _are_arrays(points: Points) -> bool:
+    return isinstance(points, Mapping) and "points" not in points
+
+
+def _rows(name: str, value: Any) -> NDArray[Any]:
+    """Numbers as rows of a point's components: floats and doubles as they lie, all else as doubles."""
+    array = np.asarray(value)
+    if array.dtype not in (np.float32, np.float64):
+        try:
+            array = array.astype(np.float64)
+        except (TypeError, ValueError):
+            raise TypeError(f"{name}: an array of numbers is expected") from None
+    if array.ndim == 2 and array.strides[1] != array.itemsize:
+        array = np.ascontiguousarray(array)
+    return array
+
+
+# Members of a point that are vectors: an array of one dimension is one for all points. Of other names, parameters and
+# attributes among them, it has a number for each.
+_VECTORS = ("n", "t", "v", "l", "uv0", "uv1", "uv2", "uv3", "color0", "light", "env", "position", "random")
+
+
+def _colors_of(points: Mapping[str, Any], call: Callable[[Any, int, int, Any], Any]) -> "tuple[Any, Any]":
+    """Arrays of numbers by name: (points, components), or (points,) of what is one number. A number, a vector and an
+    array of length 1 are the same for all points."""
+    arrays = {name: _rows(name, value) for name, value in points.items()}
+    lengths = {}
+    for name, array in arrays.items():
+        if array.ndim > 2:
+            raise ValueError(f"{name}: an array of {array.ndim} dimensions; it has a row for each point")
+        one = array.ndim == 0 or (array.ndim == 1 and (name in _VECTORS or "." in name))
+        lengths[name] = 1 if one else len(array)
+    count = max([1, *lengths.values()])
+    wrong = [f"{name} has {length}" for name, length in lengths.items() if length not in (1, count)]
+    if wrong or 0 in lengths.values():
+        raise ValueError(f"arrays of different lengths: {', '.join(wrong)}; {count} are expected, or 1")
+    rows = (Array * len(arrays))()
+    for row, (name, array) in zip(rows, arrays.items()):
+        several = lengths[name] > 1
+        row.name = _text(name)
+        row.numbers = array.ctypes.data
+        row.is_double = int(array.dtype == np.float64)
+        row.components = array.shape[1] if array.ndim == 2 else 1 if several else max(array.size, 1)
+        row.stride = array.strides[0] if several else 0
+    rgba = np.zeros((count, 4), dtype=np.float64)
+    discarded = np.zeros(count, dtype=np.uint8)
+    to = Colors(rgba.ctypes.data, 1, 0, discarded.ctypes.data)
+    call(rows, len(rows), count, byref(to))
+    return rgba, discarded.astype(bool)
+
+
 def _evaluated(points: Points, call: Callable[[bytes], str]) -> Evaluation:
     answer = json.loads(call(json.dumps(points, default=_plain).encode()))
     rgba = np.array(answer["rgba"], dtype=np.float64).reshape(-1, 4)
@@ -379,6 +430,11 @@ class Graph(_Handle):
     def evaluate(self, points: Points, engine: str = "double", options: Optional[Options] = None,
                  messages: Optional[List[Message]] = None) -> Evaluation:
         """As Scene.evaluate(), of the graph as it is now."""
+        if _are_arrays(points):
+            rgba, discarded = _colors_of(points, lambda rows, count, size, to: _calling(
+                options, messages, lambda said, how: _lib.lacquer_graph_colors_of(
+                    self._at, rows, count, size, _ENGINES[engine], to, how, said)))
+            return Evaluation(self.to_json()["name"], engine, None, rgba, discarded)
         return _evaluated(points, lambda text: _taken(_calling(
             options, messages, lambda said, how: _lib.lacquer_graph_evaluate(self._at, text, len(text), _ENGINES[engine],
                                                                              how, said))))
@@ -460,7 +516,13 @@ class Scene(_Handle):
 
     def evaluate(self, material: int, points: Points, engine: str = "double", options: Optional[Options] = None,
                  messages: Optional[List[Message]] = None) -> Evaluation:
-        """Linear colours at points (docs/eval.md), whose values may be arrays."""
+        """Linear colours at points (docs/eval.md): a list of them, or arrays by the members' names, (points, components)
+        each; what is there once is for all points. A parameter's array, by its name or pointer, is a sweep."""
+        if _are_arrays(points):
+            rgba, discarded = _colors_of(points, lambda rows, count, size, to: _calling(
+                options, messages, lambda said, how: _lib.lacquer_scene_colors_of(
+                    self._at, _index(material), rows, count, size, _ENGINES[engine], to, how, said)))
+            return Evaluation(self.materials[material], engine, (options or {}).get("profile"), rgba, discarded)
         return _evaluated(points, lambda text: _taken(_calling(
             options, messages, lambda said, how: _lib.lacquer_scene_evaluate(
                 self._at, _index(material), text, len(text), _ENGINES[engine], how, said))))

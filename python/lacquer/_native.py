@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import ctypes.util
 import os
-from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_size_t, c_uint8, c_uint32, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_size_t, c_ssize_t, c_uint8, c_uint32, c_void_p
 from pathlib import Path
 from typing import List
 
@@ -16,6 +16,19 @@ class Value(ctypes.Structure):
     """lacquer_value."""
 
     _fields_ = [("name", c_char_p), ("numbers", POINTER(c_double)), ("count", c_size_t)]
+
+
+class Array(ctypes.Structure):
+    """lacquer_array."""
+
+    _fields_ = [("name", c_char_p), ("numbers", c_void_p), ("is_double", c_int), ("components", c_size_t),
+                ("stride", c_ssize_t)]
+
+
+class Colors(ctypes.Structure):
+    """lacquer_colors."""
+
+    _fields_ = [("rgba", c_void_p), ("is_double", c_int), ("stride", c_ssize_t), ("discarded", c_void_p)]
 
 
 # A row for each function that this package calls: what it returns, then what it takes.
@@ -45,6 +58,9 @@ _FUNCTIONS = {
     "scene_use": (c_uint32, c_void_p, c_size_t, c_size_t),
     "scene_graph": (c_void_p, c_void_p, c_size_t, c_uint32, c_void_p, c_void_p),
     "scene_evaluate": (c_void_p, c_void_p, c_size_t, c_char_p, c_size_t, c_int, c_void_p, c_void_p),
+    "scene_colors_of": (c_int, c_void_p, c_size_t, POINTER(Array), c_size_t, c_size_t, c_int, POINTER(Colors), c_void_p,
+                        c_void_p),
+    "graph_colors_of": (c_int, c_void_p, POINTER(Array), c_size_t, c_size_t, c_int, POINTER(Colors), c_void_p, c_void_p),
     "scene_preview": (c_int, c_void_p, c_size_t, c_uint32, POINTER(c_uint8), c_size_t, c_void_p, c_void_p),
     "scene_properties": (c_void_p, c_void_p, c_size_t, c_uint32, c_void_p, c_void_p),
     "graph_read_with": (c_void_p, c_char_p, c_size_t, c_char_p, c_void_p, c_void_p),

@@ -65,6 +65,47 @@ def test_evaluate_gives_arrays(coat):
     assert np.allclose(answer.rgba, rounded.rgba, rtol=1e-4) and (answer.rgba != rounded.rgba).any()
 
 
+def test_evaluate_takes_arrays(coat):
+    generator = np.random.default_rng(7)
+    count = 300
+    directions = {}
+    for name in ("n", "v", "l"):
+        rows = generator.normal(size=(count, 3)) + [0, 0, 3]
+        directions[name] = rows / np.linalg.norm(rows, axis=1)[:, None]
+    light = np.array([1, 0.5, 0.25])
+    listed = [{name: rows[i] for name, rows in directions.items()} | {"light": light} for i in range(count)]
+    for engine in ("double", "float"):
+        expected = coat.evaluate(0, listed, engine=engine)
+        answer = coat.evaluate(0, {**directions, "light": light}, engine=engine)
+        assert answer.material == expected.material and answer.discarded.shape == (count,)
+        # A text of floats has nine digits, which are all that they have.
+        exact = np.float64 if engine == "double" else np.float32
+        assert (answer.rgba.astype(exact) == expected.rgba.astype(exact)).all()
+    # A view of floats, backwards.
+    floats = {name: rows.astype(np.float32)[::-1] for name, rows in directions.items()}
+    assert np.allclose(coat.evaluate(0, {**floats, "light": light}).rgba, expected.rgba[::-1], rtol=1e-4, atol=1e-6)
+    with pytest.raises(ValueError, match="different lengths"):
+        coat.evaluate(0, {"n": directions["n"], "v": directions["v"][:2]})
+    with pytest.raises(lacquer.Error, match="not-unit"):
+        coat.evaluate(0, {"v": [[0, 0, 1], [0, 0, 2]]})
+
+
+def test_a_parameter_that_is_an_array_is_a_sweep(coat):
+    graph = coat.graph(0, attributes=lacquer.ATTRIBUTES[:7])
+    point = {"v": [0, 0.6, 0.8], "l": [0, -0.6, 0.8]}
+    roughness = np.linspace(0.1, 1, 10)
+    for engine in ("double", "float"):
+        swept = graph.evaluate({**point, "coat_roughness_factor": roughness}, engine=engine).rgba
+        for value, row in zip(roughness, swept):
+            graph.set_parameter("coat_roughness_factor", value)
+            expected = graph.evaluate([point], engine=engine).rgba[0]
+            assert (expected.astype(np.float32) == row.astype(np.float32)).all()
+    with pytest.raises(lacquer.Error, match="out-of-range"):
+        graph.evaluate({**point, "coat_roughness_factor": [0.5, 1.5]})
+    with pytest.raises(lacquer.Error, match="no-such-parameter"):
+        graph.evaluate({**point, "coat_roughnes_factor": [0.5, 1]})
+
+
 def test_preview_is_a_picture(coat):
     picture = coat.preview(0, 32)
     assert picture.shape == (32, 32, 3) and picture.dtype == np.uint8

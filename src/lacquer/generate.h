@@ -78,6 +78,8 @@ public:
 private:
   friend std::optional<Evaluation> evaluate(const Scene&, size_t, const std::string&, Engine, const Strings&,
                                             const Options&, Messages&, const Trial&);
+  friend std::optional<Evaluation> evaluate(const Scene&, size_t, const PointArrays&, Engine, const Strings&,
+                                            const Options&, Messages&, const Trial&);
   friend std::vector<uint8_t> drawBall(const Scene&, size_t, uint32_t, const Strings&, const Options&,
                                        Messages&, const Trial&, const ValueLook&);
   friend Contract contract(const Scene&, const Strings&, const Options&, Messages&, const Progress&);

@@ -11,6 +11,7 @@
 namespace lacquer {
 
 class Shader;
+struct PointArrays;
 struct Trial;
 struct Tuned;
 struct ValueLook;
@@ -195,6 +196,8 @@ private:
   friend class Scene;
   friend class Shader;
   friend std::optional<Evaluation> evaluate(const Graph&, const std::string&, Engine, const Strings&,
+                                            const Options&, Messages&, const Trial&);
+  friend std::optional<Evaluation> evaluate(const Graph&, const PointArrays&, Engine, const Strings&,
                                             const Options&, Messages&, const Trial&);
   friend std::vector<uint8_t> drawBall(const Graph&, uint32_t, const Strings&, const Options&, Messages&,
                                        const Trial&, const ValueLook&);

@@ -44,6 +44,22 @@ std::optional<Evaluation> evaluate(const std::string& file, const std::string& m
                                    const Strings& texels, const Options& options, Messages& messages,
                                    const Trial& trial = {});
 
+/// Numbers for the points of an evaluation, where the caller has them. `name` is a member of a point as
+/// docs/eval.md has it ("n", "uv0", "env", "_WETNESS"; of a truth 0 or 1), a parameter by its name or JSON
+/// pointer
+/// ("coat_factor"), or a field of the template's blocks ("frame.environment_intensity").
+struct PointArray {
+  std::string name;
+  const void* numbers = nullptr;  ///< of the first point: floats, or doubles; aligned or not
+  bool is_double = false;
+  size_t components = 1;  ///< 1 to 4, side by side
+  ptrdiff_t stride = 0;   ///< bytes from a point's numbers to the next's; 0: one for all points
+};
+struct PointArrays {
+  size_t count = 0;  ///< of points
+  std::vector<PointArray> arrays;
+};
+
 /// The same of a material of a scene. `points` is the text itself. A scene from memory has the images that
 /// are in it; "no-such-material" for an index that does not exist.
 std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const std::string& points,
@@ -53,6 +69,15 @@ std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const st
 /// that say otherwise are an error ("graph-is-built"). Textures are those of the glTF file that it was built
 /// from; a graph from a text has none but `texels`.
 std::optional<Evaluation> evaluate(const Graph& graph, const std::string& points, Engine engine,
+                                   const Strings& texels, const Options& options, Messages& messages,
+                                   const Trial& trial = {});
+/// The same with arrays: no text on the way. A parameter may differ from point to point, so that a sweep is
+/// one call; for that the engine is one of the processor's ("no-such-engine"), and the parameters are no
+/// constants of the code.
+std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const PointArrays& points,
+                                   Engine engine, const Strings& texels, const Options& options,
+                                   Messages& messages, const Trial& trial = {});
+std::optional<Evaluation> evaluate(const Graph& graph, const PointArrays& points, Engine engine,
                                    const Strings& texels, const Options& options, Messages& messages,
                                    const Trial& trial = {});
 /// A lit ball of a material of a scene, in float: `size` rows from the top of `size` pixels of three bytes,

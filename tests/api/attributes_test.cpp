@@ -155,5 +155,67 @@ TEST(OwnAttributes, FieldsOfObjectsAreNoValuesOfVertices) {
   }
 }
 
+/// Devices take sixteen attributes: those that a template has behind the sixteen of the one it extends lie
+/// where this primitive has none.
+TEST(OwnAttributes, OfATemplateLieAtTheFirstFreeLocations) {
+  const std::string text = textOf("float", "interpolate(_MASK)", "1", "float", "mask");
+  const Made masked = made(text, true);
+  ASSERT_TRUE(masked.shader) << masked.errors;
+  uint32_t last = 0;
+  bool found = false;
+  for (const ShaderInput& input : masked.shader.reflection().inputs) {
+    last = std::max(last, input.location);
+    found |= input.name == "_MASK" || input.name == "MASK";
+  }
+  EXPECT_TRUE(found);
+  EXPECT_LT(last, 16u);
+}
+
+/// A material is evaluated with the attributes that its points have.
+TEST(OwnAttributes, OfPointsReachMaterials) {
+  Options options = quick();
+  options.node_texts = {{"wet.node", textOf("float", "interpolate(_MASK)", "1", "float", "mask")}};
+  options.template_name = "masked";
+  Messages messages;
+  const Scene scene = Scene::fromMemory(kFile, "wet.gltf", options, messages);
+  const auto redAt = [&](const char* mask) {
+    const std::string points =
+        std::string(R"({"uniforms": {"object.wetness": 1}, "points": [{"l": [0.6, 0, 0.8])") + mask + "}]}";
+    const auto colors = evaluate(scene, 0, points, Engine::Double, {}, options, messages);
+    return colors ? colors->rgba.at(0)[0] : -1;
+  };
+  const double dry = redAt(R"(, "_MASK": 0)");
+  EXPECT_GT(dry, 0);
+  EXPECT_NEAR(redAt(R"(, "_MASK": 1)"), 0.5 * dry, 1e-12);
+  EXPECT_NEAR(redAt(R"(, "_MASK": 0.5)"), 0.75 * dry, 1e-12);
+  EXPECT_NEAR(redAt(""), 0.5 * dry, 1e-12) << "as the template has it without the attribute";
+  EXPECT_EQ(errorsOf(messages), "");
+  EXPECT_EQ(redAt(R"(, "_MASK": [0, 1])"), -1);
+  EXPECT_EQ(errorsOf(messages), "wrong-type");
+}
+
+/// A picture is of points that have none: what is not there is 0, of colours 1.
+TEST(OwnAttributes, ThatPicturesLackAreZero) {
+  constexpr const char* kGraph =
+      R"({"lacquer_graph": 1, "name": "worn", "template": "forward", "parameters": {},
+    "textures": {}, "nodes": [
+      {"id": "worn", "node": "multiply", "inputs": {"in1": {"attribute": "_WORN", "type": "float"}, "in2": 2}},
+      {"id": "shade", "node": "multiply", "inputs": {"in1": {"attribute": "COLOR_1", "type": "vec4"}, "in2": 0.5}}],
+    "outputs": {"emission": {"node": "shade", "swizzle": "rgb"}, "alpha": {"node": "worn"}}, "skipped": {}})";
+  Messages messages;
+  const Options options = quick();
+  const Graph graph = Graph::fromJson(kGraph, "worn.json", messages, options);
+  ASSERT_TRUE(graph) << errorsOf(messages);
+  const auto middleOf = [&](const char* node) {
+    Trial trial;
+    trial.node = node;
+    const std::vector<uint8_t> picture = drawBall(graph, 32, {}, options, messages, trial);
+    return picture.empty() ? -1 : static_cast<int>(picture[3 * (32 * 16 + 16)]);
+  };
+  EXPECT_EQ(middleOf("worn"), 0);
+  EXPECT_EQ(middleOf("shade"), 191) << "a vector: half of it, from -1 to 1";
+  EXPECT_EQ(errorsOf(messages), "");
+}
+
 }  // namespace
 }  // namespace lacquer::test

@@ -152,6 +152,26 @@ TEST(Graphs, LookLikeTheirMaterials) {
   EXPECT_EQ(errorsOf(messages), "");
 }
 
+/// Counts of lights are those of the shader, whichever engine computes it.
+TEST(Graphs, AreLitAlikeInBothEngines) {
+  Options options = quick();
+  Messages messages;
+  const Scene scene = Scene::load((sourceFolder() / "examples/coat.gltf").string(), options, messages);
+  double lit = 0;
+  for (const bool none : {false, true}) {
+    options.lights.mode = Lights::Mode::Fixed;
+    options.lights.counts = {{"directional", none ? 0U : 1U}};
+    const auto exact = evaluate(scene, 0, kDark, Engine::Double, {}, options, messages);
+    const auto single = evaluate(scene, 0, kDark, Engine::Float, {}, options, messages);
+    ASSERT_TRUE(exact && single) << errorsOf(messages);
+    for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(exact->rgba[0][c], single->rgba[0][c], 1e-5);
+    if (none)
+      EXPECT_LT(exact->rgba[0][0], lit);
+    else
+      lit = exact->rgba[0][0];
+  }
+}
+
 /// A value that was edited is seen at once, without glTF.
 TEST(Graphs, ShowWhatWasEdited) {
   const Options options = quick();

@@ -172,6 +172,23 @@ TEST(Outputs, AMaterialsPartMovesVertices) {
   EXPECT_EQ(shown[1][2], shown[0][2] + 0.5);
 }
 
+/// A height may come out of a texture, in every engine of the processor.
+TEST(Outputs, ATextureMovesVertices) {
+  Messages messages;
+  const Json nodes = {{{"id", "texel"},
+                       {"node", "texture_sample"},
+                       {"inputs", {{"image", {{"texture", "height"}}}, {"uv", {{"given", "uv0"}}}}}}};
+  Json text = Json::parse(graphOf(nodes, {{"displacement", {{"node", "texel"}, {"swizzle", "rgb"}}}}));
+  text["textures"]["height"] = {{"type", "sampler2D"}, {"srgb", false}};
+  const Graph graph = Graph::fromJson(text.dump(), "moved.json", messages, moved());
+  ASSERT_TRUE(graph) << errorsOf(messages);
+  for (const Engine engine : {Engine::Double, Engine::Float}) {
+    const auto colors = evaluate(graph, kPoint, engine, {"height=0.25,0.5,0.125,1"}, moved(), messages);
+    ASSERT_TRUE(colors) << errorsOf(messages);
+    EXPECT_EQ(colors->rgba.at(0), (std::array<double, 4>{0.25, 0.5, 0.125, 1}));
+  }
+}
+
 TEST(Outputs, WhatVerticesDoNotKnowMovesNone) {
   Messages messages;
   const Json nodes = {{{"id", "slope"},

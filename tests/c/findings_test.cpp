@@ -63,6 +63,42 @@ TEST_F(Findings, ofEvaluations) {
   EXPECT_EQ(c_messages_.takeCodes(), "block-too-small, empty-handle, unknown-enumerator");
 }
 
+TEST_F(Findings, ofEvaluationsOfArrays) {
+  const std::string points =
+      R"([{"v": [0, 0, 1], "l": [0, 0.6, 0.8], "env": [1, 1, 1]}, {"v": [0, 0.6, 0.8], "l": [0, 0, 1], "env": [1, 1, 1]}])";
+  const Scene scene = Scene::load(file_, {}, messages_);
+  const CScene of_c(lacquer_scene_load(file_.c_str(), nullptr, c_messages_));
+  const auto expected = evaluate(scene, 0, points, Engine::Double, {}, {}, messages_);
+  ASSERT_TRUE(expected);
+  const double v[] = {0, 0, 1, 0, 0.6, 0.8};
+  // Each in a struct of the caller's, backwards.
+  struct Sample {
+    double other, l[3];
+  } samples[] = {{9, {0, 0, 1}}, {9, {0, 0.6, 0.8}}};
+  const float white[] = {1, 1, 1};
+  const auto backwards = -static_cast<ptrdiff_t>(sizeof(Sample));
+  const lacquer_array arrays[] = {
+      {"v", v, 1, 3, 3 * sizeof(double)}, {"l", samples[1].l, 1, 3, backwards}, {"env", white, 0, 3, 0}};
+  std::array<std::array<double, 5>, 2> rgba{};
+  const lacquer_colors to = {rgba.data(), 1, sizeof rgba[0], nullptr};
+  ASSERT_EQ(lacquer_scene_colors_of(of_c.get(), 0, arrays, 3, 2, LACQUER_DOUBLE, &to, nullptr, c_messages_),
+            1);
+  for (size_t i = 0; i < 2; ++i)
+    EXPECT_TRUE(std::equal(expected->rgba[i].begin(), expected->rgba[i].end(), rgba[i].begin())) << i;
+  const double roughness[] = {0.25, 2, 0.5};
+  const lacquer_array swept[] = {{"coat_roughness_factor", roughness, 1, 1, sizeof(double)}};
+  const CGraph graph = graphOfC();
+  EXPECT_EQ(lacquer_graph_colors_of(graph.get(), swept, 1, 1, LACQUER_FLOAT, &to, nullptr, c_messages_), 1);
+  EXPECT_EQ(lacquer_graph_colors_of(graph.get(), swept, 1, 2, LACQUER_FLOAT, &to, nullptr, c_messages_), 0);
+  const lacquer_array long_one[] = {
+      {"v", v, 1, 3, 0}, {"v", v, 1, 3, 0}, {"uv0", v, 1, 5, 0}, {"l", nullptr, 1, 3, 0}};
+  EXPECT_EQ(lacquer_graph_colors_of(graph.get(), long_one, 4, 1, LACQUER_FLOAT, &to, nullptr, c_messages_),
+            0);
+  EXPECT_EQ(lacquer_graph_colors_of(graph.get(), nullptr, 1, 1, LACQUER_FLOAT, &to, nullptr, c_messages_), 0);
+  EXPECT_EQ(c_messages_.takeCodes(),
+            "out-of-range, duplicate-name, wrong-type, null-argument, null-argument");
+}
+
 TEST_F(Findings, ofProofs) {
   const auto expected = graph().prove({}, messages_, Precision::Mediump);
   ASSERT_TRUE(expected);

@@ -159,26 +159,56 @@ std::vector<PropertyUse> Scene::properties(size_t material, const Attributes& at
   return uses;
 }
 
+namespace {
+
+/// `Impl` is Scene::Impl, which friends alone may name.
+template <class Impl>
+std::optional<Evaluation> evaluatedScene(const Impl* impl, size_t material, const GivenPoints& points,
+                                         Engine engine, const Strings& texels, const Options& options,
+                                         Messages& messages, const Trial& trial) {
+  if (!filled(impl, "scene", messages)) return std::nullopt;
+  const material::Material* found = impl->material(material, messages);
+  if (found == nullptr) return std::nullopt;
+  return evaluateOf({*found, *impl->language, impl->document.path, impl->bytes}, points, engine, texels,
+                    options, messages, trial);
+}
+
+/// `Impl` is Graph::Impl.
+template <class Impl>
+std::optional<Evaluation> evaluatedGraph(const Impl* impl, const GivenPoints& points, Engine engine,
+                                         const Strings& texels, const Options& options, Messages& messages,
+                                         const Trial& trial) {
+  if (!filled(impl, "graph", messages)) return std::nullopt;
+  const auto language = libraryFor(options);
+  if (!language) return report(language.error(), {}, messages), std::nullopt;
+  return evaluateOf({impl->graph, **language, impl->file, impl->bytes, impl->images}, points, engine, texels,
+                    options, messages, trial);
+}
+
+}  // namespace
+
 std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const std::string& points,
                                    Engine engine, const Strings& texels, const Options& options,
                                    Messages& messages, const Trial& trial) {
-  if (!filled(scene.impl_.get(), "scene", messages)) return std::nullopt;
-  const Scene::Impl& impl = scene.impl();
-  const material::Material* found = impl.material(material, messages);
-  if (found == nullptr) return std::nullopt;
-  return evaluateOf({*found, *impl.language, impl.document.path, impl.bytes}, points, engine, texels, options,
-                    messages, trial);
+  return evaluatedScene(scene.impl_.get(), material, &points, engine, texels, options, messages, trial);
+}
+
+std::optional<Evaluation> evaluate(const Scene& scene, size_t material, const PointArrays& points,
+                                   Engine engine, const Strings& texels, const Options& options,
+                                   Messages& messages, const Trial& trial) {
+  return evaluatedScene(scene.impl_.get(), material, &points, engine, texels, options, messages, trial);
 }
 
 std::optional<Evaluation> evaluate(const Graph& graph, const std::string& points, Engine engine,
                                    const Strings& texels, const Options& options, Messages& messages,
                                    const Trial& trial) {
-  if (!filled(graph.impl_.get(), "graph", messages)) return std::nullopt;
-  const auto language = libraryFor(options);
-  if (!language) return report(language.error(), {}, messages), std::nullopt;
-  const Graph::Impl& impl = *graph.impl_;
-  return evaluateOf({impl.graph, **language, impl.file, impl.bytes, impl.images}, points, engine, texels,
-                    options, messages, trial);
+  return evaluatedGraph(graph.impl_.get(), &points, engine, texels, options, messages, trial);
+}
+
+std::optional<Evaluation> evaluate(const Graph& graph, const PointArrays& points, Engine engine,
+                                   const Strings& texels, const Options& options, Messages& messages,
+                                   const Trial& trial) {
+  return evaluatedGraph(graph.impl_.get(), &points, engine, texels, options, messages, trial);
 }
 
 std::vector<uint8_t> drawBall(const Graph& graph, uint32_t size, const Strings& texels,

@@ -1,5 +1,7 @@
 // What instruments find, as rows.
 #include <algorithm>
+#include <array>
+#include <cstring>
 
 #include "answer/answer.h"
 #include "c/handles.h"
@@ -77,6 +79,42 @@ size_t colorsOf(int engine, double* rgba, uint8_t* discarded, size_t capacity, c
   });
 }
 
+/// The same of arrays; `evaluate` is given those first.
+template <class Evaluate>
+int colorsOfArrays(const lacquer_array* arrays, size_t count, size_t points, int engine,
+                   const lacquer_colors* to, const lacquer_options* options, lacquer_messages* messages,
+                   const Evaluate& evaluate) {
+  return guarded(messages, 0, [&](Messages& said) -> int {
+    if (!isEnumerator(engine, LACQUER_VULKAN_HLSL, "engine", messages)) return 0;
+    if (to == nullptr || to->rgba == nullptr || (arrays == nullptr && count > 0)) {
+      sayError(messages, "null-argument", "there is no array", "arrays, and a place for colours");
+      return 0;
+    }
+    lacquer::PointArrays of;
+    of.count = points;
+    for (size_t i = 0; i < count; ++i) {
+      const lacquer_array& one = arrays[i];
+      of.arrays.push_back(
+          {one.name == nullptr ? "" : one.name, one.numbers, one.is_double != 0, one.components, one.stride});
+    }
+    const std::optional<lacquer::Evaluation> found =
+        evaluate(of, static_cast<lacquer::Engine>(engine), optionsOf(options), said);
+    if (!found) return 0;
+    const size_t size = to->is_double != 0 ? sizeof(double) : sizeof(float);
+    const ptrdiff_t stride = to->stride == 0 ? static_cast<ptrdiff_t>(4 * size) : to->stride;
+    auto* at = static_cast<unsigned char*>(to->rgba);
+    for (size_t i = 0; i < found->rgba.size(); ++i, at += stride) {
+      const std::array<double, 4>& color = found->rgba[i];
+      std::array<float, 4> rounded{};
+      for (size_t c = 0; c < 4; ++c) rounded[c] = static_cast<float>(color[c]);
+      std::memcpy(at, to->is_double != 0 ? static_cast<const void*>(color.data()) : rounded.data(), 4 * size);
+      if (to->discarded != nullptr)
+        to->discarded[i] = !found->discarded.empty() && found->discarded[i] ? 1 : 0;
+    }
+    return 1;
+  });
+}
+
 }  // namespace
 
 size_t lacquer_scene_colors(const lacquer_scene* scene, size_t material, const char* points, size_t size,
@@ -97,6 +135,28 @@ size_t lacquer_graph_colors(const lacquer_graph* graph, const char* points, size
                     return lacquer::evaluate(graphOf(graph), std::string(bytesOf(points, size)), wanted,
                                              how.texels, how.options, to);
                   });
+}
+
+int lacquer_scene_colors_of(const lacquer_scene* scene, size_t material, const lacquer_array* arrays,
+                            size_t count, size_t points, int engine, const lacquer_colors* to,
+                            const lacquer_options* options, lacquer_messages* messages) {
+  return colorsOfArrays(arrays, count, points, engine, to, options, messages,
+                        [&](const lacquer::PointArrays& of, lacquer::Engine wanted,
+                            const lacquer_options& how, Messages& said) {
+                          return lacquer::evaluate(sceneOf(scene), material, of, wanted, how.texels,
+                                                   how.options, said, how.trial);
+                        });
+}
+
+int lacquer_graph_colors_of(const lacquer_graph* graph, const lacquer_array* arrays, size_t count,
+                            size_t points, int engine, const lacquer_colors* to,
+                            const lacquer_options* options, lacquer_messages* messages) {
+  return colorsOfArrays(arrays, count, points, engine, to, options, messages,
+                        [&](const lacquer::PointArrays& of, lacquer::Engine wanted,
+                            const lacquer_options& how, Messages& said) {
+                          return lacquer::evaluate(graphOf(graph), of, wanted, how.texels, how.options, said,
+                                                   how.trial);
+                        });
 }
 
 lacquer_proofs* lacquer_graph_prove(lacquer_graph* graph, int precision, const lacquer_options* options,

@@ -8,7 +8,10 @@
 #include "eval/gpu.h"
 #include "eval/in_memory.h"
 #include "eval/material.h"
+#include "eval/point_arrays.h"
 #include "eval/points_file.h"
+#include "graph/graph.h"
+#include "graph/text.h"
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
@@ -87,24 +90,50 @@ void noteLights(const ir::Module& module, const EvalPoints& points, const std::s
   }
 }
 
+/// Whether the points' attributes by name are what the module reads under those names.
+Result<void> checkAttributes(const ir::Module& module, const EvalPoints& points, const std::string& file) {
+  for (const auto& [name, column] : points.points.columns) {
+    if (!graph::isAttributeName(name)) continue;
+    for (const ir::Attribute& attribute : module.attributes) {
+      if (attribute.name != name) continue;
+      const auto given = points.attribute_components.find(name);
+      const int count = given == points.attribute_components.end() ? column.components : given->second;
+      if (count != ir::componentCount(attribute.type))
+        return fail("wrong-type", {file, 0, 0, {}}, fmt::format("{} is given {} numbers", name, count),
+                    fmt::format("it is {} here", graph::article(attribute.type)));
+      const bool whole = !ir::isWhole(ir::partType(attribute.type)) ||
+                         std::all_of(column.values.begin(), column.values.end(),
+                                     [](double x) { return x == std::trunc(x); });
+      if (!whole)
+        return fail("wrong-type", {file, 0, 0, {}}, fmt::format("{} is no whole number", name),
+                    fmt::format("it is {} here", graph::article(attribute.type)));
+    }
+  }
+  return {};
+}
+
 /// The points' own values, the environment of each, and what comes from the stages before the fragment's.
 Result<void> bind(EvalMaterial& material, const EvalPoints& points, const std::string& file,
                   eval::Bindings& bindings) {
   eval::bindPoints(material.module(), points.points, bindings);
-  if (Result<void> uniforms = bindUniforms(material.module(), points, file, bindings); !uniforms)
-    return uniforms;
-  if (Result<void> block = eval::bindMaterialBlock(material.module(), bindings); !block) return block;
-  if (Result<void> varyings = eval::bindVaryings<float>(material.module(), points.points.size(), bindings);
-      !varyings) {
-    return varyings;
-  }
   for (const ir::TextureSlot* slot : material.environments()) {
     bindings.textures[slot->name] = [&points](size_t point, const std::array<double, 3>&, double) {
       const std::array<double, 3>& e = points.environment[point];
       return std::array<double, 4>{e[0], e[1], e[2], 1};
     };
   }
-  return material.bindTextures({}, bindings);
+  // Vertices may look into textures, too.
+  if (Result<void> textures = material.bindTextures({}, bindings); !textures) return textures;
+  if (Result<void> uniforms = bindUniforms(material.module(), points, file, bindings); !uniforms)
+    return uniforms;
+  for (const auto& [name, column] : material.columns()) bindings.columns[name] = column;
+  if (Result<void> block = eval::bindMaterialBlock(material.module(), bindings, points.points.count); !block)
+    return block;
+  if (Result<void> varyings = eval::bindVaryings<float>(material.module(), points.points.count, bindings);
+      !varyings) {
+    return varyings;
+  }
+  return {};
 }
 
 /// The colours alone.
@@ -234,24 +263,38 @@ Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& lib
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
   evaluated.setTrial(trial);
+  const bool on_device = engine != Engine::Double && engine != Engine::Float;
+  for (const auto& [name, column] : points.parameters) {
+    if (on_device && column.per_point)
+      return fail("no-such-engine", {}, fmt::format("'{}' differs from point to point", printable(name)),
+                  "a device has one value of a parameter for all points: take the engine double or float");
+  }
+  evaluated.setColumns(points.parameters);
+  Strings attributes;
+  for (const auto& [name, column] : points.points.columns) {
+    if (graph::isAttributeName(name)) attributes.push_back(name);
+  }
+  evaluated.setAttributes(std::move(attributes));
   if (Result<void> lowered = evaluated.lower(found, library, points.has_environment, {}, messages);
       !lowered) {
     return tl::make_unexpected(std::move(lowered.error()));
   }
   noteLights(evaluated.module(), points, points_file, messages);
-  // Placed, a module's uniforms are floats: in double it stays as it is, where its light stays.
-  const bool dark =
-      options.lights.mode == Lights::Mode::Fixed && !options.lights.counts.contains(kPointLight);
-  if (engine != Engine::Double || dark) {
-    evaluated.place(hasPointLight(evaluated.module())
-                        ? passes::LightFacts{false, {{std::string(kPointLight), 1}}}
-                        : passes::LightFacts{});
-  }
+  if (const Result<void> fits = checkAttributes(evaluated.module(), points, points_file); !fits)
+    return tl::make_unexpected(fits.error());
+  const passes::LightFacts lights = hasPointLight(evaluated.module())
+                                        ? passes::LightFacts{false, {{std::string(kPointLight), 1}}}
+                                        : passes::LightFacts{};
+  // Placed, a module's uniforms are floats: in double it stays as it is.
+  if (engine == Engine::Double)
+    evaluated.countLights(lights);
+  else
+    evaluated.place(lights);
   eval::Bindings bindings;
   const Result<void> bound = bind(evaluated, points, points_file, bindings);
   report(images.takeNotes(), file, messages);
   if (!bound) return tl::make_unexpected(bound.error());
-  const size_t count = points.points.size();
+  const size_t count = points.points.count;
   const ir::Module& module = evaluated.module();
   Result<Colors> answer =
       engine == Engine::Double ? colors<double>(module, bindings, count)
@@ -340,13 +383,15 @@ std::optional<Evaluation> evaluate(const std::string& file, const std::string& m
                  file, messages);
 }
 
-std::optional<Evaluation> evaluateOf(const InMemory& of, const std::string& points, Engine engine,
+std::optional<Evaluation> evaluateOf(const InMemory& of, const GivenPoints& points, Engine engine,
                                      const Strings& texels, const Options& options, Messages& messages,
                                      const Trial& trial) {
   static const std::string kPoints = "points";
   if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty())
     return report(wrong, {}, messages), std::nullopt;
-  const Result<EvalPoints> read = readPoints(points, kPoints, *limitsOf(options));
+  const auto* text = std::get_if<const std::string*>(&points);
+  const Result<EvalPoints> read = text != nullptr ? readPoints(**text, kPoints, *limitsOf(options))
+                                                  : pointsOf(*std::get<const PointArrays*>(points));
   if (!read) return report(read.error(), kPoints, messages), std::nullopt;
   FileImages images = of.images(options);
   return valueOf(evaluateSubject(of.subject, of.language, images,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "eval/material.h"
@@ -30,8 +31,10 @@ struct InMemory {
   }
 };
 
+/// Points as a text, or as arrays.
+using GivenPoints = std::variant<const std::string*, const PointArrays*>;
 /// evaluate() of it.
-std::optional<Evaluation> evaluateOf(const InMemory& of, const std::string& points, Engine engine,
+std::optional<Evaluation> evaluateOf(const InMemory& of, const GivenPoints& points, Engine engine,
                                      const Strings& texels, const Options& options, Messages& messages,
                                      const Trial& trial);
 /// drawBall() of it.

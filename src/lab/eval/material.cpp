@@ -259,8 +259,9 @@ Result<void> EvalMaterial::lower(const EvalSubject& subject, const Language& lib
   options.decode_srgb = false;
   Diagnostics warnings;
   graph::FlatOutputs outputs;
-  Result<graph::Graph> built = subject.graph({true, tangents_, true, {true, true, true, true}}, library,
-                                             options, originals_, warnings, &outputs);
+  gltf::VertexAttributes attributes{true, tangents_, true, {true, true, true, true}};
+  attributes.application = attributes_;
+  Result<graph::Graph> built = subject.graph(attributes, library, options, originals_, warnings, &outputs);
   report(warnings, images_.file(), messages);
   if (!built) return tl::make_unexpected(std::move(built.error()));
   graph::Graph graph = std::move(*built);
@@ -300,40 +301,78 @@ void widenColors(ir::Module& module) {
   }
 }
 
+namespace {
+
+/// The parameter of that name or JSON pointer.
+Result<size_t> parameterOf(const graph::Graph& graph, const std::string& wanted) {
+  const auto found =
+      std::find_if(graph.parameters.begin(), graph.parameters.end(), [&](const graph::Parameter& p) {
+        return p.name == wanted || (!p.pointer.empty() && p.pointer == wanted);
+      });
+  if (found != graph.parameters.end()) return static_cast<size_t>(found - graph.parameters.begin());
+  std::vector<std::string_view> names;
+  for (const graph::Parameter& p : graph.parameters) names.push_back(p.name);
+  return fail("no-such-parameter", {}, fmt::format("there is no parameter '{}'", printable(wanted)),
+              lang::didYouMean(wanted, names));
+}
+
+/// Whether a parameter may be these numbers, of any number of points.
+Result<void> checkNumbers(const graph::Parameter& parameter, const ir::Range& range, const std::string& name,
+                          std::span<const double> numbers) {
+  const ir::Type part = ir::partType(parameter.type);
+  for (const double x : numbers) {
+    const bool fits = part == ir::Type::Bool ? x == 0 || x == 1 : !ir::isWhole(part) || x == std::trunc(x);
+    if (!fits)
+      return fail("wrong-type", {}, fmt::format("'{}' is given {}", printable(name), x),
+                  part == ir::Type::Bool ? "it is a bool, 0 or 1" : "it is a whole number");
+    if (range.contains(x) && graph::fitsFloat(x)) continue;
+    return fail("out-of-range", {}, fmt::format("'{}' is given {}", printable(name), x),
+                fmt::format("the range is {}", ir::rangeText(range)));
+  }
+  return {};
+}
+
+Result<void> checkCount(const graph::Parameter& parameter, const std::string& name, size_t count) {
+  if (count == static_cast<size_t>(ir::componentCount(parameter.type))) return {};
+  return fail("wrong-count", {}, fmt::format("'{}' is given {} numbers", printable(name), count),
+              fmt::format("it is {}", graph::article(parameter.type)));
+}
+
+}  // namespace
+
 /// Values in place of today's.
 Result<void> EvalMaterial::setParameters(const Language& library, graph::Graph& graph) {
-  if (trial_.parameters.empty()) return {};
+  if (trial_.parameters.empty() && columns_.empty()) return {};
   const std::vector<ir::Range> limits = graph::parameterLimits(graph, library);
   for (const auto& [name, value] : trial_.parameters) {
-    const auto found = std::find_if(graph.parameters.begin(), graph.parameters.end(),
-                                    [&, &wanted = name](const graph::Parameter& p) {
-                                      return p.name == wanted || (!p.pointer.empty() && p.pointer == wanted);
-                                    });
-    if (found == graph.parameters.end()) {
-      if (anyway_) continue;
-      std::vector<std::string_view> names;
-      for (const graph::Parameter& p : graph.parameters) names.push_back(p.name);
-      return fail("no-such-parameter", {}, fmt::format("there is no parameter '{}'", printable(name)),
-                  lang::didYouMean(name, names));
-    }
-    const auto count = static_cast<size_t>(ir::componentCount(found->type));
-    if (value.size() != count)
-      return fail("wrong-count", {}, fmt::format("'{}' is given {} numbers", printable(name), value.size()),
-                  fmt::format("it is {}", graph::article(found->type)));
-    const ir::Range& range = limits[static_cast<size_t>(found - graph.parameters.begin())];
-    const ir::Type part = ir::partType(found->type);
-    for (const double x : value) {
-      const bool fits = part == ir::Type::Bool ? x == 0 || x == 1 : !ir::isWhole(part) || x == std::trunc(x);
-      if (!fits)
-        return fail("wrong-type", {}, fmt::format("'{}' is given {}", printable(name), x),
-                    part == ir::Type::Bool ? "it is a bool, 0 or 1" : "it is a whole number");
-      if (range.contains(x) && graph::fitsFloat(x)) continue;
-      return fail("out-of-range", {}, fmt::format("'{}' is given {}", printable(name), x),
-                  fmt::format("the range is {}", ir::rangeText(range)));
-    }
-    std::copy(value.begin(), value.end(), found->value.begin());
+    const Result<size_t> place = parameterOf(graph, name);
+    if (!place && anyway_) continue;
+    if (!place) return tl::make_unexpected(place.error());
+    graph::Parameter& found = graph.parameters[*place];
+    if (Result<void> wrong = checkCount(found, name, value.size()); !wrong) return wrong;
+    if (Result<void> wrong = checkNumbers(found, limits[*place], name, value); !wrong) return wrong;
+    std::copy(value.begin(), value.end(), found.value.begin());
     changed_.push_back(name);
   }
+  return checkColumns(graph, limits);
+}
+
+Result<void> EvalMaterial::checkColumns(const graph::Graph& graph, const std::vector<ir::Range>& limits) {
+  std::map<std::string, eval::Column> by_name;
+  for (auto& [name, column] : columns_) {
+    const Result<size_t> place = parameterOf(graph, name);
+    if (!place) return tl::make_unexpected(place.error());
+    const graph::Parameter& found = graph.parameters[*place];
+    const auto components = static_cast<size_t>(column.components);
+    if (Result<void> wrong = checkCount(found, name, components); !wrong) return wrong;
+    if (Result<void> wrong = checkNumbers(found, limits[*place], name, column.values); !wrong) return wrong;
+    if (options_.parameters != Parameters::Uniform)
+      return fail("parameters-are-constants", {}, fmt::format("'{}' is given an array", printable(name)),
+                  "the options' parameters must be uniforms");
+    if (!by_name.emplace(found.name, std::move(column)).second)
+      return fail("duplicate-name", {}, fmt::format("'{}' is given twice", printable(found.name)), {});
+  }
+  columns_ = std::move(by_name);
   return {};
 }
 
@@ -356,21 +395,29 @@ Result<graph::Source> EvalMaterial::look(const graph::Graph& graph, const Langua
   return source;
 }
 
+passes::LightFacts EvalMaterial::lit(passes::LightFacts lights) const {
+  // A shader for fixed counts of lights has none of a kind that is not counted.
+  if (options_.lights.mode != Lights::Mode::Fixed) return lights;
+  if (options_.lights.counts.empty()) lights.any = false;
+  for (auto& [kind, count] : lights.counts) {
+    const auto fixed = options_.lights.counts.find(kind);
+    count = std::min(count, fixed == options_.lights.counts.end() ? 0U : fixed->second);
+  }
+  return lights;
+}
+
 void EvalMaterial::place(const passes::LightFacts& lights) {
   passes::PipelineOptions pipeline;
-  pipeline.lights = lights;
+  pipeline.lights = lit(lights);
   pipeline.relaxed = options_.relaxed;
   pipeline.optimize = optimization(options_);
   pipeline.choose = cost::chooserOf(options_);
-  // A shader for fixed counts of lights has none of a kind that is not counted.
-  if (options_.lights.mode == Lights::Mode::Fixed) {
-    if (options_.lights.counts.empty()) pipeline.lights.any = false;
-    for (auto& [kind, count] : pipeline.lights.counts) {
-      const auto fixed = options_.lights.counts.find(kind);
-      count = std::min(count, fixed == options_.lights.counts.end() ? 0U : fixed->second);
-    }
-  }
   passes::runPipeline(module_, pipeline);
+}
+
+void EvalMaterial::countLights(const passes::LightFacts& lights) {
+  const passes::LightFacts facts = lit(lights);
+  if (options_.lights.mode == Lights::Mode::Fixed && !facts.any) passes::specializeLights(module_, facts);
 }
 
 std::vector<const ir::TextureSlot*> EvalMaterial::usedTextures() const {

@@ -102,8 +102,15 @@ public:
     anyway_ = anyway;
   }
 
+  /// Before lower(): parameters whose values differ from those of today, and maybe from point to point.
+  void setColumns(std::map<std::string, eval::Column> columns) { columns_ = std::move(columns); }
+  /// The same by the parameters' names, after lower().
+  const std::map<std::string, eval::Column>& columns() const { return columns_; }
+
   /// The primitive has no tangents: frames come of derivatives.
   void leaveOutTangents() { tangents_ = false; }
+  /// It has these of the application's own, "_WETNESS", sorted.
+  void setAttributes(Strings attributes) { attributes_ = std::move(attributes); }
 
   /// The module of the options' template, or of a graph's own, as lowered; of a material for a primitive with
   /// every attribute but what was left out: points are given all of them. Nodes that have the variant of that
@@ -114,6 +121,9 @@ public:
   /// The float engine computes what the shader does: values of the material's rate in the preshader, then
   /// floats.
   void place(const passes::LightFacts& lights);
+  /// The double engine computes the module as it was lowered: with the options' counts of lights, where they
+  /// are fixed, and nothing else.
+  void countLights(const passes::LightFacts& lights);
 
   /// Samplers of the textures that the outputs reach, but for the environment's maps; its table of factors is
   /// one of them. Errors: "image-missing" and the like, one for each texture, where there is no substitute;
@@ -144,8 +154,11 @@ private:
   };
 
   Result<void> setParameters(const Language& library, graph::Graph& graph);
+  Result<void> checkColumns(const graph::Graph& graph, const std::vector<ir::Range>& limits);
   Result<graph::Source> look(const graph::Graph& graph, const Language& library,
                              const graph::FlatOutputs& outputs);
+  /// As the options want them.
+  passes::LightFacts lit(passes::LightFacts lights) const;
   static Result<Texel> parseTexel(const std::string& text);
   bool names(const std::string& name, const ir::TextureSlot& slot) const;
   Result<void> checkAgreement() const;
@@ -158,8 +171,10 @@ private:
   Options options_;
   std::vector<Texel> texels_;
   Trial trial_;
+  std::map<std::string, eval::Column> columns_;
   bool anyway_ = false;
   bool tangents_ = true;
+  Strings attributes_;
   std::vector<graph::Texture> originals_;  ///< by the slot's texture: the file's
   ir::Module module_;
   std::string profile_;

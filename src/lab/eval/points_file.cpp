@@ -37,21 +37,15 @@ constexpr std::string_view kKeys[] = {"n",
                                       "channel",
                                       "random"};
 
-/// A direction may be off by the rounding of printed digits, not by more.
-constexpr double kUnitTolerance = 1e-3;
-
 double length(const Vec3& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+
+bool hasDirection(const Vec3& a) {
+  return length(a) > eval::kShortestDirection && length(a) < eval::kLongestDirection;
+}
 
 Vec3 unit(const Vec3& a) {
   const double l = length(a);
   return {a[0] / l, a[1] / l, a[2] / l};
-}
-
-/// Some unit vector at right angles to a unit vector.
-Vec3 across(const Vec3& n) {
-  const Vec3 axis = std::abs(n[0]) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const double along = axis[0] * n[0] + axis[1] * n[1] + axis[2] * n[2];
-  return unit({axis[0] - n[0] * along, axis[1] - n[1] * along, axis[2] - n[2] * along});
 }
 
 class PointReader {
@@ -66,7 +60,7 @@ public:
       const Path here(path, key);
       if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys)) continue;
       if (graph::isAttributeName(key)) {
-        attribute(value, here, key, point);
+        attribute(value, here, key, point, to);
         continue;
       }
       const std::string_view close = closest(key, kKeys);
@@ -74,7 +68,7 @@ public:
                     close.empty() ? fmt::format("it has {}", listOf(kKeys))
                                   : fmt::format("did you mean \"{}\"?", close));
     }
-    if (vector(json, path, "n", point.n) && !(length(point.n) > 1e-12 && length(point.n) < 1e12)) {
+    if (vector(json, path, "n", point.n) && !hasDirection(point.n)) {
       report_.error("zero-length", Path(path, "n"), "the normal has no length", "any length does, but for 0");
       point.n = {0, 0, 1};
     }
@@ -96,9 +90,11 @@ public:
     number(json, path, "surrounding_ior", point.surrounding_ior);
     number(json, path, "channel", point.channel);
     vector(json, path, "random", point.random);
-    to.points.push_back(point);
+    points_.push_back(std::move(point));
     to.environment.push_back(environment);
   }
+
+  std::span<const eval::Point> points() const { return points_; }
 
 private:
   bool numbers(const Json& json, const Path& path, std::string_view name, std::span<double> to) {
@@ -129,12 +125,22 @@ private:
   }
 
   /// A number, or two to four of them.
-  void attribute(const Json& json, const Path& path, const std::string& name, eval::Point& to) {
+  void attribute(const Json& json, const Path& path, const std::string& name, eval::Point& to,
+                 EvalPoints& all) {
+    if (json.is_boolean())
+      return report_.wrongType(path, name, json, "a number or an array of 2 to 4 numbers");
     const Json list = json.is_array() ? json : Json::array({json});
     std::array<double, 4> value{0, 0, 0, 1};
     if (list.size() < 1 || list.size() > value.size())
       return report_.wrongType(path, name, json, "a number or an array of 2 to 4 numbers");
-    if (numbers(list, path, name, {value.data(), list.size()})) to.attributes[name] = value;
+    if (!numbers(list, path, name, {value.data(), list.size()})) return;
+    to.attributes[name] = value;
+    const auto count = static_cast<int>(list.size());
+    const auto [known, first] = all.attribute_components.emplace(name, count);
+    if (first || known->second == count) return;
+    report_.error("wrong-type", path,
+                  fmt::format("{} is given {} numbers, and {} before", name, count, known->second),
+                  "an attribute has one type");
   }
 
   void flag(const Json& point, const Path& path, std::string_view name, bool& to) {
@@ -158,7 +164,7 @@ private:
     to = missing;
     if (!vector(point, path, name, to)) return;
     const double l = length(to);
-    if (std::abs(l - 1) <= kUnitTolerance) {
+    if (std::abs(l - 1) <= eval::kUnitTolerance) {
       to = unit(to);
       return;
     }
@@ -168,12 +174,12 @@ private:
   }
 
   void tangent(const Json& point, const Path& path, eval::Point& to) {
-    const Vec3 any = across(to.n);
+    const Vec3 any = eval::across(to.n);
     to.t = {any[0], any[1], any[2], 1};
     std::array<double, 4> t{};
     if (!vector(point, path, "t", t)) return;
     const Path here(path, "t");
-    if (!(length({t[0], t[1], t[2]}) > 1e-12 && length({t[0], t[1], t[2]}) < 1e12)) {
+    if (!hasDirection({t[0], t[1], t[2]})) {
       return report_.error("zero-length", here, "the tangent has no length", "any length does, but for 0");
     }
     if (std::abs(t[3]) != 1) {
@@ -211,6 +217,7 @@ private:
   }
 
   json::Report report_;
+  std::vector<eval::Point> points_;
 };
 
 /// The object "uniforms" beside "points": a number, or an array of them, by field.
@@ -251,6 +258,7 @@ Result<EvalPoints> readPoints(std::string_view text, const std::string& file, co
   } else {
     PointReader reader(file, wrong);
     for (size_t i = 0; i < points.size(); ++i) reader.read(points[i], Path(path, i), result);
+    result.points = eval::columnsOf(reader.points());
   }
   if (member != nullptr) readUniforms(*root, report, result);
   if (hasError(wrong)) return tl::make_unexpected(std::move(wrong));

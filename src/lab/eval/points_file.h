@@ -15,9 +15,12 @@
 namespace lacquer {
 
 struct EvalPoints {
-  std::vector<eval::Point> points;
+  eval::PointColumns points;
+  /// Of attributes by name, where the columns have more than were given: how many numbers those are.
+  std::map<std::string, int, std::less<>> attribute_components;
   std::vector<std::array<double, 3>> environment;  ///< radiance, one per point; black where none is given
   bool has_environment = false;                    ///< a point names one
+  std::map<std::string, eval::Column> parameters;  ///< by name or JSON pointer, in place of today's values
   std::map<std::string, std::vector<double>> uniforms;  ///< fields of the template's blocks: "frame.exposure"
 };
 

@@ -119,6 +119,17 @@ void drawRow(const Row& row, const std::vector<Rgba>& colors, const std::optiona
 
 }  // namespace
 
+namespace {
+
+/// A cube map is looked up in a direction of any length; in none it has some texel.
+Vec3 unitOf(const Vec3& direction) {
+  const double length = std::hypot(direction[0], direction[1], direction[2]);
+  if (!(length > 0)) return {0, 0, 1};
+  return {direction[0] / length, direction[1] / length, direction[2] / length};
+}
+
+}  // namespace
+
 Result<Shading> Shading::make(Look look, const Studio& studio) {
   Shading shading;
   shading.look_ = std::make_shared<const Look>(std::move(look));
@@ -129,19 +140,19 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
       eval::Column::constant({static_cast<double>(shading.base_.lights.size())});
   for (const std::string& name : of.specular) {
     shading.base_.textures[name] = [&studio](size_t, const Vec3& direction, double lod) -> Rgba {
-      const Vec3 c = studio.radiance(direction, lod);
+      const Vec3 c = studio.radiance(unitOf(direction), lod);
       return {c[0], c[1], c[2], 1};
     };
   }
   for (const std::string& name : of.fibres) {
     shading.base_.textures[name] = [&studio](size_t, const Vec3& direction, double lod) -> Rgba {
-      const Vec3 c = studio.fibreRadiance(direction, lod);
+      const Vec3 c = studio.fibreRadiance(unitOf(direction), lod);
       return {c[0], c[1], c[2], 1};
     };
   }
   for (const std::string& name : of.irradiance) {
     shading.base_.textures[name] = [&studio](size_t, const Vec3& direction, double) -> Rgba {
-      const Vec3 c = studio.irradiance(direction);
+      const Vec3 c = studio.irradiance(unitOf(direction));
       return {c[0], c[1], c[2], 1};
     };
   }

@@ -56,10 +56,12 @@ Result<preview::Shading> shadingOf(const EvalSubject& subject, const Language& l
     return tl::make_unexpected(std::move(set.error()));
   if (Result<void> lowered = evaluated.lower(subject, library, true, of.variant, messages); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
-  if (of.in_float && studio.hasLamps())
-    evaluated.place({false, {{"directional", preview::Studio::kLights}}});
-  else if (of.in_float)
-    evaluated.place({false, {}});
+  passes::LightFacts lights{false, {}};
+  if (studio.hasLamps()) lights.counts["directional"] = preview::Studio::kLights;
+  if (of.in_float)
+    evaluated.place(lights);
+  else
+    evaluated.countLights(lights);
   preview::Look look;
   look.in_float = of.in_float;
   for (const ir::TextureSlot* slot : evaluated.environments()) {

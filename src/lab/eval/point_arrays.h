@@ -1,0 +1,14 @@
+// Points of an evaluation from the arrays of a caller.
+#pragma once
+
+#include "eval/points_file.h"
+#include "lacquer/tools.h"
+
+namespace lacquer {
+
+/// The arrays as readPoints() would give them, checked alike. Errors: "wrong-type" for a number of components
+/// that the name does not have, "not-finite", "zero-length", "not-unit", "out-of-range", "duplicate-name".
+/// The place is the array's name and the point's number, as in "/v/17".
+Result<EvalPoints> pointsOf(const PointArrays& arrays);
+
+}  // namespace lacquer
