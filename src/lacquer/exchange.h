@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lacquer/options.h"
 
@@ -21,21 +22,42 @@ std::string toMaterialX(const std::string& file, const Strings& materials, const
 bool writeMaterialX(const std::string& output, const std::string& file, const Strings& materials,
                     const std::string& surface, const Options& options, Messages& messages);
 
+/// The form of a baked image.
+enum class Texels : uint8_t {
+  Png,   ///< 8 bits; a level is a file of its own
+  Ktx2,  ///< R8G8B8A8 of 8 bits, or R16G16B16A16_SFLOAT of 16, without supercompression
+  Exr,   ///< OpenEXR, ZIP: halves of 16 bits, or floats of 32
+};
+
 struct Bake {
-  std::string output;   ///< the .gltf file to write; images are put beside it
-  uint32_t size = 512;  ///< texels along each side of an image, from 1 to 8192
+  /// The .gltf file to write, images beside it; or the image itself: .png, .ktx2 or .exr.
+  std::string output;
+  uint32_t size = 512;   ///< texels along each side of an image, from 1 to 8192
+  uint32_t samples = 2;  ///< places along each side of a texel that it is the mean of: 2, 4, 6, 8 or 16
+  /// Outputs of nodes, as Trial::node has them, "*" for all that can be looked at; of one material or graph.
+  /// Without any the procedural textures of a file's materials, and of a graph the outputs of its instances
+  /// of groups.
+  Strings nodes;
+  /// Beside a .gltf file, whose own images are PNG: the same images in these forms, too.
+  std::vector<Texels> also;
+  uint32_t bits = 0;    ///< of a number in KTX2 (8, 16) and OpenEXR (16, 32); 0 for the lesser
+  bool levels = false;  ///< mip levels: in the file, of PNG beside it, NAME_1.png and on
+  bool srgb = false;    ///< nodes in an image of 8 bits are encoded; what glTF decodes is in any case
 };
 struct Baked {
-  std::string output;
-  Strings images;         ///< the PNG files that were written, in the order of the materials
+  std::string output;     ///< the glTF file; empty where there is none
+  Strings images;         ///< the images that were written, in the order of the materials
   uint32_t textures = 0;  ///< textureInfos that have one of them now
 };
 /// Computes the procedural textures of a .gltf file, or the patterns of a .mtlx file, at the texture
-/// coordinates of each texel, as the mean of four places, and writes them as PNG. The glTF file has them
+/// coordinates of each texel, as the mean of places in it, and writes them as images. The glTF file has them
 /// where it had procedural textures, which stay beside them; of a .mtlx file it has the materials. Colours
-/// are encoded as sRGB where the property has them so. A material with an error is left out; an absent image
-/// is grey or flat, with a warning. Nothing on an error: "nothing-to-bake", "not-gltf" and those of reading
-/// and writing. Uses threads.
+/// are encoded as sRGB where the property has them so. With `nodes`, and of a graph of one's own (".json"),
+/// the outputs of nodes are baked, and a glTF file has an unlit material for each. A material with an error
+/// is left out; an absent image is grey or flat, with a warning, and so is a value that depends on the view
+/// or the light ("depends-on-view"). `progress` counts rows of texels. Nothing on an error:
+/// "nothing-to-bake", "unknown-format", "out-of-range", "not-gltf", "no-openexr" and those of reading, of
+/// nodes and of writing. Uses threads.
 std::optional<Baked> bake(const Bake& how, const std::string& file, const Strings& materials,
                           const Options& options, Messages& messages, const Progress& progress = {});
 

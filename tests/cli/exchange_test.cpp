@@ -122,11 +122,11 @@ TEST(Bake, saysWhatIsWrong) {
   const Outcome none = place.run({"bake", "plain.gltf", "-o", "out.gltf"});
   EXPECT_EQ(none.status, 1);
   EXPECT_NE(none.err.find("[nothing-to-bake]"), std::string::npos) << none.err;
-  place.write("ramp.mtlx", kDocument);
-  const Outcome over = place.run({"bake", "ramp.mtlx", "-o", "ramp.mtlx"});
+  place.write("ramp.gltf", kProcedural);
+  const Outcome over = place.run({"bake", "ramp.gltf", "-o", "ramp.gltf"});
   EXPECT_EQ(over.status, 1);
   EXPECT_NE(over.err.find("[output-clash]"), std::string::npos) << over.err;
-  EXPECT_EQ(place.read("ramp.mtlx"), kDocument);
+  EXPECT_EQ(place.read("ramp.gltf"), kProcedural);
 }
 
 TEST(Bake, refusesWhatNoReaderFollows) {
@@ -189,16 +189,96 @@ node moss_light(sampler2D image, vec2 uv) -> vec3 in [0, inf] {
   EXPECT_NE(after.out.find("moss_texture"), std::string::npos) << after.out;
 }
 
-/// Graphs are built of a material's terms: neither verb has a use for one, and says so.
+/// Graphs are built of a material's terms: the verb has no use for one, and says so.
 TEST(Convert, takesNoGraph) {
   const Workplace place;
-  place.write("paint.json", place.run({"graph", example("core.gltf"), "--material", "Metal"}).out);
-  for (const char* verb : {"convert", "bake"}) {
-    const Outcome outcome = place.run({verb, "paint.json", "-o", "out.mtlx"});
-    EXPECT_EQ(outcome.status, 2) << verb;
-    EXPECT_NE(outcome.err.find("[graph-is-built]"), std::string::npos) << outcome.err;
-    EXPECT_EQ(outcome.err.find("asset"), std::string::npos) << outcome.err;
+  place.write("paint.json", place.run({"graph", example("core.gltf"), "--material", "Plastic"}).out);
+  const Outcome outcome = place.run({"convert", "paint.json", "-o", "out.mtlx"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("[graph-is-built]"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("asset"), std::string::npos) << outcome.err;
+}
+
+uint64_t wordAt(const std::string& bytes, size_t at, size_t count) {
+  uint64_t word = 0;
+  for (size_t i = 0; i < count; ++i) word |= uint64_t{static_cast<uint8_t>(bytes.at(at + i))} << (8 * i);
+  return word;
+}
+
+/// Of a KTX2 file of 8 bits: the texel of a level.
+std::vector<int> texelOf(const std::string& ktx2, size_t level, size_t index) {
+  constexpr size_t kHeader = 80;
+  const uint64_t place = wordAt(ktx2, kHeader + 24 * level, 8);
+  std::vector<int> texel;
+  for (size_t c = 0; c < 4; ++c) texel.push_back(static_cast<int>(wordAt(ktx2, place + 4 * index + c, 1)));
+  return texel;
+}
+
+/// A graph of one's own: what depends on texture coordinates alone, and any node by the end of its name.
+TEST(Bake, ofAGraph) {
+  const Workplace place;
+  place.write("ramp.mtlx", kDocument);
+  place.write("ramp.json", place.run({"graph", "ramp.mtlx"}).out);
+  const Outcome all = place.run({"bake", "ramp.json", "-o", "out/ramp.gltf", "--size", "8"});
+  ASSERT_EQ(all.status, 0) << all.err;
+  EXPECT_NE(all.out.find("base_color.png\n"), std::string::npos) << all.out;
+  const Json gltf = Json::parse(place.read("out/ramp.gltf"));
+  EXPECT_EQ(gltf["materials"][0]["extensions"].count("KHR_materials_unlit"), 1U);
+  EXPECT_EQ(gltf["materials"].size(), gltf["images"].size());
+  for (const char* file : {"ramp.json", "ramp.mtlx"}) {
+    const Outcome one = place.run({"bake", file, "--node", "NG.across", "-o", "one.ktx2", "--size", "4"});
+    ASSERT_EQ(one.status, 0) << one.err;
+    EXPECT_EQ(one.out, "one.ktx2\n");
+    // Linear: of the first texel the left colour has seven of eight parts.
+    EXPECT_EQ(texelOf(place.read("one.ktx2"), 0, 0), (std::vector<int>{48, 57, 204, 255}));
   }
+  const Outcome none = place.run({"bake", "ramp.json", "--node", "NG.acros", "-o", "one.png"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("[no-such-node]"), std::string::npos) << none.err;
+  const Outcome lit = place.run({"bake", "ramp.json", "--node", "base.direct", "-o", "one.png"});
+  EXPECT_EQ(lit.status, 0) << lit.err;
+  EXPECT_NE(lit.err.find("[depends-on-view]"), std::string::npos) << lit.err;
+}
+
+/// Each level is the mean of the area below it, in linear light, whatever the size.
+TEST(Bake, levelsAreMeans) {
+  const Workplace place;
+  place.write("ramp.mtlx", kDocument);
+  for (const std::string size : {"8", "7"}) {
+    const Outcome baked = place.run(
+        {"bake", "ramp.mtlx", "--node", "NG.across", "-o", "one.ktx2", "--size", size, "--mips", "--srgb"});
+    ASSERT_EQ(baked.status, 0) << baked.err;
+    const std::string ktx2 = place.read("one.ktx2");
+    EXPECT_EQ(wordAt(ktx2, 12, 4), 43U);  // VK_FORMAT_R8G8B8A8_SRGB
+    EXPECT_EQ(wordAt(ktx2, 20, 4), std::stoul(size));
+    const uint64_t levels = wordAt(ktx2, 40, 4);
+    EXPECT_EQ(levels, size == "8" ? 4U : 3U);
+    EXPECT_EQ(wordAt(ktx2, wordAt(ktx2, 48, 4) + 14, 1), 2U);  // the transfer function is sRGB's
+    // The middle of the ramp: 0.45, 0.3, 0.5.
+    EXPECT_EQ(texelOf(ktx2, levels - 1, 0), (std::vector<int>{179, 149, 188, 255}));
+  }
+  const Outcome png =
+      place.run({"bake", "ramp.mtlx", "--node", "NG.across", "-o", "one.png", "--size", "4", "--mips"});
+  EXPECT_EQ(png.out, "one.png\none_1.png\none_2.png\n");
+}
+
+TEST(Bake, otherFormsLieBesideGltf) {
+  const Workplace place;
+  place.write("ramp.mtlx", kDocument);
+  const Outcome baked = place.run({"bake", "ramp.mtlx", "-o", "out/ramp.gltf", "--size", "8", "--also",
+                                   "ktx2", "--also", "exr", "--bits", "16", "--mips"});
+  if (baked.err.find("[no-openexr]") != std::string::npos) GTEST_SKIP() << "built without OpenEXR";
+  ASSERT_EQ(baked.status, 0) << baked.err;
+  EXPECT_TRUE(place.has("out/Ramp_baseColorTexture_3.png"));
+  EXPECT_EQ(wordAt(place.read("out/Ramp_baseColorTexture.ktx2"), 12, 4), 97U);  // R16G16B16A16_SFLOAT
+  const std::string exr = place.read("out/Ramp_baseColorTexture.exr");
+  EXPECT_EQ(exr.substr(0, 4), "\x76\x2f\x31\x01");
+  EXPECT_NE(exr.find("tiledesc"), std::string::npos);
+  EXPECT_EQ(Json::parse(place.read("out/ramp.gltf"))["images"].size(), 2U);
+  const Outcome wrong = place.run({"bake", "ramp.mtlx", "-o", "one.png", "--bits", "16"});
+  EXPECT_NE(wrong.err.find("[unknown-format]"), std::string::npos) << wrong.err;
+  const Outcome what = place.run({"bake", "ramp.mtlx", "-o", "one.jpg"});
+  EXPECT_NE(what.err.find("[unknown-format]"), std::string::npos) << what.err;
 }
 
 /// MaterialX has letters and digits in names; what a material is called stands beside them.

@@ -42,34 +42,60 @@ int runConvert(const ExchangeFlags& flags, const OptionFlags& options) {
 }
 
 void addBake(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options) {
-  verb.add_option("file", flags.file, "a .gltf or .mtlx file")->required()->check(kNotEmpty);
-  verb.add_option("-o,--output", flags.bake.output, "the .gltf file to write; images are put beside it")
+  verb.add_option("file", flags.file, "a .gltf or .mtlx file, or a graph: .json")
       ->required()
+      ->check(kNotEmpty);
+  verb.add_option("-o,--output", flags.bake.output,
+                  "the .gltf file to write, images beside it; or the image alone: .png, .ktx2 or .exr")
+      ->required()
+      ->check(kNotEmpty);
+  verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
+      ->allow_extra_args(false);
+  verb.add_option("--node", flags.bake.nodes,
+                  "the output of a node, as for eval, instead of procedural textures; * for all of all nodes "
+                  "(may be repeated)")
+      ->allow_extra_args(false)
       ->check(kNotEmpty);
   verb.add_option("--size", flags.bake.size, "texels along each side of an image")
       ->check(CLI::Range(1, 8192))
       ->check(kWhole)
       ->capture_default_str();
+  verb.add_option("--samples", flags.bake.samples,
+                  "places along each side of a texel that it is the mean of: 2, 4, 6, 8 or 16")
+      ->check(CLI::IsMember({2, 4, 6, 8, 16}))
+      ->capture_default_str();
+  verb.add_flag("--mips", flags.bake.levels,
+                "with mip levels: in .ktx2 and .exr, of PNG beside it as NAME_1.png and on");
+  verb.add_option("--also", flags.also,
+                  "beside a .gltf file: ktx2 or exr of each image, too (may be repeated)")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"ktx2", "exr"}));
+  verb.add_option("--bits", flags.bake.bits, "of a number: 8 or 16 in KTX2, 16 or 32 in OpenEXR; the lesser")
+      ->check(CLI::IsMember({8, 16, 32}));
+  verb.add_flag("--srgb", flags.bake.srgb, "encode what nodes give in an image of 8 bits");
   verb.add_flag("-q,--quiet", flags.quiet, "no table, no progress");
   addJobs(verb, options);
   addAllow(verb, options, "images");
   addReading(verb, options);
 }
 
-int runBake(const ExchangeFlags& flags, const OptionFlags& options) {
+int runBake(ExchangeFlags& flags, const OptionFlags& options) {
+  for (const std::string& form : flags.also)
+    flags.bake.also.push_back(form == "exr" ? Texels::Exr : Texels::Ktx2);
   Messages messages;
   std::optional<Baked> baked;
   {
-    ProgressLine line(terminalWidth() > 0 && !flags.quiet, "images");
-    baked = bake(flags.bake, flags.file, {}, options.options, messages,
+    ProgressLine line(terminalWidth() > 0 && !flags.quiet, "rows");
+    baked = bake(flags.bake, flags.file, flags.materials, options.options, messages,
                  [&](size_t done, size_t known) { line(done, known); });
   }
   print(messages);
   if (baked && !flags.quiet) {
     for (const std::string& image : baked->images) fmt::print("{}\n", printable(image));
-    fmt::print("{} in {}\n", countOf(baked->textures, "texture"), printable(baked->output));
+    if (!baked->output.empty())
+      fmt::print("{} in {}\n", countOf(baked->textures, "texture"), printable(baked->output));
   }
-  return baked && !hasError(messages) ? 0 : statusFor(flags.file);
+  return baked && !hasError(messages) ? 0 : 1;
 }
 
 int printDocument(const OptionFlags& flags, const std::string& file, const Strings& materials) {

@@ -10,6 +10,7 @@ namespace lacquer::cli {
 
 struct ExchangeFlags {
   std::string file, output, surface;
+  Strings materials, also;
   Bake bake;
   bool quiet = false;
 };
@@ -18,7 +19,7 @@ void addConvert(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options);
 int runConvert(const ExchangeFlags& flags, const OptionFlags& options);
 
 void addBake(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options);
-int runBake(const ExchangeFlags& flags, const OptionFlags& options);
+int runBake(ExchangeFlags& flags, const OptionFlags& options);
 
 /// Prints the document of a file's materials.
 int printDocument(const OptionFlags& flags, const std::string& file, const Strings& materials);

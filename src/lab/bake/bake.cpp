@@ -6,6 +6,7 @@
 #include <set>
 
 #include "bake/image.h"
+#include "bake/nodes.h"
 #include "eval/material.h"
 #include "gltf/uri.h"
 #include "graph/graph.h"
@@ -62,6 +63,31 @@ Json& at(Json& from, std::string_view path) {
   return *found;
 }
 
+std::string_view endingOf(Texels format) {
+  switch (format) {
+    case Texels::Png: return ".png";
+    case Texels::Ktx2: return ".ktx2";
+    case Texels::Exr: return ".exr";
+  }
+  return {};
+}
+
+std::optional<Texels> texelsOf(std::string_view path) {
+  for (const Texels format : {Texels::Png, Texels::Ktx2, Texels::Exr}) {
+    if (path.ends_with(endingOf(format))) return format;
+  }
+  return std::nullopt;
+}
+
+/// An image to be made: of a texture's pattern, or of a node.
+struct Item {
+  const material::Material* material = nullptr;  ///< null for the graph
+  const gltf::TextureInfo* pattern = nullptr;
+  std::string node;
+  std::string stem;  ///< the file without its ending
+  bool srgb = false;
+};
+
 class Baking {
 public:
   Baking(const Bake& how, const Options& options, Messages& messages, const Progress& progress)
@@ -70,9 +96,22 @@ public:
   Result<Baked> make(const std::string& file, const Strings& materials);
 
 private:
+  struct Computed {
+    preview::Shading shading;
+    int components = 4;
+  };
+
+  Result<void> checkHow();
+  Result<void> open(const std::string& file);
   Result<void> choose(const Strings& materials);
-  Result<preview::Shading> shadingOf(const material::Material& material, const gltf::TextureInfo& info,
-                                     FileImages& images);
+  Result<Computed> ofPattern(const Item& item, FileImages& images);
+  Result<Computed> ofNode(const Item& item, FileImages& images);
+  Result<Computed> bound(EvalMaterial& evaluated, FileImages& images);
+  void warnOfView(const ir::Module& module, const std::string& node);
+  Result<void> planNodes(const std::string& file, const Strings& materials);
+  Result<void> planTextures(const std::string& file);
+  std::vector<std::pair<Texels, Strings>> outputsOf(const Item& item) const;
+  Result<void> compute(const Item& item, size_t number, FileImages& sources, const Strings& outputs);
   Result<void> write(const std::string& path, std::string_view bytes);
   Result<Json> frame(const std::string& file);
   Json materialJson(const material::Material& material) const;
@@ -86,6 +125,9 @@ private:
   const material::Schema* schema_ = nullptr;
   material::Document document_;
   std::vector<size_t> wanted_;
+  std::optional<graph::Graph> graph_;
+  std::optional<Texels> alone_;  ///< the form of the image that is written without a glTF file
+  std::vector<Item> items_;
   preview::Studio studio_;
   Json gltf_;
   Strings inputs_;                          ///< files that are read, or that the written file goes on to name
@@ -110,9 +152,9 @@ Result<void> Baking::choose(const Strings& materials) {
 }
 
 /// The texel of a pattern's output as a colour: a graph that has the group alone.
-Result<preview::Shading> Baking::shadingOf(const material::Material& material, const gltf::TextureInfo& info,
-                                           FileImages& images) {
-  graph::Graph graph = *material.patterns;
+Result<Baking::Computed> Baking::ofPattern(const Item& item, FileImages& images) {
+  const gltf::TextureInfo& info = *item.pattern;
+  graph::Graph graph = *item.material->patterns;
   const Result<std::string> name = language_->defaultTemplate();
   if (!name) return tl::make_unexpected(name.error());
   graph.template_name = *name;
@@ -131,6 +173,27 @@ Result<preview::Shading> Baking::shadingOf(const material::Material& material, c
   Messages repeated;
   if (Result<void> lowered = evaluated.lower(graph, *language_, false, {}, repeated); !lowered)
     return tl::make_unexpected(std::move(lowered.error()));
+  return bound(evaluated, images);
+}
+
+Result<Baking::Computed> Baking::ofNode(const Item& item, FileImages& images) {
+  const EvalSubject subject = graph_ ? EvalSubject(*graph_) : EvalSubject(*item.material);
+  EvalMaterial evaluated(images, options_);
+  Trial trial;
+  trial.node = item.node;
+  evaluated.setTrial(trial);
+  Messages repeated;
+  Messages& to = &item == items_.data() ? messages_ : repeated;
+  if (Result<void> lowered = evaluated.lower(subject, *language_, false, {}, to); !lowered)
+    return tl::make_unexpected(std::move(lowered.error()));
+  warnOfView(evaluated.module(), item.node);
+  const int components = ir::componentCount(evaluated.shown()->type);
+  Result<Computed> computed = bound(evaluated, images);
+  if (computed) computed->components = components;
+  return computed;
+}
+
+Result<Baking::Computed> Baking::bound(EvalMaterial& evaluated, FileImages& images) {
   evaluated.place({false, {}});
   preview::Look look;
   const auto neutral = [&](const ir::TextureSlot& slot, const Diagnostics& why) {
@@ -140,11 +203,35 @@ Result<preview::Shading> Baking::shadingOf(const material::Material& material, c
     }
     return neutralTexel(slot);
   };
-  const Result<void> bound = evaluated.bindTextures(neutral, look.textures);
+  const Result<void> textures = evaluated.bindTextures(neutral, look.textures);
   report(images.takeNotes(), images.file(), messages_);
-  if (!bound) return tl::make_unexpected(bound.error());
+  if (!textures) return tl::make_unexpected(textures.error());
   look.module = evaluated.module();
-  return preview::Shading::make(std::move(look), studio_);
+  Result<preview::Shading> made = preview::Shading::make(std::move(look), studio_);
+  if (!made) return tl::make_unexpected(std::move(made.error()));
+  return Computed{std::move(*made), 4};
+}
+
+/// An image knows neither the eye nor the lights: both are straight above it.
+void Baking::warnOfView(const ir::Module& module, const std::string& node) {
+  std::vector<ir::ValueId> roots;
+  for (const ir::Output& output : module.outputs) roots.push_back(output.value);
+  for (const ir::ValueId id : ir::reachable(module.dag, roots)) {
+    bool depends = module.dag[id].rate == ir::Rate::Light;
+    if (module.dag[id].op == ir::Op::Input) {
+      const std::string_view name = module.dag.inputOf(id).name;
+      depends = depends || name == "VIEW" || name.ends_with("camera_position");
+    }
+    if (!depends) continue;
+    report({{"depends-on-view",
+             Severity::Warning,
+             {},
+             fmt::format("the output of {} depends on the view or the light", quote(node)),
+             "the image has it as it is seen and lit from straight above",
+             {}}},
+           document_.path, messages_);
+    return;
+  }
 }
 
 /// A material of a document as glTF has it, without its textures.
@@ -237,39 +324,108 @@ Result<void> Baking::write(const std::string& path, std::string_view bytes) {
   return {};
 }
 
-Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
-  if (Result<void> path = hasPath("the glTF file", how_.output); !path)
-    return tl::make_unexpected(std::move(path.error()));
+Result<void> Baking::checkHow() {
+  if (Result<void> path = hasPath("the file to write", how_.output); !path) return path;
   if (Result<void> size = inRange("the size of an image", how_.size, 1, kMostTexels, "texels"); !size)
-    return tl::make_unexpected(std::move(size.error()));
-  if (isGraphFile(file))
-    return fail("graph-is-built", {file, 0, 0, {}},
-                "a graph is built of a material's terms: it has no procedural textures to bake",
-                "name the material's file: .gltf or .mtlx");
+    return size;
+  constexpr uint32_t kSamples[] = {2, 4, 6, 8, 16};
+  if (std::find(std::begin(kSamples), std::end(kSamples), how_.samples) == std::end(kSamples))
+    return fail("out-of-range", {}, fmt::format("{} places along a texel's side", how_.samples),
+                "there may be 2, 4, 6, 8 or 16");
+  const bool gltf = how_.output.ends_with(".gltf");
+  if (!gltf) alone_ = texelsOf(how_.output);
+  if (!gltf && !alone_)
+    return fail("unknown-format", {how_.output, 0, 0, {}}, "the name does not say what is to be written",
+                "it ends in .gltf, .png, .ktx2 or .exr");
+  if (alone_ && !how_.also.empty())
+    return fail("unknown-format", {how_.output, 0, 0, {}}, "one image has one form",
+                "other forms are written beside a .gltf file");
+  std::vector<Texels> forms = how_.also;
+  forms.push_back(alone_.value_or(Texels::Png));
+  const auto has = [&](Texels one) { return std::find(forms.begin(), forms.end(), one) != forms.end(); };
+  const uint32_t bits = how_.bits;
+  const bool fits = bits == 0 || (bits == 8 && !has(Texels::Exr)) ||
+                    (bits == 16 && (has(Texels::Ktx2) || has(Texels::Exr))) ||
+                    (bits == 32 && has(Texels::Exr) && !has(Texels::Ktx2));
+  if (fits) return {};
+  return fail("unknown-format", {how_.output, 0, 0, {}},
+              fmt::format("there is no such image of {} bits", bits),
+              "PNG has 8 bits, KTX2 8 or 16, OpenEXR 16 or 32");
+}
+
+Result<void> Baking::open(const std::string& file) {
   Result<std::shared_ptr<const Language>> language = libraryFor(options_);
   if (!language) return tl::make_unexpected(language.error());
   language_ = std::move(*language);
   const Result<const material::Schema*> schema = language_->models.schema();
   if (!schema) return tl::make_unexpected(schema.error());
   schema_ = *schema;
+  if (isGraphFile(file)) {
+    Result<graph::Graph> graph = readGraphFile(file, options_);
+    if (!graph) return tl::make_unexpected(graph.error());
+    graph_ = std::move(*graph);
+    document_.path = file;
+    return {};
+  }
   Result<material::Document> document = readMaterials(file, *language_, options_);
   if (!document) return tl::make_unexpected(document.error());
   document_ = std::move(*document);
   report(document_.diagnostics, file, messages_);
-  if (Result<void> chosen = choose(materials); !chosen) return tl::make_unexpected(std::move(chosen.error()));
-  Result<Json> gltf = frame(file);
-  if (!gltf) return tl::make_unexpected(gltf.error());
-  gltf_ = std::move(*gltf);
+  return {};
+}
 
-  struct Image {
-    const material::Material* material;
-    const material::Material::Texture* texture;
-    std::string name;
-  };
-  std::vector<Image> images;
+Result<void> Baking::planNodes(const std::string& file, const Strings& materials) {
+  const material::Material* material = nullptr;
+  if (!graph_) {
+    Diagnostics warnings;
+    const Result<size_t> found = material::findMaterial(
+        document_, materials.empty() ? std::nullopt : std::optional(materials[0]), warnings);
+    if (!found) return tl::make_unexpected(found.error());
+    report(warnings, file, messages_);
+    material = &document_.materials[*found];
+    report(material->diagnostics, file, messages_);
+    if (lacquer::hasError(material->diagnostics)) return tl::make_unexpected(Diagnostics{});
+  }
+  const EvalSubject subject = graph_ ? EvalSubject(*graph_) : EvalSubject(*material);
+  const Result<Strings> nodes = baking::nodesOf(subject, how_.nodes, *language_, options_);
+  if (!nodes) return tl::make_unexpected(nodes.error());
+  if (nodes->empty())
+    return fail("nothing-to-bake", {file, 0, 0, {}},
+                "no node of the graph depends on texture coordinates alone",
+                "--node bakes the output of any node");
+  const fs::path output(how_.output);
+  const std::string before = alone_ ? output.stem().string() + "_" : std::string();
+  std::set<std::string> taken;
+  gltf_ = Json::object();
+  gltf_["asset"]["version"] = "2.0";
+  gltf_["asset"]["generator"] = "lacquer";
+  gltf_["extensionsUsed"].push_back("KHR_materials_unlit");
+  for (const std::string& node : *nodes) {
+    const std::string stem = alone_ && nodes->size() == 1 ? output.stem().string() : before + plainName(node);
+    std::string name = stem;
+    for (size_t n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}", stem, n);
+    items_.push_back({material, nullptr, node, name, how_.srgb || !alone_});
+    if (alone_) continue;
+    Json made = Json::object();
+    made["name"] = node;
+    made["extensions"]["KHR_materials_unlit"] = Json::object();
+    const size_t number = textureOf(uriOf(name + ".png"));
+    made["pbrMetallicRoughness"]["baseColorTexture"]["index"] = static_cast<uint64_t>(number);
+    gltf_["materials"].push_back(std::move(made));
+    ++baked_.textures;
+  }
+  return {};
+}
+
+Result<void> Baking::planTextures(const std::string& file) {
+  if (!alone_) {
+    Result<Json> gltf = frame(file);
+    if (!gltf) return tl::make_unexpected(gltf.error());
+    gltf_ = std::move(*gltf);
+  }
   std::map<std::string, std::string> names;  // of images by what they show
   std::set<std::string> taken;
-  const fs::path folder = fs::path(how_.output).parent_path();
+  const std::string before = alone_ ? fs::path(how_.output).stem().string() + "_" : std::string();
   for (size_t k = 0; k < wanted_.size(); ++k) {
     const material::Material& material = document_.materials[wanted_[k]];
     for (const auto& texture : material.textures) {
@@ -279,14 +435,15 @@ Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
           fmt::format("{} {} {}", texture.info.group, texture.info.output, property.decl->srgb);
       const auto [it, fresh] = names.try_emplace(key);
       if (fresh) {
-        const std::string stem = plainName(fmt::format("{}_{}", material.name, property.decl->name));
-        std::string name = stem + ".png";
-        for (size_t n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}.png", stem, n);
+        const std::string stem = before + plainName(fmt::format("{}_{}", material.name, property.decl->name));
+        std::string name = stem;
+        for (size_t n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}", stem, n);
         it->second = name;
-        images.push_back({&material, &texture, name});
+        items_.push_back({&material, &texture.info, {}, name, property.decl->srgb});
       }
+      if (alone_) continue;
       const bool own = document_.path.ends_with(".mtlx");
-      const size_t number = textureOf(it->second);  // may move what is in the file
+      const size_t number = textureOf(it->second + ".png");  // may move what is in the file
       Json& info = own ? at(gltf_["materials"].begin()[k], property.path)
                        : at(gltf_, std::string_view(texture.info.pointer).substr(1));
       info["index"] = static_cast<uint64_t>(number);
@@ -295,28 +452,97 @@ Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
       ++baked_.textures;
     }
   }
-  if (images.empty())
+  if (items_.empty())
     return fail("nothing-to-bake", {file, 0, 0, {}}, "no material has a procedural texture",
-                fmt::format("they are patterns of a .mtlx file, or {}", kProcedurals));
-  Strings outputs{how_.output};
-  for (const Image& image : images) outputs.push_back((folder / image.name).string());
+                fmt::format("they are patterns of a .mtlx file, or {}; --node bakes the output of any node",
+                            kProcedurals));
+  // One image has the name that was asked for.
+  if (alone_ && items_.size() == 1) items_[0].stem = fs::path(how_.output).stem().string();
+  return {};
+}
+
+/// What is written of an item, form by form.
+std::vector<std::pair<Texels, Strings>> Baking::outputsOf(const Item& item) const {
+  std::vector<Texels> forms{alone_.value_or(Texels::Png)};
+  for (const Texels form : how_.also) {
+    if (std::find(forms.begin(), forms.end(), form) == forms.end()) forms.push_back(form);
+  }
+  const fs::path folder = fs::path(how_.output).parent_path();
+  std::vector<std::pair<Texels, Strings>> outputs;
+  for (const Texels form : forms) {
+    const std::string first = (folder / item.stem).string();
+    Strings files{first + std::string(endingOf(form))};
+    uint32_t size = how_.size;
+    for (size_t n = 1; form == Texels::Png && how_.levels && size > 1; ++n) {
+      size /= 2;
+      files.push_back(fmt::format("{}_{}.png", first, n));
+    }
+    outputs.emplace_back(form, std::move(files));
+  }
+  return outputs;
+}
+
+Result<void> Baking::compute(const Item& item, size_t number, FileImages& sources, const Strings& outputs) {
+  Result<Computed> computed = item.pattern != nullptr ? ofPattern(item, sources) : ofNode(item, sources);
+  if (!computed) return tl::make_unexpected(std::move(computed.error()));
+  if (Diagnostics wrong = clashes(sources.read(), outputs); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  size_t done = number * how_.size;
+  const size_t known = items_.size() * size_t{how_.size};
+  const auto rows = [&](size_t more) {
+    done += more;
+    if (progress_) progress_(done, known);
+  };
+  // What has 8 bits in one form is the same in all.
+  const std::vector<std::pair<Texels, Strings>> forms = outputsOf(item);
+  const bool clamp = item.pattern != nullptr || forms[0].first == Texels::Png;
+  baking::Image image =
+      baking::imageOf(computed->shading, {how_.size, how_.samples, clamp, computed->components}, rows);
+  std::vector<baking::Image> levels;
+  if (how_.levels)
+    levels = baking::withLevels(std::move(image));
+  else
+    levels.push_back(std::move(image));
+  for (const auto& [form, files] : forms) {
+    const uint32_t least = form == Texels::Exr ? 16 : 8;
+    const uint32_t bits = form == Texels::Png ? 8 : how_.bits == 0 ? least : std::max(how_.bits, least);
+    const Result<Strings> made = baking::filesOf(levels, form, bits, item.srgb);
+    if (!made) return tl::make_unexpected(made.error());
+    for (size_t i = 0; i < made->size(); ++i) {
+      if (Result<void> written = write(files[i], (*made)[i]); !written) return written;
+      baked_.images.push_back(files[i]);
+    }
+  }
+  return {};
+}
+
+Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
+  if (Result<void> good = checkHow(); !good) return tl::make_unexpected(std::move(good.error()));
+  if (Result<void> opened = open(file); !opened) return tl::make_unexpected(std::move(opened.error()));
+  const bool nodes = graph_ || !how_.nodes.empty();
+  if (!nodes) {
+    if (Result<void> chosen = choose(materials); !chosen)
+      return tl::make_unexpected(std::move(chosen.error()));
+  }
+  const Result<void> planned = nodes ? planNodes(file, materials) : planTextures(file);
+  if (!planned) return tl::make_unexpected(planned.error());
+  Strings outputs;
+  if (!alone_) outputs.push_back(how_.output);
+  for (const Item& item : items_) {
+    for (const auto& [form, files] : outputsOf(item))
+      outputs.insert(outputs.end(), files.begin(), files.end());
+  }
   inputs_.push_back(file);
   inputs_.insert(inputs_.end(), document_.included.begin(), document_.included.end());
   if (Diagnostics wrong = clashes(inputs_, outputs); !wrong.empty())
     return tl::make_unexpected(std::move(wrong));
-  FileImages sources(document_.path, options_);
-  for (size_t i = 0; i < images.size(); ++i) {
-    const Image& image = images[i];
-    const Result<preview::Shading> shading = shadingOf(*image.material, image.texture->info, sources);
-    if (!shading) return tl::make_unexpected(shading.error());
-    const bool srgb = schema_->properties[image.texture->property].decl->srgb;
-    if (Diagnostics wrong = clashes(sources.read(), outputs); !wrong.empty())
-      return tl::make_unexpected(std::move(wrong));
-    if (Result<void> written = write(outputs[i + 1], baking::imageOf(*shading, how_.size, srgb)); !written)
-      return tl::make_unexpected(std::move(written.error()));
-    baked_.images.push_back(outputs[i + 1]);
-    if (progress_) progress_(i + 1, images.size());
+  FileImages sources =
+      graph_ ? FileImages::ofGraph(document_.path, options_) : FileImages(document_.path, options_);
+  for (size_t i = 0; i < items_.size(); ++i) {
+    if (Result<void> made = compute(items_[i], i, sources, outputs); !made)
+      return tl::make_unexpected(std::move(made.error()));
   }
+  if (alone_) return std::move(baked_);
   if (Result<void> written = write(how_.output, gltf_.dump(2) + "\n"); !written)
     return tl::make_unexpected(std::move(written.error()));
   baked_.output = how_.output;

@@ -11,18 +11,23 @@ namespace {
 constexpr uint32_t kCubeFaces = 6;
 
 /// The basic data format descriptor (Khronos Data Format 1.3, "The Basic Data Format Descriptor Block"):
-/// linear, without a colour space of its own.
+/// linear without a colour space of its own, or sRGB.
 std::string descriptorOf(const TexelFormat& format) {
   constexpr uint32_t kModelRgb = 1;
   constexpr uint32_t kTransferLinear = 1;
+  constexpr uint32_t kTransferSrgb = 2;
+  constexpr uint32_t kPrimariesBt709 = 1;
   const auto block = static_cast<uint32_t>(24 + 16 * format.channels.size());
   std::string bytes;
   append(bytes, 4 + block);
-  append(bytes, 0);                                   // Khronos, basic format
-  append(bytes, 2U | block << 16U);                   // version 1.3
-  append(bytes, kModelRgb | kTransferLinear << 16U);  // primaries unspecified
-  append(bytes, 0);                                   // texel blocks of 1 x 1
-  append(bytes, format.bytes, 8);                     // bytes of plane 0
+  append(bytes, 0);                  // Khronos, basic format
+  append(bytes, 2U | block << 16U);  // version 1.3
+  if (format.srgb)
+    append(bytes, kModelRgb | kPrimariesBt709 << 8U | kTransferSrgb << 16U);
+  else
+    append(bytes, kModelRgb | kTransferLinear << 16U);  // primaries unspecified
+  append(bytes, 0);                                     // texel blocks of 1 x 1
+  append(bytes, format.bytes, 8);                       // bytes of plane 0
   for (const Channel& channel : format.channels) {
     append(bytes, channel.offset | (channel.bits - 1) << 16U | channel.id << 24U);
     append(bytes, 0);

@@ -22,6 +22,7 @@ struct TexelFormat {
   uint32_t type_size = 0;  ///< bytes of one of its numbers, as KTX2 has it
   uint32_t bytes = 0;      ///< of a texel
   std::vector<Channel> channels;
+  bool srgb = false;  ///< red, green and blue are encoded, of BT.709's primaries
 };
 
 /// The bytes of each mip level from the largest on: the faces one after the other, +x, -x, +y, -y, +z, -z of

@@ -1,0 +1,141 @@
+#include "bake/nodes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "graph/contracts.h"
+#include "support/text.h"
+
+namespace lacquer::baking {
+
+namespace {
+
+using graph::Source;
+
+bool fitsTexel(ir::Type type) { return !ir::isMatrix(type) && !ir::isTexture(type); }
+
+/// What a value depends on, of all that it is made of.
+struct Depends {
+  bool varies = false;     ///< on texture coordinates
+  bool elsewhere = false;  ///< on the view, the light, the geometry
+};
+
+Depends ofGiven(std::string_view name) {
+  const bool uv = name.starts_with("uv") || name.starts_with("TEXCOORD_");
+  return {uv, !uv};
+}
+
+/// Of a flat, checked graph.
+class Patterns {
+public:
+  Patterns(const graph::Graph& graph, const Language& library)
+      : graph_(graph), contracts_(graph, library), of_(graph.nodes.size()) {
+    for (const size_t place : contracts_.main().order().order) of_[place] = ofNode(graph.nodes[place]);
+  }
+
+  Strings names() const {
+    Strings names;
+    const auto take = [&](const Source& source) {
+      const auto* ref = std::get_if<graph::NodeRef>(&source.from);
+      const std::optional<size_t> place = ref == nullptr ? std::nullopt : contracts_.main().find(ref->node);
+      if (!place || !of_[*place].varies || of_[*place].elsewhere) return;
+      const std::optional<graph::Offer> offer = contracts_.base(source, contracts_.main());
+      if (!offer || !fitsTexel(offer->type)) return;
+      std::string name = ref->output.empty() ? ref->node : ref->node + "." + ref->output;
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+    };
+    for (size_t i = 0; i < graph_.nodes.size(); ++i) {
+      if (!of_[i].elsewhere) continue;
+      for (const auto& [input, source] : graph_.nodes[i].inputs) take(source);
+    }
+    for (const auto& [port, source] : graph_.outputs) take(source);
+    return names;
+  }
+
+private:
+  Depends ofNode(const graph::Node& node) const {
+    Depends all;
+    const auto add = [&](const Depends& one) {
+      all.varies = all.varies || one.varies;
+      all.elsewhere = all.elsewhere || one.elsewhere;
+    };
+    for (const auto& [input, source] : node.inputs) add(ofSource(source));
+    const graph::Contract* contract = contracts_.of(node);
+    for (size_t i = 0; contract != nullptr && i < contract->params.size(); ++i) {
+      const lang::Param& param = contract->params[i];
+      const bool connected = std::any_of(node.inputs.begin(), node.inputs.end(),
+                                         [&](const auto& input) { return input.first == param.name; });
+      if (!connected && !param.given.empty()) add(ofGiven(param.given));
+    }
+    return all;
+  }
+
+  Depends ofSource(const Source& source) const {
+    if (const auto* given = std::get_if<graph::GivenRef>(&source.from)) return ofGiven(given->name);
+    if (const auto* attribute = std::get_if<graph::AttributeRef>(&source.from))
+      return ofGiven(attribute->name);
+    if (const auto* texture = std::get_if<graph::TextureRef>(&source.from))
+      return {false, !graph_.findTexture(texture->name)};
+    const auto* ref = std::get_if<graph::NodeRef>(&source.from);
+    const std::optional<size_t> place = ref == nullptr ? std::nullopt : contracts_.main().find(ref->node);
+    return place ? of_[*place] : Depends{};
+  }
+
+  const graph::Graph& graph_;
+  const graph::Contracts contracts_;
+  std::vector<Depends> of_;
+};
+
+/// The one name that ends like this, between dots; the name itself where there is none, which looking it up
+/// then says; an error where there are several.
+Result<std::string> fullName(const std::string& wanted, const Strings& all) {
+  Strings found;
+  for (const std::string& name : all) {
+    if (name == wanted) return wanted;
+    if (name.ends_with("." + wanted)) found.push_back(name);
+  }
+  if (found.empty()) return wanted;
+  if (found.size() == 1) return found[0];
+  return fail("no-such-node", {}, fmt::format("{} may be any of {} nodes", quote(wanted), found.size()),
+              "name one: " + listOf(std::vector<std::string_view>(found.begin(), found.end())));
+}
+
+}  // namespace
+
+Result<Strings> nodesOf(const EvalSubject& subject, const Strings& wanted, const Language& library,
+                        Options options) {
+  options.ibl = false;
+  if (Result<void> named = subject.isGraph() ? Result<void>() : resolveNames(library, options); !named)
+    return tl::make_unexpected(std::move(named.error()));
+  graph::FlatOutputs outputs;
+  Diagnostics warnings;
+  const Result<graph::Graph> built =
+      subject.built({true, true, true, {true, true, true, true}}, library, options, warnings, &outputs);
+  if (!built) return tl::make_unexpected(built.error());
+  if (wanted.empty()) return Patterns(*built, library).names();
+  Strings all;
+  const graph::Contracts contracts(*built, library);
+  for (const auto& [node, of] : outputs) {
+    for (const auto& [output, source] : of) {
+      const std::optional<graph::Offer> offer = contracts.offer(source, contracts.main());
+      if (offer && fitsTexel(offer->type)) all.push_back(of.size() == 1 ? node : node + "." + output);
+    }
+  }
+  Strings names;
+  for (const std::string& one : wanted) {
+    if (one == "*") {
+      names.insert(names.end(), all.begin(), all.end());
+      continue;
+    }
+    Result<std::string> name = fullName(one, all);
+    if (!name) return tl::make_unexpected(std::move(name.error()));
+    names.push_back(std::move(*name));
+  }
+  std::set<std::string> seen;
+  std::erase_if(names, [&](const std::string& name) { return !seen.insert(name).second; });
+  return names;
+}
+
+}  // namespace lacquer::baking
