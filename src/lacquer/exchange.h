@@ -61,4 +61,13 @@ struct Baked {
 std::optional<Baked> bake(const Bake& how, const std::string& file, const Strings& materials,
                           const Options& options, Messages& messages, const Progress& progress = {});
 
+/// A glTF file whose procedural textures are KHR_texture_procedurals with the nodes of
+/// EXT_texture_procedurals_mx_1_39, each with a baked fallback of `size` texels along a side, from 1 to 8192,
+/// as a data URI: of a .mtlx file its materials, of a .gltf file the whole, of a graph (".json") an unlit
+/// material for each pattern that MaterialX has the nodes for. What the extension has no node for is a
+/// warning, "not-said". Files are named from the folder of the file. Empty on an error, those of bake() and
+/// "whole-file" for names of materials of a .gltf file.
+std::string toGltf(const std::string& file, const Strings& materials, uint32_t size, const Options& options,
+                   Messages& messages);
+
 }  // namespace lacquer

@@ -1,13 +1,22 @@
 // `lacquer convert` and `lacquer bake`: materials for other tools, and patterns as images.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
 
 #include "command.h"
+#include "lacquer.h"
+#include "lacquer/exchange.h"
+#include "support/cases.h"
 
 namespace lacquer::test {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr const char* kDocument = R"(<materialx version="1.39">
@@ -279,6 +288,128 @@ TEST(Bake, otherFormsLieBesideGltf) {
   EXPECT_NE(wrong.err.find("[unknown-format]"), std::string::npos) << wrong.err;
   const Outcome what = place.run({"bake", "ramp.mtlx", "-o", "one.jpg"});
   EXPECT_NE(what.err.find("[unknown-format]"), std::string::npos) << what.err;
+}
+
+bool has(const Messages& messages, std::string_view code) {
+  return std::any_of(messages.begin(), messages.end(),
+                     [&](const Message& m) { return std::string_view(m.code).starts_with(code); });
+}
+
+/// The largest difference of colours of each of a file's materials and of those of what it is written as.
+/// Nothing where the file is wrong, or names images that are not there, or has what cannot be said.
+std::optional<double> differenceOfAll(const fs::path& file, const fs::path& back) {
+  Messages messages;
+  const Scene scene = Scene::load(file.string(), {}, messages);
+  if (!scene || hasError(messages)) return std::nullopt;
+  const std::string text = toGltf(file.string(), {}, 2, {}, messages);
+  if (hasError(messages) || has(messages, "image-") || has(messages, "not-said")) return std::nullopt;
+  std::ofstream(back) << text;
+  const Scene again = Scene::load(back.string(), {}, messages);
+  EXPECT_TRUE(again) << file;
+  if (!again) return std::nullopt;
+  EXPECT_EQ(scene.materialCount(), again.materialCount()) << file;
+  double most = 0;
+  for (size_t i = 0; i < std::min(scene.materialCount(), again.materialCount()); ++i) {
+    const auto before = evaluate(scene, i, kPoints, Engine::Float, {}, {}, messages);
+    const auto after = evaluate(again, i, kPoints, Engine::Float, {}, {}, messages);
+    if (!before) continue;
+    EXPECT_TRUE(after) << file;
+    for (size_t p = 0; after && p < before->rgba.size(); ++p) {
+      for (size_t c = 0; c < 4; ++c) most = std::max(most, std::abs(before->rgba[p][c] - after->rgba[p][c]));
+    }
+  }
+  return most;
+}
+
+/// The wood of an image, in all address modes.
+constexpr const char* kImages = R"(<materialx version="1.39">
+  <image name="clamped" type="color3">
+    <input name="file" type="filename" value="ramp.png" colorspace="srgb_texture"/>
+    <input name="texcoord" type="vector2" nodename="far"/>
+    <input name="uaddressmode" type="string" value="clamp"/>
+    <input name="vaddressmode" type="string" value="mirror"/>
+    <input name="filtertype" type="string" value="closest"/>
+  </image>
+  <texcoord name="uv" type="vector2"/>
+  <multiply name="far" type="vector2">
+    <input name="in1" type="vector2" nodename="uv"/>
+    <input name="in2" type="vector2" value="2.5, 3.5"/>
+  </multiply>
+  <gltf_pbr name="shader" type="surfaceshader">
+    <input name="base_color" type="color3" nodename="clamped"/>
+    <input name="roughness" type="float" value="0.25"/>
+  </gltf_pbr>
+  <surfacematerial name="Clamped" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shader"/>
+  </surfacematerial>
+</materialx>
+)";
+
+TEST(ToGltf, givesTheSameColours) {
+  const Workplace place;
+  place.write("ramp.mtlx", kDocument);
+  place.write("ramp.gltf", kProcedural);
+  place.write("images.mtlx", kImages);
+  ASSERT_EQ(place.run({"bake", "ramp.mtlx", "--node", "NG.across", "-o", "ramp.png", "--size", "8"}).status,
+            0);
+  for (const char* file : {"ramp.mtlx", "ramp.gltf", "images.mtlx"})
+    EXPECT_EQ(differenceOfAll(place / file, place / "back.gltf"), 0) << file;
+}
+
+TEST(ToGltf, givesTheSameColoursOfTheCases) {
+  const Workplace place;
+  size_t files = 0;
+  for (const char* folder : {"written", "cases", "procedurals"}) {
+    for (const fs::path& file : findFiles(sourceFolder() / "tests/materialx" / folder, ".case")) {
+      const Case of(file);
+      const std::string name = file.stem().string() + (of.input().starts_with('{') ? ".gltf" : ".mtlx");
+      place.write(name, of.input());
+      const std::optional<double> most = differenceOfAll(place / name, place / "back.gltf");
+      EXPECT_EQ(most.value_or(0), 0) << file;
+      files += most ? 1 : 0;
+    }
+  }
+  EXPECT_GT(files, 5U);
+}
+
+TEST(ToGltf, givesTheSameColoursOfTheExamples) {
+  const char* set = std::getenv("LACQUER_ASSETS");
+  const fs::path folder =
+      (set != nullptr ? fs::path(set) : sourceFolder() / "../shared/assets") / "materialx";
+  if (!fs::exists(folder)) GTEST_SKIP() << "NOT TESTED: no " << folder << "; set LACQUER_ASSETS";
+  const Workplace place;
+  size_t files = 0;
+  for (const char* part : {"examples", "procedurals"}) {
+    for (const char* ending : {".mtlx", ".gltf"}) {
+      for (const fs::path& file : findFiles(folder / part, ending)) {
+        const std::optional<double> most = differenceOfAll(file, place / "back.gltf");
+        EXPECT_LT(most.value_or(0), 1e-6) << file;
+        files += most ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(files, 30U);
+}
+
+/// The file has a fallback for who does not know the extension, and a graph its patterns.
+TEST(ToGltf, hasAFallback) {
+  const Workplace place;
+  place.write("ramp.mtlx", kDocument);
+  place.write("points.json", kPoints);
+  Json back = Json::parse(place.run({"graph", "ramp.mtlx", "--format", "gltf", "--fallback", "16"}).out);
+  EXPECT_EQ(back["extensionsUsed"].back(), "EXT_texture_procedurals_mx_1_39");
+  for (const char* texture : {"baseColorTexture", "metallicRoughnessTexture"})
+    back["materials"][0]["pbrMetallicRoughness"][texture].erase("extensions");
+  place.write("plain.gltf", back.dump());
+  EXPECT_LT(difference(place, "ramp.mtlx", "plain.gltf"), 0.004);
+  place.write("ramp.json", place.run({"graph", "ramp.mtlx"}).out);
+  const Json patterns = Json::parse(place.run({"graph", "ramp.json", "--format", "gltf"}).out);
+  EXPECT_EQ(patterns["materials"].size(), 2U);
+  EXPECT_EQ(patterns["extensions"]["KHR_texture_procedurals"]["procedurals"][0]["nodes"][0]["nodetype"],
+            "ramplr");
+  const Outcome one = place.run({"graph", example("core.gltf"), "--format", "gltf", "--material", "Glass"});
+  EXPECT_EQ(one.status, 1);
+  EXPECT_NE(one.err.find("[whole-file]"), std::string::npos) << one.err;
 }
 
 /// MaterialX has letters and digits in names; what a material is called stands beside them.

@@ -98,12 +98,16 @@ int runBake(ExchangeFlags& flags, const OptionFlags& options) {
   return baked && !hasError(messages) ? 0 : 1;
 }
 
-int printDocument(const OptionFlags& flags, const std::string& file, const Strings& materials) {
+int printDocument(const OptionFlags& flags, const std::string& format, uint32_t size, const std::string& file,
+                  const Strings& materials) {
   Messages messages;
-  const std::string text = toMaterialX(file, materials, {}, flags.options, messages);
+  const bool gltf = format == "gltf";
+  const std::string text = gltf ? toGltf(file, materials, size, flags.options, messages)
+                                : toMaterialX(file, materials, {}, flags.options, messages);
   fmt::print("{}", text);
   print(messages);
-  return text.empty() || hasError(messages) ? statusFor(file) : 0;
+  if (!text.empty() && !hasError(messages)) return 0;
+  return gltf ? 1 : statusFor(file);
 }
 
 }  // namespace lacquer::cli

@@ -21,7 +21,8 @@ int runConvert(const ExchangeFlags& flags, const OptionFlags& options);
 void addBake(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options);
 int runBake(ExchangeFlags& flags, const OptionFlags& options);
 
-/// Prints the document of a file's materials.
-int printDocument(const OptionFlags& flags, const std::string& file, const Strings& materials);
+/// Prints the document of a file's materials; of glTF with fallback images of that size.
+int printDocument(const OptionFlags& flags, const std::string& format, uint32_t size, const std::string& file,
+                  const Strings& materials);
 
 }  // namespace lacquer::cli

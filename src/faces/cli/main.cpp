@@ -51,6 +51,7 @@ constexpr unsigned kMostPrograms = 1000000;
 struct Flags : OptionFlags {
   std::vector<std::string> files, graphs, materials;
   std::string output, format = "json", pass;
+  uint32_t fallback = 64;
   bool json = false, quiet = false, disassembly = false, time = false, replan = false;
   std::string arithmetic = "vulkan";  ///< of `prove`
   std::string ninja, plan_json;
@@ -154,8 +155,15 @@ void addLook(CLI::App& verb, Flags& flags) {
 void addGraph(CLI::App& verb, Flags& flags) {
   addLook(verb, flags);
   verb.add_option("--format", flags.format,
-                  "json, dot, or mtlx: a document of all materials where none is named")
-      ->check(CLI::IsMember({"json", "dot", "mtlx"}))
+                  "json, dot, mtlx: a document of all materials where none is named, or gltf: the same with "
+                  "procedural textures")
+      ->check(CLI::IsMember({"json", "dot", "mtlx", "gltf"}))
+      ->capture_default_str();
+  verb.add_option(
+          "--fallback", flags.fallback,
+          "texels along each side of the images that stand beside procedural textures of --format gltf")
+      ->check(CLI::Range(1, 8192))
+      ->check(kWhole)
       ->capture_default_str();
 }
 
@@ -278,9 +286,10 @@ lacquer::Graph onlyGraph(const Flags& flags, Messages& messages) {
 }
 
 int graph(const Flags& flags) {
-  if (flags.format == "mtlx") {
+  if (flags.format == "mtlx" || flags.format == "gltf") {
     return lacquer::cli::printDocument(
-        flags, flags.files[0], flags.material ? lacquer::Strings{*flags.material} : lacquer::Strings());
+        flags, flags.format, flags.fallback, flags.files[0],
+        flags.material ? lacquer::Strings{*flags.material} : lacquer::Strings());
   }
   Messages messages;
   const lacquer::Graph graph = onlyGraph(flags, messages);

@@ -8,6 +8,7 @@
 #include "bake/image.h"
 #include "bake/nodes.h"
 #include "eval/material.h"
+#include "exchange/procedurals_out.h"
 #include "gltf/uri.h"
 #include "graph/graph.h"
 #include "json/json.h"
@@ -17,6 +18,7 @@
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "support/base64.h"
 #include "support/file.h"
 #include "support/jobs.h"
 #include "support/outputs.h"
@@ -86,7 +88,21 @@ struct Item {
   std::string node;
   std::string stem;  ///< the file without its ending
   bool srgb = false;
+  size_t image = 0;  ///< of the glTF file
 };
+
+/// Textures without what computes them.
+void withoutProcedurals(Json& json) {
+  if (json.is_object()) {
+    const Json* extensions = json.find("extensions");
+    if (extensions != nullptr && extensions->is_object() && extensions->contains(kProcedurals)) {
+      json["extensions"].erase(kProcedurals);
+      if (json["extensions"].empty()) json.erase("extensions");
+    }
+    for (auto& [key, value] : json.items()) withoutProcedurals(value);
+  }
+  for (Json& each : json) withoutProcedurals(each);
+}
 
 class Baking {
 public:
@@ -94,6 +110,8 @@ public:
       : how_(how), options_(options), messages_(messages), progress_(progress) {}
 
   Result<Baked> make(const std::string& file, const Strings& materials);
+  /// The glTF file, with the images in it.
+  Result<std::string> text(const std::string& file, const Strings& materials);
 
 private:
   struct Computed {
@@ -111,11 +129,18 @@ private:
   Result<void> planNodes(const std::string& file, const Strings& materials);
   Result<void> planTextures(const std::string& file);
   std::vector<std::pair<Texels, Strings>> outputsOf(const Item& item) const;
-  Result<void> compute(const Item& item, size_t number, FileImages& sources, const Strings& outputs);
+  Result<void> plan(const std::string& file, const Strings& materials);
+  Result<std::vector<baking::Image>> compute(const Item& item, size_t number, FileImages& sources,
+                                             const Strings& outputs);
+  Result<void> store(const Item& item, const std::vector<baking::Image>& levels);
+  FileImages sources() const;
+  std::optional<uint64_t> textureFor(const graph::Texture& texture);
+  void putProcedurals();
+  void name(std::string_view extension);
   Result<void> write(const std::string& path, std::string_view bytes);
   Result<Json> frame(const std::string& file);
   Json materialJson(const material::Material& material) const;
-  size_t textureOf(const std::string& uri);
+  size_t textureOf(const std::string& uri, const Json& sampler = {});
 
   const Bake& how_;
   const Options& options_;
@@ -130,6 +155,10 @@ private:
   std::vector<Item> items_;
   preview::Studio studio_;
   Json gltf_;
+  bool embed_ = false;  ///< images are in the file
+  std::string way_;     ///< from the file that is written to the folder of the one that is read
+  std::optional<exchange::ProceduralsOut> procedurals_;
+  Diagnostics said_;
   Strings inputs_;                          ///< files that are read, or that the written file goes on to name
   std::map<std::string, size_t> textures_;  ///< of the file that is written, by the image
   Baked baked_;
@@ -264,6 +293,9 @@ Json Baking::materialJson(const material::Material& material) const {
 /// materials alone.
 Result<Json> Baking::frame(const std::string& file) {
   Json gltf = Json::object();
+  const fs::path from = fs::absolute(fs::path(file)).parent_path();
+  const fs::path to = embed_ ? from : fs::absolute(fs::path(how_.output)).parent_path();
+  way_ = from == to ? "" : uriOf(from.lexically_relative(to).generic_string() + "/");
   if (document_.path.ends_with(".mtlx")) {
     gltf["asset"]["version"] = "2.0";
     gltf["asset"]["generator"] = "lacquer";
@@ -284,9 +316,6 @@ Result<Json> Baking::frame(const std::string& file) {
   Result<Json> parsed = json::parse(*text, file);
   if (!parsed) return tl::make_unexpected(parsed.error());
   gltf = std::move(*parsed);
-  const fs::path from = fs::absolute(fs::path(file)).parent_path();
-  const fs::path to = fs::absolute(fs::path(how_.output)).parent_path();
-  const std::string way = from == to ? "" : uriOf(from.lexically_relative(to).generic_string() + "/");
   for (const char* list : {"images", "buffers", "textures"}) {
     if (!gltf.contains(list)) continue;
     if (!gltf[list].is_array()) {
@@ -301,21 +330,68 @@ Result<Json> Baking::frame(const std::string& file) {
           gltf::relativePath(uri, {file, 0, 0, fmt::format("/{}/{}/uri", list, &each - gltf[list].begin())});
       if (!relative) return tl::make_unexpected(relative.error());
       inputs_.push_back((from / *relative).string());
-      each["uri"] = way + uri;
+      each["uri"] = way_ + uri;
     }
   }
   return gltf;
 }
 
 /// The texture of an image beside the file.
-size_t Baking::textureOf(const std::string& uri) {
-  const auto [it, fresh] = textures_.try_emplace(uri, 0);
+size_t Baking::textureOf(const std::string& uri, const Json& sampler) {
+  const auto [it, fresh] = textures_.try_emplace(uri + sampler.dump(), 0);
   if (!fresh) return it->second;
   const uint64_t image = gltf_["images"].size();
   it->second = gltf_["textures"].size();
   gltf_["images"].push_back(Json{{"uri", uri}});
-  gltf_["textures"].push_back(Json{{"source", image}});
+  Json texture{{"source", image}};
+  if (!sampler.is_null()) {
+    texture["sampler"] = static_cast<uint64_t>(gltf_["samplers"].size());
+    gltf_["samplers"].push_back(sampler);
+  }
+  gltf_["textures"].push_back(std::move(texture));
   return it->second;
+}
+
+/// The texture of an image that a pattern looks into.
+std::optional<uint64_t> Baking::textureFor(const graph::Texture& texture) {
+  if (texture.texture >= 0) return static_cast<uint64_t>(texture.texture);
+  if (texture.file.empty()) return std::nullopt;
+  if (texture.file.find(graph::kUdim) != std::string::npos) {
+    addBounded(said_,
+               {"not-said",
+                Severity::Warning,
+                {document_.path, 0, 0, {}},
+                fmt::format("{} has an image for each tile, which glTF has no texture for", texture.name),
+                "the fallback image has them baked",
+                {}});
+    return std::nullopt;
+  }
+  constexpr int kModes[] = {10497, 33071, 33648};
+  constexpr int kNearest = 9728;
+  constexpr int kLinear = 9729;
+  Json sampler = Json::object();
+  const char* const wraps[] = {"wrapS", "wrapT"};
+  for (size_t i = 0; i < 2; ++i) sampler[wraps[i]] = kModes[static_cast<size_t>(texture.wrap[i])];
+  sampler["magFilter"] = texture.nearest ? kNearest : kLinear;
+  const bool whole = gltf::hasScheme(texture.file);
+  return textureOf(whole ? texture.file : way_ + texture.file, sampler);
+}
+
+/// Adds an extension to those that are used.
+void Baking::name(std::string_view extension) {
+  Json& used = gltf_["extensionsUsed"];
+  if (!used.is_array()) used = Json::array();
+  for (const Json& one : used) {
+    if (one == Json(extension)) return;
+  }
+  used.push_back(Json(extension));
+}
+
+void Baking::putProcedurals() {
+  if (!procedurals_ || procedurals_->empty()) return;
+  gltf_["extensions"][kProcedurals] = procedurals_->extension();
+  name(kProcedurals);
+  name("EXT_texture_procedurals_mx_1_39");
 }
 
 Result<void> Baking::write(const std::string& path, std::string_view bytes) {
@@ -325,14 +401,16 @@ Result<void> Baking::write(const std::string& path, std::string_view bytes) {
 }
 
 Result<void> Baking::checkHow() {
-  if (Result<void> path = hasPath("the file to write", how_.output); !path) return path;
+  if (!embed_) {
+    if (Result<void> path = hasPath("the file to write", how_.output); !path) return path;
+  }
   if (Result<void> size = inRange("the size of an image", how_.size, 1, kMostTexels, "texels"); !size)
     return size;
   constexpr uint32_t kSamples[] = {2, 4, 6, 8, 16};
   if (std::find(std::begin(kSamples), std::end(kSamples), how_.samples) == std::end(kSamples))
     return fail("out-of-range", {}, fmt::format("{} places along a texel's side", how_.samples),
                 "there may be 2, 4, 6, 8 or 16");
-  const bool gltf = how_.output.ends_with(".gltf");
+  const bool gltf = embed_ || how_.output.ends_with(".gltf");
   if (!gltf) alone_ = texelsOf(how_.output);
   if (!gltf && !alone_)
     return fail("unknown-format", {how_.output, 0, 0, {}}, "the name does not say what is to be written",
@@ -387,9 +465,9 @@ Result<void> Baking::planNodes(const std::string& file, const Strings& materials
     if (lacquer::hasError(material->diagnostics)) return tl::make_unexpected(Diagnostics{});
   }
   const EvalSubject subject = graph_ ? EvalSubject(*graph_) : EvalSubject(*material);
-  const Result<Strings> nodes = baking::nodesOf(subject, how_.nodes, *language_, options_);
+  const Result<baking::Nodes> nodes = baking::nodesOf(subject, how_.nodes, embed_, *language_, options_);
   if (!nodes) return tl::make_unexpected(nodes.error());
-  if (nodes->empty())
+  if (nodes->names.empty())
     return fail("nothing-to-bake", {file, 0, 0, {}},
                 "no node of the graph depends on texture coordinates alone",
                 "--node bakes the output of any node");
@@ -399,9 +477,10 @@ Result<void> Baking::planNodes(const std::string& file, const Strings& materials
   gltf_ = Json::object();
   gltf_["asset"]["version"] = "2.0";
   gltf_["asset"]["generator"] = "lacquer";
-  gltf_["extensionsUsed"].push_back("KHR_materials_unlit");
-  for (const std::string& node : *nodes) {
-    const std::string stem = alone_ && nodes->size() == 1 ? output.stem().string() : before + plainName(node);
+  name("KHR_materials_unlit");
+  for (const std::string& node : nodes->names) {
+    const std::string stem =
+        alone_ && nodes->names.size() == 1 ? output.stem().string() : before + plainName(node);
     std::string name = stem;
     for (size_t n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}", stem, n);
     items_.push_back({material, nullptr, node, name, how_.srgb || !alone_});
@@ -410,7 +489,16 @@ Result<void> Baking::planNodes(const std::string& file, const Strings& materials
     made["name"] = node;
     made["extensions"]["KHR_materials_unlit"] = Json::object();
     const size_t number = textureOf(uriOf(name + ".png"));
-    made["pbrMetallicRoughness"]["baseColorTexture"]["index"] = static_cast<uint64_t>(number);
+    items_.back().image = static_cast<size_t>(gltf_["textures"][number]["source"].get<uint64_t>());
+    Json& info = made["pbrMetallicRoughness"]["baseColorTexture"];
+    info["index"] = static_cast<uint64_t>(number);
+    const Result<graph::Source> source = graph::outputAt(nodes->outputs, node);
+    if (source && baking::isMaterialX(nodes->flat, *source, *language_)) {
+      const std::string port = "out";
+      info["extensions"][kProcedurals] = Json{
+          {"index", static_cast<uint64_t>(procedurals_->ofSources(nodes->flat, node, {{port, *source}}))},
+          {"output", port}};
+    }
     gltf_["materials"].push_back(std::move(made));
     ++baked_.textures;
   }
@@ -423,7 +511,16 @@ Result<void> Baking::planTextures(const std::string& file) {
     if (!gltf) return tl::make_unexpected(gltf.error());
     gltf_ = std::move(*gltf);
   }
-  std::map<std::string, std::string> names;  // of images by what they show
+  const bool own = document_.path.ends_with(".mtlx");
+  // Animations point into the file's own procedurals.
+  const bool rewritten =
+      own || (embed_ && std::none_of(document_.animated.begin(), document_.animated.end(),
+                                     [](const gltf::AnimatedPointer& p) {
+                                       return p.target.find("/procedurals/") != std::string::npos;
+                                     }));
+  if (rewritten && !own && !alone_) withoutProcedurals(gltf_["materials"]);
+  std::map<std::string, size_t> names;  // of items by what they show
+  std::map<std::string, size_t> groups;
   std::set<std::string> taken;
   const std::string before = alone_ ? fs::path(how_.output).stem().string() + "_" : std::string();
   for (size_t k = 0; k < wanted_.size(); ++k) {
@@ -438,21 +535,27 @@ Result<void> Baking::planTextures(const std::string& file) {
         const std::string stem = before + plainName(fmt::format("{}_{}", material.name, property.decl->name));
         std::string name = stem;
         for (size_t n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}", stem, n);
-        it->second = name;
+        it->second = items_.size();
         items_.push_back({&material, &texture.info, {}, name, property.decl->srgb});
       }
       if (alone_) continue;
-      const bool own = document_.path.ends_with(".mtlx");
-      const size_t number = textureOf(it->second + ".png");  // may move what is in the file
+      Item& item = items_[it->second];
+      const size_t number = textureOf(item.stem + ".png");  // may move what is in the file
+      item.image = static_cast<size_t>(gltf_["textures"][number]["source"].get<uint64_t>());
+      const auto [group, unknown] = groups.try_emplace(texture.info.group, 0);
+      if (unknown && rewritten) group->second = procedurals_->ofGroup(*material.patterns, texture.info.group);
       Json& info = own ? at(gltf_["materials"].begin()[k], property.path)
                        : at(gltf_, std::string_view(texture.info.pointer).substr(1));
       info["index"] = static_cast<uint64_t>(number);
+      if (rewritten)
+        info["extensions"][kProcedurals] =
+            Json{{"index", static_cast<uint64_t>(group->second)}, {"output", texture.info.output}};
       for (size_t m = 0; own && m < property.decl->members.size() && m < texture.info.members.size(); ++m)
         info[property.decl->members[m].name] = texture.info.members[m];
       ++baked_.textures;
     }
   }
-  if (items_.empty())
+  if (items_.empty() && !embed_)
     return fail("nothing-to-bake", {file, 0, 0, {}}, "no material has a procedural texture",
                 fmt::format("they are patterns of a .mtlx file, or {}; --node bakes the output of any node",
                             kProcedurals));
@@ -482,7 +585,8 @@ std::vector<std::pair<Texels, Strings>> Baking::outputsOf(const Item& item) cons
   return outputs;
 }
 
-Result<void> Baking::compute(const Item& item, size_t number, FileImages& sources, const Strings& outputs) {
+Result<std::vector<baking::Image>> Baking::compute(const Item& item, size_t number, FileImages& sources,
+                                                   const Strings& outputs) {
   Result<Computed> computed = item.pattern != nullptr ? ofPattern(item, sources) : ofNode(item, sources);
   if (!computed) return tl::make_unexpected(std::move(computed.error()));
   if (Diagnostics wrong = clashes(sources.read(), outputs); !wrong.empty())
@@ -494,16 +598,17 @@ Result<void> Baking::compute(const Item& item, size_t number, FileImages& source
     if (progress_) progress_(done, known);
   };
   // What has 8 bits in one form is the same in all.
-  const std::vector<std::pair<Texels, Strings>> forms = outputsOf(item);
-  const bool clamp = item.pattern != nullptr || forms[0].first == Texels::Png;
+  const bool clamp = item.pattern != nullptr || alone_.value_or(Texels::Png) == Texels::Png;
   baking::Image image =
       baking::imageOf(computed->shading, {how_.size, how_.samples, clamp, computed->components}, rows);
+  if (how_.levels) return baking::withLevels(std::move(image));
   std::vector<baking::Image> levels;
-  if (how_.levels)
-    levels = baking::withLevels(std::move(image));
-  else
-    levels.push_back(std::move(image));
-  for (const auto& [form, files] : forms) {
+  levels.push_back(std::move(image));
+  return levels;
+}
+
+Result<void> Baking::store(const Item& item, const std::vector<baking::Image>& levels) {
+  for (const auto& [form, files] : outputsOf(item)) {
     const uint32_t least = form == Texels::Exr ? 16 : 8;
     const uint32_t bits = form == Texels::Png ? 8 : how_.bits == 0 ? least : std::max(how_.bits, least);
     const Result<Strings> made = baking::filesOf(levels, form, bits, item.srgb);
@@ -516,16 +621,29 @@ Result<void> Baking::compute(const Item& item, size_t number, FileImages& source
   return {};
 }
 
-Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
-  if (Result<void> good = checkHow(); !good) return tl::make_unexpected(std::move(good.error()));
-  if (Result<void> opened = open(file); !opened) return tl::make_unexpected(std::move(opened.error()));
+FileImages Baking::sources() const {
+  return graph_ ? FileImages::ofGraph(document_.path, options_) : FileImages(document_.path, options_);
+}
+
+Result<void> Baking::plan(const std::string& file, const Strings& materials) {
+  if (Result<void> good = checkHow(); !good) return good;
+  if (Result<void> opened = open(file); !opened) return opened;
+  const auto number = [this](const graph::Texture& texture) { return textureFor(texture); };
+  procedurals_.emplace(*schema_, document_, number, said_);
   const bool nodes = graph_ || !how_.nodes.empty();
   if (!nodes) {
-    if (Result<void> chosen = choose(materials); !chosen)
-      return tl::make_unexpected(std::move(chosen.error()));
+    if (Result<void> chosen = choose(materials); !chosen) return chosen;
   }
-  const Result<void> planned = nodes ? planNodes(file, materials) : planTextures(file);
-  if (!planned) return tl::make_unexpected(planned.error());
+  if (Result<void> planned = nodes ? planNodes(file, materials) : planTextures(file); !planned)
+    return planned;
+  report(said_, file, messages_);
+  putProcedurals();
+  return {};
+}
+
+Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
+  if (Result<void> planned = plan(file, materials); !planned)
+    return tl::make_unexpected(std::move(planned.error()));
   Strings outputs;
   if (!alone_) outputs.push_back(how_.output);
   for (const Item& item : items_) {
@@ -536,17 +654,37 @@ Result<Baked> Baking::make(const std::string& file, const Strings& materials) {
   inputs_.insert(inputs_.end(), document_.included.begin(), document_.included.end());
   if (Diagnostics wrong = clashes(inputs_, outputs); !wrong.empty())
     return tl::make_unexpected(std::move(wrong));
-  FileImages sources =
-      graph_ ? FileImages::ofGraph(document_.path, options_) : FileImages(document_.path, options_);
+  FileImages images = sources();
   for (size_t i = 0; i < items_.size(); ++i) {
-    if (Result<void> made = compute(items_[i], i, sources, outputs); !made)
-      return tl::make_unexpected(std::move(made.error()));
+    const Result<std::vector<baking::Image>> levels = compute(items_[i], i, images, outputs);
+    if (!levels) return tl::make_unexpected(levels.error());
+    if (Result<void> stored = store(items_[i], *levels); !stored)
+      return tl::make_unexpected(std::move(stored.error()));
   }
   if (alone_) return std::move(baked_);
   if (Result<void> written = write(how_.output, gltf_.dump(2) + "\n"); !written)
     return tl::make_unexpected(std::move(written.error()));
   baked_.output = how_.output;
   return std::move(baked_);
+}
+
+Result<std::string> Baking::text(const std::string& file, const Strings& materials) {
+  embed_ = true;
+  if (!materials.empty() && !isGraphFile(file) && !file.ends_with(".mtlx"))
+    return fail("whole-file", {file, 0, 0, {}}, "a glTF file is written whole, not one of its materials",
+                "leave --material away");
+  if (Result<void> planned = plan(file, materials); !planned)
+    return tl::make_unexpected(std::move(planned.error()));
+  FileImages images = sources();
+  for (size_t i = 0; i < items_.size(); ++i) {
+    const Result<std::vector<baking::Image>> levels = compute(items_[i], i, images, {});
+    if (!levels) return tl::make_unexpected(levels.error());
+    const Result<Strings> made = baking::filesOf(*levels, Texels::Png, 8, items_[i].srgb);
+    if (!made) return tl::make_unexpected(made.error());
+    Json& image = *(gltf_["images"].begin() + items_[i].image);
+    image["uri"] = "data:image/png;base64," + toBase64((*made)[0]);
+  }
+  return gltf_.dump(2) + "\n";
 }
 
 }  // namespace
@@ -556,6 +694,16 @@ std::optional<Baked> bake(const Bake& how, const std::string& file, const String
   Result<Baked> made;
   withJobs(options.jobs, [&] { made = Baking(how, options, messages, progress).make(file, materials); });
   return valueOf(std::move(made), file, messages);
+}
+
+std::string toGltf(const std::string& file, const Strings& materials, uint32_t size, const Options& options,
+                   Messages& messages) {
+  Result<std::string> made;
+  Bake how;
+  how.size = size;
+  const Progress none;
+  withJobs(options.jobs, [&] { made = Baking(how, options, messages, none).text(file, materials); });
+  return valueOf(std::move(made), file, messages).value_or(std::string());
 }
 
 }  // namespace lacquer

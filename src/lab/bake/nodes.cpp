@@ -27,11 +27,16 @@ Depends ofGiven(std::string_view name) {
   return {uv, !uv};
 }
 
+bool isOfMaterialX(const graph::Contract* contract) {
+  return contract != nullptr && contract->decl != nullptr &&
+         contract->decl->source.starts_with("MaterialX") && !contract->decl->category.empty();
+}
+
 /// Of a flat, checked graph.
 class Patterns {
 public:
-  Patterns(const graph::Graph& graph, const Language& library)
-      : graph_(graph), contracts_(graph, library), of_(graph.nodes.size()) {
+  Patterns(const graph::Graph& graph, const Language& library, bool materialx)
+      : graph_(graph), contracts_(graph, library), materialx_(materialx), of_(graph.nodes.size()) {
     for (const size_t place : contracts_.main().order().order) of_[place] = ofNode(graph.nodes[place]);
   }
 
@@ -63,6 +68,7 @@ private:
     };
     for (const auto& [input, source] : node.inputs) add(ofSource(source));
     const graph::Contract* contract = contracts_.of(node);
+    if (materialx_ && !isOfMaterialX(contract)) all.elsewhere = true;
     for (size_t i = 0; contract != nullptr && i < contract->params.size(); ++i) {
       const lang::Param& param = contract->params[i];
       const bool connected = std::any_of(node.inputs.begin(), node.inputs.end(),
@@ -85,6 +91,7 @@ private:
 
   const graph::Graph& graph_;
   const graph::Contracts contracts_;
+  const bool materialx_;
   std::vector<Depends> of_;
 };
 
@@ -104,38 +111,62 @@ Result<std::string> fullName(const std::string& wanted, const Strings& all) {
 
 }  // namespace
 
-Result<Strings> nodesOf(const EvalSubject& subject, const Strings& wanted, const Language& library,
-                        Options options) {
+Result<Nodes> nodesOf(const EvalSubject& subject, const Strings& wanted, bool materialx,
+                      const Language& library, Options options) {
   options.ibl = false;
   if (Result<void> named = subject.isGraph() ? Result<void>() : resolveNames(library, options); !named)
     return tl::make_unexpected(std::move(named.error()));
-  graph::FlatOutputs outputs;
+  Nodes nodes;
   Diagnostics warnings;
-  const Result<graph::Graph> built =
-      subject.built({true, true, true, {true, true, true, true}}, library, options, warnings, &outputs);
+  Result<graph::Graph> built =
+      subject.built({true, true, true, {true, true, true, true}}, library, options, warnings, &nodes.outputs);
   if (!built) return tl::make_unexpected(built.error());
-  if (wanted.empty()) return Patterns(*built, library).names();
+  nodes.flat = std::move(*built);
+  if (wanted.empty()) {
+    nodes.names = Patterns(nodes.flat, library, materialx).names();
+    return nodes;
+  }
   Strings all;
-  const graph::Contracts contracts(*built, library);
-  for (const auto& [node, of] : outputs) {
+  const graph::Contracts contracts(nodes.flat, library);
+  for (const auto& [node, of] : nodes.outputs) {
     for (const auto& [output, source] : of) {
       const std::optional<graph::Offer> offer = contracts.offer(source, contracts.main());
       if (offer && fitsTexel(offer->type)) all.push_back(of.size() == 1 ? node : node + "." + output);
     }
   }
-  Strings names;
   for (const std::string& one : wanted) {
     if (one == "*") {
-      names.insert(names.end(), all.begin(), all.end());
+      nodes.names.insert(nodes.names.end(), all.begin(), all.end());
       continue;
     }
     Result<std::string> name = fullName(one, all);
     if (!name) return tl::make_unexpected(std::move(name.error()));
-    names.push_back(std::move(*name));
+    nodes.names.push_back(std::move(*name));
   }
   std::set<std::string> seen;
-  std::erase_if(names, [&](const std::string& name) { return !seen.insert(name).second; });
-  return names;
+  std::erase_if(nodes.names, [&](const std::string& name) { return !seen.insert(name).second; });
+  return nodes;
+}
+
+bool isMaterialX(const graph::Graph& flat, const graph::Source& source, const Language& library) {
+  const graph::Contracts contracts(flat, library);
+  std::vector<bool> seen(flat.nodes.size(), false);
+  std::vector<size_t> open;
+  const auto reach = [&](const graph::Source& from) {
+    const auto* ref = std::get_if<graph::NodeRef>(&from.from);
+    const std::optional<size_t> place = ref == nullptr ? std::nullopt : contracts.main().find(ref->node);
+    if (!place || seen[*place]) return;
+    seen[*place] = true;
+    open.push_back(*place);
+  };
+  reach(source);
+  while (!open.empty()) {
+    const graph::Node& node = flat.nodes[open.back()];
+    open.pop_back();
+    if (!isOfMaterialX(contracts.of(node)) && !node.type.starts_with("texel_")) return false;
+    for (const auto& [input, from] : node.inputs) reach(from);
+  }
+  return true;
 }
 
 }  // namespace lacquer::baking

@@ -8,6 +8,7 @@
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "support/base64.h"
 #include "support/file.h"
 #include "support/outputs.h"
 
@@ -22,22 +23,6 @@ constexpr std::string_view kEmpty = "[]</script>";
 constexpr std::string_view kCosts = "<script type=\"application/json\" id=\"costs\">{}";
 /// And how it makes its shaders.
 constexpr std::string_view kOptions = "<script type=\"application/json\" id=\"options\">{}";
-
-std::string toBase64(std::string_view bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](size_t at) -> uint32_t {
-      return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0U;
-    };
-    const uint32_t three = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-    for (size_t digit = 0; digit < 4; ++digit) {
-      text += i + digit > bytes.size() ? '=' : kDigits[three >> (18 - 6 * digit) & 63];
-    }
-  }
-  return text;
-}
 
 /// JSON for an HTML script element: no name in it ends the element.
 std::string scriptText(const json::Json& json) {

@@ -167,52 +167,6 @@ std::string valueText(Type type, const Components& value) {
   return text;
 }
 
-void orderElements(std::vector<Element>& elements, const std::vector<Element>& users) {
-  std::map<std::string_view, size_t> places;
-  for (size_t i = 0; i < elements.size(); ++i) {
-    if (elements[i].category != "nodedef") places.emplace(elements[i].name(), i);
-  }
-  enum class State : uint8_t { New, Open, Done };
-  std::vector<State> states(elements.size(), State::New);
-  std::vector<size_t> order;
-  std::vector<size_t> open;
-  // Sources lie on the stack in reverse, so that the first is the first to be done.
-  const auto ask = [&](const Element& user) {
-    for (auto input = user.children.rbegin(); input != user.children.rend(); ++input) {
-      if (input->category != "input") continue;
-      for (const char* attribute : {"nodename", "nodegraph"}) {
-        const auto it = places.find(input->get(attribute));
-        if (it != places.end() && states[it->second] == State::New) open.push_back(it->second);
-      }
-    }
-  };
-  for (const Element& user : users) {
-    Element asking = user;
-    for (Element& child : asking.children) child.category = "input";
-    ask(asking);
-    while (!open.empty()) {
-      const size_t at = open.back();
-      if (states[at] == State::New) {
-        states[at] = State::Open;
-        ask(elements[at]);
-        continue;
-      }
-      open.pop_back();
-      if (std::exchange(states[at], State::Done) == State::Open) order.push_back(at);
-    }
-  }
-  std::vector<Element> sorted;
-  const auto isGraph = [](const Element& element) {
-    return element.category == "nodedef" || element.category == "nodegraph";
-  };
-  std::erase_if(order, [&](size_t at) { return isGraph(elements[at]); });
-  for (Element& element : elements) {
-    if (isGraph(element)) sorted.push_back(std::move(element));
-  }
-  for (const size_t at : order) sorted.push_back(std::move(elements[at]));
-  elements = std::move(sorted);
-}
-
 /// One body that is written: which elements its nodes are, and what stands between them.
 struct PatternsOut::Scope {
   size_t group = 0;
@@ -224,12 +178,14 @@ struct PatternsOut::Scope {
 };
 
 PatternsOut::PatternsOut(const graph::Graph& graph, const lang::Library& library, const gltf::Scene& scene,
-                         const std::vector<SurfaceOut>& surfaces, const Moved& moved, Diagnostics& said)
+                         const std::vector<SurfaceOut>& surfaces, const Moved& moved, Diagnostics& said,
+                         Number number)
     : graph_(graph),
       scene_(scene),
       surfaces_(surfaces),
       moved_(moved),
       said_(said),
+      number_(std::move(number)),
       contracts_(graph, library),
       bodies_(graph.groups.size() - surfaces.size()) {
   plan();
@@ -549,7 +505,12 @@ std::string PatternsOut::fileOf(const graph::Texture& texture) {
 
 void PatternsOut::texture(Element& input, const graph::Texture& texture) {
   input.set("type", "filename");
-  input.set("value", fileOf(texture));
+  if (number_) {
+    if (const std::optional<uint64_t> number = number_(texture))
+      input.set("texture", std::to_string(*number));
+  } else {
+    input.set("value", fileOf(texture));
+  }
   if (texture.srgb) input.set("colorspace", "srgb_texture");
 }
 

@@ -1,6 +1,7 @@
 // Groups of a graph as elements of a MaterialX document.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -39,8 +40,11 @@ void orderElements(std::vector<materialx::Element>& elements, const std::vector<
 /// nodegraphs. The graph is checked, and stays as it is.
 class PatternsOut {
 public:
+  /// Where textures have numbers and not files: that of one, which becomes the attribute `texture`.
+  using Number = std::function<std::optional<uint64_t>(const graph::Texture&)>;
   PatternsOut(const graph::Graph& graph, const lang::Library& library, const gltf::Scene& scene,
-              const std::vector<SurfaceOut>& surfaces, const Moved& moved, Diagnostics& said);
+              const std::vector<SurfaceOut>& surfaces, const Moved& moved, Diagnostics& said,
+              Number number = {});
   /// The nodegraphs, definitions, and the nodes of all bodies that their surfaces reach.
   void write(materialx::Element& root);
   /// The surface's inputs, connected to the nodes of its body.
@@ -85,6 +89,7 @@ private:
   const std::vector<SurfaceOut>& surfaces_;
   const Moved& moved_;
   Diagnostics& said_;
+  const Number number_;
   graph::Contracts contracts_;
   size_t bodies_ = 0;                          ///< the number of the first body
   std::vector<bool> wanted_;                   ///< by group: something has an instance of it
