@@ -1,5 +1,6 @@
 // One picture: what is bound, in which order it is drawn.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <set>
 #include <stdexcept>
@@ -13,6 +14,8 @@ using lacquer::Pass;
 
 namespace {
 
+/// What the number of a picture counts, MaterialX's own default.
+constexpr float kPicturesPerSecond = 24;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
 /// Every corner of a box.
@@ -120,6 +123,10 @@ void Renderer::fillFrame(Stage& stage, const View& view, const Matrix& view_proj
       if (block.role == lacquer::BlockRole::Lights && shadowed_ == i)
         vk::setShadow(bytes, i, light_projection_);
       if (block.name == "ClusterLights") bytes.set("light", static_cast<int32_t>(i), i);
+    }
+    if (block.name == "Clock") {
+      bytes.set("time", seconds_);
+      bytes.set("frame", std::floor(seconds_ * kPicturesPerSecond));
     }
     if (block.name == "SeeThrough") vk::setSeeThrough(bytes, view_projection, behind_.levels);
     if (block.name == "Clusters") bytes.set("count", static_cast<int32_t>(lights));
@@ -415,6 +422,7 @@ void Renderer::record(VkCommandBuffer commands) {
 }
 
 std::vector<float> Renderer::draw(float seconds) {
+  seconds_ = seconds;
   moment_ = scene_.at(seconds, color_.contract);
   collect();
   const View view = viewOf();

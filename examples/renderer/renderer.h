@@ -102,6 +102,7 @@ private:
   std::map<const Mesh*, Buffer> indices_;
   std::map<std::string, VkSampler> samplers_;
 
+  float seconds_ = 0;
   Moment moment_;
   std::vector<Item> items_;
   Item sky_item_;

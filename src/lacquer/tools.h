@@ -23,6 +23,9 @@ struct Trial {
   /// "coat.split.half"; of a node in the group that "rust" is an instance of "rust/mix". What differs from
   /// light to light is summed over them. "no-such-node", "unknown-output", "wrong-type" for a matrix.
   std::string node;
+  /// When it is looked at, for what asks for the time: seconds since the animation began, and the picture's
+  /// number, each from 0 to 16,777,216 ("out-of-range"). What points say of the block Clock comes first.
+  double time = 0, frame = 0;
 };
 
 /// How the value of a node's output is drawn: times `scale`, and as a colour in linear light from 0 to 1, as
@@ -102,9 +105,10 @@ struct Preview {
   /// all of all nodes. Not with `compare`.
   Strings nodes;
   ValueLook look;
-  uint32_t size = 160;   ///< pixels of a ball, from 16 to 2048
-  uint32_t columns = 0;  ///< balls in a row, at most 100; 0 for a good number
-  bool in_float = true;  ///< the arithmetic; else double
+  double time = 0, frame = 0;  ///< the same of Trial
+  uint32_t size = 160;         ///< pixels of a ball, from 16 to 2048
+  uint32_t columns = 0;        ///< balls in a row, at most 100; 0 for a good number
+  bool in_float = true;        ///< the arithmetic; else double
   /// A picture of the surroundings, as for writeEnvironment(): the only light then. Empty for the studio.
   std::string environment;
 };

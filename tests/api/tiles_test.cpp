@@ -59,6 +59,39 @@ TEST(Tiles, AreFilesBesideTheGraph) {
   EXPECT_EQ(errorsOf(messages), "");
 }
 
+/// A document's image for each tile: found, a layer that is missing between others, and beyond the last.
+TEST(Tiles, OfDocuments) {
+  for (const std::string token : {"&lt;UDIM&gt;", "&lt;UVTILE&gt;"}) {
+    const std::filesystem::path folder = emptyFolder();
+    std::filesystem::create_directories(folder);
+    const bool numbers = token == "&lt;UDIM&gt;";
+    writeImage(folder / (numbers ? "wood.1001.png" : "wood.u1_v1.png"), kDark);
+    writeImage(folder / (numbers ? "wood.1012.png" : "wood.u2_v2.png"), kBright);
+    for (const std::string node : {"image", "gltf_image", "UsdUVTexture"}) {
+      const bool usd = node == "UsdUVTexture";
+      const std::string path = (folder / "tiled.mtlx").string();
+      std::ofstream(path) << R"(<materialx version="1.39"><nodegraph name="NG"><)" + node +
+                                 R"( name="i" type=")" + (usd ? "multioutput" : "color3") +
+                                 R"("><input name="file" type="filename" value="wood.)" + token +
+                                 R"(.png"/><input name=")" + (usd ? "fallback" : "default") + R"(" type=")" +
+                                 (usd ? "color4" : "color3") + R"(" value="0.8, 0, 0)" + (usd ? ", 1" : "") +
+                                 R"("/></)" + node + R"(><output name="out" type="color3" nodename="i")" +
+                                 (usd ? R"( output="rgb")" : "") + "/></nodegraph></materialx>";
+      constexpr const char* kPoints =
+          R"([{"uv0": [0.5, 0.5]}, {"uv0": [1.5, 1.5]}, {"uv0": [2.5, 0.5]}, {"uv0": [5.5, 5.5]}, {"uv0": [-0.5, 0.5]}])";
+      Messages messages;
+      for (const Engine engine : {Engine::Double, Engine::Float}) {
+        const auto colors = evaluate(path, "", kPoints, "points", engine, {}, quick(), messages);
+        ASSERT_TRUE(colors) << errorsOf(messages);
+        const double expected[] = {0.2, 0.4, 0.8, 0.8, 0.8};
+        for (size_t i = 0; i < 5; ++i)
+          EXPECT_NEAR(colors->rgba[i][0], expected[i], 2e-3) << node << token << i;
+      }
+      for (const Message& message : messages) EXPECT_EQ(message.code, "") << message.text;
+    }
+  }
+}
+
 TEST(Tiles, AreSaidWhereTheyAreNot) {
   const std::filesystem::path folder = emptyFolder();
   std::filesystem::create_directories(folder);

@@ -124,8 +124,9 @@ graph::Graph everyNode() {
       if (ir::isTexture(param.type) || ir::isMatrix(param.type)) continue;
       const ir::Components value = param.default_value.value_or(ir::Components{1, 1, 1, 1});
       const ir::Type type = param.type == ir::Type::Int ? ir::Type::Float : param.type;
-      if (param.name == "geomprop") {
-        node.inputs.emplace_back("geomprop", graph::Source{graph::AttributeRef{"_WETNESS", type}, {}});
+      if (param.name == "geomprop" || param.name == "varname") {
+        node.inputs.emplace_back(std::string(param.name),
+                                 graph::Source{graph::AttributeRef{"_WETNESS", type}, {}});
         continue;
       }
       node.inputs.emplace_back(std::string(param.name), graph::Source{graph::Literal{type, value}, {}});

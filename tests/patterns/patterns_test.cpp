@@ -42,17 +42,14 @@ TEST(Hash, TheReferenceIsLookup3) {
 TEST(Hash, ShortOnesHaveTheLowBitsOfTheComplement) {
   constexpr size_t kWords = 10000;
   std::mt19937 random(3);
-  Arguments words, complements;
+  Arguments words;
   for (size_t i = 0; i < kWords; ++i) {
-    for (const char* word : {"x", "y", "z"}) {
-      const uint32_t bits = i == 0 ? 0xffffffffU : static_cast<uint32_t>(random());
-      words[word].push_back(bits);
-      complements[*word == 'y' ? "y" : std::string("not_") + word].push_back(*word == 'y' ? bits : ~bits);
-    }
+    for (const char* word : {"x", "y", "not_z"})
+      words[word].push_back(i == 0 ? 0xffffffffU : static_cast<uint32_t>(random()));
   }
   const auto all = runNode<double>("hash_final", words, kWords)[0];
-  const auto low = runNode<double>("hash_final_24", complements, kWords)[0];
-  const auto least = runNode<double>("hash_final_6", complements, kWords)[0];
+  const auto low = runNode<double>("hash_final_24", words, kWords)[0];
+  const auto least = runNode<double>("hash_final_6", words, kWords)[0];
   for (size_t i = 0; i < kWords; ++i) {
     const uint32_t complement = ~static_cast<uint32_t>(all[i]);
     EXPECT_EQ(complement & 0xffffffU, static_cast<uint32_t>(low[i]) & 0xffffffU);

@@ -59,7 +59,17 @@ constexpr Subject kSubjects[] = {
     {"normal map", R"("normalTexture": {"index": 1}, "pbrMetallicRoughness": {"roughnessFactor": 0.5})"},
     {"blended",
      R"("alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.5, 0.1, 0.4], "metallicFactor": 0})"},
+    {"animated",
+     R"("emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0, "extensions": {"KHR_texture_procedurals": {"index": 0}}})"},
 };
+/// An eighth of the seconds, a 240th of the pictures.
+constexpr const char* kProcedural = R"({"name": "g", "nodetype": "nodegraph", "type": "color3", "nodes": [
+  {"name": "t", "nodetype": "time", "type": "float"}, {"name": "f", "nodetype": "frame", "type": "float"},
+  {"name": "c", "nodetype": "combine3", "type": "color3", "inputs": {
+    "in1": {"type": "float", "node": 0}, "in2": {"type": "float", "node": 1}, "in3": {"type": "float", "value": 4}}},
+  {"name": "s", "nodetype": "multiply", "type": "color3", "inputs": {
+    "in1": {"type": "color3", "node": 2}, "in2": {"type": "color3", "value": [0.125, 0.00416667, 0.125]}}}],
+  "outputs": {"out": {"type": "color3", "node": 3}}})";
 constexpr size_t kSubjectCount = std::size(kSubjects);
 constexpr size_t kColumns = 4, kRows = (kSubjectCount + kColumns - 1) / kColumns;
 constexpr double kSide = 0.9, kDistance = 6, kYfov = 0.9;
@@ -151,6 +161,9 @@ Json fileOf() {
                             "KHR_materials_sheen",       "KHR_materials_anisotropy",
                             "KHR_materials_iridescence", "KHR_materials_transmission",
                             "KHR_materials_unlit",       "KHR_texture_transform"};
+  for (const char* name : {"KHR_texture_procedurals", "EXT_texture_procedurals_mx_1_39"})
+    file["extensionsUsed"].push_back(name);
+  file["extensions"]["KHR_texture_procedurals"]["procedurals"] = {Json::parse(kProcedural)};
   Json all = Json::array();
   for (size_t i = 0; i < nodes.size(); ++i) all.push_back(i);
   file["nodes"] = nodes;
@@ -201,12 +214,18 @@ Samples samplesOf(size_t i) {
   return made;
 }
 
-TEST(RendererParity, PicturesAreWhatEvalSays) {
+class RendererParity : public testing::TestWithParam<double> {};
+
+TEST_P(RendererParity, PicturesAreWhatEvalSays) {
   if (!canDraw()) GTEST_SKIP() << "no Vulkan device";
+  Trial trial;
+  trial.time = GetParam();
+  trial.frame = std::floor(24 * trial.time);
   const std::filesystem::path path = place() / "subjects.gltf";
   std::ofstream(path) << fileOf().dump();
-  const Picture picture = draw(path, {"--size", fmt::format("{}x{}", kWidth, kHeight), "--samples", "1",
-                                      "--environment", uniformSky(kSky)});
+  const Picture picture =
+      draw(path, {"--size", fmt::format("{}x{}", kWidth, kHeight), "--samples", "1", "--environment",
+                  uniformSky(kSky), "--time", fmt::format("{}", trial.time)});
   ASSERT_EQ(picture.pixels.size(), size_t{kWidth} * kHeight);
   for (const float x : picture.at(2, 2))
     EXPECT_NEAR(x, kSky, 1e-3) << "the sky is what the points have for it";
@@ -219,7 +238,7 @@ TEST(RendererParity, PicturesAreWhatEvalSays) {
     // lavapipe is up to 0.9 % off where it decodes sRGB.
     const bool textured = std::string_view(kSubjects[i].material).find("Texture\"") != std::string_view::npos;
     const std::optional<Evaluation> answer =
-        evaluate(scene, i, samples.points.dump(), Engine::Double, {}, options, messages);
+        evaluate(scene, i, samples.points.dump(), Engine::Double, {}, options, messages, trial);
     ASSERT_TRUE(answer) << (messages.empty() ? "" : messages.back().text);
     for (size_t p = 0; p < samples.pixels.size(); ++p) {
       const auto [x, y] = samples.pixels[p];
@@ -238,6 +257,7 @@ TEST(RendererParity, PicturesAreWhatEvalSays) {
   }
   std::printf("the largest difference is %.2g\n", most);
 }
+INSTANTIATE_TEST_SUITE_P(AtTimes, RendererParity, testing::Values(0.0, 2.5));
 
 }  // namespace
 }  // namespace lacquer::test

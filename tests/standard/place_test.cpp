@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "lacquer.h"
@@ -69,6 +70,93 @@ TEST(StandardPlace, TimeAndFrameAreUniforms) {
             (std::array<double, 4>{2.5, 60, 0, 1}));
   const Shader shader = shaderOf(kTime);
   EXPECT_TRUE(hasBlock(shader, "Clock"));
+}
+
+/// What is drawn of a node at a time: the grey in the middle of its ball, of 255.
+int greyAt(double time, double frame) {
+  Messages messages;
+  const Graph graph = graphOf(
+      R"({"id": "t", "node": "time"}, {"id": "f", "node": "frame"},
+         {"id": "s", "node": "multiply", "inputs": {"in1": {"node": "t"}, "in2": 0.25}},
+         {"id": "p", "node": "multiply", "inputs": {"in1": {"node": "f"}, "in2": 0.01}},
+         {"id": "m", "node": "add", "inputs": {"in1": {"node": "s"}, "in2": {"node": "p"}}},
+         {"id": "n", "node": "combine3", "inputs": {"in1": {"node": "m"}}})",
+      "", messages);
+  Trial trial;
+  trial.node = "m";
+  trial.time = time;
+  trial.frame = frame;
+  const std::vector<uint8_t> rgb = drawBall(graph, 16, {}, {}, messages, trial, {ValueLook::As::Grey});
+  EXPECT_EQ(textOf(messages), "");
+  return rgb.size() == size_t{3} * 16 * 16 ? rgb[3 * (16 * 8 + 8)] : -1;
+}
+
+TEST(StandardPlace, BallsAreDrawnAtATime) {
+  EXPECT_EQ(greyAt(0, 0), 0);
+  EXPECT_NEAR(greyAt(2, 0), 0.5 * 255, 1);
+  EXPECT_NEAR(greyAt(2, 20), 0.7 * 255, 1);
+}
+
+TEST(StandardPlace, ATrialHasATime) {
+  Messages messages;
+  const Graph graph = graphOf(kTime, "", messages);
+  Trial trial;
+  trial.time = 2.5;
+  trial.frame = 60;
+  constexpr const char* kPlain = R"({"points": [{}]})";
+  for (const Engine engine : {Engine::Double, Engine::Float}) {
+    const auto found = evaluate(graph, kPlain, engine, {}, {}, messages, trial);
+    ASSERT_TRUE(found) << textOf(messages);
+    EXPECT_EQ(found->rgba[0], (std::array<double, 4>{2.5, 60, 0, 1}));
+  }
+  // What the points say of the block comes first.
+  const auto said = evaluate(graph, R"({"points": [{}], "uniforms": {"clock.time": 7}})", Engine::Double, {},
+                             {}, messages, trial);
+  ASSERT_TRUE(said) << textOf(messages);
+  EXPECT_EQ(said->rgba[0], (std::array<double, 4>{7, 60, 0, 1}));
+  for (const double wrong : {-1.0, 16777217.0, std::numeric_limits<double>::quiet_NaN()}) {
+    trial.time = wrong;
+    Messages bad;
+    EXPECT_FALSE(evaluate(graph, kPlain, Engine::Double, {}, {}, bad, trial));
+    ASSERT_EQ(bad.size(), 1U);
+    EXPECT_EQ(bad[0].code, "out-of-range");
+  }
+}
+
+/// Integers as they are, a bool where it is not 0; one vertex's, in every target.
+const std::string kCounted =
+    R"({"id": "i", "node": "geompropvalue", "inputs": {"geomprop": {"attribute": "_ID", "type": "int"}, "default": 3}},
+       {"id": "b", "node": "geompropvalue", "inputs": {"geomprop": {"attribute": "_FLAG", "type": "bool"}}},
+       {"id": "c", "node": "convert<float, int>", "inputs": {"in": {"node": "i"}}},
+       {"id": "s", "node": "ifequal", "inputs": {"value1": {"node": "b"}, "value2": true, "in1": {"node": "c"}, "in2": 0.25}},
+       {"id": "n", "node": "combine3", "inputs": {"in1": {"node": "s"}, "in2": {"node": "c"}}})";
+
+TEST(StandardPlace, AttributesAreIntegersAndBools) {
+  using Four = std::array<double, 4>;
+  EXPECT_EQ(emitted(kCounted, R"("_ID": 7, "_FLAG": 1)"), (Four{7, 7, 0, 1}));
+  EXPECT_EQ(emitted(kCounted, R"("_ID": -2, "_FLAG": 0)"), (Four{0.25, -2, 0, 1}));
+  EXPECT_EQ(emitted(kCounted, ""), (Four{0.25, 0, 0, 1}));
+  const Shader shader = shaderOf(kCounted);
+  EXPECT_EQ(inputsOf(shader), (Strings{"0 vec3 POSITION", "8 float _FLAG", "9 int _ID"}));
+  const std::string glsl = shader.fragmentText(Target::Glsl);
+  size_t flat = 0;
+  for (size_t at = glsl.find("flat in int"); at != std::string::npos; at = glsl.find("flat in int", at + 1))
+    ++flat;
+  EXPECT_EQ(flat, 2U) << glsl;
+}
+
+/// Defaults are those of the definitions, also where they are not 0.
+TEST(StandardPlace, DefaultsAreTheDefinitions) {
+  const auto equal = [](const std::string& node, const std::string& inputs) {
+    return emitted(R"({"id": "e", "node": ")" + node + R"(", "inputs": {)" + inputs + R"(}},
+       {"id": "f", "node": "ifequal<float, bool>", "inputs": {"value1": {"node": "e"}, "value2": true, "in1": 1}},
+       {"id": "n", "node": "combine3", "inputs": {"in1": {"node": "f"}}})",
+                   "")[0];
+  };
+  for (const char* node : {"ifequal<bool>", "ifequal<bool, int>"}) {
+    EXPECT_EQ(equal(node, ""), 0) << node;
+    EXPECT_EQ(equal(node, R"("value2": 1)"), 1) << node;
+  }
 }
 
 TEST(StandardPlace, AttributesHaveTheirNames) {
@@ -153,6 +241,50 @@ TEST(StandardPlace, DocumentsReadAttributes) {
       Engine::Double, {}, {}, messages);
   ASSERT_TRUE(found) << textOf(messages);
   EXPECT_EQ(found->rgba[0], (std::array<double, 4>{0.125, 0.0625, 0.25, 1}));
+}
+
+/// Texts decide what the graph is: those of constants, and of properties that the document gives, or their
+/// defaults.
+TEST(StandardPlace, DocumentsHaveTexts) {
+  const auto emittedOf = [](const std::string& info) {
+    Messages messages;
+    const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">)" + info + R"(<nodegraph name="NG">
+         <constant name="where" type="string"><input name="value" type="string" value="world"/></constant>
+         <dot name="there" type="string"><input name="in" type="string" nodename="where"/></dot>
+         <transformpoint name="p" type="vector3"><input name="in" type="vector3" value="1, 2, 3"/>
+           <input name="fromspace" type="string" value="object"/><input name="tospace" type="string" nodename="there"/></transformpoint>
+         <geompropvalueuniform name="which" type="string"><input name="geomprop" type="string" value="part"/>
+           <input name="default" type="string" value="count"/></geompropvalueuniform>
+         <geompropvalue name="i" type="integer"><input name="geomprop" type="string" nodename="which"/></geompropvalue>
+         <UsdPrimvarReader name="b" type="boolean"><input name="varname" type="string" value="flag"/></UsdPrimvarReader>
+         <convert name="f" type="float"><input name="in" type="integer" nodename="i"/></convert>
+         <ifequal name="e" type="float"><input name="value1" type="boolean" nodename="b"/>
+           <input name="value2" type="boolean" value="true"/><input name="in1" type="float" nodename="f"/></ifequal>
+         <separate3 name="s" type="multioutput"><input name="in" type="vector3" nodename="p"/></separate3>
+         <combine3 name="c" type="color3"><input name="in1" type="float" nodename="e"/>
+           <input name="in2" type="float" nodename="s" output="outx"/></combine3>
+         <output name="out" type="color3" nodename="c"/></nodegraph></materialx>)",
+                                          "a.mtlx", {}, messages);
+    EXPECT_TRUE(scene) << textOf(messages);
+    if (!scene) return std::pair(std::array<double, 4>{}, false);
+    const auto found = evaluate(
+        scene, 0,
+        R"({"points": [{"_count": 1, "_other": 0, "_flag": 1}], "uniforms": {"object.model": [1,0,0,0, 0,1,0,0, 0,0,1,0, -0.5,0,0,1]}})",
+        Engine::Double, {}, {}, messages);
+    EXPECT_TRUE(found) << textOf(messages);
+    const bool differ = std::any_of(messages.begin(), messages.end(),
+                                    [](const Message& message) { return message.code == "texts-differ"; });
+    return std::pair(found ? found->rgba[0] : std::array<double, 4>{}, differ);
+  };
+  using Four = std::array<double, 4>;
+  EXPECT_EQ(emittedOf(""), std::pair(Four{1, 0.5, 0, 1}, false));
+  const std::string other =
+      R"(<geominfo name="a" geom="/a"><geomprop name="part" type="string" value="other"/></geominfo>)";
+  EXPECT_EQ(emittedOf(other), std::pair(Four{0, 0.5, 0, 1}, false));
+  const std::string both =
+      other +
+      R"(<geominfo name="b" geom="/b"><geomprop name="part" type="string" value="count"/></geominfo>)";
+  EXPECT_EQ(emittedOf(both), std::pair(Four{1, 0.5, 0, 1}, true));
 }
 
 /// A file's procedural on a primitive that has the attribute, in the file's spelling, and on one without.

@@ -129,7 +129,7 @@ export class GpuPainter {
     const target = this.targetOf(width, height);
     const environment = environmentOf(view.environment);
     const projection = multiply(kDepths, view.viewProjection(width / height));
-    for (const [name, bytes] of Object.entries(frameBlocks(view.eye(), projection, environment, view.lights))) this.fill(name, bytes);
+    for (const [name, bytes] of Object.entries(frameBlocks(view.eye(), projection, environment, view.lights, view.seconds))) this.fill(name, bytes);
     const encoder = this.device.createCommandEncoder();
     const pass = encoder.beginRenderPass({
       colorAttachments: [{

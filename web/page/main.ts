@@ -579,6 +579,27 @@ export class Page {
     byId(id).addEventListener(event, act);
   }
 
+  /** Seconds of the materials' time, which can be stopped and set: shown where a material asks for it. */
+  private connectClock(): void {
+    const { viewport } = this;
+    const seconds = byId<HTMLInputElement>('seconds');
+    viewport.onClock = (asked) => {
+      byId('clock').hidden = !asked;
+      byId('play').textContent = viewport.playing ? 'Pause' : 'Play';
+      if (asked && document.activeElement !== seconds) seconds.value = viewport.seconds.toFixed(2);
+    };
+    this.on('play', 'click', () => {
+      viewport.playing = !viewport.playing;
+      viewport.redraw();
+    });
+    this.on('seconds', 'input', () => {
+      if (!(seconds.valueAsNumber >= 0)) return;
+      viewport.playing = false;
+      viewport.seconds = seconds.valueAsNumber;
+      viewport.redraw();
+    });
+  }
+
   private connectControls(): void {
     const step = (act: (of: Document) => void) => () => {
       if (!this.of) return;
@@ -624,6 +645,7 @@ export class Page {
       this.viewport.exposure = 2 ** Number(byId<HTMLInputElement>('exposure').value);
       this.viewport.redraw();
     });
+    this.connectClock();
     this.on('theme', 'click', () => {
       const dark = getComputedStyle(document.documentElement).colorScheme === 'dark';
       document.documentElement.dataset.theme = dark ? 'light' : 'dark';

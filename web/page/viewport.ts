@@ -35,7 +35,11 @@ interface Mesh {
 
 /** Programs that are kept; of more, the oldest that nothing is drawn with goes. */
 export const kMostPrograms = 48;
-export const kBlocks = ['Frame', 'Lights', 'Object', 'Material', 'SeeThrough'];
+export const kBlocks = ['Frame', 'Lights', 'Object', 'Material', 'SeeThrough', 'Clock'];
+/** Pictures in a second of the materials' time, whatever the screen shows of them. */
+export const kPicturesPerSecond = 24;
+/** Where the time begins anew: beyond, a float counts no single pictures. */
+const kLastSecond = 2 ** 24 / kPicturesPerSecond;
 const kInputs: Record<string, string> = {
   in_position: 'POSITION', in_normal: 'NORMAL', in_tangent: 'TANGENT', in_color_0: 'COLOR_0',
   in_texcoord_0: 'TEXCOORD_0', in_texcoord_1: 'TEXCOORD_1', in_texcoord_2: 'TEXCOORD_2', in_texcoord_3: 'TEXCOORD_3',
@@ -99,7 +103,7 @@ export function neutral(slot: string): [number, number, number, number] {
 }
 
 /** The blocks of a frame, by the fields' places in templates/mesh.node (docs/bindings.md). */
-export function frameBlocks(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[]): Record<string, Uint8Array> {
+export function frameBlocks(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[], seconds: number): Record<string, Uint8Array> {
   const frame = new DataView(new ArrayBuffer(96));
   viewProjection.forEach((x, i) => frame.setFloat32(4 * i, x, true));
   eye.forEach((x, i) => frame.setFloat32(64 + 4 * i, x, true));
@@ -117,7 +121,8 @@ export function frameBlocks(eye: Vec3, viewProjection: Mat4, environment: Enviro
   }
   through[12] = Math.log2(kBoardSize);
   const bytes = ({ buffer }: Float32Array) => new Uint8Array(buffer);
-  return { Frame: new Uint8Array(frame.buffer), Lights: bytes(all), SeeThrough: bytes(through) };
+  const clock = new Float32Array([seconds, Math.floor(seconds * kPicturesPerSecond), 0, 0]);
+  return { Frame: new Uint8Array(frame.buffer), Lights: bytes(all), SeeThrough: bytes(through), Clock: bytes(clock) };
 }
 
 export const kBoardSize = 64;
@@ -155,6 +160,12 @@ export class Viewport {
   radius = 1;
   environment = 'Studio';
   exposure = 1;
+  /** Of the materials' time, which runs while something that is drawn asks for it. */
+  seconds = 0;
+  playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
+  /** Told before each picture whether something asks for the time. */
+  onClock: (asked: boolean) => void = () => {};
+  private ticked = 0;
   useBall = true;
   lights: Light[] = kStudioLights;
   /** Draws in place of this, on a canvas of its own. */
@@ -280,8 +291,22 @@ export class Viewport {
     return { width, height };
   }
 
+  /** Lets the time go on, and asks for the next picture where this one is of its moment alone. */
+  private tick(): void {
+    const asks = (look: Look) => this.programs.get(look.id)?.interface.uniforms.some(({ block }) => block === 'Clock') === true;
+    const asked = [...this.drawn(null)].some(({ look }) => asks(look)) || (this.other !== null && asks(this.other.look));
+    this.onClock(asked);
+    const now = performance.now();
+    const running = asked && this.playing;
+    // A page that was hidden goes on where it was.
+    if (running && this.ticked > 0) this.seconds = (this.seconds + Math.min(now - this.ticked, 250) / 1000) % kLastSecond;
+    this.ticked = running ? now : 0;
+    if (running) this.redraw();
+  }
+
   draw(): void {
     this.pending = 0;
+    this.tick();
     if (this.gpu) return this.gpu.paint(this, this.sized(this.gpu.canvas));
     const { gl } = this;
     const { width, height } = this.sized(this.canvas);
@@ -390,7 +415,7 @@ export class Viewport {
   }
 
   private frame(eye: Vec3, viewProjection: Mat4, environment: Environment, lights: Light[]): void {
-    for (const [name, bytes] of Object.entries(frameBlocks(eye, viewProjection, environment, lights))) this.fill(name, bytes);
+    for (const [name, bytes] of Object.entries(frameBlocks(eye, viewProjection, environment, lights, this.seconds))) this.fill(name, bytes);
   }
 
   private fill(block: string, bytes: Uint8Array): void {

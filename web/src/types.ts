@@ -55,6 +55,9 @@ export interface Options {
   unused?: boolean;
   /** Of evaluations and previews: "SLOT=r,g,b,a", constants instead of images. */
   texels?: string[];
+  /** Of the same: when it is looked at, for materials that ask for it. Seconds and a picture's number, 0 to 16,777,216. */
+  time?: number;
+  frame?: number;
 }
 
 /** Vertex attributes of a primitive beside POSITION. JOINTS_n come with WEIGHTS_n; the last three are morph targets,

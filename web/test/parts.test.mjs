@@ -19,6 +19,7 @@ const { readHdr, radianceOf } = await part('hdr');
 const { makeEnvironment } = await part('environment');
 const { element, fileLights } = await part('lights');
 const { halves } = await part('gpu');
+const { frameBlocks, kBlocks } = await part('viewport');
 const { bounds, eachNode, geometry, openGltf } = await part('gltf', 'web/src');
 
 /** A .hdr file of colours that RGBE holds exactly; rows are run-length coded where `runs`. */
@@ -188,4 +189,14 @@ test('nodes that go in circles are walked once', () => {
 test('half floats are rounded to the nearest', () => {
   const words = halves(new Float32Array([0, 1, -2, 0.5, 65504, 1e9, 2 ** -24, 2 ** -14, 1 + 2 ** -11 + 2 ** -12]));
   assert.deepEqual([...words], [0, 0x3c00, 0xc000, 0x3800, 0x7bff, 0x7bff, 1, 0x0400, 0x3c01]);
+});
+
+test('the block of the time has seconds and pictures at 24 a second', () => {
+  const identity = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+  const clockOf = (seconds) => new Float32Array(frameBlocks([0, 0, 1], identity, { lastLevel: 4 }, [], seconds).Clock.buffer);
+  assert.deepEqual([...clockOf(0)], [0, 0, 0, 0]);
+  assert.deepEqual([...clockOf(2.5)], [2.5, 60, 0, 0]);
+  assert.deepEqual([...clockOf(0.04)].slice(1, 2), [0]);
+  // What is filled has a place.
+  for (const name of Object.keys(frameBlocks([0, 0, 1], identity, { lastLevel: 4 }, [], 0))) assert.ok(kBlocks.includes(name), name);
 });

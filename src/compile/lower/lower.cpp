@@ -183,7 +183,8 @@ private:
                         static_cast<uint32_t>(module_.varyings.size() - 1)});
   }
 
-  /// An attribute that a graph or a node of the library names; kNoValue where it has another type.
+  /// An attribute that a graph or a node of the library names; kNoValue where it has another type. Vertices
+  /// have no bools: one is a float that is not 0.
   ir::ValueId attribute(std::string_view name, ir::Type type) {
     const auto found = std::find_if(own_.begin(), own_.end(),
                                     [&](const auto& own) { return graph::sameAttribute(own.first, name); });
@@ -193,12 +194,14 @@ private:
       value = slots_[known.slot];
       named_.push_back(known.location);
     }
+    const ir::Type stored = type == ir::Type::Bool ? ir::Type::Float : type;
     if (value == ir::kNoValue) {
-      value = declare(std::string(name), type, 0);
+      value = declare(std::string(name), stored, 0);
       own_.emplace_back(name, value);
     }
-    if (dag()[value].type != type) return ir::kNoValue;
-    return dag()[value].rate == ir::Rate::Vertex ? dag().make(ir::Op::Interpolate, {value}) : value;
+    if (dag()[value].type != stored) return ir::kNoValue;
+    if (type == ir::Type::Bool) value = lang::converted(dag(), value, type);
+    return dag()[value].rate == ir::Rate::Vertex ? lang::interpolated(dag(), value) : value;
   }
 
   /// Those that are read, in the order of their names, where no attribute of the template lies that the

@@ -206,6 +206,16 @@ constexpr Row kRows[] = {
        if (value.is_string()) to.trial.node = value.get<std::string>();
        return value.is_string();
      }},
+    {"time", "a number",
+     [](const Json& value, lacquer_options& to) {
+       if (value.is_number()) to.trial.time = value.get<double>();
+       return value.is_number();
+     }},
+    {"frame", "a number",
+     [](const Json& value, lacquer_options& to) {
+       if (value.is_number()) to.trial.frame = value.get<double>();
+       return value.is_number();
+     }},
     {"as", "\"color\", \"vector\" or \"grey\"", setLook},
     {"scale", "a number",
      [](const Json& value, lacquer_options& to) {

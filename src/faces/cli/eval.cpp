@@ -33,6 +33,7 @@ void addEval(CLI::App& verb, EvalFlags& flags, OptionFlags& options) {
                   "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
       ->allow_extra_args(false);
   addParameters(verb, flags.trial.parameters);
+  addClock(verb, flags.trial.time, flags.trial.frame);
   verb.add_option(
           "--node", flags.trial.node,
           "the output of a node instead of the colour: coat.f0, or coat.split.half of several; rust/mix in "

@@ -36,6 +36,7 @@ void addPreview(CLI::App& verb, PreviewFlags& flags, OptionFlags& options) {
                   "SLOT=r,g,b,a: a constant, linear, instead of an image (may be repeated)")
       ->allow_extra_args(false);
   addParameters(verb, flags.preview.parameters);
+  addClock(verb, flags.preview.time, flags.preview.frame);
   verb.add_option("--node", flags.preview.nodes,
                   "the output of a node instead of the material, as for eval; * for all of all nodes (may be "
                   "repeated)")

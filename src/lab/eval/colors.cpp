@@ -116,6 +116,7 @@ Result<void> checkAttributes(const ir::Module& module, const EvalPoints& points,
 Result<void> bind(EvalMaterial& material, const EvalPoints& points, const std::string& file,
                   eval::Bindings& bindings) {
   eval::bindPoints(material.module(), points.points, bindings);
+  material.bindClock(bindings);
   for (const ir::TextureSlot* slot : material.environments()) {
     bindings.textures[slot->name] = [&points](size_t point, const std::array<double, 3>&, double) {
       const std::array<double, 3>& e = points.environment[point];

@@ -32,7 +32,6 @@ bool isTextureProperty(const material::Schema& schema, const std::string& name) 
 }
 
 /// Tiles have the numbers 1001 to 1100: ten columns of ten rows.
-constexpr size_t kFirstTile = 1001;
 constexpr size_t kMostTiles = 100;
 
 eval::Wrap wrapOf(int gl) {
@@ -166,7 +165,7 @@ Result<FileImages::Loaded> FileImages::load(int texture, bool srgb) {
 
 Result<FileImages::Loaded> FileImages::load(const graph::Texture& texture) {
   if (Result<void> opened = open(); !opened) return tl::make_unexpected(std::move(opened.error()));
-  if (texture.file.find(graph::kUdim) != std::string::npos) return loadTiles(texture);
+  if (!graph::tileToken(texture.file).empty()) return loadTiles(texture);
   const std::string pointer = fmt::format("/textures/{}/file", texture.name);
   Result<std::shared_ptr<const eval::Image>> found =
       image("uri " + texture.file, {file_, 0, 0, pointer},
@@ -188,8 +187,7 @@ Result<FileImages::Loaded> FileImages::loadTiles(const graph::Texture& texture) 
   }
   std::vector<std::shared_ptr<const eval::Image>> layers;
   for (size_t n = 0; n < kMostTiles; ++n) {
-    std::string uri = texture.file;
-    uri.replace(uri.find(graph::kUdim), graph::kUdim.size(), std::to_string(kFirstTile + n));
+    const std::string uri = graph::tileFile(texture.file, n);
     Result<std::string> bytes = opened_->fileBytes(uri, pointer);
     if (!bytes && bytes.error()[0].code == "image-missing") continue;
     Result<std::shared_ptr<const eval::Image>> found =
@@ -200,7 +198,9 @@ Result<FileImages::Loaded> FileImages::loadTiles(const graph::Texture& texture) 
   }
   if (layers.empty()) {
     return fail("image-missing", place,
-                fmt::format("no tile from {} to {} is there", kFirstTile, kFirstTile + kMostTiles - 1), {});
+                fmt::format("no tile from {} to {} is there", quote(graph::tileFile(texture.file, 0)),
+                            quote(graph::tileFile(texture.file, kMostTiles - 1))),
+                {});
   }
   const auto first = std::find_if(layers.begin(), layers.end(), [](const auto& l) { return l != nullptr; });
   const uint64_t pixels = (*first)->size() * layers.size();
@@ -217,6 +217,10 @@ Result<FileImages::Loaded> FileImages::loadTiles(const graph::Texture& texture) 
   Held held{std::make_shared<const eval::Image>(std::move(*made)), pixels, ++uses_};
   held_ += pixels;
   return Loaded{images_.emplace(key, std::move(held)).first->second.image, lookup};
+}
+
+void EvalMaterial::bindClock(eval::Bindings& bindings) const {
+  eval::bindClock(trial_.time, trial_.frame, bindings);
 }
 
 Result<EvalMaterial::Texel> EvalMaterial::parseTexel(const std::string& text) {
@@ -250,6 +254,12 @@ Result<void> EvalMaterial::setTexels(const std::vector<std::string>& texts) {
 
 Result<void> EvalMaterial::lower(const EvalSubject& subject, const Language& library, bool environment,
                                  const std::string& variant, Messages& messages) {
+  constexpr double kLast = 16777216;  // a float counts no single pictures beyond
+  for (const auto& [what, value] : {std::pair("time", trial_.time), std::pair("frame", trial_.frame)}) {
+    if (!(value >= 0 && value <= kLast))
+      return fail("out-of-range", {}, fmt::format("the {} is {}", what, value),
+                  fmt::format("from 0 to {}", kLast));
+  }
   Options options = options_;
   if (!subject.isGraph()) {
     if (Result<void> named = resolveNames(library, options); !named) return named;

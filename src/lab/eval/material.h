@@ -125,6 +125,9 @@ public:
   /// are fixed, and nothing else.
   void countLights(const passes::LightFacts& lights);
 
+  /// The trial's time and frame, in the place of bindPoints()' zeros.
+  void bindClock(eval::Bindings& bindings) const;
+
   /// Samplers of the textures that the outputs reach, but for the environment's maps; its table of factors is
   /// one of them. Errors: "image-missing" and the like, one for each texture, where there is no substitute;
   /// the images' notes say where a graph's colour stands for an image.

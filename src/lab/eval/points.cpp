@@ -194,6 +194,13 @@ void bindPoints(const ir::Module& module, PointColumns points, Bindings& binding
   bindings.lights = {lightOf(module, "directional", std::move(light), points.count)};
 }
 
+void bindClock(double time, double frame, Bindings& bindings) {
+  for (const auto& [name, value] : {std::pair("clock.time", time), std::pair("clock.frame", frame)}) {
+    const auto found = bindings.columns.find(name);
+    if (found != bindings.columns.end()) found->second = Column::constant({value});
+  }
+}
+
 Result<void> bindMaterialBlock(const ir::Module& module, Bindings& bindings, size_t points) {
   std::vector<ir::ValueId> roots;
   for (const ir::PreshaderField& field : module.preshader) roots.push_back(field.value);

@@ -71,6 +71,9 @@ inline void bindPoints(const ir::Module& module, std::span<const Point> points, 
   bindPoints(module, columnsOf(points), bindings);
 }
 
+/// Sets the fields of the block Clock, where bindPoints() has found it.
+void bindClock(double time, double frame, Bindings& bindings);
+
 /// An element of the light array for a light of that kind, by its properties of KHR_lights_punctual ("color",
 /// "intensity", "range", "innerConeAngle", "outerConeAngle", and "position" and "direction" of its node; what
 /// is not there is 0), each constant or one for each of the points. What the kind does not fill has the

@@ -192,6 +192,7 @@ void Shading::bind(std::span<const eval::Point> points, eval::Bindings& bindings
   bindings.columns["frame.light_count"] = std::move(count);
   bindings.columns["frame.environment_max_lod"] = eval::Column::constant({1});  // the level is the roughness
   bindings.lights = std::move(lights);
+  eval::bindClock(look_->time, look_->frame, bindings);
 }
 
 /// The bindings of points of an object that stands somewhere, seen by one eye.

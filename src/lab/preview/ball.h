@@ -25,6 +25,7 @@ struct Look {
   std::vector<std::string> specular, irradiance,
       fibres;  ///< the environment maps that it reads, by slot name
   bool in_float = true;
+  double time = 0, frame = 0;  ///< of the block Clock
   /// Instead of colours a value is drawn, in one of the ways but As::Any.
   std::optional<ValueLook> value;
 };

@@ -85,6 +85,8 @@ Result<preview::Shading> shadingOf(const EvalSubject& subject, const Language& l
   report(images.takeNotes(), images.file(), messages);
   if (!bound) return tl::make_unexpected(bound.error());
   look.module = evaluated.module();
+  look.time = how.trial.time;
+  look.frame = how.trial.frame;
   if (how.changed != nullptr)
     how.changed->insert(how.changed->end(), evaluated.changed().begin(), evaluated.changed().end());
   if (evaluated.shown()) look.value = lookOf(*evaluated.shown(), how.look);
@@ -295,7 +297,7 @@ private:
 
   void draw(const EvalSubject& subject, const std::string& node, FileImages& images,
             preview::Section& section) {
-    const Trial trial{preview_.parameters, node};
+    const Trial trial{preview_.parameters, node, preview_.time, preview_.frame};
     size_t substituted = 0;
     std::vector<preview::Shading> shadings;
     for (size_t i = 0; i < settings_.size(); ++i) {

@@ -597,16 +597,18 @@ void PatternsOut::element(Scope& scope, size_t place) {
     std::string port = input;
     if (family == "texel_product") port = input == "a" ? "in1" : "in2";
     const bool number_port = isOneOf(port, kNumberPorts);
+    const bool of_attribute = (family == "geompropvalue" && port == "geomprop") ||
+                              (family == "UsdPrimvarReader" && port == "varname");
     if (const auto* choice = std::get_if<graph::Choice>(&source.from)) {
       const auto chosen = std::find(param->choices.begin(), param->choices.end(), choice->name);
       made.children.push_back(number_port
                                   ? valueOf(port, "integer", std::to_string(chosen - param->choices.begin()))
                                   : valueOf(port, "string", choice->name));
     } else if (const auto* attribute = std::get_if<graph::AttributeRef>(&source.from);
-               attribute != nullptr && family == "geompropvalue" && source.swizzle.empty()) {
+               attribute != nullptr && of_attribute && source.swizzle.empty()) {
       made.children.push_back(valueOf(port, "string", attribute->name));
-    } else if (family == "geompropvalue" && port == "geomprop") {
-      lost("MaterialX's geompropvalue takes the name of an attribute", "its input is left out");
+    } else if (of_attribute) {
+      lost(fmt::format("MaterialX's {} takes the name of an attribute", family), "its input is left out");
     } else if (const auto* ref = std::get_if<graph::TextureRef>(&source.from)) {
       const std::optional<size_t> slot = graph_.findTexture(ref->name);
       if (!slot) continue;

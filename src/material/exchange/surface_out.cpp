@@ -274,7 +274,7 @@ Source Translation::imageChannel(const material::Material::Texture& texture, int
   const bool base = schema_.properties[texture.property].decl->channels.empty() &&
                     schema_.properties[texture.property].decl->srgb;
   if (channel == 3 || base) {
-    const std::string& node = image(texture, "gltf_colorimage");
+    const std::string& node = image(texture, "gltf_colorimage<sampler2D>");
     const bool alpha = channel == 3;
     return {graph::NodeRef{node, alpha ? "outa" : "outcolor"},
             channel < 3 ? std::string(1, "xyz"[channel]) : std::string()};

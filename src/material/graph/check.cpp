@@ -171,12 +171,12 @@ void GraphCheck::texture(size_t i) {
     error(spot, at("/type"), "wrong-type", fmt::format("a texture cannot be {}", article(t.type)),
           "it is a sampler2D, a samplerCube or a sampler2DArray");
   }
-  const bool tiles = t.file.find(kUdim) != std::string::npos;
+  const bool tiles = !tileToken(t.file).empty();
   if (!t.file.empty() && tiles != (t.type == ir::Type::Texture2DArray)) {
     error(spot, at("/file"), "wrong-texture",
           fmt::format("{} is {} and {}", inQuotes(t.name), article(t.type),
                       tiles ? "an image for each tile" : "one image"),
-          fmt::format("a sampler2DArray has {} in the name of its file, and a sampler2D has not", kUdim));
+          "a sampler2DArray has <UDIM> or <UVTILE> in the name of its file, and a sampler2D has not");
   }
   if (t.texture < -1) {
     error(spot, at("/texture"), "out-of-range", fmt::format("there is no texture {}", t.texture),
@@ -286,7 +286,8 @@ void GraphCheck::attributes() {
     const lang::TemplateDecl* decl = contracts_.templateDecl();
     for (size_t i = 0; decl != nullptr && i < decl->attributes.size(); ++i) {
       const lang::AttributeDecl& own = decl->attributes[i];
-      if (own.fact || !sameAttribute(own.name, ref->name) || own.type == ref->type) continue;
+      const bool stored = ref->type == ir::Type::Bool && own.type == ir::Type::Float;
+      if (own.fact || !sameAttribute(own.name, ref->name) || own.type == ref->type || stored) continue;
       return error(spot, pointer, "wrong-type",
                    fmt::format("{} is {} of the template", inQuotes(ref->name), article(own.type)),
                    "say the same type");

@@ -432,7 +432,7 @@ void BodyCheck::unknown(const AttributeRef& ref, const Sink& sink) {
                  "it is COLOR_n, TEXCOORD_n or one of the application's own, \"_WETNESS\"");
   }
   error(sink, "wrong-type", fmt::format("an attribute cannot be {}", article(ref.type)),
-        "it is float, vec2, vec3 or vec4");
+        std::string(kAttributeTypes));
 }
 
 void BodyCheck::unknown(const GivenRef& ref, const Sink& sink) {

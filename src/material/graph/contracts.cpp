@@ -355,8 +355,7 @@ std::optional<Offer> Contracts::base(const Source& source, const Body& body) con
     return found ? std::optional(ofParam(found->given->results[found->index])) : std::nullopt;
   }
   if (const auto* ref = std::get_if<AttributeRef>(&source.from)) {
-    if (!isAttributeName(ref->name) || !ir::isFloating(ref->type) || ir::isMatrix(ref->type))
-      return std::nullopt;
+    if (!isAttributeName(ref->name) || !isAttributeType(ref->type)) return std::nullopt;
     return Offer{ref->type};
   }
   if (const auto* ref = std::get_if<InputRef>(&source.from)) {

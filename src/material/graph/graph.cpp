@@ -71,6 +71,28 @@ bool isAttributeName(std::string_view name) {
          std::all_of(name.begin(), name.end(), [&](char c) { return c == '_' || isDigit(c) || isLetter(c); });
 }
 
+std::string_view tileToken(std::string_view file) {
+  for (const std::string_view token : {"<UDIM>", "<UVTILE>"}) {
+    if (file.find(token) != std::string_view::npos) return token;
+  }
+  return {};
+}
+
+std::string tileFile(std::string file, size_t tile) {
+  constexpr size_t kFirst = 1001;
+  constexpr size_t kColumns = 10;
+  const std::string_view token = tileToken(file);
+  if (token.empty()) return file;
+  const std::string name = token == "<UDIM>"
+                               ? std::to_string(kFirst + tile)
+                               : fmt::format("u{}_v{}", tile % kColumns + 1, tile / kColumns + 1);
+  return file.replace(file.find(token), token.size(), name);
+}
+
+bool isAttributeType(ir::Type type) {
+  return type == ir::Type::Bool || ir::isFloating(type) || ir::isWhole(ir::partType(type));
+}
+
 bool sameAttribute(std::string_view a, std::string_view b) {
   for (std::string_view* name : {&a, &b}) name->remove_prefix(name->starts_with('_') ? 1 : 0);
   const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; };

@@ -46,16 +46,20 @@ struct GivenRef {
 };
 
 /// An attribute of the vertices, whatever the template knows of: the application's own, "_WETNESS", or a set
-/// of colours or texture coordinates, "COLOR_1". Interpolated.
+/// of colours or texture coordinates, "COLOR_1". Interpolated; integers and bools are one vertex's.
 struct AttributeRef {
   std::string name;
-  ir::Type type = ir::Type::Float;  ///< or a vector of floats
+  ir::Type type = ir::Type::Float;  ///< isAttributeType()
   bool operator==(const AttributeRef&) const = default;
 };
 
 /// Whether a name is one that an AttributeRef may have: it begins with an underscore and goes on with letters
 /// and digits, or with underscores between, 64 characters at most; or it is COLOR_n or TEXCOORD_n.
 bool isAttributeName(std::string_view name);
+/// Whether an AttributeRef may have that type. A bool is stored as a float, and true where that is not 0.
+bool isAttributeType(ir::Type type);
+inline constexpr std::string_view kAttributeTypes =
+    "it is float, int, uint, a vector of one of these such as vec2, ivec2 or uvec2, or bool";
 /// Whether two names mean one attribute: a template may write WETNESS for glTF's _WETNESS, and shaders do not
 /// tell capitals from small letters.
 bool sameAttribute(std::string_view a, std::string_view b);
@@ -142,8 +146,11 @@ struct Parameter : ir::Parameter {
 
 enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
 
-/// Stands in the name of a file for the number of a tile: 1001 + floor(u) + 10 floor(v).
-inline constexpr std::string_view kUdim = "<UDIM>";
+/// What stands in the name of a file for a tile: "<UDIM>" for its number, 1001 + floor(u) + 10 floor(v), or
+/// "<UVTILE>" for "u1_v1", each 1 + floor(). Empty where the file is one image.
+std::string_view tileToken(std::string_view file);
+/// The file of a tile, counted from 0 on: 1001 and u1_v1, 1002 and u2_v1.
+std::string tileFile(std::string file, size_t tile);
 
 struct Texture : ir::TextureSlot {
   /// A file below the folder of the graph's; empty for glTF's texture, whose sampler says the rest.

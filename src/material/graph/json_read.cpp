@@ -33,10 +33,10 @@ Result<Json> parse(std::string_view text, const std::string& file, const Limits&
 }
 
 std::optional<ir::Type> attributeType(std::string_view name) {
-  for (int count = 1; count <= 4; ++count) {
-    if (ir::typeName(ir::floatType(count)) == name) return ir::floatType(count);
-  }
-  return std::nullopt;
+  const auto* found = std::find_if(ir::kTypes.begin(), ir::kTypes.end(), [&](ir::Type type) {
+    return isAttributeType(type) && ir::typeName(type) == name;
+  });
+  return found == ir::kTypes.end() ? std::nullopt : std::optional(*found);
 }
 
 class Reader {
@@ -233,8 +233,7 @@ std::optional<Source> Reader::reference(const Json& json, const Path& path) {
     if (kind == "given") result.from = GivenRef{name};
     if (kind == "input") result.from = InputRef{name};
     if (kind == "attribute") {
-      const std::optional<ir::Type> type =
-          typeOf(json, path, "attribute", &attributeType, "it is float, vec2, vec3 or vec4");
+      const std::optional<ir::Type> type = typeOf(json, path, "attribute", &attributeType, kAttributeTypes);
       if (!type) return std::nullopt;
       result.from = AttributeRef{name, *type};
     }

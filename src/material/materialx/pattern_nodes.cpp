@@ -19,9 +19,9 @@ namespace {
 
 /// What no node is given: how an image is read becomes the texture's sampler, and a note is for people.
 bool isBeside(std::string_view input) {
-  constexpr std::string_view kNames[] = {"filtertype",     "uaddressmode", "vaddressmode", "wrapS",
-                                         "wrapT",          "layer",        "framerange",   "frameoffset",
-                                         "frameendaction", "note"};
+  constexpr std::string_view kNames[] = {
+      "filtertype", "uaddressmode", "vaddressmode", "wrapS",       "wrapT",          "layer", "layerx",
+      "layery",     "layerz",       "framerange",   "frameoffset", "frameendaction", "note"};
   return std::find(std::begin(kNames), std::end(kNames), input) != std::end(kNames);
 }
 
@@ -64,11 +64,23 @@ bool takes(const lang::NodeDecl& form, const Element& node, bool types) {
              (isFallback(input.name()) && samplesFile(node));
     const std::optional<ir::Type> type = typeOf(input.get("type"));
     // Channels of MaterialX 1.38 make another type of what is connected.
-    return !types || !type || param->type == *type || !param->choices.empty();
+    const bool image = type && ir::isTexture(*type) && ir::isTexture(param->type);
+    return !types || !type || image || param->type == *type || !param->choices.empty();
   });
 }
 
+bool isOfTiles(const lang::NodeDecl& form) {
+  return std::any_of(form.params.begin(), form.params.end(),
+                     [](const lang::Param& p) { return p.type == ir::Type::Texture2DArray; });
+}
+
 }  // namespace
+
+/// Whether nodes of that name have a form for images of tiles.
+bool Patterns::takesTiles(std::string_view category) const {
+  const std::vector<const lang::NodeDecl*> forms = library_.forms(category);
+  return std::any_of(forms.begin(), forms.end(), [](const lang::NodeDecl* form) { return isOfTiles(*form); });
+}
 
 void Patterns::unknownNode(const Element& element) {
   if (const std::string_view why = refusedClosure(element); !why.empty())
@@ -88,8 +100,16 @@ void Patterns::unknownNode(const Element& element) {
 }
 
 /// The form of a node of the library that the element means, by the types that it says.
-const lang::NodeDecl* Patterns::formOf(const Element& element) {
-  const std::vector<const lang::NodeDecl*> forms = library_.forms(libraryName(element));
+const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
+  std::vector<const lang::NodeDecl*> forms = library_.forms(libraryName(element));
+  if (takesTiles(libraryName(element))) {
+    // Those for images of tiles take such, and no others.
+    const bool tiles =
+        std::any_of(element.children.begin(), element.children.end(), [&](const Element& input) {
+          return input.category == "input" && input.get("type") == "filename" && hasTiles(scope, input);
+        });
+    std::erase_if(forms, [&](const lang::NodeDecl* form) { return isOfTiles(*form) != tiles; });
+  }
   if (forms.empty()) return unknownNode(element), nullptr;
   const lang::NodeDecl* found = nullptr;
   const lang::NodeDecl* near = nullptr;
@@ -140,7 +160,7 @@ const lang::NodeDecl* Patterns::formOf(const Element& element) {
 }
 
 void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& made) {
-  const lang::NodeDecl* form = formOf(element);
+  const lang::NodeDecl* form = formOf(scope, element);
   if (form == nullptr) return;
   made.type = form->name;
   std::string_view space;
@@ -156,11 +176,16 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
     if (param == nullptr) continue;  // a sampler's
     std::optional<Source> source;
     if (ir::isTexture(param->type)) {
-      source = image(scope, element, input);
+      source = image(scope, element, input, param->type == ir::Type::Texture2DArray);
       space = input.get("colorspace");
+    } else if (isFallback(input.name()) && samplesFile(element) && !isConnected(input)) {
+      // The texture's, too, and so no parameter.
+      const Result<ir::Components> value = valueOf(input, param->type);
+      if (value) source = Source{graph::Literal{param->type, *value}, {}};
     } else if (input.get("type") == "string") {
       // MaterialX's own default is an empty text.
-      const bool empty = !isConnected(input) && input.get("value").empty() && !param->choices.empty();
+      const Element* said = text(scope, input);
+      const bool empty = said == nullptr || (said->get("value").empty() && !param->choices.empty());
       if (!empty)
         source = param->choices.empty() ? attribute(scope, input, param->type)
                                         : literal(scope, element, input, *param);
@@ -229,9 +254,9 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
                                         const lang::Param& param) {
   // A text, its own or that of the interface.
   if (!param.choices.empty() && input.get("type") != "integer") {
-    const Element* from = &input;
-    if (const std::string* name = input.find("interfacename")) from = scope.input(*name);
-    const std::string value(from == nullptr ? std::string_view() : from->get("value"));
+    const Element* from = text(scope, input);
+    if (from == nullptr) return std::nullopt;
+    const std::string value(from->get("value"));
     if (std::find(param.choices.begin(), param.choices.end(), value) != param.choices.end())
       return Source{graph::Choice{value}, {}};
     error(input, "unknown-value", fmt::format("{} is {}", quote(input.name()), quote(value)),
@@ -278,23 +303,6 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
   return Source{graph::ParameterRef{parameter(input, std::move(name), pointer, type, *value, range)}, {}};
 }
 
-/// An attribute of the vertices by the text that names it, its own or that of the interface. glTF begins the
-/// application's names with an underscore.
-std::optional<Source> Patterns::attribute(const Scope& scope, const Element& input, ir::Type type) {
-  const Element* from = &input;
-  if (const std::string* name = input.find("interfacename")) from = scope.input(*name);
-  const std::string_view text = from == nullptr ? std::string_view() : from->get("value");
-  std::string name(text);
-  if (!graph::isAttributeName(name)) name = "_" + graphName(text);
-  if (text.empty() || !graph::isAttributeName(name)) {
-    error(input, "wrong-name", fmt::format("{} is {}", quote(input.name()), quote(text)),
-          "it names an attribute of the vertices: wetness for glTF's _WETNESS or _wetness, COLOR_1");
-    return std::nullopt;
-  }
-  if (options_.has_attributes && !graph_.hasAttribute(name)) graph_.attributes.push_back(name);
-  return Source{graph::AttributeRef{std::move(name), type}, {}};
-}
-
 /// A matrix by its rows, which the node `creatematrix` takes.
 std::optional<Source> Patterns::matrix(Scope& scope, const Element& element, const Element& input,
                                        ir::Type type) {
@@ -314,93 +322,6 @@ std::optional<Source> Patterns::matrix(Scope& scope, const Element& element, con
                       Source{graph::Literal{side == 3 ? ir::Type::Vec3 : ir::Type::Vec4, components}, {}});
   }
   return add(scope, fmt::format("{}_{}", element.name(), input.name()), "creatematrix", std::move(rows));
-}
-
-// -- images --
-
-/// The file's name with the document's tokens in place of their names.
-std::string Patterns::fileOf(const Scope& scope, const Element& input) {
-  std::string file(trimmed(input.get("value")));
-  const auto replace = [&](const std::string& token, std::string_view value) {
-    const size_t at = file.find(token);
-    if (at == std::string::npos) return false;
-    file.replace(at, token.size(), value);
-    return true;
-  };
-  std::vector<const Element*> owners{scope.owner_};
-  owners.insert(owners.end(), documents_.begin(), documents_.end());
-  for (const Element* owner : owners) {
-    for (const Element& token : owner->children) {
-      if (token.category == "token") replace(fmt::format("[{}]", token.name()), token.get("value"));
-    }
-  }
-  const bool udim = replace("<UDIM>", "1001");
-  if (replace("<UVTILE>", "u1_v1") || udim)
-    warning(input, "first-tile", fmt::format("{} is an image for each tile", quote(input.get("value"))),
-            "the first tile's is taken for all");
-  // A document names files, a graph has URIs.
-  for (size_t at = file.find('%'); at != std::string::npos; at = file.find('%', at + 3))
-    file.replace(at, 1, "%25");
-  return file;
-}
-
-std::optional<Source> Patterns::image(Scope& scope, const Element& element, const Element& input) {
-  const Element* from = &input;
-  if (const std::string* name = input.find("interfacename")) {
-    from = scope.input(*name);
-    if (from == nullptr || scope.interface_ != scope.owner_) return connected(scope, input);
-  }
-  graph::Texture texture;
-  const std::string_view type = element.get("type");
-  const bool color = type == "color3" || type == "color4" || type == "multioutput";
-  const std::string_view space = from->get("colorspace");
-  texture.srgb = color && (space == "srgb_texture" || space == "srgb_rec709_scene");
-  if (const std::string* number = from->find("texture")) {
-    const std::optional<std::vector<double>> index = numbersOf(*number);
-    texture.texture = index && (*index)[0] >= 0 && (*index)[0] < 1e9 ? static_cast<int>((*index)[0]) : -1;
-  } else {
-    texture.file = fileOf(scope, *from);
-  }
-  const auto wrapOf = [&](std::string_view name, std::string_view usd) {
-    const Element* mode = element.child("input", name);
-    if (mode == nullptr) mode = element.child("input", usd);
-    const std::string_view value = mode == nullptr ? std::string_view() : mode->get("value");
-    if (value == "constant" || value == "black")
-      warning(*mode, "wrap-clamped", fmt::format("{} is {}", quote(name), quote(value)),
-              "beyond its edge the image has its edge's colour here");
-    return value == "clamp" || value == "constant" || value == "black" ? graph::Wrap::Clamp
-           : value == "mirror"                                         ? graph::Wrap::Mirror
-                                                                       : graph::Wrap::Repeat;
-  };
-  texture.wrap = {wrapOf("uaddressmode", "wrapS"), wrapOf("vaddressmode", "wrapT")};
-  const Element* filter = element.child("input", "filtertype");
-  texture.nearest = filter != nullptr && filter->get("value") == "closest";
-  const Element* fallback = element.child("input", "default");
-  if (fallback == nullptr) fallback = element.child("input", "fallback");
-  ir::Components color_of{0, 0, 0, 0};
-  if (fallback != nullptr && fallback->find("value") != nullptr) {
-    const std::optional<ir::Type> of = typeOf(fallback->get("type"));
-    const Result<ir::Components> value =
-        of ? valueOf(*fallback, *of) : Result<ir::Components>(ir::Components{});
-    if (value) color_of = *value;
-    if (of == ir::Type::Float) color_of = {color_of[0], color_of[0], color_of[0], 1};
-    if (of == ir::Type::Vec3) color_of[3] = 1;
-  }
-  if (texture.texture < 0) texture.color = color_of;
-  texture.pointer = from->place.pointer.empty() ? fmt::format("/{}/{}", scope.group_.name, element.name())
-                                                : from->place.pointer;
-  std::string key = fmt::format(
-      "{} {} {} {} {} {} {}", texture.file, texture.texture, texture.srgb, static_cast<int>(texture.wrap[0]),
-      static_cast<int>(texture.wrap[1]), texture.nearest,
-      texture.color ? fmt::format("{} {} {} {}", color_of[0], color_of[1], color_of[2], color_of[3])
-                    : std::string());
-  const auto [it, fresh] = textures_.try_emplace(std::move(key));
-  if (fresh) {
-    texture.name = it->second =
-        texture_names_.free(graphName(element.name().empty() ? input.name() : element.name()) + "_image");
-    graph_.textures.push_back(std::move(texture));
-  }
-  return Source{graph::TextureRef{it->second}, {}};
 }
 
 }  // namespace lacquer::materialx

@@ -276,7 +276,9 @@ void Patterns::groupInputs(Scope& scope) {
       made.by_default = Source{graph::GivenRef{std::string(given)},
                                *type == ir::Type::Vec3 && given == "tangent" ? "xyz" : ""};
     } else if (file) {
-      made.by_default = image(scope, input, input);
+      const bool tiles = goesToTiles(*scope.owner_, input.name());
+      made.by_default = image(scope, input, input, tiles);
+      if (tiles && hasTiles(scope, input)) made.type = ir::Type::Texture2DArray;
     } else if (input.find("value") != nullptr) {
       lang::Param param;
       param.type = *type;
@@ -537,15 +539,20 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
         if (std::optional<Source> one = connected(scope, input, part.name))
           made.inputs.emplace_back(fmt::format("{}_{}", graphName(input.name()), part.name), std::move(*one));
       }
-    } else if (linked) {
-      source = connected(scope, input);
     } else if (type && ir::isTexture(*type)) {
-      source = image(scope, input, input);
+      const Element* body = &element == &interface ? &element : definition(interface)->graph;
+      const auto& inputs = groups_.at(body)->group_.inputs;
+      source = image(scope, input, input, std::any_of(inputs.begin(), inputs.end(), [&](const auto& one) {
+                       return one.name == graphName(input.name()) && one.type == ir::Type::Texture2DArray;
+                     }));
+    } else if (linked && type) {
+      source = connected(scope, input);
     } else if (type) {
       lang::Param param;
       param.type = *type;
       source = literal(scope, element, input, param);
-    } else if (input.get("value") != port->get("value")) {
+    } else if (const Element* said = text(scope, input);
+               said != nullptr && said->get("value") != port->get("value")) {
       warning(input, "text-kept",
               fmt::format("{} is a text, which is the same for all instances", quote(input.name())),
               "the definition's own is taken");

@@ -133,16 +133,22 @@ private:
                                        const lang::Param& param);
   std::optional<graph::Source> matrix(Scope& scope, const Element& element, const Element& input,
                                       ir::Type type);
-  std::optional<graph::Source> attribute(const Scope& scope, const Element& input, ir::Type type);
-  std::optional<graph::Source> image(Scope& scope, const Element& element, const Element& input);
+  std::optional<graph::Source> attribute(Scope& scope, const Element& input, ir::Type type);
+  std::optional<graph::Source> image(Scope& scope, const Element& element, const Element& input, bool tiles);
+  const Element* text(Scope& within, const Element& input);
+  const Element* propertyOf(const Element& node, std::string_view name);
+  bool takesTiles(std::string_view category) const;
+  bool isOfInstances(const Scope& scope, const Element& input) const;
+  bool hasTiles(Scope& scope, const Element& input);
+  bool goesToTiles(const Element& owner, std::string_view name) const;
   std::optional<graph::Source> refer(Scope& scope, const Element& input, Referred referred, size_t depth);
   std::optional<Referred> find(const Scope& scope, const Element& input);
-  const lang::NodeDecl* formOf(const Element& element);
+  const lang::NodeDecl* formOf(Scope& scope, const Element& element);
   const std::string& idOf(Scope& scope, const Element& element);
   std::string parameter(const Element& at, std::string name, const std::string& pointer, ir::Type type,
                         const ir::Components& value, const ir::Range& range);
   bool isAnimated(const Element& input) const;
-  std::string fileOf(const Scope& scope, const Element& input);
+  std::string fileOf(const Scope& scope, const Element& input) const;
   void unknownNode(const Element& element);
   void checked();
   void spread();

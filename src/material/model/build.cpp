@@ -202,9 +202,11 @@ void chooseAttributes(graph::Node& node, const gltf::VertexAttributes& attribute
         own.begin(), own.end(), [&](const std::string& one) { return graph::sameAttribute(one, ref->name); });
     if (spelled != own.end()) ref->name = *spelled;
     if (hasAttribute(attributes, ref->name) || patterns.hasAttribute(ref->name)) continue;
-    const auto other = std::find_if(node.inputs.begin(), node.inputs.end(),
-                                    [](const auto& input) { return input.first == "default"; });
-    source = other != node.inputs.end() ? other->second : Source{graph::Literal{ref->type, {}}, {}};
+    const auto other = std::find_if(node.inputs.begin(), node.inputs.end(), [](const auto& input) {
+      return input.first == "default" || input.first == "fallback";
+    });
+    const ir::Type type = ref->type == ir::Type::Int ? ir::Type::Float : ref->type;  // a whole number
+    source = other != node.inputs.end() ? other->second : Source{graph::Literal{type, {}}, {}};
   }
 }
 

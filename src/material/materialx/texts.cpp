@@ -1,0 +1,249 @@
+// Texts of a document: they decide what the graph is, and which image a texture has.
+#include <fmt/format.h>
+
+#include "graph/text.h"
+#include "materialx/patterns.h"
+#include "support/text.h"
+
+namespace lacquer::materialx {
+
+using graph::Source;
+
+namespace {
+
+constexpr size_t kMostNodesOfTexts = 64;
+
+bool isText(const Element& element) {
+  return element.get("type") == "string" || element.get("type") == "filename";
+}
+
+}  // namespace
+
+/// What a `geomprop` of the documents says of a property: of no geometry in particular, so only where all say
+/// the same. Null where none says anything.
+const Element* Patterns::propertyOf(const Element& node, std::string_view name) {
+  const Element* found = nullptr;
+  for (const Element* document : documents_) {
+    for (const Element& info : document->children) {
+      const Element* property = info.category == "geominfo" ? info.child("geomprop", name) : nullptr;
+      if (property == nullptr || !isText(*property)) continue;
+      if (found != nullptr && found->get("value") != property->get("value")) {
+        warning(node, "texts-differ", fmt::format("{} differs from geometry to geometry", quote(name)),
+                "a material has one text: the default is taken");
+        return nullptr;
+      }
+      found = property;
+    }
+  }
+  return found;
+}
+
+/// The element that has the text of an input as its value: itself, the interface's input, or that of a node
+/// which gives texts. Null, and an error, where the text is not known.
+const Element* Patterns::text(Scope& within, const Element& input) {
+  Scope* scope = &within;
+  const Element* at = &input;
+  const auto outside = [&](const Element& port) -> std::optional<Referred> {
+    Referred referred{nullptr, std::string(port.get("output")), {}};
+    const std::string_view name = port.get(port.find("nodegraph") != nullptr ? "nodegraph" : "nodename");
+    for (const Element* document : documents_) {
+      if (referred.element == nullptr) referred.element = nodeOf(*document, name);
+    }
+    if (referred.element != nullptr) return referred;
+    error(port, "no-such-node",
+          fmt::format("{} is connected to {}, which is not there", quote(port.name()), quote(name)));
+    return std::nullopt;
+  };
+  for (size_t steps = 0; steps < kMostNodesOfTexts; ++steps) {
+    if (const std::string* name = at->find("interfacename")) {
+      const Element* next = scope->input(*name);
+      if (next == nullptr && scope->interface_ == nullptr) next = scope->owner_->child("input", *name);
+      if (next == nullptr || next == at) {
+        error(*at, "unknown-input", fmt::format("there is no interface input {}", quote(*name)));
+        return nullptr;
+      }
+      at = next;
+      continue;
+    }
+    if (!isConnected(*at)) return at;
+    // Inputs of a nodegraph are connected to what stands beside it.
+    const bool own = scope->interface_ == nullptr || scope->input(at->name()) != at;
+    const std::optional<Referred> referred = own ? find(*scope, *at) : outside(*at);
+    if (!referred) return nullptr;
+    const Element& node = *referred->element;
+    const Element* next = nullptr;
+    if (node.category == "output") {
+      next = &node;
+    } else if (node.category == "nodegraph") {
+      (void)group(node);
+      scope = groups_.at(&node);
+      for (const Element& port : node.children) {
+        const bool wanted = referred->output.empty() || referred->output == port.name();
+        if (port.category == "output" && wanted && next == nullptr) next = &port;
+      }
+    } else if (node.category == "constant" && isText(node)) {
+      next = node.child("input", "value");
+    } else if (node.category == "dot" && isText(node)) {
+      next = node.child("input", "in");
+    } else if (isText(node) &&
+               (node.category == "geompropvalueuniform" || node.category == "UsdPrimvarReader")) {
+      const bool usd = node.category == "UsdPrimvarReader";
+      const Element* property = node.child("input", usd ? "varname" : "geomprop");
+      const Element* name = property == nullptr ? nullptr : text(*scope, *property);
+      next = name == nullptr ? nullptr : propertyOf(node, name->get("value"));
+      if (next == nullptr) next = node.child("input", usd ? "fallback" : "default");
+    } else {
+      error(*at, "no-text",
+            fmt::format("{} takes a text, and {} gives none", quote(input.name()), quote(node.category)),
+            "constant, dot and geompropvalueuniform give texts, which are known before anything is computed");
+      return nullptr;
+    }
+    // A node's own default is no text.
+    static const Element kEmpty{"input", {}, {}, {}};
+    if (next == nullptr) return &kEmpty;
+    at = next;
+  }
+  error(input, "too-deep", fmt::format("{} nodes of texts stand behind each other", kMostNodesOfTexts));
+  return nullptr;
+}
+
+/// An attribute of the vertices by the text that names it. glTF begins the application's names with an
+/// underscore.
+std::optional<Source> Patterns::attribute(Scope& scope, const Element& input, ir::Type type) {
+  const Element* from = text(scope, input);
+  if (from == nullptr) return std::nullopt;
+  const std::string_view said = from->get("value");
+  std::string name(said);
+  if (!graph::isAttributeName(name)) name = "_" + graphName(said);
+  if (said.empty() || !graph::isAttributeName(name)) {
+    error(input, "wrong-name", fmt::format("{} is {}", quote(input.name()), quote(said)),
+          "it names an attribute of the vertices: wetness for glTF's _WETNESS or _wetness, COLOR_1");
+    return std::nullopt;
+  }
+  if (options_.has_attributes && !graph_.hasAttribute(name)) graph_.attributes.push_back(name);
+  return Source{graph::AttributeRef{std::move(name), type}, {}};
+}
+
+/// The file's name with the document's tokens in place of their names.
+std::string Patterns::fileOf(const Scope& scope, const Element& input) const {
+  std::string file(trimmed(input.get("value")));
+  std::vector<const Element*> owners{scope.owner_};
+  owners.insert(owners.end(), documents_.begin(), documents_.end());
+  for (const Element* owner : owners) {
+    for (const Element& token : owner->children) {
+      if (token.category != "token") continue;
+      const std::string name = fmt::format("[{}]", token.name());
+      const size_t at = file.find(name);
+      if (at != std::string::npos) file.replace(at, name.size(), token.get("value"));
+    }
+  }
+  // A document names files, a graph has URIs.
+  for (size_t at = file.find('%'); at != std::string::npos; at = file.find('%', at + 3))
+    file.replace(at, 1, "%25");
+  return file;
+}
+
+/// Whether a group's interface, and not the node itself, says which image an input of type filename has.
+bool Patterns::isOfInstances(const Scope& scope, const Element& input) const {
+  const std::string* name = input.find("interfacename");
+  return name != nullptr && scope.interface_ != nullptr && scope.interface_ != scope.owner_ &&
+         scope.input(*name) != nullptr;
+}
+
+/// Whether an input of type filename is an image for each tile.
+bool Patterns::hasTiles(Scope& scope, const Element& input) {
+  if (isOfInstances(scope, input)) {
+    const std::string name = graphName(input.get("interfacename"));
+    const auto& inputs = scope.group_.inputs;
+    return std::any_of(inputs.begin(), inputs.end(), [&](const graph::GroupInput& one) {
+      return one.name == name && one.type == ir::Type::Texture2DArray;
+    });
+  }
+  const Element* from = text(scope, input);
+  return from != nullptr && from->find("texture") == nullptr &&
+         !graph::tileToken(fileOf(scope, *from)).empty();
+}
+
+/// Whether all that an interface's input goes to takes images of tiles.
+bool Patterns::goesToTiles(const Element& owner, std::string_view name) const {
+  for (const Element& node : owner.children) {
+    for (const Element& input : node.children) {
+      if (input.category == "input" && input.get("interfacename") == name &&
+          (definitionOf(node) != nullptr || !takesTiles(node.category)))
+        return false;
+    }
+  }
+  return true;
+}
+
+/// An image. `tiles`: what takes it has a place for an image of each tile.
+std::optional<Source> Patterns::image(Scope& scope, const Element& element, const Element& input,
+                                      bool tiles) {
+  if (isOfInstances(scope, input)) return connected(scope, input);
+  const Element* from = text(scope, input);
+  if (from == nullptr) return std::nullopt;
+  graph::Texture texture;
+  const std::string_view type = element.get("type");
+  const bool color = type == "color3" || type == "color4" || type == "multioutput";
+  const std::string_view space = from->get("colorspace");
+  texture.srgb = color && (space == "srgb_texture" || space == "srgb_rec709_scene");
+  if (const std::string* number = from->find("texture")) {
+    const std::optional<std::vector<double>> index = numbersOf(*number);
+    texture.texture = index && (*index)[0] >= 0 && (*index)[0] < 1e9 ? static_cast<int>((*index)[0]) : -1;
+  } else {
+    texture.file = fileOf(scope, *from);
+  }
+  const bool tiled = !graph::tileToken(texture.file).empty();
+  if (tiled && tiles) {
+    texture.type = ir::Type::Texture2DArray;
+  } else if (tiled) {
+    warning(input, "first-tile", fmt::format("{} is an image for each tile", quote(from->get("value"))),
+            "this node takes the first one for all");
+    texture.file = graph::tileFile(texture.file, 0);
+  }
+  const auto wrapOf = [&](std::string_view name, std::string_view usd) {
+    const Element* mode = element.child("input", name);
+    if (mode == nullptr) mode = element.child("input", usd);
+    const Element* said = mode == nullptr ? nullptr : text(scope, *mode);
+    const std::string_view value = said == nullptr ? std::string_view() : said->get("value");
+    if (texture.type == ir::Type::Texture2DArray) return graph::Wrap::Clamp;  // at the edges of tiles
+    if (value == "constant" || value == "black")
+      warning(*mode, "wrap-clamped", fmt::format("{} is {}", quote(name), quote(value)),
+              "beyond its edge the image has its edge's colour here");
+    return value == "clamp" || value == "constant" || value == "black" ? graph::Wrap::Clamp
+           : value == "mirror"                                         ? graph::Wrap::Mirror
+                                                                       : graph::Wrap::Repeat;
+  };
+  texture.wrap = {wrapOf("uaddressmode", "wrapS"), wrapOf("vaddressmode", "wrapT")};
+  const Element* filter = element.child("input", "filtertype");
+  const Element* filtered = filter == nullptr ? nullptr : text(scope, *filter);
+  texture.nearest = filtered != nullptr && filtered->get("value") == "closest";
+  const Element* fallback = element.child("input", "default");
+  if (fallback == nullptr) fallback = element.child("input", "fallback");
+  ir::Components color_of{0, 0, 0, 0};
+  if (fallback != nullptr && fallback->find("value") != nullptr) {
+    const std::optional<ir::Type> of = typeOf(fallback->get("type"));
+    const Result<ir::Components> value =
+        of ? valueOf(*fallback, *of) : Result<ir::Components>(ir::Components{});
+    if (value) color_of = *value;
+    if (of == ir::Type::Float) color_of = {color_of[0], color_of[0], color_of[0], 1};
+    if (of == ir::Type::Vec3) color_of[3] = 1;
+  }
+  if (texture.texture < 0) texture.color = color_of;
+  texture.pointer = from->place.pointer.empty() ? fmt::format("/{}/{}", scope.group_.name, element.name())
+                                                : from->place.pointer;
+  std::string key = fmt::format(
+      "{} {} {} {} {} {} {}", texture.file, texture.texture, texture.srgb, static_cast<int>(texture.wrap[0]),
+      static_cast<int>(texture.wrap[1]), texture.nearest,
+      texture.color ? fmt::format("{} {} {} {}", color_of[0], color_of[1], color_of[2], color_of[3])
+                    : std::string());
+  const auto [it, fresh] = textures_.try_emplace(std::move(key));
+  if (fresh) {
+    texture.name = it->second =
+        texture_names_.free(graphName(element.name().empty() ? input.name() : element.name()) + "_image");
+    graph_.textures.push_back(std::move(texture));
+  }
+  return Source{graph::TextureRef{it->second}, {}};
+}
+
+}  // namespace lacquer::materialx
