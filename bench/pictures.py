@@ -84,7 +84,7 @@ def graph_of(node):
         elif name in better:
             value = better[name]
             inputs[name] = {"node": value} if isinstance(value, str) else value
-        elif name == "geomprop":
+        elif name in ("geomprop", "varname"):
             inputs[name] = {"attribute": "_SHOWN", "type": kind}
         elif param.get("advanced") or param.get("given"):
             continue
