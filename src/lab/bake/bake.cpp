@@ -356,7 +356,7 @@ size_t Baking::textureOf(const std::string& uri, const Json& sampler) {
 std::optional<uint64_t> Baking::textureFor(const graph::Texture& texture) {
   if (texture.texture >= 0) return static_cast<uint64_t>(texture.texture);
   if (texture.file.empty()) return std::nullopt;
-  if (texture.file.find(graph::kUdim) != std::string::npos) {
+  if (!graph::tileToken(texture.file).empty()) {
     addBounded(said_,
                {"not-said",
                 Severity::Warning,
