@@ -8,6 +8,7 @@
 #include "cost/cost.h"
 #include "environment/panorama.h"
 #include "eval/image.h"
+#include "eval/point_arrays.h"
 #include "eval/points_file.h"
 #include "feeds.h"
 #include "gltf/geometry.h"
@@ -99,16 +100,49 @@ std::string feedGeometry(std::string_view bytes) {
   return {};
 }
 
-std::string feedPoints(std::string_view bytes) {
-  const Result<EvalPoints> points = readPoints(bytes, "fuzz.json", {});
+namespace {
+
+std::string checkPoints(const Result<EvalPoints>& points) {
   if (!points) return points.error().empty() ? "points are refused without an error" : "";
-  for (const eval::Point& p : points->points) {
-    if (!isUnit(p.n) || !isUnit(p.v) || !isUnit(p.l)) return "a direction of a point is no unit vector";
-    for (const double x : p.light) {
-      if (!(std::isfinite(x) && x >= 0)) return "a point's light is not finite, or negative";
+  const size_t count = points->points.count;
+  for (const auto& [name, column] : points->points.columns) {
+    const auto components = static_cast<size_t>(column.components);
+    if (column.values.size() != (column.per_point ? count : 1) * components)
+      return "a column has another length than the points";
+    for (size_t i = 0; i < column.values.size(); i += components) {
+      const double* x = &column.values[i];
+      const bool direction = name == "n" || name == "v" || name == "l";
+      if (direction && !isUnit({x[0], x[1], x[2]})) return "a direction of a point is no unit vector";
+      if (name == "light" && !std::all_of(x, x + 3, [](double y) { return std::isfinite(y) && y >= 0; }))
+        return "a point's light is not finite, or negative";
     }
   }
   return {};
+}
+
+}  // namespace
+
+/// As a text, and as arrays that lie anywhere in the bytes.
+std::string feedPoints(std::string_view bytes) {
+  if (std::string wrong = checkPoints(readPoints(bytes, "fuzz.json", {})); !wrong.empty()) return wrong;
+  constexpr const char* kNames[] = {
+      "n",   "t",      "v",        "l",       "uv1",  "color0",           "light",
+      "env", "inside", "position", "COLOR_1", "_OWN", "frame.brightness", "coat_factor",
+      "",    "channel"};
+  constexpr size_t kMost = 5 * sizeof(double);
+  PointArrays arrays;
+  for (size_t at = 0; at + 3 + kMost <= bytes.size() && arrays.arrays.size() < 6; at += 3) {
+    const auto byte = [&](size_t k) { return static_cast<unsigned char>(bytes[at + k]); };
+    arrays.arrays.push_back({kNames[byte(0) % 16], bytes.data() + at + 3, byte(1) % 2 != 0, byte(1) / 2 % 6U,
+                             static_cast<ptrdiff_t>(byte(2) % 48)});
+  }
+  for (const PointArray& array : arrays.arrays) {
+    const size_t room =
+        bytes.size() - static_cast<size_t>(static_cast<const char*>(array.numbers) - bytes.data());
+    const size_t fits = array.stride == 0 ? room : (room - kMost) / static_cast<size_t>(array.stride) + 1;
+    arrays.count = arrays.count == 0 ? fits : std::min(arrays.count, fits);
+  }
+  return checkPoints(pointsOf(arrays));
 }
 
 /// What `cost` does with a module before a driver, in a process of its own, is given it.
