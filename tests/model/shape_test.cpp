@@ -124,9 +124,10 @@ std::string sharedText(graph::Graph graph) {
     p.value = {};
     p.pointer.clear();
   }
-  for (ir::TextureSlot& slot : graph.textures) {
+  for (graph::Texture& slot : graph.textures) {
     slot.texture = -1;
     slot.pointer.clear();
+    slot.also.clear();
   }
   return graph::toJson(graph);
 }

@@ -98,7 +98,9 @@ Result<void> checkAttributes(const ir::Module& module, const EvalPoints& points,
       if (attribute.name != name) continue;
       const auto given = points.attribute_components.find(name);
       const int count = given == points.attribute_components.end() ? column.components : given->second;
-      if (count != ir::componentCount(attribute.type))
+      // A colour may lack its alpha, as in glTF.
+      const bool opaque = count == 3 && attribute.type == ir::Type::Vec4 && name.starts_with("COLOR_");
+      if (count != ir::componentCount(attribute.type) && !opaque)
         return fail("wrong-type", {file, 0, 0, {}}, fmt::format("{} is given {} numbers", name, count),
                     fmt::format("it is {} here", graph::article(attribute.type)));
       const bool whole = !ir::isWhole(ir::partType(attribute.type)) ||
