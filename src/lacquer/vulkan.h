@@ -341,7 +341,8 @@ struct VertexStream {
   float scale = 1;
 };
 
-/// The format for what an accessor stores, as a vertex buffer of any device may have it. Integers that stand
+/// The format for what an accessor stores and a shader reads as floats, as a vertex buffer of any device may
+/// have it. Integers that stand
 /// for themselves come normalized, with the scale that undoes it. Three components of less than 32 bits are
 /// read as four, of which the last is glTF's padding; the buffer needs that many bytes behind its last
 /// vertex.
@@ -378,6 +379,41 @@ inline VertexStream vertexStream(const StoredAttribute& stored) {
   return {};
 }
 
+/// Four components of 32 bits, of what the input is made of: for a stand-in, and for what is converted.
+inline VkFormat wideFormat(const ShaderInput& input) {
+  if (input.type[0] == 'i') return VK_FORMAT_R32G32B32A32_SINT;
+  return input.type[0] == 'u' ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+/// The same for a shader's input: one of integers, such as "int" or "uvec2", takes integers of its own sign
+/// as they are. The format is undefined for all others; make 32-bit integers of them.
+inline VertexStream vertexStream(const StoredAttribute& stored, const ShaderInput& input) {
+  constexpr struct {
+    std::string_view component;
+    char kind;  // of the input's type
+    uint32_t bytes;
+    VkFormat formats[3];  // of one, two and four components
+  } kWhole[] = {
+      {"BYTE", 'i', 1, {VK_FORMAT_R8_SINT, VK_FORMAT_R8G8_SINT, VK_FORMAT_R8G8B8A8_SINT}},
+      {"SHORT", 'i', 2, {VK_FORMAT_R16_SINT, VK_FORMAT_R16G16_SINT, VK_FORMAT_R16G16B16A16_SINT}},
+      {"UNSIGNED_BYTE", 'u', 1, {VK_FORMAT_R8_UINT, VK_FORMAT_R8G8_UINT, VK_FORMAT_R8G8B8A8_UINT}},
+      {"UNSIGNED_SHORT", 'u', 2, {VK_FORMAT_R16_UINT, VK_FORMAT_R16G16_UINT, VK_FORMAT_R16G16B16A16_UINT}},
+      {"UNSIGNED_INT", 'u', 4, {VK_FORMAT_R32_UINT, VK_FORMAT_R32G32_UINT, VK_FORMAT_R32G32B32A32_UINT}},
+  };
+  if (input.type[0] != 'i' && input.type[0] != 'u') return vertexStream(stored);
+  uint32_t components = 1;
+  if (stored.type.size() == 4 && stored.type.compare(0, 3, "VEC") == 0)
+    components = static_cast<uint32_t>(stored.type[3] - '0');
+  if (components < 1 || components > 4 || stored.normalized) return {};
+  for (const auto& row : kWhole) {
+    if (row.component != stored.component_type || row.kind != input.type[0]) continue;
+    if (row.bytes == 4 && components == 3) return {VK_FORMAT_R32G32B32_UINT, 12, 1};
+    const uint32_t read = components == 3 ? 4 : components;
+    return {row.formats[read == 4 ? 2 : read - 1], (row.bytes * components + 3) / 4 * 4, 1};
+  }
+  return {};
+}
+
 /// Once for each instance, not for each vertex.
 inline bool isOfInstance(std::string_view attribute) {
   return attribute == "TRANSLATION" || attribute == "ROTATION" || attribute == "SCALE";
@@ -397,7 +433,7 @@ struct VertexInput {
   std::vector<VkVertexInputAttributeDescription> attributes;
 
   VertexInput() = default;
-  /// `stream(input)`: how the primitive has it; a stride of 0 and a format of floats for a stand-in.
+  /// `stream(input)`: how the primitive has it; a stride of 0 and wideFormat() for a stand-in.
   template <class Stream>
   VertexInput(const Reflection& reflection, Stream stream) {
     for (const ShaderInput& input : reflection.inputs) {

@@ -1,10 +1,15 @@
 // What vertices and objects have of an application's own reaches a layer in every target, checked by those
 // compilers that are there: of any type, integers and bools one vertex's, fields of objects as no value of a
 // vertex at all.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <fstream>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "inputs.h"
 
@@ -215,6 +220,92 @@ TEST(OwnAttributes, ThatPicturesLackAreZero) {
   EXPECT_EQ(middleOf("worn"), 0);
   EXPECT_EQ(middleOf("shade"), 191) << "a vector: half of it, from -1 to 1";
   EXPECT_EQ(errorsOf(messages), "");
+/// A triangle whose mask is stored in that way.
+std::string storedAs(const std::string& type, int component, bool normalized = false) {
+  return R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ACME_wet"],
+  "materials": [{"name": "Wet", "extensions": {"ACME_wet": {"amount": 0.5}}}],
+  "accessors": [{"componentType": 5126, "type": "VEC3", "count": 3, "min": [0, 0, 0], "max": [1, 1, 0]},
+    {"componentType": )" +
+         std::to_string(component) + R"(, "type": ")" + type + R"(", "normalized": )" +
+         (normalized ? "true" : "false") + R"(, "count": 3}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "_MASK": 1}, "material": 0}]}]})";
+}
+
+/// The warnings of a run.
+std::string warningsOf(const std::string& file, const std::string& type) {
+  const std::filesystem::path folder = emptyFolder();
+  std::ofstream(folder / "wet.gltf") << file;
+  Options options = quick();
+  options.node_texts = {
+      {"wet.node", textOf(type, "interpolate(_MASK)", "1", type, type == "float" ? "mask" : "float(mask)")}};
+  options.template_name = "masked";
+  Messages messages;
+  const Report report =
+      generate({(folder / "wet.gltf").string()}, (folder / "out").string(), options, messages);
+  EXPECT_TRUE(report.ok) << errorsOf(messages);
+  std::string warnings;
+  for (const Message& message : messages) {
+    if (message.level == Message::Level::Warning) warnings += message.text + "\n";
+  }
+  return warnings;
+}
+
+/// A primitive that stores an attribute otherwise than its shader reads it draws nonsense: it is said.
+TEST(OwnAttributes, ThatAreStoredOtherwiseAreSaid) {
+  constexpr int kByte = 5120, kUnsignedShort = 5123, kFloat = 5126;
+  EXPECT_EQ(warningsOf(storedAs("SCALAR", kFloat), "float"), "");
+  EXPECT_EQ(warningsOf(storedAs("SCALAR", kUnsignedShort), "float"), "");
+  EXPECT_EQ(warningsOf(storedAs("SCALAR", kUnsignedShort), "int"), "");
+  EXPECT_EQ(warningsOf(storedAs("SCALAR", kByte), "int"), "");
+  const std::string pair = warningsOf(storedAs("VEC2", kFloat), "float");
+  EXPECT_NE(
+      pair.find("/meshes/0/primitives/0/attributes/_MASK: warning: _MASK is stored as FLOAT VEC2, and the "
+                "shader reads a float [attribute-format]"),
+      std::string::npos)
+      << pair;
+  const std::string floats = warningsOf(storedAs("SCALAR", kFloat), "int");
+  EXPECT_NE(floats.find("_MASK is stored as FLOAT SCALAR, and the shader reads an int"), std::string::npos)
+      << floats;
+  const std::string normal = warningsOf(storedAs("SCALAR", kUnsignedShort, true), "int");
+  EXPECT_NE(normal.find("_MASK is stored as normalized UNSIGNED_SHORT SCALAR"), std::string::npos) << normal;
+}
+
+/// Integers of vertices and of blocks on a device are what they are on the processor.
+TEST(OwnAttributes, IntegersReachADevice) {
+  std::string text = textOf("int", "interpolate(_MASK)", "1", "int", "mask == 3 ? 1.0 : 0.25");
+  text = replaced(text, "float wetness in [0, 1] = 0;", "uint wetness in [0, 9] = 0;");
+  text = replaced(text, "given float wetness in [0, 1] = object.wetness",
+                  "given float wetness in [0, 1] = float(object.wetness) * 0.1");
+  Options options = quick();
+  options.node_texts = {{"wet.node", text}};
+  options.template_name = "masked";
+  Messages messages;
+  const Scene scene = Scene::fromMemory(kFile, "wet.gltf", options, messages);
+  Attributes attributes = kUnusedAttributes;
+  attributes.application = {"_MASK"};
+  Graph graph = scene.graph(0, attributes, options, messages);
+  ASSERT_TRUE(graph) << errorsOf(messages);
+  const auto colors = [&](Engine engine) {
+    std::vector<std::array<double, 4>> all;
+    for (const char* mask : {"3", "2"}) {
+      const std::string points =
+          fmt::format(R"({{"uniforms": {{"object.wetness": 5}}, "points": [{{"_MASK": {}}}]}})", mask);
+      Messages said;
+      const std::optional<Evaluation> result = evaluate(graph, points, engine, {}, options, said);
+      const std::string errors = errorsOf(said);
+      if (errors != "vulkan-unavailable") {
+        EXPECT_EQ(errors, "");
+      }
+      if (result) all.push_back(result->rgba[0]);
+    }
+    return all;
+  };
+  const auto cpu = colors(Engine::Float);
+  const auto gpu = colors(Engine::Vulkan);
+  if (gpu.empty()) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
+  ASSERT_EQ(cpu.size(), 2U);
+  for (size_t i = 0; i < 2; ++i) EXPECT_NEAR(cpu[i][0], gpu[i][0], 1e-4) << i;
+  EXPECT_NE(cpu[0][0], cpu[1][0]);
 }
 
 }  // namespace

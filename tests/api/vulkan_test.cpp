@@ -209,6 +209,27 @@ TEST(Vulkan, VertexFormats) {
   EXPECT_EQ(of("", "FLOAT", false).format, VK_FORMAT_R32_SFLOAT);
 }
 
+/// Integers for an input of integers, and none where the bits would be another number.
+TEST(Vulkan, VertexFormatsOfIntegers) {
+  const auto of = [](const char* type, const char* component, const char* input, bool normalized = false) {
+    return vk::vertexStream({"_KIND", type, component, normalized}, {"_KIND", input, 9});
+  };
+  EXPECT_EQ(of("SCALAR", "UNSIGNED_SHORT", "uint").format, VK_FORMAT_R16_UINT);
+  EXPECT_EQ(of("SCALAR", "UNSIGNED_SHORT", "uint").stride, 4U);
+  EXPECT_EQ(of("SCALAR", "UNSIGNED_SHORT", "uint").scale, 1);
+  EXPECT_EQ(of("SCALAR", "SHORT", "int").format, VK_FORMAT_R16_SINT);
+  EXPECT_EQ(of("VEC3", "BYTE", "ivec3").format, VK_FORMAT_R8G8B8A8_SINT);
+  EXPECT_EQ(of("VEC2", "UNSIGNED_INT", "uvec2").format, VK_FORMAT_R32G32_UINT);
+  EXPECT_EQ(of("VEC3", "UNSIGNED_INT", "uvec3").stride, 12U);
+  EXPECT_EQ(of("SCALAR", "UNSIGNED_SHORT", "int").format, VK_FORMAT_UNDEFINED) << "another sign";
+  EXPECT_EQ(of("SCALAR", "FLOAT", "int").format, VK_FORMAT_UNDEFINED);
+  EXPECT_EQ(of("SCALAR", "UNSIGNED_SHORT", "uint", true).format, VK_FORMAT_UNDEFINED);
+  EXPECT_EQ(of("SCALAR", "UNSIGNED_SHORT", "float").format, VK_FORMAT_R16_UNORM);
+  EXPECT_EQ(vk::wideFormat({"_KIND", "int", 9}), VK_FORMAT_R32G32B32A32_SINT);
+  EXPECT_EQ(vk::wideFormat({"_KIND", "uvec2", 9}), VK_FORMAT_R32G32B32A32_UINT);
+  EXPECT_EQ(vk::wideFormat({"_KIND", "vec2", 9}), VK_FORMAT_R32G32B32A32_SFLOAT);
+}
+
 TEST(Vulkan, VertexInputHasABindingForEachInput) {
   const Shader shader = shaderOf("forward");
   const vk::VertexInput input(shader.reflection(), [](const ShaderInput& of) -> vk::VertexStream {

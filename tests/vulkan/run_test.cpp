@@ -74,6 +74,38 @@ TEST(VulkanRun, InputsComeBackUnchanged) {
   }
 }
 
+/// Integers stay what they are, also where a float would not hold them.
+TEST(VulkanRun, IntegersComeBackUnchanged) {
+  NEEDS_DEVICE();
+  Work work;
+  work.fragment = compiled(
+      "layout(location = 0) in float a;\nlayout(location = 1) flat in int b;\n"
+      "layout(location = 3) flat in uvec2 c;\nlayout(location = 0) out vec4 d;\n"
+      "void main() { d = vec4(a, b, c.x & 0xffffu, c.y >> 16u); }\n");
+  work.points = 3;
+  work.inputs = {{1, {0.5F, 1, 2}, {}},
+                 {1, {}, {7, std::bit_cast<uint32_t>(-3), std::bit_cast<uint32_t>(-65536)}},
+                 {2, {}, {16777217, 0x70000, 3, 0xffffffff, 5, 0}}};
+  for (const bool quads : {false, true}) {
+    if (quads) {
+      work.quads = true;
+      work.points = 4;
+      work.inputs[0].values.push_back(0);
+      work.inputs[1].whole.push_back(9);
+      work.inputs[2].whole.insert(work.inputs[2].whole.end(), 2, 1);
+    }
+    const Outcome outcome = ran(work);
+    for (size_t i = 0; i < work.points; ++i) {
+      const size_t from = quads ? 0 : i;  // flat
+      ASSERT_EQ(outcome.outputs[0][4 * i + 1], static_cast<int32_t>(work.inputs[1].whole[from])) << i;
+      ASSERT_EQ(outcome.outputs[0][4 * i + 2], work.inputs[2].whole[2 * from] & 0xffffU) << i;
+      ASSERT_EQ(outcome.outputs[0][4 * i + 3], work.inputs[2].whole[2 * from + 1] >> 16U) << i;
+    }
+  }
+  work.inputs[1] = {1, {1, 2, 3, 4}, {}};
+  EXPECT_EQ(errorOf(work), "error: the input at location 1 has another type [vulkan-interface]");
+}
+
 TEST(VulkanRun, QuadsHaveDerivatives) {
   NEEDS_DEVICE();
   Work work;

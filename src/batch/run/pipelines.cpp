@@ -16,21 +16,29 @@ using json::JsonText;
 
 /// A vertex format in the words of three interfaces; empty where one of them has none.
 struct Format {
+  std::string_view kind;  ///< of the shader's input
   std::string_view component;
   bool normalized;
   std::string_view vulkan, d3d12, webgpu;  ///< of one component: the width, and how it is read
 };
 
+/// Integers go to an input of integers as they are, of its own sign: interfaces take no other.
 constexpr Format kFormats[] = {
-    {"FLOAT", false, "32 SFLOAT", "32 FLOAT", "float32"},
-    {"BYTE", true, "8 SNORM", "8 SNORM", "snorm8"},
-    {"BYTE", false, "8 SSCALED", "", ""},
-    {"UNSIGNED_BYTE", true, "8 UNORM", "8 UNORM", "unorm8"},
-    {"UNSIGNED_BYTE", false, "8 USCALED", "", ""},
-    {"SHORT", true, "16 SNORM", "16 SNORM", "snorm16"},
-    {"SHORT", false, "16 SSCALED", "", ""},
-    {"UNSIGNED_SHORT", true, "16 UNORM", "16 UNORM", "unorm16"},
-    {"UNSIGNED_SHORT", false, "16 USCALED", "", ""},
+    {"float", "FLOAT", false, "32 SFLOAT", "32 FLOAT", "float32"},
+    {"float", "BYTE", true, "8 SNORM", "8 SNORM", "snorm8"},
+    {"float", "BYTE", false, "8 SSCALED", "", ""},
+    {"float", "UNSIGNED_BYTE", true, "8 UNORM", "8 UNORM", "unorm8"},
+    {"float", "UNSIGNED_BYTE", false, "8 USCALED", "", ""},
+    {"float", "SHORT", true, "16 SNORM", "16 SNORM", "snorm16"},
+    {"float", "SHORT", false, "16 SSCALED", "", ""},
+    {"float", "UNSIGNED_SHORT", true, "16 UNORM", "16 UNORM", "unorm16"},
+    {"float", "UNSIGNED_SHORT", false, "16 USCALED", "", ""},
+    {"int", "INT", false, "32 SINT", "32 SINT", "sint32"},
+    {"int", "BYTE", false, "8 SINT", "8 SINT", "sint8"},
+    {"int", "SHORT", false, "16 SINT", "16 SINT", "sint16"},
+    {"uint", "UNSIGNED_INT", false, "32 UINT", "32 UINT", "uint32"},
+    {"uint", "UNSIGNED_BYTE", false, "8 UINT", "8 UINT", "uint8"},
+    {"uint", "UNSIGNED_SHORT", false, "16 UINT", "16 UINT", "uint16"},
 };
 
 /// "R32G32B32" and "SFLOAT" of "32 SFLOAT" and three components.
@@ -41,26 +49,34 @@ std::pair<std::string, std::string> channels(std::string_view one, size_t count)
   return {text, std::string(one.substr(space + 1))};
 }
 
+/// Of an accessor's type or of GLSL's.
 size_t components(std::string_view type) {
-  const bool vector = type.size() == 4 && (type.starts_with("VEC") || type.starts_with("vec"));
-  return vector ? static_cast<size_t>(type[3] - '0') : 1;
+  const size_t vector = std::min(type.find("VEC"), type.find("vec"));
+  return vector != std::string_view::npos ? static_cast<size_t>(type.back() - '0') : 1;
+}
+
+/// What a shader's input is made of: "float", "int", "uint".
+std::string_view kindOf(std::string_view type) {
+  if (type.starts_with("int") || type.starts_with("ivec")) return "int";
+  return type.starts_with("uint") || type.starts_with("uvec") ? "uint" : "float";
 }
 
 /// What the interfaces call the format; null where one has none and the engine converts the attribute.
 void writeFormats(const PipelineInput& input, JsonText& to) {
   const auto it = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& format) {
-    return format.component == input.component && format.normalized == input.normalized;
+    return format.kind == input.kind && format.component == input.component &&
+           format.normalized == input.normalized;
   });
   std::string vulkan, d3d12, webgpu;
   if (it != std::end(kFormats) && input.count >= 1 && input.count <= 4) {
     const auto [vulkan_channels, vulkan_kind] = channels(it->vulkan, input.count);
     vulkan = "VK_FORMAT_" + vulkan_channels + "_" + vulkan_kind;
-    const bool whole = it->component == "FLOAT";
-    if (!it->d3d12.empty() && (whole || input.count != 3)) {
+    const bool wide = it->vulkan.starts_with("32");
+    if (!it->d3d12.empty() && (wide || input.count != 3)) {
       const auto [d3d12_channels, d3d12_kind] = channels(it->d3d12, input.count);
       d3d12 = "DXGI_FORMAT_" + d3d12_channels + "_" + d3d12_kind;
     }
-    if (!it->webgpu.empty() && (whole || input.count == 2 || input.count == 4))
+    if (!it->webgpu.empty() && (wide || input.count == 2 || input.count == 4))
       webgpu = std::string(it->webgpu) + (input.count > 1 ? "x" + std::to_string(input.count) : "");
   }
   for (const auto& [key, format] : {std::pair("vulkan", &vulkan), {"d3d12", &d3d12}, {"webgpu", &webgpu}}) {
@@ -74,7 +90,11 @@ void writeFormats(const PipelineInput& input, JsonText& to) {
 
 /// The shader's input with the format that the primitive has.
 PipelineInput inputOf(const ShaderInput& input, const std::vector<StoredAttribute>* attributes) {
-  PipelineInput made{input.name, input.location, "FLOAT", static_cast<uint32_t>(components(input.type))};
+  const std::string_view kind = kindOf(input.type);
+  // A stand-in's, and what an engine makes of an attribute whose format the file does not say.
+  const std::string_view wide = kind == "int" ? "INT" : kind == "uint" ? "UNSIGNED_INT" : "FLOAT";
+  PipelineInput made{input.name, input.location, std::string(kind), std::string(wide),
+                     static_cast<uint32_t>(components(input.type))};
   if (attributes == nullptr) return made;
   const auto own = std::find_if(attributes->begin(), attributes->end(),
                                 [&](const StoredAttribute& one) { return one.semantic == input.name; });
@@ -100,7 +120,8 @@ std::string identityOf(const Pipeline& of) {
   BlobWriter key;
   key(of.shader, of.has_vertex, of.double_sided, of.depth_write, of.blend.has_value());
   for (const PipelineInput& input : of.inputs)
-    key(input.name, input.location, input.component, input.count, input.normalized, input.stand_in);
+    key(input.name, input.location, input.kind, input.component, input.count, input.normalized,
+        input.stand_in);
   for (const SpecConstant& constant : of.specialization) key(constant.id, constant.neutral);
   return key.take();
 }

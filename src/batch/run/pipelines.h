@@ -14,6 +14,7 @@ namespace lacquer {
 struct PipelineInput {
   std::string name;
   uint32_t location = 0;
+  std::string kind;       ///< what the shader reads: "float", "int", "uint"
   std::string component;  ///< "FLOAT"
   uint32_t count = 1;     ///< components
   bool normalized = false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <set>
 
 #include "run/programs.h"
 #include "run/receipt.h"
@@ -37,7 +38,13 @@ public:
             const std::function<void(const MadeShader&)>& each);
 
   void report(const Diagnostics& diagnostics, const std::string& file) {
-    lacquer::report(diagnostics, file, messages_);
+    // What is wrong at a line of a template or of a node is said once, not for each material.
+    Diagnostics fresh;
+    for (const Diagnostic& one : diagnostics) {
+      const bool of_text = one.place.line != 0 && !one.place.file.empty() && one.place.file != file;
+      if (!of_text || said_.insert(format(one)).second) fresh.push_back(one);
+    }
+    lacquer::report(fresh, file, messages_);
   }
   /// False, with messages, when one of these outputs is an input of the run or another output.
   bool mayWrite(const Strings& outputs);
@@ -84,6 +91,7 @@ private:
   std::vector<Input> read_;  ///< where programs are looked for: what was read for that
   std::vector<std::string> node_files_, inputs_;
   Report report_;
+  std::set<std::string> said_;  ///< what is wrong at lines of texts
 };
 
 }  // namespace lacquer

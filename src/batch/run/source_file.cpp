@@ -28,7 +28,7 @@ namespace lacquer {
 
 template <class Archive>
 static void fields(Archive& archive, PipelineInput& of) {
-  archive(of.name, of.location, of.component, of.count, of.normalized, of.stand_in);
+  archive(of.name, of.location, of.kind, of.component, of.count, of.normalized, of.stand_in);
 }
 
 template <class Archive>
@@ -59,7 +59,8 @@ constexpr uint64_t kCachePart = 8;
 /// What a use of a material says of its pipelines.
 struct PipelineUse {
   const Structure* structure = nullptr;
-  std::vector<UsedParameter> parameters;  ///< where there are specialization constants
+  std::vector<UsedParameter>
+      parameters;  ///< where there are specialization constants and pipelines are asked for
 };
 
 /// A material's entry and what the run needs of it.
@@ -84,14 +85,13 @@ Done textOf(const Wanted& wanted, const std::string& file, const Setting& settin
   } else {
     done.by_default = described.values;
   }
-  if (!setting.options.pipelines.empty()) {
-    done.state = described.values.state;
-    for (size_t i = 0; i < described.met.size(); ++i) {
-      PipelineUse& use = done.pipelines.emplace_back();
-      use.structure = described.met[i];
-      if (use.structure->reflection.has_spec_constants)
-        use.parameters = std::move(described.values.uses[i].parameters);
-    }
+  const bool listed = !setting.options.pipelines.empty();
+  done.state = described.values.state;
+  for (size_t i = 0; i < described.met.size(); ++i) {
+    PipelineUse& use = done.pipelines.emplace_back();
+    use.structure = described.met[i];
+    if (listed && use.structure->reflection.has_spec_constants)
+      use.parameters = std::move(described.values.uses[i].parameters);
   }
   done.report = {file,
                  wanted.name,
@@ -184,6 +184,69 @@ private:
   Pipelines all_;
 };
 
+/// Attributes of the application's that primitives store otherwise than their shaders read them.
+class AttributeShapes {
+public:
+  AttributeShapes(const std::string& path, Diagnostics& to) : path_(path), to_(to) {}
+
+  void material(int index, const std::vector<PipelineUse>& uses) {
+    std::vector<const Structure*>& structures = structures_[index];
+    for (const PipelineUse& use : uses) structures.push_back(use.structure);
+  }
+
+  void check(const std::vector<ContractPrimitive>& primitives) {
+    for (const ContractPrimitive& primitive : primitives) {
+      drawn(primitive, primitive.material, primitive.use);
+      for (const VariantUse& variant : primitive.variants) drawn(primitive, variant.material, variant.use);
+    }
+  }
+
+private:
+  void drawn(const ContractPrimitive& primitive, int material, std::optional<size_t> use) {
+    const auto it = structures_.find(material);
+    if (it == structures_.end() || !use || *use >= it->second.size()) return;
+    for (const ShaderInput& input : it->second[*use]->reflection.inputs) {
+      const auto stored =
+          std::find_if(primitive.attributes.begin(), primitive.attributes.end(),
+                       [&](const StoredAttribute& one) { return one.semantic == input.name; });
+      if (stored != primitive.attributes.end()) compare(primitive, input, *stored);
+    }
+  }
+
+  void compare(const ContractPrimitive& primitive, const ShaderInput& input, const StoredAttribute& stored) {
+    // Those that templates and graphs declare a type for.
+    const bool color =
+        input.name.starts_with("COLOR_") && input.name.back() > '0';  // alpha need not be there
+    const bool coordinate = input.name.starts_with("TEXCOORD_") && input.name.back() > '3';
+    if (!input.name.starts_with('_') && !color && !coordinate) return;
+    if (stored.type.empty() || stored.component_type.empty()) return;
+    const bool vector = input.type.back() >= '2' && input.type.back() <= '4';
+    const std::string wanted = vector ? std::string("VEC") + input.type.back() : "SCALAR";
+    const bool count = stored.type == wanted || (color && stored.type == "VEC3" && wanted == "VEC4");
+    const bool whole = input.type[0] == 'i' || input.type[0] == 'u';
+    const bool kind = !whole || (stored.component_type != "FLOAT" && !stored.normalized);
+    if (count && kind) return;
+    const std::string how =
+        fmt::format("{}{} {}", stored.normalized ? "normalized " : "", stored.component_type, stored.type);
+    if (!said_.insert(fmt::format("{} {} {}", input.name, input.type, how)).second) return;
+    addBounded(to_, {"attribute-format",
+                     Severity::Warning,
+                     {path_, 0, 0,
+                      fmt::format("/meshes/{}/primitives/{}/attributes/{}", primitive.mesh,
+                                  primitive.primitive, input.name)},
+                     fmt::format("{} is stored as {}, and the shader reads {} {}", input.name, how,
+                                 input.type[0] == 'i' ? "an" : "a", input.type),
+                     fmt::format("the accessor's type is to be {}{}", wanted,
+                                 whole ? ", of integers that are not normalized" : ""),
+                     {}});
+  }
+
+  const std::string& path_;
+  Diagnostics& to_;
+  std::map<int, std::vector<const Structure*>> structures_;
+  std::set<std::string> said_;
+};
+
 /// Extensions of the materials that no node file declares, each once: one that is misspelt does nothing,
 /// which is hard to see in a picture.
 Diagnostics undeclared(const material::Document& document, const std::string& path,
@@ -230,6 +293,8 @@ FileResult SceneFile::run(const material::Document& document) {
   json::JsonText json(manifest::kEntryDepth);
   manifest::beginFile(relativeTo(setting_.folder, path_), json);
   FilePipelines pipelines(path_, document, setting_);
+  Diagnostics misshapen;
+  AttributeShapes shapes(path_, misshapen);
   std::set<Key> seen;
   UsesOf uses;
   FileContract behind;
@@ -244,6 +309,7 @@ FileResult SceneFile::run(const material::Document& document) {
                       });
     const StageTimer timer(setting_.times, StageOfRun::Manifest);
     for (size_t i = 0; i < done.size(); ++i) {
+      shapes.material(all[first + i].index, done[i].pipelines);
       pipelines.material(all[first + i].index, done[i]);
       if (all[first + i].index < 0)
         behind.default_material = std::move(done[i].by_default);
@@ -263,6 +329,9 @@ FileResult SceneFile::run(const material::Document& document) {
   const StageTimer timer(setting_.times, StageOfRun::Manifest);
   addScene(document, uses, behind);
   report(document.diagnostics, path_, behind.messages);
+  shapes.check(behind.primitives);
+  report(misshapen, path_, behind.messages);
+  result.diagnostics.insert(result.diagnostics.end(), misshapen.begin(), misshapen.end());
   manifest::endFile(behind, json);
   result.pipelines = pipelines.finish(behind.primitives);
   result.text = json.take();

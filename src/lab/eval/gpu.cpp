@@ -70,14 +70,16 @@ private:
     return nullptr;
   }
 
+  static uint32_t bitsOf(double value, ir::Type type) {
+    const ir::Type part = ir::partType(type);
+    if (part == ir::Type::Int) return std::bit_cast<uint32_t>(static_cast<int32_t>(value));
+    if (part == ir::Type::UInt) return static_cast<uint32_t>(value);
+    return std::bit_cast<uint32_t>(static_cast<float>(value));
+  }
+
   static void put(double value, ir::Type type, unsigned char* to) {
-    const auto number = static_cast<float>(value);
-    const auto whole = static_cast<int32_t>(value);
-    if (type == ir::Type::Int) {
-      std::memcpy(to, &whole, sizeof whole);
-    } else {
-      std::memcpy(to, &number, sizeof number);
-    }
+    const uint32_t bits = bitsOf(value, type);
+    std::memcpy(to, &bits, sizeof bits);
   }
 
   /// Where a field lies among the block's elements, and its values.
@@ -147,8 +149,14 @@ private:
     if (column == nullptr) return;
     vulkan::Varying made;
     made.components = static_cast<uint32_t>(column->components);
+    const bool whole = !ir::isFloating(varying.type);
     for (size_t i = 0; i < points_ * made.components; ++i) {
-      made.values.push_back(static_cast<float>(column->values[column->per_point ? i : i % made.components]));
+      const double x = column->values[column->per_point ? i : i % made.components];
+      if (!whole) {
+        made.values.push_back(static_cast<float>(x));
+      } else {
+        made.whole.push_back(varying.type == ir::Type::Bool ? uint32_t{x != 0} : bitsOf(x, varying.type));
+      }
     }
     work_.inputs.push_back(std::move(made));
   }

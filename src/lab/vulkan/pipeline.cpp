@@ -10,9 +10,9 @@
 namespace lacquer::vulkan {
 
 uint32_t Pipeline::vertexStride() const {
-  uint32_t floats = 4;
-  for (const check::Slot& slot : fragment_.inputs) floats += slot.count;
-  return floats * static_cast<uint32_t>(sizeof(float));
+  uint32_t words = 4;
+  for (const check::Slot& slot : fragment_.inputs) words += slot.count;
+  return words * static_cast<uint32_t>(sizeof(float));
 }
 
 void Pipeline::makeSets() {
@@ -95,10 +95,13 @@ void Pipeline::makeRenderPass() {
 
 namespace {
 
-VkFormat floatFormat(uint32_t components) {
-  constexpr std::array<VkFormat, 4> kFormats = {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT,
-                                                VK_FORMAT_R32G32B32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT};
-  return kFormats[components - 1];
+VkFormat formatOf(check::Scalar scalar, uint32_t components) {
+  constexpr std::array<std::array<VkFormat, 4>, 3> kFormats = {
+      {{VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32_SFLOAT,
+        VK_FORMAT_R32G32B32A32_SFLOAT},
+       {VK_FORMAT_R32_SINT, VK_FORMAT_R32G32_SINT, VK_FORMAT_R32G32B32_SINT, VK_FORMAT_R32G32B32A32_SINT},
+       {VK_FORMAT_R32_UINT, VK_FORMAT_R32G32_UINT, VK_FORMAT_R32G32B32_UINT, VK_FORMAT_R32G32B32A32_UINT}}};
+  return kFormats[static_cast<size_t>(scalar)][components - 1];
 }
 
 /// The inputs by location, then the position.
@@ -107,11 +110,11 @@ std::vector<VkVertexInputAttributeDescription> attributesOf(const check::Interfa
   uint32_t offset = 0;
   uint32_t location = 0;
   for (const check::Slot& slot : fragment.inputs) {
-    attributes.push_back({slot.location, 0, floatFormat(slot.count), offset});
+    attributes.push_back({slot.location, 0, formatOf(slot.scalar, slot.count), offset});
     offset += slot.count * static_cast<uint32_t>(sizeof(float));
     location = slot.location + 1;
   }
-  attributes.push_back({location, 0, floatFormat(4), offset});
+  attributes.push_back({location, 0, formatOf(check::Scalar::Float, 4), offset});
   return attributes;
 }
 

@@ -219,6 +219,11 @@ void Running::corner(size_t point, const Pixel& pixel, const std::array<float, 2
                      unsigned char* to) const {
   for (const Varying& input : work_.inputs) {
     for (size_t c = 0; c < input.components; ++c) {
+      if (!input.whole.empty()) {
+        std::memcpy(to, &input.whole[point * input.components + c], sizeof(uint32_t));
+        to += sizeof(uint32_t);
+        continue;
+      }
       const float* value = &input.values[point * input.components + c];
       float x = *value;
       if (work_.quads) {
@@ -493,7 +498,9 @@ std::optional<Diagnostic> problemOf(const Device::State& device, const Work& wor
   }
   for (size_t i = 0; i < work.inputs.size(); ++i) {
     const check::Slot& slot = interface.inputs[i];
-    if (slot.scalar == check::Scalar::Float && slot.component == 0 && slot.count == work.inputs[i].components)
+    const Varying& given = work.inputs[i];
+    const size_t numbers = slot.scalar == check::Scalar::Float ? given.values.size() : given.whole.size();
+    if (slot.component == 0 && slot.count == given.components && numbers == work.points * slot.count)
       continue;
     return wrong("vulkan-interface", fmt::format("the input at location {} has another type", slot.location));
   }

@@ -54,6 +54,9 @@ struct Texture {
 struct Varying {
   uint32_t components = 1;
   std::vector<float> values;
+  /// An input of integers has these instead, int or uint: their bits. It is flat, so that the points of a
+  /// quad have its first one's.
+  std::vector<uint32_t> whole = {};
 };
 
 struct Work {

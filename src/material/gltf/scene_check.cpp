@@ -45,6 +45,7 @@ public:
 
 private:
   void section(std::string_view name, const Json& value);
+  void ofInstances(const Json& extension, const Path& path);
   template <class Check>
   Json elements(const Json& array, const Path& path, std::string_view name, Check check);
   template <class Check>
@@ -192,6 +193,7 @@ Json SceneChecker::node(const Json& node, const Path& path) {
       if (!extension.is_object()) return report_.wrongType(p, key, extension, "an object");
       if (key == kInstances) {
         out["extensions"][std::string(kInstances)] = Json::object();
+        ofInstances(extension, p);
         return;
       }
       const Json* light = member(extension, "light");
@@ -205,6 +207,19 @@ Json SceneChecker::node(const Json& node, const Path& path) {
   if (out.contains("extensions") && out["extensions"].contains(kInstances))
     out["extensions"][std::string(kInstances)]["mesh"] = mesh;
   return out;
+}
+
+/// Shaders read where instances are. What else there is of them is said once in a file.
+void SceneChecker::ofInstances(const Json& extension, const Path& path) {
+  const Json* attributes = member(extension, "attributes");
+  if (attributes == nullptr || !attributes->is_object()) return;
+  for (const auto& [name, value] : attributes->items()) {
+    if (name == "TRANSLATION" || name == "ROTATION" || name == "SCALE") continue;
+    if (!reading_.said.insert(fmt::format("{} {}", kInstances, name)).second) continue;
+    report_.note("attribute-unread", Path(Path(path, "attributes"), name),
+                 fmt::format("no shader reads {} of instances", printable(name)),
+                 "a template's field of an object block can hold what differs from object to object");
+  }
 }
 
 }  // namespace
