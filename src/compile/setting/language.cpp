@@ -49,7 +49,18 @@ Diagnostics Language::check() const {
     add(profiles.error());
     return all;
   }
+  // Where a property is wrong, the lines of the parts are looked at all the same.
+  Diagnostics aside;
+  const bool good = models.schema().has_value();
+  const Result<material::Schema> written = good ? material::Schema{} : material::schemaOf(*this, &aside);
+  if (!good) add(written ? aside : written.error());
   const auto see = [&](std::string_view profile, const std::set<std::string, std::less<>>& lods) {
+    if (!good) {
+      if (!written) return;
+      const Result<model::Model> model = model::compile(*this, *written, profile, lods);
+      if (!model) add(model.error());
+      return;
+    }
     const Result<const model::Model*> model = models.of(profile, lods);
     if (!model) return add(model.error());
     for (const auto& [lower, upper] : (*model)->unordered)

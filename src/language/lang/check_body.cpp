@@ -60,8 +60,8 @@ void Checker::body(NodeDecl& decl, std::string_view variant, Span place, Body& b
   }
   const Flow flow = block(body.statements);
   body.slots = std::move(slots_);
-  // Other errors may be why a local seems unused.
-  if (reporter_.count() == errors) unused();
+  // Other errors may be why a local seems unused, and so may a missing return.
+  if (flow == Flow::Returns && reporter_.count() == errors) unused();
   if (flow != Flow::Returns && reporter_.count() == errors) {
     reporter_.error("missing-return", place,
                     fmt::format("'{}' can end without a value", variant.empty() ? decl.name : variant),
@@ -270,7 +270,12 @@ uint64_t Checker::rounds(Statement& statement) {
   statement.first = *first;
   statement.last = static_cast<int>(*first + std::clamp<double>(count, 0, kMostTrips));
   if (count >= 1) return static_cast<uint64_t>(std::min<double>(count, kMostTrips + 1));
-  reporter_.error("empty-loop", bound->span, "the loop never runs", "the bound lies above the start");
+  reporter_.error("empty-loop", bound->span, "the loop never runs",
+                  constant
+                      ? "the bound lies above the start"
+                      : fmt::format("the bound is no constant, and by the ranges of what it is made of it is "
+                                    "{} at most: it must lie above the start",
+                                    last.hi));
   return 1;
 }
 

@@ -129,6 +129,16 @@ bool sumsLights(const Expr& expr) {
                             [](const ExprPtr& arg) { return arg && sumsLights(*arg); });
 }
 
+/// Whether it reads nothing that is not known when the text is.
+bool isConstant(const Expr& expr) {
+  using Kind = Expr::Kind;
+  constexpr Kind kKinds[] = {Kind::Literal,   Kind::Constant, Kind::Operation,
+                             Kind::Construct, Kind::Swizzle,  Kind::Index};
+  return std::find(std::begin(kKinds), std::end(kKinds), expr.kind) != std::end(kKinds) &&
+         std::all_of(expr.args.begin(), expr.args.end(),
+                     [](const ExprPtr& arg) { return arg && isConstant(*arg); });
+}
+
 }  // namespace
 
 std::span<const LightProperty> lightProperties() {
@@ -652,8 +662,13 @@ void Checker::port(PortDecl& decl, uint32_t& slots) {
     reporter_.error("wrong-type", param.span, fmt::format("a port cannot be {}", aType(param.type)),
                     "ports are everything but textures");
   }
-  if (decl.default_value)
-    typed(decl.default_value, param.type, fmt::format("the default of '{}'", param.name));
+  const bool good = decl.default_value &&
+                    typed(decl.default_value, param.type, fmt::format("the default of '{}'", param.name));
+  if (good && param.has_range && isConstant(*decl.default_value)) {
+    if (!scratch_) scratch_.emplace();
+    if (const Constant value = evaluateConstant(*scratch_, *decl.default_value))
+      inRange(param, *value, decl.default_value->span, "default-out-of-range", "the default");
+  }
   decl.slot = slots++;
   declare({param.name, Name::Kind::Port, param.type, decl.slot, param.span, true, false, {}});
 }

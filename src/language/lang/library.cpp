@@ -59,6 +59,7 @@ struct Entry {
   DeclKind kind = DeclKind::Node;
   State state = State::Fresh;
   bool good = false;  ///< it and all that it uses
+  bool parsed = false;
   const File* file = nullptr;
   std::string_view name;
   std::string_view said;  ///< the name in the text
@@ -99,6 +100,16 @@ public:
     demand(*entry);
     if (!entry->good) return tl::make_unexpected(errorsOf(*entry));
     return (entry->*decl).get();
+  }
+
+  /// What is wrong with it is left aside. Null where there is none, or where it does not parse.
+  template <class T>
+  const T* written(DeclKind kind, std::string_view name, std::unique_ptr<T> Entry::*decl) {
+    const std::lock_guard lock(mutex);
+    Entry* entry = find(kind, name);
+    if (entry == nullptr) return nullptr;
+    demand(*entry);
+    return entry->parsed ? (entry->*decl).get() : nullptr;
   }
 
   std::optional<Found> find(std::string_view name, bool called) override;
@@ -552,7 +563,8 @@ void Library::Impl::demand(Entry& entry) {
                    fmt::format("more than {} declarations use each other in a chain", kLongestChain));
   }
   bool good = true;
-  if (reporter.count() == 0) {
+  entry.parsed = reporter.count() == 0;
+  if (entry.parsed) {
     for (Entry* used : entry.uses) {
       demand(*used);
       good = good && used->good;
@@ -561,7 +573,9 @@ void Library::Impl::demand(Entry& entry) {
     // Forms are chosen as it is checked.
     for (const Entry* used : entry.uses) good = good && used->good;
   }
-  entry.good = good && reporter.count() == 0;
+  // Of a part's nodes each call is looked at by itself, so that one which is wrong hides nothing in other
+  // lines.
+  entry.good = (good || entry.kind == DeclKind::Part) && reporter.count() == 0;
   entry.diagnostics = reporter.take();
   entry.state = Entry::State::Done;
   open_.pop_back();
@@ -695,6 +709,14 @@ Result<const TemplateDecl*> Library::template_(std::string_view name) const {
 
 Result<const ExtensionDecl*> Library::extension(std::string_view name) const {
   return impl_->get(DeclKind::Extension, name, &Entry::extension);
+}
+
+const TemplateDecl* Library::writtenTemplate(std::string_view name) const {
+  return impl_->written(DeclKind::Template, name, &Entry::template_decl);
+}
+
+const ExtensionDecl* Library::writtenExtension(std::string_view name) const {
+  return impl_->written(DeclKind::Extension, name, &Entry::extension);
 }
 
 Result<const PartDecl*> Library::part(std::string_view name, std::string_view vendor) const {

@@ -49,6 +49,10 @@ public:
   /// and whether there is a default (`default_syntax`); all else is there once node() has checked it.
   std::vector<const NodeDecl*> forms(std::string_view family) const;
   Result<const TemplateDecl*> template_(std::string_view name) const;
+  /// As they are written, also where something in them is wrong: for the names that others may use. Null
+  /// where there is none, or where it does not parse.
+  const TemplateDecl* writtenTemplate(std::string_view name) const;
+  const ExtensionDecl* writtenExtension(std::string_view name) const;
   Result<const ExtensionDecl*> extension(std::string_view name) const;
   Result<const PartDecl*> part(std::string_view name, std::string_view vendor = {}) const;
   Result<const ProfileDecl*> profile(std::string_view name) const;

@@ -293,6 +293,11 @@ void BodyCheck::chosen(const Choice& choice, const Sink& sink) {
 std::string BodyCheck::conversion(const Source& source, Type from, Type to) const {
   const bool is_literal = std::holds_alternative<Literal>(source.from);
   if (is_literal && to == Type::Bool) return "write true or false";
+  if (const auto* literal = std::get_if<Literal>(&source.from);
+      literal != nullptr && ir::isWhole(to) && literal->type == Type::Float &&
+      literal->value[0] == std::trunc(literal->value[0]))
+    return to == Type::Int ? "an int is a whole number from -2147483648 to 2147483647"
+                           : "a uint is a whole number from 0 to 4294967295";
   if (is_literal && ir::isWhole(ir::partType(to)))
     return ir::componentCount(to) == 1 ? "write a whole number"
                                        : fmt::format("write {} whole numbers", ir::componentCount(to));
@@ -323,7 +328,7 @@ std::string BodyCheck::converter(Type from, Type to) const {
     bool takes = false;
     for (const lang::Param& param : (*decl)->params) {
       required += param.hasDefault() ? 0 : 1;
-      takes = takes || (param.type == from && !param.hasDefault());
+      takes = takes || (param.type == from && (!param.hasDefault() || (*decl)->params.size() == 1));
     }
     // More than a place to look it up at is another node's business.
     const size_t most = ir::isTexture(from) ? 2 : 1;

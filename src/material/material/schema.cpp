@@ -255,13 +255,17 @@ std::vector<Row> Schema::rows() const {
   return rows;
 }
 
-Result<Schema> schemaOf(const lang::Library& library) {
+Result<Schema> schemaOf(const lang::Library& library, Diagnostics* aside) {
   Schema schema;
   schema.library = &library;
   Diagnostics wrong;
   for (const std::string_view name : library.names(lang::DeclKind::Extension)) {
     const Result<const lang::ExtensionDecl*> found = library.extension(name);
-    if (!found) {
+    const lang::ExtensionDecl* written = found || aside == nullptr ? nullptr : library.writtenExtension(name);
+    if (written != nullptr) {
+      aside->insert(aside->end(), found.error().begin(), found.error().end());
+      schema.extensions.push_back(written);
+    } else if (!found) {
       wrong.insert(wrong.end(), found.error().begin(), found.error().end());
     } else {
       schema.extensions.push_back(*found);
@@ -300,6 +304,10 @@ Result<Schema> schemaOf(const lang::Library& library) {
   checkRoles(schema, wrong);
   checkParameterNames(schema, wrong);
   for (const lang::ExtensionDecl* decl : schema.extensions) checkRelations(schema, *decl, wrong);
+  if (aside != nullptr) {
+    aside->insert(aside->end(), wrong.begin(), wrong.end());
+    return schema;
+  }
   if (!wrong.empty()) return tl::make_unexpected(std::move(wrong));
   return schema;
 }

@@ -57,6 +57,8 @@ std::string parameterName(std::string_view property);
 /// Collects the library's extensions. Errors: those of the declarations; a role with two types, or with two
 /// meanings in one vendor's text; an extension
 /// that stands in one that is not there; more or fewer than one `material`.
-Result<Schema> schemaOf(const lang::Library& library);
+/// With `aside`, what is wrong within a declaration goes there, and the schema has it as it is written: for
+/// those who look for more that is wrong.
+Result<Schema> schemaOf(const lang::Library& library, Diagnostics* aside = nullptr);
 
 }  // namespace lacquer::material

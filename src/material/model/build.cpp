@@ -403,6 +403,14 @@ void Writer::notTaken() {
     }
     graph_.skip(model_.terms[i].name, "nothing that the template takes needs it");
   }
+  // Lines of the library's own that need what is not there are its terms' to tell.
+  for (const Line& line : model_.lines) {
+    if (line.term == Line::kNone || line.part >= model_.parts.size()) continue;
+    if (model_.parts[line.part].decl->origin.built_in || !used[line.term] || !resolver_.alive(line.term))
+      continue;
+    if (std::string why = resolver_.unmade(line); !why.empty())
+      graph_.skip(model_.ids[line.id].name, std::move(why));
+  }
 }
 
 /// What the group of a surface of closures calls a port; null where it has nothing for it.

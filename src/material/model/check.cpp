@@ -54,6 +54,8 @@ private:
   void line(const Uses::Placed& placed);
   const Uses::Placed* constantLine(const Value& value) const;
   const Uses::Placed* profiles(const Value& value) const;
+  bool ownsMistake(const Uses::Argument& use, const Uses::Placed& profile) const;
+  std::string imageHelp(const Uses::Argument& use) const;
   void range(const Uses::Argument& use);
   const lang::NodeDecl* several(const Value& value) const;
   void typed(const Uses::Placed& placed, std::optional<ir::Type> wanted, std::string_view what);
@@ -116,6 +118,26 @@ const Uses::Placed* Check::profiles(const Value& value) const {
   return lines.empty() ? nullptr : &uses_.lines[lines[0]];
 }
 
+/// The library's own profile is right: what does not suit it in another text is wrong there.
+bool Check::ownsMistake(const Uses::Argument& use, const Uses::Placed& profile) const {
+  const auto built_in = [&](const Text& text) {
+    const bool of_profile = model_.profile->origin.built_in && model_.profile->origin.file == text.file;
+    return of_profile || std::any_of(model_.parts.begin(), model_.parts.end(), [&](const Part& part) {
+             return part.decl->origin.built_in && part.decl->origin.file == text.file;
+           });
+  };
+  return built_in(profile.text) && !built_in(use.text);
+}
+
+/// For a texture's name where the texture itself is wanted.
+std::string Check::imageHelp(const Uses::Argument& use) const {
+  if (use.param->type != ir::Type::Texture2D || use.value.kind != Value::Kind::Role) return {};
+  const Role& role = model_.roles[use.value.index];
+  const lang::PropertyDecl& decl = *model_.schema->properties[role.providers[0]].decl;
+  if (decl.kind != material::Kind::Texture || use.value.member >= 0 || use.value.coordinate) return {};
+  return fmt::format("the texture itself, for a node that samples it, is '{}.image'", role.name);
+}
+
 void Check::range(const Uses::Argument& use) {
   const Uses::Placed* named = constantLine(use.value);
   const Value& value = named == nullptr ? use.value : model_.lines[named->line].alternatives[0].value;
@@ -156,7 +178,7 @@ void Check::arguments() {
     const std::optional<ir::Type> type = types_.of(use.value);
     if (!type) continue;
     if (*type != use.param->type) {
-      if (const Uses::Placed* by = profiles(use.value)) {
+      if (const Uses::Placed* by = profiles(use.value); by != nullptr && !ownsMistake(use, *by)) {
         error(by->text, by->decl->alternatives[0].value->span, "wrong-type",
               fmt::format("'{}' goes into '{}', which is {}; this is {}", by->decl->id, use.param->name,
                           lang::aType(use.param->type), lang::aType(*type)));
@@ -164,7 +186,8 @@ void Check::arguments() {
       }
       error(use.text, use.span, "wrong-type",
             fmt::format("'{}' is {}, this is {}", use.param->name, lang::aType(use.param->type),
-                        lang::aType(*type)));
+                        lang::aType(*type)),
+            imageHelp(use));
       continue;
     }
     range(use);
@@ -274,6 +297,21 @@ void Check::added(const Uses::Placed& placed) {
 }
 
 }  // namespace
+
+Diagnostics withWrongTemplates(const lang::Library& library, const Diagnostics& wrong) {
+  Diagnostics all;
+  const auto add = [&](const Diagnostics& list) {
+    for (const Diagnostic& one : list) {
+      if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+    }
+  };
+  for (const std::string_view name : library.names(lang::DeclKind::Template)) {
+    const Result<const lang::TemplateDecl*> decl = library.template_(name);
+    if (!decl) add(decl.error());
+  }
+  add(wrong);
+  return all;
+}
 
 Diagnostics check(const lang::Library& library, const Model& model, const Uses& uses) {
   return Check(library, model, uses).run();

@@ -51,6 +51,9 @@ struct Uses {
   std::set<uint32_t> adds;      ///< lines of the profile that replace none
 };
 
+/// The errors behind those of the templates that are wrong: a name that is not known may be one of theirs.
+Diagnostics withWrongTemplates(const lang::Library& library, const Diagnostics& wrong);
+
 /// Errors at their places.
 Diagnostics check(const lang::Library& library, const Model& model, const Uses& uses);
 

@@ -61,6 +61,7 @@ private:
   bool comparable(const Value& left, const Value& right, const Expr& expr);
   void checkNames();
   void checkWriterNames();
+  void checkLines();
   void findLive();
   void order();
 
@@ -197,8 +198,9 @@ Line Compiler::line(const LineDecl& decl, uint32_t part, uint32_t term) {
   line.reason = decl.reason;
   if (decl.place) line.place = operand(decl.place);
   if (decl.kind == LineDecl::Kind::Replace) {
+    const size_t before = wrong_.size();
     line.target = value(decl.target);
-    if (line.target.kind != Value::Kind::Id)
+    if (line.target.kind != Value::Kind::Id && wrong_.size() == before)
       error(decl.target->span, "wrong-line", "only another line's value can be replaced");
   }
   if (decl.kind == LineDecl::Kind::Out) line.id = names_.out(decl.id);
@@ -415,8 +417,9 @@ Value Compiler::value(const ExprPtr& expr) {
 Value Compiler::reference(const Expr& expr) {
   const std::string_view text = names_.textOf(source_.text, expr.span);
   Value out;
-  std::vector<std::string_view> candidates;
-  if (!names_.resolve(text, out, candidates)) {
+  if (std::vector<std::string_view> candidates; !names_.resolve(text, out, candidates)) {
+    const std::vector<std::string> members = names_.membersOf(text);
+    candidates.insert(candidates.end(), members.begin(), members.end());
     error(expr.span, "unknown-name", fmt::format("there is no line, property or given '{}'", text),
           lang::didYouMean(text, candidates));
     return {};
@@ -732,6 +735,19 @@ void Compiler::order() {
                    [&](uint32_t a, uint32_t b) { return model_.lines[a].order < model_.lines[b].order; });
 }
 
+/// What is made of a wrong line is wrong as well: of a text that has one, and of the library's own, no more
+/// is said.
+void Compiler::checkLines() {
+  std::set<std::string> files;
+  for (const Diagnostic& one : wrong_) files.insert(one.place.file);
+  for (const Part& part : model_.parts) {
+    if (!wrong_.empty() && part.decl->origin.built_in) files.insert(std::string(part.decl->origin.file));
+  }
+  for (Diagnostic& one : check(library_, model_, uses_)) {
+    if (!files.contains(one.place.file)) wrong_.push_back(std::move(one));
+  }
+}
+
 Result<Model> Compiler::run(std::string_view profile, const std::set<std::string, std::less<>>& lods) {
   const Result<const lang::ProfileDecl*> found = library_.profile(profile);
   if (!found) return tl::make_unexpected(found.error());
@@ -761,9 +777,8 @@ Result<Model> Compiler::run(std::string_view profile, const std::set<std::string
   for (const lang::ProfileDecl* overlay : overlays_) addedLines(*overlay);
   checkNames();
   checkWriterNames();
-  // What is made of a wrong line is wrong as well.
-  if (wrong_.empty()) wrong_ = check(library_, model_, uses_);
-  if (!wrong_.empty()) return tl::make_unexpected(std::move(wrong_));
+  checkLines();
+  if (!wrong_.empty()) return tl::make_unexpected(withWrongTemplates(library_, wrong_));
   findLive();
   order();
   model_.unordered = findUnordered(model_, library_);

@@ -84,15 +84,15 @@ Names::Names(const lang::Library& library, const material::Schema& schema, Model
     : library_(library), schema_(schema), model_(model) {
   // A template that is wrong says so when it is used; what the others give has names all the same.
   for (const std::string_view name : library.names(lang::DeclKind::Template)) {
-    const Result<const lang::TemplateDecl*> decl = library.template_(name);
-    if (!decl) continue;
+    const lang::TemplateDecl* decl = library.writtenTemplate(name);
+    if (decl == nullptr) continue;
     const auto add = [&](std::string given) {
       Given& one = givens_[std::move(given)];
-      one.built_in = one.built_in || (*decl)->origin.built_in;
-      one.vendors.insert((*decl)->origin.vendor);
+      one.built_in = one.built_in || decl->origin.built_in;
+      one.vendors.insert(decl->origin.vendor);
     };
-    for (const lang::EnvironmentDecl& one : (*decl)->environments) add(std::string(one.name));
-    for (const lang::GivenDecl& one : (*decl)->givens) {
+    for (const lang::EnvironmentDecl& one : decl->environments) add(std::string(one.name));
+    for (const lang::GivenDecl& one : decl->givens) {
       if (!one.multiple) add(std::string(one.name));
       for (const lang::Param& result : one.results) {
         if (one.multiple) add(fmt::format("{}.{}", one.name, result.name));
@@ -284,6 +284,18 @@ bool Names::resolve(std::string_view text, Value& out, std::vector<std::string_v
   for (const auto& [name, index] : roles_) candidates.push_back(name);
   for (const auto& [name, given] : givens_) candidates.push_back(name);
   return false;
+}
+
+std::vector<std::string> Names::membersOf(std::string_view text) const {
+  Value texture;
+  const std::string_view head = text.substr(0, text.rfind('.'));
+  if (head.size() == text.size() || !role(head, Where::Any, texture) || !texture.path.empty()) return {};
+  const lang::PropertyDecl& decl = declOf(texture.index);
+  if (decl.kind != lang::PropertyDecl::Kind::Texture) return {};
+  std::vector<std::string> names{fmt::format("{}.image", head), fmt::format("{}.uv", head)};
+  for (const lang::PropertyDecl& member : decl.members)
+    names.push_back(fmt::format("{}.{}", head, member.name));
+  return names;
 }
 
 bool Names::id(std::string_view text, Where where, Value& out) const {

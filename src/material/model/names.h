@@ -89,6 +89,8 @@ public:
   /// What a dotted name stands for as a value. False when nothing: `candidates` are then what it could have
   /// been.
   bool resolve(std::string_view text, Value& out, std::vector<std::string_view>& candidates) const;
+  /// Of "normalTexture.x": what else could stand behind the texture's point, "normalTexture.image".
+  std::vector<std::string> membersOf(std::string_view text) const;
 
   /// What a name says as a condition of its own; false when it is a value, which may be present.
   bool condition(std::string_view text, Condition& out) const;

@@ -622,8 +622,11 @@ std::string Resolver::missing(const Value& value, const Line& line, int depth) {
   if (depth > kDeepest || value.absent || (value.kind != Value::Kind::Call && found(value, line))) return {};
   switch (value.kind) {
     case Value::Kind::Role: {
-      const material::Property& property = model_.schema->properties[provider(model_.roles[value.index])];
-      return fmt::format("there is no {}", property.decl->name);
+      const uint16_t role = provider(model_.roles[value.index]);
+      const gltf::TextureInfo* info = material_.texture(role);
+      if (value.coordinate && info != nullptr)
+        return fmt::format("the primitive has no TEXCOORD_{}", info->texCoord);
+      return fmt::format("there is no {}", model_.schema->properties[role].decl->name);
     }
     case Value::Kind::Given: return fmt::format("there is no {}", model_.givens[value.index]);
     case Value::Kind::Id:
@@ -644,6 +647,16 @@ std::string Resolver::missing(const Value& value, const Line& line, int depth) {
     case Value::Kind::None:
     case Value::Kind::Constant:
     case Value::Kind::Below: break;
+  }
+  return {};
+}
+
+std::string Resolver::unmade(const Line& line) {
+  const bool asked = line.kind == LineDecl::Kind::Value && states_[line.id] == State::Done;
+  if (!asked || values_[line.id].kind != Found::Kind::Nothing) return {};
+  for (const Alternative& one : line.alternatives) {
+    if (holds(one.condition, line) == one.unless) continue;
+    if (std::string why = missing(one.value, line, 0); !why.empty()) return why;
   }
   return {};
 }

@@ -99,6 +99,9 @@ public:
   /// Of a term that gives nothing: the first thing that a line of it needs and the material, the primitive or
   /// the template does not have; empty where it is something else.
   std::string missing(uint32_t term);
+  /// Of a line that was asked for and came to nothing: what it needs and has not, as of missing(); else
+  /// empty.
+  std::string unmade(const Line& line);
   /// A property that stands for a role, and what it is when the file does not say.
   uint16_t provider(const Role& role) const;
   ir::Components numberOf(uint16_t property) const;

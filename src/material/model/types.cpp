@@ -19,10 +19,10 @@ std::optional<ir::Type> swizzled(ir::Type type, std::string_view swizzle) {
 
 Types::Types(const lang::Library& library, const Model& model) : model_(model) {
   for (const std::string_view name : library.names(lang::DeclKind::Template)) {
-    const Result<const lang::TemplateDecl*> decl = library.template_(name);
-    if (!decl) continue;  // says so where it is used
-    templates_.push_back(*decl);
-    for (const lang::PortDecl& port : (*decl)->ports) ports_.emplace(port.param.name, port.param.type);
+    const lang::TemplateDecl* decl = library.writtenTemplate(name);
+    if (decl == nullptr) continue;  // says so where it is used
+    templates_.push_back(decl);
+    for (const lang::PortDecl& port : decl->ports) ports_.emplace(port.param.name, port.param.type);
   }
 }
 
