@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+
+#include "lang/builtins.h"
 
 namespace lacquer::test {
 namespace {
@@ -31,6 +34,20 @@ protected:
   ir::Module module_;
   uint32_t next_ = 0;
 };
+
+/// By 0 it is 0: nothing is left to be shown of what the language makes of `a / b`.
+TEST_F(Prove, IntegerDivisionAsTheLanguageHasItAsksNothing) {
+  for (const Type type : {Type::Int, Type::UInt}) {
+    SCOPED_TRACE(ir::typeName(type));
+    const ValueId a = input("a", {0, 9}, type);
+    const ValueId b = input("b", {0, 9}, type);
+    const lang::Builtin* divide = lang::findOperator("/", 2);
+    ASSERT_NE(divide, nullptr);
+    EXPECT_TRUE(of(divide->make(*divide, dag(), std::array{a, b})).operations.empty());
+    const Op op = type == Type::Int ? Op::IntDiv : Op::UIntDiv;
+    EXPECT_FALSE(safe(dag().make(op, {a, b}))) << "without the guard";
+  }
+}
 
 TEST_F(Prove, SafeWhereTheOperandCannotLeaveTheDomain) {
   EXPECT_TRUE(safe(dag().make(Op::Sqrt, {input("a", {0, 1})})));

@@ -39,6 +39,7 @@ public:
         out = each(id, a, "in (-1, 2^32)", [](const Range& x) { return x.lo > -1 && x.hi < 0x1p32; });
         return true;
       case Domain::WholeNonZero:
+        if (guarded(value.args[1])) return false;
         out = each(id, value.args[1], "!= 0", [](const Range& x) { return !x.contains(0); });
         return true;
       case Domain::Count:
@@ -58,6 +59,21 @@ public:
   }
 
 private:
+  /// The divisor that the language's own division has: 1 takes the place of 0, whose quotient is 0.
+  bool guarded(ValueId divisor) const {
+    const ir::Value& chosen = dag_[divisor];
+    if (chosen.op != Op::Select || !dag_.isConstant(chosen.args[1], 1)) return false;
+    const auto asksForZero = [&](ValueId id) {
+      const ir::Value& asked = dag_[id];
+      if (asked.op != Op::WholeEqual) return false;
+      const bool first = asked.args[0] == chosen.args[2];  // either side
+      return asked.args[first ? 0 : 1] == chosen.args[2] && dag_.isConstant(asked.args[first ? 1 : 0], 0);
+    };
+    const ir::Value& condition = dag_[chosen.args[0]];
+    if (condition.op != Op::Or) return asksForZero(chosen.args[0]);
+    return asksForZero(condition.args[0]) || asksForZero(condition.args[1]);
+  }
+
   template <class F>
   Proof each(ValueId id, ValueId operand, std::string_view need, F good) const {
     Proof proof{id, true, operand, intervals_.all(operand), need};

@@ -10,6 +10,7 @@
 #include "ir/names.h"
 #include "lang/composites.h"
 #include "lower/at_vertices.h"
+#include "lower/displaced.h"
 #include "lower/inline.h"
 #include "lower/pack_outputs.h"
 
@@ -637,15 +638,15 @@ private:
       dag().setTerm(dag().addTerm("displacement", "", template_->origin.file, template_->origin.line));
       const ir::ValueId value = inliner_.evaluate(*decl.value, slots_);
       if (value == slots_[given->slot]) continue;
-      AtVertices at_vertices(dag(), true);
-      const std::optional<ir::ValueId> there = at_vertices(value);
+      const std::optional<ir::ValueId> there = AtVertices(dag(), true)(value);
       if (!there) {
         return {
             {"wrong-rate",
              Severity::Error,
              {std::string(template_->origin.file), template_->origin.line, 0, {}},
-             fmt::format("the displacement of '{}' in the template '{}' is not known to the vertices",
-                         decl.name, template_->name),
+             fmt::format("the displacement of '{}' in the template '{}' is not known to the vertices{}",
+                         decl.name, template_->name,
+                         unknownAtVertices(*decl.value, *template_, graph_, slots_, dag())),
              "made at the vertices: what has no sum_over_lights(), dFdx(), dFdy() and gl_FrontFacing in it",
              {}}};
       }
