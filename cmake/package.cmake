@@ -33,6 +33,9 @@ install(FILES src/lacquer.h src/lacquer_c.h DESTINATION "${CMAKE_INSTALL_INCLUDE
 install(DIRECTORY src/lacquer DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 # The page of `lacquer view`, where `./dev web` has made it.
 install(FILES "${PROJECT_SOURCE_DIR}/build/web/view.html" DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/lacquer" OPTIONAL)
+# The package for Python: `pip install PREFIX/share/lacquer/python`, or that folder in PYTHONPATH.
+install(DIRECTORY python/lacquer DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/lacquer/python" FILES_MATCHING PATTERN "*.py" PATTERN "py.typed")
+install(FILES python/pyproject.toml DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/lacquer/python")
 install(EXPORT lacquer_targets NAMESPACE lacquer:: FILE lacquer-targets.cmake DESTINATION "${package}")
 configure_package_config_file(cmake/lacquer-config.cmake.in "${PROJECT_BINARY_DIR}/lacquer-config.cmake"
                               INSTALL_DESTINATION "${package}")

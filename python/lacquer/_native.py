@@ -113,12 +113,15 @@ _FUNCTIONS = {
 
 
 def _candidates() -> List[str]:
-    """LACQUER_LIBRARY, the library of a build of this tree, what the system has."""
+    """LACQUER_LIBRARY, the library of a build of this tree, that of the installation around, what the system has."""
     named = os.environ.get("LACQUER_LIBRARY")
     if named:
         return [named]
     built = Path(__file__).resolve().parents[2] / "build" / "release" / "liblacquer.so"
     found = [str(built)] if built.exists() else []
+    # An installation has the package in share/lacquer/python.
+    for above in list(Path(__file__).resolve().parents)[4:5]:
+        found += [str(one) for one in sorted(above.glob("lib*/liblacquer.so")) + sorted(above.glob("lib/*/liblacquer.so"))]
     system = ctypes.util.find_library("lacquer")
     return found + ([system] if system else []) + ["liblacquer.so", "liblacquer.so.0.2"]
 

@@ -128,8 +128,9 @@ public:
 
   // -- edits
 
-  /// Adds a node of the library's type `type`, not yet connected. "duplicate-name" when there is one of that
-  /// id, "wrong-name", "unknown-node".
+  /// Adds a node of the library's type `type`, not yet connected. Of an overloaded node, "add", the types of
+  /// what is connected to it choose the form, and check() says "no-form" while they choose none; a form may
+  /// be named, too: "add<vec3>". "duplicate-name" when there is one of that id, "wrong-name", "unknown-node".
   bool addNode(const std::string& id, const std::string& type, Messages& messages);
   /// The same of a group of the graph. "unknown-group", and "cycle" for a group within itself.
   bool addInstance(const std::string& id, const std::string& group, Messages& messages);

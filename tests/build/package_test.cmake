@@ -70,6 +70,19 @@ if(NOT headers STREQUAL public)
   message(FATAL_ERROR "the public headers are ${public}, but these are installed: ${headers}")
 endif()
 
+# The package for Python finds the library of its installation.
+find_program(python python3)
+if(python)
+  set(native "${WORK}/prefix/share/lacquer/python/lacquer/_native.py")
+  run(found "${CMAKE_COMMAND}" -E env --unset=LACQUER_LIBRARY "${python}" -c
+      "import importlib.util as u; s = u.spec_from_file_location('native', '${native}'); m = u.module_from_spec(s); s.loader.exec_module(m); print(m._candidates()[0])")
+  file(GLOB_RECURSE library "${WORK}/prefix/*/liblacquer.so")
+  string(STRIP "${found}" found)
+  if(library AND NOT found STREQUAL library)
+    message(FATAL_ERROR "the package for Python takes ${found}, not ${library}")
+  endif()
+endif()
+
 file(GLOB_RECURSE package "${WORK}/prefix/*.cmake")
 foreach(file IN LISTS package)
   file(READ "${file}" text)

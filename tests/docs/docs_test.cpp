@@ -43,6 +43,7 @@ std::string regionText(std::string_view name) {
   if (kind == "verbs") return verbsTable();
   if (kind == "passes") return passesTable();
   if (kind == "standard") return standardNodes();
+  if (kind == "lines") return linesTable();
   if (kind == "accuracy") return accuracy::table(of);
   ADD_FAILURE() << "there is no region of the kind '" << kind << "', or a region has no end";
   return {};

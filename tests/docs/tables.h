@@ -21,6 +21,7 @@ std::string extensionsTable();
 std::string limitsTable();
 std::string passesTable();
 std::string standardNodes();                       ///< of nodes/standard/, by category
+std::string linesTable();                          ///< of the parts, a section for each
 std::string deviceLimitsTable();                   ///< targets::DeviceLimits, a column for each target
 std::string templateOutputs(std::string_view of);  ///< a template's name
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "api/part_lines.h"
 #include "lacquer/check.h"
 #include "lacquer/tools.h"
 #include "lang/embedded.h"
@@ -111,6 +112,52 @@ public:
         if (!named || words_.count(line.id) > 1) continue;
         say(**decl, line.span, fmt::format("nothing takes a value from '{}'", line.id),
             "a line that nothing asks for is in no shader", found);
+      }
+    }
+    return found;
+  }
+
+  /// Warnings of the lines of one's own parts under the options' profile: "undeclared-channels" where a node
+  /// reads other channels of a texture than the extension declares, which engines may not store, and
+  /// "out-of-range" where a condition compares a property with what no material has.
+  Diagnostics lines(const Options& options) const {
+    Diagnostics found;
+    const Result<const model::Model*> compiled = language_.models.of(options.profile);
+    if (!compiled) return found;
+    const model::Model& model = **compiled;
+    const auto sayAt = [&](uint32_t index, lang::Span span, std::string code, std::string message,
+                           std::string help) {
+      const lang::PartDecl& part = *model.parts[index].decl;
+      Diagnostic warning{std::move(code),    Severity::Warning, {std::string(part.origin.file), 0, 0, {}},
+                         std::move(message), std::move(help),   {}};
+      locate(warning, *textOf(part.origin.file), span.offset, span.length);
+      addBounded(found, std::move(warning));
+    };
+    const auto compared = [&](uint32_t part, lang::Span span, const model::Condition& condition) {
+      if (std::string message = neverEqual(model, condition); !message.empty())
+        sayAt(part, span, "out-of-range", std::move(message), "no material of the range has that");
+    };
+    const auto own = [&](uint32_t part) {
+      return part < model.parts.size() && textOf(model.parts[part].decl->origin.file) != nullptr;
+    };
+    for (const model::Term& term : model.terms) {
+      if (!own(term.part)) continue;
+      const lang::Span span = model.parts[term.part].decl->span;
+      compared(term.part, span, term.when);
+      if (term.has_unless) compared(term.part, span, term.unless);
+    }
+    for (const model::Line& line : model.lines) {
+      if (!own(line.part) || line.kind != lang::LineDecl::Kind::Value) continue;
+      const lang::PartDecl& part = *model.parts[line.part].decl;
+      const std::string_view id = model.ids[line.id].name;
+      const auto decl = std::find_if(part.lines.begin(), part.lines.end(),
+                                     [&](const lang::LineDecl& one) { return one.id == id; });
+      const lang::Span span = decl != part.lines.end() ? decl->span : part.span;
+      for (const model::Alternative& one : line.alternatives) {
+        compared(line.part, span, one.condition);
+        if (std::string message = undeclaredChannels(model, one.value); !message.empty())
+          sayAt(line.part, span, "undeclared-channels", std::move(message),
+                "declare them behind the texture's name: `texture name .rgba;`");
       }
     }
     return found;
@@ -228,7 +275,10 @@ bool checkNodes(const Options& options, Messages& messages) {
   const OwnFiles files(**language, *own);
   report(files.unused(), {}, messages);
   Options named = options;
-  if (!lacquer::hasError(all) && resolveNames(**language, named)) report(files.leaving(named), {}, messages);
+  if (!lacquer::hasError(all) && resolveNames(**language, named)) {
+    report(files.lines(named), {}, messages);
+    report(files.leaving(named), {}, messages);
+  }
   return said();
 }
 

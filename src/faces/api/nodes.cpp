@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
+#include <set>
 
 #include "json/json.h"
 #include "lacquer/tools.h"
 #include "lang/builtins.h"
+#include "model/types.h"
 #include "setting/language.h"
 #include "setting/messages.h"
 
@@ -255,6 +258,61 @@ Json operationsJson() {
   return rows;
 }
 
+/// The node that a line is, where it is one; the first of several.
+const lang::NodeDecl* nodeOf(const model::Model& model, const model::Id& id) {
+  for (const uint32_t line : id.lines) {
+    for (const model::Alternative& one : model.lines[line].alternatives) {
+      if (one.value.kind == model::Value::Kind::Call) return one.value.node;
+    }
+  }
+  return nullptr;
+}
+
+Json lineJson(const model::Model& model, uint32_t index, const model::Types& types) {
+  const model::Id& id = model.ids[index];
+  const model::Line& first = model.lines[id.lines[0]];
+  const bool of_part = first.part < model.parts.size();
+  Json json = {
+      {"name", id.name},
+      {of_part ? "part" : "profile", of_part ? model.parts[first.part].decl->name : model.profile->name}};
+  model::Value value;
+  value.kind = model::Value::Kind::Id;
+  value.index = index;
+  const lang::NodeDecl* node = nodeOf(model, id);
+  if (const std::optional<ir::Type> type = types.of(value)) {
+    json["type"] = ir::typeName(*type);
+  } else if (node != nullptr && node->results.size() > 1) {
+    json["outputs"] = Json::array();
+    for (const lang::Param& result : node->results) json["outputs"].push_back(paramJson(result, {}));
+  }
+  if (id.light) json["light"] = true;
+  if (node != nullptr) json["meaning"] = node->doc;
+  return json;
+}
+
+/// What a part's text may read or replace of others' under the default profile: their lines, then as
+/// "below.direct" what the parts below put out.
+Json linesJson(const Language& library) {
+  const auto profiles = model::profiles(library);
+  const Result<const model::Model*> found = library.models.of(profiles->front()->name);
+  const model::Model& model = **found;
+  const model::Types types(library, model);
+  std::set<uint32_t> unnamed;  // of values behind `out` and `replace`
+  for (const model::Line& line : model.lines) {
+    if (line.carried) unnamed.insert(line.alternatives[0].value.index);
+  }
+  Json rows = Json::array();
+  for (uint32_t i = 0; i < model.ids.size(); ++i) {
+    if (!model.ids[i].lines.empty() && !unnamed.contains(i)) rows.push_back(lineJson(model, i, types));
+  }
+  for (const model::Out& out : model.outs) {
+    Json json = {{"name", fmt::format("below.{}", out.name)}, {"below", true}};
+    if (const std::optional<ir::Type> type = types.port(out.name)) json["type"] = ir::typeName(*type);
+    rows.push_back(std::move(json));
+  }
+  return rows;
+}
+
 /// The declarations of a kind, each by `row`.
 template <class Get, class Row>
 Json rowsOf(const lang::Library& library, lang::DeclKind kind, Get get, Row row) {
@@ -291,6 +349,7 @@ std::string nodesJson(const Options& options, Messages& messages) {
                      {"types", std::move(types)},
                      {"extensions", rowsOf(all, DeclKind::Extension, by(&Library::extension), extensionJson)},
                      {"parts", rowsOf(all, DeclKind::Part, parts, partJson)},
+                     {"lines", linesJson(**library)},
                      {"profiles", rowsOf(all, DeclKind::Profile, by(&Library::profile), profileJson)},
                      {"lods", rowsOf(all, DeclKind::Lod, by(&Library::lod), profileJson)},
                      {"switches", rowsOf(all, DeclKind::Switch, by(&Library::switch_), switchJson)},

@@ -213,7 +213,9 @@ void addCost(CLI::App& verb, Flags& flags) {
 }
 
 void addLevels(CLI::App& verb, Flags& flags, lacquer::cli::LodFlags& lod) {
-  verb.add_option("files", flags.files, ".gltf, .glb or .mtlx files")->required()->check(kNotEmpty);
+  verb.add_option("files", flags.files, ".gltf, .glb or .mtlx files, graphs: .json")
+      ->required()
+      ->check(kNotEmpty);
   verb.add_option("-o,--output", lod.lod.output, "the folder to write to")->required()->check(kNotEmpty);
   verb.add_option("--material", flags.materials, "only materials of this name (may be repeated)")
       ->allow_extra_args(false);

@@ -148,6 +148,21 @@ void printReport(const Report& report, const Options& options) {
              countOf(report.shaders.size(), "distinct shader"), valid);
 }
 
+/// All forms of an overloaded node; false where there is none of that name.
+static bool printForms(const json::Json& nodes, const std::string& name, bool as_json) {
+  json::Json forms = json::Json::array();
+  for (const auto& node : nodes) {
+    if (node["family"] == name) forms.push_back(node);
+  }
+  if (forms.empty()) return false;
+  if (as_json) fmt::print("{}\n", forms.dump(2));
+  for (size_t i = 0; !as_json && i < forms.size(); ++i) {
+    if (i > 0) fmt::print("\n");
+    printNode(forms[i]);
+  }
+  return true;
+}
+
 bool printNodes(const std::string& text, const std::string& name, bool as_json) {
   const json::Json all = json::reread(text);
   bool found = name.empty();
@@ -160,7 +175,7 @@ bool printNodes(const std::string& text, const std::string& name, bool as_json) 
     if (!name.empty() && !as_json) printNode(node);
   }
   if (name.empty() && as_json) fmt::print("{}\n", all.dump(2));
-  if (found) return true;
+  if (found || printForms(all["nodes"], name, as_json)) return true;
   // What two vendors call alike has the vendor before it.
   std::vector<std::string> alike;
   for (const auto& node : all["nodes"]) {

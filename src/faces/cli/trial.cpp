@@ -1,5 +1,6 @@
 #include "cli/trial.h"
 
+#include <cctype>
 #include <cmath>
 #include <locale>
 #include <map>
@@ -20,6 +21,15 @@ bool readParameter(const std::string& text, NamedNumbers& to) {
   std::vector<double> numbers;
   do {
     double number = 0;
+    if (std::isalpha(stream.peek()) != 0) {
+      std::string word;
+      std::getline(stream, word, ',');
+      if (word != "true" && word != "false") return false;
+      numbers.push_back(word == "true" ? 1 : 0);
+      if (stream.eof()) break;
+      stream.unget();
+      continue;
+    }
     if (!(stream >> number) || !std::isfinite(number)) return false;
     numbers.push_back(number);
   } while (stream.peek() == ',' && stream.get() == ',');

@@ -354,11 +354,15 @@ Result<void> checkCount(const graph::Parameter& parameter, const std::string& na
 Result<void> EvalMaterial::setParameters(const Language& library, graph::Graph& graph) {
   if (trial_.parameters.empty() && columns_.empty()) return {};
   const std::vector<ir::Range> limits = graph::parameterLimits(graph, library);
-  for (const auto& [name, value] : trial_.parameters) {
+  for (const auto& [name, numbers] : trial_.parameters) {
     const Result<size_t> place = parameterOf(graph, name);
     if (!place && anyway_) continue;
     if (!place) return tl::make_unexpected(place.error());
     graph::Parameter& found = graph.parameters[*place];
+    // One number for each component of a vector, as in graphs.
+    std::vector<double> value = numbers;
+    if (value.size() == 1 && ir::isFloatVector(found.type))
+      value.assign(static_cast<size_t>(ir::componentCount(found.type)), numbers[0]);
     if (Result<void> wrong = checkCount(found, name, value.size()); !wrong) return wrong;
     if (Result<void> wrong = checkNumbers(found, limits[*place], name, value); !wrong) return wrong;
     std::copy(value.begin(), value.end(), found.value.begin());
@@ -448,16 +452,15 @@ std::vector<const ir::TextureSlot*> EvalMaterial::usedTextures() const {
 
 std::vector<const ir::TextureSlot*> EvalMaterial::environments() const {
   std::vector<const ir::TextureSlot*> slots = usedTextures();
-  std::erase_if(slots, [](const ir::TextureSlot* slot) {
-    return !slot->environment || slot->type != ir::Type::TextureCube;
-  });
+  std::erase_if(slots,
+                [&](const ir::TextureSlot* slot) { return !isMap(*slot) || texelOf(*slot) != nullptr; });
   return slots;
 }
 
 Result<void> EvalMaterial::bindTextures(const Substitute& substitute, eval::Bindings& bindings) {
   Diagnostics wrong;
   for (const ir::TextureSlot* slot : usedTextures()) {
-    if (slot->environment && slot->type == ir::Type::TextureCube) continue;
+    if (isMap(*slot) && texelOf(*slot) == nullptr) continue;
     Result<BoundTexture> bound = slot->environment ? environmentOf(*slot) : textureOf(*slot, substitute);
     if (!bound) {
       wrong.insert(wrong.end(), bound.error().begin(), bound.error().end());
@@ -476,13 +479,78 @@ Result<void> EvalMaterial::bindTextures(const Substitute& substitute, eval::Bind
   return {};
 }
 
+/// An environment map, which points have for themselves where it is given no constant.
+bool EvalMaterial::isMap(const ir::TextureSlot& slot) {
+  return slot.environment && slot.type == ir::Type::TextureCube;
+}
+
+/// The pointers of its property, and of others that have the same texel.
+std::vector<std::string> EvalMaterial::pointersOf(const ir::TextureSlot& slot) const {
+  if (slot.environment) return {};
+  std::vector<std::string> pointers = originals_[static_cast<size_t>(slot.texture)].also;
+  if (!slot.pointer.empty()) pointers.push_back(slot.pointer);
+  return pointers;
+}
+
+namespace {
+
+/// "ACME_stain.stainTexture" of "/materials/0/extensions/ACME_stain/stainTexture"; empty for what stands in
+/// no extension.
+std::string ofExtension(std::string_view pointer) {
+  constexpr std::string_view kExtensions = "/extensions/";
+  const size_t at = pointer.rfind(kExtensions);
+  if (at == std::string_view::npos) return {};
+  const std::string_view rest = pointer.substr(at + kExtensions.size());
+  return fmt::format("{}.{}", rest.substr(0, rest.find('/')), lastPart(rest));
+}
+
+}  // namespace
+
+/// By its name alone, or as one of all textures: with the extension before the property, or by the pointer.
+bool EvalMaterial::namesOne(const std::string& name, const ir::TextureSlot& slot) const {
+  if (name == slot.name) return true;
+  const std::vector<std::string> pointers = pointersOf(slot);
+  return std::any_of(pointers.begin(), pointers.end(), [&](const std::string& pointer) {
+    return pointer == name || ofExtension(pointer) == name;
+  });
+}
+
 /// By its name, its property's or that of another property that has the same texel.
 bool EvalMaterial::names(const std::string& name, const ir::TextureSlot& slot) const {
-  if (slot.environment) return name == slot.name && slot.type != ir::Type::TextureCube;
-  if (name == propertyOf(slot) || name == slot.name) return true;
-  const std::vector<std::string>& also = originals_[static_cast<size_t>(slot.texture)].also;
-  return std::any_of(also.begin(), also.end(),
+  if (namesOne(name, slot)) return true;
+  const std::vector<std::string> pointers = pointersOf(slot);
+  return std::any_of(pointers.begin(), pointers.end(),
                      [&](const std::string& pointer) { return lastPart(pointer) == name; });
+}
+
+/// The last one that is given for it.
+const EvalMaterial::Texel* EvalMaterial::texelOf(const ir::TextureSlot& slot) const {
+  const auto found = std::find_if(texels_.rbegin(), texels_.rend(),
+                                  [&](const Texel& texel) { return names(texel.slot, slot); });
+  return found == texels_.rend() ? nullptr : &*found;
+}
+
+/// A property's name may be that of several extensions' textures.
+Result<void> EvalMaterial::checkAmbiguity() const {
+  for (const Texel& texel : texels_) {
+    std::vector<std::string> meant;
+    bool exact = false;
+    for (const ir::TextureSlot& slot : module_.textures) {
+      if (!names(texel.slot, slot)) continue;
+      exact = exact || namesOne(texel.slot, slot);
+      for (const std::string& pointer : pointersOf(slot)) {
+        if (lastPart(pointer) != texel.slot) continue;
+        const std::string of_extension = ofExtension(pointer);
+        meant.push_back(of_extension.empty() ? pointer : of_extension);
+        break;
+      }
+    }
+    if (exact || meant.size() < 2) continue;
+    return fail("ambiguous-texture", {},
+                fmt::format("--texel: {} textures are called '{}'", meant.size(), printable(texel.slot)),
+                fmt::format("name one: {}", fmt::join(meant, ", ")));
+  }
+  return {};
 }
 
 /// One texel has one value, whichever of its properties names it. Of one name the last counts.
@@ -521,15 +589,14 @@ Result<void> EvalMaterial::checkTexels(const material::Schema& schema) const {
                 slots.empty() ? "the material has no textures"
                               : fmt::format("the material has {}", fmt::join(slots, ", ")));
   }
+  if (Result<void> one = checkAmbiguity(); !one) return one;
   return checkAgreement();
 }
 
 /// A texture of the template's: a constant that is given, a table of factors, or a depth map in which
 /// nothing stands.
 Result<BoundTexture> EvalMaterial::environmentOf(const ir::TextureSlot& slot) const {
-  for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
-    if (names(it->slot, slot)) return BoundTexture{it->value, {}, {}};
-  }
+  if (const Texel* texel = texelOf(slot)) return BoundTexture{texel->value, {}, {}};
   if (const auto table = eval::environmentTable(slot.name); table && slot.type == ir::Type::Texture2D)
     return BoundTexture{{}, table, {eval::Wrap::Clamp, eval::Wrap::Clamp, false, false}};
   if (slot.texel) return BoundTexture{*slot.texel, {}, {}};
@@ -541,9 +608,7 @@ Result<BoundTexture> EvalMaterial::environmentOf(const ir::TextureSlot& slot) co
 }
 
 Result<BoundTexture> EvalMaterial::textureOf(const ir::TextureSlot& slot, const Substitute& substitute) {
-  for (auto it = texels_.rbegin(); it != texels_.rend(); ++it) {
-    if (names(it->slot, slot)) return BoundTexture{it->value, {}, {}};
-  }
+  if (const Texel* texel = texelOf(slot)) return BoundTexture{texel->value, {}, {}};
   const graph::Texture& original = originals_[static_cast<size_t>(slot.texture)];
   const bool nothing = original.texture < 0 && original.file.empty();
   if (original.color && nothing) return BoundTexture{*original.color, {}, {}};

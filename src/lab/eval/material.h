@@ -135,7 +135,7 @@ public:
   /// What bindTextures() bound, by slot.
   const std::map<std::string, BoundTexture>& textures() const { return bound_; }
 
-  /// The environment maps, cubes, that the outputs reach.
+  /// The environment maps, cubes, that the outputs reach and that have no constant.
   std::vector<const ir::TextureSlot*> environments() const;
 
   const ir::Module& module() const { return module_; }
@@ -163,7 +163,12 @@ private:
   /// As the options want them.
   passes::LightFacts lit(passes::LightFacts lights) const;
   static Result<Texel> parseTexel(const std::string& text);
+  static bool isMap(const ir::TextureSlot& slot);
+  std::vector<std::string> pointersOf(const ir::TextureSlot& slot) const;
+  bool namesOne(const std::string& name, const ir::TextureSlot& slot) const;
   bool names(const std::string& name, const ir::TextureSlot& slot) const;
+  const Texel* texelOf(const ir::TextureSlot& slot) const;
+  Result<void> checkAmbiguity() const;
   Result<void> checkAgreement() const;
   Result<void> checkTexels(const material::Schema& schema) const;
   Result<BoundTexture> environmentOf(const ir::TextureSlot& slot) const;
