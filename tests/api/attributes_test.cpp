@@ -241,7 +241,7 @@ std::string warningsOf(const std::string& file, const std::string& type) {
   options.template_name = "masked";
   Messages messages;
   const Report report =
-      generate({(folder / "wet.gltf").string()}, (folder / "out").string(), options, messages);
+      generate({(folder / "wet.gltf").string()}, {}, (folder / "out").string(), options, messages);
   EXPECT_TRUE(report.ok) << errorsOf(messages);
   std::string warnings;
   for (const Message& message : messages) {
