@@ -145,6 +145,36 @@ TEST(StandardPlace, AttributesAreIntegersAndBools) {
   EXPECT_EQ(flat, 2U) << glsl;
 }
 
+/// A swizzle takes parts of vectors of integers, too, of attributes and of parameters.
+TEST(StandardPlace, PartsOfIntegersAreTaken) {
+  const std::string nodes =
+      R"({"id": "a", "node": "convert<float, int>", "inputs": {"in": {"attribute": "_P", "type": "ivec3", "swizzle": "z"}}},
+         {"id": "b", "node": "convert<float, int>", "inputs": {"in": {"parameter": "k", "swizzle": "y"}}},
+         {"id": "n", "node": "combine3", "inputs": {"in1": {"node": "a"}, "in2": {"node": "b"}}})";
+  const auto graphOfValue = [&](const std::string& value, Messages& messages) {
+    return Graph::fromJson(R"({"lacquer_graph": 1, "name": "g", "template": "forward",
+      "parameters": {"k": {"type": "ivec2", "value": [3, )" + value + "]}}, \"nodes\": [" + nodes +
+                               R"(], "outputs": {"emission": {"node": "n"}}})",
+                           "g.json", messages);
+  };
+  Messages messages;
+  Graph graph = graphOfValue("-5", messages);
+  ASSERT_TRUE(graph) << textOf(messages);
+  for (const Engine engine : {Engine::Double, Engine::Float}) {
+    const auto found = evaluate(graph, R"({"points": [{"_P": [1, 2, 7]}]})", engine, {}, {}, messages);
+    ASSERT_TRUE(found) << textOf(messages);
+    EXPECT_EQ(found->rgba[0], (std::array<double, 4>{7, -5, 0, 1}));
+  }
+  EXPECT_TRUE(graph.generate({}, messages)) << textOf(messages);
+  for (const char* wrong : {"3000000000", "0.5"}) {
+    Messages said;
+    const Graph bad = graphOfValue(wrong, said);
+    const Messages found = bad ? bad.check() : said;
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [](const Message& m) { return m.level == Message::Level::Error; }))
+        << wrong << textOf(found);
+  }
+}
+
 /// Defaults are those of the definitions, also where they are not 0.
 TEST(StandardPlace, DefaultsAreTheDefinitions) {
   const auto equal = [](const std::string& node, const std::string& inputs) {

@@ -103,6 +103,7 @@ export class Document {
   /** Of that what no edit changes; an animation of a material's property keeps the property's terms. */
   private unedited(): object {
     const { asset, textures, samplers, images, animations } = this.json;
+    const procedurals = this.json.extensions?.KHR_texture_procedurals;
     const targets = (channels: any) => list(channels)
       .map((channel) => channel?.target)
       .filter((target) => {
@@ -114,6 +115,7 @@ export class Document {
       asset, textures, samplers,
       images: images && list(images).map((each) => ({ mimeType: each?.mimeType, name: each?.name, uri: 'image' })),
       animations: animations && list(animations).map((each) => ({ channels: targets(each?.channels) })),
+      extensions: procedurals && { KHR_texture_procedurals: procedurals },
     };
   }
 

@@ -201,7 +201,10 @@ private:
       own_.emplace_back(name, value);
     }
     if (dag()[value].type != stored) return ir::kNoValue;
-    if (type == ir::Type::Bool) value = lang::converted(dag(), value, type);
+    if (type == ir::Type::Bool) {
+      value = lang::converted(dag(), value, type);
+      dag().name(value, fmt::format("is{}", name[0] == '_' ? std::string(name) : "_" + std::string(name)));
+    }
     return dag()[value].rate == ir::Rate::Vertex ? lang::interpolated(dag(), value) : value;
   }
 
@@ -547,7 +550,12 @@ private:
     assert(count <= components.size());
     for (size_t i = 0; i < count; ++i)
       components[i] = static_cast<int>(std::string_view("xyzwrgbastpq").find(source.swizzle[i])) % 4;
-    return dag().swizzle(value, {components.data(), count});
+    const ir::Type type = dag()[value].type;
+    if (ir::isFloatVector(type)) return dag().swizzle(value, {components.data(), count});
+    std::array<ir::ValueId, 4> parts{};
+    for (size_t i = 0; i < count; ++i) parts[i] = lang::componentOf(dag(), value, components[i]);
+    const ir::Type picked = ir::vectorType(ir::partType(type), static_cast<int>(count));
+    return count == 1 ? parts[0] : lang::constructed(dag(), picked, {parts.data(), count});
   }
 
   ir::ValueId from(const graph::Literal& literal) { return dag().constant(literal.type, literal.value); }

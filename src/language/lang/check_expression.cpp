@@ -399,9 +399,17 @@ bool Checker::operation(Expr& expr) {
   }
   std::string help = fmt::format("it takes {}", expr.builtin->shape);
   const bool wholes = ir::isWhole(ir::partType(types[0])) || ir::isWhole(ir::partType(types[1]));
-  if (expr.args.size() == 2 && wholes && ir::partType(types[0]) != ir::partType(types[1]))
-    help = fmt::format("write {}(...) around one of them",
-                       ir::isFloating(types[0]) || ir::isFloating(types[1]) ? "float" : typeName(types[0]));
+  if (expr.args.size() == 2 && wholes && ir::partType(types[0]) != ir::partType(types[1])) {
+    // Bits are of integers alone; else a float does not lose what lies behind the point.
+    constexpr std::string_view kOfBits = "% & | ^ << >>";
+    const bool first = ir::isWhole(ir::partType(types[0]));
+    const Type whole = types[first ? 0 : 1];
+    const bool floating = ir::isFloating(types[0]) || ir::isFloating(types[1]);
+    const bool number = floating && kOfBits.find(expr.name) == std::string_view::npos;
+    help = fmt::format("write {}(...) around {} of them",
+                       typeName(number ? ir::floatType(ir::componentCount(whole)) : whole),
+                       number || !floating ? "one" : first ? "the second" : "the first");
+  }
   if (expr.name == "%" && ir::isFloating(types[0])) help = "write mod(x, y)";
   reporter_.error("wrong-type", expr.span,
                   fmt::format("no operator '{}' takes {}", expr.name, list(expr.args)), std::move(help));

@@ -135,6 +135,16 @@ void GraphCheck::parameter(size_t index) {
                    fmt::format("the default of {} is {}", inQuotes(p.name), neutral),
                    std::string(kFloatHelp));
     }
+    if (const ir::Type part = ir::partType(p.type); ir::isWhole(part)) {
+      const bool is_signed = part == ir::Type::Int;
+      const double least = is_signed ? -0x1p31 : 0;
+      const double most = is_signed ? 0x1p31 - 1 : 0x1p32 - 1;
+      if (std::trunc(x) != x || x < least || x > most) {
+        return error(spot, at("/value"), "out-of-range",
+                     fmt::format("the value of {} is {}", inQuotes(p.name), x),
+                     fmt::format("a whole number from {:.0f} to {:.0f}", least, most));
+      }
+    }
     if (!p.range.contains(x)) {
       return error(spot, at("/value"), "out-of-range",
                    fmt::format("the value {} of {} is not in its range {}", x, inQuotes(p.name),

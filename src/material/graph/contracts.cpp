@@ -70,9 +70,10 @@ std::optional<Type> swizzled(Type type, std::string_view swizzle) {
   if (swizzle.empty()) return type;
   const std::string picked = swizzleComponents(swizzle);
   const auto size = static_cast<char>(ir::componentCount(type));
-  if (!ir::isFloating(type) || picked.empty()) return std::nullopt;
+  const bool has_parts = ir::isFloating(type) || (size > 1 && !ir::isMatrix(type));
+  if (!has_parts || picked.empty()) return std::nullopt;
   if (std::any_of(picked.begin(), picked.end(), [&](char c) { return c >= size; })) return std::nullopt;
-  return ir::floatType(static_cast<int>(picked.size()));
+  return ir::vectorType(ir::partType(type), static_cast<int>(picked.size()));
 }
 
 void narrow(ir::Range& range, const ir::Range& by) {

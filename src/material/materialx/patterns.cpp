@@ -266,7 +266,13 @@ void Patterns::groupInputs(Scope& scope) {
       scope.group_.inputs.push_back(std::move(made));
     }
     const std::optional<ir::Type> type = typeOf(input.get("type"));
-    if (!type || ir::isMatrix(*type)) continue;
+    if (!type) continue;
+    if (ir::isMatrix(*type)) {
+      // A graph has no word for a matrix: instances give it, and of a nodegraph's own each use makes it.
+      if (scope.interface_ != scope.owner_ || isConnected(input))
+        scope.group_.inputs.push_back({graphName(input.name()), *type, {}, {}, {}});
+      continue;
+    }
     const bool file = ir::isTexture(*type);
     if (file && scope.interface_ == scope.owner_) continue;
     graph::GroupInput made;
@@ -389,6 +395,10 @@ std::optional<Source> Patterns::connected(Scope& scope, const Element& input, st
       error(input, "unknown-input", fmt::format("there is no interface input {}", quote(*name)),
             suggest(*name, scope.interface_ == nullptr ? *scope.owner_ : *scope.interface_,
                     [](const Element& e) { return e.category == "input"; }));
+    } else if (const Element& port = *scope.inputs_.at(*name);
+               scope.interface_ == scope.owner_ && !isConnected(port) &&
+               ir::isMatrix(typeOf(port.get("type")).value_or(ir::Type::Float))) {
+      source = matrix(scope, *scope.owner_, port, *typeOf(port.get("type")));
     } else {
       std::string inner = graphName(*name);
       if (!part.empty()) inner += fmt::format("_{}", part);
@@ -455,7 +465,7 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
     }
     return behind(*in, swizzle);
   }
-  const Element* interface = element.category == "nodegraph" ? &element : definitionOf(element);
+  const Element* interface = element.category == "nodegraph" ? &element : definitionFor(scope, element);
   std::string output;
   if (interface != nullptr) {
     std::string_view only = referred.output;
@@ -503,7 +513,7 @@ void Patterns::node(Scope& scope, const Element& element) {
   if (element.category == "nodegraph") {
     made.type = group(element);
     instance(scope, element, element, made);
-  } else if (const Element* nodedef = definitionOf(element)) {
+  } else if (const Element* nodedef = definitionFor(scope, element)) {
     const Element* graph = definition(*nodedef)->graph;
     if (graph == nullptr)
       return error(element, "no-graph",
@@ -551,13 +561,15 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
       lang::Param param;
       param.type = *type;
       source = literal(scope, element, input, param);
-    } else if (const Element* said = text(scope, input);
-               said != nullptr && said->get("value") != port->get("value")) {
-      warning(input, "text-kept",
-              fmt::format("{} is a text, which is the same for all instances", quote(input.name())),
-              "the definition's own is taken");
     }
     if (source) made.inputs.emplace_back(graphName(input.name()), std::move(*source));
+  }
+  for (const Element& port : interface.children) {
+    const std::optional<ir::Type> type = typeOf(port.get("type"));
+    if (port.category != "input" || &element == &interface || !type || !ir::isMatrix(*type)) continue;
+    if (element.child("input", port.name()) != nullptr) continue;
+    if (std::optional<Source> source = matrix(scope, element, port, *type))
+      made.inputs.emplace_back(graphName(port.name()), std::move(*source));
   }
 }
 

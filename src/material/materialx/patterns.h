@@ -137,6 +137,7 @@ private:
   std::optional<graph::Source> image(Scope& scope, const Element& element, const Element& input, bool tiles);
   const Element* text(Scope& within, const Element& input);
   const Element* propertyOf(const Element& node, std::string_view name);
+  const Element* definitionFor(Scope& scope, const Element& element);
   bool takesTiles(std::string_view category) const;
   bool isOfInstances(const Scope& scope, const Element& input) const;
   bool hasTiles(Scope& scope, const Element& input);
@@ -177,7 +178,8 @@ private:
   std::unordered_map<std::string_view, std::vector<size_t>> definitions_of_;
   std::unordered_map<const Element*, size_t> by_nodedef_, by_graph_;
   size_t suggestions_ = 0;
-  std::map<std::string, std::string> textures_;  ///< by all that is said of one
+  std::map<std::string, const Element*> with_texts_;  ///< definitions, by their names and their texts
+  std::map<std::string, std::string> textures_;       ///< by all that is said of one
   struct Demand {
     Scope* scope;
     std::string output;

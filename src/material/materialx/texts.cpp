@@ -107,6 +107,38 @@ const Element* Patterns::text(Scope& within, const Element& input) {
   return nullptr;
 }
 
+/// The definition of a node that the document defines, with the texts that this one is given: they decide what
+/// the graph is, so that each choice of them is a definition of its own. Null for other nodes.
+const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
+  const Element* nodedef = definitionOf(element);
+  if (nodedef == nullptr) return nullptr;
+  std::string key = fmt::format("{} {}", nodedef->get("node"), nodedef->name());
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (const Element& input : element.children) {
+    const Element* port = input.category == "input" ? nodedef->child("input", input.name()) : nullptr;
+    if (port == nullptr || port->get("type") != "string") continue;
+    const Element* said = text(scope, input);
+    if (said == nullptr || said->get("value") == port->get("value")) continue;
+    texts.emplace_back(port->name(), said->get("value"));
+    key += fmt::format("\n{}\n{}", port->name(), said->get("value"));
+  }
+  const Element* graph = definition(*nodedef)->graph;
+  if (texts.empty() || graph == nullptr) return nodedef;
+  const auto [it, fresh] = with_texts_.try_emplace(std::move(key));
+  if (!fresh) return it->second;
+  Element& made = made_.emplace_back(*nodedef);
+  for (Element& port : made.children) {
+    for (const auto& [name, value] : texts) {
+      if (port.category == "input" && port.name() == name) port.set("value", value);
+    }
+  }
+  const Element& body = made_.emplace_back(*graph);
+  by_nodedef_.emplace(&made, definitions_.size());
+  by_graph_.emplace(&body, definitions_.size());
+  definitions_.push_back({&made, &body});
+  return it->second = &made;
+}
+
 /// An attribute of the vertices by the text that names it. glTF begins the application's names with an
 /// underscore.
 std::optional<Source> Patterns::attribute(Scope& scope, const Element& input, ir::Type type) {
