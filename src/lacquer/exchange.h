@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lacquer/options.h"
+#include "lacquer/results.h"
 
 namespace lacquer {
 
@@ -21,6 +22,24 @@ std::string toMaterialX(const std::string& file, const Strings& materials, const
 /// The same as a file. False on an error, which "output-clash" and "file-unwritable" are, too.
 bool writeMaterialX(const std::string& output, const std::string& file, const Strings& materials,
                     const std::string& surface, const Options& options, Messages& messages);
+
+struct Conversion {
+  std::string output;     ///< the .mtlx file to write
+  std::string surface;    ///< as for toMaterialX()
+  bool measured = false;  ///< how different the materials look
+  std::string picture;    ///< a PNG file: both, and their difference; may be empty
+  uint32_t size = 160;    ///< pixels of a ball, from 16 to 2048
+};
+struct Converted {
+  std::string output, picture;
+  std::vector<PreviewDifference>
+      differences;  ///< of linear colours of lit balls, by material, where measured
+};
+/// writeMaterialX(), and what is lost by it. A `standard_surface` of a document becomes an `open_pbr_surface`
+/// or a `gltf_pbr` in its place, by the formulas of MaterialX's own translation graphs, and the rest of the
+/// document stays; all other surfaces go by glTF's properties. Nothing on an error. Uses threads.
+std::optional<Converted> convert(const Conversion& how, const std::string& file, const Strings& materials,
+                                 const Options& options, Messages& messages);
 
 /// The form of a baked image.
 enum class Texels : uint8_t {

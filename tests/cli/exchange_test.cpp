@@ -486,10 +486,12 @@ TEST(Convert, saysThatThereIsNothing) {
 TEST(Convert, toEachSurface) {
   const Workplace place;
   place.write("ramp.mtlx", kDocument);
-  const Outcome open = place.run({"convert", "ramp.mtlx", "-o", "open.mtlx"});
+  const Outcome open = place.run({"convert", "ramp.mtlx", "-o", "open.mtlx", "-q"});
   EXPECT_EQ(open.status, 0) << open.err;
+  EXPECT_EQ(open.out, "");
   EXPECT_NE(place.read("open.mtlx").find("<open_pbr_surface name=\"SR_Ramp\""), std::string::npos);
-  const Outcome gltf = place.run({"convert", "ramp.mtlx", "-o", "gltf.mtlx", "--as", "gltf_pbr"});
+  // By glTF's properties what has no translation graph.
+  const Outcome gltf = place.run({"convert", "open.mtlx", "-o", "gltf.mtlx", "--as", "gltf_pbr"});
   EXPECT_EQ(gltf.status, 0) << gltf.err;
   EXPECT_NE(place.read("gltf.mtlx").find("<gltf_pbr name=\"SR_Ramp\""), std::string::npos);
   EXPECT_NE(place.read("gltf.mtlx").find("<input name=\"clearcoat\" type=\"float\" value=\"0.5\"/>"),
@@ -500,6 +502,93 @@ TEST(Convert, toEachSurface) {
   const Outcome over = place.run({"convert", "ramp.mtlx", "-o", "ramp.mtlx"});
   EXPECT_EQ(over.status, 1);
   EXPECT_NE(over.err.find("[output-clash]"), std::string::npos) << over.err;
+}
+
+/// What an input of the document's only surface is: its value, or the category of the node that it takes.
+std::string inputOf(const std::string& document, const std::string& name) {
+  const size_t surface = document.find("_pbr");
+  const size_t at = document.find("<input name=\"" + name + "\"", surface);
+  if (surface == std::string::npos || at == std::string::npos) return "none";
+  const std::string line = document.substr(at, document.find("/>", at) - at);
+  const size_t value = line.find("value=\"");
+  if (value != std::string::npos) return line.substr(value + 7, line.find('"', value + 7) - value - 7);
+  const size_t node = line.find("nodename=\"");
+  if (node == std::string::npos) return "graph";
+  const std::string named = "name=\"" + line.substr(node + 10, line.find('"', node + 10) - node - 10) + "\"";
+  const size_t element = document.rfind('<', document.find(named));
+  return document.substr(element + 1, document.find(' ', element) - element - 1);
+}
+
+/// A standard_surface in its place, by MaterialX's translation graphs. Numbers by hand of their formulas.
+TEST(Convert, byTranslationGraphs) {
+  const Workplace place;
+  place.write("all.mtlx", R"(<materialx version="1.39" fileprefix="tex/">
+  <image name="rust" type="float"><input name="file" type="filename" value="rust.png"/></image>
+  <standard_surface name="shader" type="surfaceshader">
+    <input name="base" type="float" value="0.5"/>
+    <input name="base_color" type="color3" value="0.8, 0.4, 0.2"/>
+    <input name="specular_roughness" type="float" value="0.5"/>
+    <input name="specular_anisotropy" type="float" value="0.36"/>
+    <input name="specular_rotation" type="float" value="0.25"/>
+    <input name="sheen" type="float" value="0.5"/>
+    <input name="sheen_roughness" type="float" value="0.25"/>
+    <input name="coat" type="float" nodename="rust"/>
+    <input name="coat_color" type="color3" value="1, 0.5, 0"/>
+    <input name="coat_affect_color" type="float" value="0.7"/>
+    <input name="thin_film_thickness" type="float" value="400"/>
+    <input name="subsurface_radius" type="color3" value="3, 2, 1"/>
+  </standard_surface>
+  <surfacematerial name="All" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shader"/>
+  </surfacematerial></materialx>)");
+  const Outcome open =
+      place.run({"convert", "all.mtlx", "-o", "out/open.mtlx", "--as", "open_pbr_surface", "-q"});
+  EXPECT_EQ(open.status, 0) << open.err;
+  const std::string document = place.read("out/open.mtlx");
+  EXPECT_EQ(inputOf(document, "base_weight"), "0.5");
+  EXPECT_EQ(inputOf(document, "base_color"), "multiply");
+  EXPECT_EQ(inputOf(document, "specular_roughness"), "0.5");
+  EXPECT_EQ(inputOf(document, "fuzz_roughness").substr(0, 6), "0.5743");  // 0.25 ^ 0.4
+  EXPECT_EQ(inputOf(document, "coat_weight"), "image");
+  EXPECT_EQ(inputOf(document, "coat_darkening"), "0");
+  EXPECT_EQ(inputOf(document, "thin_film_thickness"), "0.4");
+  EXPECT_EQ(inputOf(document, "subsurface_radius_scale"), "none");
+  EXPECT_NE(document.find("value=\"../tex/rust.png\""), std::string::npos) << document;
+  EXPECT_EQ(document.find("fileprefix"), std::string::npos);
+  EXPECT_NE(open.err.find("coat_affect_color has no counterpart in open_pbr_surface: 0.7 is lost"),
+            std::string::npos)
+      << open.err;
+  EXPECT_NE(open.err.find("specular_rotation has no counterpart"), std::string::npos) << open.err;
+  EXPECT_EQ(open.err.find("subsurface_radius"), std::string::npos) << open.err;
+
+  const Outcome gltf = place.run({"convert", "all.mtlx", "-o", "gltf.mtlx", "--as", "gltf_pbr", "-q"});
+  EXPECT_EQ(gltf.status, 0) << gltf.err;
+  const std::string as_gltf = place.read("gltf.mtlx");
+  // alpha is 0.25; 0.25 / 0.8 across and 0.25 * 0.8 along.
+  EXPECT_EQ(inputOf(as_gltf, "roughness").substr(0, 7), "0.44721");
+  EXPECT_NEAR(std::stod(inputOf(as_gltf, "anisotropy_strength")), 0.375, 1e-12);
+  EXPECT_EQ(inputOf(as_gltf, "anisotropy_rotation"), "-1.57075");
+  EXPECT_EQ(inputOf(as_gltf, "sheen_roughness"), "0.5");
+  EXPECT_EQ(inputOf(as_gltf, "clearcoat"), "dotproduct");
+  EXPECT_EQ(inputOf(as_gltf, "iridescence_thickness"), "400");
+  EXPECT_EQ(inputOf(as_gltf, "metallic"), "0");
+}
+
+TEST(Convert, measuresAndShows) {
+  const Workplace place;
+  place.write("ramp.mtlx", kDocument);
+  const Outcome measured = place.run({"convert", "ramp.mtlx", "-o", "open.mtlx", "--as", "open_pbr_surface",
+                                      "--picture", "both.png", "--size", "32"});
+  EXPECT_EQ(measured.status, 0) << measured.err;
+  EXPECT_NE(measured.out.find("rms  material\n"), std::string::npos) << measured.out;
+  EXPECT_NE(measured.out.find("  Ramp\n"), std::string::npos) << measured.out;
+  EXPECT_EQ(place.read("both.png").substr(1, 3), "PNG");
+  // A surface that becomes itself loses nothing.
+  const Outcome same = place.run({"convert", "open.mtlx", "-o", "same.mtlx", "--size", "32"});
+  EXPECT_NE(same.out.find("0.000e+00    0.000e+00    0.000e+00  Ramp"), std::string::npos) << same.out;
+  const Outcome over = place.run({"convert", "ramp.mtlx", "-o", "open.mtlx", "--picture", "ramp.mtlx"});
+  EXPECT_NE(over.err.find("[output-clash]"), std::string::npos) << over.err;
+  EXPECT_EQ(place.read("ramp.mtlx"), kDocument);
 }
 
 }  // namespace

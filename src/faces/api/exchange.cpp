@@ -1,4 +1,5 @@
 #include "exchange/exchange.h"
+#include "exchange/translation.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +8,14 @@
 
 #include "lacquer/exchange.h"
 #include "lacquer/graph.h"
+#include "materialx/element.h"
+#include "materialx/materialx.h"
+#include "preview/compared.h"
 #include "setting/language.h"
 #include "setting/messages.h"
+#include "setting/options.h"
 #include "support/file.h"
+#include "support/jobs.h"
 #include "support/outputs.h"
 #include "support/relative.h"
 #include "support/text.h"
@@ -17,6 +23,33 @@
 namespace lacquer {
 
 namespace {
+
+/// Files are named as seen from another folder, and prefixes are in the names.
+void moveFiles(materialx::Element& element, const Moved& moved) {
+  std::erase_if(element.attributes, [](const auto& one) { return one.first == "fileprefix"; });
+  if (element.get("type") == "filename" && !element.get("value").empty())
+    element.set("value", moved(std::string(element.get("value"))));
+  for (materialx::Element& child : element.children) moveFiles(child, moved);
+}
+
+/// A document whose surfaces are others, by MaterialX's own translation graphs. Nothing where there is none
+/// for a surface that it has.
+std::optional<std::string> translatedOf(const std::string& file, const std::string& folder,
+                                        const std::string& surface, const Options& options,
+                                        Messages& messages) {
+  const Result<Limits> limits = limitsOf(options);
+  if (surface.empty() || !limits) return std::nullopt;
+  const Result<std::string> text = readFile(file, limits->file);
+  if (!text || !materialx::isXml(*text)) return std::nullopt;
+  Result<materialx::Document> document = materialx::readXml(*text, file, *limits);
+  if (!document || !exchange::canTranslate(document->root, surface)) return std::nullopt;
+  Diagnostics said;
+  exchange::translateSurfaces(document->root, surface, said);
+  report(said, file, messages);
+  const std::string from = folderOf(file);
+  moveFiles(document->root, Moved(from, folder.empty() ? from : folder));
+  return materialx::toXml(document->root);
+}
 
 /// The document's text, for that folder.
 std::string documentOf(const std::string& file, const std::string& folder, const Strings& materials,
@@ -37,6 +70,10 @@ std::string documentOf(const std::string& file, const std::string& folder, const
             .value(),
         file, messages);
     return {};
+  }
+  if (materials.empty()) {
+    if (std::optional<std::string> text = translatedOf(file, folder, surface, options, messages))
+      return std::move(*text);
   }
   const Result<std::shared_ptr<const Language>> language = libraryFor(options);
   if (!language) return report(language.error(), {}, messages), std::string();
@@ -85,6 +122,25 @@ bool writeMaterialX(const std::string& output, const std::string& file, const St
   const Result<bool> written = writeFile(output, text, {nullptr, options.sync});
   if (!written) report(written.error(), output, messages);
   return written.has_value();
+}
+
+std::optional<Converted> convert(const Conversion& how, const std::string& file, const Strings& materials,
+                                 const Options& options, Messages& messages) {
+  if (!writeMaterialX(how.output, file, materials, how.surface, options, messages)) return std::nullopt;
+  Converted converted;
+  converted.output = how.output;
+  if (!how.measured && how.picture.empty()) return converted;
+  Result<std::vector<PreviewDifference>> differences;
+  withJobs(options.jobs, [&] {
+    differences = preview::compareFiles(file, how.output, how.picture, how.size, options, messages);
+  });
+  if (differences) {
+    converted.differences = std::move(*differences);
+    converted.picture = how.picture;
+    return converted;
+  }
+  report(differences.error(), how.output, messages);
+  return std::nullopt;
 }
 
 }  // namespace lacquer

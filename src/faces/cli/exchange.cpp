@@ -31,14 +31,35 @@ void addConvert(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options) {
   verb.add_option("--as", flags.surface,
                   "gltf_pbr or open_pbr_surface; without it the one that says more of a material")
       ->check(CLI::IsMember({"gltf_pbr", "open_pbr_surface"}));
+  verb.add_option("--picture", flags.conversion.picture,
+                  "a PNG file: lit balls of each material before and after, and their difference")
+      ->check(kNotEmpty);
+  verb.add_option("--size", flags.conversion.size, "pixels of a ball")
+      ->check(CLI::Range(16, 2048))
+      ->check(kWhole)
+      ->capture_default_str();
+  verb.add_flag("-q,--quiet", flags.quiet, "no numbers of how different the materials look");
+  addJobs(verb, options);
+  addAllow(verb, options, "images");
   addReading(verb, options);
 }
 
-int runConvert(const ExchangeFlags& flags, const OptionFlags& options) {
+int runConvert(ExchangeFlags& flags, const OptionFlags& options) {
   Messages messages;
-  const bool written = writeMaterialX(flags.output, flags.file, {}, flags.surface, options.options, messages);
+  flags.conversion.output = flags.output;
+  flags.conversion.surface = flags.surface;
+  flags.conversion.measured = !flags.quiet;
+  const std::optional<Converted> converted =
+      convert(flags.conversion, flags.file, {}, options.options, messages);
   print(messages);
-  return written && !hasError(messages) ? 0 : statusFor(flags.file);
+  if (converted && !flags.quiet) {
+    if (!converted->differences.empty()) fmt::print("{:>12} {:>12} {:>12}  material\n", "max", "mean", "rms");
+    for (const PreviewDifference& of : converted->differences) {
+      fmt::print("{:>12.3e} {:>12.3e} {:>12.3e}  {}\n", of.largest, of.mean, of.root_mean_square,
+                 printable(of.material));
+    }
+  }
+  return converted && !hasError(messages) ? 0 : statusFor(flags.file);
 }
 
 void addBake(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options) {

@@ -12,11 +12,12 @@ struct ExchangeFlags {
   std::string file, output, surface;
   Strings materials, also;
   Bake bake;
+  Conversion conversion;
   bool quiet = false;
 };
 
 void addConvert(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options);
-int runConvert(const ExchangeFlags& flags, const OptionFlags& options);
+int runConvert(ExchangeFlags& flags, const OptionFlags& options);
 
 void addBake(CLI::App& verb, ExchangeFlags& flags, OptionFlags& options);
 int runBake(ExchangeFlags& flags, const OptionFlags& options);

@@ -8,6 +8,7 @@
 #include "eval/in_memory.h"
 #include "eval/material.h"
 #include "preview/ball.h"
+#include "preview/compared.h"
 #include "preview/setting.h"
 #include "preview/sheet.h"
 #include "setting/language.h"
@@ -385,5 +386,67 @@ std::vector<uint8_t> drawBallOf(const InMemory& of, uint32_t size, const Strings
   report(made.error(), of.file, messages);
   return {};
 }
+
+namespace preview {
+
+Result<std::vector<PreviewDifference>> compareFiles(const std::string& a, const std::string& b,
+                                                    const std::string& picture, uint32_t size,
+                                                    const Options& options, Messages& messages) {
+  if (Result<void> good = inRange("the size of a ball", size, kLeastBall, kMostBall, "pixels"); !good)
+    return tl::make_unexpected(std::move(good.error()));
+  const Result<std::shared_ptr<const Language>> language = libraryFor(options);
+  if (!language) return tl::make_unexpected(language.error());
+  const Result<material::Document> first = readMaterials(a, **language, options);
+  if (!first) return tl::make_unexpected(first.error());
+  const Result<material::Document> second = readMaterials(b, **language, options);
+  if (!second) return tl::make_unexpected(second.error());
+  const Studio studio;
+  FileImages of_first(a, options);
+  FileImages of_second(b, options);
+  const Strings no_texels;
+  const Trial no_trial;
+  const ValueLook look;
+  const Trying how{no_texels, no_trial, look};
+  // What is said of the materials was said when they were converted.
+  Messages again;
+  std::vector<PreviewDifference> differences;
+  Section section;
+  for (const material::Material& one : first->materials) {
+    const auto other = std::find_if(second->materials.begin(), second->materials.end(),
+                                    [&](const material::Material& m) { return m.name == one.name; });
+    if (other == second->materials.end()) continue;
+    size_t absent = 0;
+    const PreviewSetting setting{"", options, true, ""};
+    const auto shading = [&](const material::Material& material, FileImages& images) -> Result<Shading> {
+      if (lacquer::hasError(material.diagnostics)) return tl::make_unexpected(material.diagnostics);
+      return shadingOf(material, **language, images, setting, how, studio, again, absent);
+    };
+    const Result<Shading> before = shading(one, of_first);
+    const Result<Shading> after = shading(*other, of_second);
+    if (!before || !after) {
+      report(before ? after.error() : before.error(), before ? b : a, messages);
+      continue;
+    }
+    Comparison compared = compareBalls(*before, *after, size, kBackground);
+    differences.push_back(
+        {a, one.name, compared.measured.largest, compared.measured.mean, compared.measured.root_mean_square});
+    Cell cell{one.name, {}, {}};
+    cell.lines.push_back(fmt::format("max {:.2g}   mean {:.2g}   shown x {:g}", compared.measured.largest,
+                                     compared.measured.mean, compared.gain));
+    cell.pictures = {std::move(compared.a), std::move(compared.b), std::move(compared.difference)};
+    section.cells.push_back(std::move(cell));
+  }
+  if (picture.empty()) return differences;
+  if (section.cells.empty()) return fail("nothing-to-show", {}, "there is no material to show");
+  if (Diagnostics wrong = clashes({a, b}, {picture}); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  const Result<Picture> sheet = layOut({section}, "before | after | difference", size, 1);
+  if (!sheet) return tl::make_unexpected(sheet.error());
+  if (Result<bool> written = writeFile(picture, sheet->png(), {nullptr, options.sync}); !written)
+    return tl::make_unexpected(std::move(written.error()));
+  return differences;
+}
+
+}  // namespace preview
 
 }  // namespace lacquer

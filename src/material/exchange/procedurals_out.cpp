@@ -20,9 +20,9 @@ using materialx::Element;
 
 namespace {
 
-Source number(double x) { return {graph::Literal{ir::Type::Float, {x}}, {}}; }
+Source numberSource(double x) { return {graph::Literal{ir::Type::Float, {x}}, {}}; }
 
-Source vector(double x) { return {graph::Literal{ir::Type::Vec3, {x, x, x}}, {}}; }
+Source vectorSource(double x) { return {graph::Literal{ir::Type::Vec3, {x, x, x}}, {}}; }
 
 /// The nodes behind texels, which are this library's own, in MaterialX's terms.
 class Texels {
@@ -37,9 +37,9 @@ public:
     const auto it = ref == nullptr ? places_.end() : places_.find(ref->node);
     if (it == places_.end() || !texel.swizzle.empty()) return texel;
     const graph::Node node = nodes_[it->second];
-    if (node.type.starts_with("texel_of<")) return input(node, "value").value_or(number(0));
+    if (node.type.starts_with("texel_of<")) return input(node, "value").value_or(numberSource(0));
     if (node.type == "texel_of_color") {
-      const Source color = input(node, "color").value_or(vector(1));
+      const Source color = input(node, "color").value_or(vectorSource(1));
       const std::optional<Source> alpha = input(node, "a");
       if (!alpha) return color;
       return add(
@@ -47,7 +47,7 @@ public:
           {{"in1", part(color, 0)}, {"in2", part(color, 1)}, {"in3", part(color, 2)}, {"in4", *alpha}});
     }
     if (node.type != "texel_of_channels") return texel;
-    const auto channel = [&](std::string_view name) { return input(node, name).value_or(number(1)); };
+    const auto channel = [&](std::string_view name) { return input(node, name).value_or(numberSource(1)); };
     graph::Inputs inputs{{"in1", channel("r")}, {"in2", channel("g")}, {"in3", channel("b")}};
     const std::optional<Source> alpha = input(node, "a");
     if (alpha) inputs.emplace_back("in4", *alpha);
@@ -60,15 +60,15 @@ public:
       graph::Node& node = nodes_[i];
       if (node.type == "texel_luminance") {
         node.type = "dotproduct<vec3>";
-        node.inputs = {{"in1", input(node, "color").value_or(vector(0))},
+        node.inputs = {{"in1", input(node, "color").value_or(vectorSource(0))},
                        {"in2", {graph::Literal{ir::Type::Vec3, {0.2126, 0.7152, 0.0722}}, {}}}};
       } else if (node.type == "texel_normal") {
-        const Source normal = input(node, "normal").value_or(vector(0));
+        const Source normal = input(node, "normal").value_or(vectorSource(0));
         const std::string id = node.id;
         node.type = "add<vec3>";
         node.inputs.clear();
-        const Source half = add(id, "multiply<vec3>", {{"in1", normal}, {"in2", vector(0.5)}});
-        nodes_[i].inputs = {{"in1", half}, {"in2", vector(0.5)}};
+        const Source half = add(id, "multiply<vec3>", {{"in1", normal}, {"in2", vectorSource(0.5)}});
+        nodes_[i].inputs = {{"in1", half}, {"in2", vectorSource(0.5)}};
       }
     }
   }
@@ -84,7 +84,7 @@ private:
   static Source part(Source source, size_t channel) {
     if (auto* literal = std::get_if<graph::Literal>(&source.from);
         literal != nullptr && source.swizzle.empty())
-      return number(literal->type == ir::Type::Float ? literal->value[0] : literal->value[channel]);
+      return numberSource(literal->type == ir::Type::Float ? literal->value[0] : literal->value[channel]);
     source.swizzle = graph::swizzleBehind(source.swizzle, std::string(1, "xyzw"[channel]));
     return source;
   }
@@ -105,7 +105,7 @@ private:
 };
 
 /// A value of an input as the extension has it: always an array.
-Json valueOf(const Element& input) {
+Json arrayOf(const Element& input) {
   Json made = Json::array();
   const std::string_view type = input.get("type");
   const std::optional<ir::Type> known = materialx::typeOf(type);
@@ -132,7 +132,7 @@ Json portOf(const Element& port) {
   if (const std::string* texture = port.find("texture"))
     made["texture"] = static_cast<uint64_t>((*materialx::numbersOf(*texture))[0]);
   else if (port.find("value") != nullptr)
-    made["value"] = valueOf(port);
+    made["value"] = arrayOf(port);
   return made;
 }
 

@@ -1,0 +1,489 @@
+#include "exchange/translation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "materialx/patterns.h"
+#include "materialx/values.h"
+#include "support/text.h"
+
+namespace lacquer::exchange {
+
+using materialx::Element;
+
+namespace {
+
+constexpr std::string_view kFrom = "standard_surface";
+
+struct Given {
+  std::string_view name, type;
+  std::array<double, 3> by_default;
+};
+
+/// The inputs of MaterialX's standard_surface 1.0.1.
+constexpr Given kInputs[] = {
+    {"base", "float", {1}},
+    {"base_color", "color3", {0.8, 0.8, 0.8}},
+    {"diffuse_roughness", "float", {0}},
+    {"metalness", "float", {0}},
+    {"specular", "float", {1}},
+    {"specular_color", "color3", {1, 1, 1}},
+    {"specular_roughness", "float", {0.2}},
+    {"specular_IOR", "float", {1.5}},
+    {"specular_anisotropy", "float", {0}},
+    {"specular_rotation", "float", {0}},
+    {"transmission", "float", {0}},
+    {"transmission_color", "color3", {1, 1, 1}},
+    {"transmission_depth", "float", {0}},
+    {"transmission_scatter", "color3", {0, 0, 0}},
+    {"transmission_scatter_anisotropy", "float", {0}},
+    {"transmission_dispersion", "float", {0}},
+    {"transmission_extra_roughness", "float", {0}},
+    {"subsurface", "float", {0}},
+    {"subsurface_color", "color3", {1, 1, 1}},
+    {"subsurface_radius", "color3", {1, 1, 1}},
+    {"subsurface_scale", "float", {1}},
+    {"subsurface_anisotropy", "float", {0}},
+    {"sheen", "float", {0}},
+    {"sheen_color", "color3", {1, 1, 1}},
+    {"sheen_roughness", "float", {0.3}},
+    {"coat", "float", {0}},
+    {"coat_color", "color3", {1, 1, 1}},
+    {"coat_roughness", "float", {0.1}},
+    {"coat_anisotropy", "float", {0}},
+    {"coat_rotation", "float", {0}},
+    {"coat_IOR", "float", {1.5}},
+    {"coat_normal", "vector3", {0}},
+    {"coat_affect_color", "float", {0}},
+    {"coat_affect_roughness", "float", {0}},
+    {"thin_film_thickness", "float", {0}},
+    {"thin_film_IOR", "float", {1.5}},
+    {"emission", "float", {0}},
+    {"emission_color", "color3", {1, 1, 1}},
+    {"opacity", "color3", {1, 1, 1}},
+    {"thin_walled", "boolean", {0}},
+    {"normal", "vector3", {0}},
+    {"tangent", "vector3", {0}},
+};
+
+constexpr std::string_view kLinks[] = {"nodename", "nodegraph", "output", "interfacename", "channels"};
+
+/// A number or a colour of a formula: known, or what an input is connected to.
+struct Term {
+  std::string_view type = "float";
+  std::array<double, 3> value{};
+  std::vector<std::pair<std::string, std::string>> link{};
+
+  bool known() const { return link.empty(); }
+  bool is(double x) const {
+    return known() && value[0] == x && (type != "color3" || (value[1] == x && value[2] == x));
+  }
+  double at(size_t i) const { return value[type == "color3" ? i : 0]; }
+};
+
+Term number(double x) { return {"float", {x}}; }
+Term grey(double x) { return {"color3", {x, x, x}}; }
+
+/// One surface: its inputs, and nodes for what cannot be computed.
+class Formulas {
+public:
+  Formulas(const Element& surface, materialx::NameSet& names, std::vector<Element>& beside, Diagnostics& said)
+      : surface_(surface), names_(names), beside_(beside), said_(said) {}
+
+  Term get(std::string_view name) {
+    used_.insert(name);
+    const Given& given = *std::find_if(std::begin(kInputs), std::end(kInputs),
+                                       [&](const Given& one) { return one.name == name; });
+    Term term{given.type, given.by_default};
+    const Element* input = surface_.child("input", name);
+    if (input == nullptr) return term;
+    for (const std::string_view attribute : kLinks) {
+      if (const std::string* text = input->find(attribute)) term.link.emplace_back(attribute, *text);
+    }
+    const std::optional<ir::Type> type = materialx::typeOf(given.type);
+    if (!term.known() || input->find("value") == nullptr || !type) return term;
+    const Result<ir::Components> read = materialx::valueOf(*input, *type);
+    if (!read) {
+      said_.insert(said_.end(), read.error().begin(), read.error().end());
+      return term;
+    }
+    std::copy_n(read->begin(), 3, term.value.begin());
+    return term;
+  }
+
+  Term multiply(const Term& a, const Term& b) {
+    if (a.is(1) && (a.type == b.type || b.type == "color3")) return b;
+    if (b.is(1) && (a.type == b.type || a.type == "color3")) return a;
+    if (a.is(0) || b.is(0)) return a.type == "color3" || b.type == "color3" ? grey(0) : number(0);
+    const Term& first = a.type == "color3" || b.type != "color3" ? a : b;
+    const Term& second = &first == &a ? b : a;
+    return apply("multiply", first.type, {{"in1", first}, {"in2", second}},
+                 [&](size_t i) { return a.at(i) * b.at(i); });
+  }
+  Term mix(const Term& fg, const Term& bg, const Term& by) {
+    if (by.is(0)) return bg;
+    if (by.is(1)) return fg;
+    return apply("mix", fg.type, {{"fg", fg}, {"bg", bg}, {"mix", by}},
+                 [&](size_t i) { return bg.at(i) + (fg.at(i) - bg.at(i)) * by.at(i); });
+  }
+  Term power(const Term& a, double exponent) {
+    return apply("power", a.type, {{"in1", a}, {"in2", number(exponent)}},
+                 [&](size_t i) { return std::pow(std::max(a.at(i), 0.0), exponent); });
+  }
+  Term root(const Term& a) {
+    return apply("sqrt", a.type, {{"in", a}}, [&](size_t i) { return std::sqrt(std::max(a.at(i), 0.0)); });
+  }
+  Term minus(const Term& a, const Term& b) {
+    return apply("subtract", a.type, {{"in1", a}, {"in2", b}}, [&](size_t i) { return a.at(i) - b.at(i); });
+  }
+  Term divide(const Term& a, const Term& b) {
+    return apply("divide", a.type, {{"in1", a}, {"in2", b}},
+                 [&](size_t i) { return b.at(i) == 0 ? 0 : a.at(i) / b.at(i); });
+  }
+  Term least(const Term& a, const Term& b) {
+    return apply("min", a.type, {{"in1", a}, {"in2", b}},
+                 [&](size_t i) { return std::min(a.at(i), b.at(i)); });
+  }
+  Term ifGreater(const Term& value1, const Term& value2, const Term& in1, const Term& in2) {
+    if (value1.known() && value2.known()) return value1.value[0] > value2.value[0] ? in1 : in2;
+    return choose("ifgreater", value1, value2, in1, in2);
+  }
+  Term ifEqual(const Term& value1, const Term& value2, const Term& in1, const Term& in2) {
+    if (value1.known() && value2.known()) return value1.value[0] == value2.value[0] ? in1 : in2;
+    return choose("ifequal", value1, value2, in1, in2);
+  }
+  /// Of a colour the product with a vector of three equal numbers.
+  Term sum(const Term& color, double each) {
+    if (color.known()) return number(each * (color.value[0] + color.value[1] + color.value[2]));
+    const Term vector = add("convert", "vector3", {{"in", color}});
+    return add("dotproduct", "float", {{"in1", vector}, {"in2", {"vector3", {each, each, each}}}});
+  }
+  Term channel(const Term& color, int index) {
+    if (color.known()) return number(color.value[static_cast<size_t>(index)]);
+    Term at{"integer", {static_cast<double>(index)}};
+    return add("extract", "float", {{"in", color}, {"index", at}});
+  }
+  Term luminance(const Term& color) {
+    const auto& c = color.value;
+    if (color.known()) return number(0.2722287 * c[0] + 0.6740818 * c[1] + 0.0536895 * c[2]);
+    return channel(add("luminance", "color3", {{"in", color}}), 0);
+  }
+
+  void put(std::string_view name, const Term& term, const std::optional<Term>& by_default = {}) {
+    if (by_default && term.known() && by_default->value == term.value) return;
+    made_.push_back(inputOf(name, term));
+  }
+  void put(std::string_view name, const Term& term, double by_default) {
+    put(name, term, term.type == "color3" ? grey(by_default) : number(by_default));
+  }
+  /// A normal or a tangent, where it is connected.
+  void pass(std::string_view name, std::string_view as) {
+    const Term term = get(name);
+    if (!term.known()) made_.push_back(inputOf(as, term));
+  }
+
+  /// What nothing was made of, and is not as it is by default.
+  std::vector<Element> finish(std::string_view as) {
+    for (const Given& given : kInputs) {
+      if (used_.contains(given.name) || isIdle(given.name)) continue;
+      const Element* input = surface_.child("input", given.name);
+      if (input == nullptr) continue;
+      const Term term = get(given.name);
+      if (term.known() && term.value == given.by_default) continue;
+      const std::string shown = term.known() ? std::string(input->get("value")) : "what it is connected to";
+      addBounded(said_,
+                 {"not-said",
+                  Severity::Warning,
+                  input->place,
+                  fmt::format("{} has no counterpart in {}: {} is lost", given.name, as, printable(shown)),
+                  {},
+                  {}});
+    }
+    for (const Element& input : surface_.children) {
+      const bool known = std::any_of(std::begin(kInputs), std::end(kInputs),
+                                     [&](const Given& one) { return one.name == input.name(); });
+      if (known || input.category != "input") continue;
+      addBounded(said_, {"unknown-input",
+                         Severity::Warning,
+                         input.place,
+                         fmt::format("{} has no input {}", kFrom, quote(input.name())),
+                         "it is lost",
+                         {}});
+    }
+    return std::move(made_);
+  }
+
+private:
+  using Inputs = std::vector<std::pair<std::string_view, Term>>;
+
+  /// Whether its layer has no weight.
+  bool isIdle(std::string_view name) {
+    for (const std::string_view weight : {"coat", "sheen", "subsurface", "transmission"}) {
+      if (name.size() > weight.size() && name.starts_with(weight) && name[weight.size()] == '_')
+        return get(weight).is(0);
+    }
+    return false;
+  }
+
+  template <class Fold>
+  Term apply(std::string_view category, std::string_view type, const Inputs& inputs, Fold fold) {
+    const bool known =
+        std::all_of(inputs.begin(), inputs.end(), [](const auto& one) { return one.second.known(); });
+    if (!known) return add(category, type, inputs);
+    Term made{type};
+    for (size_t i = 0; i < (type == "color3" ? 3 : 1); ++i) made.value[i] = fold(i);
+    return made;
+  }
+
+  Term choose(std::string_view category, const Term& value1, const Term& value2, const Term& in1,
+              const Term& in2) {
+    if (in1.known() && in2.known() && in1.value == in2.value) return in1;
+    return add(category, in1.type, {{"value1", value1}, {"value2", value2}, {"in1", in1}, {"in2", in2}});
+  }
+
+  Term add(std::string_view category, std::string_view type, const Inputs& inputs) {
+    Element node;
+    node.category = category;
+    const std::string name = names_.free(fmt::format("{}_{}", surface_.name(), category));
+    node.attributes = {{"name", name}, {"type", std::string(type)}};
+    for (const auto& [port, term] : inputs) node.children.push_back(inputOf(port, term));
+    node.place = surface_.place;
+    beside_.push_back(std::move(node));
+    return {type, {}, {{"nodename", name}}};
+  }
+
+  static Element inputOf(std::string_view name, const Term& term) {
+    Element input;
+    input.category = "input";
+    input.attributes = {{"name", std::string(name)}, {"type", std::string(term.type)}};
+    for (const auto& [attribute, text] : term.link) input.set(attribute, text);
+    if (!term.known()) return input;
+    const bool three = term.type == "color3" || term.type == "vector3";
+    input.set("value", term.type == "boolean" ? (term.value[0] != 0 ? "true" : "false")
+                       : three ? fmt::format("{}, {}, {}", term.value[0], term.value[1], term.value[2])
+                               : fmt::format("{}", term.value[0]));
+    // Computed in linear Rec. 709, whatever the document's colours are in.
+    if (term.type == "color3") input.set("colorspace", "lin_rec709");
+    return input;
+  }
+
+  const Element& surface_;
+  materialx::NameSet& names_;
+  std::vector<Element>& beside_;
+  Diagnostics& said_;
+  std::set<std::string_view> used_;
+  std::vector<Element> made_;
+};
+
+/// MaterialX's standard_surface_to_open_pbr_surface.
+void toOpenPbr(Formulas& f) {
+  const Term coat = f.get("coat");
+  const Term coat_color = f.get("coat_color");
+  const Term metalness = f.get("metalness");
+  f.put("base_weight", f.get("base"), 1);
+  f.put("base_color", f.multiply(f.get("base_color"), f.mix(coat_color, grey(1), coat)), 0.8);
+  f.put("base_diffuse_roughness", f.get("diffuse_roughness"), 0);
+  f.put("base_metalness", metalness, 0);
+  f.put("specular_weight", f.ifGreater(metalness, number(0), number(1), f.get("specular")), 1);
+  const Term specular_color = f.get("specular_color");
+  f.put("specular_color", f.ifEqual(number(0), f.sum(specular_color, 1), grey(1), specular_color), 1);
+  f.put("specular_roughness", f.get("specular_roughness"), 0.3);
+  f.put("specular_ior", f.get("specular_IOR"), 1.5);
+  f.put("specular_roughness_anisotropy", f.get("specular_anisotropy"), 0);
+  f.put("transmission_weight", f.get("transmission"), 0);
+  f.put("transmission_color", f.get("transmission_color"), 1);
+  f.put("transmission_depth", f.get("transmission_depth"), 0);
+  f.put("transmission_scatter", f.get("transmission_scatter"), 0);
+  f.put("transmission_scatter_anisotropy", f.get("transmission_scatter_anisotropy"), 0);
+  f.put("transmission_dispersion_scale", f.get("transmission_dispersion"), 0);
+  const Term subsurface = f.get("subsurface");
+  const Term radius = f.get("subsurface_scale");
+  const Term radius_scale = f.get("subsurface_radius");
+  f.put("subsurface_weight", subsurface, 0);
+  const Term subsurface_color = f.get("subsurface_color");
+  const Term anisotropy = f.get("subsurface_anisotropy");
+  if (!subsurface.is(0)) {
+    f.put("subsurface_color", subsurface_color, 0.8);
+    f.put("subsurface_radius", radius, 1);
+    f.put("subsurface_radius_scale", radius_scale, Term{"color3", {1, 0.5, 0.25}});
+    f.put("subsurface_scatter_anisotropy", anisotropy, 0);
+  }
+  const Term sheen = f.get("sheen");
+  const Term sheen_color = f.get("sheen_color");
+  const Term sheen_roughness = f.get("sheen_roughness");
+  if (!sheen.is(0)) {
+    f.put("fuzz_weight", sheen, 0);
+    f.put("fuzz_color", sheen_color, 1);
+    f.put("fuzz_roughness", f.power(sheen_roughness, 0.4), 0.5);
+  }
+  const Term weight = f.ifGreater(f.multiply(coat, metalness), number(0), number(0), coat);
+  const Term coat_roughness = f.get("coat_roughness");
+  const Term coat_anisotropy = f.get("coat_anisotropy");
+  const Term coat_ior = f.get("coat_IOR");
+  const Term darkening = f.get("coat_affect_roughness");
+  if (!weight.is(0)) {
+    f.put("coat_weight", weight, 0);
+    f.put("coat_color", coat_color, 1);
+    f.put("coat_roughness", coat_roughness, 0);
+    f.put("coat_roughness_anisotropy", coat_anisotropy, 0);
+    f.put("coat_ior", coat_ior, 1.6);
+    f.put("coat_darkening", darkening, 1);
+    f.pass("coat_normal", "geometry_coat_normal");
+  }
+  const Term thickness = f.multiply(f.get("thin_film_thickness"), number(0.001));
+  const Term film_ior = f.get("thin_film_IOR");
+  if (!thickness.is(0)) {
+    f.put("thin_film_weight", f.ifGreater(thickness, number(0), number(1), number(0)), 0);
+    f.put("thin_film_thickness", thickness, 0.5);
+    f.put("thin_film_ior", film_ior, 1.4);
+  }
+  f.put("emission_luminance", f.get("emission"), 0);
+  f.put("emission_color", f.get("emission_color"), 1);
+  f.put("geometry_opacity", f.channel(f.get("opacity"), 0), 1);
+  f.put("geometry_thin_walled", f.get("thin_walled"), 0);
+  f.pass("normal", "geometry_normal");
+  f.pass("tangent", "geometry_tangent");
+}
+
+/// MaterialX's standard_surface_to_gltf_pbr.
+void toGltfPbr(Formulas& f) {
+  const Term coat = f.get("coat");
+  const Term coat_color = f.get("coat_color");
+  const Term has_color = f.sum(coat_color, 1);
+  const Term scaled = f.multiply(f.get("base_color"), f.get("base"));
+  const Term mixed = f.multiply(scaled, f.mix(coat_color, grey(1), coat));
+  const Term base = f.ifEqual(has_color, number(0), scaled, mixed);
+  const Term depth = f.get("transmission_depth");
+  const Term transmission = f.get("transmission");
+  const Term transmission_color = f.get("transmission_color");
+  const Term tint = f.ifGreater(depth, number(0), grey(1), transmission_color);
+  f.put("base_color", f.mix(tint, base, f.multiply(transmission, transmission)), 1);
+  f.put("metallic", f.get("metalness"), 1);
+  // pbrlib's roughness_anisotropy: alpha across and along.
+  const Term roughness = f.get("specular_roughness");
+  const Term stretch = f.get("specular_anisotropy");
+  const Term rotation = f.get("specular_rotation");
+  if (stretch.is(0)) {
+    f.put("roughness", roughness, 1);
+  } else {
+    const Term aspect = f.root(f.minus(number(1), f.least(stretch, number(0.98))));
+    const Term alpha = f.multiply(roughness, roughness);
+    const Term across = f.least(f.divide(alpha, aspect), number(1));
+    const Term along = f.multiply(alpha, aspect);
+    const Term rest = f.minus(number(1), along);
+    f.put("roughness", f.root(along), 1);
+    f.put("anisotropy_strength",
+          f.ifGreater(rest, number(0), f.root(f.divide(f.minus(across, along), rest)), number(0)), 0);
+    f.put("anisotropy_rotation", f.multiply(rotation, number(-6.283)), 0);
+  }
+  f.put("specular", f.get("specular"), 1);
+  f.put("specular_color", f.get("specular_color"), 1);
+  f.put("ior", f.get("specular_IOR"), 1.5);
+  f.put("transmission", transmission, 0);
+  const Term thin = f.get("thin_walled");
+  const Term abbe = f.get("transmission_dispersion");
+  if (!transmission.is(0)) {
+    f.put("thickness", thin.is(1) ? number(0) : number(1), 0);
+    if (!depth.is(0)) f.put("attenuation_distance", depth);
+    f.put("attenuation_color", f.ifGreater(depth, number(0), transmission_color, grey(1)), 1);
+    f.put("dispersion", f.ifEqual(abbe, number(0), number(0), f.divide(number(20), abbe)), 0);
+  }
+  const Term sheen = f.get("sheen");
+  const Term sheen_color = f.get("sheen_color");
+  const Term sheen_roughness = f.get("sheen_roughness");
+  if (!sheen.is(0)) {
+    f.put("sheen_color", f.multiply(sheen_color, sheen), 0);
+    f.put("sheen_roughness", f.root(f.ifGreater(sheen, number(0), sheen_roughness, number(0))), 0);
+  }
+  const Term coat_roughness = f.get("coat_roughness");
+  if (!coat.is(0)) {
+    const Term weighted = f.sum(f.multiply(coat_color, coat), 1.0 / 3);
+    f.put("clearcoat", f.ifEqual(has_color, number(0), coat, weighted), 0);
+    f.put("clearcoat_roughness", coat_roughness, 0);
+    f.pass("coat_normal", "clearcoat_normal");
+  }
+  const Term thickness = f.get("thin_film_thickness");
+  const Term film_ior = f.get("thin_film_IOR");
+  if (!thickness.is(0)) {
+    f.put("iridescence", f.ifGreater(thickness, number(0), number(1), number(0)), 0);
+    f.put("iridescence_ior", f.ifGreater(thickness, number(0), film_ior, number(1.3)), 1.3);
+    f.put("iridescence_thickness", thickness, 100);
+  }
+  const Term emission = f.get("emission");
+  const Term emission_color = f.get("emission_color");
+  if (!emission.is(0)) {
+    f.put("emissive", emission_color, 0);
+    f.put("emissive_strength", emission, 1);
+  }
+  const Term alpha = f.luminance(f.get("opacity"));
+  // White sums to 1 but for the last bits.
+  if (!alpha.known() || std::abs(alpha.value[0] - 1) > 1e-9) {
+    f.put("alpha", alpha, 1);
+    Term mode = number(2);
+    mode.type = "integer";
+    f.put("alpha_mode", mode);
+  }
+  f.pass("normal", "normal");
+  f.pass("tangent", "tangent");
+}
+
+size_t translateIn(Element& owner, std::string_view as, Diagnostics& said) {
+  size_t count = 0;
+  materialx::NameSet names;
+  for (const Element& child : owner.children) names.take(std::string(child.name()));
+  std::vector<Element> children;
+  for (Element& child : owner.children) {
+    if (child.category == "nodegraph") count += translateIn(child, as, said);
+    if (child.category != kFrom) {
+      children.push_back(std::move(child));
+      continue;
+    }
+    ++count;
+    std::vector<Element> beside;
+    Formulas formulas(child, names, beside, said);
+    if (as == "gltf_pbr")
+      toGltfPbr(formulas);
+    else
+      toOpenPbr(formulas);
+    Element made;
+    made.category = as;
+    made.place = child.place;
+    made.attributes = {{"name", std::string(child.name())}, {"type", "surfaceshader"}};
+    made.children = formulas.finish(as);
+    std::move(beside.begin(), beside.end(), std::back_inserter(children));
+    children.push_back(std::move(made));
+  }
+  owner.children = std::move(children);
+  return count;
+}
+
+void countSurfaces(const Element& owner, std::string_view as, size_t& ours, size_t& others) {
+  constexpr std::string_view kOthers[] = {"gltf_pbr",          "open_pbr_surface", "UsdPreviewSurface",
+                                          "disney_principled", "surface_unlit",    "surface"};
+  for (const Element& child : owner.children) {
+    if (child.category == "nodegraph") countSurfaces(child, as, ours, others);
+    if (child.category == kFrom) ++ours;
+    if (child.category != as &&
+        std::find(std::begin(kOthers), std::end(kOthers), child.category) != std::end(kOthers))
+      ++others;
+  }
+}
+
+}  // namespace
+
+bool canTranslate(const Element& root, std::string_view as) {
+  size_t ours = 0;
+  size_t others = 0;
+  countSurfaces(root, as, ours, others);
+  return ours > 0 && others == 0;
+}
+
+size_t translateSurfaces(Element& root, std::string_view as, Diagnostics& said) {
+  return translateIn(root, as, said);
+}
+
+}  // namespace lacquer::exchange
