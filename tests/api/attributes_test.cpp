@@ -220,6 +220,8 @@ TEST(OwnAttributes, ThatPicturesLackAreZero) {
   EXPECT_EQ(middleOf("worn"), 0);
   EXPECT_EQ(middleOf("shade"), 191) << "a vector: half of it, from -1 to 1";
   EXPECT_EQ(errorsOf(messages), "");
+}
+
 /// A triangle whose mask is stored in that way.
 std::string storedAs(const std::string& type, int component, bool normalized = false) {
   return R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ACME_wet"],

@@ -153,7 +153,8 @@ TEST(StandardPlace, PartsOfIntegersAreTaken) {
          {"id": "n", "node": "combine3", "inputs": {"in1": {"node": "a"}, "in2": {"node": "b"}}})";
   const auto graphOfValue = [&](const std::string& value, Messages& messages) {
     return Graph::fromJson(R"({"lacquer_graph": 1, "name": "g", "template": "forward",
-      "parameters": {"k": {"type": "ivec2", "value": [3, )" + value + "]}}, \"nodes\": [" + nodes +
+      "parameters": {"k": {"type": "ivec2", "value": [3, )" +
+                               value + "]}}, \"nodes\": [" + nodes +
                                R"(], "outputs": {"emission": {"node": "n"}}})",
                            "g.json", messages);
   };
@@ -170,7 +171,8 @@ TEST(StandardPlace, PartsOfIntegersAreTaken) {
     Messages said;
     const Graph bad = graphOfValue(wrong, said);
     const Messages found = bad ? bad.check() : said;
-    EXPECT_TRUE(std::any_of(found.begin(), found.end(), [](const Message& m) { return m.level == Message::Level::Error; }))
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(),
+                            [](const Message& m) { return m.level == Message::Level::Error; }))
         << wrong << textOf(found);
   }
 }

@@ -408,7 +408,9 @@ bool Checker::operation(Expr& expr) {
     const bool number = floating && kOfBits.find(expr.name) == std::string_view::npos;
     help = fmt::format("write {}(...) around {} of them",
                        typeName(number ? ir::floatType(ir::componentCount(whole)) : whole),
-                       number || !floating ? "one" : first ? "the second" : "the first");
+                       number || !floating ? "one"
+                       : first             ? "the second"
+                                           : "the first");
   }
   if (expr.name == "%" && ir::isFloating(types[0])) help = "write mod(x, y)";
   reporter_.error("wrong-type", expr.span,

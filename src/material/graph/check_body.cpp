@@ -517,9 +517,10 @@ void BodyCheck::wrongSwizzle(Type type, const std::string& swizzle, const Sink& 
   const auto size = static_cast<size_t>(ir::componentCount(type));
   const auto letters = [&](std::string_view set) { return set.substr(0, size); };
   error(sink, "wrong-swizzle", fmt::format("{} has no components {}", article(type), inQuotes(swizzle)),
-        ir::isFloating(type) || (size > 1 && !ir::isMatrix(type)) ? fmt::format("one to four of {}, {} or {}, not mixed", letters("xyzw"),
-                                           letters("rgba"), letters("stpq"))
-                             : "only a float or a vector can have a swizzle");
+        ir::isFloating(type) || (size > 1 && !ir::isMatrix(type))
+            ? fmt::format("one to four of {}, {} or {}, not mixed", letters("xyzw"), letters("rgba"),
+                          letters("stpq"))
+            : "only a float or a vector can have a swizzle");
 }
 
 // -- order --

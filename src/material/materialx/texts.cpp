@@ -107,8 +107,8 @@ const Element* Patterns::text(Scope& within, const Element& input) {
   return nullptr;
 }
 
-/// The definition of a node that the document defines, with the texts that this one is given: they decide what
-/// the graph is, so that each choice of them is a definition of its own. Null for other nodes.
+/// The definition of a node that the document defines, with the texts that this one is given: they decide
+/// what the graph is, so that each choice of them is a definition of its own. Null for other nodes.
 const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
   const Element* nodedef = definitionOf(element);
   if (nodedef == nullptr) return nullptr;
