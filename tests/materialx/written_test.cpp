@@ -114,9 +114,7 @@ graph::Graph everyNode() {
   all.name = "every";
   for (const std::string_view name : builtInLibrary().names(lang::DeclKind::Node)) {
     const lang::NodeDecl& decl = **builtInLibrary().node(name);
-    const bool closure =
-        decl.origin.file.starts_with("nodes/materialx/");  // they take and give several values
-    if (!decl.source.starts_with("MaterialX") || decl.category.empty() || closure) continue;
+    if (!decl.source.starts_with("MaterialX") || decl.category.empty()) continue;
     graph::Node& node = all.nodes.emplace_back();
     node.id = fmt::format("n{}", all.nodes.size());
     node.type = name;
