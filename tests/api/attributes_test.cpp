@@ -287,13 +287,15 @@ TEST(OwnAttributes, IntegersReachADevice) {
   attributes.application = {"_MASK"};
   Graph graph = scene.graph(0, attributes, options, messages);
   ASSERT_TRUE(graph) << errorsOf(messages);
+  Options of_graph = options;  // its template is its own
+  of_graph.template_name = {};
   const auto colors = [&](Engine engine) {
     std::vector<std::array<double, 4>> all;
     for (const char* mask : {"3", "2"}) {
       const std::string points =
           fmt::format(R"({{"uniforms": {{"object.wetness": 5}}, "points": [{{"_MASK": {}}}]}})", mask);
       Messages said;
-      const std::optional<Evaluation> result = evaluate(graph, points, engine, {}, options, said);
+      const std::optional<Evaluation> result = evaluate(graph, points, engine, {}, of_graph, said);
       const std::string errors = errorsOf(said);
       if (errors != "vulkan-unavailable") {
         EXPECT_EQ(errors, "");
