@@ -249,7 +249,11 @@ TEST(Nodes, OfTwoVendorsAreNamedBoth) {
         outcome.err.find("'ACME_materials_moss.moss_cover' or 'BOLT_moss.moss_cover'") != std::string::npos;
     EXPECT_TRUE(said) << outcome.err;
   };
-  expectBoth({"nodes", "moss_cover", "--nodes", "nodes"}, 1);
+  // A list shows what there is.
+  const Outcome listed = place.run({"nodes", "moss_cover", "--nodes", "nodes"});
+  EXPECT_EQ(listed.status, 0) << listed.all();
+  for (const char* name : {"ACME_materials_moss.moss_cover\n", "BOLT_moss.moss_cover\n"})
+    EXPECT_NE(listed.out.find(name), std::string::npos) << listed.all();
   expectBoth({"tune", "moss_cover", "--nodes", "nodes"}, 2);
   expectBoth({"stress", "moss_cover", "--nodes", "nodes"}, 1);
   place.write("graph.json", R"({"lacquer_graph": 1, "template": "bsdf", "nodes": [
