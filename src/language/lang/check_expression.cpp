@@ -401,11 +401,12 @@ bool Checker::operation(Expr& expr) {
   const bool wholes = ir::isWhole(ir::partType(types[0])) || ir::isWhole(ir::partType(types[1]));
   if (expr.args.size() == 2 && wholes && ir::partType(types[0]) != ir::partType(types[1])) {
     // Bits are of integers alone; else a float does not lose what lies behind the point.
-    constexpr std::string_view kOfBits = "% & | ^ << >>";
+    constexpr std::string_view kOfBits[] = {"%", "&", "|", "^", "<<", ">>"};
     const bool first = ir::isWhole(ir::partType(types[0]));
     const Type whole = types[first ? 0 : 1];
     const bool floating = ir::isFloating(types[0]) || ir::isFloating(types[1]);
-    const bool number = floating && kOfBits.find(expr.name) == std::string_view::npos;
+    const bool number =
+        floating && std::find(std::begin(kOfBits), std::end(kOfBits), expr.name) == std::end(kOfBits);
     help = fmt::format("write {}(...) around {} of them",
                        typeName(number ? ir::floatType(ir::componentCount(whole)) : whole),
                        number || !floating ? "one"
