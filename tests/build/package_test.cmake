@@ -75,7 +75,7 @@ find_program(python python3)
 if(python)
   set(native "${WORK}/prefix/share/lacquer/python/lacquer/_native.py")
   run(found "${CMAKE_COMMAND}" -E env --unset=LACQUER_LIBRARY "${python}" -c
-      "import importlib.util as u; s = u.spec_from_file_location('native', '${native}'); m = u.module_from_spec(s); s.loader.exec_module(m); print(m._candidates()[0])")
+      "import importlib.util as u\ns = u.spec_from_file_location('native', '${native}')\nm = u.module_from_spec(s)\ns.loader.exec_module(m)\nprint(m._candidates()[0])")
   file(GLOB_RECURSE library "${WORK}/prefix/*/liblacquer.so")
   string(STRIP "${found}" found)
   if(library AND NOT found STREQUAL library)
