@@ -173,8 +173,8 @@ public:
 
   /// Another connection to SPIR-V.
   size_t structure() {
-    odd_ = !odd_;
-    const std::string source = odd_ ? fmt::format("{}", parameter_.value[0]) : input_.source;
+    apart_ = !apart_;
+    const std::string source = apart_ ? fmt::format("{}", parameter_.value[0]) : input_.source;
     if (!graph_.connect(node_, input_.name, source, messages_) || graph_.changes() != Change::Program)
       throw std::runtime_error("a connection is not edited");
     const Shader shader = graph_.generate(options_, messages_);
@@ -191,7 +191,7 @@ private:
   std::string node_;
   Connection input_;
   Parameter parameter_;
-  bool odd_ = false;
+  bool odd_ = false, apart_ = false;  // of the number, and of the connection
 };
 
 void addEdits(std::string_view work) {
