@@ -55,7 +55,7 @@ size_t components(std::string_view type) {
   return vector != std::string_view::npos ? static_cast<size_t>(type.back() - '0') : 1;
 }
 
-/// What a shader's input is made of: "float", "int", "uint".
+/// The components of a shader's input: "float", "int", "uint".
 std::string_view kindOf(std::string_view type) {
   if (type.starts_with("int") || type.starts_with("ivec")) return "int";
   return type.starts_with("uint") || type.starts_with("uvec") ? "uint" : "float";

@@ -38,7 +38,7 @@ public:
             const std::function<void(const MadeShader&)>& each);
 
   void report(const Diagnostics& diagnostics, const std::string& file) {
-    // What is wrong at a line of a template or of a node is said once, not for each material.
+    // An error at a line of a template or of a node is said once, not for each material.
     Diagnostics fresh;
     for (const Diagnostic& one : diagnostics) {
       const bool of_text = one.place.line != 0 && !one.place.file.empty() && one.place.file != file;

@@ -1,4 +1,4 @@
-// What is wrong with a displacement that the vertices cannot make.
+// The error of a displacement that the vertices cannot make.
 #pragma once
 
 #include <string>

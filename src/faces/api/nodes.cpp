@@ -290,8 +290,8 @@ Json lineJson(const model::Model& model, uint32_t index, const model::Types& typ
   return json;
 }
 
-/// What a part's text may read or replace of others' under the default profile: their lines, then as
-/// "below.direct" what the parts below put out.
+/// The lines of the default profile that a part's text may read or replace, then as "below.direct" the
+/// outputs of the parts below.
 Json linesJson(const Language& library) {
   const auto profiles = model::profiles(library);
   const Result<const model::Model*> found = library.models.of(profiles->front()->name);

@@ -17,7 +17,7 @@ using lang::Statement;
 
 constexpr std::string_view kChannels = "rgba";
 
-/// What is read of the texels of one sampler in a body.
+/// The channels that a body reads of one sampler's texels.
 class TexelReads {
 public:
   explicit TexelReads(size_t sampler) : sampler_(sampler) {}

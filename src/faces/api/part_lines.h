@@ -1,5 +1,5 @@
-// What lines of a part ask for that no material has: channels of a texture that its extension does not
-// declare, numbers out of a property's range.
+// Mistakes in a part's lines: channels of a texture that its extension does not declare, numbers out of a
+// property's range.
 #pragma once
 
 #include <string>

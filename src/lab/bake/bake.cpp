@@ -564,7 +564,7 @@ Result<void> Baking::planTextures(const std::string& file) {
   return {};
 }
 
-/// What is written of an item, form by form.
+/// The files of an item, one for each format.
 std::vector<std::pair<Texels, Strings>> Baking::outputsOf(const Item& item) const {
   std::vector<Texels> forms{alone_.value_or(Texels::Png)};
   for (const Texels form : how_.also) {
@@ -597,7 +597,7 @@ Result<std::vector<baking::Image>> Baking::compute(const Item& item, size_t numb
     done += more;
     if (progress_) progress_(done, known);
   };
-  // What has 8 bits in one form is the same in all.
+  // Pixels of 8 bits are the same in every format.
   const bool clamp = item.pattern != nullptr || alone_.value_or(Texels::Png) == Texels::Png;
   baking::Image image =
       baking::imageOf(computed->shading, {how_.size, how_.samples, clamp, computed->components}, rows);
