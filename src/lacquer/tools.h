@@ -59,7 +59,7 @@ struct PointArray {
   ptrdiff_t stride = 0;   ///< bytes from a point's numbers to the next's; 0: one for all points
 };
 struct PointArrays {
-  size_t count = 0;  ///< of points
+  size_t count = 0;  ///< of points, at most 2^26
   std::vector<PointArray> arrays;
 };
 

@@ -199,6 +199,23 @@ TEST(OwnAttributes, OfPointsReachMaterials) {
   EXPECT_EQ(errorsOf(messages), "wrong-type");
 }
 
+/// Integers of points are whole, and have 32 bits.
+TEST(OwnAttributes, OfPointsFitTheirType) {
+  Options options = quick();
+  options.node_texts = {{"wet.node", textOf("int", "interpolate(_MASK)", "1", "int", "float(mask)")}};
+  options.template_name = "masked";
+  Messages messages;
+  const Scene scene = Scene::fromMemory(kFile, "wet.gltf", options, messages);
+  const auto errorsAt = [&](const std::string& mask) {
+    Messages said;
+    const auto found = evaluate(scene, 0, R"([{"_MASK": )" + mask + "}]", Engine::Double, {}, options, said);
+    EXPECT_EQ(found.has_value(), errorsOf(said).empty());
+    return errorsOf(said);
+  };
+  for (const char* mask : {"2147483647", "-2147483648"}) EXPECT_EQ(errorsAt(mask), "") << mask;
+  for (const char* mask : {"0.5", "2147483648", "1e300"}) EXPECT_EQ(errorsAt(mask), "wrong-type") << mask;
+}
+
 /// A picture is of points that have none: what is not there is 0, of colours 1.
 TEST(OwnAttributes, ThatPicturesLackAreZero) {
   constexpr const char* kGraph =

@@ -95,8 +95,10 @@ TEST_F(Findings, ofEvaluationsOfArrays) {
   EXPECT_EQ(lacquer_graph_colors_of(graph.get(), long_one, 4, 1, LACQUER_FLOAT, &to, nullptr, c_messages_),
             0);
   EXPECT_EQ(lacquer_graph_colors_of(graph.get(), nullptr, 1, 1, LACQUER_FLOAT, &to, nullptr, c_messages_), 0);
+  EXPECT_EQ(
+      lacquer_graph_colors_of(graph.get(), swept, 0, SIZE_MAX, LACQUER_FLOAT, &to, nullptr, c_messages_), 0);
   EXPECT_EQ(c_messages_.takeCodes(),
-            "out-of-range, duplicate-name, wrong-type, null-argument, null-argument");
+            "out-of-range, duplicate-name, wrong-type, null-argument, null-argument, too-many-points");
 }
 
 TEST_F(Findings, ofProofs) {

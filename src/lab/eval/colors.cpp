@@ -90,26 +90,43 @@ void noteLights(const ir::Module& module, const EvalPoints& points, const std::s
   }
 }
 
-/// Whether the points' attributes by name are what the module reads under those names.
+/// Whether a type has a value of those numbers: of integers whole ones in their range.
+bool fitsType(ir::Type type, const std::vector<double>& numbers) {
+  const ir::Type part = ir::partType(type);
+  if (!ir::isWhole(part)) return true;
+  const double least = part == ir::Type::Int ? -0x1p31 : 0;
+  const double most = part == ir::Type::Int ? 0x1p31 - 1 : 0x1p32 - 1;
+  return std::all_of(numbers.begin(), numbers.end(),
+                     [&](double x) { return x == std::trunc(x) && x >= least && x <= most; });
+}
+
+/// Whether the points have an attribute as the module reads it, if they have it at all.
+Result<void> checkAttribute(const std::string& name, ir::Type type, const EvalPoints& points,
+                            const std::string& file) {
+  const auto column = points.points.columns.find(name);
+  if (!graph::isAttributeName(name) || column == points.points.columns.end()) return {};
+  const auto given = points.attribute_components.find(name);
+  const int count = given == points.attribute_components.end() ? column->second.components : given->second;
+  // A colour may lack its alpha, as in glTF.
+  const bool opaque = count == 3 && type == ir::Type::Vec4 && name.starts_with("COLOR_");
+  if (count != ir::componentCount(type) && !opaque)
+    return fail("wrong-type", {file, 0, 0, {}}, fmt::format("{} is given {} numbers", name, count),
+                fmt::format("it is {} here", graph::article(type)));
+  if (!fitsType(type, column->second.values))
+    return fail("wrong-type", {file, 0, 0, {}},
+                fmt::format("{} is given what is no {}", name, ir::typeName(ir::partType(type))),
+                "its numbers are whole, and have 32 bits");
+  return {};
+}
+
+/// With a vertex stage attributes are its inputs, and without one the fragment stage's.
 Result<void> checkAttributes(const ir::Module& module, const EvalPoints& points, const std::string& file) {
-  for (const auto& [name, column] : points.points.columns) {
-    if (!graph::isAttributeName(name)) continue;
-    for (const ir::Attribute& attribute : module.attributes) {
-      if (attribute.name != name) continue;
-      const auto given = points.attribute_components.find(name);
-      const int count = given == points.attribute_components.end() ? column.components : given->second;
-      // A colour may lack its alpha, as in glTF.
-      const bool opaque = count == 3 && attribute.type == ir::Type::Vec4 && name.starts_with("COLOR_");
-      if (count != ir::componentCount(attribute.type) && !opaque)
-        return fail("wrong-type", {file, 0, 0, {}}, fmt::format("{} is given {} numbers", name, count),
-                    fmt::format("it is {} here", graph::article(attribute.type)));
-      const bool whole = !ir::isWhole(ir::partType(attribute.type)) ||
-                         std::all_of(column.values.begin(), column.values.end(),
-                                     [](double x) { return x == std::trunc(x); });
-      if (!whole)
-        return fail("wrong-type", {file, 0, 0, {}}, fmt::format("{} is no whole number", name),
-                    fmt::format("it is {} here", graph::article(attribute.type)));
-    }
+  for (const ir::Attribute& attribute : module.attributes) {
+    if (Result<void> fits = checkAttribute(attribute.name, attribute.type, points, file); !fits) return fits;
+  }
+  for (const ir::Varying& varying : module.varyings) {
+    if (varying.source != ir::kNoValue) continue;
+    if (Result<void> fits = checkAttribute(varying.name, varying.type, points, file); !fits) return fits;
   }
   return {};
 }

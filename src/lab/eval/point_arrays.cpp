@@ -17,6 +17,8 @@ using eval::Column;
 
 /// How often one array is said to be wrong.
 constexpr size_t kMostMessages = 8;
+/// Their columns take some gigabytes.
+constexpr size_t kMostPoints = size_t{1} << 26;
 
 /// What a member of a point may be.
 struct Member {
@@ -214,6 +216,11 @@ private:
 
 }  // namespace
 
-Result<EvalPoints> pointsOf(const PointArrays& arrays) { return ArrayReader(arrays).run(); }
+Result<EvalPoints> pointsOf(const PointArrays& arrays) {
+  if (arrays.count > kMostPoints)
+    return lacquer::fail("too-many-points", {}, fmt::format("there are {} points", arrays.count),
+                         fmt::format("at most {} are evaluated at once", kMostPoints));
+  return ArrayReader(arrays).run();
+}
 
 }  // namespace lacquer
