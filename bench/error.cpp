@@ -289,37 +289,30 @@ std::string wholeTable(const std::vector<Whole>& whole) {
   return text;
 }
 
+/// The page has the variants with what a reader chooses by; bench/error.json has everything.
 std::string markdown(const std::vector<Measured>& measured, const std::vector<Whole>& whole,
-                     const std::string& driver, const std::string& device) {
-  std::string text = fmt::format("{}, {}; {} points; times: {}.\n", driver, kFamily, kPoints,
-                                 device.empty() ? "not measured" : device);
+                     const std::string& driver) {
+  std::string text = fmt::format("{}, {}; {} points.\n", driver, kFamily, kPoints);
   text += wholeTable(whole);
-  std::string node;
+  text +=
+      "\n### Variants\n\n"
+      "| node | variant | E2: largest / RMS | E3, RMS: its / the reference's | colour | cycles | in a "
+      "material |\n"
+      "|---|---|---|---|---|---|---|\n";
+  const Measured* reference = nullptr;
   for (const Measured& m : measured) {
-    if (m.node != node) {
-      node = m.node;
-      text += fmt::format("\n### `{}`\n\n", node);
-      if (m.e3) text += fmt::format("E3 against {}.\n\n", m.e3_what);
-      text +=
-          "| body | E1, ULP | E2 | E2, ULP | E3 | colour | alone | ns | in a material |\n"
-          "|---|---|---|---|---|---|---|---|---|\n";
+    if (m.variant.empty()) {
+      reference = &m;
+      continue;
     }
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} / {} | {} | {} |\n",
-                        m.variant.empty() ? "reference" : "`" + m.variant + "`", triple(m.e1.ulp),
-                        m.e2 ? triple(m.e2->absolute) : "", m.e2 ? number(m.e2->ulp.max) : "",
-                        m.e3 ? triple(m.e3->absolute) : "",
-                        m.variant.empty() || m.in.empty()
-                            ? ""
-                            : fmt::format("{:.3g} / {:.3g}", roundedUp(m.color[0]), roundedUp(m.color[1])),
-                        m.alone.instructions, m.alone.inverse_throughput, timeText(m.nanoseconds),
-                        m.variant.empty() || m.in.empty()
-                            ? ""
-                            : fmt::format("{:+} / {:+}", m.instructions, m.inverse_throughput));
-  }
-  text += "\n## Where the errors are largest\n\n| body | E1, ULP | E2 |\n|---|---|---|\n";
-  for (const Measured& m : measured) {
-    const std::string name = m.variant.empty() ? m.node : m.node + "::" + m.variant;
-    text += fmt::format("| `{}` | {} | {} |\n", name, m.e1_at, m.e2_at);
+    const bool used = !m.in.empty();
+    text += fmt::format(
+        "| `{}` | `{}` | {} | {} | {} | {} of {} | {} |\n", m.node, m.variant,
+        m.e2 ? fmt::format("{} / {}", number(m.e2->absolute.max), number(m.e2->absolute.rms)) : "",
+        m.e3 ? fmt::format("{} / {}", number(m.e3->absolute.rms), number(reference->e3->absolute.rms)) : "",
+        used ? fmt::format("{:.3g} / {:.3g}", roundedUp(m.color[0]), roundedUp(m.color[1])) : "",
+        m.alone.inverse_throughput, reference->alone.inverse_throughput,
+        used ? fmt::format("{:+} / {:+}", m.instructions, m.inverse_throughput) : "");
   }
   return text;
 }
@@ -365,7 +358,7 @@ int runError() {
   const std::string device = measureTimes(library, all, measured);
   fmt::print(stderr, "whole shaders\n");
   const std::vector<Whole> whole = wholes(library, kPoints);
-  const std::string page = markdown(measured, whole, driver, device);
+  const std::string page = markdown(measured, whole, driver);
   fmt::print("{}", page);
   const bool written =
       writeFile(kRoot + "/bench/error.json", toJson(measured, whole, driver, device).dump(2) + "\n") &&
