@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "bench/page.h"
@@ -58,65 +57,26 @@ std::string pair(const Row& row, const std::string& family) {
   return fmt::format("{} / {}", s.instructions, s.inverse_throughput);
 }
 
-/// The lowest of each number among the peers that do a work, by its name; not there where none does.
-using Best = std::map<std::string, Numbers>;
-
-/// As `./dev bench peers` found them (bench/peers.json). Nothing where that file cannot be read.
-Best readBest() {
-  Best best;
-  const Result<std::string> text = readFile(kRoot + "/bench/peers.json");
-  const Json json = text ? Json::parse(*text, nullptr, false) : Json();
-  if (!json.contains("works")) return best;
-  for (const auto& [name, work] : json["works"].items()) {
-    if (!work.contains("best") || work["best"].is_null()) continue;
-    best[name] = {work["best"].value("instructions", uint64_t{0}),
-                  work["best"].value("inverse_throughput", uint64_t{0})};
-  }
-  return best;
-}
-
-/// Two cells: the best peer, and ours in hundredths of it.
-std::string besideBest(const Best& best, const std::string& work, const cost::Statistics& ours) {
-  const auto found = best.find(work);
-  if (found == best.end()) return "none | ";
-  const auto percent = [](uint64_t mine, uint64_t theirs) {
-    return theirs == 0 ? 0.0 : 100.0 * static_cast<double>(mine) / static_cast<double>(theirs);
-  };
-  const Numbers& least = found->second;
-  return fmt::format("{} / {} | {:.0f} % / {:.0f} %", least.instructions, least.inverse_throughput,
-                     percent(ours.instructions, least.instructions),
-                     percent(ours.inverse_throughput, least.inverse_throughput));
-}
-
-/// One table: our numbers on both GPUs beside the goal and the best peer, both of which are navi21's.
-std::string markdown(const Table& direct, const Table& optimized, const Best& best) {
-  std::string text =
-      "| work | | SPIR-V | navi21 | at most | best peer | to the best peer | gfx1100 | by glslang and "
-      "spirv-opt: "
-      "SPIR-V | navi21 | gfx1100 |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+/// Our numbers, beside the goal, which is navi21's, and the way by an optimizer. The peers' are in another
+/// table.
+std::string markdown(const Tables& tables) {
+  std::string text = fmt::format("{}, instructions / inverse throughput.\n\n", tables.direct[0].driver);
+  text +=
+      "| work | | SPIR-V | navi21 | at most | with `--no-multiple-scattering` | gfx1100 | "
+      "by glslang and spirv-opt: SPIR-V | navi21 |\n|---|---|---|---|---|---|---|---|---|\n";
   for (size_t i = 0; i < kWorks.size(); ++i) {
     const Work& work = kWorks[i];
-    const Row& row = direct.rows[i];
+    const Row& row = tables.direct[0].rows[i];
+    const Row& optimized = tables.optimized[0].rows[i];
     const cost::Statistics& s = *row.gpus.at("navi21").statistics;
     const bool met =
         s.instructions <= work.goal.instructions && s.inverse_throughput <= work.goal.inverse_throughput;
-    text += fmt::format("| {} | {} | {} | **{}** | {} / {}{} | {} | {} | {} | {} | {} |\n", work.name,
-                        work.what, row.spirv_instructions, pair(row, "navi21"), work.goal.instructions,
-                        work.goal.inverse_throughput, met ? "" : " (missed)", besideBest(best, work.name, s),
-                        pair(row, "gfx1100"), optimized.rows[i].spirv_instructions,
-                        pair(optimized.rows[i], "navi21"), pair(optimized.rows[i], "gfx1100"));
+    text += fmt::format("| {} | {} | {} | **{}** | {} / {}{} | {} | {} | {} | {} |\n", work.name, work.what,
+                        row.spirv_instructions, pair(row, "navi21"), work.goal.instructions,
+                        work.goal.inverse_throughput, met ? "" : " (missed)",
+                        pair(tables.direct[1].rows[i], "navi21"), pair(row, "gfx1100"),
+                        optimized.spirv_instructions, pair(optimized, "navi21"));
   }
-  return text;
-}
-
-std::string markdown(const Tables& tables) {
-  const Best best = readBest();
-  std::string text =
-      fmt::format("{}, instructions / inverse throughput.\n\nWith compensation for multiple scattering:\n\n",
-                  tables.direct[0].driver);
-  text += markdown(tables.direct[0], tables.optimized[0], best);
-  text += "\nWith `--no-multiple-scattering`:\n\n";
-  text += markdown(tables.direct[1], tables.optimized[1], best);
   return text;
 }
 

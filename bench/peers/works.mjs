@@ -34,32 +34,29 @@ export const kPeers = [
   {
     name: 'khronos', title: 'Khronos glTF Sample Renderer', package: '@khronosgroup/gltf-viewer', page: 'khronos',
     leavesOut: { w3: kNoCoat }, fallback: { w3: withClearcoat },
-    differs: 'asks every light for its type and range; the dielectric and the metal apart, as we have them, compensated in the ' +
-      'environment alone, with a Fresnel that roughness bounds (the rims of the pictures); the split sum weighs the coat by the ' +
-      "view's Fresnel; one bent tap for an anisotropic environment; lookups in three tables for a " +
-      'sheen, of which the third is never uploaded in this version, so that nothing is dimmed under a sheen',
+    differs: 'compensates in the environment alone, with a Fresnel that roughness bounds (the rims of the pictures); weighs the ' +
+      "coat's split sum by the view's Fresnel; one bent tap for an anisotropic environment; a third table of the sheen is never " +
+      'uploaded in this version, so that nothing is dimmed under a sheen',
   },
   {
     name: 'three', title: 'three.js', package: 'three', page: 'three',
     leavesOut: { w3: kNoCoat }, fallback: { w3: withClearcoat },
-    differs: 'compensates direct light, too; the dielectric and the metal apart in the environment, one mixed reflectance in direct ' +
-      'light; widens roughness by the derivatives of the normal, everywhere, which blunts highlights; a sheen with the visibility of ' +
-      'Neubelt; one bent tap for an anisotropic environment',
+    differs: 'compensates direct light, too; one mixed reflectance in direct light; widens roughness by the derivatives of the normal, ' +
+      'which blunts highlights; a sheen with the visibility of Neubelt; one bent tap for an anisotropic environment',
   },
   {
     name: 'babylon', title: 'Babylon.js (PBR)', package: '@babylonjs/core', page: 'babylon',
     leavesOut: { w3: "the coat's darkening and anisotropy" },
-    differs: 'one mixed reflectance of dielectric and metal, and one film over it; compensates direct light, too; diffuse environment ' +
-      'from spherical harmonics in uniforms, without a lookup; fades reflections below the horizon; a coat of another visibility ' +
-      "(Kelemen), under which direct light is weighed by the half vector's Fresnel; a sheen with the visibility of Ashikhmin; one bent " +
-      'tap for an anisotropic environment',
+    differs: 'compensates direct light, too; one mixed reflectance of dielectric and metal, and one film over it; diffuse environment ' +
+      'from spherical harmonics, without a lookup; fades reflections below the horizon; a coat of the visibility of Kelemen, under ' +
+      "which direct light is weighed by the half vector's Fresnel; a sheen with the visibility of Ashikhmin; one bent tap for an " +
+      'anisotropic environment',
   },
   {
     name: 'babylon_openpbr', title: 'Babylon.js (OpenPBR)', package: '@babylonjs/core', page: 'babylon', openpbr: true, leavesOut: {},
-    differs: "OpenPBR's layers and not glTF's: a clearcoat darkens what is below it and makes it rougher, a sheen is a fuzz; diffuse " +
-      'environment from spherical harmonics in uniforms; 16 taps of the environment for an anisotropic lobe, in a loop that the ' +
-      'estimate counts eightfold, and a lookup of noise for them; in direct light the slope of an anisotropic lobe is squared once ' +
-      'more, which makes highlights narrower and brighter',
+    differs: "OpenPBR's layers: a clearcoat darkens what is below it and makes it rougher, a sheen is a fuzz; diffuse environment from " +
+      'spherical harmonics; 16 taps of the environment for an anisotropic lobe, in a loop that the estimate counts eightfold; in ' +
+      'direct light the slope of an anisotropic lobe is squared once more, which makes highlights narrower and brighter',
   },
 ];
 
