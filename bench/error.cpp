@@ -289,13 +289,13 @@ std::string wholeTable(const std::vector<Whole>& whole) {
   return text;
 }
 
-/// The page has the variants with what a reader chooses by; bench/error.json has everything.
+/// The page has the variants that a reader may choose, with what decides; bench/error.json has all.
 std::string markdown(const std::vector<Measured>& measured, const std::vector<Whole>& whole,
                      const std::string& driver) {
   std::string text = fmt::format("{}, {}; {} points.\n", driver, kFamily, kPoints);
   text += wholeTable(whole);
   text +=
-      "\n### Variants\n\n"
+      "\n### Variants that are cheaper or nearer to physics\n\n"
       "| node | variant | E2: largest / RMS | E3, RMS: its / the reference's | colour | cycles | in a "
       "material |\n"
       "|---|---|---|---|---|---|---|\n";
@@ -306,6 +306,10 @@ std::string markdown(const std::vector<Measured>& measured, const std::vector<Wh
       continue;
     }
     const bool used = !m.in.empty();
+    const bool cheaper = m.alone.inverse_throughput < reference->alone.inverse_throughput ||
+                         (used && m.inverse_throughput < 0);
+    const bool nearer = m.e3 && reference->e3 && m.e3->absolute.rms < 0.99 * reference->e3->absolute.rms;
+    if (!cheaper && !nearer) continue;
     text += fmt::format(
         "| `{}` | `{}` | {} | {} | {} | {} of {} | {} |\n", m.node, m.variant,
         m.e2 ? fmt::format("{} / {}", number(m.e2->absolute.max), number(m.e2->absolute.rms)) : "",

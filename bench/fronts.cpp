@@ -12,7 +12,7 @@ namespace {
 
 const std::string kRoot = LACQUER_SOURCE_FOLDER;
 constexpr double kCheap = 10;   // cycles at which nobody looks for a cheaper form
-constexpr double kWorth = 0.9;  // a form that has more of the cycles is not listed
+constexpr double kWorth = 0.8;  // a form that has more of the cycles is not listed
 
 std::string found(const Tuned& tuned) {
   std::string text;
@@ -43,7 +43,7 @@ int runFronts() {
     if (!forms.empty()) rows += fmt::format("| `{}` | {} | {} |\n", name, tuned->plain, forms);
   }
   const std::string text = fmt::format(
-      "Of {} nodes, those of which a form saves a tenth:\n\n| node | as it is | found |\n|---|---|---|\n{}",
+      "Of {} nodes, those of which a form saves a fifth:\n\n| node | as it is | found |\n|---|---|---|\n{}",
       count, rows);
   fmt::print("{}", text);
   if (renewPage(kRoot + "/docs/error.md", text, "fronts")) return 0;
