@@ -41,7 +41,7 @@ function costTable(record, ours) {
 }
 
 function colorTable(record) {
-  const drawn = kWorks.filter(({ name }) => Object.values(record.works[name].peers).some(({ colors }) => colors));
+  const drawn = kWorks.filter(({ name, ibl }) => ibl && Object.values(record.works[name].peers).some(({ colors }) => colors));
   const cell = (work, peer) => {
     const colors = record.works[work.name].peers[peer.name]?.colors;
     if (!colors) return 'failed';
@@ -71,7 +71,8 @@ ${costTable(record, ours)}
 
 ${peerTable(record)}
 
-How far their colours are from ours, in linear RGB, mean / largest of all channels and pixels:
+How far their colours are from ours with image-based light, in linear RGB, mean / largest of all channels and pixels (\`bench/peers.json\` has
+all works):
 
 ${colorTable(record)}
 `;
