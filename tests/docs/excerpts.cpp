@@ -131,7 +131,8 @@ std::string spirvLines(std::string_view of) {
 std::string sourceLines(std::string_view of) {
   const size_t blank = of.find(' ');
   const std::string file(of.substr(0, blank));
-  const std::string first(of.substr(std::min(blank, of.size() - 1) + 1));
+  if (blank == std::string_view::npos) return fenced("node", readFile(sourceFolder() / file));
+  const std::string first(of.substr(blank + 1));
   std::vector<std::string> found;
   for (const std::string& line : split(readFile(sourceFolder() / file), "\n")) {
     if (found.empty() && !line.starts_with(first)) continue;

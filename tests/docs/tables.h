@@ -31,7 +31,8 @@ std::string graphNode(std::string_view of);     ///< a node's id
 std::string spirvLines(std::string_view of);  ///< an instruction of three floats, "Exp2", and how many lines
 std::string dustyPart(std::string_view of);   ///< of the dusty example: "field", "pixel" or "light"
 std::string vertexMain();
-std::string sourceLines(std::string_view of);  ///< a file and the text that its first line begins with
+std::string sourceLines(
+    std::string_view of);  ///< a file and how its first line begins, or a whole .node file
 
 std::string optionsTable(std::string_view of);  ///< a verb, "shared" or "generation"
 std::string verbsTable();
