@@ -112,24 +112,34 @@ std::string markdown(const std::vector<Cell>& cells, const std::string& driver) 
   text += "\n";
   std::array<uint64_t, kCount> cycles{};
   std::array<double, kCount> seconds{};
+  std::string unchanged;
   for (size_t w = 0; w < kWorks.size(); ++w) {
     const Cell* row = &cells[w * kCount];
-    text += fmt::format("| {} |", kWorks[w].name);
+    const Goal* goal = goalOf(kWorks[w]);
+    const std::string goals = goal ? fmt::format("{} / {}", goal->exact, goal->approximate) : "none";
+    std::string columns;
+    bool cheaper = false;
     for (size_t s = 0; s < kCount; ++s) {
       cycles[s] += row[s].statistics.inverse_throughput;
       seconds[s] += row[s].seconds - row[0].seconds;
-      text += fmt::format(" {} |", row[s].statistics.inverse_throughput);
+      cheaper |= row[s].statistics.inverse_throughput < row[0].statistics.inverse_throughput;
+      columns += fmt::format(" {} |", row[s].statistics.inverse_throughput);
     }
-    const Goal* goal = goalOf(kWorks[w]);
-    text += goal ? fmt::format(" {} / {} |", goal->exact, goal->approximate) : " none |";
-    text += fmt::format(" {:.2f} |\n", row[3].growth);
+    if (cheaper)
+      text += fmt::format("| {} |{} {} | {:.2f} |\n", kWorks[w].name, columns, goals, row[3].growth);
+    else
+      unchanged += fmt::format("{}{} ({}; {})", unchanged.empty() ? "" : ", ", kWorks[w].name,
+                               row[0].statistics.inverse_throughput, goals);
   }
   text += "| all |";
   for (const uint64_t sum : cycles) text += fmt::format(" {} |", sum);
   text += " | |\n| seconds of a core, in the mean | |";
   for (size_t s = 1; s < kCount; ++s)
     text += fmt::format(" {:.1f} |", seconds[s] / static_cast<double>(kWorks.size()));
-  return text + " | |\n";
+  text += " | |\n";
+  if (!unchanged.empty())
+    text += fmt::format("\nNothing cheaper is found of, with cycles and goals: {}.\n", unchanged);
+  return text;
 }
 
 Json toJson(const std::vector<Cell>& cells, const std::string& driver) {
