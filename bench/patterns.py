@@ -4,7 +4,7 @@
     bench/patterns.py build/release/lacquer MATERIALX [NODE...]
 
 MATERIALX is a folder with MaterialX's WebAssembly module and a generate.mjs that runs its generators. Needs node.js,
-glslangValidator, spirv-opt and Mesa's RADV. Prints a table for docs/standard-nodes.md: instructions / inverse throughput on navi21.
+glslangValidator, spirv-opt and Mesa's RADV. Prints the table of docs/patterns.md: instructions / inverse throughput on navi21.
 "Written out" is with [[unroll]] before each loop, where what runs is what is counted: the driver counts a loop eightfold.
 """
 
