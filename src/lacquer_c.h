@@ -306,7 +306,7 @@ typedef struct lacquer_array {
   const char* name;
   const void* numbers; /* of the first point: floats, or doubles */
   int is_double;
-  size_t components; /* 1 to 4, side by side */
+  size_t components; /* 1 to 4, side by side; of a matrix 9 or 16, column by column */
   ptrdiff_t stride;  /* bytes from a point's numbers to the next's; 0: one for all points */
 } lacquer_array;
 /* Where colours go: four floats or doubles for each point, `stride` bytes apart. */

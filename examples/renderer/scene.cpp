@@ -179,10 +179,18 @@ bool Scene::read(int index, int type, std::vector<T>& numbers) const {
   const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
   if (width <= 0 || bytes <= 0 || (type != 0 && accessor.type != type) || accessor.count > kMost)
     return false;
-  const auto wide = static_cast<size_t>(width), size = wide * static_cast<size_t>(bytes);
+  const auto wide = static_cast<size_t>(width), one = static_cast<size_t>(bytes);
+  // Columns of a matrix begin at multiples of four bytes.
+  const bool matrix = accessor.type == TINYGLTF_TYPE_MAT2 || accessor.type == TINYGLTF_TYPE_MAT3 ||
+                      accessor.type == TINYGLTF_TYPE_MAT4;
+  const size_t side = accessor.type == TINYGLTF_TYPE_MAT2 ? 2 : accessor.type == TINYGLTF_TYPE_MAT3 ? 3 : 4;
+  const size_t column = (side * one + 3) / 4 * 4;
+  const size_t size = matrix ? side * column : wide * one;
   const auto put = [&](const unsigned char* from, size_t to) {
-    for (size_t k = 0; k < wide; ++k)
-      numbers[to * wide + k] = number<T>(from + k * static_cast<size_t>(bytes), accessor);
+    for (size_t k = 0; k < wide; ++k) {
+      const size_t at = matrix ? k / side * column + k % side * one : k * one;
+      numbers[to * wide + k] = number<T>(from + at, accessor);
+    }
   };
   numbers.assign(accessor.count * wide, 0);
   size_t stride = 0;
@@ -239,6 +247,23 @@ bool Scene::readAttribute(int index, const lacquer::StoredAttribute& stored, siz
   return true;
 }
 
+/// A matrix for each vertex: its columns as attributes of their own.
+bool Scene::readColumns(int index, const lacquer::StoredAttribute& stored, size_t& count, Mesh& mesh) const {
+  const auto side = static_cast<size_t>(stored.type.back() - '0');
+  std::vector<float> numbers;
+  if (!read(index, 0, numbers) || numbers.empty() || numbers.size() % (side * side) != 0) return false;
+  const size_t vertices = numbers.size() / (side * side);
+  if (count != 0 && vertices != count) return false;
+  count = vertices;
+  for (size_t c = 0; c < side; ++c) {
+    std::vector<float> column(vertices * side);
+    for (size_t v = 0; v < vertices; ++v)
+      std::copy_n(&numbers[(v * side + c) * side], side, &column[v * side]);
+    mesh.attributes[stored.semantic + "_" + std::to_string(c)] = floats(column, static_cast<uint32_t>(side));
+  }
+  return true;
+}
+
 bool Scene::readTargets(const tinygltf::Primitive& from, size_t vertices, Mesh& mesh) const {
   mesh.targets = static_cast<uint32_t>(from.targets.size());
   mesh.width = static_cast<uint32_t>(std::min<size_t>(vertices, 2048));
@@ -269,7 +294,10 @@ bool Scene::readMesh(const lacquer::ContractPrimitive& of, Mesh& mesh) const {
   for (const lacquer::StoredAttribute& stored : of.attributes) {
     const auto it = from.attributes.find(stored.semantic);
     if (it == from.attributes.end()) continue;
-    if (!readAttribute(it->second, stored, vertices, mesh.attributes[stored.semantic])) return false;
+    const bool read = stored.type.compare(0, 3, "MAT") == 0
+                          ? readColumns(it->second, stored, vertices, mesh)
+                          : readAttribute(it->second, stored, vertices, mesh.attributes[stored.semantic]);
+    if (!read) return false;
   }
   std::vector<float> positions;
   const auto position = from.attributes.find("POSITION");

@@ -89,6 +89,7 @@ private:
   bool readAttribute(int accessor, const lacquer::StoredAttribute& stored, size_t& count,
                      Attribute& made) const;
   bool readMesh(const lacquer::ContractPrimitive& from, Mesh& mesh) const;
+  bool readColumns(int index, const lacquer::StoredAttribute& stored, size_t& count, Mesh& mesh) const;
   bool readTargets(const tinygltf::Primitive& from, size_t vertices, Mesh& mesh) const;
 
   tinygltf::Model model_;

@@ -28,9 +28,11 @@ struct Range {
 
 /// An editable number of a material.
 struct Parameter {
-  std::string name;           ///< "coat_roughness_factor"
-  std::string type;           ///< "float", "vec2", "vec3", "vec4" or "bool"
-  std::vector<double> value;  ///< today's, 1 to 4 components; of a bool 0 or 1
+  std::string name;  ///< "coat_roughness_factor"
+  /// "float", "int", "uint", "bool", a vector of one of them, "vec3", "mat3" or "mat4". Shaders are given the
+  /// columns of a matrix `m` as the parameters `m_0` to `m_2`.
+  std::string type;
+  std::vector<double> value;  ///< today's, 1 to 4 components; of a bool 0 or 1; of a matrix column by column
   Range range;
   std::string pointer;  ///< JSON pointer of the glTF property; may be empty
   std::string ui{};     ///< the tool's own words, JSON; may be empty

@@ -55,7 +55,7 @@ struct PointArray {
   std::string name;
   const void* numbers = nullptr;  ///< of the first point: floats, or doubles; aligned or not
   bool is_double = false;
-  size_t components = 1;  ///< 1 to 4, side by side
+  size_t components = 1;  ///< 1 to 4, side by side; of a matrix 9 or 16, column by column
   ptrdiff_t stride = 0;   ///< bytes from a point's numbers to the next's; 0: one for all points
 };
 struct PointArrays {

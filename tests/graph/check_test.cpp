@@ -58,7 +58,7 @@ TEST(GraphCheck, parametersAndTexturesHaveTypesOfAGraph) {
     made.value = {value};
     return made;
   };
-  parameter("m", Type::Mat4, 0);
+  parameter("m", Type::Texture2D, 0);
   parameter("m", Type::Float, nan);
   parameter("r", Type::Float, 1).range = {{nan, 1}, 0};
   graph.textures.resize(3);
@@ -70,8 +70,8 @@ TEST(GraphCheck, parametersAndTexturesHaveTypesOfAGraph) {
   graph.textures[2].environment = true;
   graph.add("a", "f0", {{"ior", {graph::ParameterRef{"m"}, {}}}});
   EXPECT_EQ(checked(graph),
-            "/parameters/m/type: error: a parameter cannot be a mat4 [wrong-type]\n"
-            "  help: it is a float, an int, a uint, a bool or a vector of them\n"
+            "/parameters/m/type: error: a parameter cannot be a sampler2D [wrong-type]\n"
+            "  help: it is a float, an int, a uint, a bool, a vector of them, a mat3 or a mat4\n"
             "/parameters/m: error: there are two parameters 'm' [duplicate-name]\n"
             "/parameters/m/value: error: the value of 'm' is nan [not-finite]\n"
             "/parameters/r/range: error: [nan, 1] is no range [wrong-range]\n"

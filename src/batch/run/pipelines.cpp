@@ -88,6 +88,11 @@ void writeFormats(const PipelineInput& input, JsonText& to) {
   }
 }
 
+/// Of "VEC3" and, as a column, of "MAT3"; 1 for "SCALAR".
+size_t storedComponents(std::string_view type) {
+  return type.starts_with("MAT") ? static_cast<size_t>(type.back() - '0') : components(type);
+}
+
 /// The shader's input with the format that the primitive has.
 PipelineInput inputOf(const ShaderInput& input, const std::vector<StoredAttribute>* attributes) {
   const std::string_view kind = kindOf(input.type);
@@ -96,12 +101,11 @@ PipelineInput inputOf(const ShaderInput& input, const std::vector<StoredAttribut
   PipelineInput made{input.name, input.location, std::string(kind), std::string(wide),
                      static_cast<uint32_t>(components(input.type))};
   if (attributes == nullptr) return made;
-  const auto own = std::find_if(attributes->begin(), attributes->end(),
-                                [&](const StoredAttribute& one) { return one.semantic == input.name; });
-  made.stand_in = own == attributes->end();
+  const StoredAttribute* own = storedFor(*attributes, input.name);
+  made.stand_in = own == nullptr;
   if (made.stand_in) return made;
   if (!own->component_type.empty()) made.component = own->component_type;
-  if (!own->type.empty()) made.count = static_cast<uint32_t>(components(own->type));
+  if (!own->type.empty()) made.count = static_cast<uint32_t>(storedComponents(own->type));
   made.normalized = own->normalized;
   return made;
 }
@@ -164,6 +168,17 @@ void writePipeline(const Pipeline& of, JsonText& to) {
 }
 
 }  // namespace
+
+const StoredAttribute* storedFor(const std::vector<StoredAttribute>& attributes, std::string_view name) {
+  const auto fits = [&](const StoredAttribute& one) {
+    if (one.semantic == name) return true;
+    const std::string_view column = name.substr(std::min(name.size(), one.semantic.size()));
+    return one.type.starts_with("MAT") && name.starts_with(one.semantic) && column.size() == 2 &&
+           column[0] == '_' && column[1] >= '0' && column[1] < one.type.back();
+  };
+  const auto it = std::find_if(attributes.begin(), attributes.end(), fits);
+  return it == attributes.end() ? nullptr : &*it;
+}
 
 void Pipelines::add(Pipeline pipeline) {
   const auto [it, fresh] = places_.emplace(identityOf(pipeline), all_.size());

@@ -10,6 +10,10 @@
 
 namespace lacquer {
 
+/// What a primitive stores for an attribute of the shader's: of its name, or the matrix that it is a column
+/// of, `_M` for `_M_0`. Null where there is nothing.
+const StoredAttribute* storedFor(const std::vector<StoredAttribute>& attributes, std::string_view name);
+
 /// A vertex attribute as a primitive stores it.
 struct PipelineInput {
   std::string name;

@@ -206,10 +206,8 @@ private:
     const auto it = structures_.find(material);
     if (it == structures_.end() || !use || *use >= it->second.size()) return;
     for (const ShaderInput& input : it->second[*use]->reflection.inputs) {
-      const auto stored =
-          std::find_if(primitive.attributes.begin(), primitive.attributes.end(),
-                       [&](const StoredAttribute& one) { return one.semantic == input.name; });
-      if (stored != primitive.attributes.end()) compare(primitive, input, *stored);
+      if (const StoredAttribute* stored = storedFor(primitive.attributes, input.name))
+        compare(primitive, input, *stored);
     }
   }
 
@@ -222,7 +220,9 @@ private:
     if (stored.type.empty() || stored.component_type.empty()) return;
     const bool vector = input.type.back() >= '2' && input.type.back() <= '4';
     const std::string wanted = vector ? std::string("VEC") + input.type.back() : "SCALAR";
-    const bool count = stored.type == wanted || (color && stored.type == "VEC3" && wanted == "VEC4");
+    const bool column = stored.semantic != input.name && stored.type.back() == wanted.back();
+    const bool count =
+        stored.type == wanted || column || (color && stored.type == "VEC3" && wanted == "VEC4");
     const bool whole = input.type[0] == 'i' || input.type[0] == 'u';
     const bool kind = !whole || (stored.component_type != "FLOAT" && !stored.normalized);
     if (count && kind) return;

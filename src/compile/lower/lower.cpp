@@ -162,6 +162,13 @@ private:
   /// An attribute that a graph or a node of the library names; kNoValue where it has another type. Vertices
   /// have no bools: one is a float that is not 0.
   ir::ValueId attribute(std::string_view name, ir::Type type) {
+    if (ir::isMatrix(type)) {  // each column is one
+      std::vector<ir::ValueId> columns;
+      for (int i = 0; i < ir::componentCount(ir::partType(type)); ++i)
+        columns.push_back(attribute(graph::columnName(name, i), ir::partType(type)));
+      const bool all = std::find(columns.begin(), columns.end(), ir::kNoValue) == columns.end();
+      return all ? lang::constructed(dag(), type, columns) : ir::kNoValue;
+    }
     const auto found = std::find_if(own_.begin(), own_.end(),
                                     [&](const auto& own) { return graph::sameAttribute(own.first, name); });
     ir::ValueId value = found == own_.end() ? ir::kNoValue : found->second;

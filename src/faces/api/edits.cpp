@@ -55,7 +55,7 @@ tl::unexpected<Diagnostics> wrongNumbers(std::string code, const std::string& na
 Result<void> readNumbers(const std::string& name, const std::vector<double>& value, graph::Parameter& to,
                          bool known) {
   const auto count = known ? static_cast<size_t>(ir::componentCount(to.type)) : value.size();
-  if (value.size() != count || value.empty() || value.size() > 4) {
+  if (value.size() != count || value.empty() || (!known && value.size() > 4)) {
     return wrongNumbers("wrong-count", name, fmt::format("{} numbers", value.size()),
                         known ? "it is " + graph::article(to.type) : "a parameter has 1 to 4");
   }
@@ -70,7 +70,7 @@ Result<void> readNumbers(const std::string& name, const std::vector<double>& val
     if (ir::isWhole(part) && x != std::trunc(x))
       return wrongNumbers("wrong-type", name, fmt::format("{}", x), "it is a whole number");
   }
-  std::copy(value.begin(), value.end(), to.value.begin());
+  to.setNumbers(value);
   return {};
 }
 
@@ -115,12 +115,8 @@ std::vector<Parameter> Graph::parameters() const {
   std::vector<Parameter> parameters;
   if (!impl_) return parameters;
   for (const graph::Parameter& p : impl_->graph.parameters) {
-    parameters.push_back({p.name,
-                          std::string(ir::typeName(p.type)),
-                          {p.value.begin(), p.value.begin() + ir::componentCount(p.type)},
-                          rangeOf(p.range),
-                          p.pointer,
-                          p.ui});
+    parameters.push_back(
+        {p.name, std::string(ir::typeName(p.type)), p.numbers(), rangeOf(p.range), p.pointer, p.ui});
   }
   return parameters;
 }
@@ -276,7 +272,7 @@ bool Graph::setParameter(const std::string& name, const std::vector<double>& val
   if (impl_->may_be.empty()) impl_->may_be = graph::parameterLimits(impl_->graph, *impl_->language);
   const ir::Range& range = impl_->may_be[*found];
   if (std::all_of(value.begin(), value.end(), [&](double x) { return range.contains(x); })) {
-    impl_->graph.parameters[*found].value = parameter.value;
+    impl_->graph.parameters[*found].setNumbers(value);
     if (impl_->made) impl_->made->numbers = true;
     return true;
   }
@@ -349,7 +345,8 @@ static bool differInTextures(const graph::Graph& a, const graph::Graph& b) {
 static bool differInNumbers(const graph::Graph& a, const graph::Graph& b) {
   return std::any_of(a.parameters.begin(), a.parameters.end(), [&](const graph::Parameter& parameter) {
     const std::optional<size_t> other = b.findParameter(parameter.name);
-    return other && b.parameters[*other].value != parameter.value;
+    return other && (b.parameters[*other].value != parameter.value ||
+                     b.parameters[*other].columns != parameter.columns);
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "api/internal.h"
 #include "cost/files.h"
+#include "graph/matrices.h"
 #include "interface/interface.h"
 #include "manifest/text.h"
 #include "setting/messages.h"
@@ -119,13 +120,24 @@ bool Shader::pack(const Values& value, std::span<std::byte> block, Messages& mes
 bool Shader::packGraph(const Graph& graph, std::span<std::byte> block, Messages& messages) const {
   if (!filled(graph.impl_.get(), "graph", messages)) return false;
   const graph::Graph& numbers = graph.impl_->graph;
+  // A column of a matrix is looked for by what it is called in the shader.
+  std::vector<graph::Parameter> columns;
+  for (const graph::Parameter& parameter : numbers.parameters) {
+    if (!ir::isMatrix(parameter.type)) continue;
+    for (graph::Parameter& column : graph::columnsOf(parameter)) columns.push_back(std::move(column));
+  }
+  const auto named = [&](std::string_view name) -> const graph::Parameter* {
+    if (const std::optional<size_t> found = numbers.findParameter(name)) return &numbers.parameters[*found];
+    const auto it =
+        std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
+    return it == columns.end() ? nullptr : &*it;
+  };
   return pack(
       [&](std::string_view name, std::span<double> components) {
-        const std::optional<size_t> found = numbers.findParameter(name);
-        if (!found) return false;
-        const graph::Parameter& parameter = numbers.parameters[*found];
-        if (static_cast<size_t>(ir::componentCount(parameter.type)) != components.size()) return false;
-        std::copy_n(parameter.value.begin(), components.size(), components.begin());
+        const graph::Parameter* parameter = named(name);
+        if (parameter == nullptr) return false;
+        if (static_cast<size_t>(ir::componentCount(parameter->type)) != components.size()) return false;
+        std::copy_n(parameter->value.begin(), components.size(), components.begin());
         return true;
       },
       block, messages);

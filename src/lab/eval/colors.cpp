@@ -294,6 +294,7 @@ Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& lib
   for (const auto& [name, column] : points.points.columns) {
     if (graph::isAttributeName(name)) attributes.push_back(name);
   }
+  attributes.insert(attributes.end(), points.matrices.begin(), points.matrices.end());
   evaluated.setAttributes(std::move(attributes));
   if (Result<void> lowered = evaluated.lower(found, library, points.has_environment, {}, messages);
       !lowered) {

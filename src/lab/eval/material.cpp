@@ -348,13 +348,39 @@ Result<void> checkCount(const graph::Parameter& parameter, const std::string& na
               fmt::format("it is {}", graph::article(parameter.type)));
 }
 
+/// A matrix, which the graph has as its columns: as many numbers for each of them.
+Result<NamedNumbers> byColumn(const graph::Graph& graph, const NamedNumbers& parameters) {
+  NamedNumbers all;
+  for (const auto& [name, numbers] : parameters) {
+    std::vector<const graph::Parameter*> columns;
+    for (const graph::Parameter& p : graph.parameters) {
+      if (!p.column_of.empty() && p.column_of == name) columns.push_back(&p);
+    }
+    if (columns.empty()) {
+      all.emplace_back(name, numbers);
+      continue;
+    }
+    const size_t side = columns.size();
+    if (numbers.size() != side * side)
+      return fail("wrong-count", {}, fmt::format("'{}' is given {} numbers", printable(name), numbers.size()),
+                  fmt::format("it is a mat{0}, {1} numbers column by column", side, side * side));
+    for (size_t c = 0; c < side; ++c) {
+      const auto from = numbers.begin() + static_cast<ptrdiff_t>(c * side);
+      all.emplace_back(columns[c]->name, std::vector<double>(from, from + static_cast<ptrdiff_t>(side)));
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 /// Values in place of today's.
 Result<void> EvalMaterial::setParameters(const Language& library, graph::Graph& graph) {
   if (trial_.parameters.empty() && columns_.empty()) return {};
   const std::vector<ir::Range> limits = graph::parameterLimits(graph, library);
-  for (const auto& [name, numbers] : trial_.parameters) {
+  const Result<NamedNumbers> given = byColumn(graph, trial_.parameters);
+  if (!given) return tl::make_unexpected(given.error());
+  for (const auto& [name, numbers] : *given) {
     const Result<size_t> place = parameterOf(graph, name);
     if (!place && anyway_) continue;
     if (!place) return tl::make_unexpected(place.error());

@@ -75,11 +75,13 @@ private:
     const int least = known ? member->least : 1;
     const int most = known ? member->most : 4;
     const auto components = static_cast<int>(std::min<size_t>(array.components, 99));
-    if (components < least || components > most) {
+    const bool matrix = !known && matrixSide(array.components) != 0;
+    if (!matrix && (components < least || components > most)) {
       return fail(
           array, std::nullopt, "wrong-type",
           fmt::format("{} is given {} numbers for a point", quote(array.name), array.components),
-          least == most ? fmt::format("it is {}", least) : fmt::format("it is {} to {}", least, most));
+          (least == most ? fmt::format("it is {}", least) : fmt::format("it is {} to {}", least, most)) +
+              (known ? "" : ", of a matrix 9 or 16"));
     }
     if (array.numbers == nullptr && arrays_.count > 0)
       return fail(array, std::nullopt, "null-argument", fmt::format("{} has no numbers", quote(array.name)),
@@ -106,7 +108,7 @@ private:
       if (array.is_double) {
         std::memcpy(to, from, array.components * sizeof(double));
       } else {
-        std::array<float, 4> floats{};
+        std::array<float, 16> floats{};
         std::memcpy(floats.data(), from, array.components * sizeof(float));
         std::copy_n(floats.begin(), array.components, to);
       }
@@ -162,8 +164,24 @@ private:
     }
   }
 
+  /// A matrix as its columns.
+  void placeColumns(const PointArray& array, const Column& matrix) {
+    const size_t side = matrixSide(array.components);
+    const bool attribute = graph::isAttributeName(array.name);
+    if (attribute) points_.matrices.insert(array.name);
+    for (size_t c = 0; c < side; ++c) {
+      Column column{static_cast<int>(side), matrix.per_point, {}};
+      for (size_t at = c * side; at < matrix.values.size(); at += side * side)
+        column.values.insert(column.values.end(), &matrix.values[at], &matrix.values[at] + side);
+      const std::string name = graph::columnName(array.name, static_cast<int>(c));
+      (attribute ? points_.points.columns[name] : points_.parameters[name]) = std::move(column);
+    }
+  }
+
   void place(const PointArray& array, bool known, Column column) {
-    if (array.name == "env") {
+    if (!known && matrixSide(array.components) != 0 && array.name.find('.') == std::string::npos) {
+      placeColumns(array, column);
+    } else if (array.name == "env") {
       points_.has_environment = true;
       points_.environment.resize(arrays_.count);
       for (size_t i = 0; i < arrays_.count; ++i)

@@ -124,23 +124,30 @@ private:
     return true;
   }
 
-  /// A number, or two to four of them.
+  /// A number, two to four of them, or those of a matrix column by column.
   void attribute(const Json& json, const Path& path, const std::string& name, eval::Point& to,
                  EvalPoints& all) {
-    if (json.is_boolean())
-      return report_.wrongType(path, name, json, "a number or an array of 2 to 4 numbers");
+    constexpr std::string_view kExpected = "a number or an array of 2 to 4 numbers, of a matrix 9 or 16";
+    if (json.is_boolean()) return report_.wrongType(path, name, json, kExpected);
     const Json list = json.is_array() ? json : Json::array({json});
-    std::array<double, 4> value{0, 0, 0, 1};
-    if (list.size() < 1 || list.size() > value.size())
-      return report_.wrongType(path, name, json, "a number or an array of 2 to 4 numbers");
+    std::array<double, 16> value{0, 0, 0, 1};
+    const size_t side = matrixSide(list.size());
+    if (list.size() < 1 || (list.size() > 4 && side == 0))
+      return report_.wrongType(path, name, json, kExpected);
     if (!numbers(list, path, name, {value.data(), list.size()})) return;
-    to.attributes[name] = value;
-    const auto count = static_cast<int>(list.size());
-    const auto [known, first] = all.attribute_components.emplace(name, count);
-    if (first || known->second == count) return;
-    report_.error("wrong-type", path,
-                  fmt::format("{} is given {} numbers, and {} before", name, count, known->second),
-                  "an attribute has one type");
+    const auto place = [&](const std::string& as, const double* from, size_t count) {
+      std::array<double, 4>& column = to.attributes[as] = {0, 0, 0, 1};
+      std::copy_n(from, count, column.begin());
+      const auto [known, first] = all.attribute_components.emplace(as, static_cast<int>(count));
+      if (first || known->second == static_cast<int>(count)) return;
+      report_.error("wrong-type", path,
+                    fmt::format("{} is given {} numbers, and {} before", as, count, known->second),
+                    "an attribute has one type");
+    };
+    if (side == 0) return place(name, value.data(), list.size());
+    all.matrices.insert(name);
+    for (size_t c = 0; c < side; ++c)
+      place(graph::columnName(name, static_cast<int>(c)), &value[c * side], side);
   }
 
   void flag(const Json& point, const Path& path, std::string_view name, bool& to) {

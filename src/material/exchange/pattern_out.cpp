@@ -443,6 +443,13 @@ PatternsOut::Link PatternsOut::link(Scope& scope, const Source& source) {
   return source.swizzle.empty() ? made : swizzled(scope, std::move(made), source.swizzle);
 }
 
+/// A matrix of the graph's parameters; else null.
+const graph::Parameter* PatternsOut::matrixOf(const Source& source) const {
+  const auto* ref = std::get_if<graph::ParameterRef>(&source.from);
+  const std::optional<size_t> place = ref == nullptr ? std::nullopt : graph_.findParameter(ref->name);
+  return place && ir::isMatrix(graph_.parameters[*place].type) ? &graph_.parameters[*place] : nullptr;
+}
+
 /// A number that is written; nothing for what is computed.
 std::optional<std::pair<Typed, Components>> PatternsOut::constant(const Source& source) const {
   Type type = Type::Float;
@@ -452,7 +459,7 @@ std::optional<std::pair<Typed, Components>> PatternsOut::constant(const Source& 
     value = literal->value;
   } else if (const auto* ref = std::get_if<graph::ParameterRef>(&source.from)) {
     const std::optional<size_t> place = graph_.findParameter(ref->name);
-    if (!place) return std::nullopt;
+    if (!place || ir::isMatrix(graph_.parameters[*place].type)) return std::nullopt;
     type = graph_.parameters[*place].type;
     value = graph_.parameters[*place].value;
   } else {
@@ -469,7 +476,11 @@ std::optional<std::pair<Typed, Components>> PatternsOut::constant(const Source& 
 void PatternsOut::give(Scope& scope, Element& element, std::string_view name, const Source& source,
                        Typed wanted) {
   Element input = inputOf(name, typeName(wanted));
-  if (const auto number = constant(source)) {
+  if (const graph::Parameter* matrix = matrixOf(source)) {
+    std::string text;
+    for (const double x : matrix->numbers()) text += fmt::format("{}{}", text.empty() ? "" : ", ", x);
+    input.set("value", text);
+  } else if (const auto number = constant(source)) {
     Components value = number->second;
     if (ir::componentCount(number->first.type) == 1) value.fill(value[0]);
     input.set("value", valueText(wanted.type, value));

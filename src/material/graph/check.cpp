@@ -5,6 +5,7 @@
 
 #include "graph/check_body.h"
 #include "graph/edit.h"
+#include "graph/matrices.h"
 #include "graph/text.h"
 #include "json/path.h"
 #include "support/limits.h"
@@ -40,6 +41,7 @@ public:
     return findings_.take();
   }
   void parameter(size_t index);
+  void columnNames(size_t index);
   void texture(size_t index);
 
 private:
@@ -61,6 +63,8 @@ private:
   void group(size_t index);
   void groupInput(size_t index, size_t input);
   void nesting();
+  void attribute(const AttributeRef& ref, std::vector<AttributeRef>& known, const Spot& spot,
+                 const std::string& pointer);
   void attributes();
   void rates();
   Tied tiedOf(const Source& source, const Body& body, const std::vector<Tied>& nodes) const;
@@ -103,7 +107,7 @@ bool GraphCheck::rangeOf(const ir::Range& range, std::string_view name, const Sp
 }
 
 void GraphCheck::parameter(size_t index) {
-  const ir::Parameter& p = graph_.parameters[index];
+  const Parameter& p = graph_.parameters[index];
   const Spot spot{Section::Parameters, index};
   const auto at = [&p](std::string_view member = {}) {
     return pointerTo("parameters", p.name) + std::string(member);
@@ -115,13 +119,14 @@ void GraphCheck::parameter(size_t index) {
   if (contracts_.parameter(p.name) != &graph_.parameters[index]) {
     error(spot, at(), "duplicate-name", fmt::format("there are two parameters {}", inQuotes(p.name)));
   }
-  if (ir::isMatrix(p.type) || ir::isTexture(p.type)) {
+  if (ir::isTexture(p.type)) {
     return error(spot, at("/type"), "wrong-type", fmt::format("a parameter cannot be {}", article(p.type)),
-                 "it is a float, an int, a uint, a bool or a vector of them");
+                 std::string(kParameterTypes));
   }
+  columnNames(index);
   if (!rangeOf(p.range, p.name, spot, at("/range"))) return;
   for (int i = 0; i < ir::componentCount(p.type); ++i) {
-    const double x = p.value[static_cast<size_t>(i)];
+    const double x = p.number(i);
     if (!std::isfinite(x)) {
       return error(spot, at("/value"), "not-finite",
                    fmt::format("the value of {} is {}", inQuotes(p.name), x));
@@ -130,7 +135,7 @@ void GraphCheck::parameter(size_t index) {
       return error(spot, at("/value"), "out-of-range",
                    fmt::format("the value of {} is {}", inQuotes(p.name), x), std::string(kFloatHelp));
     }
-    if (const double neutral = p.neutral[static_cast<size_t>(i)]; !fitsFloat(neutral)) {
+    if (const double neutral = p.neutralNumber(i); !fitsFloat(neutral)) {
       return error(spot, at("/default"), "out-of-range",
                    fmt::format("the default of {} is {}", inQuotes(p.name), neutral),
                    std::string(kFloatHelp));
@@ -150,6 +155,34 @@ void GraphCheck::parameter(size_t index) {
                    fmt::format("the value {} of {} is not in its range {}", x, inQuotes(p.name),
                                ir::rangeText(p.range)));
     }
+  }
+}
+
+/// What the columns of a matrix are called is no other parameter's name.
+void GraphCheck::columnNames(size_t index) {
+  const Parameter& p = graph_.parameters[index];
+  const auto both = [&](const std::string& column, std::string_view matrix) {
+    error({Section::Parameters, index}, pointerTo("parameters", p.name), "duplicate-name",
+          fmt::format("{} is a parameter and a column of {}", inQuotes(column), inQuotes(matrix)),
+          "give one of the two another name");
+  };
+  if (!ir::isMatrix(p.type)) {
+    const std::string_view name = p.name;
+    const size_t dash = name.rfind('_');
+    const Parameter* of = dash == name.npos ? nullptr : contracts_.parameter(name.substr(0, dash));
+    if (of == nullptr || !ir::isMatrix(of->type)) return;
+    const std::vector<Parameter> columns = columnsOf(*of);
+    if (std::any_of(columns.begin(), columns.end(), [&](const Parameter& c) { return c.name == name; }))
+      both(p.name, of->name);
+    return;
+  }
+  for (const Parameter& column : columnsOf(p)) {
+    if (contracts_.parameter(column.name) != nullptr) return both(column.name, p.name);
+    if (isName(column.name)) continue;
+    return error({Section::Parameters, index}, pointerTo("parameters", p.name), "wrong-name",
+                 fmt::format("{}, a column of {}, cannot be the name of a parameter", inQuotes(column.name),
+                             inQuotes(p.name)),
+                 std::string(kNameHelp));
   }
 }
 
@@ -287,40 +320,50 @@ void GraphCheck::nesting() {
 
 // -- attributes --
 
+/// One that is read, beside those that are known.
+void GraphCheck::attribute(const AttributeRef& ref, std::vector<AttributeRef>& known, const Spot& spot,
+                           const std::string& pointer) {
+  const lang::TemplateDecl* decl = contracts_.templateDecl();
+  for (size_t i = 0; decl != nullptr && i < decl->attributes.size(); ++i) {
+    const lang::AttributeDecl& own = decl->attributes[i];
+    const bool stored = ref.type == ir::Type::Bool && own.type == ir::Type::Float;
+    if (own.fact || !sameAttribute(own.name, ref.name) || own.type == ref.type || stored) continue;
+    return error(spot, pointer, "wrong-type",
+                 fmt::format("{} is {} of the template", inQuotes(ref.name), article(own.type)),
+                 "say the same type");
+  }
+  const auto same = std::find_if(known.begin(), known.end(), [&](const AttributeRef& other) {
+    return sameAttribute(other.name, ref.name);
+  });
+  if (same == known.end()) {
+    known.push_back(ref);
+    const auto vectors = std::count_if(known.begin(), known.end(),
+                                       [](const AttributeRef& one) { return !ir::isMatrix(one.type); });
+    if (!ir::isMatrix(ref.type) && vectors == kMostOwnAttributes + 1) {
+      error(spot, pointer, "too-many-attributes",
+            fmt::format("the graph reads more than {} attributes by name", kMostOwnAttributes),
+            "each column of a matrix is one");
+    }
+    for (int i = 0; ir::isMatrix(ref.type) && i < ir::componentCount(ir::partType(ref.type)); ++i)
+      attribute({columnName(ref.name, i), ir::partType(ref.type)}, known, spot, pointer);
+  } else if (same->name != ref.name) {
+    error(spot, pointer, "duplicate-name",
+          fmt::format("{} and {} are one name in shaders", inQuotes(same->name), inQuotes(ref.name)),
+          "give one of the attributes another name");
+  } else if (same->type != ref.type) {
+    error(spot, pointer, "wrong-type",
+          fmt::format("{} is {} here and {} elsewhere", inQuotes(ref.name), article(ref.type),
+                      article(same->type)),
+          "an attribute has one type; a swizzle takes components of it");
+  }
+}
+
 /// Attributes of one name have one type, and there are not too many.
 void GraphCheck::attributes() {
-  std::vector<const AttributeRef*> known;
+  std::vector<AttributeRef> known;
   const auto byName = [](const Source& source) { return std::holds_alternative<AttributeRef>(source.from); };
   const auto take = [&](const Source& source, const Spot& spot, const std::string& pointer) {
-    const auto* ref = &std::get<AttributeRef>(source.from);
-    const lang::TemplateDecl* decl = contracts_.templateDecl();
-    for (size_t i = 0; decl != nullptr && i < decl->attributes.size(); ++i) {
-      const lang::AttributeDecl& own = decl->attributes[i];
-      const bool stored = ref->type == ir::Type::Bool && own.type == ir::Type::Float;
-      if (own.fact || !sameAttribute(own.name, ref->name) || own.type == ref->type || stored) continue;
-      return error(spot, pointer, "wrong-type",
-                   fmt::format("{} is {} of the template", inQuotes(ref->name), article(own.type)),
-                   "say the same type");
-    }
-    const auto same = std::find_if(known.begin(), known.end(), [&](const AttributeRef* other) {
-      return sameAttribute(other->name, ref->name);
-    });
-    if (same == known.end()) {
-      known.push_back(ref);
-      if (known.size() == kMostOwnAttributes + 1) {
-        error(spot, pointer, "too-many-attributes",
-              fmt::format("the graph reads more than {} attributes by name", kMostOwnAttributes));
-      }
-    } else if ((*same)->name != ref->name) {
-      error(spot, pointer, "duplicate-name",
-            fmt::format("{} and {} are one name in shaders", inQuotes((*same)->name), inQuotes(ref->name)),
-            "give one of the attributes another name");
-    } else if ((*same)->type != ref->type) {
-      error(spot, pointer, "wrong-type",
-            fmt::format("{} is {} here and {} elsewhere", inQuotes(ref->name), article(ref->type),
-                        article((*same)->type)),
-            "an attribute has one type; a swizzle takes components of it");
-    }
+    attribute(std::get<AttributeRef>(source.from), known, spot, pointer);
   };
   const auto body = [&](const Body& one, const std::string& root) {
     const bool nested = one.group() != nullptr;

@@ -344,24 +344,18 @@ std::string BodyCheck::converter(Type from, Type to) const {
 
 /// The number written into the graph, or the parameter's value today, against the contract.
 void BodyCheck::range(const Source& source, const Sink& sink) {
-  const Type wanted = sink.contract->type;
-  if (!sink.contract->has_range || (!ir::isFloating(wanted) && !ir::isWhole(ir::partType(wanted)))) return;
-  const ir::Components* value = nullptr;
-  Type type = Type::Float;
+  const Type wanted = ir::partType(sink.contract->type);
+  if (!sink.contract->has_range || (!ir::isFloating(wanted) && !ir::isWhole(wanted))) return;
+  const auto* literal = std::get_if<Literal>(&source.from);
   const auto* ref = std::get_if<ParameterRef>(&source.from);
-  if (const auto* literal = std::get_if<Literal>(&source.from)) {
-    value = &literal->value;
-    type = literal->type;
-  } else if (ref != nullptr) {
-    const Parameter& parameter = *contracts_.parameter(ref->name);
-    value = &parameter.value;
-    type = parameter.type;
-  }
-  if (value == nullptr) return;
+  const Parameter* parameter = ref == nullptr ? nullptr : contracts_.parameter(ref->name);
+  if (literal == nullptr && parameter == nullptr) return;
+  const Type type = literal != nullptr ? literal->type : parameter->type;
   std::string picked = swizzleComponents(source.swizzle);
   for (int i = 0; source.swizzle.empty() && i < ir::componentCount(type); ++i) picked += static_cast<char>(i);
   for (const char component : picked) {
-    const double x = (*value)[static_cast<size_t>(component)];
+    const double x =
+        literal != nullptr ? literal->value[static_cast<size_t>(component)] : parameter->number(component);
     if (sink.contract->range.contains(x)) continue;
     const std::string what =
         ref != nullptr ? fmt::format("the parameter {} has the value", inQuotes(ref->name)) : "the value";
@@ -401,7 +395,7 @@ std::optional<Type> BodyCheck::typeOf(const Source& source, const Sink& sink) {
   }
   // A type that no parameter and no texture has is reported there.
   const bool of_file = std::holds_alternative<ParameterRef>(source.from);
-  if (of_file && (ir::isMatrix(offer->type) || ir::isTexture(offer->type))) return std::nullopt;
+  if (of_file && ir::isTexture(offer->type)) return std::nullopt;
   if (std::holds_alternative<TextureRef>(source.from) && !ir::isTexture(offer->type)) return std::nullopt;
   const std::optional<Type> type = swizzled(offer->type, source.swizzle);
   if (!type) wrongSwizzle(offer->type, source.swizzle, sink);

@@ -8,6 +8,7 @@
 #include "graph/check_body.h"
 #include "graph/contracts.h"
 #include "graph/edit.h"
+#include "graph/matrices.h"
 #include "graph/text.h"
 
 namespace lacquer::graph {
@@ -247,6 +248,7 @@ Result<void> Editor::addGroup(const std::string& name, const Graph& graph) {
   groups.insert(name);
   for (const Texture& texture : graph_.textures) textures.insert(texture.name);
   Graph other = graph;
+  if (hasMatrices(other)) takeColumns(other, library_);
   Editor renaming(other, library_, most_);
   for (size_t i = 0; i < graph.groups.size(); ++i) {
     const std::string own = other.groups[i].name;

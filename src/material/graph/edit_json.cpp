@@ -398,13 +398,13 @@ Result<std::string> Edit::setValue() {
   parameter.name = name;
   if (found) {
     parameter = graph_.parameters[*found];
-    Result<ir::Components> components = readValue(parameter.type, value("value"), pointer("value"), limits_);
-    if (!components) return passOn(components);
-    parameter.value = *components;
+    Result<std::vector<double>> all = readValue(parameter.type, value("value"), pointer("value"), limits_);
+    if (!all) return passOn(all);
+    parameter.setNumbers(*all);
   }
   Words inverse("set_value");
   inverse.text("parameter", name);
-  if (found) inverse.raw("value", valueText(graph_.parameters[*found].type, graph_.parameters[*found].value));
+  if (found) inverse.raw("value", valueText(graph_.parameters[*found]));
   return back(editor().setParameter(parameter), std::move(inverse));
 }
 

@@ -8,6 +8,7 @@
 #include "graph/check_body.h"
 #include "graph/contracts.h"
 #include "graph/graph.h"
+#include "graph/matrices.h"
 #include "graph/text.h"
 #include "lang/suggest.h"
 #include "support/text.h"
@@ -140,14 +141,16 @@ private:
 
 Graph flattened(Graph graph, const lang::Library& library, FlatOutputs* told) {
   const auto plain = [&](const Node& node) { return library.has(lang::DeclKind::Node, node.type); };
-  if (graph.groups.empty() && told == nullptr && std::all_of(graph.nodes.begin(), graph.nodes.end(), plain))
-    return graph;
-  std::vector<Node> nodes;
-  Outputs outputs;
-  Flattening(graph, library, told).run(nodes, outputs);
-  graph.nodes = std::move(nodes);
-  graph.outputs = std::move(outputs);
-  graph.groups.clear();
+  if (!graph.groups.empty() || told != nullptr ||
+      !std::all_of(graph.nodes.begin(), graph.nodes.end(), plain)) {
+    std::vector<Node> nodes;
+    Outputs outputs;
+    Flattening(graph, library, told).run(nodes, outputs);
+    graph.nodes = std::move(nodes);
+    graph.outputs = std::move(outputs);
+    graph.groups.clear();
+  }
+  if (hasMatrices(graph)) takeColumns(graph, library, told);
   return graph;
 }
 

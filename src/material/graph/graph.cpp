@@ -90,7 +90,8 @@ std::string tileFile(std::string file, size_t tile) {
 }
 
 bool isAttributeType(ir::Type type) {
-  return type == ir::Type::Bool || ir::isFloating(type) || ir::isWhole(ir::partType(type));
+  return type == ir::Type::Bool || ir::isFloating(type) || ir::isWhole(ir::partType(type)) ||
+         ir::isMatrix(type);
 }
 
 bool sameAttribute(std::string_view a, std::string_view b) {

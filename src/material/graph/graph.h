@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -56,10 +57,14 @@ struct AttributeRef {
 /// Whether a name is one that an AttributeRef may have: it begins with an underscore and goes on with letters
 /// and digits, or with underscores between, 64 characters at most; or it is COLOR_n or TEXCOORD_n.
 bool isAttributeName(std::string_view name);
-/// Whether an AttributeRef may have that type. A bool is stored as a float, and true where that is not 0.
+/// Whether an AttributeRef may have that type. A bool is stored as a float, and true where that is not 0. A
+/// matrix is stored as its columns: columnName().
 bool isAttributeType(ir::Type type);
 inline constexpr std::string_view kAttributeTypes =
-    "it is float, int, uint, a vector of one of these such as vec2, ivec2 or uvec2, or bool";
+    "it is float, int, uint, a vector of one of these such as vec2, ivec2 or uvec2, mat3, mat4 or bool";
+/// What a parameter's type may be.
+inline constexpr std::string_view kParameterTypes =
+    "it is a float, an int, a uint, a bool, a vector of them, a mat3 or a mat4";
 /// Whether two names mean one attribute: a template may write WETNESS for glTF's _WETNESS, and shaders do not
 /// tell capitals from small letters.
 bool sameAttribute(std::string_view a, std::string_view b);
@@ -142,7 +147,27 @@ struct Group {
 
 struct Parameter : ir::Parameter {
   std::string ui{};
+  /// Of a matrix its columns, which are parameters of their own in a flat graph: columnName(). Its `value`
+  /// and `neutral` say nothing.
+  struct Column {
+    ir::Components value{};
+    ir::Components neutral{};
+    bool operator==(const Column&) const = default;
+  };
+  std::vector<Column> columns{};
+  std::string column_of{};  ///< in a flat graph the matrix that it is a column of
+
+  /// A component of today's value, of a matrix column by column, and of `neutral`.
+  double number(int component) const;
+  double neutralNumber(int component) const;
+  /// All of them.
+  std::vector<double> numbers() const;
+  /// Takes as many as the type has components.
+  void setNumbers(std::span<const double> all);
+  void setNeutralNumbers(std::span<const double> all);
 };
+/// "m_0": what a column of the parameter `m` is called, and of the attribute `_M` "_M_0".
+std::string columnName(std::string_view matrix, int column);
 
 enum class Wrap : uint8_t { Repeat, Clamp, Mirror };
 
@@ -238,8 +263,8 @@ Texture bare(const Texture& texture);
 using FlatOutputs = std::map<std::string, Outputs, std::less<>>;
 
 /// A checked graph with its groups' nodes in their places, whose ids begin with the instance's: "rust.mix",
-/// and with the form of each node as its type. A graph without groups and forms comes back as it is, unless
-/// its outputs are asked for.
+/// with the form of each node as its type, and with matrices of its parameters made of columns. A graph
+/// without groups, forms and matrices comes back as it is, unless its outputs are asked for.
 Graph flattened(Graph graph, const lang::Library& library, FlatOutputs* outputs = nullptr);
 
 /// One of them by a node's path, behind which a dot and the output's name stand where it has several.

@@ -20,9 +20,9 @@ Result<Group> readGroup(std::string_view name, const json::Json& json, std::stri
                         const Limits& limits);
 Result<GroupInput> readInput(std::string_view name, const json::Json& json, std::string_view at,
                              const Limits& limits);
-/// The components of a value of that type, as a parameter has one.
-Result<ir::Components> readValue(ir::Type type, const json::Json& json, std::string_view at,
-                                 const Limits& limits);
+/// The numbers of a value of that type, as a parameter has one, of a matrix column by column.
+Result<std::vector<double>> readValue(ir::Type type, const json::Json& json, std::string_view at,
+                                      const Limits& limits);
 Result<Graph> readGraph(const json::Json& json, std::string_view at, const Limits& limits);
 /// The tree of an edit, without duplicate keys.
 Result<json::Json> parseEdit(std::string_view text, const Limits& limits);
@@ -34,7 +34,8 @@ std::string textOf(const Parameter& parameter);
 std::string textOf(const Texture& texture);
 std::string textOf(const Group& group);
 std::string textOf(const GroupInput& input);
-std::string valueText(ir::Type type, const ir::Components& components);
+/// Today's value of a parameter.
+std::string valueText(const Parameter& parameter);
 
 /// Bytes of all that tools keep in a graph.
 uint64_t uiSize(const Graph& graph);

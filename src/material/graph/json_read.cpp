@@ -42,7 +42,7 @@ std::optional<ir::Type> attributeType(std::string_view name) {
 class Reader {
 public:
   Reader(const std::string& file, const Limits& limits, Diagnostics& out)
-      : report_(file, out), limits_(limits) {}
+      : found_(out), report_(file, out), limits_(limits) {}
 
   Graph graph(const Json& json);
   std::optional<Source> source(const Json& json, const Path& path);
@@ -53,6 +53,9 @@ public:
   GroupInput groupInput(std::string_view name, const Json& json, const Path& path);
   void parameterValue(const Json& json, const Path& path, std::string_view name, ir::Type type,
                       ir::Components& out);
+  /// All of a parameter, of a matrix column by column; nothing where something is wrong.
+  std::optional<std::vector<double>> parameterNumbers(const Json& json, const Path& path,
+                                                      std::string_view name, ir::Type type);
   /// What the last of these have read.
   Graph& made() { return graph_; }
 
@@ -71,7 +74,7 @@ private:
   std::string optionalText(const Json& json, const Path& path, std::string_view name);
   std::string textOf(const Json& json, const Path& path, std::string_view name);
   std::vector<std::string> optionalTexts(const Json& json, const Path& path, std::string_view name);
-  bool numbers(const Json& json, const Path& path, ir::Components& out);
+  bool numbers(const Json& json, const Path& path, std::span<double> out);
   double bound(const Json& json, const Path& path, double infinite);
 
   std::optional<ir::Type> typeOf(const Json& json, const Path& path, std::string_view entry,
@@ -89,6 +92,7 @@ private:
   std::string ui(const Json& json, const Path& path);
   std::optional<Source> reference(const Json& json, const Path& path);
 
+  const Diagnostics& found_;
   json::Report report_;
   const Limits& limits_;
   uint64_t ui_ = 0;  ///< bytes
@@ -159,7 +163,7 @@ std::vector<std::string> Reader::optionalTexts(const Json& json, const Path& pat
 }
 
 /// The elements of an array of at most four numbers.
-bool Reader::numbers(const Json& json, const Path& path, ir::Components& out) {
+bool Reader::numbers(const Json& json, const Path& path, std::span<double> out) {
   bool good = true;
   for (size_t i = 0; i < json.size(); ++i) {
     if (json[i].is_number()) {
@@ -294,6 +298,25 @@ void Reader::parameterValue(const Json& json, const Path& path, std::string_view
   }
 }
 
+std::optional<std::vector<double>> Reader::parameterNumbers(const Json& json, const Path& path,
+                                                            std::string_view name, ir::Type type) {
+  const auto count = static_cast<size_t>(ir::componentCount(type));
+  const size_t before = found_.size();
+  std::vector<double> all(count);
+  if (!ir::isMatrix(type)) {
+    ir::Components plain{};
+    parameterValue(json, path, name, type, plain);
+    std::copy_n(plain.begin(), count, all.begin());
+  } else if (!json.is_array() || json.size() != count) {
+    report_.wrongType(
+        path, name, json,
+        fmt::format("an array of {} numbers, a {} column by column", count, ir::typeName(type)));
+  } else {
+    numbers(json, path, all);
+  }
+  return found_.size() == before ? std::optional(std::move(all)) : std::nullopt;
+}
+
 /// A bool, or those of a vector.
 void Reader::truths(const Json& json, const Path& path, std::string_view name, ir::Type type,
                     ir::Components& out) {
@@ -353,16 +376,18 @@ void Reader::parameter(std::string_view name, const Json& json, const Path& path
   if (!object(json, path, "a parameter", kKeys)) return;
   Parameter parameter;
   parameter.name = name;
-  const std::optional<ir::Type> known =
-      typeOf(json, path, "parameter", valueType, "it is a float, an int, a uint, a bool or a vector of them");
+  const std::optional<ir::Type> known = typeOf(json, path, "parameter", valueType, kParameterTypes);
   parameter.type = known.value_or(ir::Type::Float);
   const Json* value = required(json, path, "the parameter", "value");
-  if (value != nullptr && known)
-    parameterValue(*value, Path(path, "value"), "value", parameter.type, parameter.value);
+  const auto read = [&](const Json* from, std::string_view member, auto set) {
+    if (from == nullptr || !known) return;
+    const auto all = parameterNumbers(*from, Path(path, member), member, *known);
+    if (all) (parameter.*set)(*all);
+  };
+  read(value, "value", &Parameter::setNumbers);
   range(json, path, parameter.range);
   parameter.pointer = optionalText(json, path, "pointer");
-  if (const Json* by_default = json::member(json, "default"); by_default != nullptr && known)
-    parameterValue(*by_default, Path(path, "default"), "default", parameter.type, parameter.neutral);
+  read(json::member(json, "default"), "default", &Parameter::setNeutralNumbers);
   parameter.animated = flag(json, path, "animated");
   parameter.ui = ui(json, path);
   graph_.parameters.push_back(std::move(parameter));
@@ -708,11 +733,10 @@ Result<GroupInput> readInput(std::string_view name, const Json& json, std::strin
   });
 }
 
-Result<ir::Components> readValue(ir::Type type, const Json& json, std::string_view at, const Limits& limits) {
+Result<std::vector<double>> readValue(ir::Type type, const Json& json, std::string_view at,
+                                      const Limits& limits) {
   return readPart(at, limits, [&](Reader& reader, const Path& path) {
-    std::optional<ir::Components> made{std::in_place};
-    reader.parameterValue(json, path, "value", type, *made);
-    return made;
+    return reader.parameterNumbers(json, path, "value", type);
   });
 }
 

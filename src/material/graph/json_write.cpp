@@ -19,16 +19,22 @@ std::string number(double x) {
   return json::numberText(x);
 }
 
-std::string value(ir::Type type, const ir::Components& components) {
+/// `component(i)` of a value of that type.
+template <class Component>
+std::string valueOf(ir::Type type, Component component) {
   const bool truths = ir::partType(type) == ir::Type::Bool;
   const auto one = [&](int i) {
-    const double x = components[static_cast<size_t>(i)];
+    const double x = component(i);
     return truths ? x != 0 ? "true" : "false" : number(x);
   };
   if (ir::componentCount(type) == 1) return one(0);
   std::string text = "[";
   for (int i = 0; i < ir::componentCount(type); ++i) text += (i == 0 ? "" : ", ") + one(i);
   return text + "]";
+}
+
+std::string value(ir::Type type, const ir::Components& components) {
+  return valueOf(type, [&](int i) { return components[static_cast<size_t>(i)]; });
 }
 
 std::string source(const Source& source) {
@@ -100,12 +106,14 @@ std::string rangeMembers(const ir::Range& range) {
 std::string uiMember(const std::string& ui) { return ui.empty() ? ui : ", \"ui\": " + ui; }
 
 std::string parameter(const Parameter& parameter) {
-  std::string text = fmt::format("{{\"type\": \"{}\", \"value\": {}", ir::typeName(parameter.type),
-                                 value(parameter.type, parameter.value));
+  std::string text =
+      fmt::format("{{\"type\": \"{}\", \"value\": {}", ir::typeName(parameter.type), valueText(parameter));
   text += rangeMembers(parameter.range);
   if (!parameter.pointer.empty()) text += ", " + member("pointer", json::quotedText(parameter.pointer));
-  if (parameter.neutral != ir::Components{})
-    text += fmt::format(", \"default\": {}", value(parameter.type, parameter.neutral));
+  const auto neutral = [&](int i) { return parameter.neutralNumber(i); };
+  bool said = false;
+  for (int i = 0; i < ir::componentCount(parameter.type); ++i) said = said || neutral(i) != 0;
+  if (said) text += ", " + member("default", valueOf(parameter.type, neutral));
   if (parameter.animated) text += ", \"animated\": true";
   return text + uiMember(parameter.ui) + "}";
 }
@@ -179,7 +187,9 @@ std::string textOf(const Texture& texture) { return graph::texture(texture); }
 std::string textOf(const Group& group) { return graph::group(group); }
 std::string textOf(const GroupInput& input) { return groupInput(input); }
 
-std::string valueText(ir::Type type, const ir::Components& components) { return value(type, components); }
+std::string valueText(const Parameter& parameter) {
+  return valueOf(parameter.type, [&](int i) { return parameter.number(i); });
+}
 
 uint64_t uiSize(const Graph& graph) {
   uint64_t size = graph.ui.size();

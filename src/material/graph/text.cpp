@@ -29,7 +29,7 @@ bool fitsFloat(double x) { return std::abs(x) <= static_cast<double>(std::numeri
 std::optional<Type> valueType(std::string_view name) {
   return oneOf(name, {Type::Float, Type::Vec2, Type::Vec3, Type::Vec4, Type::Bool, Type::BVec2, Type::BVec3,
                       Type::BVec4, Type::Int, Type::IVec2, Type::IVec3, Type::IVec4, Type::UInt, Type::UVec2,
-                      Type::UVec3, Type::UVec4});
+                      Type::UVec3, Type::UVec4, Type::Mat3, Type::Mat4});
 }
 
 std::optional<Type> textureType(std::string_view name) {
