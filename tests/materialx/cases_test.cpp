@@ -35,7 +35,7 @@ const CaseLibrary& caseLibrary() {
   return kLibrary;
 }
 
-std::string numbers(const ir::Components& value, int count) {
+std::string numbers(std::span<const double> value, int count) {
   std::string text;
   for (int i = 0; i < count; ++i)
     text += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", value[static_cast<size_t>(i)]);
@@ -63,8 +63,8 @@ std::string shown(const graph::Source& source) {
 std::string shown(const graph::Graph& patterns) {
   std::string text;
   for (const graph::Parameter& p : patterns.parameters)
-    text += fmt::format("${} = {} ({}){}\n", p.name, numbers(p.value, ir::componentCount(p.type)), p.pointer,
-                        p.animated ? ", animated" : "");
+    text += fmt::format("${} = {} ({}){}\n", p.name, numbers(p.numbers(), ir::componentCount(p.type)),
+                        p.pointer, p.animated ? ", animated" : "");
   for (const graph::Texture& t : patterns.textures)
     text += fmt::format("texture {} = {}{}{}{}{}\n", t.name,
                         t.file.empty() ? fmt::format("{}", t.texture) : t.file, t.srgb ? ", srgb" : "",

@@ -212,18 +212,41 @@ bool Patterns::isAnimated(const Element& input) const {
          (options_.animated.contains(pointer) || options_.animated.contains(pointer + "/value"));
 }
 
-/// A parameter for a number of the document.
-std::string Patterns::parameter(const Element& at, std::string name, const std::string& pointer,
-                                ir::Type type, const ir::Components& value, const ir::Range& range) {
+/// A free name, of a matrix one whose columns' names are free, too.
+std::string Patterns::parameterName(const std::string& wish, ir::Type type) {
+  const int columns = ir::isMatrix(type) ? ir::componentCount(ir::partType(type)) : 0;
+  const auto taken = [&](const std::string& name) {
+    for (int i = 0; i < columns; ++i) {
+      if (parameter_names_.has(graph::columnName(name, i))) return true;
+    }
+    return false;
+  };
+  std::string name = parameter_names_.free(wish);
+  while (taken(name)) name = parameter_names_.free(wish);
+  for (int i = 0; i < columns; ++i) parameter_names_.take(graph::columnName(name, i));
+  return name;
+}
+
+/// A parameter for a number of the document, named as there: "NG/noise/amplitude", "noise/amplitude" beside
+/// the graphs.
+graph::Parameter& Patterns::parameter(const Scope& scope, const Element& element, const Element& input,
+                                      ir::Type type) {
+  std::vector<std::string_view> path;
+  if (scope.owner_->category == "nodegraph") path.push_back(scope.owner_->name());
+  if (&element != scope.owner_) path.push_back(element.name());
+  path.push_back(input.name());
+  std::string name;
+  std::string pointer;
+  for (const std::string_view part : path) {
+    name += (name.empty() ? "" : "_") + graphName(part);
+    pointer += fmt::format("/{}", part);
+  }
   graph::Parameter& made = graph_.parameters.emplace_back();
-  made.name = parameter_names_.free(std::move(name));
+  made.name = parameterName(name, type);
   made.type = type;
-  made.value = value;
-  made.neutral = value;
-  made.range = range;
-  made.animated = isAnimated(at);
-  made.pointer = at.place.pointer.empty() ? pointer : at.place.pointer;
-  return made.name;
+  made.animated = isAnimated(input);
+  made.pointer = input.place.pointer.empty() ? pointer : input.place.pointer;
+  return made;
 }
 
 std::optional<Source> Patterns::literal(Scope& scope, const Element& element, const Element& input,
@@ -256,17 +279,6 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
   const bool number = type == ir::Type::Float || ir::isFloatVector(type);
   if (!number || (!options_.editable && !isAnimated(input)))
     return Source{graph::Literal{type == ir::Type::Int ? ir::Type::Float : type, *value}, {}};
-  // As the document names it: "NG/noise/amplitude", "noise/amplitude" beside the graphs.
-  std::vector<std::string_view> path;
-  if (scope.owner_->category == "nodegraph") path.push_back(scope.owner_->name());
-  if (&element != scope.owner_) path.push_back(element.name());
-  path.push_back(input.name());
-  std::string name;
-  std::string pointer;
-  for (const std::string_view part : path) {
-    name += (name.empty() ? "" : "_") + graphName(part);
-    pointer += fmt::format("/{}", part);
-  }
   for (int i = 0; param.has_range && i < ir::componentCount(type); ++i) {
     const double x = (*value)[static_cast<size_t>(i)];
     if (param.range.contains(x)) continue;
@@ -276,10 +288,14 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
   }
   ir::Range range;
   if (param.has_range) range = param.range;
-  return Source{graph::ParameterRef{parameter(input, std::move(name), pointer, type, *value, range)}, {}};
+  graph::Parameter& made = parameter(scope, element, input, type);
+  made.value = made.neutral = *value;
+  made.range = range;
+  return Source{graph::ParameterRef{made.name}, {}};
 }
 
-/// A matrix by its rows, which the node `creatematrix` takes.
+/// A matrix of numbers: a parameter, or by its rows, which the node `creatematrix` takes. Its rows are the
+/// columns of a mat3.
 std::optional<Source> Patterns::matrix(Scope& scope, const Element& element, const Element& input,
                                        ir::Type type) {
   const size_t side = type == ir::Type::Mat3 ? 3 : 4;
@@ -289,6 +305,12 @@ std::optional<Source> Patterns::matrix(Scope& scope, const Element& element, con
           fmt::format("the value of {} is {}", quote(input.name()), quote(input.get("value"))),
           fmt::format("it must be {} numbers, with commas between", side * side));
     return std::nullopt;
+  }
+  if (options_.editable || isAnimated(input)) {
+    graph::Parameter& made = parameter(scope, element, input, type);
+    made.setNumbers(*numbers);
+    made.setNeutralNumbers(*numbers);
+    return Source{graph::ParameterRef{made.name}, {}};
   }
   graph::Inputs rows;
   for (size_t row = 0; row < side; ++row) {

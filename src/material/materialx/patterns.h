@@ -31,6 +31,7 @@ struct PatternOptions {
 class NameSet {
 public:
   void take(std::string name) { taken_.insert(std::move(name)); }
+  bool has(std::string_view name) const { return taken_.contains(name); }
   /// The name, or with a number behind it where something has it already.
   std::string free(std::string name);
 
@@ -136,8 +137,9 @@ private:
   std::optional<Referred> find(const Scope& scope, const Element& input);
   const lang::NodeDecl* formOf(Scope& scope, const Element& element);
   const std::string& idOf(Scope& scope, const Element& element);
-  std::string parameter(const Element& at, std::string name, const std::string& pointer, ir::Type type,
-                        const ir::Components& value, const ir::Range& range);
+  std::string parameterName(const std::string& wish, ir::Type type);
+  graph::Parameter& parameter(const Scope& scope, const Element& element, const Element& input,
+                              ir::Type type);
   bool isAnimated(const Element& input) const;
   std::string fileOf(const Scope& scope, const Element& input) const;
   void unknownNode(const Element& element);
