@@ -270,8 +270,7 @@ const std::vector<ir::Op>& preshaderOps() {
   static const std::vector<ir::Op> kOps = [] {
     std::vector<ir::Op> ops;
     for (const ir::Facts& facts : ir::kFacts) {
-      // No parameter is an integer.
-      if (facts.kind != ir::Kind::Surroundings && facts.op != ir::Op::ToInt) ops.push_back(facts.op);
+      if (facts.kind != ir::Kind::Surroundings) ops.push_back(facts.op);
     }
     return ops;
   }();
