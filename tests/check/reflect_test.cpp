@@ -75,6 +75,18 @@ TEST(Reflect, TheVertexStageOfAFragmentShaderAlone) {
   EXPECT_EQ(describe(vertex->outputs), describe(fragment->inputs));
 }
 
+TEST(Reflect, MembersOfBlocksAreInputs) {
+  const char* text = R"(#version 450
+layout(location = 1) in Surface { vec3 normal; layout(location = 5) vec2 uv; mat2 frame; flat uvec3 ids[2]; } from;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(from.normal, 1.0) + vec4(from.frame * from.uv, from.ids[1].xy); }
+)";
+  const Result<Interface> fragment = reflect(compile(text, check::Stage::Fragment), Stage::Fragment);
+  ASSERT_TRUE(fragment) << format(fragment.error()[0]);
+  EXPECT_EQ(fragment->odd_input, "");
+  EXPECT_EQ(describe(fragment->inputs), "1:f3 5:f2 6:f2 7:f2 8:u3 9:u3 ");
+}
+
 TEST(Reflect, WrongStageAndNoModule) {
   const check::Spirv fragment = compile(kFragment, check::Stage::Fragment);
   const Result<Interface> wrong = reflect(fragment, Stage::Vertex);

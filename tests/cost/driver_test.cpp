@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <spirv-tools/libspirv.hpp>
+#include <string_view>
 
 #include "check/check.h"
 #include "cost/cost.h"
@@ -67,6 +69,86 @@ TEST_F(Driver, AFragmentShaderAloneCostsWhatItCostsInAPair) {
       {{"pair", compile(kVertex, check::Stage::Vertex), fragment}, {"alone", {}, fragment}}, "navi21", false);
   ASSERT_TRUE(measured.outcomes[0].statistics) << measured.outcomes[0].problem;
   EXPECT_EQ(measured.outcomes[0].statistics, measured.outcomes[1].statistics);
+}
+
+/// What others' compilers hand from stage to stage.
+TEST_F(Driver, ABlockOfInputsCostsWhatItsMembersCost) {
+  const char* block = R"(#version 450
+layout(location = 0) in Surface { vec3 normal; vec2 uv; } from;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(normalize(from.normal), from.uv.x * from.uv.y); }
+)";
+  const char* apart = R"(#version 450
+layout(location = 0) in vec3 normal;
+layout(location = 1) in vec2 uv;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(normalize(normal), uv.x * uv.y); }
+)";
+  const Measurement measured = measure({{"block", {}, compile(block, check::Stage::Fragment)},
+                                        {"apart", {}, compile(apart, check::Stage::Fragment)}},
+                                       "navi21", false);
+  ASSERT_TRUE(measured.outcomes[0].statistics) << measured.outcomes[0].problem;
+  EXPECT_EQ(measured.outcomes[0].statistics, measured.outcomes[1].statistics);
+}
+
+/// Both stages in one module, whatever the file is called; the variables of each are its own.
+TEST_F(Driver, AProgramMayBeOneModule) {
+  constexpr std::string_view kProgram = R"(OpCapability Shader
+OpMemoryModel Logical GLSL450
+OpEntryPoint Vertex %vertex_main "place" %at %through %position
+OpEntryPoint Fragment %fragment_main "shade" %shade %color
+OpExecutionMode %fragment_main OriginUpperLeft
+OpDecorate %at Location 3
+OpDecorate %through Location 0
+OpDecorate %position BuiltIn Position
+OpDecorate %shade Location 0
+OpDecorate %color Location 0
+%void = OpTypeVoid
+%main = OpTypeFunction %void
+%float = OpTypeFloat 32
+%vec4 = OpTypeVector %float 4
+%in = OpTypePointer Input %vec4
+%out = OpTypePointer Output %vec4
+%at = OpVariable %in Input
+%through = OpVariable %out Output
+%position = OpVariable %out Output
+%shade = OpVariable %in Input
+%color = OpVariable %out Output
+%vertex_main = OpFunction %void None %main
+%1 = OpLabel
+%2 = OpLoad %vec4 %at
+OpStore %position %2
+OpStore %through %2
+OpReturn
+OpFunctionEnd
+%fragment_main = OpFunction %void None %main
+%3 = OpLabel
+%4 = OpLoad %vec4 %shade
+%5 = OpFMul %vec4 %4 %4
+OpStore %color %5
+OpReturn
+OpFunctionEnd
+)";
+  Spirv words;
+  ASSERT_TRUE(spvtools::SpirvTools(SPV_ENV_VULKAN_1_1).Assemble(kProgram.data(), kProgram.size(), &words));
+  const auto folder = std::filesystem::path(testing::TempDir()) / "lacquer_one_module";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const char* name, const Spirv& module) {
+    std::ofstream(folder / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(module.data()), static_cast<std::streamsize>(4 * module.size()));
+  };
+  write("program.spv", words);
+  write("lone.vert.spv", compile(kVertex, check::Stage::Vertex));
+  write("stage.spv", compile(kVertex, check::Stage::Vertex));
+  Messages messages;
+  const std::vector<ShaderCost> costs = measureCost({folder.string()}, false, messages);
+  for (const Message& message : messages) ADD_FAILURE() << message.text;
+  ASSERT_EQ(costs.size(), 1U);
+  EXPECT_TRUE(costs[0].name.ends_with("program.spv"));
+  ASSERT_FALSE(costs[0].gpus.empty());
+  EXPECT_GT(costs[0].gpus[0].instructions, 4U);
+  std::filesystem::remove_all(folder);
 }
 
 TEST_F(Driver, ABrokenModuleCostsOnlyItsOwnNumbers) {

@@ -114,6 +114,7 @@ private:
   spv::ExecutionModel model_;
   bool found_ = false;
   Interface interface_;
+  std::set<uint32_t> own_;    ///< variables of the entry point's interface
   uint64_t descriptors_ = 0;  ///< of all bindings
   std::vector<Block> blocks_;
   size_t members_ = 0;  ///< of all blocks
@@ -151,6 +152,9 @@ void Reader::readEntryPoint(const Instruction& instruction) {
   if (found_ || instruction.at(1) != static_cast<uint32_t>(model_)) return;
   found_ = true;
   interface_.entry = instruction.text(3);
+  // A module may hold the other stages of its program, too.
+  const auto name_words = static_cast<uint32_t>(interface_.entry.size() / 4 + 1);
+  for (uint32_t i = 3 + name_words; i < instruction.length; ++i) own_.insert(instruction.at(i));
 }
 
 void Reader::readType(const Instruction& instruction) {
@@ -285,14 +289,25 @@ void Reader::readBlock(uint32_t type_id, const Decorations& variable) {
   blocks_.push_back(std::move(block));
 }
 
-/// Appends the locations of a type from `next` on. False for structs, booleans and numbers that are not 32
-/// bits wide.
+/// Appends the locations of a type from `next` on, of a block or a struct those of its members. False for
+/// booleans and numbers that are not 32 bits wide.
 bool Reader::addSlots(uint32_t type_id, Slot& next, std::vector<Slot>& slots, uint32_t nesting) const {
   const Type& type = typeOf(type_id);
   if (type.op == spv::OpTypeArray || type.op == spv::OpTypeMatrix) {
     if (nesting == 0 || type.count == 0) return false;
     for (uint32_t i = 0; i < type.count; ++i) {
       if (slots.size() >= kMaxSlots || !addSlots(type.element, next, slots, nesting - 1)) return false;
+    }
+    return true;
+  }
+  if (type.op == spv::OpTypeStruct) {
+    // What has no members takes no slot, and however many of them are nothing that ends.
+    if (nesting == 0 || type.members.empty()) return false;
+    for (uint32_t i = 0; i < type.members.size(); ++i) {
+      const Decorations& member = decorationsOf(type_id, i);
+      if (member.contains(spv::DecorationLocation)) next.location = get(member, spv::DecorationLocation);
+      next.component = get(member, spv::DecorationComponent);
+      if (slots.size() >= kMaxSlots || !addSlots(type.members[i], next, slots, nesting - 1)) return false;
     }
     return true;
   }
@@ -350,7 +365,9 @@ void Reader::readVariable(const Instruction& instruction) {
   const Decorations& decorations = decorationsOf(instruction.at(2));
   const uint32_t storage = instruction.at(3);
   if (wanted_ == Wanted::Interface) {
-    readInterface(typeOf(instruction.at(1)).element, storage, decorations);
+    const bool between = storage == spv::StorageClassInput || storage == spv::StorageClassOutput;
+    if (!between || own_.contains(instruction.at(2)))
+      readInterface(typeOf(instruction.at(1)).element, storage, decorations);
   } else if (storage == spv::StorageClassUniform || storage == spv::StorageClassUniformConstant ||
              storage == spv::StorageClassStorageBuffer) {
     readPlace(instruction, static_cast<spv::StorageClass>(storage), decorations);
@@ -413,6 +430,16 @@ Result<Interface> reflect(const Spirv& words, Stage stage) {
   Reader reader(Wanted::Interface, stage);
   if (!readAll(words, reader)) return fail("spirv-reflection", {}, "not a SPIR-V module");
   return reader.finish();
+}
+
+bool hasEntryPoint(const Spirv& words, Stage stage) {
+  const uint32_t model = stage == Stage::Vertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
+  bool found = false;
+  walk(words, [&](const Instruction& instruction) {
+    found = found || (instruction.op == spv::OpEntryPoint && instruction.at(1) == model);
+    return !found && instruction.op != spv::OpFunction;
+  });
+  return found;
 }
 
 Result<std::vector<Block>> reflectBlocks(const Spirv& words) {

@@ -32,7 +32,7 @@ struct Binding {
 
 enum class Scalar : uint8_t { Float, Int, Uint };
 
-/// One location of an interface: a variable takes one, a matrix or an array several.
+/// One location of an interface: a variable takes one, a matrix, an array or a block several.
 struct Slot {
   uint32_t location = 0, component = 0;
   Scalar scalar = Scalar::Float;
@@ -66,6 +66,9 @@ struct Interface {
 /// from 65,536 on, more than 65,536 descriptors in a binding or 2^20 in all, more than 256 inputs or outputs,
 /// more than 4,096 bytes of push constants.
 Result<Interface> reflect(const Spirv& words, Stage stage);
+
+/// Whether a module has an entry point of a stage; false for words that are no module.
+bool hasEntryPoint(const Spirv& words, Stage stage);
 
 /// The uniform blocks of a SPIR-V module with their members' offsets, by the decorations in the words
 /// (not by layout rules), sorted by set and binding. Errors: "spirv-reflection", also for more than 65,536

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "check/reflect.h"
 #include "json/json.h"
 #include "lacquer/manifest.h"
 #include "setting/messages.h"
@@ -22,6 +23,7 @@ namespace lacquer {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr std::string_view kModuleEnd = ".spv";
 constexpr std::string_view kFragmentEnd = ".frag.spv";
 constexpr std::string_view kVertexEnd = ".vert.spv";
 constexpr uint64_t kLargestModule = uint64_t{1} << 26U;  // bytes; SPIR-V has 4,194,303 ids at most
@@ -116,6 +118,8 @@ void addPair(const std::string& name, const std::optional<std::string>& vertex, 
   const Result<SpirvFile>& file = shaders.files.read(fragment, links);
   if (!file) return report(file.error(), fragment, messages);
   subject.fragment = file->words;
+  // A module may be a whole program.
+  if (!vertex && check::hasEntryPoint(*file->words, check::Stage::Vertex)) subject.vertex = file->words;
   shaders.subjects.push_back(std::move(subject));
   shaders.costs.push_back({name, file->instructions, {}});
 }
@@ -174,13 +178,19 @@ void addManifest(const fs::path& folder, Shaders& shaders, Messages& messages) {
   report({none}, path, messages);
 }
 
+bool holdsFragment(const Result<SpirvFile>& file) {
+  return file && check::hasEntryPoint(*file->words, check::Stage::Fragment);
+}
+
 void addFolder(const fs::path& folder, Shaders& shaders, Messages& messages) {
   std::error_code error;
   if (fs::exists(folder / "manifest.json", error)) return addManifest(folder, shaders, messages);
   std::vector<std::string> files;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().string();
-    if (name.ends_with(kFragmentEnd)) files.push_back(name);
+    if (name.ends_with(kFragmentEnd) || (name.ends_with(kModuleEnd) && !name.ends_with(kVertexEnd) &&
+                                         holdsFragment(shaders.files.read(name, Links::Follow))))
+      files.push_back(name);
   }
   std::sort(files.begin(), files.end());
   for (const std::string& file : files) addFile(file, shaders, messages);
@@ -188,7 +198,7 @@ void addFolder(const fs::path& folder, Shaders& shaders, Messages& messages) {
   const Diagnostic none{"no-spirv",
                         Severity::Error,
                         {folder.string(), 0, 0, {}},
-                        "the folder holds neither a manifest.json nor *.frag.spv files",
+                        "the folder holds neither a manifest.json nor .spv files of fragment shaders",
                         "name a folder that `lacquer gen` wrote, or .spv files",
                         {}};
   report({none}, folder.string(), messages);
