@@ -140,6 +140,18 @@ TEST_F(ProgramsRun, NeitherThreadsNorOrdersNorTheCacheShow) {
   EXPECT_EQ(one, turned);
 }
 
+/// What a driver said of a program is in the cache: another run of the same programs waits for none.
+TEST_F(ProgramsRun, TheDriverIsAskedOnce) {
+  const Words more{"--programs", "3", "--cache", "kept", "--time"};
+  std::string first, second;
+  ASSERT_EQ(gen("out", more, &first), 0) << first;
+  if (first.find("\ndriver ") == std::string::npos) GTEST_SKIP() << "NOT TESTED: there is no driver to ask";
+  writeText(folder_ / files_[0], readText(folder_ / files_[0]) + "\n");
+  ASSERT_EQ(gen("out", more, &second), 0) << second;
+  EXPECT_NE(second.find("\nprograms "), std::string::npos) << second;
+  EXPECT_EQ(second.find("\ndriver "), std::string::npos) << second;
+}
+
 TEST_F(ProgramsRun, WeightsSayWhatMayCostMore) {
   // All but the first material of each file are hardly seen.
   writeText(folder_ / "weights.json",

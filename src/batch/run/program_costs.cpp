@@ -6,11 +6,14 @@
 #include <future>
 #include <set>
 
+#include "cache/cache.h"
 #include "cost/choose.h"
 #include "cost/cost.h"
 #include "lod/estimate.h"
 #include "shader/module.h"
 #include "shader/print.h"
+#include "shader/times.h"
+#include "support/blob.h"
 
 namespace lacquer {
 
@@ -39,6 +42,27 @@ Result<cost::Subject> subjectOf(const ir::Module& module, const Options& options
     if (hasError(of_target)) return tl::make_unexpected(std::move(of_target));
   }
   return cost::Subject{"program", std::move(data.spirv[0]), std::move(data.spirv[1])};
+}
+
+/// What the driver said of a subject.
+struct Told {
+  uint64_t cycles = 0;
+  std::string driver;
+};
+
+template <class Archive>
+void fields(Archive& archive, Told& of) {
+  archive(of.cycles, of.driver);
+}
+
+/// Of this driver alone. Without a name of it there is no key.
+std::optional<Key> costKey(const cost::Subject& subject, const std::string& driver) {
+  if (driver.empty()) return std::nullopt;
+  KeyBuilder key;
+  key.text("driver").text(driver).text(cost::kFamilies[0]);
+  for (const cost::Spirv* words : {&subject.vertex, &subject.fragment})
+    key.text({reinterpret_cast<const char*>(words->data()), words->size() * sizeof(uint32_t)});
+  return key.finish();
 }
 
 /// Two processes at a time: the subjects in two halves.
@@ -149,12 +173,26 @@ double ProgramCosts::choicesOf(size_t structures) const {
   return chosen_ > 0 ? std::min(choices_ / chosen_ * static_cast<double>(structures), most_choices_) : 0;
 }
 
+std::optional<double> ProgramCosts::told(const std::optional<Key>& key) {
+  if (!key || setting_.cache == nullptr) return std::nullopt;
+  const StageTimer timer(setting_.times, StageOfRun::Cache);
+  const std::optional<std::string> bytes = setting_.cache->get(*key);
+  if (!bytes) return std::nullopt;
+  BlobReader blob(*bytes);
+  Told told;
+  blob(told);
+  if (!blob.complete()) return std::nullopt;
+  driver_ = told.driver;
+  return static_cast<double>(told.cycles);
+}
+
 std::vector<std::optional<Program>> ProgramCosts::measure(const std::vector<Places>& groups) {
   const auto made = [&](const Places& group) {
     return group.size() == 1 || structuresOf(group) <= kMostUnited;
   };
   std::vector<Result<ir::Module>> modules(groups.size());
   tbb::parallel_for(size_t{0}, groups.size(), [&](size_t i) {
+    const StageTimer timer(setting_.times, StageOfRun::Programs);
     if (by_driver_ || made(groups[i])) modules[i] = moduleOfGroup(groups[i]);
   });
   std::vector<std::optional<Program>> all(groups.size());
@@ -177,7 +215,7 @@ std::vector<std::optional<Program>> ProgramCosts::measure(const std::vector<Plac
     }
   }
   if (!by_driver_) return all;
-  const std::vector<std::optional<double>> costs = byDriver(groups);
+  const std::vector<std::optional<double>> costs = cyclesOf(modules);
   for (size_t i = 0; i < groups.size(); ++i) {
     if (!all[i]) continue;
     if (!costs[i]) {
@@ -191,24 +229,45 @@ std::vector<std::optional<Program>> ProgramCosts::measure(const std::vector<Plac
 }
 
 std::vector<std::optional<double>> ProgramCosts::byDriver(const std::vector<Places>& groups) {
-  std::vector<std::optional<double>> all(groups.size());
-  if (no_driver_) return all;
-  std::vector<Result<cost::Subject>> made(groups.size());
+  if (no_driver_) return std::vector<std::optional<double>>(groups.size());
+  std::vector<Result<ir::Module>> modules(groups.size());
   tbb::parallel_for(size_t{0}, groups.size(), [&](size_t i) {
-    const Result<ir::Module> module = moduleOfGroup(groups[i]);
-    made[i] = module ? subjectOf(*module, setting_.options) : tl::make_unexpected(module.error());
+    const StageTimer timer(setting_.times, StageOfRun::Programs);
+    modules[i] = moduleOfGroup(groups[i]);
   });
+  return cyclesOf(modules);
+}
+
+/// What is in the cache is not measured again.
+std::vector<std::optional<double>> ProgramCosts::cyclesOf(const std::vector<Result<ir::Module>>& modules) {
+  std::vector<std::optional<double>> all(modules.size());
+  std::vector<Result<cost::Subject>> made(modules.size());
+  tbb::parallel_for(size_t{0}, modules.size(), [&](size_t i) {
+    const StageTimer timer(setting_.times, StageOfRun::Programs);
+    made[i] = modules[i] ? subjectOf(*modules[i], setting_.options) : tl::make_unexpected(modules[i].error());
+  });
+  const std::string identity = cost::driverIdentity();
   std::vector<cost::Subject> subjects;
-  std::vector<size_t> places;
-  for (size_t i = 0; i < groups.size(); ++i) {
+  std::vector<std::pair<size_t, std::optional<Key>>> places;
+  for (size_t i = 0; i < modules.size(); ++i) {
     if (!made[i]) continue;
+    const std::optional<Key> key = costKey(*made[i], identity);
+    all[i] = told(key);
+    if (all[i]) continue;
     subjects.push_back(std::move(*made[i]));
-    places.push_back(i);
+    places.emplace_back(i, key);
   }
+  if (subjects.empty()) return all;
+  const StageTimer timer(setting_.times, StageOfRun::Driver);
   const std::vector<cost::Outcome> outcomes = measureSubjects(subjects, driver_);
   for (size_t i = 0; i < outcomes.size(); ++i) {
-    if (outcomes[i].statistics)
-      all[places[i]] = static_cast<double>(outcomes[i].statistics->inverse_throughput);
+    if (!outcomes[i].statistics) continue;
+    Told said{outcomes[i].statistics->inverse_throughput, driver_};
+    all[places[i].first] = static_cast<double>(said.cycles);
+    if (setting_.cache == nullptr || !places[i].second) continue;
+    BlobWriter blob;
+    blob(said);
+    setting_.cache->put(*places[i].second, blob.take(), true);
   }
   return all;
 }

@@ -38,6 +38,8 @@ public:
 
 private:
   Result<ir::Module> moduleOfGroup(const programs::Places& group) const;
+  std::optional<double> told(const std::optional<Key>& key);
+  std::vector<std::optional<double>> cyclesOf(const std::vector<Result<ir::Module>>& modules);
   programs::Program byModel(const ir::Module& module);
   programs::Program byTerms(const programs::Places& group) const;
   double choicesOf(size_t structures) const;

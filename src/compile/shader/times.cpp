@@ -6,7 +6,8 @@ std::vector<std::pair<std::string, double>> StageTimes::list() const {
   static constexpr std::pair<StageOfRun, const char*> kRows[] = {
       {StageOfRun::Library, "library"}, {StageOfRun::Read, "read"},
       {StageOfRun::Graph, "graph"},     {StageOfRun::Lower, "lower"},
-      {StageOfRun::Passes, "passes"},   {StageOfRun::Manifest, "manifest"},
+      {StageOfRun::Passes, "passes"},   {StageOfRun::Programs, "programs"},
+      {StageOfRun::Driver, "driver"},   {StageOfRun::Manifest, "manifest"},
       {StageOfRun::Print, "print"},     {StageOfRun::Validate, "validate"},
       {StageOfRun::Cache, "cache"},     {StageOfRun::Write, "write"},
   };

@@ -18,6 +18,8 @@ enum class StageOfRun : uint8_t {
   Graph,
   Lower,
   Passes,
+  Programs,  ///< which structures share one: graphs united, lowered, and their costs by the model
+  Driver,    ///< its compiler, waited for
   Manifest,
   Print,
   Validate,
@@ -38,7 +40,7 @@ private:
   std::atomic<int64_t>& slot(StageOfRun stage, Target target) {
     return spent_[static_cast<size_t>(stage) * kMostTargets + static_cast<size_t>(target)];
   }
-  std::array<std::atomic<int64_t>, 10 * kMostTargets> spent_{};
+  std::array<std::atomic<int64_t>, 12 * kMostTargets> spent_{};
 };
 
 /// Counts its own life.
