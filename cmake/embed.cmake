@@ -5,23 +5,26 @@ function(lacquer_embed target folder name)
   lacquer_embed_files("${target}" "${folder}" "${name}" "")
 endfunction()
 
-# lacquer_embed_names(TARGET FOLDER NAME): the same with a table of what the files declare, so that one of them is read
-# only when somebody asks for something in it.
-function(lacquer_embed_names target folder name)
-  lacquer_embed_files("${target}" "${folder}" "${name}" ON)
+# lacquer_embed_names(TARGET NAME FOLDER...): the same of several folders, with a table of what the files declare, so that one
+# of them is read only when somebody asks for something in it.
+function(lacquer_embed_names target name)
+  lacquer_embed_files("${target}" "${ARGN}" "${name}" ON)
 endfunction()
 
-function(lacquer_embed_files target folder name names)
-  file(GLOB files CONFIGURE_DEPENDS "${folder}/*.node")
-  list(SORT files)
-  file(RELATIVE_PATH place "${PROJECT_SOURCE_DIR}" "${folder}")
+function(lacquer_embed_files target folders name names)
+  set(files "")
+  foreach(folder IN LISTS folders)
+    file(GLOB found CONFIGURE_DEPENDS "${folder}/*.node")
+    list(SORT found)
+    list(APPEND files ${found})
+  endforeach()
   set(output "${PROJECT_BINARY_DIR}/embedded_${name}.cpp")
   add_custom_command(
     OUTPUT "${output}"
-    COMMAND "${CMAKE_COMMAND}" "-DFILES=${files}" "-DNAME=${name}" "-DFOLDER=${place}" "-DNAMES=${names}" "-DOUTPUT=${output}"
+    COMMAND "${CMAKE_COMMAND}" "-DFILES=${files}" "-DNAME=${name}" "-DROOT=${PROJECT_SOURCE_DIR}" "-DNAMES=${names}" "-DOUTPUT=${output}"
             -P "${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake"
     DEPENDS ${files} "${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake"
-    COMMENT "Embedding ${place}/"
+    COMMENT "Embedding ${name}"
     VERBATIM)
   target_sources(${target} PRIVATE "${output}")
 endfunction()

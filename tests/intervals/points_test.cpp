@@ -8,6 +8,7 @@
 
 #include "eval/evaluate.h"
 #include "intervals/evaluator.h"
+#include "ir/loops.h"
 #include "lang/library.h"
 #include "prove/nodes.h"
 
@@ -26,11 +27,17 @@ public:
   Drawn(const lang::NodeDecl& node, std::string_view variant)
       : name_(std::string(node.name) + "." + std::string(variant)),
         module_(nodeModule(node, variant).module) {
-    for (const ValueId id : everything(module_)) {
+    const std::vector<ValueId> all = everything(module_);
+    const ir::Loops loops(module_.dag, all);
+    for (const ValueId id : all) {
+      // What a loop's rounds compute is a value in each of them, and none behind it: soundness_test looks
+      // there.
+      const ir::Op op = module_.dag[id].op;
+      if (loops.of(id) >= 0 || op == ir::Op::Loop || op == ir::Op::Carry) continue;
       const ir::Type type = module_.dag[id].type;
       if (ir::isTexture(type) || type == ir::Type::Mat4) continue;
       ids_.push_back(id);
-      if (module_.dag[id].op == ir::Op::Input) inputs_.push_back(id);
+      if (op == ir::Op::Input) inputs_.push_back(id);
     }
     for (size_t i = 0; i < kPoints; ++i) worlds_.emplace_back(i, analysis::kSceneLimit);
     bind();

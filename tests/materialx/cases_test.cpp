@@ -113,6 +113,7 @@ void buildAll(const material::Document& document, const CaseLibrary& with) {
     for (const std::string_view name : {"forward", "surface", "bsdf"}) {
       model::BuildOptions options;
       options.template_name = name;
+      if (name == "surface" && !material.closures.empty()) continue;  // it takes properties
       Diagnostics warnings;
       const auto graph = model::build(**model, **with.library.template_(name), material,
                                       {true, true, false, {true, true, false, false}}, options, warnings);

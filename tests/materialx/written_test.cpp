@@ -114,7 +114,9 @@ graph::Graph everyNode() {
   all.name = "every";
   for (const std::string_view name : builtInLibrary().names(lang::DeclKind::Node)) {
     const lang::NodeDecl& decl = **builtInLibrary().node(name);
-    if (!decl.source.starts_with("MaterialX") || decl.category.empty()) continue;
+    const bool closure =
+        decl.origin.file.starts_with("nodes/materialx/");  // they take and give several values
+    if (!decl.source.starts_with("MaterialX") || decl.category.empty() || closure) continue;
     graph::Node& node = all.nodes.emplace_back();
     node.id = fmt::format("n{}", all.nodes.size());
     node.type = name;

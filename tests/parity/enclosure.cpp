@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "eval/program.h"
@@ -40,6 +41,9 @@ Enclosure::Enclosure(const ir::Module& module, const eval::Bindings& bindings,
       options_(options),
       math_(analysis::Arithmetic::Vulkan),
       values_(module.dag.size()) {
+  std::vector<ValueId> all(dag_.size());
+  std::iota(all.begin(), all.end(), ValueId{0});
+  loops_ = ir::Loops(dag_, all);
   for (ValueId id = 0; id < dag_.size(); ++id) {
     if (dag_[id].op == Op::SumOverLights) bodies_[id] = ir::reachable(dag_, {{dag_[id].args[0]}});
   }
@@ -56,7 +60,7 @@ bool Enclosure::varies(ValueId id) const { return dag_[id].rate == ir::Rate::Lig
 std::vector<Range> Enclosure::at(size_t point, const std::vector<ValueId>& roots) {
   point_ = point;
   for (const ValueId id : ir::reachable(dag_, roots)) {
-    if (!varies(id)) value(id);
+    if (!varies(id)) value(id, -1);
   }
   std::vector<Range> result;
   for (const ValueId root : roots) {
@@ -65,10 +69,21 @@ std::vector<Range> Enclosure::at(size_t point, const std::vector<ValueId>& roots
   return result;
 }
 
+/// A value that stands in the body of a loop, or of none; what stands deeper comes with its own loop.
+void Enclosure::value(ValueId id, int32_t loop) {
+  if (loops_.of(id) == loop) value(id);
+}
+
 void Enclosure::value(ValueId id) {
   const ir::Value& v = dag_[id];
   Ranges& out = values_[id];
+  if (ir::makesLoop(v.op)) {
+    const int32_t own = loops_.indexOf(id);
+    if (loops_[own].last == id) rounds(own);
+    return;
+  }
   switch (v.op) {
+    case Op::Carried: out = left_.at({v.args[0], v.payload}); return;
     case Op::Constant:
       for (size_t c = 0; c < 4; ++c) {
         const double x = dag_.constantOf(id)[c];
@@ -122,8 +137,31 @@ void Enclosure::value(ValueId id) {
   }
 }
 
+/// A loop's rounds, and what is left of what it carries.
+void Enclosure::rounds(int32_t number) {
+  const ir::Loop& loop = loops_[number];
+  std::vector<Ranges> state;
+  for (const ir::Carry& carry : loop.carries) state.push_back(values_[carry.first]);
+  const Range& end = get(loop.end, 0);
+  const int32_t first = ir::firstRound(dag_, loop);
+  const auto past = static_cast<double>(first) + ir::mostRounds(dag_, loop);
+  // A number of rounds that is not known leaves nothing known.
+  if (end.lo != end.hi)
+    std::for_each(state.begin(), state.end(), [&](Ranges& one) { one.fill(math_.whole(true)); });
+  const std::vector<ValueId> body = loops_.bodyOf(number);
+  for (int32_t round = first; end.lo == end.hi && round < std::min(end.lo, past); ++round) {
+    values_[loop.index].fill({static_cast<double>(round), static_cast<double>(round), false});
+    for (size_t k = 0; k < state.size(); ++k) values_[loop.carries[k].value] = state[k];
+    for (const ValueId part : body) value(part, number);
+    for (size_t k = 0; k < state.size(); ++k) state[k] = values_[loop.carries[k].next];
+  }
+  for (size_t k = 0; k < state.size(); ++k)
+    left_[{loop.last, dag_.inputOf(loop.carries[k].value).index}] = state[k];
+}
+
 void Enclosure::input(ValueId id) {
   const ir::Input& in = dag_.inputOf(id);
+  if (ir::ofLoop(in.kind)) return;  // of this round
   if (in.kind == ir::InputKind::Texture || in.type == ir::Type::Mat4) return;
   if (in.kind == ir::InputKind::LightIndex) {
     return values_[id].fill({static_cast<double>(light_), static_cast<double>(light_), false});
@@ -178,7 +216,7 @@ void Enclosure::sumOverLights(ValueId id) {
   }
   for (light_ = first; light_ < last; ++light_) {
     for (const ValueId part : bodies_[id]) {
-      if (varies(part)) value(part);
+      if (varies(part)) value(part, -1);
     }
     for (size_t c = 0; c < 4; ++c) sum[c] = math_.add(sum[c], get(v.args[0], c));
   }
@@ -283,7 +321,7 @@ void Enclosure::derivative(ValueId id, size_t step) {
   std::array<Ranges, 4> at;
   for (size_t k = 0; k < 4; ++k) {
     point_ = here / 4 * 4 + k;
-    for (const ValueId part : needed) value(part);
+    for (const ValueId part : needed) value(part, -1);
     at[k] = values_[a];
   }
   point_ = here;

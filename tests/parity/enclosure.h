@@ -32,6 +32,7 @@
 
 #include "analysis/interval_math.h"
 #include "eval/bindings.h"
+#include "ir/loops.h"
 #include "ir/module.h"
 
 namespace lacquer::parity {
@@ -61,6 +62,8 @@ public:
 private:
   using Ranges = std::array<analysis::Range, 4>;
   void value(ir::ValueId id);
+  void value(ir::ValueId id, int32_t loop);
+  void rounds(int32_t loop);
   void input(ir::ValueId id);
   void element(ir::ValueId id);
   void sumOverLights(ir::ValueId id);
@@ -87,6 +90,8 @@ private:
   analysis::RangeMath math_;
   std::vector<Ranges> values_;
   std::map<ir::ValueId, std::vector<ir::ValueId>> bodies_;  ///< of the sums over lights
+  ir::Loops loops_;
+  std::map<std::pair<ir::ValueId, uint32_t>, Ranges> left_;  ///< what loops carried, by their chains' ends
   size_t point_ = 0;
   size_t light_ = 0;
 };

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "ir/loops.h"
 #include "passes/rewrite.h"
 
 namespace lacquer::parity {
@@ -27,7 +28,8 @@ Change swapped(Op op, size_t a, size_t b) {
           [=](const ir::Dag& dag, ValueId id) {
             const ir::Value& v = dag[id];
             // A Float beside a vector stays where it is.
-            return v.op == op && dag[v.args[a]].type == dag[v.args[b]].type && v.args[a] != v.args[b];
+            return v.op == op && v.count > b && dag[v.args[a]].type == dag[v.args[b]].type &&
+                   v.args[a] != v.args[b];
           },
           [=](Rewriter& r, ValueId id, Operands operands) {
             std::vector<ValueId> other(operands.begin(), operands.end());
@@ -108,7 +110,9 @@ std::vector<Mutant> mutantsOf(const ir::Module& module) {
       Rewriter(mutant.module).run([&](Rewriter& r, ValueId id, Operands operands) {
         return id == target ? change.make(r, id, operands) : r.copy(id, operands);
       });
-      mutants.push_back(std::move(mutant));
+      // A body that no longer needs its loop's inputs is none.
+      const std::vector<ValueId> live = ir::reachable(mutant.module.dag, ir::roots(mutant.module));
+      if (!ir::Loops(mutant.module.dag, live).broken()) mutants.push_back(std::move(mutant));
     }
   }
   return mutants;

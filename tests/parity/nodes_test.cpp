@@ -88,6 +88,8 @@ bool matters(const std::vector<std::vector<double>>& right, const std::vector<st
     for (size_t i = 0; i < right[o].size(); ++i) {
       const auto& bound = bounds[i / 4][4 * o + i % 4];
       if (endless(bound) || vague(bound)) continue;
+      // A bound that lets no number pass does not notice one that is none.
+      if (bound.nan && std::isnan(wrong[o][i])) continue;
       const double allowed = std::max(2e-3 * std::abs(right[o][i]), 2e-6);
       if (std::isfinite(right[o][i]) && !(std::abs(right[o][i] - wrong[o][i]) <= allowed)) return true;
     }

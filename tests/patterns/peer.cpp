@@ -24,28 +24,39 @@ std::optional<std::string> peerGenerator() {
   return fs::canonical(file).string();
 }
 
-PeerShader peerShader(const std::string& nodes, std::string_view type, bool editable) {
-  const std::optional<std::string> generator = peerGenerator();
-  if (!generator) throw std::runtime_error("there is no MaterialX, or no node.js");
-  const fs::path folder = fs::temp_directory_path() / fmt::format("lacquer_peer_{}", getpid());
-  fs::create_directories(folder);
-  std::ofstream(folder / "a.mtlx") << fmt::format(
-      "<?xml version=\"1.0\"?>\n<materialx version=\"1.39\"><nodegraph name=\"g\">{}<output name=\"out\" "
-      "type=\"{}\" "
-      "nodename=\"n\"/></nodegraph></materialx>\n",
-      nodes, type);
-  const std::string command = fmt::format("cd '{}' && node '{}' a.mtlx out VkShaderGenerator {} > log 2>&1",
-                                          folder.string(), *generator, editable ? "prefilter" : "best");
-  const int status = std::system(command.c_str());
-  if (status != 0) {
-    const std::string log = readFile(folder / "log");
-    fs::remove_all(folder);
-    throw std::runtime_error(nodes + ": " + log);
+namespace {
+
+/// The shaders' folder of a document, while this lives.
+class Generated {
+public:
+  /// `arguments`: of node.js, MaterialX's folder standing for "{}".
+  Generated(const std::string& document, const std::string& arguments) {
+    const std::optional<std::string> generator = peerGenerator();
+    if (!generator) throw std::runtime_error("there is no MaterialX, or no node.js");
+    folder_ = fs::temp_directory_path() / fmt::format("lacquer_peer_{}", getpid());
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "a.mtlx") << document;
+    const std::string command =
+        fmt::format("cd '{}' && node {} > log 2>&1", folder_.string(),
+                    fmt::format(fmt::runtime(arguments), fs::path(*generator).parent_path().string()));
+    if (std::system(command.c_str()) == 0) return;
+    const std::string log = readFile(folder_ / "log");
+    fs::remove_all(folder_);
+    throw std::runtime_error(document + ": " + log);
   }
+  ~Generated() { fs::remove_all(folder_); }
+  Generated(const Generated&) = delete;
+  Generated& operator=(const Generated&) = delete;
+  fs::path shaders() const { return folder_ / "out"; }
+
+private:
+  fs::path folder_;
+};
+
+/// One block of inputs becomes an input for each member.
+PeerShader takenApart(std::string glsl) {
   PeerShader shader;
-  shader.glsl = readFile(folder / "out/g_out.pixel");
-  fs::remove_all(folder);
-  // One block of inputs becomes an input for each member.
+  shader.glsl = std::move(glsl);
   const std::regex block(R"(layout \(location = (\d+)\) in VertexData\s*\{([^}]*)\} vd;)");
   std::smatch found;
   if (!std::regex_search(shader.glsl, found, block)) return shader;
@@ -60,6 +71,68 @@ PeerShader peerShader(const std::string& nodes, std::string_view type, bool edit
   const std::string before = found.prefix();
   const std::string after = std::regex_replace(found.suffix().str(), std::regex(R"(\bvd\.)"), "vd_");
   shader.glsl = before + inputs + after;
+  return shader;
+}
+
+}  // namespace
+
+PeerShader peerShader(const std::string& nodes, std::string_view type, bool editable) {
+  const Generated made(
+      fmt::format("<?xml version=\"1.0\"?>\n<materialx version=\"1.39\"><nodegraph name=\"g\">{}<output "
+                  "name=\"out\" type=\"{}\" nodename=\"n\"/></nodegraph></materialx>\n",
+                  nodes, type),
+      fmt::format("'{{}}/generate.mjs' a.mtlx out VkShaderGenerator {}", editable ? "prefilter" : "best"));
+  return takenApart(readFile(made.shaders() / "g_out.pixel"));
+}
+
+std::map<std::string, std::string> peerSurfaces(const std::string& document) {
+  const Generated made(document, fmt::format("'{}' '{{}}' a.mtlx out",
+                                             (sourceFolder() / "tests/materialx/surfaces.mjs").string()));
+  std::map<std::string, std::string> shaders;
+  for (const fs::path& file : findFiles(made.shaders(), ".pixel"))
+    shaders.emplace(file.stem().string(), readFile(file));
+  return shaders;
+}
+
+PeerShader peerLit(std::string glsl, double light, double environment) {
+  // Uniforms become constants, but for the eye.
+  const std::regex block(R"(layout \(std140, binding=\d+\) uniform \w+\s*\{([^}]*)\};)");
+  for (std::smatch found; std::regex_search(glsl, found, block);) {
+    std::string constants;
+    const std::string members = found[1];
+    const std::regex member(R"((\w+) (\w+)(\[\w+\])?;)");
+    for (std::sregex_iterator it(members.begin(), members.end(), member), end; it != end; ++it) {
+      const std::string name = (*it)[2];
+      if (name == "u_viewPosition") continue;
+      if ((*it)[3].length() > 0)
+        constants += fmt::format("{} {}{};\n", (*it)[1].str(), name, (*it)[3].str());
+      else
+        constants += fmt::format("const {0} {1} = {0}({2});\n", (*it)[1].str(), name,
+                                 name == "u_refractionTwoSided" ? "false" : "1");
+    }
+    glsl = found.prefix().str() + constants + found.suffix().str();
+  }
+  const auto answer = [&](const char* function, const std::string& body) {
+    glsl = std::regex_replace(glsl, std::regex(fmt::format(R"((\w+ {}\([^)]*\)\s*\{{))", function)),
+                              "$1 " + body);
+  };
+  answer("mx_latlong_map_lookup", fmt::format("return vec3({:.9f});", environment));
+  answer("sampleLightSource",
+         fmt::format("result.intensity = vec3({:.9f}); result.direction = in_light; return;", light));
+  PeerShader shader = takenApart(std::move(glsl));
+  std::string more;
+  for (const char* name : {"view", "light"}) {
+    more += fmt::format("layout (location = {}) in vec3 in_{};\n", shader.inputs.size(), name);
+    shader.inputs.emplace_back(name);
+  }
+  // All of them are read, whatever the surface needs.
+  std::string read = "0.0";
+  for (const std::string& name : shader.inputs)
+    read += fmt::format(" + {}{}.x", name == "view" || name == "light" ? "in_" : "vd_", name);
+  const std::string_view alpha = "_out.color, 1.0)";
+  shader.glsl.replace(shader.glsl.rfind(alpha), alpha.size(), "_out.color, " + read + ")");
+  const size_t line = shader.glsl.find('\n', shader.glsl.find("#version"));
+  shader.glsl.insert(line + 1, "#define u_viewPosition in_view\n" + more);
   return shader;
 }
 

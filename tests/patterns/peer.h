@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,13 @@ std::optional<std::string> peerGenerator();
 /// `nodes` is what stands in a nodegraph, of which the node called n has the type `type`. `editable`: inputs
 /// are uniforms, as viewers have them; else constants. Throws std::runtime_error with what MaterialX says.
 PeerShader peerShader(const std::string& nodes, std::string_view type, bool editable);
+
+/// The shaders of a document's surfaces by their names, all numbers constants. Throws as peerShader().
+std::map<std::string, std::string> peerSurfaces(const std::string& document);
+
+/// A surface's shader under one light and a constant environment, whose inputs are vertex values beside
+/// `view` and `light`, unit vectors.
+PeerShader peerLit(std::string glsl, double light, double environment);
 
 /// The same with its loops marked to be written out.
 std::string writtenOut(std::string glsl);

@@ -7,6 +7,7 @@
 #include "lower/lower.h"
 #include "model/attributes.h"
 #include "model/build.h"
+#include "model/closures.h"
 #include "setting/options.h"
 #include "setting/simplify.h"
 
@@ -79,6 +80,7 @@ Result<graph::Graph> buildGraph(const material::Material& material, const gltf::
       return tl::make_unexpected(std::move(wrong));
     *graph = graph::flattened(std::move(*graph), language);
     askAttributes(*graph, attributes, *material.patterns, language);
+    if (!material.closures.empty()) model::placeNormals(*graph, attributes, language);
   }
   simplify(*graph, language, *simpler);
   return graph;

@@ -525,6 +525,10 @@ Result<void> Baking::planTextures(const std::string& file) {
   const std::string before = alone_ ? fs::path(how_.output).stem().string() + "_" : std::string();
   for (size_t k = 0; k < wanted_.size(); ++k) {
     const material::Material& material = document_.materials[wanted_[k]];
+    if (!material.closures.empty())
+      return fail("closures-not-baked", {file, 0, 0, {}},
+                  fmt::format("the material {} is made of closures", quote(material.name)),
+                  "glTF has no properties for them: name the materials that have by --material");
     for (const auto& texture : material.textures) {
       if (texture.info.group.empty()) continue;
       const material::Property& property = schema_->properties[texture.property];

@@ -86,6 +86,22 @@ constexpr Known kKnown[] = {
     {"texture_within", "", "an image has an edge"},
     {"texture_tiles", "", "a tile has an edge, and what is beyond the last one is of another colour"},
     {"gooch_shade", "", "powers of 0 and of what is below are 0"},
+    // Of nodes/materialx/, whose closures are alike on both sides.
+    {"_bsdf", "dot < 0", "a closure has two sides that are alike, and a normal on the view's"},
+    {"closure_", "dot < 0", "a closure has two sides that are alike, and a normal on the view's"},
+    {"_bsdf", "0 < thinfilm_thickness", "a film has its colours, however thin it is"},
+    {"closure_", "0 < thinfilm_thickness", "a film has its colours, however thin it is"},
+    {"_bsdf", "swizzle == 0", "a tangent of no length has no direction"},
+    {"dielectric_bsdf", "sub < 0", "a film's wave turns over where the base becomes the thinner medium"},
+    {"dielectric_bsdf", "mul < 0", "a film's wave turns over where the base becomes the thinner medium"},
+    {"closure_passing", "sub < 0", "a film's wave turns over where the base becomes the thinner medium"},
+    {"conductor_bsdf", "swizzle < 0", "a film's wave turns over where the base becomes the thinner medium"},
+    {"schlick", "swizzle < e", "a film's wave turns over where the base becomes the thinner medium"},
+    {"closure_turn", " < 0", "an angle begins anew where it has gone round"},
+    {"closure_refraction", "sub < 0", "beyond the critical angle nothing is refracted"},
+    {"conical_edf", "inner <= cosine", "a ramp between equal ends is a step"},
+    {"conical_edf", "outer < inner", "a ramp between equal ends is a step"},
+    {"roughness_dual", "swizzle < 0", "a choice"},
 };
 
 constexpr KnownSurplus kSurpluses[] = {

@@ -26,8 +26,8 @@ struct EmbeddedName {
   bool constant = false;
 };
 
-/// The files of nodes/standard/, and what they declare: each name once, sorted, of nodes with several forms
-/// the name that these share. The table costs nothing before it is looked at.
+/// The files of nodes/standard/ and nodes/materialx/, and what they declare: each name once, sorted, of nodes
+/// with several forms the name that these share. The table costs nothing before it is looked at.
 struct EmbeddedStandard {
   std::span<const EmbeddedFile> files;
   std::span<const EmbeddedName> names;

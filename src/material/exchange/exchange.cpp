@@ -6,6 +6,7 @@
 #include "exchange/surface_out.h"
 #include "support/plain_name.h"
 #include "support/relative.h"
+#include "support/text.h"
 
 namespace lacquer::exchange {
 
@@ -37,6 +38,17 @@ Written toMaterialX(const material::Document& document, const std::vector<size_t
   const Result<std::string> name = schema.library->defaultTemplate();
   if (name) graph.template_name = *name;
   std::vector<SurfaceOut> surfaces;
+  for (const size_t i : materials) {
+    const material::Material& made = document.materials[i];
+    if (made.closures.empty()) continue;
+    written.said.push_back({"closures-not-written",
+                            Severity::Error,
+                            {document.path, 0, 0, {}},
+                            fmt::format("the material {} is made of closures", quote(made.name)),
+                            "a graph of closures is not written: the document has it already",
+                            {}});
+  }
+  if (hasError(written.said)) return written;
   for (const size_t i : materials)
     surfaces.push_back(surfaceOf(document, document.materials[i], schema, graph, surface, written.said));
   for (size_t i = 0; i < surfaces.size(); ++i) {

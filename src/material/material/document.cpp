@@ -156,6 +156,8 @@ Result<Document> readMaterialX(std::string_view text, const std::string& name, c
   for (size_t i = 0; i < read->materials.size(); ++i) {
     Material& material = document.materials.emplace_back(readMaterial(read->materials[i], i, schema, facts));
     material.patterns = read->procedurals.patterns;
+    material.ports = std::move(read->closures[i]);
+    if (!material.ports.empty()) material.closures = read->procedurals.list[i].group;
     Diagnostics& own = read->of_materials[i];
     own.insert(own.end(), material.diagnostics.begin(), material.diagnostics.end());
     material.diagnostics = std::move(own);

@@ -37,6 +37,10 @@ struct Material {
   std::vector<std::string> ignored;  ///< JSON pointers of extensions that are not implemented, sorted
   /// The groups that compute texels (gltf::TextureInfo::group), with their parameters and textures.
   std::shared_ptr<const graph::Graph> patterns;
+  /// Of a surface of closures: the group of `patterns` that computes it.
+  std::string closures;
+  /// Ports of a template, and what the group has for them; the material's properties say nothing of these.
+  std::vector<std::pair<std::string, std::string>> ports;
   Diagnostics diagnostics;  ///< of this material; one of severity Error means: generate nothing for it
 
   bool has(uint16_t extension) const;

@@ -49,6 +49,7 @@ private:
     Diagnostics said;
     Json json;
     std::vector<std::pair<std::string, std::string>> outputs;
+    std::vector<std::pair<std::string, std::string>> closures;
   };
   struct Found {
     const Element* shader = nullptr;
@@ -57,6 +58,7 @@ private:
 
   Found shaderOf(const Element& material);
   void material(const Element& at, std::string_view name, const Found& found, Diagnostics said);
+  void closures(Made& made, const Element& shader);
   void patternsAlone();
   void pattern(const Element& owner, const Element& output, const std::string& name);
   static bool isSurface(const Element& element) {
@@ -113,13 +115,31 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
     if (translate(surface, found.shader->category)) {
       made.json = surface.finish(name, made_.size());
       made.outputs = surface.outputs();
+    } else if (patterns_.givesClosure(*found.shader)) {
+      closures(made, *found.shader);
     } else {
       wrong(*found.shader, "unsupported-surface",
             fmt::format("the surface {} is not translated", quote(found.shader->category)),
-            "there are " + listOf(translated()));
+            "there are " + listOf(translated()) + ", and those that are made of closures");
     }
   }
   made_.push_back(std::move(made));
+}
+
+/// A surface of closures: what its group computes goes to the template's ports as it is.
+void MaterialsReader::closures(Made& made, const Element& shader) {
+  const bool opaque = patterns_.isOpaque(*made.scope, shader);
+  for (const ClosurePart& part : closureParts("surfaceshader")) {
+    const std::string port(part.name);
+    if (port == "alpha" && opaque) continue;
+    const std::optional<Source> source = patterns_.closure(*made.scope, shader, port);
+    if (!source) continue;
+    made.scope->group().outputs.emplace_back(port, *source);
+    made.closures.emplace_back(port, port);
+  }
+  // MaterialX's closures are alike on both sides.
+  made.json["doubleSided"] = true;
+  if (!opaque) made.json["alphaMode"] = "BLEND";
 }
 
 /// A pattern's output, as a colour without light.
@@ -211,6 +231,7 @@ Result<Materials> MaterialsReader::read() {
     }
     result.materials.push_back(std::move(made.json));
     result.of_materials.push_back(std::move(made.said));
+    result.closures.push_back(std::move(made.closures));
     result.procedurals.list.push_back(
         {made.scope == nullptr ? std::string() : made.scope->group().name, std::move(made.outputs), wrong});
   }

@@ -38,6 +38,8 @@ struct Procedurals {
 struct Materials {
   json::Json materials = json::Json::array();
   std::vector<Diagnostics> of_materials;  ///< of each, beside what reading `materials` finds
+  /// Of each, where it is made of closures: ports of a template, and outputs of its procedural's group.
+  std::vector<std::vector<std::pair<std::string, std::string>>> closures;
   Procedurals procedurals;
   Diagnostics diagnostics;         ///< of the document as a whole
   std::vector<std::string> files;  ///< that it includes

@@ -7,6 +7,7 @@
 #include "graph/contracts.h"
 #include "graph/text.h"
 #include "lang/suggest.h"
+#include "materialx/closures.h"
 #include "materialx/patterns.h"
 #include "support/text.h"
 
@@ -26,6 +27,11 @@ bool isBeside(std::string_view input) {
 
 /// What stands for an image that is not there.
 bool isFallback(std::string_view input) { return input == "default" || input == "fallback"; }
+
+/// An input of MaterialX's that its shaders do nothing with either.
+bool isIgnored(const Element& node, std::string_view input) {
+  return node.category == "surface" && input == "thin_walled";
+}
 
 bool samplesFile(const Element& node) {
   return std::any_of(node.children.begin(), node.children.end(), [](const Element& child) {
@@ -48,8 +54,14 @@ bool gives(const lang::NodeDecl& form, const Element& node) {
 bool takes(const lang::NodeDecl& form, const Element& node, bool types) {
   return std::all_of(node.children.begin(), node.children.end(), [&](const Element& input) {
     if (input.category != "input") return true;
+    if (const auto parts = closureParts(input.get("type")); !parts.empty())
+      return std::any_of(parts.begin(), parts.end(), [&](const ClosurePart& part) {
+        return paramOf(form, fmt::format("{}_{}", input.name(), part.name)) != nullptr;
+      });
     const lang::Param* param = paramOf(form, input.name());
-    if (param == nullptr) return isBeside(input.name()) || (isFallback(input.name()) && samplesFile(node));
+    if (param == nullptr)
+      return isBeside(input.name()) || isIgnored(node, input.name()) ||
+             (isFallback(input.name()) && samplesFile(node));
     const std::optional<ir::Type> type = typeOf(input.get("type"));
     // Channels of MaterialX 1.38 make another type of what is connected.
     const bool image = type && ir::isTexture(*type) && ir::isTexture(param->type);
@@ -71,6 +83,10 @@ bool Patterns::takesTiles(std::string_view category) const {
 }
 
 void Patterns::unknownNode(const Element& element) {
+  if (const std::string_view why = refusedClosure(element); !why.empty())
+    return error(element, "unsupported-closure",
+                 fmt::format("{} is not drawn: {}", quote(element.category), why),
+                 "there are " + listOf(kClosures));
   std::string help = "the library has no such node, and the document does not define it";
   if (maySuggest()) {
     std::vector<std::string_view> names;
@@ -85,8 +101,8 @@ void Patterns::unknownNode(const Element& element) {
 
 /// The form of a node of the library that the element means, by the types that it says.
 const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
-  std::vector<const lang::NodeDecl*> forms = library_.forms(element.category);
-  if (takesTiles(element.category)) {
+  std::vector<const lang::NodeDecl*> forms = library_.forms(libraryName(element));
+  if (takesTiles(libraryName(element))) {
     // Those for images of tiles take such, and no others.
     const bool tiles =
         std::any_of(element.children.begin(), element.children.end(), [&](const Element& input) {
@@ -130,6 +146,7 @@ const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
         if (std::find(names.begin(), names.end(), param.name) == names.end()) names.push_back(param.name);
       }
     }
+    if (!closureParts(input.get("type")).empty()) continue;
     if (std::find(names.begin(), names.end(), input.name()) != names.end() || isBeside(input.name()))
       continue;
     error(input, "unknown-input",
@@ -149,6 +166,12 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
   std::string_view space;
   for (const Element& input : element.children) {
     if (input.category != "input") continue;
+    for (const ClosurePart& part : closureParts(input.get("type"))) {
+      std::string name = fmt::format("{}_{}", input.name(), part.name);
+      if (!isConnected(input) || paramOf(*form, name) == nullptr) continue;
+      if (std::optional<Source> one = connected(scope, input, part.name))
+        made.inputs.emplace_back(std::move(name), std::move(*one));
+    }
     const lang::Param* param = paramOf(*form, input.name());
     if (param == nullptr) continue;  // a sampler's
     std::optional<Source> source;
@@ -178,6 +201,7 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
     if (options_.has_attributes && graph::isAttributeName(param.given) && !graph_.hasAttribute(param.given))
       graph_.attributes.emplace_back(param.given);
   }
+  surroundings(scope, element, *form, made);
   const std::string_view type = element.get("type");
   const bool color = type == "color3" || type == "color4";
   const bool decoded =

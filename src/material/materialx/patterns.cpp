@@ -9,6 +9,7 @@
 #include "graph/contracts.h"
 #include "graph/text.h"
 #include "lang/suggest.h"
+#include "materialx/closures.h"
 #include "support/plain_name.h"
 #include "support/text.h"
 
@@ -225,6 +226,11 @@ void Patterns::output(Scope& scope, std::string_view name, const Element& at) {
   if (output == nullptr) {
     error(at, "unknown-output", fmt::format("{} has no output {}", quote(scope.owner_->name()), quote(name)),
           suggest(name, *scope.owner_, [](const Element& e) { return e.category == "output"; }));
+  } else if (const auto parts = closureParts(output->get("type")); isConnected(*output) && !parts.empty()) {
+    for (const ClosurePart& part : parts) {
+      if (std::optional<Source> one = connected(scope, *output, part.name))
+        scope.group_.outputs.emplace_back(fmt::format("{}_{}", graphName(name), part.name), std::move(*one));
+    }
   } else if (isConnected(*output)) {
     source = connected(scope, *output);
   } else if (output->find("value") != nullptr) {
@@ -252,6 +258,13 @@ Scope& Patterns::body(const Element& owner, std::string_view name) {
 void Patterns::groupInputs(Scope& scope) {
   for (const Element& input : scope.interface_->children) {
     if (input.category != "input") continue;
+    for (const ClosurePart& part : closureParts(input.get("type"))) {
+      graph::GroupInput made;
+      made.name = fmt::format("{}_{}", graphName(input.name()), part.name);
+      made.type = part.type;
+      made.by_default = Source{graph::Literal{part.type, {part.neutral, part.neutral, part.neutral}}, {}};
+      scope.group_.inputs.push_back(std::move(made));
+    }
     const std::optional<ir::Type> type = typeOf(input.get("type"));
     if (!type) continue;
     if (ir::isMatrix(*type)) {
@@ -357,7 +370,14 @@ std::optional<Source> Patterns::insert(Scope& scope, Element element) {
   return refer(scope, kept, {&kept, {}, {}}, 0);
 }
 
-std::optional<Source> Patterns::connected(Scope& scope, const Element& input) {
+std::optional<Source> Patterns::closure(Scope& scope, const Element& node, std::string_view part) {
+  Scope* const outer = std::exchange(now_, &scope);
+  const std::optional<Source> source = refer(scope, node, {&node, {}, {}, std::string(part)}, 0);
+  now_ = outer;
+  return source;
+}
+
+std::optional<Source> Patterns::connected(Scope& scope, const Element& input, std::string_view part) {
   Scope* const outer = std::exchange(now_, &scope);
   std::optional<Source> source;
   if (const std::string* name = input.find("interfacename")) {
@@ -365,7 +385,7 @@ std::optional<Source> Patterns::connected(Scope& scope, const Element& input) {
     const Element* beside = scope.interface_ == nullptr ? scope.owner_->child("input", *name) : nullptr;
     if (beside != nullptr && beside != &input && beside->find("interfacename") == nullptr) {
       if (isConnected(*beside)) {
-        source = connected(scope, *beside);
+        source = connected(scope, *beside, part);
       } else {
         lang::Param param;
         param.type = typeOf(beside->get("type")).value_or(ir::Type::Float);
@@ -380,9 +400,12 @@ std::optional<Source> Patterns::connected(Scope& scope, const Element& input) {
                ir::isMatrix(typeOf(port.get("type")).value_or(ir::Type::Float))) {
       source = matrix(scope, *scope.owner_, port, *typeOf(port.get("type")));
     } else {
-      source = Source{graph::InputRef{graphName(*name)}, std::string(input.get("channels"))};
+      std::string inner = graphName(*name);
+      if (!part.empty()) inner += fmt::format("_{}", part);
+      source = Source{graph::InputRef{std::move(inner)}, std::string(input.get("channels"))};
     }
   } else if (std::optional<Referred> referred = find(scope, input)) {
+    referred->part = part;
     source = refer(scope, input, std::move(*referred), 0);
   }
   now_ = outer;
@@ -412,9 +435,10 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
   const auto behind = [&](const Element& next, std::string swizzle) -> std::optional<Source> {
     std::optional<Source> source;
     if (next.find("interfacename") != nullptr) {
-      source = connected(scope, next);
+      source = connected(scope, next, referred.part);
     } else if (isConnected(next)) {
       std::optional<Referred> further = find(scope, next);
+      if (further) further->part = referred.part;
       if (further) source = refer(scope, next, std::move(*further), depth + 1);
     } else if (next.find("value") != nullptr) {
       lang::Param param;
@@ -450,17 +474,18 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
     }
     if (only.empty()) only = "out";
     output = graphName(only);
+    if (!referred.part.empty()) output += "_" + referred.part;
     const Element* graph = interface == &element ? &element : definition(*interface)->graph;
     if (graph != nullptr) demand(*graph, only, input);
   } else {
-    const std::vector<const lang::NodeDecl*> forms = library_.forms(element.category);
+    const std::vector<const lang::NodeDecl*> forms = library_.forms(libraryName(element));
     const size_t results = forms.empty() ? 1 : forms[0]->results.size();
     const std::string* number = input.find("outputnumber");
     const std::optional<std::vector<double>> place = number == nullptr ? std::nullopt : numbersOf(*number);
     if (results > 1 && place && (*place)[0] >= 0 && (*place)[0] < static_cast<double>(results))
       output = forms[0]->results[static_cast<size_t>((*place)[0])].name;
     else if (results > 1)
-      output = referred.output;
+      output = referred.part.empty() ? referred.output : referred.part;
   }
   return Source{graph::NodeRef{idOf(scope, element), output}, referred.swizzle};
 }
@@ -518,7 +543,13 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
     }
     const std::optional<ir::Type> type = typeOf(port->get("type"));
     std::optional<Source> source;
-    if (type && ir::isTexture(*type)) {
+    if (const auto parts = closureParts(port->get("type")); !parts.empty()) {
+      for (const ClosurePart& part : parts) {
+        if (!linked) continue;
+        if (std::optional<Source> one = connected(scope, input, part.name))
+          made.inputs.emplace_back(fmt::format("{}_{}", graphName(input.name()), part.name), std::move(*one));
+      }
+    } else if (type && ir::isTexture(*type)) {
       const Element* body = &element == &interface ? &element : definition(interface)->graph;
       const auto& inputs = groups_.at(body)->group_.inputs;
       source = image(scope, input, input, std::any_of(inputs.begin(), inputs.end(), [&](const auto& one) {

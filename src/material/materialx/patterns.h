@@ -78,8 +78,15 @@ public:
   /// A body of its own, beside the elements of `owner`, with the inputs of `owner` if it is a nodegraph. It
   /// lives as long as this.
   Scope& body(const Element& owner, std::string_view name);
-  /// Where a value of an input comes from, in a body. Nothing, and an error, where that cannot be said.
-  std::optional<graph::Source> connected(Scope& scope, const Element& input);
+  /// Where a value of an input comes from, in a body; of a closure that part of it. Nothing, and an error,
+  /// where that cannot be said.
+  std::optional<graph::Source> connected(Scope& scope, const Element& input, std::string_view part = {});
+  /// A part of what a node of a body gives, which is a closure.
+  std::optional<graph::Source> closure(Scope& scope, const Element& node, std::string_view part);
+  /// Whether a node is there that gives closures: of the library or of the document.
+  bool givesClosure(const Element& node) const;
+  /// Whether a surface made of closures hides what is behind it, whatever its numbers become.
+  bool isOpaque(const Scope& scope, const Element& surface);
   /// A node of the library in a body.
   graph::Source add(Scope& scope, std::string_view name, std::string type, graph::Inputs inputs);
   /// The node of that name among the children of an element; null for none.
@@ -108,6 +115,7 @@ private:
   struct Referred {
     const Element* element = nullptr;
     std::string output, swizzle;
+    std::string part = {};  ///< of a closure
   };
 
   void define();
@@ -120,6 +128,8 @@ private:
   void node(Scope& scope, const Element& element);
   void instance(Scope& scope, const Element& element, const Element& interface, graph::Node& node);
   void libraryNode(Scope& scope, const Element& element, graph::Node& node);
+  void surroundings(Scope& scope, const Element& element, const lang::NodeDecl& form, graph::Node& node);
+  bool hasOneRoughness(const Scope& scope, const Element& element) const;
   std::optional<graph::Source> literal(Scope& scope, const Element& element, const Element& input,
                                        const lang::Param& param);
   std::optional<graph::Source> matrix(Scope& scope, const Element& element, const Element& input,

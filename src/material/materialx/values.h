@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,17 @@ std::optional<ir::Type> typeOf(std::string_view type);
 
 /// What a type of the graph is called in MaterialX, for messages: "vector3", of colours, too.
 std::string_view nameOf(ir::Type type);
+
+/// One of the values that a closure is here: the node texts of nodes/materialx/ take and give them by these
+/// names.
+struct ClosurePart {
+  std::string_view name;
+  ir::Type type;
+  double neutral;  ///< of each component, where nothing is connected
+};
+
+/// Of "BSDF", "EDF", "VDF" and "surfaceshader"; empty for what is no closure.
+std::span<const ClosurePart> closureParts(std::string_view type);
 
 /// Whether colours of that space can be brought to linear Rec. 709: the spaces of `cmlib`, and none.
 bool isColorSpace(std::string_view space);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "model/attributes.h"
+#include "model/closures.h"
 #include "model/resolve.h"
 
 namespace lacquer::model {
@@ -42,11 +43,12 @@ struct Texel {
 /// they need.
 class Writer {
 public:
-  Writer(const Model& model, Resolver& resolver, const material::Material& material,
-         const gltf::VertexAttributes& attributes, const BuildOptions& options, Graph& graph,
-         Diagnostics& warnings, Origins& origins)
+  Writer(const Model& model, Resolver& resolver, const lang::TemplateDecl& template_decl,
+         const material::Material& material, const gltf::VertexAttributes& attributes,
+         const BuildOptions& options, Graph& graph, Diagnostics& warnings, Origins& origins)
       : model_(model),
         resolver_(resolver),
+        template_(template_decl),
         material_(material),
         attributes_(attributes),
         options_(options),
@@ -56,7 +58,7 @@ public:
         marked_(model.ids.size()),
         written_(model.ids.size()) {}
 
-  void run(const lang::TemplateDecl& template_decl);
+  void run();
 
 private:
   void mark(const Found& value);
@@ -71,14 +73,16 @@ private:
   Source texel(uint16_t wanted);
   void alsoOf(uint16_t property, const std::string& pointer);
   Source image(uint16_t property);
-  Source computed(const gltf::TextureInfo& info, const std::string& slot);
+  Source computed(const gltf::TextureInfo& info, const std::string& id);
   void bring(const std::string& group);
+  const std::string* closurePort(std::string_view port) const;
   Source coordinate(uint16_t property);
   Source editable(std::string name, ir::Type type, const ir::Range& range, const Origin& origin,
                   const ir::Components& otherwise, const ir::Components& neutral, bool animated);
 
   const Model& model_;
   Resolver& resolver_;
+  const lang::TemplateDecl& template_;
   const material::Material& material_;
   const gltf::VertexAttributes& attributes_;
   const BuildOptions& options_;
@@ -215,8 +219,8 @@ void Writer::bring(const std::string& group) {
       if (!graph_.findParameter(parameter->name))
         graph_.parameters.push_back(patterns.parameters[*patterns.findParameter(parameter->name)]);
     } else if (const auto* texture = std::get_if<graph::TextureRef>(&source.from)) {
-      if (!graph_.findTexture(texture->name))
-        graph_.textures.push_back(patterns.textures[*patterns.findTexture(texture->name)]);
+      const auto own = patterns.findTexture(texture->name);  // else it is the template's
+      if (own && !graph_.findTexture(texture->name)) graph_.textures.push_back(patterns.textures[*own]);
     }
   };
   while (!wanted.empty()) {
@@ -226,10 +230,11 @@ void Writer::bring(const std::string& group) {
     const graph::Group& found = patterns.groups[*patterns.findGroup(name)];
     graph_.groups.push_back(found);
     for (graph::Node& node : graph_.groups.back().nodes) chooseAttributes(node, attributes_, patterns);
+    if (!material_.closures.empty()) placeSurroundings(graph_.groups.back(), template_, options_);
     for (const graph::GroupInput& input : found.inputs) {
       if (input.by_default) take(*input.by_default);
     }
-    for (const graph::Node& node : found.nodes) {
+    for (const graph::Node& node : graph_.groups.back().nodes) {
       if (node.group) wanted.push_back(node.type);
       for (const auto& [input, source] : node.inputs) take(source);
     }
@@ -238,15 +243,15 @@ void Writer::bring(const std::string& group) {
 }
 
 /// The texel that a group computes; one instance for all of its outputs.
-Source Writer::computed(const gltf::TextureInfo& info, const std::string& slot) {
+Source Writer::computed(const gltf::TextureInfo& info, const std::string& id) {
   const Texel key{info.group};
   for (const auto& [known, source] : texels_) {
     if (known == key) return {graph::NodeRef{std::get<graph::NodeRef>(source.from).node, info.output}, {}};
   }
   bring(info.group);
-  graph_.nodes[graph_.add(slot + ".texel", info.group)].group = true;
-  texels_.emplace_back(key, Source{graph::NodeRef{slot + ".texel", {}}, {}});
-  return {graph::NodeRef{slot + ".texel", info.output}, {}};
+  graph_.nodes[graph_.add(id, info.group)].group = true;
+  texels_.emplace_back(key, Source{graph::NodeRef{id, {}}, {}});
+  return {graph::NodeRef{id, info.output}, {}};
 }
 
 /// The texture of a slot, one for all that sample it.
@@ -269,7 +274,7 @@ Source Writer::image(uint16_t property) {
 /// The texel of a texture as a vec4; textures used twice in the same way are sampled once.
 Source Writer::texel(uint16_t wanted) {
   const gltf::TextureInfo& info = *material_.texture(wanted);
-  if (!info.group.empty()) return computed(info, model_.schema->properties[wanted].parameter_name);
+  if (!info.group.empty()) return computed(info, model_.schema->properties[wanted].parameter_name + ".texel");
   const Texel key = texelOf(wanted);
   const auto sharer =
       std::find_if(sharers_.begin(), sharers_.end(), [&](const auto& one) { return one.first == key; });
@@ -408,24 +413,45 @@ void Writer::notTaken() {
   }
 }
 
-void Writer::run(const lang::TemplateDecl& template_decl) {
+/// What the group of a surface of closures calls a port; null where it has nothing for it.
+const std::string* Writer::closurePort(std::string_view port) const {
+  for (const auto& [name, output] : material_.ports) {
+    if (name == port) return &output;
+  }
+  return nullptr;
+}
+
+void Writer::run() {
   std::vector<std::pair<std::string_view, Found>> ports;
-  for (const lang::PortDecl& port : template_decl.ports) {
+  for (const lang::PortDecl& port : template_.ports) {
+    // Of properties a surface of closures has none but how it is shown.
+    if (!material_.closures.empty() && port.param.name != "hidden" && port.param.name != "surface_normal")
+      continue;
     const Found value = resolver_.port(port.param.name);
     if (!value) continue;
     mark(value);
     ports.emplace_back(port.param.name, value);
   }
-  for (graph::Skipped& skipped : resolver_.skipped()) graph_.skip(skipped.term, std::move(skipped.reason));
+  if (material_.closures.empty()) {
+    for (graph::Skipped& skipped : resolver_.skipped()) graph_.skip(skipped.term, std::move(skipped.reason));
+  }
   if (!resolver_.wrong().empty()) return;
   writeOrdered();
   for (const auto& [name, value] : ports) graph_.outputs.emplace_back(name, source(value));
+  for (const lang::PortDecl& port : template_.ports) {
+    const std::string* output = closurePort(port.param.name);
+    if (output == nullptr) continue;
+    gltf::TextureInfo computed_by;
+    computed_by.group = material_.closures;
+    computed_by.output = *output;
+    graph_.outputs.emplace_back(port.param.name, computed(computed_by, "closures"));
+  }
   // A line is a term, which the code tells, in the order of the layers.
   for (size_t i = 0; i < graph_.nodes.size(); ++i) {
     graph_.nodes[i].term = graph_.nodes[i].id;
     graph_.nodes[i].place = static_cast<uint32_t>(i);
   }
-  notTaken();
+  if (material_.closures.empty()) notTaken();
 }
 
 /// Whether a run takes what not every primitive has: by the file, or by its switches where they are set.
@@ -518,10 +544,14 @@ Result<Graph> build(const Model& model, const lang::TemplateDecl& template_decl,
   graph.nodes.reserve(64);
   graph.parameters.reserve(48);
   optionalAttributes(template_decl, attributes, options, graph).report(material.index, warnings);
+  if (!material.closures.empty()) {
+    if (const Result<void> taken = takesClosures(template_decl, material); !taken)
+      return tl::make_unexpected(taken.error());
+  }
   Resolver resolver(model, template_decl, material, attributes, options, warnings);
-  Writer(model, resolver, material, attributes, options, graph, warnings,
+  Writer(model, resolver, template_decl, material, attributes, options, graph, warnings,
          origins == nullptr ? unwanted : *origins)
-      .run(template_decl);
+      .run();
   const Diagnostics unordered = resolver.unordered();
   if (!resolver.wrong().empty()) return tl::make_unexpected(resolver.wrong());
   warnings.insert(warnings.end(), unordered.begin(), unordered.end());
