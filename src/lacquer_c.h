@@ -247,6 +247,9 @@ LACQUER_C int lacquer_contract_attribute(const lacquer_contract* contract, size_
                                          lacquer_attribute* to, size_t size);
 LACQUER_C size_t lacquer_contract_variant_count(const lacquer_contract* contract);
 LACQUER_C const char* lacquer_contract_variant(const lacquer_contract* contract, size_t index, size_t* size);
+/* Of a MaterialX document: which material is for which geometry, as JSON, an object with what docs/manifest.md
+ * says of looks, look_groups, collections, geometry and material_variants. */
+LACQUER_C lacquer_text* lacquer_contract_looks(const lacquer_contract* contract);
 
 enum { LACQUER_WRAP_REPEAT = 0, LACQUER_WRAP_CLAMP = 1, LACQUER_WRAP_MIRROR = 2 };
 enum {

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "lacquer/generate.h"
+#include "lacquer/looks.h"
 
 namespace lacquer {
 
@@ -186,6 +187,7 @@ struct FileContract {
   std::vector<ContractPrimitive> primitives;         ///< those that can be drawn, in the file's order
   std::vector<ContractTexture> textures;
   std::vector<ContractImage> images;
+  Looks looks;        ///< of a MaterialX document: which material is for which geometry
   Messages messages;  ///< of the file as a whole
 };
 

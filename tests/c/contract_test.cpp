@@ -177,6 +177,25 @@ TEST(CContractValues, VariantsTexturesImages) {
   EXPECT_EQ(image.data_uri, 1);
 }
 
+TEST(CContractValues, LooksAreTheManifests) {
+  const char* const kDocument = R"(<materialx version="1.39">
+  <surface_unlit name="s" type="surfaceshader"/>
+  <surfacematerial name="paint" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="s"/>
+  </surfacematerial>
+  <look name="a"><materialassign name="m" material="paint" geom="/x, /y"/></look>
+</materialx>)";
+  CMessages messages;
+  const COptions options = optionsFrom(R"({"targets": ["glsl"], "validate": false})", messages);
+  const CScene scene(
+      lacquer_scene_read(kDocument, std::strlen(kDocument), "file.mtlx", options.get(), messages));
+  const CContract contract(lacquer_scene_contract(scene.get(), options.get(), messages));
+  const json looks = json::parse(textOf(CText(lacquer_contract_looks(contract.get()))));
+  EXPECT_EQ(looks["looks"], manifestOf(contract.get())["files"][0]["looks"]);
+  EXPECT_EQ(looks["looks"][0]["materials"][0]["geometry"], (json{"/x", "/y"}));
+  EXPECT_EQ(lacquer_contract_looks(nullptr), nullptr);
+}
+
 TEST(CContractValues, WhatDoesNotExistIsEmpty) {
   CMessages messages;
   EXPECT_EQ(lacquer_scene_contract(nullptr, nullptr, messages), nullptr);

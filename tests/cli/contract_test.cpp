@@ -193,6 +193,58 @@ TEST_F(Contract, BlocksAndSamplersAreCalledWhatTheTextsCallThem) {
   EXPECT_GT(lights, 0U);
 }
 
+/// A document's looks, by the number of each material; a shard's are those of the whole.
+TEST(Looks, SayWhichMaterialIsForWhichGeometry) {
+  const Workplace place;
+  place.write("chair.mtlx", R"(<materialx version="1.39" geomprefix="/chair/">
+  <standard_surface name="s" type="surfaceshader">
+    <input name="specular_roughness" type="float" value="0.5"/>
+  </standard_surface>
+  <surfacematerial name="paint" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="s"/>
+  </surfacematerial>
+  <collection name="legs" includegeom="leg*" excludegeom="leg3"/>
+  <variantset name="wetness">
+    <variant name="wet"><input name="specular_roughness" type="float" value="0.125"/></variant>
+  </variantset>
+  <geominfo name="g" geom="seat"><token name="part" type="string" value="L"/></geominfo>
+  <look name="dry">
+    <materialassign name="m" material="paint" collection="legs"/>
+    <propertyassign name="p" property="twosided" type="boolean" value="true" geom="seat"/>
+    <visibility name="v" vistype="shadow" geom="seat" visible="false"/>
+  </look>
+  <look name="rain" inherit="dry">
+    <variantassign name="v" variantset="wetness" variant="wet"/>
+  </look>
+  <lookgroup name="all" looks="dry, rain" default="dry"/>
+</materialx>
+)");
+  ASSERT_EQ(place.run({"gen", "chair.mtlx", "-o", "out", "--target", "glsl"}).status, 0);
+  const json manifest = place.manifest("out");
+  const json& file = manifest["files"][0];
+  const json legs = {{"name", "m"}, {"material", 0}, {"collection", "legs"}, {"exclusive", true}};
+  EXPECT_EQ(file["looks"][0]["materials"], json::array({legs}));
+  EXPECT_EQ(file["looks"][0]["properties"][0]["geometry"], json::array({"/chair/seat"}));
+  EXPECT_EQ(file["looks"][1]["materials"][0]["material"], 1);
+  EXPECT_EQ(file["materials"][1]["name"], "paint/wetness/wet");
+  EXPECT_EQ(file["material_variants"][0], (json{{"material", 1}, {"of", 0}, {"variants", {"wetness/wet"}}}));
+  EXPECT_EQ(file["look_groups"][0]["default"], "dry");
+  EXPECT_EQ(file["collections"][0]["exclude"], json::array({"/chair/leg3"}));
+  EXPECT_EQ(file["geometry"][0]["tokens"][0]["value"], "L");
+  // Other numbers alone are no other shader.
+  EXPECT_EQ(manifest["shaders"].size(), 1U);
+  ASSERT_EQ(place.run({"merge", "out/manifest.json", "-o", "merged"}).status, 0);
+  json merged = place.manifest("merged")["files"][0];
+  merged["source"] = file["source"];
+  EXPECT_EQ(merged, file);
+  // What is left out keeps its number.
+  ASSERT_EQ(
+      place.run({"gen", "chair.mtlx", "-o", "one", "--target", "glsl", "--material", "paint/wetness/wet"})
+          .status,
+      0);
+  EXPECT_EQ(place.manifest("one")["files"][0]["looks"], file["looks"]);
+}
+
 TEST(Stale, ShadersThatOnlyTheEarlierManifestListsGo) {
   const Workplace place;
   const std::string both = gltfOf({R"({"name": "a"})", R"({"name": "b", "alphaMode": "MASK"})"});

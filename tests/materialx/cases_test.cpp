@@ -88,6 +88,50 @@ std::string shown(const graph::Graph& patterns) {
   return text;
 }
 
+std::string shown(const GeometryNames& names) {
+  std::string text;
+  for (const std::string& path : names.paths) text += " " + path;
+  return names.collection.empty() ? text : fmt::format("{} collection {}", text, names.collection);
+}
+
+std::string shown(const Looks& looks) {
+  std::string text;
+  const auto values = [&](const char* kind, const std::vector<GeometryValue>& list) {
+    for (const GeometryValue& v : list)
+      text += fmt::format("  {} {} {} = {}\n", kind, v.type, v.name, v.value);
+  };
+  for (const Look& look : looks.looks) {
+    text += fmt::format("look {}\n", look.name);
+    for (const MaterialAssignment& m : look.materials)
+      text += fmt::format("  {}: material {}{} for{}\n", m.name, m.material, m.exclusive ? "" : ", not alone",
+                          shown(m.geometry));
+    for (const PropertyAssignment& p : look.properties)
+      text +=
+          fmt::format("  {} {} = {} ({}) for{}\n", p.type, p.property, p.value, p.target, shown(p.geometry));
+    for (const VisibilityAssignment& v : look.visibility)
+      text += fmt::format("  {}{} for{} by{}\n", v.type, v.visible ? "" : " not", shown(v.geometry),
+                          shown(v.viewers));
+  }
+  for (const LookGroup& group : looks.groups) {
+    text += fmt::format("group {}:", group.name);
+    for (const std::string& look : group.looks) text += " " + look;
+    text += group.by_default.empty() ? "\n" : fmt::format(", {} by default\n", group.by_default);
+  }
+  for (const GeometryCollection& collection : looks.collections)
+    text +=
+        fmt::format("collection {}:{} with{} without{}\n", collection.name, shown({collection.include, {}}),
+                    shown({collection.collections, {}}), shown({collection.exclude, {}}));
+  for (const GeometryInfo& info : looks.geometry) {
+    text += fmt::format("geometry {}:{}\n", info.name, shown(info.geometry));
+    values("property", info.properties);
+    values("token", info.tokens);
+  }
+  for (const MaterialVariant& variant : looks.variants)
+    text += fmt::format("material {} is {} with{}\n", variant.material, variant.of,
+                        shown({variant.variants, {}}));
+  return text;
+}
+
 std::string shown(const material::Material& material, const material::Schema& schema) {
   std::string text = fmt::format("-- {}\n", material.name) + formatAll(material.diagnostics);
   for (const auto& number : material.numbers) {
@@ -130,6 +174,7 @@ void run(Case& c, const std::string& name) {
   const auto document = material::readText(c.input(), name, **schema, {});
   if (!document) return c.expect("materials", formatAll(document.error()));
   std::string text = formatAll(document->diagnostics);
+  text += shown(document->looks);
   for (const material::Material& material : document->materials) text += shown(material, **schema);
   if (!document->materials.empty() && document->materials[0].patterns)
     text += shown(*document->materials[0].patterns);

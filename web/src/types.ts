@@ -294,6 +294,28 @@ export interface ContractFile {
   primitives?: ContractPrimitive[];
   textures?: ContractTexture[];
   images?: { uri?: string; buffer_view?: number; data_uri?: true; mime_type?: string }[];
+  looks?: Look[];
+  look_groups?: { name: string; looks: string[]; default?: string }[];
+  collections?: { name: string; include?: string[]; collections?: string[]; exclude?: string[] }[];
+  geometry?: (GeometryNames & { name: string; properties?: GeometryValue[]; tokens?: GeometryValue[] })[];
+  material_variants?: { material: number; of: number; variants: string[] }[];
+}
+/** Names and expressions as a MaterialX document has them, or a collection's name. */
+export interface GeometryNames {
+  geometry?: string[];
+  collection?: string;
+}
+export interface GeometryValue {
+  name: string;
+  type: string;
+  value: string;
+}
+/** Which material is for which geometry, in a MaterialX document (docs/materialx.md). */
+export interface Look {
+  name: string;
+  materials: (GeometryNames & { name?: string; material: number; exclusive: boolean })[];
+  properties?: (GeometryNames & { property: string; type: string; value: string; target?: string })[];
+  visibility?: (GeometryNames & { type?: string; visible: boolean; viewers?: string[]; viewer_collection?: string })[];
 }
 /** manifest.json, as far as the types say it. */
 export interface Manifest {

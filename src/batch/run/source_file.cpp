@@ -328,6 +328,7 @@ FileResult SceneFile::run(const material::Document& document) {
   }
   const StageTimer timer(setting_.times, StageOfRun::Manifest);
   addScene(document, uses, behind);
+  behind.looks = document.looks;
   report(document.diagnostics, path_, behind.messages);
   shapes.check(behind.primitives);
   report(misshapen, path_, behind.messages);

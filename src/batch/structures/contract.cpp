@@ -104,6 +104,7 @@ MadeContract contractOf(const material::Document& document, const std::vector<st
       made.values.materials.push_back(std::move(values));
   }
   addScene(document, uses, made.values);
+  made.values.looks = document.looks;
   report(document.diagnostics, document.path, made.values.messages);
   makeCode(setting, structures, made, progress);
   return made;

@@ -303,6 +303,109 @@ void members(A& a, Of<A, ContractImage>& of) {
   a.some("mime_type", of.mime_type);
 }
 
+// -- looks
+
+template <class A>
+void geometryOf(A& a, Of<A, GeometryNames>& of) {
+  a.some("geometry", of.paths);
+  a.some("collection", of.collection);
+}
+
+template <class A>
+void members(A& a, Of<A, MaterialAssignment>& of) {
+  a.is("the assignment");
+  a.some("name", of.name);
+  a("material", of.material);
+  geometryOf(a, of.geometry);
+  a("exclusive", of.exclusive);
+}
+
+template <class A>
+void members(A& a, Of<A, PropertyAssignment>& of) {
+  a.is("the property");
+  a("property", of.property);
+  a("type", of.type);
+  a("value", of.value);
+  a.some("target", of.target);
+  geometryOf(a, of.geometry);
+}
+
+template <class A>
+void members(A& a, Of<A, VisibilityAssignment>& of) {
+  a.is("the visibility");
+  a.some("type", of.type);
+  a("visible", of.visible);
+  geometryOf(a, of.geometry);
+  a.some("viewers", of.viewers.paths);
+  a.some("viewer_collection", of.viewers.collection);
+}
+
+template <class A>
+void members(A& a, Of<A, Look>& of) {
+  a.is("the look");
+  a("name", of.name);
+  a("materials", of.materials);
+  a.some("properties", of.properties);
+  a.some("visibility", of.visibility);
+}
+
+template <class A>
+void members(A& a, Of<A, LookGroup>& of) {
+  a.is("the group of looks");
+  a("name", of.name);
+  a("looks", of.looks);
+  a.some("default", of.by_default);
+}
+
+template <class A>
+void members(A& a, Of<A, GeometryCollection>& of) {
+  a.is("the collection");
+  a("name", of.name);
+  a.some("include", of.include);
+  a.some("collections", of.collections);
+  a.some("exclude", of.exclude);
+}
+
+template <class A>
+void members(A& a, Of<A, GeometryValue>& of) {
+  a.is("the value");
+  a("name", of.name);
+  a("type", of.type);
+  a("value", of.value);
+}
+
+template <class A>
+void members(A& a, Of<A, GeometryInfo>& of) {
+  a.is("the geometry's entry");
+  a("name", of.name);
+  geometryOf(a, of.geometry);
+  a.some("properties", of.properties);
+  a.some("tokens", of.tokens);
+}
+
+template <class A>
+void members(A& a, Of<A, MaterialVariant>& of) {
+  a.is("the variant");
+  a("material", of.material);
+  a("of", of.of);
+  a("variants", of.variants);
+}
+
+/// Of a file's entry.
+template <class A>
+void looksOf(A& a, Of<A, Looks>& of) {
+  a.some("looks", of.looks);
+  a.some("look_groups", of.groups);
+  a.some("collections", of.collections);
+  a.some("geometry", of.geometry);
+  a.some("material_variants", of.variants);
+}
+template <class A>
+void members(A& a, Of<A, Looks>& of) {
+  a.is("the looks");
+  looksOf(a, of);
+}
+
 /// What stands behind a file's materials.
 template <class A>
 void behindMaterials(A& a, Of<A, FileContract>& of) {
@@ -311,6 +414,7 @@ void behindMaterials(A& a, Of<A, FileContract>& of) {
   a.some("primitives", of.primitives);
   a.some("textures", of.textures);
   a.some("images", of.images);
+  looksOf(a, of.looks);
   a("diagnostics", of.messages);
 }
 

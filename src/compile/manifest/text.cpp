@@ -290,6 +290,12 @@ void Writer::finish(const std::vector<MaterialLevels>& levels) {
 
 }  // namespace manifest
 
+std::string looksJson(const Looks& looks) {
+  json::JsonText text;
+  manifest::WrittenObject(text).put(looks);
+  return text.take();
+}
+
 std::string_view passName(Pass pass) { return manifest::wordOf(pass); }
 
 std::string manifestJson(const Manifest& of) {

@@ -26,7 +26,8 @@ namespace {
 
 /// Files are named as seen from another folder, and prefixes are in the names.
 void moveFiles(materialx::Element& element, const Moved& moved) {
-  std::erase_if(element.attributes, [](const auto& one) { return one.first == "fileprefix"; });
+  std::erase_if(element.attributes,
+                [](const auto& one) { return one.first == "fileprefix" || one.first == "geomprefix"; });
   if (element.get("type") == "filename" && !element.get("value").empty())
     element.set("value", moved(std::string(element.get("value"))));
   for (materialx::Element& child : element.children) moveFiles(child, moved);

@@ -199,6 +199,12 @@ const char* lacquer_contract_variant(const lacquer_contract* contract, size_t in
   return give(index < of.variants.size() ? of.variants[index] : kNone, size);
 }
 
+lacquer_text* lacquer_contract_looks(const lacquer_contract* contract) {
+  return guarded(nullptr, static_cast<lacquer_text*>(nullptr), [&](lacquer::Messages&) {
+    return contract == nullptr ? nullptr : textFrom(lacquer::looksJson(contract->contract.looks));
+  });
+}
+
 size_t lacquer_contract_texture_count(const lacquer_contract* contract) {
   return contractOf(contract).textures.size();
 }

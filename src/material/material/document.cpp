@@ -151,6 +151,7 @@ Result<Document> readMaterialX(std::string_view text, const std::string& name, c
   document.path = name;
   document.diagnostics = std::move(read->diagnostics);
   document.included = std::move(read->files);
+  document.looks = std::move(read->looks);
   document.uses.resize(read->materials.size());
   const FileFacts facts{name, document, options.permissive, &read->procedurals};
   for (size_t i = 0; i < read->materials.size(); ++i) {

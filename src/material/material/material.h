@@ -9,6 +9,7 @@
 
 #include "gltf/facts.h"
 #include "ir/dag.h"
+#include "lacquer/looks.h"
 #include "material/schema.h"
 #include "support/limits.h"
 
@@ -53,6 +54,7 @@ struct Material {
 struct Document : gltf::Scene {
   std::vector<Material> materials;
   std::vector<std::string> included;  ///< files whose text is a part of it
+  Looks looks;                        ///< of a MaterialX document
 };
 
 struct ReadOptions {

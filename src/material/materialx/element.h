@@ -38,9 +38,9 @@ struct Document {
 };
 
 /// Reads the XML of a `.mtlx` file: no entities but XML's own, no document type, UTF-8. Included files
-/// (`xi:include`) lie in the file's folder or below it. `colorspace` and `fileprefix` of the elements around
-/// have been handed down to the inputs. Errors: "xml-syntax", "xml-too-deep", "xml-too-many",
-/// "not-materialx", "unsupported-version", "include-…".
+/// (`xi:include`) lie in the file's folder or below it. `colorspace`, `fileprefix` and `geomprefix` of the
+/// elements around have been handed down to what they are for. Errors: "xml-syntax", "xml-too-deep",
+/// "xml-too-many", "not-materialx", "unsupported-version", "include-…".
 Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits);
 
 /// The `procedurals` of the extension KHR_texture_procedurals as elements: a `nodegraph` for each, in their

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "materialx/element.h"
+#include "materialx/looks.h"
 #include "materialx/surface.h"
 #include "support/text.h"
 
@@ -39,11 +41,13 @@ public:
   MaterialsReader(Document& document, const lang::Library& library, PatternOptions options)
       : document_(document), patterns_({&document.root}, library, std::move(options)) {}
 
-  Result<Materials> read();
+  /// `said`: what was wrong with variants.
+  Result<Materials> read(const VariantMaterials& variants, Diagnostics said);
 
 private:
   struct Made {
     std::string name;
+    std::string element;  ///< its element's name; of a pattern's output none
     Place place;
     Scope* scope = nullptr;
     Diagnostics said;
@@ -98,6 +102,7 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
                                Diagnostics said) {
   Made made;
   made.name = name;
+  made.element = at.name();
   made.place = at.place;
   made.said = std::move(said);
   const auto wrong = [&](const Element& where, std::string code, std::string message, std::string help) {
@@ -181,7 +186,7 @@ void MaterialsReader::patternsAlone() {
   }
 }
 
-Result<Materials> MaterialsReader::read() {
+Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagnostics said) {
   const Element& root = document_.root;
   for (const Element& child : root.children) {
     if (child.category != "surfacematerial") continue;
@@ -215,6 +220,14 @@ Result<Materials> MaterialsReader::read() {
   Materials result;
   result.files = document_.files;
   for (const Diagnostic& one : patterns_.wrong()) addBounded(result.diagnostics, one);
+  std::vector<std::string> names;
+  for (const Made& made : made_) names.push_back(made.element);
+  result.looks = readLooks(root, names, variants, said);
+  std::stable_sort(said.begin(), said.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.place.file, a.place.line, a.place.column) <
+           std::tie(b.place.file, b.place.line, b.place.column);
+  });
+  for (Diagnostic& one : said) addBounded(result.diagnostics, std::move(one));
   for (Made& made : made_) {
     const bool wrong = made.scope != nullptr && patterns_.isWrong(made.scope->group().name);
     if (wrong) {
@@ -245,8 +258,11 @@ Result<Materials> readMaterials(std::string_view text, const std::string& path, 
                                 const Limits& limits, const Names& reserved) {
   Result<Document> document = readXml(text, path, limits);
   if (!document) return tl::make_unexpected(document.error());
+  Diagnostics said;
+  const VariantMaterials variants = addVariants(document->root, said);
   addTangentSpace(document->root);
-  return MaterialsReader(*document, library, {true, limits.nodes, {}, reserved, true}).read();
+  return MaterialsReader(*document, library, {true, limits.nodes, {}, reserved, true})
+      .read(variants, std::move(said));
 }
 
 Procedurals readProcedurals(const Json& extension, const std::string& path, const lang::Library& library,

@@ -10,6 +10,7 @@
 
 #include "graph/graph.h"
 #include "json/json.h"
+#include "lacquer/looks.h"
 #include "lang/library.h"
 #include "support/diagnostic.h"
 #include "support/limits.h"
@@ -41,6 +42,7 @@ struct Materials {
   /// Of each, where it is made of closures: ports of a template, and outputs of its procedural's group.
   std::vector<std::vector<std::pair<std::string, std::string>>> closures;
   Procedurals procedurals;
+  Looks looks;
   Diagnostics diagnostics;         ///< of the document as a whole
   std::vector<std::string> files;  ///< that it includes
 };

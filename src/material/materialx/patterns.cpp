@@ -63,6 +63,7 @@ Patterns::Patterns(const std::vector<const Element*>& documents, const lang::Lib
     : library_(library), options_(std::move(options)), documents_(documents) {
   for (const std::string& name : options_.reserved) parameter_names_.take(name);
   define();
+  defineTokens();
 }
 
 const Siblings& Patterns::siblingsOf(const Element& owner) {

@@ -152,6 +152,8 @@ private:
                               ir::Type type);
   bool isAnimated(const Element& input) const;
   std::string fileOf(const Scope& scope, const Element& input) const;
+  void defineTokens();
+  std::string withGeometryTokens(std::string_view file) const;
   void unknownNode(const Element& element);
   void checked();
   void spread();
@@ -176,6 +178,7 @@ private:
   NameSet group_names_, parameter_names_, texture_names_;
   std::unordered_map<const Element*, Siblings> siblings_;  ///< of owners
   Siblings nodegraphs_, nodedefs_;                         ///< of the documents
+  std::map<std::string_view, std::string_view> geometry_tokens_;
   /// Looked up, never walked.
   std::unordered_map<std::string_view, std::vector<size_t>> definitions_of_;
   std::unordered_map<const Element*, size_t> by_nodedef_, by_graph_;

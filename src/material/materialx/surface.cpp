@@ -8,6 +8,7 @@
 #include "graph/contracts.h"
 #include "graph/text.h"
 #include "lang/suggest.h"
+#include "materialx/looks.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {
@@ -336,7 +337,8 @@ void Surface::tangentSpaceNormal(std::string_view name, const std::string& textu
 Json Surface::finish(std::string_view name, size_t procedural) {
   std::vector<std::string_view> names(known_.begin(), known_.end());
   for (const Element& child : shader_.children) {
-    if (child.category != "input" || known_.contains(child.name())) continue;
+    if (child.category != "input" || known_.contains(child.name()) || child.find(kOfVariant) != nullptr)
+      continue;
     addBounded(said_, {"unknown-input",
                        Severity::Warning,
                        child.place,

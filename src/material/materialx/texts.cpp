@@ -156,6 +156,40 @@ std::optional<Source> Patterns::attribute(Scope& scope, const Element& input, ir
   return Source{graph::AttributeRef{std::move(name), type}, {}};
 }
 
+/// What names of files have in the place of "<kind>": what all geometry says alike of a token, else its
+/// default.
+void Patterns::defineTokens() {
+  std::set<std::string_view> differing;
+  std::map<std::string_view, std::string_view> defaults;
+  for (const Element* document : documents_) {
+    for (const Element& one : document->children) {
+      if (one.category == "tokendefault") defaults.try_emplace(one.name(), one.get("value"));
+      if (one.category != "geominfo") continue;
+      for (const Element& token : one.children) {
+        if (token.category != "token") continue;
+        const auto [it, fresh] = geometry_tokens_.try_emplace(token.name(), token.get("value"));
+        if (!fresh && it->second != token.get("value")) differing.insert(token.name());
+      }
+    }
+  }
+  for (const std::string_view name : differing) geometry_tokens_.erase(name);
+  geometry_tokens_.insert(defaults.begin(), defaults.end());
+}
+
+std::string Patterns::withGeometryTokens(std::string_view file) const {
+  std::string made;
+  while (true) {
+    const size_t begin = file.find('<');
+    const size_t end = begin == std::string_view::npos ? begin : file.find('>', begin);
+    made += file.substr(0, begin);
+    if (begin == std::string_view::npos) return made;
+    if (end == std::string_view::npos) return made += file.substr(begin);
+    const auto token = geometry_tokens_.find(file.substr(begin + 1, end - begin - 1));
+    made += token == geometry_tokens_.end() ? file.substr(begin, end - begin + 1) : token->second;
+    file.remove_prefix(end + 1);
+  }
+}
+
 /// The file's name with the document's tokens in place of their names.
 std::string Patterns::fileOf(const Scope& scope, const Element& input) const {
   std::string file(trimmed(input.get("value")));
@@ -169,6 +203,7 @@ std::string Patterns::fileOf(const Scope& scope, const Element& input) const {
       if (at != std::string::npos) file.replace(at, name.size(), token.get("value"));
     }
   }
+  file = withGeometryTokens(file);
   // A document names files, a graph has URIs.
   for (size_t at = file.find('%'); at != std::string::npos; at = file.find('%', at + 3))
     file.replace(at, 1, "%25");

@@ -9,6 +9,7 @@
 #include <pugixml.hpp>
 
 #include "materialx/element.h"
+#include "materialx/looks.h"
 #include "support/contain.h"
 #include "support/file.h"
 #include "support/text.h"
@@ -26,7 +27,7 @@ constexpr size_t kMostFiles = 256;
 
 /// What inputs have of the elements around them.
 struct Inherited {
-  std::string colorspace, fileprefix;
+  std::string colorspace, fileprefix, geomprefix;
 };
 
 class XmlReader {
@@ -115,6 +116,7 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
     Inherited inside = around;
     if (const std::string* space = own.find("colorspace")) inside.colorspace = *space;
     if (const std::string* prefix = own.find("fileprefix")) inside.fileprefix = *prefix;
+    if (const std::string* prefix = own.find("geomprefix")) inside.geomprefix = *prefix;
     if (into.attributes.empty()) {
       into.attributes = own.attributes;
       into.place = own.place;
@@ -153,7 +155,7 @@ void XmlReader::version(Element& root) {
   wrong_.push_back(std::move(one));
 }
 
-/// Colours and files are said on the way down what space and folder they are of.
+/// Colours, files and geometry are said on the way down what space and folder they are of.
 void XmlReader::handDown(Element& element, const Inherited& around) const {
   const std::string_view type = element.get("type");
   const bool file = type == "filename";
@@ -163,6 +165,15 @@ void XmlReader::handDown(Element& element, const Inherited& around) const {
   const std::string* value = element.find("value");
   if (file && value != nullptr && !value->empty() && !around.fileprefix.empty() && !value->starts_with('/'))
     element.set("value", around.fileprefix + *value);
+  if (around.geomprefix.empty()) return;
+  for (const std::string_view attribute : {"geom", "includegeom", "excludegeom", "viewergeom"}) {
+    const std::string* names = element.find(attribute);
+    if (names == nullptr) continue;
+    std::string prefixed;
+    for (const std::string& name : geometryNames(*names))
+      prefixed += (prefixed.empty() ? "" : ", ") + around.geomprefix + name;
+    element.set(attribute, std::move(prefixed));
+  }
 }
 
 void XmlReader::elements(pugi::xml_node parent, Element& into, const Inherited& around, size_t depth) {
@@ -193,6 +204,7 @@ void XmlReader::elements(pugi::xml_node parent, Element& into, const Inherited& 
     Inherited inside = around;
     if (const std::string* space = element.find("colorspace")) inside.colorspace = *space;
     if (const std::string* prefix = element.find("fileprefix")) inside.fileprefix = *prefix;
+    if (const std::string* prefix = element.find("geomprefix")) inside.geomprefix = *prefix;
     handDown(element, inside);
     elements(node, element, inside, depth + 1);
   }
