@@ -84,6 +84,13 @@ constexpr Known kKnown[] = {
     {"grid", "", "a shape has an edge"},
     {"crosshatch", "", "a shape has an edge"},
     {"texture_within", "", "an image has an edge"},
+    {"texel_within", "", "an image has an edge"},
+    {"image<", "0 <= swizzle", "an image has an edge"},
+    {"image<", "swizzle <= 1", "an image has an edge"},
+    {"gltf_normalmap", "0 <= swizzle", "an image has an edge"},
+    {"gltf_normalmap", "swizzle <= 1", "an image has an edge"},
+    {"UsdUVTexture", "0 <= swizzle", "an image has an edge"},
+    {"UsdUVTexture", "swizzle <= 1", "an image has an edge"},
     {"texture_tiles", "", "a tile has an edge, and what is beyond the last one is of another colour"},
     {"gooch_shade", "", "powers of 0 and of what is below are 0"},
     // Of nodes/materialx/, whose closures are alike on both sides.

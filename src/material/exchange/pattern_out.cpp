@@ -112,6 +112,8 @@ constexpr std::string_view kVectorPorts[] = {"amplitude", "position", "normal", 
 constexpr std::string_view kNumberPorts[] = {"index", "interpolation", "operationorder",
                                              "style", "type",          "upaxis"};
 /// Inputs of this library's own: of all nodes, and of one.
+/// Of nodes of images: along which axes these end, which is an address mode in a document.
+constexpr std::string_view kEnds = "ends";
 constexpr std::string_view kOwnPorts[] = {"metric"};
 constexpr std::string_view kOwnOfNormalMaps[] = {"normal", "tangent", "bitangent"};
 constexpr std::string_view kAddressed[] = {"image", "gltf_image", "gltf_colorimage", "gltf_normalmap"};
@@ -527,7 +529,7 @@ void PatternsOut::texture(Element& input, const graph::Texture& texture) {
 
 /// How a texture is read, as inputs of the node that reads it.
 void PatternsOut::sampler(Element& element, const lang::NodeDecl& decl, const graph::Texture& texture,
-                          Typed type) {
+                          Typed type, std::string_view ends) {
   const std::string_view family = familyOf(decl);
   std::array<graph::Wrap, 2> wrap = texture.wrap;
   bool nearest = texture.nearest;
@@ -545,17 +547,21 @@ void PatternsOut::sampler(Element& element, const lang::NodeDecl& decl, const gr
   constexpr const char* kModes[] = {"periodic", "clamp", "mirror"};
   const bool usd = family == "UsdUVTexture";
   for (size_t i = 0; i < 2; ++i) {
-    if (wrap[i] == graph::Wrap::Repeat) continue;
+    const bool over = ends == "both" || ends == (i == 0 ? "u" : "v");
+    if (wrap[i] == graph::Wrap::Repeat && !over) continue;
     if (!usd && !isOneOf(family, kAddressed)) {
       lost(fmt::format("{} of {} has no address modes", family, texture.name), "its image is repeated");
       break;
     }
     const char* name = i == 0 ? (usd ? "wrapS" : "uaddressmode") : (usd ? "wrapT" : "vaddressmode");
-    element.children.push_back(valueOf(name, "string", kModes[static_cast<size_t>(wrap[i])]));
+    const char* mode = over ? (usd ? "black" : "constant") : kModes[static_cast<size_t>(wrap[i])];
+    element.children.push_back(valueOf(name, "string", mode));
   }
   if (nearest && isOneOf(family, kFiltered))
     element.children.push_back(valueOf("filtertype", "string", "closest"));
-  if (!texture.color || *texture.color == Components{0, 0, 0, 0}) return;
+  // Beyond its edge an image has the node's own.
+  if (!ends.empty() || !texture.color || *texture.color == Components{0, 0, 0, 0}) return;
+  if (element.child("input", usd ? "fallback" : "default") != nullptr) return;
   if (usd || family == "gltf_colorimage") type = {Type::Vec4, true};
   element.children.push_back(
       valueOf(usd ? "fallback" : "default", typeName(type), valueText(type.type, *texture.color)));
@@ -594,8 +600,17 @@ void PatternsOut::element(Scope& scope, size_t place) {
   if (!decl.source.starts_with("MaterialX"))
     lost(fmt::format("the node {} is none of MaterialX's", family),
          "who reads the document needs a definition of it");
+  std::string_view ends;
+  for (const auto& [input, source] : node.inputs) {
+    const auto* choice = std::get_if<graph::Choice>(&source.from);
+    if (input == kEnds && choice != nullptr && choice->name != "none") ends = choice->name;
+  }
   for (const auto& [input, source] : node.inputs) {
     const lang::Param* param = contract->param(input);
+    if (input == kEnds && param != nullptr) continue;
+    const bool of_texture = ends.empty() && contract->param(kEnds) != nullptr;
+    const bool fallback = input == "default" || input == "fallback";
+    if (fallback && (of_texture || made.child("input", input) != nullptr)) continue;
     if (param == nullptr || (param->hints.advanced && !param->given.empty())) continue;
     const bool own =
         isOneOf(input, kOwnPorts) || (family == "gltf_normalmap" && isOneOf(input, kOwnOfNormalMaps));
@@ -626,7 +641,7 @@ void PatternsOut::element(Scope& scope, size_t place) {
       Element file = inputOf(port, "filename");
       texture(file, graph_.textures[*slot]);
       made.children.push_back(std::move(file));
-      sampler(made, decl, graph_.textures[*slot], type);
+      sampler(made, decl, graph_.textures[*slot], type, ends);
     } else {
       give(scope, made, port, source, {param->type, portColor(decl, *param, color)});
       Element& last = made.children.back();

@@ -69,7 +69,7 @@ private:
   void group(size_t group, materialx::Element& root);
   void element(Scope& scope, size_t node);
   void sampler(materialx::Element& element, const lang::NodeDecl& decl, const graph::Texture& texture,
-               Typed type);
+               Typed type, std::string_view ends);
   void give(Scope& scope, materialx::Element& element, std::string_view name, const graph::Source& source,
             Typed wanted);
   Link link(Scope& scope, const graph::Source& source);

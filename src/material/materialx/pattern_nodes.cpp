@@ -25,6 +25,9 @@ bool isBeside(std::string_view input) {
   return std::find(std::begin(kNames), std::end(kNames), input) != std::end(kNames);
 }
 
+/// Along which axes an image is there once: a node's word for MaterialX's address mode `constant`.
+constexpr std::string_view kEnds = "ends";
+
 /// What stands for an image that is not there.
 bool isFallback(std::string_view input) { return input == "default" || input == "fallback"; }
 
@@ -164,6 +167,8 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
   if (form == nullptr) return;
   made.type = form->name;
   std::string_view space;
+  const bool may_end = paramOf(*form, kEnds) != nullptr;
+  const std::string_view ends = may_end ? endsOf(scope, element) : "none";
   for (const Element& input : element.children) {
     if (input.category != "input") continue;
     for (const ClosurePart& part : closureParts(input.get("type"))) {
@@ -178,6 +183,8 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
     if (ir::isTexture(param->type)) {
       source = image(scope, element, input, param->type == ir::Type::Texture2DArray);
       space = input.get("colorspace");
+    } else if (may_end && ends == "none" && isFallback(input.name())) {
+      continue;  // the texture's alone
     } else if (isFallback(input.name()) && samplesFile(element) && !isConnected(input)) {
       // The texture's, too, and so no parameter.
       const Result<ir::Components> value = valueOf(input, param->type);
@@ -197,6 +204,8 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
     }
     if (source) made.inputs.emplace_back(std::string(input.name()), std::move(*source));
   }
+  if (ends != "none")
+    made.inputs.emplace_back(std::string(kEnds), Source{graph::Choice{std::string(ends)}, {}});
   for (const lang::Param& param : form->params) {
     if (options_.has_attributes && graph::isAttributeName(param.given) && !graph_.hasAttribute(param.given))
       graph_.attributes.emplace_back(param.given);

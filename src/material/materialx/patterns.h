@@ -136,6 +136,7 @@ private:
                                       ir::Type type);
   std::optional<graph::Source> attribute(Scope& scope, const Element& input, ir::Type type);
   std::optional<graph::Source> image(Scope& scope, const Element& element, const Element& input, bool tiles);
+  std::string_view endsOf(Scope& scope, const Element& element);
   const Element* text(Scope& within, const Element& input);
   const Element* propertyOf(const Element& node, std::string_view name);
   const Element* definitionFor(Scope& scope, const Element& element);

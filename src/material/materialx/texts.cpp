@@ -243,6 +243,18 @@ bool Patterns::goesToTiles(const Element& owner, std::string_view name) const {
   return true;
 }
 
+/// Along which axes an image ends at its edge, in the words of the nodes: "none", "u", "v" or "both".
+std::string_view Patterns::endsOf(Scope& scope, const Element& element) {
+  const auto ends = [&](std::string_view name, std::string_view usd) {
+    const Element* mode = element.child("input", name);
+    if (mode == nullptr) mode = element.child("input", usd);
+    const Element* said = mode == nullptr ? nullptr : text(scope, *mode);
+    return said != nullptr && (said->get("value") == "constant" || said->get("value") == "black");
+  };
+  const bool u = ends("uaddressmode", "wrapS"), v = ends("vaddressmode", "wrapT");
+  return u ? (v ? "both" : "u") : (v ? "v" : "none");
+}
+
 /// An image. `tiles`: what takes it has a place for an image of each tile.
 std::optional<Source> Patterns::image(Scope& scope, const Element& element, const Element& input,
                                       bool tiles) {
@@ -274,9 +286,6 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
     const Element* said = mode == nullptr ? nullptr : text(scope, *mode);
     const std::string_view value = said == nullptr ? std::string_view() : said->get("value");
     if (texture.type == ir::Type::Texture2DArray) return graph::Wrap::Clamp;  // at the edges of tiles
-    if (value == "constant" || value == "black")
-      warning(*mode, "wrap-clamped", fmt::format("{} is {}", quote(name), quote(value)),
-              "beyond its edge the image has its edge's colour here");
     return value == "clamp" || value == "constant" || value == "black" ? graph::Wrap::Clamp
            : value == "mirror"                                         ? graph::Wrap::Mirror
                                                                        : graph::Wrap::Repeat;
