@@ -2,8 +2,8 @@
 # left out. docs/web.md says what the module is.
 
 # Native only: the search for cheaper forms, compilers and validators, GPUs, costs, attacks, runs over folders with their
-# cache, the search for levels, baked images. Their callers are linked with web/absent/.
-set(LACQUER_ABSENT optimize check vulkan cost stress cache run lod bake view)
+# cache, the search for levels. Their callers are linked with web/absent/.
+set(LACQUER_ABSENT optimize check vulkan cost stress cache run lod view)
 set(LACQUER_ABSENT_FILES lab/environment/files.cpp lab/eval/gpu.cpp faces/answer/findings.cpp faces/c/exchange.cpp
     faces/c/findings.cpp)
 
@@ -32,7 +32,7 @@ function(lacquer_module)
   endforeach()
   target_compile_definitions(lacquer_c PRIVATE LACQUER_NO_CHECK)  # nothing is validated unless it is asked for
   # These hand on, read and report: their time is not worth the bytes.
-  foreach(folder c api environment gltf graph interface lang manifest materialx programs prove setting structures texture)
+  foreach(folder c api bake environment exchange gltf graph interface lang manifest materialx programs prove setting structures texture)
     target_compile_options(lacquer_${folder} PRIVATE -Os)
   endforeach()
   add_executable(lacquer_wasm ${absent} "${PROJECT_SOURCE_DIR}/web/shim/png.cpp" $<TARGET_OBJECTS:lacquer_c>)

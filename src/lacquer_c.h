@@ -247,8 +247,8 @@ LACQUER_C int lacquer_contract_attribute(const lacquer_contract* contract, size_
                                          lacquer_attribute* to, size_t size);
 LACQUER_C size_t lacquer_contract_variant_count(const lacquer_contract* contract);
 LACQUER_C const char* lacquer_contract_variant(const lacquer_contract* contract, size_t index, size_t* size);
-/* Of a MaterialX document: which material is for which geometry, as JSON, an object with what docs/manifest.md
- * says of looks, look_groups, collections, geometry and material_variants. */
+/* Of a MaterialX document: which material is for which geometry, as JSON, an object with what
+ * docs/manifest.md says of looks, look_groups, collections, geometry and material_variants. */
 LACQUER_C lacquer_text* lacquer_contract_looks(const lacquer_contract* contract);
 
 enum { LACQUER_WRAP_REPEAT = 0, LACQUER_WRAP_CLAMP = 1, LACQUER_WRAP_MIRROR = 2 };
@@ -664,6 +664,34 @@ LACQUER_C_NATIVE int lacquer_convert(const char* output, const char* file, const
 LACQUER_C_NATIVE lacquer_text* lacquer_bake(const char* output, const char* file,
                                             const char* const* materials, size_t count, uint32_t size,
                                             const lacquer_options* options, lacquer_messages* messages);
+
+/* The same with all that C++'s lacquer::Bake says, by a JSON object: "size", "samples", "nodes" (outputs of
+ * nodes, "*" for all that can be looked at), "also" ("ktx2", "exr"), "bits", "levels", "srgb". `output` may
+ * be an image, .png, .ktx2 or .exr, and `file` a graph, .json. */
+LACQUER_C_NATIVE lacquer_text* lacquer_bake_as(const char* output, const char* file,
+                                               const char* const* materials, size_t count, const char* how,
+                                               const lacquer_options* options, lacquer_messages* messages);
+/* lacquer_convert(), and what is lost by it, with lacquer::Conversion as a JSON object: "surface",
+ * "measured", "picture", a PNG file, and its "size". JSON: "output", "picture", and of each material's linear
+ * colours the "differences": "material", "largest", "mean", "root_mean_square". */
+LACQUER_C_NATIVE lacquer_text* lacquer_convert_as(const char* output, const char* file,
+                                                  const char* const* materials, size_t count, const char* how,
+                                                  const lacquer_options* options, lacquer_messages* messages);
+/* A glTF file whose procedural textures are KHR_texture_procedurals, each with a baked fallback of `size` by
+ * `size` texels, from 1 to 8192, in it: of a .mtlx file its materials, of a .gltf file the whole, of a graph,
+ * .json, its patterns. */
+LACQUER_C_NATIVE lacquer_text* lacquer_gltf(const char* file, const char* const* materials, size_t count,
+                                            uint32_t size, const lacquer_options* options,
+                                            lacquer_messages* messages);
+/* The same two of a scene. Of materials whose graphs were edited, `edited[i]` with `graphs[i]`, the document
+ * has what computes texels in the graph, with its numbers and images. */
+LACQUER_C lacquer_text* lacquer_scene_materialx(const lacquer_scene* scene, const char* const* materials,
+                                                size_t count, const char* surface, const size_t* edited,
+                                                lacquer_graph* const* graphs, size_t graph_count,
+                                                const lacquer_options* options, lacquer_messages* messages);
+LACQUER_C lacquer_text* lacquer_scene_gltf(const lacquer_scene* scene, const char* const* materials,
+                                           size_t count, uint32_t size, const lacquer_options* options,
+                                           lacquer_messages* messages);
 
 /* ---- the library of nodes, and tables */
 

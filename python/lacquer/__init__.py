@@ -22,7 +22,7 @@ from ._native import Array, Colors, Value, load
 
 __all__ = [
     "ATTRIBUTES", "Error", "Evaluation", "Graph", "Message", "Scene", "Shader", "bake", "check_nodes", "convert", "environment_dfg",
-    "environment_sheen", "nodes", "to_materialx", "version",
+    "environment_sheen", "nodes", "to_gltf", "to_materialx", "version",
 ]
 
 _lib = load()
@@ -514,6 +514,24 @@ class Scene(_Handle):
             attributes = next(iter(self.uses(material)), _UNUSED)
         return sum(1 << ATTRIBUTES.index(name) for name in attributes)
 
+    def to_materialx(self, materials: Sequence[str] = (), surface: str = "",
+                     edited: Optional[Mapping[int, "Graph"]] = None, options: Optional[Options] = None,
+                     messages: Optional[List[Message]] = None) -> str:
+        """As to_materialx(). Of materials whose graphs were `edited`, by their numbers, the document has what
+        computes texels in the graph, with its numbers and images."""
+        names, of = _names(materials), dict(edited or {})
+        numbers = (c_size_t * len(of))(*map(_index, of))
+        graphs = (ctypes.c_void_p * len(of))(*(graph._at for graph in of.values()))
+        return _taken(_calling(options, messages, lambda said, how: _lib.lacquer_scene_materialx(
+            self._at, names, len(names), _text(surface), numbers, graphs, len(of), how, said)))
+
+    def to_gltf(self, materials: Sequence[str] = (), size: int = 256, options: Optional[Options] = None,
+                messages: Optional[List[Message]] = None) -> str:
+        """As to_gltf()."""
+        names, texels = _names(materials), _texels(size)
+        return _taken(_calling(options, messages, lambda said, how: _lib.lacquer_scene_gltf(
+            self._at, names, len(names), texels, how, said)))
+
     def evaluate(self, material: int, points: Points, engine: str = "double", options: Optional[Options] = None,
                  messages: Optional[List[Message]] = None) -> Evaluation:
         """Linear colours at points (docs/eval.md): a list of them, or arrays by the members' names, (points, components)
@@ -568,23 +586,44 @@ def to_materialx(file: Union[str, Path], materials: Sequence[str] = (), surface:
         source, names, len(names), _text(surface), how, said)))
 
 
+def to_gltf(file: Union[str, Path], materials: Sequence[str] = (), size: int = 256, options: Optional[Options] = None,
+            messages: Optional[List[Message]] = None) -> str:
+    """A glTF file whose procedural textures are KHR_texture_procedurals, each with a baked fallback of `size` by `size` texels
+    in it: of a .mtlx file its materials, of a .gltf file the whole, of a graph, .json, its patterns."""
+    source, names, texels = _path(file), _names(materials), _texels(size)
+    return _taken(_calling(options, messages, lambda said, how: _lib.lacquer_gltf(
+        source, names, len(names), texels, how, said)))
+
+
 def convert(output: Union[str, Path], file: Union[str, Path], materials: Sequence[str] = (), surface: str = "",
-            options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> None:
-    """The same as a file."""
+            options: Optional[Options] = None, messages: Optional[List[Message]] = None, measured: bool = False,
+            picture: Union[str, Path] = "", size: int = 160) -> Dict[str, Any]:
+    """The same as to_materialx(), as a file. "differences": of each material's linear colours by what is lost, with
+    `measured` or a `picture` of balls of `size` pixels, a PNG file."""
     to, source, names = _path(output), _path(file), _names(materials)
-    _calling(options, messages, lambda said, how: _lib.lacquer_convert(
-        to, source, names, len(names), _text(surface), how, said))
+    how_text = _text(json.dumps({"surface": surface, "measured": measured, "picture": os.fspath(picture),
+                                 "size": _texels(size)}))
+    return json.loads(_taken(_calling(options, messages, lambda said, how: _lib.lacquer_convert_as(
+        to, source, names, len(names), how_text, how, said))))
 
 
 def bake(output: Union[str, Path], file: Union[str, Path], materials: Sequence[str] = (), size: int = 512,
-         options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> Dict[str, Any]:
+         options: Optional[Options] = None, messages: Optional[List[Message]] = None, **how: Any) -> Dict[str, Any]:
     """Procedural textures of a .gltf or .mtlx file as PNG files of `size` by `size` texels beside the .gltf file `output`,
-    which has them. "output", "images", and how many "textures" have one."""
-    to, source, names, texels = _path(output), _path(file), _names(materials), _index(size)
+    which has them; or the image alone: .png, .ktx2, .exr. `how`: `samples` along a texel's side, `nodes`, whose outputs are
+    baked instead ("*" for all, and of a graph, .json), `also` ("ktx2", "exr"), `bits`, `levels`, `srgb`. "output", "images",
+    and how many "textures" have one."""
+    to, source, names = _path(output), _path(file), _names(materials)
+    how_text = _text(json.dumps({"size": _texels(size), **how}))
+    return json.loads(_taken(_calling(options, messages, lambda said, of: _lib.lacquer_bake_as(
+        to, source, names, len(names), how_text, of, said))))
+
+
+def _texels(size: int) -> int:
+    texels = _index(size)
     if texels > 0xFFFFFFFF:
         raise ValueError(f"{size} is no size of an image")
-    return json.loads(_taken(_calling(options, messages, lambda said, how: _lib.lacquer_bake(
-        to, source, names, len(names), texels, how, said))))
+    return texels
 
 
 def _table(function: Callable[..., int], size: int) -> NDArray[np.float32]:

@@ -389,6 +389,39 @@ def test_materials_of_other_tools(tmp_path):
     assert [Path(image).is_file() for image in baked["images"]] == [True]
     with pytest.raises(lacquer.Error):
         lacquer.bake(tmp_path / "coat.gltf", coat)
+    alone = lacquer.bake(tmp_path / "across.ktx2", tmp_path / "ramp.mtlx", size=4, nodes=["across"], levels=True)
+    assert alone["output"] == "" and len(alone["images"]) == 1
+    with pytest.raises(lacquer.Error) as error:
+        lacquer.bake(tmp_path / "across.ktx2", tmp_path / "ramp.mtlx", texels=4)
+    assert error.value.messages[0].code == "unknown-option"
+    lost = lacquer.convert(tmp_path / "open.mtlx", tmp_path / "ramp.mtlx", surface="open_pbr_surface", measured=True, size=16)
+    assert [each["material"] for each in lost["differences"]] == ["Ramp"]
+
+
+def test_scenes_as_texts_of_other_tools(tmp_path):
+    text = """<materialx version="1.39">
+      <nodegraph name="NG">
+        <ramplr name="across" type="color3"><input name="valuel" type="color3" value="0.1, 0.2, 0.9"/></ramplr>
+        <output name="out" type="color3" nodename="across"/></nodegraph>
+      <gltf_pbr name="shader" type="surfaceshader">
+        <input name="base_color" type="color3" nodegraph="NG" output="out"/></gltf_pbr>
+      <surfacematerial name="Ramp" type="material">
+        <input name="surfaceshader" type="surfaceshader" nodename="shader"/></surfacematerial></materialx>"""
+    scene = lacquer.Scene.read(text.encode(), "ramp.mtlx")
+    gltf = json.loads(scene.to_gltf(size=4))
+    assert "KHR_texture_procedurals" in gltf["extensions"]
+    (tmp_path / "ramp.mtlx").write_text(text)
+    assert json.loads(lacquer.to_gltf(tmp_path / "ramp.mtlx", size=4)) == gltf
+    assert 'value="0.1, 0.2, 0.9"' in scene.to_materialx()
+    graph = scene.graph(0)
+    graph.set_parameter("NG_across_valuel", [0.5, 0.25, 0.125])
+    assert 'value="0.5, 0.25, 0.125"' in scene.to_materialx(edited={0: graph})
+    main = """<materialx version="1.39"><xi:include href="lib/ramp.mtlx"/></materialx>"""
+    options = {"document_texts": {"lib/ramp.mtlx": text}}
+    assert lacquer.Scene.read(main.encode(), "main.mtlx", options).materials == ["Ramp"]
+    with pytest.raises(lacquer.Error) as error:
+        lacquer.Scene.read(main.encode(), "main.mtlx", {"document_texts": {"ramp.mtlx": text}})
+    assert error.value.messages[0].code == "include-missing"
 
 
 def test_handles_are_freed():

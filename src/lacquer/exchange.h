@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lacquer/generate.h"
 #include "lacquer/options.h"
 #include "lacquer/results.h"
 
@@ -18,6 +19,16 @@ namespace lacquer {
 /// "unknown-surface", "no-such-material", those of the file, or where no material is left.
 std::string toMaterialX(const std::string& file, const Strings& materials, const std::string& surface,
                         const Options& options, Messages& messages);
+
+/// A material of a scene whose graph was edited.
+struct EditedGraph {
+  size_t material = 0;
+  const Graph* graph = nullptr;
+};
+/// The same of a scene. Of an edited graph what computes texels is written, with its numbers and images; its
+/// other terms are what the material's properties say, which is a note, "not-said".
+std::string toMaterialX(const Scene& scene, const Strings& materials, const std::string& surface,
+                        const std::vector<EditedGraph>& edited, const Options& options, Messages& messages);
 
 /// The same as a file. False on an error, which "output-clash" and "file-unwritable" are, too.
 bool writeMaterialX(const std::string& output, const std::string& file, const Strings& materials,
@@ -87,6 +98,10 @@ std::optional<Baked> bake(const Bake& how, const std::string& file, const String
 /// warning, "not-said". Files are named from the folder of the file. Empty on an error, those of bake() and
 /// "whole-file" for names of materials of a .gltf file.
 std::string toGltf(const std::string& file, const Strings& materials, uint32_t size, const Options& options,
+                   Messages& messages);
+
+/// The same of a scene; a document that was read from memory names its images as it does.
+std::string toGltf(const Scene& scene, const Strings& materials, uint32_t size, const Options& options,
                    Messages& messages);
 
 }  // namespace lacquer

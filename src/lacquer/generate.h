@@ -14,6 +14,7 @@
 namespace lacquer {
 
 struct Contract;
+struct EditedGraph;
 
 /// The vertex attributes of a primitive beside POSITION.
 struct Attributes {
@@ -83,6 +84,9 @@ private:
   friend std::vector<uint8_t> drawBall(const Scene&, size_t, uint32_t, const Strings&, const Options&,
                                        Messages&, const Trial&, const ValueLook&);
   friend Contract contract(const Scene&, const Strings&, const Options&, Messages&, const Progress&);
+  friend std::string toMaterialX(const Scene&, const Strings&, const std::string&,
+                                 const std::vector<EditedGraph>&, const Options&, Messages&);
+  friend std::string toGltf(const Scene&, const Strings&, uint32_t, const Options&, Messages&);
   struct Impl;
   const Impl& impl() const;
   std::shared_ptr<Impl> impl_;

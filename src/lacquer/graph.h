@@ -10,7 +10,9 @@
 
 namespace lacquer {
 
+class Scene;
 class Shader;
+struct EditedGraph;
 struct PointArrays;
 struct Trial;
 struct Tuned;
@@ -205,6 +207,8 @@ private:
   friend std::vector<uint8_t> drawBall(const Graph&, uint32_t, const Strings&, const Options&, Messages&,
                                        const Trial&, const ValueLook&);
   friend std::optional<Tuned> tune(const Graph&, const Options&, Messages&);
+  friend std::string toMaterialX(const Scene&, const Strings&, const std::string&,
+                                 const std::vector<EditedGraph>&, const Options&, Messages&);
   struct Impl;
   std::shared_ptr<Impl> impl_;
 };

@@ -149,6 +149,9 @@ struct Options {
   /// More node files from memory, behind those: what messages call each, and its text. Not of plan(), whose
   /// commands read folders.
   std::vector<std::pair<std::string, std::string>> node_texts;
+  /// Of Scene::fromMemory(): what a MaterialX document includes, by the path as seen from the document, and
+  /// its text. Without any it reads files beside the document's name.
+  std::vector<std::pair<std::string, std::string>> document_texts;
   uint32_t jobs = 0;  ///< threads, at most 1024; 0 for one on each core
   std::string cache;  ///< folder that keeps results between runs (docs/builds.md); empty for none
   uint64_t cache_size = uint64_t{1} << 30;  ///< bytes that the cache may take

@@ -45,6 +45,10 @@ const std::vector<Row>& rows() {
        [](Options& o) {
          o.node_texts = {{"a.node", ""}};
        }},
+      {"document_texts", Decides::Nothing,
+       [](Options& o) {
+         o.document_texts = {{"a.mtlx", ""}};
+       }},
       {"jobs", Decides::Nothing, [](Options& o) { o.jobs = 2; }},
       {"cache", Decides::Nothing, [](Options& o) { o.cache = "cache"; }},
       {"cache_size", Decides::Nothing, [](Options& o) { o.cache_size = 1; }},

@@ -83,5 +83,80 @@ TEST_F(CExchange, PatternsAreBaked) {
   EXPECT_EQ(c_messages_.takeCodes(), "out-of-range, nothing-to-bake");
 }
 
+TEST_F(CExchange, BakesWithAllThatCppSays) {
+  const std::string output = (folder_ / "across.ktx2").string();
+  const char* how = R"({"size": 4, "nodes": ["across"], "levels": true, "bits": 16})";
+  const CText text(lacquer_bake_as(output.c_str(), document_.c_str(), nullptr, 0, how, nullptr, c_messages_));
+  EXPECT_NE(textOf(text).find("across.ktx2"), std::string::npos) << textOf(text);
+  EXPECT_TRUE(fs::exists(output));
+  EXPECT_EQ(lacquer_bake_as(output.c_str(), document_.c_str(), nullptr, 0, R"({"texels": 4})", nullptr,
+                            c_messages_),
+            nullptr);
+  EXPECT_EQ(lacquer_bake_as(output.c_str(), document_.c_str(), nullptr, 0, R"({"also": ["png"]})", nullptr,
+                            c_messages_),
+            nullptr);
+  EXPECT_EQ(lacquer_bake_as(output.c_str(), document_.c_str(), nullptr, 0, "[", nullptr, c_messages_),
+            nullptr);
+  EXPECT_EQ(c_messages_.takeCodes(), "unknown-option, wrong-type, json-syntax");
+}
+
+TEST_F(CExchange, ConversionsAreMeasured) {
+  const std::string output = (folder_ / "open.mtlx").string();
+  const CText text(lacquer_convert_as(output.c_str(), document_.c_str(), nullptr, 0,
+                                      R"({"surface": "open_pbr_surface", "measured": true, "size": 16})",
+                                      nullptr, c_messages_));
+  EXPECT_NE(textOf(text).find("\"material\": \"Ramp\""), std::string::npos) << textOf(text);
+  EXPECT_TRUE(fs::exists(output));
+}
+
+TEST_F(CExchange, ScenesAreTexts) {
+  const CText file(lacquer_gltf(document_.c_str(), nullptr, 0, 4, nullptr, c_messages_));
+  EXPECT_EQ(textOf(file), toGltf(document_, {}, 4, {}, messages_));
+  const CScene scene(lacquer_scene_load(document_.c_str(), nullptr, c_messages_));
+  const CText same(lacquer_scene_gltf(scene.get(), nullptr, 0, 4, nullptr, c_messages_));
+  EXPECT_EQ(textOf(same), textOf(file));
+  const CText plain(
+      lacquer_scene_materialx(scene.get(), nullptr, 0, "", nullptr, nullptr, 0, nullptr, c_messages_));
+  EXPECT_EQ(textOf(plain), toMaterialX(document_, {}, "", {}, messages_));
+  EXPECT_EQ(c_messages_.takeCodes(), "");
+  // Of an edited graph the numbers of its patterns.
+  lacquer_graph* graph = lacquer_scene_graph(scene.get(), 0, LACQUER_UNUSED_ATTRIBUTES, nullptr, c_messages_);
+  const double blue[] = {0.0625, 0.125, 0.25};
+  ASSERT_EQ(lacquer_graph_set_parameter(graph, "NG_across_valuel", blue, 3, c_messages_), 1);
+  const size_t first = 0;
+  const CText edited(
+      lacquer_scene_materialx(scene.get(), nullptr, 0, "", &first, &graph, 1, nullptr, c_messages_));
+  EXPECT_NE(textOf(edited).find("value=\"0.0625, 0.125, 0.25\""), std::string::npos) << textOf(edited);
+  EXPECT_EQ(textOf(edited).size() > 0, true);
+  EXPECT_EQ(c_messages_.takeCodes(), "not-said");
+  const size_t none = 7;
+  EXPECT_EQ(lacquer_scene_materialx(scene.get(), nullptr, 0, "", &none, &graph, 1, nullptr, c_messages_),
+            nullptr);
+  EXPECT_EQ(lacquer_scene_materialx(nullptr, nullptr, 0, "", nullptr, nullptr, 0, nullptr, c_messages_),
+            nullptr);
+  EXPECT_EQ(lacquer_scene_gltf(scene.get(), nullptr, 0, 0, nullptr, c_messages_), nullptr);
+  EXPECT_EQ(c_messages_.takeCodes(), "no-such-material, empty-handle, out-of-range");
+  lacquer_graph_free(graph);
+}
+
+TEST_F(CExchange, IncludedTextsAreGiven) {
+  const std::string main = R"(<materialx version="1.39"><xi:include href="lib/s.mtlx"/></materialx>)";
+  const auto materials = [&](const char* json) {
+    const COptions options = optionsFrom(json, c_messages_);
+    const CScene scene(
+        lacquer_scene_read(main.data(), main.size(), "a/main.mtlx", options.get(), c_messages_));
+    return lacquer_scene_material_count(scene.get());
+  };
+  EXPECT_EQ(materials(R"({"document_texts": {"lib/s.mtlx":
+    "<materialx version='1.39'><surface_unlit name='s' type='surfaceshader'/></materialx>"}})"),
+            1U);
+  EXPECT_EQ(c_messages_.takeCodes(), "");
+  EXPECT_EQ(materials(R"({"document_texts": {"s.mtlx": "<materialx version='1.39'/>"}})"), 0U);
+  EXPECT_EQ(materials(R"({"document_texts": {"lib/s.mtlx":
+    "<materialx version='1.39'><xi:include href='../../b.mtlx'/></materialx>"}})"),
+            0U);
+  EXPECT_EQ(c_messages_.takeCodes(), "include-missing, include-outside");
+}
+
 }  // namespace
 }  // namespace lacquer::test

@@ -60,7 +60,7 @@ export function lookOf(of: Document, shader: Shader, graph: GraphJson): Look {
   return {
     id: shader.id,
     block: shader.pack(),
-    slots: new Map(Object.entries(graph.textures ?? {}).map(([slot, { texture, srgb }]) => [slot, { texture, srgb }])),
+    slots: new Map(Object.entries(graph.textures ?? {}).map(([slot, { texture, srgb }]) => [slot, { texture: texture ?? -1, srgb }])),
     doubleSided: material.doubleSided === true,
     blended: material.alphaMode === 'BLEND',
   };

@@ -50,7 +50,7 @@ export function errorTable(graph: GraphJson, errors: Errors, choose: (word: stri
   const rows: HTMLElement[] = [];
   for (const { id, node, variant } of graph.nodes) {
     const used = variant ?? 'reference';
-    const bodies = Object.entries(errors.nodes[node] ?? {}).sort(([a], [b]) => Number(b === used) - Number(a === used));
+    const bodies = Object.entries(errors.nodes[node ?? ''] ?? {}).sort(([a], [b]) => Number(b === used) - Number(a === used));
     bodies.forEach(([name, body], i) => {
       const other = name !== used;
       const pick = h('button', { type: 'button', class: 'quiet', title: 'Compare with this body', click: () => choose(`variant:${id}=${name}`) }, name);

@@ -101,7 +101,7 @@ export class GraphPane implements Host {
     return this.page.options();
   }
   values(): Record<string, number | number[]> {
-    return Object.fromEntries(Object.entries(this.page.graphJson?.parameters ?? {}).map(([name, { value }]) => [name, value]));
+    return Object.fromEntries(Object.entries(this.page.graphJson?.parameters ?? {}).map(([name, { value }]) => [name, value as number | number[]]));
   }
   setValue(parameter: string, value: number | number[]): void {
     this.page.setParameter(parameter, value);

@@ -431,6 +431,43 @@ export class Scene extends Handle {
       this.it.call.lacquer_scene_properties(this.at, material, bits, how, said);
     return JSON.parse(this.it.taken(calling(this.it, options, messages, call)));
   }
+  /** A MaterialX document of the materials: of those of the names, or all. `surface` is "gltf_pbr", "open_pbr_surface", or left out
+   * for the one that says more of a material. Of materials whose graphs were edited, by their numbers, it has what computes texels
+   * in the graph, with its numbers and images. What it cannot say is a warning. */
+  toMaterialX(what: { materials?: string[]; surface?: string; edited?: Map<number, Graph> } = {}, messages: Message[] = []): string {
+    const edited = [...(what.edited ?? [])];
+    const numbers = new Uint8Array(new Uint32Array(edited.map(([material]) => material)).buffer);
+    const graphs = new Uint8Array(new Uint32Array(edited.map(([, graph]) => graph.address)).buffer);
+    return this.named(what.materials, (names, count) =>
+      this.it.withTexts([what.surface ?? ''], ([surface]) =>
+        this.it.withBytes(numbers, (first) =>
+          this.it.withBytes(graphs, (list) =>
+            this.it.taken(
+              calling(this.it, undefined, messages, (said) =>
+                this.it.call.lacquer_scene_materialx(this.at, names, count, surface, first, list, edited.length, 0, said),
+              ),
+            ),
+          ),
+        ),
+      ),
+    );
+  }
+  /** A glTF file whose procedural textures are KHR_texture_procedurals, each with a baked fallback of `size` by `size` texels. */
+  toGltf(what: { materials?: string[]; size?: number } = {}, messages: Message[] = []): string {
+    return this.named(what.materials, (names, count) =>
+      this.it.taken(
+        calling(this.it, undefined, messages, (said) =>
+          this.it.call.lacquer_scene_gltf(this.at, names, count, what.size ?? 256, 0, said),
+        ),
+      ),
+    );
+  }
+  /** Names as a list of C's. */
+  private named<T>(names: string[] | undefined, call: (at: number, count: number) => T): T {
+    return this.it.withTexts(names ?? [], (each) =>
+      this.it.withBytes(new Uint8Array(new Uint32Array(each).buffer), (list) => call(list, each.length)),
+    );
+  }
   private bits(material: number, attributes?: Attribute[]): number {
     const names = attributes ?? this.uses(material)[0] ?? kUnusedAttributes;
     return names.reduce((sum, name) => sum | (1 << kAttributes.indexOf(name)), 0);

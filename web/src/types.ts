@@ -50,6 +50,8 @@ export interface Options {
   live?: string[];
   /** More node files: their texts by the names that messages have of them. */
   node_texts?: Record<string, string>;
+  /** What a MaterialX document includes, by its path as seen from the document. */
+  document_texts?: Record<string, string>;
   limits?: string[];
   /** Of contracts: also materials that no primitive uses. */
   unused?: boolean;
@@ -156,16 +158,69 @@ export type GraphSource =
   | { input: string; swizzle?: string }
   | { value: number | number[]; swizzle: string };
 
-/** The JSON form of a graph. */
+/** A parameter in the JSON form of a graph; a `range` end of null is none. */
+export interface ParameterJson {
+  type: string;
+  value: number | boolean | (number | boolean)[];
+  range?: (number | null)[];
+  /** 0 may stand beside a range above it. */
+  or_zero?: boolean;
+  pointer?: string;
+  default?: number | boolean | (number | boolean)[];
+  animated?: boolean;
+  ui?: unknown;
+}
+export interface TextureJson {
+  type: string;
+  srgb: boolean;
+  /** An index of the file's textures; -1 where it is absent. */
+  texture?: number;
+  /** Instead, an image's URI. */
+  file?: string;
+  wrap?: 'clamp' | 'mirror' | ('repeat' | 'clamp' | 'mirror')[];
+  filter?: 'nearest';
+  /** Four linear numbers in the place of an image that is not there. */
+  default?: number[];
+  pointer?: string;
+  /** The textureInfos of other properties that have the same texel. */
+  also?: string[];
+  ui?: unknown;
+}
+/** A node of the library, or with `group` an instance of a group. */
+export interface NodeJson {
+  id: string;
+  node?: string;
+  group?: string;
+  variant?: string;
+  /** "vertex": it is computed at the vertices. */
+  stage?: 'vertex';
+  /** The term of a specification that it is, and its place there. */
+  term?: string;
+  place?: number;
+  inputs: Record<string, GraphSource>;
+  ui?: unknown;
+}
+export interface GroupJson {
+  inputs: Record<string, { type: string; default?: GraphSource; range?: (number | null)[]; or_zero?: boolean; ui?: unknown }>;
+  nodes: NodeJson[];
+  outputs: Record<string, GraphSource>;
+  ui?: unknown;
+}
+/** The JSON form of a graph (docs/graph-format.md). */
 export interface GraphJson {
   lacquer_graph: number;
   name: string;
   template: string;
-  parameters: Record<string, { type: string; value: number | number[]; range?: number[]; pointer?: string }>;
-  textures: Record<string, { type: string; srgb: boolean; texture: number; pointer: string }>;
-  nodes: { id: string; node: string; variant?: string; inputs: Record<string, GraphSource> }[];
+  /** Vertex attributes that it is given. */
+  attributes?: string[];
+  parameters: Record<string, ParameterJson>;
+  textures: Record<string, TextureJson>;
+  groups?: Record<string, GroupJson>;
+  nodes: NodeJson[];
   outputs: Record<string, GraphSource>;
   skipped?: Record<string, string>;
+  /** Of a tool's, any JSON. */
+  ui?: unknown;
 }
 
 /** A point of `evaluate` (docs/eval.md). */

@@ -59,15 +59,22 @@ Result<void> hasPlace(const std::string& folder, const std::vector<std::string>&
               "where this folder is cannot be told: " + error.message(), "nothing was written");
 }
 
-Moved::Moved(const std::string& from, const std::string& to) : below_(isBelow(from) && isBelow(to)) {
-  absolute_to_ = followed(to);
+Moved::Moved(const std::string& from, const std::string& to)
+    : below_(from == to || (isBelow(from) && isBelow(to))) {
+  if (from != to) absolute_to_ = followed(to);
   from_ = below_ ? fs::path(from) : followed(from);
   if (below_) to_ = withoutSlash(fs::path(to).lexically_normal());
 }
 
 std::string Moved::operator()(const std::string& path) const {
   const fs::path there = (from_ / path).lexically_normal();
-  const fs::path relative = there.lexically_relative(there.is_absolute() ? absolute_to_ : to_);
+  // Of a folder that stays the words will do, but for what does not begin there; a module without files has
+  // no working folder.
+  std::error_code none;
+  const bool elsewhere = absolute_to_.empty() && there.is_absolute() && !to_.is_absolute();
+  if (elsewhere && fs::current_path(none).empty()) return there.generic_string();
+  const fs::path whole_to = elsewhere ? followed(to_.string()) : absolute_to_.empty() ? to_ : absolute_to_;
+  const fs::path relative = there.lexically_relative(there.is_absolute() ? whole_to : to_);
   return relative.empty() ? there.generic_string() : relative.generic_string();
 }
 

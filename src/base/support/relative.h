@@ -21,7 +21,7 @@ Result<void> hasPlace(const std::string& folder, const std::vector<std::string>&
 /// What paths in files of the folder `from` are in those of the folder `to`. Of the paths the words decide
 /// alone: they may be those of others, and nothing is looked at where they lead. Where both folders are below
 /// the working one, their words do, too: neither where that is shows nor what is there; else links in them
-/// are followed.
+/// are followed. Where both are one, nothing is looked at.
 class Moved {
 public:
   Moved(const std::string& from, const std::string& to);

@@ -1,4 +1,5 @@
 #include "exchange/exchange.h"
+#include "exchange/edited.h"
 #include "exchange/translation.h"
 
 #include <fmt/format.h>
@@ -6,6 +7,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "api/internal.h"
+#include "bake/bake.h"
 #include "lacquer/exchange.h"
 #include "lacquer/graph.h"
 #include "materialx/element.h"
@@ -52,9 +55,8 @@ std::optional<std::string> translatedOf(const std::string& file, const std::stri
   return materialx::toXml(document->root);
 }
 
-/// The document's text, for that folder.
-std::string documentOf(const std::string& file, const std::string& folder, const Strings& materials,
-                       const std::string& surface, const Options& options, Messages& messages) {
+/// Whether a material may be written as that surface; false, and a message, where not.
+bool isSurface(const std::string& file, const std::string& surface, Messages& messages) {
   const auto fits = [&](std::string_view one) { return one == surface; };
   if (!surface.empty() &&
       std::none_of(std::begin(exchange::kSurfaces), std::end(exchange::kSurfaces), fits)) {
@@ -62,8 +64,42 @@ std::string documentOf(const std::string& file, const std::string& folder, const
                 "there are " + listOf(exchange::kSurfaces))
                .value(),
            file, messages);
+    return false;
+  }
+  return true;
+}
+
+/// The text of materials that were read: of the names, or all.
+std::string textOf(const material::Document& document, const material::Schema& schema,
+                   const std::string& folder, const Strings& materials, const std::string& surface,
+                   Messages& messages) {
+  const std::string& file = document.path;
+  std::vector<size_t> wanted;
+  for (const std::string& name : materials) {
+    Diagnostics warnings;
+    const Result<size_t> found = material::findMaterial(document, name, warnings);
+    report(found ? warnings : found.error(), file, messages);
+    if (!found) return {};
+    wanted.push_back(*found);
+  }
+  for (size_t i = 0; materials.empty() && i < document.materials.size(); ++i) wanted.push_back(i);
+  if (wanted.empty()) {
+    report(fail("no-such-material", {}, "the file has no materials", "name one that has").value(), file,
+           messages);
     return {};
   }
+  for (const size_t i : wanted) report(document.materials[i].diagnostics, file, messages);
+  std::erase_if(wanted, [&](size_t i) { return lacquer::hasError(document.materials[i].diagnostics); });
+  if (wanted.empty()) return {};
+  exchange::Written written = exchange::toMaterialX(document, wanted, schema, surface, folder);
+  report(written.said, file, messages);
+  return std::move(written.text);
+}
+
+/// The document's text, for that folder.
+std::string documentOf(const std::string& file, const std::string& folder, const Strings& materials,
+                       const std::string& surface, const Options& options, Messages& messages) {
+  if (!isSurface(file, surface, messages)) return {};
   if (isGraphFile(file)) {
     report(
         fail("graph-is-built", {}, "a graph is built of a material's terms, for which MaterialX has no nodes",
@@ -83,26 +119,7 @@ std::string documentOf(const std::string& file, const std::string& folder, const
   const Result<material::Document> document = readMaterials(file, **language, options);
   if (!document) return report(document.error(), file, messages), std::string();
   report(document->diagnostics, file, messages);
-  std::vector<size_t> wanted;
-  for (const std::string& name : materials) {
-    Diagnostics warnings;
-    const Result<size_t> found = material::findMaterial(*document, name, warnings);
-    report(found ? warnings : found.error(), file, messages);
-    if (!found) return {};
-    wanted.push_back(*found);
-  }
-  for (size_t i = 0; materials.empty() && i < document->materials.size(); ++i) wanted.push_back(i);
-  if (wanted.empty()) {
-    report(fail("no-such-material", {}, "the file has no materials", "name one that has").value(), file,
-           messages);
-    return {};
-  }
-  for (const size_t i : wanted) report(document->materials[i].diagnostics, file, messages);
-  std::erase_if(wanted, [&](size_t i) { return lacquer::hasError(document->materials[i].diagnostics); });
-  if (wanted.empty()) return {};
-  exchange::Written written = exchange::toMaterialX(*document, wanted, **schema, surface, folder);
-  report(written.said, file, messages);
-  return std::move(written.text);
+  return textOf(*document, **schema, folder, materials, surface, messages);
 }
 
 }  // namespace
@@ -110,6 +127,39 @@ std::string documentOf(const std::string& file, const std::string& folder, const
 std::string toMaterialX(const std::string& file, const Strings& materials, const std::string& surface,
                         const Options& options, Messages& messages) {
   return documentOf(file, {}, materials, surface, options, messages);
+}
+
+std::string toMaterialX(const Scene& scene, const Strings& materials, const std::string& surface,
+                        const std::vector<EditedGraph>& edited, const Options&, Messages& messages) {
+  if (!filled(scene.impl_.get(), "scene", messages)) return {};
+  const Scene::Impl& of = scene.impl();
+  if (!isSurface(of.document.path, surface, messages)) return {};
+  const Result<const material::Schema*> schema = of.language->models.schema();
+  if (!schema) return report(schema.error(), of.document.path, messages), std::string();
+  std::vector<std::pair<size_t, const graph::Graph*>> graphs;
+  for (const EditedGraph& one : edited) {
+    if (one.graph == nullptr || !filled(one.graph->impl_.get(), "graph", messages)) return {};
+    if (of.material(one.material, messages) == nullptr) return {};
+    graphs.emplace_back(one.material, &one.graph->impl_->graph);
+    report({{"not-said",
+             Severity::Note,
+             {{}, 0, 0, fmt::format("/materials/{}", one.material)},
+             "of the edited graph what computes texels is written",
+             "its other terms are what the material's properties say",
+             {}}},
+           of.document.path, messages);
+  }
+  if (graphs.empty()) return textOf(of.document, **schema, {}, materials, surface, messages);
+  material::Document document = of.document;
+  exchange::putGraphs(document, graphs, **schema);
+  return textOf(document, **schema, {}, materials, surface, messages);
+}
+
+std::string toGltf(const Scene& scene, const Strings& materials, uint32_t size, const Options& options,
+                   Messages& messages) {
+  if (!filled(scene.impl_.get(), "scene", messages)) return {};
+  const Scene::Impl& of = scene.impl();
+  return gltfOf({of.document, of.language, of.bytes}, materials, size, options, messages);
 }
 
 bool writeMaterialX(const std::string& output, const std::string& file, const Strings& materials,

@@ -66,8 +66,9 @@ Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const
   const Result<SchemaOf> schema = schemaFor(options);
   const Result<Limits> limits = limitsOf(options);
   if (!schema || !limits) return report(schema ? limits.error() : schema.error(), name, messages), scene;
-  Result<material::Document> document =
-      material::readText(bytes, name, *schema->schema, {options.permissive, *limits});
+  Result<material::Document> document = material::readText(
+      bytes, name, *schema->schema,
+      {options.permissive, *limits, options.document_texts.empty() ? nullptr : &options.document_texts});
   if (!document) {
     report(document.error(), name, messages);
     return scene;

@@ -1,14 +1,7 @@
 // Options from their JSON form, a row for each key.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-
 #include "c/handles.h"
-#include "json/json.h"
+#include "c/rows.h"
 #include "setting/messages.h"
-#include "support/text.h"
 
 namespace lacquer::c {
 
@@ -24,9 +17,6 @@ lacquer_options defaults() {
   return options;
 }
 
-/// Each sets a member from a value, and is false for a value of another kind.
-using Set = bool (*)(const Json&, lacquer_options&);
-
 template <bool Options::*Member>
 bool setBool(const Json& value, lacquer_options& to) {
   if (value.is_boolean()) to.options.*Member = value.get<bool>();
@@ -39,24 +29,9 @@ bool setText(const Json& value, lacquer_options& to) {
   return value.is_string();
 }
 
-bool readStrings(const Json& value, Strings& to) {
-  const auto text = [](const Json& each) { return each.is_string(); };
-  if (!value.is_array() || !std::all_of(value.begin(), value.end(), text)) return false;
-  to = value.get<Strings>();
-  return true;
-}
-
 template <Strings Options::*Member>
 bool setStrings(const Json& value, lacquer_options& to) {
   return readStrings(value, to.options.*Member);
-}
-
-bool wholeNumber(const Json& value, uint32_t& to) {
-  if (!value.is_number()) return false;
-  const double x = value.get<double>();
-  if (!(x >= 0 && x <= 4294967295.0) || x != std::floor(x)) return false;
-  to = static_cast<uint32_t>(x);
-  return true;
 }
 
 bool setTargets(const Json& value, lacquer_options& to) {
@@ -113,11 +88,11 @@ bool setSwitches(const Json& value, lacquer_options& to) {
   return true;
 }
 
-bool setNodeTexts(const Json& value, lacquer_options& to) {
+bool setTexts(const Json& value, std::vector<std::pair<std::string, std::string>>& to) {
   if (!value.is_object()) return false;
   for (const auto& [name, text] : value.items()) {
     if (!text.is_string()) return false;
-    to.options.node_texts.emplace_back(name, text.get<std::string>());
+    to.emplace_back(name, text.get<std::string>());
   }
   return true;
 }
@@ -150,15 +125,7 @@ bool setLook(const Json& value, lacquer_options& to) {
   return false;
 }
 
-struct Row {
-  std::string_view key;
-  std::string_view what;  ///< it must be
-  Set set;
-};
-
-constexpr std::string_view kTruth = "true or false";
-constexpr std::string_view kTexts = "an array of strings";
-constexpr Row kRows[] = {
+constexpr Row<lacquer_options> kRows[] = {
     {"profile", "a string", setText<&Options::profile>},
     {"simplify", kTexts, setStrings<&Options::simplify>},
     {"template", "a string", setText<&Options::template_name>},
@@ -189,7 +156,10 @@ constexpr Row kRows[] = {
     {"debug", kTruth, setBool<&Options::debug>},
     {"live", kTexts, setStrings<&Options::live>},
     {"node_directories", kTexts, setStrings<&Options::node_directories>},
-    {"node_texts", "an object of texts by their names", setNodeTexts},
+    {"node_texts", "an object of texts by their names",
+     [](const Json& value, lacquer_options& to) { return setTexts(value, to.options.node_texts); }},
+    {"document_texts", "an object of texts by their names",
+     [](const Json& value, lacquer_options& to) { return setTexts(value, to.options.document_texts); }},
     {"jobs", "a whole number",
      [](const Json& value, lacquer_options& to) { return wholeNumber(value, to.options.jobs); }},
     {"limits", kTexts, setStrings<&Options::limits>},
@@ -227,28 +197,8 @@ constexpr Row kRows[] = {
 
 Result<lacquer_options> readOptions(std::string_view text) {
   lacquer_options options = defaults();
-  if (text.empty()) return options;
-  const Result<Json> json = json::parse(text, "options");
-  if (!json) return tl::make_unexpected(json.error());
-  if (!json->is_object()) {
-    return fail("wrong-type", {"options", 0, 0, {}}, fmt::format("the options are {}", json::describe(*json)),
-                "they must be an object");
-  }
-  for (const auto& [key, value] : json->items()) {
-    const Place place{"options", 0, 0, "/" + key};
-    const auto row = std::find_if(std::begin(kRows), std::end(kRows),
-                                  [&, &name = key](const Row& each) { return each.key == name; });
-    if (row == std::end(kRows)) {
-      std::vector<std::string_view> names;
-      for (const Row& each : kRows) names.push_back(each.key);
-      return fail("unknown-option", place, fmt::format("there is no option {}", quote(key)),
-                  "there are " + listOf(names));
-    }
-    if (!row->set(value, options)) {
-      return fail("wrong-type", place, fmt::format("{} is {}", quote(key), json::describe(value)),
-                  fmt::format("it must be {}", row->what));
-    }
-  }
+  if (const Result<void> read = readRows(text, "options", kRows, options); !read)
+    return tl::make_unexpected(read.error());
   return options;
 }
 

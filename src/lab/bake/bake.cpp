@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "bake/bake.h"
 #include "bake/image.h"
 #include "bake/nodes.h"
 #include "eval/material.h"
@@ -112,6 +113,8 @@ public:
   Result<Baked> make(const std::string& file, const Strings& materials);
   /// The glTF file, with the images in it.
   Result<std::string> text(const std::string& file, const Strings& materials);
+  /// Takes what is in memory in the place of the file.
+  void take(const InMemoryFile& of);
 
 private:
   struct Computed {
@@ -147,6 +150,8 @@ private:
   Messages& messages_;
   const Progress& progress_;
   std::shared_ptr<const Language> language_;
+  std::shared_ptr<const std::string> bytes_;  ///< the file's, where it was read from memory
+  bool is_open_ = false;
   const material::Schema* schema_ = nullptr;
   material::Document document_;
   std::vector<size_t> wanted_;
@@ -293,7 +298,7 @@ Json Baking::materialJson(const material::Material& material) const {
 /// materials alone.
 Result<Json> Baking::frame(const std::string& file) {
   Json gltf = Json::object();
-  const fs::path from = fs::absolute(fs::path(file)).parent_path();
+  const fs::path from = (embed_ ? fs::path(file) : fs::absolute(fs::path(file))).parent_path();
   const fs::path to = embed_ ? from : fs::absolute(fs::path(how_.output)).parent_path();
   way_ = from == to ? "" : uriOf(from.lexically_relative(to).generic_string() + "/");
   if (document_.path.ends_with(".mtlx")) {
@@ -308,7 +313,7 @@ Result<Json> Baking::frame(const std::string& file) {
     if (!used.empty()) gltf["extensionsUsed"] = Json(used);
     return gltf;
   }
-  const Result<std::string> text = readFile(file);
+  const Result<std::string> text = bytes_ != nullptr ? Result<std::string>(*bytes_) : readFile(file);
   if (!text) return tl::make_unexpected(text.error());
   if (text->starts_with("glTF"))
     return fail("not-gltf", {file, 0, 0, {}}, "the file is a .glb, which holds its buffers itself",
@@ -431,7 +436,21 @@ Result<void> Baking::checkHow() {
               "PNG has 8 bits, KTX2 8 or 16, OpenEXR 16 or 32");
 }
 
+void Baking::take(const InMemoryFile& of) {
+  document_ = of.document;
+  language_ = of.language;
+  bytes_ = of.bytes;
+  is_open_ = true;
+}
+
 Result<void> Baking::open(const std::string& file) {
+  if (is_open_) {
+    const Result<const material::Schema*> known = language_->models.schema();
+    if (!known) return tl::make_unexpected(known.error());
+    schema_ = *known;
+    report(document_.diagnostics, file, messages_);
+    return {};
+  }
   Result<std::shared_ptr<const Language>> language = libraryFor(options_);
   if (!language) return tl::make_unexpected(language.error());
   language_ = std::move(*language);
@@ -626,7 +645,8 @@ Result<void> Baking::store(const Item& item, const std::vector<baking::Image>& l
 }
 
 FileImages Baking::sources() const {
-  return graph_ ? FileImages::ofGraph(document_.path, options_) : FileImages(document_.path, options_);
+  return graph_ ? FileImages::ofGraph(document_.path, options_)
+                : FileImages(document_.path, options_, bytes_);
 }
 
 Result<void> Baking::plan(const std::string& file, const Strings& materials) {
@@ -698,6 +718,20 @@ std::optional<Baked> bake(const Bake& how, const std::string& file, const String
   Result<Baked> made;
   withJobs(options.jobs, [&] { made = Baking(how, options, messages, progress).make(file, materials); });
   return valueOf(std::move(made), file, messages);
+}
+
+std::string gltfOf(const InMemoryFile& of, const Strings& materials, uint32_t size, const Options& options,
+                   Messages& messages) {
+  Result<std::string> made;
+  Bake how;
+  how.size = size;
+  const Progress none;
+  withJobs(options.jobs, [&] {
+    Baking baking(how, options, messages, none);
+    baking.take(of);
+    made = baking.text(of.document.path, materials);
+  });
+  return valueOf(std::move(made), of.document.path, messages).value_or(std::string());
 }
 
 std::string toGltf(const std::string& file, const Strings& materials, uint32_t size, const Options& options,

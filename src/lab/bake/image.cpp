@@ -6,7 +6,7 @@
 #include <cmath>
 #include <mutex>
 
-#include <stb_image_write.h>
+#include <stb/stb_image_write.h>
 
 #include "texture/container.h"
 

@@ -144,8 +144,8 @@ materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, con
 /// A MaterialX document: its surfaces as materials of a glTF file without a scene.
 Result<Document> readMaterialX(std::string_view text, const std::string& name, const Schema& schema,
                                const ReadOptions& options) {
-  Result<materialx::Materials> read =
-      materialx::readMaterials(text, name, *schema.library, options.limits, namesOf(schema));
+  Result<materialx::Materials> read = materialx::readMaterials(
+      text, name, *schema.library, {options.limits, namesOf(schema), options.included});
   if (!read) return tl::make_unexpected(read.error());
   Document document;
   document.path = name;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gltf/facts.h"
@@ -60,6 +61,8 @@ struct Document : gltf::Scene {
 struct ReadOptions {
   bool permissive = false;  ///< exclusion violations become warnings and the extension is dropped
   Limits limits = {};
+  /// What a MaterialX document includes, by its path as seen from there; null: files are read.
+  const std::vector<std::pair<std::string, std::string>>* included = nullptr;
 };
 
 /// Reads a .gltf, .glb or .mtlx file. Buffers and images need not exist. Errors: what makes the whole file

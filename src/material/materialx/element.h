@@ -41,7 +41,9 @@ struct Document {
 /// (`xi:include`) lie in the file's folder or below it. `colorspace`, `fileprefix` and `geomprefix` of the
 /// elements around have been handed down to what they are for. Errors: "xml-syntax", "xml-too-deep",
 /// "xml-too-many", "not-materialx", "unsupported-version", "include-…".
-Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits);
+/// With `included` no file is read: what is included is there, by its path as seen from the document.
+Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits,
+                         const std::vector<std::pair<std::string, std::string>>* included = nullptr);
 
 /// The `procedurals` of the extension KHR_texture_procedurals as elements: a `nodegraph` for each, in their
 /// order, and what is in `procedural_definitions` behind them. Places have JSON pointers. What is wrong with

@@ -255,13 +255,14 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
 }  // namespace
 
 Result<Materials> readMaterials(std::string_view text, const std::string& path, const lang::Library& library,
-                                const Limits& limits, const Names& reserved) {
-  Result<Document> document = readXml(text, path, limits);
+                                MaterialOptions options) {
+  Result<Document> document = readXml(text, path, options.limits, options.included);
   if (!document) return tl::make_unexpected(document.error());
   Diagnostics said;
   const VariantMaterials variants = addVariants(document->root, said);
   addTangentSpace(document->root);
-  return MaterialsReader(*document, library, {true, limits.nodes, {}, reserved, true})
+  return MaterialsReader(*document, library,
+                         {true, options.limits.nodes, {}, std::move(options.reserved), true})
       .read(variants, std::move(said));
 }
 

@@ -47,17 +47,25 @@ struct Materials {
   std::vector<std::string> files;  ///< that it includes
 };
 
+/// Files that documents include, by their paths as seen from the document, and their texts.
+using IncludedTexts = std::vector<std::pair<std::string, std::string>>;
 using Names = std::set<std::string, std::less<>>;
 
 /// True for text that is XML and no JSON: its first character that is no space is `<`.
 bool isXml(std::string_view text);
+
+struct MaterialOptions {
+  const Limits& limits;
+  Names reserved{};
+  const IncludedTexts* included = nullptr;
+};
 
 /// Reads a document; `path` is where its included files are looked for. Surfaces are translated to glTF's
 /// properties, and numbers of patterns become parameters with other names than the reserved ones; without a
 /// material, and without a surface, each output of a pattern is an unlit material. Errors: those of
 /// readXml(), and "no-materials".
 Result<Materials> readMaterials(std::string_view text, const std::string& path, const lang::Library& library,
-                                const Limits& limits, const Names& reserved);
+                                MaterialOptions options);
 
 struct ProceduralOptions {
   const Limits& limits;

@@ -32,7 +32,9 @@ struct Inherited {
 
 class XmlReader {
 public:
-  XmlReader(const std::string& path, const Limits& limits) : top_(path), limits_(limits) {}
+  using Texts = std::vector<std::pair<std::string, std::string>>;
+  XmlReader(const std::string& path, const Limits& limits, const Texts* included)
+      : top_(path), limits_(limits), included_(included) {}
 
   Result<Document> read(std::string_view text) {
     Document document;
@@ -47,6 +49,8 @@ private:
   void file(std::string_view text, const std::string& path, Element& into, const Inherited& around);
   void elements(pugi::xml_node parent, Element& into, const Inherited& around, size_t depth);
   void include(pugi::xml_node node, Element& into, const Inherited& around);
+  std::optional<std::string> inMemory(const std::string& folder, const std::string& href) const;
+  Result<std::string> textInMemory(const std::string& path) const;
   void handDown(Element& element, const Inherited& around) const;
   void version(Element& root);
 
@@ -75,6 +79,7 @@ private:
 
   const std::string& top_;
   const Limits& limits_;
+  const Texts* included_;  ///< null: files are read
   Diagnostics wrong_;
   std::vector<std::string> files_;
   std::vector<std::string> open_;  ///< files that are being read, to see a circle
@@ -210,6 +215,25 @@ void XmlReader::elements(pugi::xml_node parent, Element& into, const Inherited& 
   }
 }
 
+/// A path as seen from the folder that the name of the document would have; nothing for one outside.
+std::optional<std::string> XmlReader::inMemory(const std::string& folder, const std::string& href) const {
+  const std::filesystem::path path = (std::filesystem::path(folder) / href).lexically_normal();
+  const std::filesystem::path first = std::filesystem::path(top_).parent_path().lexically_normal();
+  const std::filesystem::path below = first.empty() ? path : path.lexically_relative(first);
+  if (below.empty() || below.is_absolute() || *below.begin() == "..") return std::nullopt;
+  return path.generic_string();
+}
+
+Result<std::string> XmlReader::textInMemory(const std::string& path) const {
+  const std::filesystem::path first = std::filesystem::path(top_).parent_path().lexically_normal();
+  const std::filesystem::path whole(path);
+  const std::string name = (first.empty() ? whole : whole.lexically_relative(first)).generic_string();
+  for (const auto& [known, text] : *included_) {
+    if (known == name) return text;
+  }
+  return fail("include-missing", {}, "it is not among the texts that are there");
+}
+
 void XmlReader::include(pugi::xml_node node, Element& into, const Inherited& around) {
   const ptrdiff_t offset = node.offset_debug();
   const std::string href = node.attribute("href").value();
@@ -222,7 +246,9 @@ void XmlReader::include(pugi::xml_node node, Element& into, const Inherited& aro
           "included files lie beside the document or below it");
     return;
   }
-  const std::optional<std::string> path = resolveBelow(folder, href, {first.empty() ? "." : first});
+  const std::optional<std::string> path = included_ != nullptr
+                                              ? inMemory(folder, href)
+                                              : resolveBelow(folder, href, {first.empty() ? "." : first});
   if (!path) {
     error("include-outside", offset, fmt::format("{} leads out of the document's folder", quote(href)),
           "included files lie beside the document or below it");
@@ -236,7 +262,8 @@ void XmlReader::include(pugi::xml_node node, Element& into, const Inherited& aro
     error("include-too-many", offset, fmt::format("more than {} files are included", kMostFiles));
     return;
   }
-  const Result<std::string> text = readFile(*path, limits_.file, Links::None);
+  const Result<std::string> text =
+      included_ != nullptr ? textInMemory(*path) : readFile(*path, limits_.file, Links::None);
   if (!text) {
     error("include-missing", offset,
           fmt::format("{} cannot be read: {}", quote(href), text.error()[0].message));
@@ -249,11 +276,12 @@ void XmlReader::include(pugi::xml_node node, Element& into, const Inherited& aro
 
 }  // namespace
 
-Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits) {
+Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits,
+                         const std::vector<std::pair<std::string, std::string>>* included) {
   if (text.size() > limits.json)
     return fail("xml-too-large", {path, 0, 0, {}},
                 fmt::format("the file has more than {} bytes", limits.json), raising("json"));
-  return XmlReader(path, limits).read(text);
+  return XmlReader(path, limits, included).read(text);
 }
 
 }  // namespace lacquer::materialx

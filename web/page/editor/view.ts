@@ -55,13 +55,8 @@ export interface View {
   ui: Ui;
 }
 
-/** The JSON form with what the types of the package leave open. */
-export interface Full extends Omit<GraphJson, 'parameters' | 'textures'> {
-  parameters: Record<string, { type: string; value: number | number[] | boolean; range?: (number | null)[]; or_zero?: boolean; pointer?: string; ui?: unknown }>;
-  textures: Record<string, { type: string; srgb?: boolean; pointer?: string; ui?: unknown }>;
-  groups?: Record<string, { inputs: Record<string, { type: string; ui?: unknown; range?: (number | null)[]; or_zero?: boolean }>; outputs: Record<string, GraphSource>; ui?: unknown }>;
-  ui?: unknown;
-}
+/** The JSON form of the graph that is edited. */
+export type Full = GraphJson;
 
 export const kWidth = 188;
 export const kHead = 34;
