@@ -1,7 +1,8 @@
 // The file that is edited: what is read from it, what changes it, and the way back.
-import type { Attribute, Lacquer } from '../src/index';
+import type { Attribute, Lacquer, Message } from '../src/index';
 import { geometry, openGltf, type Drawable, type GltfFile } from '../src/gltf';
 import { list } from '../src/json';
+import { asGltf, isDocument } from './foreign';
 import { kOwnNodes } from './nodetext';
 
 export interface Input {
@@ -29,6 +30,8 @@ export class Document {
   nodeText = '';
   /** What its `extras` had of graphs that cannot be read. */
   readonly refused: string[] = [];
+  /** What reading a MaterialX document has said. */
+  readonly said: Message[] = [];
   material = 0;
   /** The graph in its JSON form where it was edited itself; then the material only gives its parameters' values. */
   graphs = new Map<number, string>();
@@ -45,7 +48,8 @@ export class Document {
   private around: string | null = null; // what slim() begins with
 
   /** Throws a LacquerError for what the library cannot read. */
-  constructor(lacquer: Lacquer, input: Input) {
+  constructor(lacquer: Lacquer, given: Input) {
+    const input = isDocument(given.name) ? asGltf(lacquer, given, this.said) : given;
     const scene = lacquer.scene(input.bytes, input.name);
     for (let i = 0; i < scene.materialCount; ++i) {
       this.names.push(scene.materialName(i));

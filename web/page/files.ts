@@ -1,8 +1,9 @@
 // Files in and out: dropped, chosen, offered as drafts, replaced with a question, exported.
-import { LacquerError } from '../src/index';
+import { LacquerError, type Message } from '../src/index';
 import { copy } from './code';
 import type { Input } from './document';
 import { byId, download, h } from './dom';
+import { asDocument, isDocument, mainDocument } from './foreign';
 import { Drafts, kMostBytes, type Draft } from './drafts';
 import type { Page } from './main';
 import { inputFrom, shared } from './share';
@@ -26,6 +27,7 @@ export class Files {
       picker.value = '';
     });
     byId('export').addEventListener('click', () => this.export());
+    byId('export-mtlx').addEventListener('click', () => this.exportMaterialX());
     byId('share').addEventListener('click', () => void this.share());
     addEventListener('hashchange', () => void this.openAddress());
     for (const event of ['dragover', 'dragenter']) {
@@ -59,7 +61,8 @@ export class Files {
     }
   }
 
-  /** Files that were dropped or picked: a .gltf with its buffers and images, a .glb, a graph in JSON, or an environment. */
+  /** Files that were dropped or picked: a .gltf with its buffers and images, a .glb, a .mtlx with its images and
+   * what it includes, a graph in JSON, or an environment. */
   async take(files: File[]): Promise<void> {
     const { page } = this;
     const bytesOf = async (file: File) => new Uint8Array(await file.arrayBuffer());
@@ -67,10 +70,11 @@ export class Files {
     if (graph && page.document?.names.length) return page.openGraph(graph.name, await graph.text());
     const around = files.find(({ name }) => /\.hdr$/i.test(name));
     if (around) return page.surround(around.name, await bytesOf(around));
-    const foreign = files.find(({ name }) => /\.mtlx$/i.test(name));
-    if (foreign) return page.fail(new Error(`${foreign.name}: the module on this page has no reader of MaterialX; lacquer view ${foreign.name} -o page.html makes a page of it, lacquer convert a glTF file`));
     if (files.length > 0 && files.every(({ name }) => kPictures.test(name))) return page.fail(new Error(`${files[0].name} is a picture: drop it on the slot of a texture, at the left`));
-    const main = files.find(({ name }) => /\.(gltf|glb)$/i.test(name)) ?? files[0];
+    const documents = new Map<string, Uint8Array>();
+    for (const file of files) if (isDocument(file.name)) documents.set(file.name, await bytesOf(file));
+    const first = mainDocument(documents);
+    const main = files.find(({ name }) => /\.(gltf|glb)$/i.test(name)) ?? files.find(({ name }) => name === first) ?? files[0];
     if (!main) return;
     const resources = new Map<string, Uint8Array>();
     for (const file of files) if (file !== main) resources.set(file.name, await bytesOf(file));
@@ -115,6 +119,20 @@ export class Files {
     this.showName();
     const own = [...of.graphs.keys()].map((material) => of.names[material] || `material ${material}`);
     if (own.length > 0) this.page.note(`the graph of ${own.join(', ')} is in the file's extras: this page reads it, other programs see the properties alone`);
+  }
+
+  /** The materials as a MaterialX document, beside the file: that stays what is edited. */
+  private exportMaterialX(): void {
+    const { document: of } = this.page;
+    if (!of) return;
+    const said: Message[] = [];
+    try {
+      const { name, bytes } = asDocument(this.page.lacquer, of, said);
+      download(name, bytes, 'application/xml');
+    } catch (error) {
+      return this.page.fail(error);
+    }
+    if (said.length > 0) this.page.note(said.length === 1 ? said[0].text : `${said[0].text} (and ${said.length - 1} more)`);
   }
 
   // ---- addresses

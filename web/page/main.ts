@@ -142,6 +142,7 @@ export class Page {
     if (of.names.length > 0) this.choose(0);
     else this.showNoMaterial();
     this.compileOthers();
+    if (of.said.length > 0) this.note(of.said.length === 1 ? of.said[0].text : `${of.said[0].text} (and ${of.said.length - 1} more)`);
     if (of.refused.length > 0) this.note(`${of.refused[0]}; the properties are shown`);
     this.files.changed();
   }

@@ -91,9 +91,6 @@ test('a file that takes the place of edits asks; one that cannot be read does no
     assert.equal(await page.inputValue('#sample'), before);
     assert.equal(await page.textContent('#file'), 'third.gltf');
     await page.click('#undo');
-    await drop(page, [['m.mtlx', Buffer.from('<materialx version="1.39"/>')]]);
-    assert.match(await page.textContent('#status'), /m\.mtlx: the module on this page has no reader of MaterialX/);
-    assert.equal(await page.textContent('#file'), 'third.gltf');
   }));
 
 test('extensions are offered that can stand with what is there, the others with what is against them', () =>
