@@ -44,6 +44,10 @@ std::string feedTexture(std::string_view bytes);
 std::string feedCase(std::string_view bytes);
 std::string feedManifest(std::string_view bytes);
 
+// written.cpp
+std::string feedDocumentOut(std::string_view bytes);
+std::string feedProceduralsOut(std::string_view bytes);
+
 // entries.cpp
 std::string feedEntry(std::string_view bytes);
 

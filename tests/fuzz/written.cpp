@@ -1,0 +1,65 @@
+// What is written for other tools, from any file: it is read again, and says the same.
+#include "feeds.h"
+#include "lacquer/exchange.h"
+
+namespace lacquer::fuzz {
+
+namespace {
+
+/// Names of materials, each on a line.
+std::string namesOf(const Scene& scene) {
+  std::string names;
+  for (size_t i = 0; i < scene.materialCount(); ++i) names += scene.materialName(i) + "\n";
+  return names;
+}
+
+/// How many materials have a graph.
+size_t goodMaterials(const Scene& scene) {
+  size_t count = 0;
+  for (size_t i = 0; i < scene.materialCount(); ++i) {
+    Messages said;
+    if (scene.graph(i, kUnusedAttributes, {}, said)) ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+std::string feedDocumentOut(std::string_view bytes) {
+  Messages said;
+  const Scene scene = Scene::fromMemory(std::string(bytes), "fuzz.mtlx", {}, said);
+  if (!scene) return hasError(said) ? "" : "a file is refused without an error";
+  said.clear();
+  const std::string text = toMaterialX(scene, {}, {}, {}, {}, said);
+  if (text.empty()) return hasError(said) ? "" : "nothing is written, without an error";
+  said.clear();
+  const Scene again = Scene::fromMemory(text, "written.mtlx", {}, said);
+  if (!again) return "what is written is not read:\n" + errorsOf(said) + text;
+  if (goodMaterials(again) != again.materialCount())
+    return "a material that is written is wrong:\n" + errorsOf(said) + text;
+  said.clear();
+  const std::string second = toMaterialX(again, {}, {}, {}, {}, said);
+  return second.empty() ? "what is read again is not written:\n" + errorsOf(said) + text : "";
+}
+
+std::string feedProceduralsOut(std::string_view bytes) {
+  Options options;
+  options.jobs = 1;
+  Messages said;
+  const bool document = bytes.find('<') < bytes.find('{');
+  const Scene scene =
+      Scene::fromMemory(std::string(bytes), document ? "fuzz.mtlx" : "fuzz.gltf", options, said);
+  if (!scene) return hasError(said) ? "" : "a file is refused without an error";
+  said.clear();
+  const std::string text = toGltf(scene, {}, 1, options, said);
+  if (text.empty()) return hasError(said) ? "" : "nothing is written, without an error";
+  said.clear();
+  const Scene again = Scene::fromMemory(text, "written.gltf", options, said);
+  if (!again) return "what is written is not read:\n" + errorsOf(said) + text;
+  if (document && goodMaterials(again) != again.materialCount())
+    return "a material that is written is wrong:\n" + errorsOf(said) + text;
+  if (!document && namesOf(again) != namesOf(scene)) return "the materials are others:\n" + text;
+  return {};
+}
+
+}  // namespace lacquer::fuzz
