@@ -245,6 +245,42 @@ TEST(Looks, SayWhichMaterialIsForWhichGeometry) {
   EXPECT_EQ(place.manifest("one")["files"][0]["looks"], file["looks"]);
 }
 
+/// A document's displacement moves the vertices of a template that takes it; others say that they do not.
+TEST(Displacement, GoesToATemplateThatTakesIt) {
+  const Workplace place;
+  place.write("nodes/displaced.node", R"(/// Forward shading of what is moved.
+template displaced extends forward {
+    port vec3 displacement = vec3(0);
+    output displacement vec3 object_position = object_position + displacement;
+}
+)");
+  place.write("waves.mtlx", R"(<materialx version="1.39">
+  <fractal2d name="n" type="float"/>
+  <displacement name="d" type="displacementshader">
+    <input name="displacement" type="float" nodename="n"/>
+    <input name="scale" type="float" value="0.25"/>
+  </displacement>
+  <gltf_pbr name="s" type="surfaceshader"/>
+  <surfacematerial name="waves" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="s"/>
+    <input name="displacementshader" type="displacementshader" nodename="d"/>
+  </surfacematerial>
+</materialx>
+)");
+  const Outcome moved = place.run(
+      {"gen", "waves.mtlx", "-o", "out", "--nodes", "nodes", "--template", "displaced", "--target", "glsl"});
+  ASSERT_EQ(moved.status, 0) << moved.all();
+  EXPECT_EQ(moved.all().find("displacement-left-out"), std::string::npos) << moved.all();
+  const json manifest = place.manifest("out");
+  const json& use = manifest["files"][0]["materials"][0]["uses"][0];
+  EXPECT_EQ(manifest["shaders"][use["shader"].get<std::string>()]["displaces"],
+            json::array({"object_position"}));
+  EXPECT_EQ(use["parameters"]["d_scale"]["value"], 0.25) << use["parameters"];
+  const Outcome still = place.run({"gen", "waves.mtlx", "-o", "still", "--target", "glsl"});
+  EXPECT_EQ(still.status, 0) << still.all();
+  EXPECT_NE(still.all().find("displacement-left-out"), std::string::npos) << still.all();
+}
+
 TEST(Stale, ShadersThatOnlyTheEarlierManifestListsGo) {
   const Workplace place;
   const std::string both = gltfOf({R"({"name": "a"})", R"({"name": "b", "alphaMode": "MASK"})"});

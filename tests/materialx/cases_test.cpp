@@ -145,6 +145,7 @@ std::string shown(const material::Material& material, const material::Schema& sc
     text += fmt::format("{} = {}\n", schema.properties[texture.property].path,
                         texture.info.group.empty() ? fmt::format("texture {}", texture.info.texture)
                                                    : texture.info.group + "." + texture.info.output);
+  if (!material.displacement.empty()) text += "displaced by " + material.displacement + "\n";
   return text;
 }
 

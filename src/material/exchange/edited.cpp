@@ -204,6 +204,7 @@ void putGraphs(material::Document& document, const std::vector<std::pair<size_t,
   // What is not edited keeps its names.
   for (size_t i = 0; i < document.materials.size(); ++i) {
     material::Material& material = document.materials[i];
+    if (!material.displacement.empty()) material.displacement = unedited.group(material.displacement);
     if (graphOf(i) != nullptr) continue;
     for (auto& texture : material.textures) {
       if (!texture.info.group.empty()) texture.info.group = unedited.group(texture.info.group);

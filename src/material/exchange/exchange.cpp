@@ -70,6 +70,13 @@ Written toMaterialX(const material::Document& document, const std::vector<size_t
   std::vector<Element> surface_materials;
   for (size_t i = 0; i < materials.size(); ++i) {
     const std::string& own = document.materials[materials[i]].name;
+    if (!document.materials[materials[i]].displacement.empty())
+      addBounded(written.said, {"not-said",
+                                Severity::Warning,
+                                {document.path, 0, 0, fmt::format("/materials/{}", materials[i])},
+                                "the material moves its vertices",
+                                "its displacement is left out",
+                                {}});
     const std::string material = patterns.free(own.empty() ? "material" : own);
     Element shader;
     shader.category = surfaces[i].category;

@@ -159,6 +159,7 @@ Result<Document> readMaterialX(std::string_view text, const std::string& name, c
     material.patterns = read->procedurals.patterns;
     material.ports = std::move(read->closures[i]);
     if (!material.ports.empty()) material.closures = read->procedurals.list[i].group;
+    material.displacement = std::move(read->displacements[i]);
     Diagnostics& own = read->of_materials[i];
     own.insert(own.end(), material.diagnostics.begin(), material.diagnostics.end());
     material.diagnostics = std::move(own);

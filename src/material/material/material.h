@@ -43,7 +43,8 @@ struct Material {
   std::string closures;
   /// Ports of a template, and what the group has for them; the material's properties say nothing of these.
   std::vector<std::pair<std::string, std::string>> ports;
-  Diagnostics diagnostics;  ///< of this material; one of severity Error means: generate nothing for it
+  std::string displacement;  ///< the group whose only output moves the vertices; empty for none
+  Diagnostics diagnostics;   ///< of this material; one of severity Error means: generate nothing for it
 
   bool has(uint16_t extension) const;
   const ir::Components* number(uint16_t property) const;      ///< null where the file says nothing

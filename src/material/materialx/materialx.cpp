@@ -54,6 +54,7 @@ private:
     Json json;
     std::vector<std::pair<std::string, std::string>> outputs;
     std::vector<std::pair<std::string, std::string>> closures;
+    Scope* displacement = nullptr;
   };
   struct Found {
     const Element* shader = nullptr;
@@ -63,6 +64,7 @@ private:
   Found shaderOf(const Element& material);
   void material(const Element& at, std::string_view name, const Found& found, Diagnostics said);
   void closures(Made& made, const Element& shader);
+  void displacement(const Element& at);
   void patternsAlone();
   void pattern(const Element& owner, const Element& output, const std::string& name);
   static bool isSurface(const Element& element) {
@@ -147,6 +149,16 @@ void MaterialsReader::closures(Made& made, const Element& shader) {
   if (!opaque) made.json["alphaMode"] = "BLEND";
 }
 
+/// What moves the vertices, of the material that was made last.
+void MaterialsReader::displacement(const Element& at) {
+  const Element* in = at.child("input", "displacementshader");
+  if (in == nullptr || !Patterns::isConnected(*in)) return;
+  Scope& scope = patterns_.body(document_.root, fmt::format("{}_displacement", at.name()));
+  made_.back().displacement = &scope;
+  if (const std::optional<Source> source = patterns_.connected(scope, *in))
+    scope.group().outputs.emplace_back("displacement", *source);
+}
+
 /// A pattern's output, as a colour without light.
 void MaterialsReader::pattern(const Element& owner, const Element& output, const std::string& name) {
   const std::optional<ir::Type> type = typeOf(output.get("type"));
@@ -191,18 +203,17 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
   for (const Element& child : root.children) {
     if (child.category != "surfacematerial") continue;
     Diagnostics said;
-    for (const std::string_view other : {"backsurfaceshader", "displacementshader"}) {
-      const Element* in = child.child("input", other);
-      if (in == nullptr || !Patterns::isConnected(*in)) continue;
+    if (const Element* in = child.child("input", "backsurfaceshader");
+        in != nullptr && Patterns::isConnected(*in))
       said.push_back({"not-translated",
                       Severity::Warning,
                       in->place,
-                      fmt::format("{} has no counterpart in glTF", other),
+                      "backsurfaceshader has no counterpart in glTF",
                       "it is left out",
                       {}});
-    }
     const std::string_view shown = child.get("uiname");
     material(child, shown.empty() ? child.name() : shown, shaderOf(child), std::move(said));
+    displacement(child);
   }
   if (made_.empty()) {
     for (const Element& child : root.children) {
@@ -229,7 +240,10 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
   });
   for (Diagnostic& one : said) addBounded(result.diagnostics, std::move(one));
   for (Made& made : made_) {
-    const bool wrong = made.scope != nullptr && patterns_.isWrong(made.scope->group().name);
+    const auto isWrong = [&](Scope* scope) {
+      return scope != nullptr && patterns_.isWrong(scope->group().name);
+    };
+    const bool wrong = isWrong(made.scope) || isWrong(made.displacement);
     if (wrong) {
       made.said.push_back({"wrong-pattern",
                            Severity::Error,
@@ -245,6 +259,8 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
     result.materials.push_back(std::move(made.json));
     result.of_materials.push_back(std::move(made.said));
     result.closures.push_back(std::move(made.closures));
+    const bool moved = !wrong && made.displacement != nullptr && !made.displacement->group().outputs.empty();
+    result.displacements.push_back(moved ? made.displacement->group().name : std::string());
     result.procedurals.list.push_back(
         {made.scope == nullptr ? std::string() : made.scope->group().name, std::move(made.outputs), wrong});
   }

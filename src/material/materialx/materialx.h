@@ -41,6 +41,8 @@ struct Materials {
   std::vector<Diagnostics> of_materials;  ///< of each, beside what reading `materials` finds
   /// Of each, where it is made of closures: ports of a template, and outputs of its procedural's group.
   std::vector<std::vector<std::pair<std::string, std::string>>> closures;
+  /// Of each the group, of procedurals.patterns, whose output moves the vertices; empty for none.
+  std::vector<std::string> displacements;
   Procedurals procedurals;
   Looks looks;
   Diagnostics diagnostics;         ///< of the document as a whole

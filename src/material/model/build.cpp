@@ -8,6 +8,7 @@
 #include "model/attributes.h"
 #include "model/closures.h"
 #include "model/resolve.h"
+#include "support/text.h"
 
 namespace lacquer::model {
 
@@ -67,6 +68,7 @@ private:
   void ask(const lang::Param& param);
   void writeOrdered();
   void notTaken();
+  void displace();
   Source source(const Found& value);
   Source from(const Found& value);
   Source number(const Found& value);
@@ -421,6 +423,31 @@ const std::string* Writer::closurePort(std::string_view port) const {
   return nullptr;
 }
 
+/// What a document says of its vertices, for a template that takes it.
+void Writer::displace() {
+  constexpr std::string_view kPort = "displacement";
+  const bool takes =
+      std::any_of(template_.ports.begin(), template_.ports.end(), [&](const lang::PortDecl& port) {
+        return port.param.name == kPort && port.param.type == ir::Type::Vec3;
+      });
+  const bool given = std::any_of(graph_.outputs.begin(), graph_.outputs.end(),
+                                 [&](const auto& output) { return output.first == kPort; });
+  if (!takes || given) {
+    graph_.skip(kPort, fmt::format("the template '{}' moves no vertices by it", template_.name));
+    warnings_.push_back(
+        {"displacement-left-out",
+         Severity::Warning,
+         {{}, 0, 0, fmt::format("/materials/{}", material_.index)},
+         fmt::format("the template {} does not take the material's displacement", quote(template_.name)),
+         "one with a port vec3 displacement, and an output that moves object_position by it, does",
+         {}});
+    return;
+  }
+  bring(material_.displacement);
+  graph_.nodes[graph_.add(std::string(kPort), material_.displacement)].group = true;
+  graph_.outputs.emplace_back(kPort, Source{graph::NodeRef{std::string(kPort), {}}, {}});
+}
+
 void Writer::run() {
   std::vector<std::pair<std::string_view, Found>> ports;
   for (const lang::PortDecl& port : template_.ports) {
@@ -446,6 +473,7 @@ void Writer::run() {
     computed_by.output = *output;
     graph_.outputs.emplace_back(port.param.name, computed(computed_by, "closures"));
   }
+  if (!material_.displacement.empty()) displace();
   // A line is a term, which the code tells, in the order of the layers.
   for (size_t i = 0; i < graph_.nodes.size(); ++i) {
     graph_.nodes[i].term = graph_.nodes[i].id;
