@@ -53,6 +53,7 @@ public:
     addParameter("whole", ir::Type::Int);
     addParameter("bits", ir::Type::UInt);
     addParameter("int_of", ir::Type::UVec3);
+    addParameter("true_of", ir::Type::BVec3);
     for (const int32_t i : {3, -7, 0}) keep(dag().integer(i));
     for (const uint32_t i : {5U, 4000000000U}) keep(dag().uinteger(i));
   }

@@ -66,9 +66,10 @@ public:
 
   std::string swizzle(Type result, std::string_view vector, std::string_view picks) const override {
     if (result == Type::Float) return fmt::format("{}.{}", vector, picks);
-    // Of a vector of integers, which stays the member that it is.
-    if (ir::isWhole(result)) {
+    // Of a vector of integers or truths, which stays the member that it is.
+    if (ir::isWhole(result) || result == Type::Bool) {
       const std::string member = fmt::format("{}[{}]", vector, std::string_view("xyzw").find(picks[0]));
+      if (result == Type::Bool) return fmt::format("({} != 0)", member);
       return result == Type::Int ? member : fmt::format("whole(uint_of({}))", member);
     }
     std::string list;
