@@ -249,6 +249,25 @@ TEST(Bake, ofAGraph) {
   EXPECT_NE(lit.err.find("[depends-on-view]"), std::string::npos) << lit.err;
 }
 
+/// What a node asks of its neighbours are the places beside it: sixteen along a side of eight texels.
+TEST(Bake, hasDerivatives) {
+  const Workplace place;
+  place.write("nodes/slope.node", R"(
+/// How fast the texture coordinates change.
+/// source: the tests
+node slope(vec2 at = given uv0) -> vec3 in [0, 1] {
+    return clamp(vec3(8 * fwidth(at), 0), 0, 1);
+}
+)");
+  place.write("slope.json", R"({"lacquer_graph": 1, "name": "slope", "template": "forward",
+    "nodes": [{"id": "slope", "node": "slope"}], "outputs": {"emission": {"node": "slope"}}})");
+  const Outcome baked = place.run(
+      {"bake", "slope.json", "--nodes", "nodes", "--node", "slope", "-o", "one.ktx2", "--size", "8"});
+  ASSERT_EQ(baked.status, 0) << baked.err;
+  for (const size_t texel : {0U, 9U, 63U})
+    EXPECT_EQ(texelOf(place.read("one.ktx2"), 0, texel), (std::vector<int>{128, 128, 0, 255})) << texel;
+}
+
 /// Each level is the mean of the area below it, in linear light, whatever the size.
 TEST(Bake, levelsAreMeans) {
   const Workplace place;

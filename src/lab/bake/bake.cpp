@@ -241,6 +241,7 @@ Result<Baking::Computed> Baking::bound(EvalMaterial& evaluated, FileImages& imag
   report(images.takeNotes(), images.file(), messages_);
   if (!textures) return tl::make_unexpected(textures.error());
   look.module = evaluated.module();
+  look.quads = true;
   Result<preview::Shading> made = preview::Shading::make(std::move(look), studio_);
   if (!made) return tl::make_unexpected(std::move(made.error()));
   return Computed{std::move(*made), 4};

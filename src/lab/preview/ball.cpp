@@ -135,6 +135,7 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
   shading.look_ = std::make_shared<const Look>(std::move(look));
   const Look& of = *shading.look_;
   shading.base_ = of.textures;
+  shading.base_.quads = of.quads;
   shading.base_.lights = studio.lights(of.module);
   shading.base_.columns["frame.light_count"] =
       eval::Column::constant({static_cast<double>(shading.base_.lights.size())});

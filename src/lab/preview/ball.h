@@ -25,6 +25,8 @@ struct Look {
   std::vector<std::string> specular, irradiance,
       fibres;  ///< the environment maps that it reads, by slot name
   bool in_float = true;
+  bool quads =
+      false;  ///< each four points lie beside and below each other: derivatives are their differences
   double time = 0, frame = 0;  ///< of the block Clock
   /// Instead of colours a value is drawn, in one of the ways but As::Any.
   std::optional<ValueLook> value;
