@@ -145,7 +145,7 @@ private:
       if (isGeometry(parameter)) continue;
       const bool unit = parameter.range.lo == -1 && parameter.range.hi == 1;
       // A light is positional or not: what stands between has no meaning.
-      const bool flag = parameter.type == ir::Type::Bool || isPositional(parameter);
+      const bool flag = ir::partType(parameter.type) == ir::Type::Bool || isPositional(parameter);
       const bool texel = parameter.name == "texel" && parameter.range == ir::Interval{0, 1};
       const Nature nature = flag    ? Nature::Flag
                             : texel ? Nature::Texel
