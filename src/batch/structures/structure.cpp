@@ -310,9 +310,12 @@ ContractUse useOf(const Structure& structure, const Filling& filling, const prog
   const std::vector<ir::Components> packed = structure.preshader.evaluate(
       [&](uint32_t i) -> const ir::Components& { return filling.numbers[structure.parameters[i]].value; });
   use.uniforms.reserve(packed.size());
-  for (size_t i = 0; i < packed.size(); ++i)
-    use.uniforms.emplace_back(fields[i].name,
-                              firstOf(packed[i], static_cast<size_t>(ir::componentCount(fields[i].type))));
+  for (size_t i = 0; i < packed.size(); ++i) {
+    std::vector<double> value = firstOf(packed[i], static_cast<size_t>(ir::componentCount(fields[i].type)));
+    // A UInt's bits are those of an Int in the preshader's numbers (ir/whole.h).
+    for (double& x : value) x += ir::partType(fields[i].type) == ir::Type::UInt && x < 0 ? 0x1p32 : 0;
+    use.uniforms.emplace_back(fields[i].name, std::move(value));
+  }
   use.block.resize(structure.preshader.blockSize());
   structure.preshader.write(packed, use.block);
   use.textures.reserve(structure.textures.size());
