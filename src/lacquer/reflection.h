@@ -106,8 +106,8 @@ struct SpecConstant {
   uint32_t id = 0;
   std::string name;
   uint32_t component = 0;
-  bool is_bool = false;
-  double neutral = 0;  ///< of a bool 0 or 1
+  std::string type = "float";  ///< or "bool" (a VkBool32), "int", "uint"
+  double neutral = 0;          ///< of a bool 0 or 1
 };
 
 /// What half precision comes to (Options::relaxed).

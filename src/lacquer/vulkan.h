@@ -485,7 +485,9 @@ struct Specialization {
       }
       uint32_t bits = value != 0 ? VK_TRUE : VK_FALSE;
       const auto number = static_cast<float>(value);
-      if (!constant.is_bool) std::memcpy(&bits, &number, sizeof bits);
+      if (constant.type == "float") std::memcpy(&bits, &number, sizeof bits);
+      if (constant.type == "int") bits = static_cast<uint32_t>(static_cast<int32_t>(value));
+      if (constant.type == "uint") bits = static_cast<uint32_t>(value);
       entries.push_back({constant.id, static_cast<uint32_t>(4 * data.size()), 4});
       data.push_back(bits);
     }

@@ -116,7 +116,7 @@ SpecConstant valued(SpecConstant constant, const std::vector<UsedParameter>& par
                                [&](const UsedParameter& one) { return one.name == constant.name; });
   if (it == parameters.end() || constant.component >= it->value.size()) return constant;
   constant.neutral = it->value[constant.component];
-  if (constant.is_bool) constant.neutral = constant.neutral != 0 ? 1 : 0;
+  if (constant.type == "bool") constant.neutral = constant.neutral != 0 ? 1 : 0;
   return constant;
 }
 
@@ -151,8 +151,8 @@ void writePipeline(const Pipeline& of, JsonText& to) {
   to.endArray().key("specialization").beginArray();
   for (const SpecConstant& constant : of.specialization) {
     to.beginObject().key("id").integer(constant.id);
-    to.key("type").string(constant.is_bool ? "bool" : "float").key("value");
-    if (constant.is_bool)
+    to.key("type").string(constant.type).key("value");
+    if (constant.type == "bool")
       to.boolean(constant.neutral != 0);
     else
       to.number(constant.neutral);

@@ -56,7 +56,7 @@ void fields(Archive& archive, ReflectedParameter& of) {
 }
 template <class Archive>
 void fields(Archive& archive, SpecConstant& of) {
-  archive(of.id, of.name, of.component, of.is_bool, of.neutral);
+  archive(of.id, of.name, of.component, of.type, of.neutral);
 }
 template <class Archive>
 void fields(Archive& archive, OperationProof& of) {

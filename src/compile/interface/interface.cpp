@@ -156,8 +156,11 @@ std::vector<SpecConstant> specConstantsOf(const ir::Module& module) {
     const ir::Parameter& p = module.parameters[index];
     if (p.constant_id < 0) continue;
     for (uint32_t c = 0; c < static_cast<uint32_t>(ir::componentCount(p.type)); ++c) {
-      rows.push_back(
-          {static_cast<uint32_t>(p.constant_id) + c, p.name, c, p.type == ir::Type::Bool, p.neutral[c]});
+      rows.push_back({static_cast<uint32_t>(p.constant_id) + c, p.name, c,
+                      std::string(ir::typeName(ir::isComposite(p.type) || ir::componentCount(p.type) == 1
+                                                   ? ir::partType(p.type)
+                                                   : ir::Type::Float)),
+                      p.neutral[c]});
     }
   }
   return rows;

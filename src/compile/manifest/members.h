@@ -492,10 +492,8 @@ void members(A& a, Of<A, SpecConstant>& of) {
   a("id", of.id);
   a("name", of.name);
   a("component", of.component);
-  std::string type = of.is_bool ? "bool" : "float";
-  a("type", type);
-  if constexpr (A::kReads) of.is_bool = type == "bool";
-  if (!of.is_bool) return a("default", of.neutral);
+  a("type", of.type);
+  if (of.type != "bool") return a("default", of.neutral);
   bool neutral = of.neutral != 0;
   a("default", neutral);
   if constexpr (A::kReads) of.neutral = neutral ? 1 : 0;

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "ir/whole.h"
 #include "targets/clike.h"
 #include "targets/target.h"
 
@@ -124,9 +125,14 @@ private:
       for (int c = 0; c < width; ++c) {
         const std::string name = spec(p, c);
         const double x = p.neutral[static_cast<size_t>(c)];
-        const std::string value = p.type == Type::Bool ? (x != 0 ? "true" : "false") : floatLiteral(x).text;
+        const Type part = ir::partType(p.type);
+        const bool truth = part == Type::Bool, whole = ir::isWhole(part);
+        const std::string value =
+            truth   ? (x != 0 ? "true" : "false")
+            : whole ? integer(part, static_cast<int32_t>(ir::bitsOf(x, part == Type::Int))).text
+                    : floatLiteral(x).text;
         text.line(fmt::format("layout(constant_id = {}) const {} {} = {};", p.constant_id + c,
-                              p.type == Type::Bool ? "bool" : "float", name, value));
+                              truth || whole ? ir::typeName(part) : "float", name, value));
         list += (list.empty() ? "" : ", ") + name;
       }
       if (width > 1)

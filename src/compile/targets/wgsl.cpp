@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "ir/whole.h"
 #include "targets/clike.h"
 #include "targets/target.h"
 
@@ -111,9 +112,9 @@ public:
       case Type::UVec2: return "vec2u";
       case Type::UVec3: return "vec3u";
       case Type::UVec4: return "vec4u";
-      case Type::BVec2:
-      case Type::BVec3:
-      case Type::BVec4:
+      case Type::BVec2: return "vec2<bool>";  // of parameters that are overrides
+      case Type::BVec3: return "vec3<bool>";
+      case Type::BVec4: return "vec4<bool>";
       case Type::Mat3: break;  // the DAG has none but as their parts
     }
     assert(false);
@@ -308,11 +309,18 @@ private:
     for (const uint32_t index : program.parameters) {
       const ir::Parameter& p = module.parameters[index];
       for (int c = 0; c < ir::componentCount(p.type); ++c) {
-        const bool truth = p.type == Type::Bool;
+        const Type part = ir::partType(p.type);
+        const bool truth = part == Type::Bool, whole = ir::isWhole(part);
         const double x = p.neutral[static_cast<size_t>(c)];
-        const std::string value = truth ? (x != 0 ? "true" : "false") : literal(x).text;
+        const std::string value =
+            truth   ? (x != 0 ? "true" : "false")
+            : whole ? integer(part, static_cast<int32_t>(ir::bitsOf(x, part == Type::Int))).text
+                    : literal(x).text;
         text.line(fmt::format("@id({}) override {}: {} = {};", p.constant_id + c, spec(p, c),
-                              truth ? "bool" : "f32", value));
+                              truth   ? "bool"
+                              : whole ? type(part)
+                                      : "f32",
+                              value));
       }
     }
   }

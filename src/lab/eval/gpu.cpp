@@ -166,8 +166,9 @@ private:
     for (int c = 0; c < ir::componentCount(parameter.type); ++c) {
       const auto i = static_cast<size_t>(c);
       const double x = found == bindings_.columns.end() ? parameter.value[i] : found->second.values[i];
+      const bool truth = ir::partType(parameter.type) == ir::Type::Bool;
       work_.constants[static_cast<uint32_t>(parameter.constant_id + c)] =
-          std::bit_cast<uint32_t>(static_cast<float>(x));
+          truth ? uint32_t{x != 0} : bitsOf(x, parameter.type);
     }
   }
 

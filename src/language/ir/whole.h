@@ -37,6 +37,9 @@ inline uint32_t uint_of(double x) {  // NOLINT(readability-identifier-naming)
   return x < 0x1p32 ? static_cast<uint32_t>(x) : UINT32_MAX;
 }
 
+/// The bits of an Int or a UInt.
+inline uint32_t bitsOf(double x, bool is_signed) { return is_signed ? int_of(x) : uint_of(x); }
+
 template <class T>
 T int_number(uint32_t x) {  // NOLINT(readability-identifier-naming)
   return static_cast<T>(static_cast<int32_t>(x));

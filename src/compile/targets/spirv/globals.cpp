@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ir/whole.h"
+
 namespace lacquer::targets::spirv {
 
 Kind kindOf(ir::Type type) {
@@ -165,6 +167,14 @@ uint32_t Globals::specNumber(uint32_t spec_id, double x) {
   const uint32_t of = type(Kind::Float);
   const uint32_t id = newId();
   declarations.op(spv::OpSpecConstant, of, id, std::bit_cast<uint32_t>(rounded));
+  decorations.op(spv::OpDecorate, id, spv::DecorationSpecId, spec_id);
+  return id;
+}
+
+uint32_t Globals::specWhole(uint32_t spec_id, ir::Type whole, double x) {
+  const uint32_t of = type(whole);
+  const uint32_t id = newId();
+  declarations.op(spv::OpSpecConstant, of, id, ir::bitsOf(x, whole == ir::Type::Int));
   decorations.op(spv::OpDecorate, id, spv::DecorationSpecId, spec_id);
   return id;
 }

@@ -76,6 +76,7 @@ public:
 
   /// A specialization constant of its own, with what it is until the pipeline says otherwise.
   uint32_t specNumber(uint32_t spec_id, double x);
+  uint32_t specWhole(uint32_t spec_id, ir::Type whole, double x);
   uint32_t specBoolean(uint32_t spec_id, bool b);
   uint32_t specVector(ir::Type type, const uint32_t* components);
 

@@ -128,10 +128,14 @@ private:
     for (int c = 0; c < width; ++c) {
       const auto at = static_cast<size_t>(c);
       const auto spec_id = static_cast<uint32_t>(p.constant_id + c);
-      components[at] = p.type == ir::Type::Bool ? globals_.specBoolean(spec_id, p.neutral[at] != 0)
-                                                : globals_.specNumber(spec_id, p.neutral[at]);
+      const ir::Type part = ir::partType(p.type);
+      components[at] = part == ir::Type::Bool ? globals_.specBoolean(spec_id, p.neutral[at] != 0)
+                       : ir::isWhole(part)    ? globals_.specWhole(spec_id, part, p.neutral[at])
+                                              : globals_.specNumber(spec_id, p.neutral[at]);
       if (width > 1) globals_.name(components[at], "lacquer_" + p.constant_name + "_" + "xyzw"[at]);
     }
+    // Of truths only components are read.
+    if (width > 1 && ir::partType(p.type) == ir::Type::Bool) return;
     made_.constants[index] = width > 1 ? globals_.specVector(p.type, components.data()) : components[0];
     globals_.name(made_.constants[index], p.constant_name);
   }
