@@ -72,8 +72,8 @@ private:
 
   static uint32_t bitsOf(double value, ir::Type type) {
     const ir::Type part = ir::partType(type);
-    if (part == ir::Type::Int) return std::bit_cast<uint32_t>(static_cast<int32_t>(value));
-    if (part == ir::Type::UInt) return static_cast<uint32_t>(value);
+    // A UInt may come as the number of its bits as an Int (ir/whole.h).
+    if (ir::isWhole(part)) return value < 0 ? ir::int_of(value) : ir::bitsOf(value, part == ir::Type::Int);
     return std::bit_cast<uint32_t>(static_cast<float>(value));
   }
 

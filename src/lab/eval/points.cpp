@@ -214,9 +214,12 @@ Result<void> bindMaterialBlock(const ir::Module& module, Bindings& bindings, siz
   for (const ir::Block& block : module.blocks) {
     if (block.role != ir::BlockRole::Material) continue;
     for (size_t i = 0; i < roots.size(); ++i) {
-      std::vector<double> rounded;
-      for (const double x : (*values)[i]) rounded.push_back(static_cast<double>(static_cast<float>(x)));
       const ir::BlockField& field = block.fields[module.preshader[i].field];
+      // An integer is in the block as it is.
+      const bool whole = ir::isWhole(ir::partType(field.type));
+      std::vector<double> rounded;
+      for (const double x : (*values)[i])
+        rounded.push_back(whole ? x : static_cast<double>(static_cast<float>(x)));
       bindings.columns[block.instance + "." + field.name] = {ir::componentCount(field.type), per_point,
                                                              std::move(rounded)};
     }
@@ -239,6 +242,13 @@ Result<void> bindVaryings(const ir::Module& module, size_t points, Bindings& bin
     const std::vector<T>& column = (*values)[i];
     bindings.columns[varyings[i]->name] =
         Column::perPoint(ir::componentCount(varyings[i]->type), {column.begin(), column.end()});
+  }
+  // Floats do not hold every integer.
+  for (size_t i = 0; i < roots.size(); ++i) {
+    if (!ir::isWhole(ir::partType(varyings[i]->type))) continue;
+    const auto exact = evaluate<double>(module, {&roots[i], 1}, bindings, points);
+    if (!exact) return tl::make_unexpected(exact.error());
+    bindings.columns[varyings[i]->name].values = (*exact)[0];
   }
   return {};
 }
