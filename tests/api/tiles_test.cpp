@@ -59,6 +59,26 @@ TEST(Tiles, AreFilesBesideTheGraph) {
   EXPECT_EQ(errorsOf(messages), "");
 }
 
+/// Four linear numbers, whatever the images' texels hold.
+TEST(Tiles, StandForMissingOnesAsTheyAre) {
+  const std::filesystem::path folder = emptyFolder();
+  std::filesystem::create_directories(folder);
+  writeImage(folder / "wood.1001.png", kDark);
+  writeImage(folder / "wood.1012.png", kBright);
+  std::string graph = tiledGraph("sampler2DArray", "wood.<UDIM>.png");
+  graph.replace(graph.find("\"srgb\": false"), 13, "\"srgb\": true");
+  graph.replace(graph.find("[0.8, 0, 0, 1]"), 14, "[2, 0.5, 0.001, 1]");
+  Messages messages;
+  for (const Engine engine : {Engine::Double, Engine::Float, Engine::Vulkan}) {
+    const auto colors = tileColors(folder, graph, engine, messages);
+    if (!colors && errorsOf(messages) == "vulkan-unavailable")
+      GTEST_SKIP() << "NOT TESTED: there is no Vulkan device";
+    ASSERT_TRUE(colors) << errorsOf(messages);
+    const double expected[] = {2, 0.5, 0.001};
+    for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(colors->rgba[2][c], expected[c], 1e-6);
+  }
+}
+
 /// A document's image for each tile: found, a layer that is missing between others, and beyond the last.
 TEST(Tiles, OfDocuments) {
   for (const std::string token : {"&lt;UDIM&gt;", "&lt;UVTILE&gt;"}) {

@@ -221,6 +221,8 @@ Result<Image> layered(const std::vector<std::shared_ptr<const Image>>& layers,
   const Image* first = nullptr;
   bool bytes = true;
   for (const auto& layer : layers) {
+    // What stands for one that is missing need not be a number of 8 bits.
+    if (layer == nullptr) bytes = false;
     if (layer == nullptr) continue;
     bytes = bytes && std::holds_alternative<Image::Texels<uint8_t>>(layer->texels);
     if (first == nullptr) first = layer.get();
@@ -235,14 +237,9 @@ Result<Image> layered(const std::vector<std::shared_ptr<const Image>>& layers,
   made.height = first == nullptr ? 1 : first->height;
   const size_t each = made.size();
   const auto fill = [&]<class Number>(Image::Texels<Number> texels, const auto& of) {
-    constexpr double kMost =
-        std::is_same_v<Number, float> ? 1.0 : static_cast<double>(std::numeric_limits<Number>::max());
     std::array<Number, 4> absent{};
-    for (size_t c = 0; c < 4; ++c) {
-      const double x = missing[c] * kMost;
-      absent[c] =
-          static_cast<Number>(std::is_same_v<Number, float> ? x : std::round(std::clamp(x, 0.0, kMost)));
-    }
+    for (size_t c = 0; std::is_same_v<Number, float> && c < 4; ++c)
+      absent[c] = static_cast<Number>(missing[c]);
     texels.reserve(each * layers.size());
     for (const auto& layer : layers) {
       for (size_t i = 0; i < each; ++i) texels.push_back(layer == nullptr ? absent : of(*layer, i));
@@ -256,6 +253,10 @@ Result<Image> layered(const std::vector<std::shared_ptr<const Image>>& layers,
     fill(Image::Texels<float>(), [](const Image& image, size_t i) { return image.at(i); });
   made.layers = static_cast<int>(layers.size());
   return made;
+}
+
+double encodedSrgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
 double decodeSrgb(double encoded) {

@@ -62,6 +62,9 @@ struct Lookup {
 /// coordinate that is no finite number counts as 0.
 Sampler makeSampler(std::shared_ptr<const Image> image, const Lookup& lookup);
 
+/// The inverse of decodeSrgb().
+double encodedSrgb(double linear);
+
 /// IEC 61966-2-1, one channel.
 double decodeSrgb(double encoded);
 

@@ -203,7 +203,9 @@ Result<FileImages::Loaded> FileImages::loadTiles(const graph::Texture& texture) 
                 {});
   }
   const auto first = std::find_if(layers.begin(), layers.end(), [](const auto& l) { return l != nullptr; });
-  const uint64_t pixels = (*first)->size() * layers.size();
+  // With a layer that is missing they are floats.
+  const bool gaps = std::find(layers.begin(), layers.end(), nullptr) != layers.end();
+  const uint64_t pixels = (*first)->size() * layers.size() * (gaps ? sizeof(float) : 1);
   if (!makeRoom(pixels)) {
     return fail("image-too-large", place,
                 fmt::format("the material's images together have more than {} pixels (of 8 bits per channel)",
@@ -212,6 +214,7 @@ Result<FileImages::Loaded> FileImages::loadTiles(const graph::Texture& texture) 
   }
   std::array<double, 4> missing{0, 0, 0, 1};
   if (texture.color) std::copy_n(texture.color->begin(), 4, missing.begin());
+  for (size_t c = 0; lookup.srgb && c < 3; ++c) missing[c] = eval::encodedSrgb(missing[c]);
   Result<eval::Image> made = eval::layered(layers, missing, place);
   if (!made) return tl::make_unexpected(std::move(made.error()));
   Held held{std::make_shared<const eval::Image>(std::move(*made)), pixels, ++uses_};
