@@ -232,6 +232,17 @@ TEST(Undeclared, ExtensionsAreNamed) {
   EXPECT_EQ(count, 2u) << said.err;
 }
 
+/// What an author must know of an input: the names of its values, and what it is without a connection.
+TEST(Nodes, ShowWhatInputsAreByDefault) {
+  const Workplace place;
+  const std::string worley = place.run({"nodes", "worleynoise2d<float>"}).out;
+  EXPECT_NE(worley.find("texcoord = given uv0 or [0, 0]\n"), std::string::npos) << worley;
+  EXPECT_NE(worley.find("metric of euclidean, squared, manhattan, chebyshev = euclidean"), std::string::npos)
+      << worley;
+  const std::string placed = place.run({"nodes", "place2d"}).out;
+  EXPECT_NE(placed.find("texcoord = [0, 0]\n"), std::string::npos) << placed;
+}
+
 /// The plain name of a node that two vendors have names neither; who says it is told of both.
 TEST(Nodes, OfTwoVendorsAreNamedBoth) {
   const Workplace place;

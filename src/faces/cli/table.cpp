@@ -84,13 +84,52 @@ std::string range(const json::Json& item) {
                      item.contains("or_zero") ? " or 0" : "");
 }
 
+/// A number as the node language writes it: whole ones without a fraction, truths as words.
+std::string number(const json::Json& value, std::string_view type) {
+  if (!value.is_number()) return value.dump();
+  if (type.starts_with('b')) return value.get<double>() != 0 ? "true" : "false";
+  return fmt::format("{}", value.get<double>());
+}
+
+/// What an input is where nothing is connected: " = given uv0 or [0, 0]", " = euclidean".
+std::string byDefault(const json::Json& input) {
+  std::string text = input.contains("given") ? "given " + input["given"].get<std::string>() : std::string();
+  if (input.contains("default")) {
+    const json::Json& value = input["default"];
+    const auto type = input["type"].get<std::string>();
+    std::string constant;
+    if (input.contains("choices") && value.is_number()) {
+      const auto place = static_cast<size_t>(std::max(value.get<double>(), 0.0));
+      const json::Json& choices = input["choices"];
+      constant = choices[std::min(place, choices.size() - 1)].get<std::string>();
+    } else if (value.is_array()) {
+      for (const json::Json& one : value) constant += (constant.empty() ? "[" : ", ") + number(one, type);
+      constant += ']';
+    } else {
+      constant = number(value, type);
+    }
+    text += (text.empty() ? "" : " or ") + constant;
+  }
+  return text.empty() ? text : " = " + text;
+}
+
+/// The names of an input's values: " of linear, smooth, step".
+std::string choices(const json::Json& input) {
+  if (!input.contains("choices")) return {};
+  std::string text;
+  for (const json::Json& one : input["choices"])
+    text += (text.empty() ? " of " : ", ") + one.get<std::string>();
+  return text;
+}
+
 void printNode(const json::Json& node) {
   fmt::print("{}\n", node["name"].get<std::string>());
   fmt::print("    {}\n    source: {}\n", node["doc"].get<std::string>(), node["source"].get<std::string>());
   for (const auto& input : node["inputs"]) {
-    std::string line = fmt::format("    in   {:<10} {}{}", input["type"].get<std::string>(),
-                                   input["name"].get<std::string>(), range(input));
-    if (input.contains("default")) line += " = " + input["default"].dump();
+    const std::string values = choices(input);
+    std::string line = fmt::format("    in   {:<10} {}{}{}", input["type"].get<std::string>(),
+                                   input["name"].get<std::string>(), values.empty() ? range(input) : values,
+                                   byDefault(input));
     if (input.contains("meaning")) line += "  // " + input["meaning"].get<std::string>();
     fmt::print("{}\n", line);
   }
