@@ -136,7 +136,9 @@ private:
         list += (list.empty() ? "" : ", ") + name;
       }
       if (width > 1)
-        text.line(fmt::format("const {0} {1} = {0}({2});", ir::typeName(p.type), p.constant_name, list));
+        // Of truths glslang makes a constant without a type.
+        text.line(fmt::format("{0}{1} {2} = {1}({3});", ir::partType(p.type) == Type::Bool ? "" : "const ",
+                              ir::typeName(p.type), p.constant_name, list));
     }
   }
 
