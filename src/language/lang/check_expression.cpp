@@ -399,7 +399,10 @@ bool Checker::operation(Expr& expr) {
   }
   std::string help = fmt::format("it takes {}", expr.builtin->shape);
   const bool wholes = ir::isWhole(ir::partType(types[0])) || ir::isWhole(ir::partType(types[1]));
-  if (expr.args.size() == 2 && wholes && ir::partType(types[0]) != ir::partType(types[1])) {
+  const bool logical = expr.name == "&&" || expr.name == "||";
+  if (logical && (types[0] == Type::Bool) != (types[1] == Type::Bool)) {
+    help = fmt::format("write bool(...) around the {}", types[0] == Type::Bool ? "second" : "first");
+  } else if (expr.args.size() == 2 && wholes && ir::partType(types[0]) != ir::partType(types[1])) {
     // Bits are of integers alone; else a float does not lose what lies behind the point.
     constexpr std::string_view kOfBits[] = {"%", "&", "|", "^", "<<", ">>"};
     const bool first = ir::isWhole(ir::partType(types[0]));
@@ -407,11 +410,10 @@ bool Checker::operation(Expr& expr) {
     const bool floating = ir::isFloating(types[0]) || ir::isFloating(types[1]);
     const bool number =
         floating && std::find(std::begin(kOfBits), std::end(kOfBits), expr.name) == std::end(kOfBits);
-    help = fmt::format("write {}(...) around {} of them",
+    const bool both = ir::isWhole(ir::partType(types[0])) && ir::isWhole(ir::partType(types[1]));
+    help = fmt::format("write {}(...) around the {} of them",
                        typeName(number ? ir::floatType(ir::componentCount(whole)) : whole),
-                       number || !floating ? "one"
-                       : first             ? "the second"
-                                           : "the first");
+                       both || first != number ? "second" : "first");
   }
   if (expr.name == "%" && ir::isFloating(types[0])) help = "write mod(x, y)";
   reporter_.error("wrong-type", expr.span,

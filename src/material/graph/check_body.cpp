@@ -18,6 +18,12 @@ namespace {
 
 constexpr size_t kLast = std::numeric_limits<size_t>::max();
 
+/// What MaterialX's nodes of images have as inputs, and a texture's sampler here.
+bool samplersWord(std::string_view input) {
+  constexpr std::string_view kWords[] = {"uaddressmode", "vaddressmode", "filtertype"};
+  return std::find(std::begin(kWords), std::end(kWords), input) != std::end(kWords);
+}
+
 }  // namespace
 
 BodyCheck::BodyCheck(const Graph& graph, const lang::Library& library, const Contracts& contracts,
@@ -150,11 +156,14 @@ void BodyCheck::input(size_t index, size_t input) {
   if (contract != nullptr && sink.contract == nullptr) {
     Names names;
     for (const lang::Param& param : contract->params) names.push_back(param.name);
-    error(sink, "unknown-input",
-          fmt::format("the {} {} has no input {}", node.group ? "group" : "node", inQuotes(node.type),
-                      inQuotes(name)),
-          findings_.suggest(
-              name, [&] { return names; }, names.empty() ? "it has none" : "it has " + shortList(names)));
+    error(
+        sink, "unknown-input",
+        fmt::format("the {} {} has no input {}", node.group ? "group" : "node", inQuotes(node.type),
+                    inQuotes(name)),
+        samplersWord(name)
+            ? std::string("how an image is looked up is the texture's: its \"wrap\" and \"filter\"")
+            : findings_.suggest(
+                  name, [&] { return names; }, names.empty() ? "it has none" : "it has " + shortList(names)));
   }
   value(source, sink);
 }
@@ -281,7 +290,8 @@ void BodyCheck::chosen(const Choice& choice, const Sink& sink) {
   if (known.empty()) {
     error(sink, "wrong-type",
           fmt::format("{} is {}, and its values have no names", textOf(sink), article(sink.contract->type)),
-          "write the value");
+          ir::isTexture(sink.contract->type) ? "name an entry of \"textures\": {\"texture\": \"wood\"}"
+                                             : "write the value");
     return;
   }
   error(sink, "unknown-value", fmt::format("{} has no value {}", textOf(sink), inQuotes(choice.name)),

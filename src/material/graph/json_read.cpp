@@ -191,9 +191,10 @@ std::optional<Source> Reader::source(const Json& json, const Path& path) {
     return std::nullopt;
   }
   if (json.size() < 2 || json.size() > 4) {
-    report_.error("wrong-count", path,
-                  fmt::format("a vector cannot have {}", countOf(json.size(), "component")),
-                  "it has 2 to 4; a single number stands without brackets");
+    report_.error(
+        "wrong-count", path, fmt::format("a vector cannot have {}", countOf(json.size(), "component")),
+        json.size() == 9 || json.size() == 16 ? "a matrix is a parameter, or made by the node creatematrix"
+                                              : "it has 2 to 4; a single number stands without brackets");
     return std::nullopt;
   }
   Literal literal{ir::floatType(static_cast<int>(json.size())), {}};
@@ -435,8 +436,12 @@ void Reader::sampler(const Json& json, const Path& path, Texture& texture) {
     if (!value.is_string()) return report_.wrongType(at, name, value, expected), 0;
     const auto found = std::find(words.begin(), words.end(), value.text());
     if (found != words.end()) return static_cast<size_t>(found - words.begin());
+    std::string help = fmt::format("it is {}", expected);
+    if (value.text() == "periodic") help = "\"repeat\" is what MaterialX calls so";
+    if (value.text() == "constant" || value.text() == "black")
+      help += "; the node texture_within gives a colour outside of an image";
     report_.error(fmt::format("unknown-{}", name), at, fmt::format("no {} is {}", name, quote(value.text())),
-                  fmt::format("it is {}", expected));
+                  std::move(help));
     return 0;
   };
   if (const Json* wrap = json::member(json, "wrap")) {
