@@ -170,8 +170,11 @@ private:
     }
     for (const uint32_t index : ir::usedParameters(module_)) {
       const ir::Parameter& parameter = module_.parameters[index];
-      space.add(parameter.name, ir::componentCount(parameter.type), parameter.range,
-                natureOf(parameter.name, parameter.range), kLimit);
+      const ir::Type part = ir::partType(parameter.type);
+      ir::Interval range = parameter.range;
+      if (part == ir::Type::UInt) range.lo = std::max(range.lo, 0.0);
+      space.add(parameter.name, ir::componentCount(parameter.type), range,
+                part == ir::Type::Bool ? Nature::Flag : natureOf(parameter.name, parameter.range), kLimit);
     }
     for (const ir::TextureSlot& slot : module_.textures) {
       if (isTable(slot)) continue;
