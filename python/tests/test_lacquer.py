@@ -65,6 +65,29 @@ def test_evaluate_gives_arrays(coat):
     assert np.allclose(answer.rgba, rounded.rgba, rtol=1e-4) and (answer.rgba != rounded.rgba).any()
 
 
+MATRICES = """{"lacquer_graph": 1, "name": "matrices", "template": "forward",
+  "parameters": {"m": {"type": "mat3", "value": [1, 0, 0, 0, 1, 0, 0, 0, 1]}},
+  "nodes": [
+    {"id": "a", "node": "transformmatrix", "inputs": {"in": [1, 2, 4], "mat": {"parameter": "m"}}},
+    {"id": "b", "node": "transformmatrix", "inputs": {"in": {"node": "a"}, "mat": {"attribute": "_FRAME", "type": "mat3"}}},
+    {"id": "c", "node": "max", "inputs": {"in1": {"node": "b"}, "in2": [0, 0, 0]}}],
+  "outputs": {"emission": {"node": "c"}}}"""
+
+
+def test_matrices_are_arrays_and_numbers():
+    graph = lacquer.Graph.from_json(MATRICES)
+    frames = np.stack([np.eye(3).ravel(), 2 * np.eye(3).ravel()])
+    assert graph.parameters()[0].value == [1, 0, 0, 0, 1, 0, 0, 0, 1]
+    assert np.allclose(graph.evaluate({"_FRAME": frames}).rgba[:, :3], [[1, 2, 4], [2, 4, 8]])
+    swapped = [0, 0, 1, 0, 1, 0, 1, 0, 0]
+    sweep = graph.evaluate({"_FRAME": frames, "m": np.stack([np.eye(3).ravel(), swapped])})
+    assert np.allclose(sweep.rgba[:, :3], [[1, 2, 4], [8, 4, 2]])
+    graph.set_parameter("m", swapped)
+    assert np.allclose(graph.evaluate([{"_FRAME": list(frames[0])}]).rgba[0, :3], [4, 2, 1])
+    with pytest.raises(lacquer.LacquerError):
+        graph.set_parameter("m", [1, 2, 3])
+
+
 def test_evaluate_takes_arrays(coat):
     generator = np.random.default_rng(7)
     count = 300

@@ -128,6 +128,25 @@ test('a graph shows what its material shows, and what is edited of it', () => {
   scene.free();
 });
 
+test('matrices are parameters and attributes of graphs', () => {
+  const graph = library.graph(`{"lacquer_graph": 1, "name": "matrices", "template": "forward",
+  "parameters": {"m": {"type": "mat3", "value": [1, 0, 0, 0, 1, 0, 0, 0, 1]}},
+  "nodes": [
+    {"id": "a", "node": "transformmatrix", "inputs": {"in": [1, 2, 4], "mat": {"parameter": "m"}}},
+    {"id": "b", "node": "transformmatrix", "inputs": {"in": {"node": "a"}, "mat": {"attribute": "_FRAME", "type": "mat3"}}},
+    {"id": "c", "node": "max", "inputs": {"in1": {"node": "b"}, "in2": [0, 0, 0]}}],
+  "outputs": {"emission": {"node": "c"}}}`);
+  assert.deepEqual(graph.parameters()[0].value, [1, 0, 0, 0, 1, 0, 0, 0, 1]);
+  const frame = [2, 0, 0, 0, 2, 0, 0, 0, 2];
+  assert.deepEqual(graph.evaluate([{ _FRAME: frame }]).rgba[0].slice(0, 3), [2, 4, 8]);
+  graph.setParameter('m', [0, 0, 1, 0, 1, 0, 1, 0, 0]);
+  assert.deepEqual(graph.evaluate([{ _FRAME: frame }]).rgba[0].slice(0, 3), [8, 4, 2]);
+  const shader = graph.generate();
+  assert.equal(shader.pack({ m_0: [1, 2, 3] }).length, shader.uniformSize);
+  assert.throws(() => graph.setParameter('m', [1, 2, 3]), /wrong-count/);
+  graph.free();
+});
+
 test('a ball is drawn', () => {
   const scene = library.scene(read('examples/core.gltf'), 'core.gltf');
   const rgba = scene.preview(0, 32);

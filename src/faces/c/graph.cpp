@@ -97,7 +97,7 @@ int lacquer_graph_set_parameter(lacquer_graph* graph, const char* name, const do
                                 lacquer_messages* messages) {
   return guarded(messages, 0, [&](Messages& to) {
     // Of more than any parameter has not one is read, since their number is the error and may be wrong, too.
-    constexpr size_t kMost = 4;
+    constexpr size_t kMost = 16;
     std::vector<double> values(count > kMost ? kMost + 1 : 0);
     if (numbers != nullptr && count <= kMost) values.assign(numbers, numbers + count);
     return editable(graph).setParameter(textOf(name), values, to) ? 1 : 0;
