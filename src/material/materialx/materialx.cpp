@@ -202,17 +202,17 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
   const Element& root = document_.root;
   for (const Element& child : root.children) {
     if (child.category != "surfacematerial") continue;
-    Diagnostics said;
+    Diagnostics left_out;
     if (const Element* in = child.child("input", "backsurfaceshader");
         in != nullptr && Patterns::isConnected(*in))
-      said.push_back({"not-translated",
-                      Severity::Warning,
-                      in->place,
-                      "backsurfaceshader has no counterpart in glTF",
-                      "it is left out",
-                      {}});
+      left_out.push_back({"not-translated",
+                          Severity::Warning,
+                          in->place,
+                          "backsurfaceshader has no counterpart in glTF",
+                          "it is left out",
+                          {}});
     const std::string_view shown = child.get("uiname");
-    material(child, shown.empty() ? child.name() : shown, shaderOf(child), std::move(said));
+    material(child, shown.empty() ? child.name() : shown, shaderOf(child), std::move(left_out));
     displacement(child);
   }
   if (made_.empty()) {
