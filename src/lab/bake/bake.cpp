@@ -538,7 +538,7 @@ Result<void> Baking::planTextures(const std::string& file) {
                                      [](const gltf::AnimatedPointer& p) {
                                        return p.target.find("/procedurals/") != std::string::npos;
                                      }));
-  if (rewritten && !own && !alone_) withoutProcedurals(gltf_["materials"]);
+  if (rewritten && !own && !alone_ && gltf_.contains("materials")) withoutProcedurals(gltf_["materials"]);
   std::map<std::string, size_t> names;  // of items by what they show
   std::map<std::string, size_t> groups;
   std::set<std::string> taken;
