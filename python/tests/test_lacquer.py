@@ -77,14 +77,14 @@ MATRICES = """{"lacquer_graph": 1, "name": "matrices", "template": "forward",
 def test_matrices_are_arrays_and_numbers():
     graph = lacquer.Graph.from_json(MATRICES)
     frames = np.stack([np.eye(3).ravel(), 2 * np.eye(3).ravel()])
-    assert graph.parameters()[0].value == [1, 0, 0, 0, 1, 0, 0, 0, 1]
+    assert graph.parameters()[0]["value"] == [1, 0, 0, 0, 1, 0, 0, 0, 1]
     assert np.allclose(graph.evaluate({"_FRAME": frames}).rgba[:, :3], [[1, 2, 4], [2, 4, 8]])
     swapped = [0, 0, 1, 0, 1, 0, 1, 0, 0]
     sweep = graph.evaluate({"_FRAME": frames, "m": np.stack([np.eye(3).ravel(), swapped])})
     assert np.allclose(sweep.rgba[:, :3], [[1, 2, 4], [8, 4, 2]])
     graph.set_parameter("m", swapped)
     assert np.allclose(graph.evaluate([{"_FRAME": list(frames[0])}]).rgba[0, :3], [4, 2, 1])
-    with pytest.raises(lacquer.LacquerError):
+    with pytest.raises(lacquer.Error):
         graph.set_parameter("m", [1, 2, 3])
 
 
