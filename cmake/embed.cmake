@@ -1,8 +1,8 @@
-# Puts the .node files of a folder into a library as text, so that a built Lacquer needs no data files.
+# Puts the .node files, or those of another ending, of a folder into a library as text, so that a built Lacquer needs no data files.
 
-# lacquer_embed(TARGET FOLDER NAME): defines `embedded<Name>()`, the folder's files, in embedded_<name>.cpp.
+# lacquer_embed(TARGET FOLDER NAME [ENDING]): defines `embedded<Name>()`, the folder's files, in embedded_<name>.cpp.
 function(lacquer_embed target folder name)
-  lacquer_embed_files("${target}" "${folder}" "${name}" "")
+  lacquer_embed_files("${target}" "${folder}" "${name}" "" ${ARGN})
 endfunction()
 
 # lacquer_embed_names(TARGET NAME FOLDER...): the same of several folders, with a table of what the files declare, so that one
@@ -12,9 +12,13 @@ function(lacquer_embed_names target name)
 endfunction()
 
 function(lacquer_embed_files target folders name names)
+  set(ending "node")
+  if(ARGC GREATER 4)
+    set(ending "${ARGV4}")
+  endif()
   set(files "")
   foreach(folder IN LISTS folders)
-    file(GLOB found CONFIGURE_DEPENDS "${folder}/*.node")
+    file(GLOB found CONFIGURE_DEPENDS "${folder}/*.${ending}")
     list(SORT found)
     list(APPEND files ${found})
   endforeach()

@@ -6,7 +6,7 @@ function(lacquer_fingerprint target text)
     return()  # left out of this build
   endif()
   file(GLOB_RECURSE files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/*.cpp" "${PROJECT_SOURCE_DIR}/src/*.h"
-       "${PROJECT_SOURCE_DIR}/src/*.def" "${PROJECT_SOURCE_DIR}/nodes/*.node" "${PROJECT_SOURCE_DIR}/templates/*.node")
+       "${PROJECT_SOURCE_DIR}/src/*.def" "${PROJECT_SOURCE_DIR}/nodes/*.node" "${PROJECT_SOURCE_DIR}/nodes/*.mtlx" "${PROJECT_SOURCE_DIR}/templates/*.node")
   list(FILTER files EXCLUDE REGEX "/src/faces/cli/")
   list(SORT files)
   string(REPLACE ";" "\n" lines "${files}")

@@ -117,6 +117,9 @@ struct ContractMaterial {
   int index = -1;  ///< in the file; -1 for the default material
   std::string name;
   std::string profile;  ///< that its graph follows; empty for a graph that is the input, which has no state
+  std::string surface;  ///< of a MaterialX document: "standard_surface"
+  /// Where that was translated to glTF's properties, how far it is from its own formulas (docs/materialx.md).
+  double translation_error = 0;
   DrawState state;
   std::vector<std::pair<std::string, std::string>> extensions;  ///< name, status
   std::vector<ContractUse> uses;  ///< one for each set of attributes; empty where no primitive uses it

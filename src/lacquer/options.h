@@ -104,8 +104,13 @@ inline constexpr Target kShaderTargets[] = {Target::Glsl, Target::GlslGl, Target
 /// How shaders are made. Each call reads what concerns it and leaves the rest alone. The defaults are what
 /// the command line does without flags.
 struct Options {
-  /// How the texts are read: a profile of the library (docs/accuracy.md); empty for the default one.
+  /// How the texts are read: a profile of the library (docs/accuracy.md), or "materialx" of a
+  /// MaterialX document; empty for the default one.
   std::string profile;
+  /// What surfaces of MaterialX documents are: "materialx", closures by MaterialX's formulas; "gltf",
+  /// materials of glTF, to which their inputs are translated (docs/materialx.md). Empty for glTF's, unless
+  /// the profile is "materialx".
+  std::string as;
   /// What is left out of a material or made simpler, in words (docs/lod.md): "without:coat.absorption". Each
   /// concerns the materials that have it.
   Strings simplify;

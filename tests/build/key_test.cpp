@@ -21,6 +21,7 @@ struct Row {
 const std::vector<Row>& rows() {
   static const std::vector<Row> kRows = {
       {"profile", Decides::Graph, [](Options& o) { o.profile = "openpbr"; }},
+      {"as", Decides::Graph, [](Options& o) { o.as = "gltf"; }},
       {"simplify", Decides::Graph, [](Options& o) { o.simplify = {"without:coat"}; }},
       {"template_name", Decides::Graph, [](Options& o) { o.template_name = "surface"; }},
       {"targets", Decides::Run, [](Options& o) { o.targets = {Target::Hlsl}; }},

@@ -35,6 +35,8 @@ export type Stage = 'vertex' | 'fragment';
 /** How shaders are made; what is absent is as on the command line. */
 export interface Options {
   profile?: string;
+  /** Surfaces of MaterialX documents: by its formulas, or translated to glTF's properties, which is the default. */
+  as?: 'materialx' | 'gltf';
   simplify?: string[];
   template?: string;
   targets?: Target[];

@@ -410,7 +410,9 @@ Input parsed(const std::string& path, const Key& content, std::string& bytes, co
   const Result<const material::Schema*> schema = setting.library.models.schema();
   if (!schema) return input.document = tl::make_unexpected(schema.error()), input;
   const StageTimer timer(setting.times, StageOfRun::Read);
-  input.document = material::readText(bytes, path, **schema, {setting.options.permissive, setting.limits});
+  input.document =
+      material::readText(bytes, path, **schema,
+                         {setting.options.permissive, setting.limits, nullptr, translates(setting.options)});
   bytes = {};
   return input;
 }

@@ -233,7 +233,9 @@ Described Describer::finish() {
   values.terms = terms();
   values.ignored = material_.ignored;
   if (wanted_.material != nullptr) {
-    values.profile = setting_.options.profile;
+    values.profile = material_.closures.empty() ? setting_.options.profile : std::string(kMaterialX);
+    values.surface = material_.surface;
+    values.translation_error = material_.translation_error;
     if (const Result<const material::Schema*> schema = setting_.library.models.schema()) {
       values.state = stateOf(material_, **schema, looks_through_);
       values.extensions = extensionsOf(material_, **schema);

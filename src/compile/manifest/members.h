@@ -236,6 +236,8 @@ void members(A& a, Of<A, ContractMaterial>& of) {
   a("index", of.index);
   a("name", of.name);
   a.some("profile", of.profile);
+  a.some("surface", of.surface);
+  a.some("translation_error", of.translation_error);
   if (!of.profile.empty()) {  // a graph in JSON has none of these
     state(a, of.state);
     a.some("extensions", of.extensions);

@@ -151,7 +151,7 @@ Result<material::Document> readMaterials(const std::string& path, const Language
   const Result<std::string> bytes = readFile(path, limits->file, links);
   if (!bytes) return tl::make_unexpected(bytes.error());
   Result<material::Document> document =
-      material::readText(*bytes, path, **schema, {options.permissive, *limits});
+      material::readText(*bytes, path, **schema, {options.permissive, *limits, nullptr, translates(options)});
   if (!document) return document;
   if (Diagnostics wrong = checkWatched(options, document->materials.size()); !wrong.empty())
     return tl::make_unexpected(std::move(wrong));
@@ -193,13 +193,18 @@ Diagnostics checkWatched(const Options& options, size_t materials) {
   return wrong;
 }
 
+bool translates(const Options& options) {
+  return options.as.empty() ? options.profile != kMaterialX : options.as != kMaterialX;
+}
+
 Result<void> resolveNames(const lang::Library& library, Options& options) {
   if (options.template_name.empty()) {
     Result<std::string> name = library.defaultTemplate();
     if (!name) return tl::make_unexpected(std::move(name.error()));
     options.template_name = std::move(*name);
   }
-  if (options.profile.empty()) {
+  options.as = translates(options) ? "gltf" : std::string(kMaterialX);
+  if (options.profile.empty() || options.profile == kMaterialX) {
     Result<std::string> name = library.defaultProfile();
     if (!name) return tl::make_unexpected(std::move(name.error()));
     options.profile = std::move(*name);

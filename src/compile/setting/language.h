@@ -45,6 +45,11 @@ Result<std::shared_ptr<const Language>> libraryFor(const Options& options);
 /// of this material; without a material of any.
 std::optional<std::string_view> watchedPath(std::string_view live, std::optional<int> material = {});
 
+/// The profile of MaterialX documents: their own formulas.
+inline constexpr std::string_view kMaterialX = "materialx";
+/// Whether surfaces of MaterialX documents are translated to glTF's properties (Options::as).
+bool translates(const Options& options);
+
 /// Puts the library's defaults in where no template or no profile is named.
 Result<void> resolveNames(const lang::Library& library, Options& options);
 

@@ -23,13 +23,14 @@ enum class Decides : uint8_t {
 /// the names must be all of Options.
 template <class Each>
 void eachOption(const Options& options, Each each) {
-  const auto& [profile, simplify, template_name, targets, parameters, lights, switches, ibl,
+  const auto& [profile, as, simplify, template_name, targets, parameters, lights, switches, ibl,
                multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, properties,
                spirv_route, relaxed, optimize, optimize_error, optimize_for, debug, live, node_directories,
                node_texts, document_texts, jobs, cache, cache_size, depfile, shard, limits, allow, cache_key,
                argument_buffers, sync, programs, weights, programs_report, programs_model, pipelines] =
       options;
   each(Decides::Graph, profile);
+  each(Decides::Graph, as);
   each(Decides::Graph, simplify);
   each(Decides::Graph, template_name);
   each(Decides::Run, targets);

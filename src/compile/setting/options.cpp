@@ -55,10 +55,18 @@ void checkNames(const Options& options, Diagnostics& wrong) {
     wrong.insert(wrong.end(), language.error().begin(), language.error().end());
     return;
   }
-  if (!options.profile.empty() && !(*language)->has(lang::DeclKind::Profile, options.profile)) {
+  const bool documents = options.profile == kMaterialX;
+  if (!options.profile.empty() && !documents && !(*language)->has(lang::DeclKind::Profile, options.profile)) {
     return add(wrong, "unknown-profile", fmt::format("there is no profile '{}'", options.profile),
-               fmt::format("there are {}", fmt::join((*language)->names(lang::DeclKind::Profile), ", ")));
+               fmt::format("there are {}, and {} for MaterialX documents",
+                           fmt::join((*language)->names(lang::DeclKind::Profile), ", "), kMaterialX));
   }
+  if (!options.as.empty() && options.as != "gltf" && options.as != kMaterialX)
+    return add(wrong, "unknown-surface", fmt::format("surfaces cannot be read as '{}'", options.as),
+               "there are gltf and materialx");
+  if (documents && options.as == "gltf")
+    return add(wrong, "profile-of-documents", "the profile materialx has MaterialX's own surfaces",
+               "leave it out where they are translated to glTF's properties");
   for (const auto& [name, ignored] : options.switches) {
     if ((*language)->has(lang::DeclKind::Switch, name)) continue;
     add(wrong, "unknown-switch", fmt::format("there is no switch '{}'", name),

@@ -68,7 +68,8 @@ Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const
   if (!schema || !limits) return report(schema ? limits.error() : schema.error(), name, messages), scene;
   Result<material::Document> document = material::readText(
       bytes, name, *schema->schema,
-      {options.permissive, *limits, options.document_texts.empty() ? nullptr : &options.document_texts});
+      {options.permissive, *limits, options.document_texts.empty() ? nullptr : &options.document_texts,
+       translates(options)});
   if (!document) {
     report(document.error(), name, messages);
     return scene;

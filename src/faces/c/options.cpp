@@ -127,6 +127,7 @@ bool setLook(const Json& value, lacquer_options& to) {
 
 constexpr Row<lacquer_options> kRows[] = {
     {"profile", "a string", setText<&Options::profile>},
+    {"as", "\"materialx\" or \"gltf\"", setText<&Options::as>},
     {"simplify", kTexts, setStrings<&Options::simplify>},
     {"template", "a string", setText<&Options::template_name>},
     {"targets", "an array of names of targets", setTargets},

@@ -92,6 +92,10 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
   verb.add_option("--profile", flags.options.profile,
                   "the reading of the specification, one of `lacquer nodes`; without it the default")
       ->check(kNotEmpty);
+  verb.add_option("--as", flags.options.as,
+                  "surfaces of MaterialX documents: gltf, by glTF's properties, which is the default, or "
+                  "materialx, by MaterialX's formulas")
+      ->check(CLI::IsMember({"materialx", "gltf"}));
   verb.add_option("--params", flags.params,
                   "uniform: numbers stay editable; baked: they are constants; spec: they are specialization "
                   "constants")

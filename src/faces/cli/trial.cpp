@@ -66,7 +66,7 @@ void addValueLook(CLI::App& verb, ValueLook& look) {
   using As = ValueLook::As;
   static const std::map<std::string, As> kWays = {
       {"color", As::Color}, {"vector", As::Vector}, {"grey", As::Grey}};
-  verb.add_option("--as", look.as, "how values of --node are drawn; as their types want it when absent")
+  verb.add_option("--values", look.as, "how values of --node are drawn; as their types want it when absent")
       ->transform(CLI::CheckedTransformer(kWays).description("{color,grey,vector}"))
       ->type_name("TEXT");
   verb.add_option("--scale", look.scale, "what values of --node are multiplied by")->check(kNumber);

@@ -13,7 +13,7 @@ void addParameters(CLI::App& verb, NamedNumbers& parameters);
 /// "--time" and "--frame", when it is looked at.
 void addClock(CLI::App& verb, double& time, double& frame);
 
-/// "--as" and "--scale", how a value is drawn.
+/// "--values" and "--scale", how a value is drawn.
 void addValueLook(CLI::App& verb, ValueLook& look);
 
 }  // namespace lacquer::cli

@@ -109,6 +109,10 @@ constexpr Known kKnown[] = {
     {"conical_edf", "inner <= cosine", "a ramp between equal ends is a step"},
     {"conical_edf", "outer < inner", "a ramp between equal ends is a step"},
     {"roughness_dual", "swizzle < 0", "a choice"},
+    {"open_pbr_medium", "0 < transmission_depth", "a choice"},
+    {"usd_closures", "opacityThreshold", "a choice"},
+    {"usd_closures", "opacityThreshold <= opacity", "a choice"},
+    {"surface_tangent", "anisotropy == 0", "a tangent of no length has no direction"},
 };
 
 constexpr KnownSurplus kSurpluses[] = {

@@ -19,6 +19,9 @@ std::vector<EmbeddedFile> embeddedNodes();
 /// The files of templates/, sorted by name.
 std::vector<EmbeddedFile> embeddedTemplates();
 
+/// The MaterialX documents of nodes/materialx/, sorted by name. The room that reads MaterialX has them.
+std::vector<EmbeddedFile> embeddedModels();
+
 /// A node's or a constant's name, and in which file it is declared.
 struct EmbeddedName {
   std::string_view name;

@@ -145,7 +145,7 @@ materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, con
 Result<Document> readMaterialX(std::string_view text, const std::string& name, const Schema& schema,
                                const ReadOptions& options) {
   Result<materialx::Materials> read = materialx::readMaterials(
-      text, name, *schema.library, {options.limits, namesOf(schema), options.included});
+      text, name, *schema.library, {options.limits, namesOf(schema), options.included, options.translate});
   if (!read) return tl::make_unexpected(read.error());
   Document document;
   document.path = name;
@@ -159,6 +159,8 @@ Result<Document> readMaterialX(std::string_view text, const std::string& name, c
     material.patterns = read->procedurals.patterns;
     material.ports = std::move(read->closures[i]);
     if (!material.ports.empty()) material.closures = read->procedurals.list[i].group;
+    material.surface = std::move(read->surfaces[i].first);
+    material.translation_error = read->surfaces[i].second;
     material.displacement = std::move(read->displacements[i]);
     Diagnostics& own = read->of_materials[i];
     own.insert(own.end(), material.diagnostics.begin(), material.diagnostics.end());

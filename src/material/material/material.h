@@ -43,8 +43,10 @@ struct Material {
   std::string closures;
   /// Ports of a template, and what the group has for them; the material's properties say nothing of these.
   std::vector<std::pair<std::string, std::string>> ports;
-  std::string displacement;  ///< the group whose only output moves the vertices; empty for none
-  Diagnostics diagnostics;   ///< of this material; one of severity Error means: generate nothing for it
+  std::string surface;           ///< of a MaterialX document: "standard_surface"
+  double translation_error = 0;  ///< where that was translated to properties: materialx::translationError()
+  std::string displacement;      ///< the group whose only output moves the vertices; empty for none
+  Diagnostics diagnostics;       ///< of this material; one of severity Error means: generate nothing for it
 
   bool has(uint16_t extension) const;
   const ir::Components* number(uint16_t property) const;      ///< null where the file says nothing
@@ -64,6 +66,7 @@ struct ReadOptions {
   Limits limits = {};
   /// What a MaterialX document includes, by its path as seen from there; null: files are read.
   const std::vector<std::pair<std::string, std::string>>* included = nullptr;
+  bool translate = true;  ///< surfaces of a MaterialX document to glTF's properties
 };
 
 /// Reads a .gltf, .glb or .mtlx file. Buffers and images need not exist. Errors: what makes the whole file

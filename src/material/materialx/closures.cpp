@@ -4,7 +4,12 @@
 
 #include <algorithm>
 
+#include "graph/contracts.h"
+#include "lang/suggest.h"
+#include "materialx/looks.h"
+#include "materialx/models.h"
 #include "materialx/patterns.h"
+#include "support/text.h"
 
 namespace lacquer::materialx {
 
@@ -68,22 +73,148 @@ bool Patterns::givesClosure(const Element& node) const {
          !library_.forms(libraryName(node)).empty() || !refusedClosure(node).empty();
 }
 
-bool Patterns::isOpaque(const Scope& scope, const Element& surface) {
+const Element* Patterns::modelOf(const Element& surface) const {
+  const auto of = definitions_of_.find(surface.category);
+  if (options_.models == nullptr || of == definitions_of_.end()) return nullptr;
+  const Element* best = nullptr;
+  for (const size_t place : of->second) {
+    if (!definitions_[place].model) continue;
+    const Element& nodedef = *definitions_[place].nodedef;
+    if (!surface.get("version").empty() && surface.get("version") == nodedef.get("version")) return &nodedef;
+    if (best == nullptr || nodedef.get("isdefaultversion") == "true") best = &nodedef;
+  }
+  return best;
+}
+
+namespace {
+
+/// Whether an input is not there, or a number that is the same in all components.
+bool isAll(const Element& node, std::string_view name, double number) {
+  const Element* input = node.child("input", name);
+  if (input == nullptr) return true;
+  if (Patterns::isConnected(*input)) return false;
+  const std::optional<std::vector<double>> numbers = numbersOf(input->get("value"));
+  return numbers && std::all_of(numbers->begin(), numbers->end(), [&](double x) { return x == number; });
+}
+
+std::vector<std::string_view> inputsOf(const Element& interface) {
+  std::vector<std::string_view> names;
+  for (const Element& child : interface.children) {
+    if (child.category == "input") names.push_back(child.name());
+  }
+  return names;
+}
+
+Alpha alphaOfModel(const Element& surface) {
+  if (surface.category == "gltf_pbr") {
+    if (isAll(surface, "alpha_mode", 0)) return Alpha::Opaque;
+    return isAll(surface, "alpha_mode", 1) ? Alpha::Mask : Alpha::Blend;
+  }
+  if (surface.category == "UsdPreviewSurface") {
+    const Element* mode = surface.child("input", "opacityMode");
+    const bool presence = mode != nullptr && !isAll(surface, "opacityMode", 0);
+    if (!isAll(surface, "opacityThreshold", 0)) return Alpha::Mask;
+    return presence && !isAll(surface, "opacity", 1) ? Alpha::Blend : Alpha::Opaque;
+  }
+  const std::string_view opacity =
+      surface.category == "open_pbr_surface" ? std::string_view("geometry_opacity") : "opacity";
+  return isAll(surface, opacity, 1) ? Alpha::Opaque : Alpha::Blend;
+}
+
+}  // namespace
+
+Alpha Patterns::alphaOf(const Element& surface) {
   const Element* nodedef = definitionOf(surface);
-  if (nodedef == nullptr && surface.category != "surface") return false;
+  if (nodedef == nullptr && surface.category != "surface") return Alpha::Blend;
   if (nodedef == nullptr) {
     const Element* opacity = surface.child("input", "opacity");
-    return opacity == nullptr || (!isConnected(*opacity) && opacity->get("value").empty());
+    const bool all = opacity == nullptr || (!isConnected(*opacity) && opacity->get("value").empty());
+    return all ? Alpha::Opaque : Alpha::Blend;
   }
-  (void)scope;
+  if (definition(*nodedef)->model) return alphaOfModel(surface);
   const Element* graph = definition(*nodedef)->graph;
-  if (graph == nullptr) return false;
+  if (graph == nullptr) return Alpha::Blend;
   for (const Element& output : graph->children) {
     if (output.category != "output" || output.get("type") != "surfaceshader") continue;
     const Element* inner = nodeOf(*graph, output.get("nodename"));
-    return inner != nullptr && inner != &surface && isOpaque(scope, *inner);
+    return inner != nullptr && inner != &surface ? alphaOf(*inner) : Alpha::Blend;
   }
-  return false;
+  return Alpha::Blend;
+}
+
+/// A number of a model's input: with some of them the surface is another one, and they are no parameters.
+std::optional<Source> Patterns::modelNumber(Scope& scope, const Element& element, const Element& input,
+                                            const Element& port) {
+  const ir::Type wanted = *typeOf(port.get("type"));
+  ir::Type type = typeOf(input.get("type")).value_or(wanted);
+  const Result<ir::Components> read = valueOf(input, type);
+  if (!read) {
+    for (const Diagnostic& one : read.error()) error(input, one.code, one.message, one.help);
+    return std::nullopt;
+  }
+  ir::Components value = *read;
+  if (type == ir::Type::Float && ir::isFloatVector(wanted)) value.fill(value[0]);
+  if (type == ir::Type::Float || wanted == ir::Type::Vec3) type = wanted;
+  if (wanted == ir::Type::Int || wanted == ir::Type::Bool)
+    return Source{graph::Literal{wanted == ir::Type::Int ? ir::Type::Float : wanted, value}, {}};
+  const auto all = value.begin() + ir::componentCount(wanted);
+  ir::Range range;
+  const std::optional<std::vector<double>> least = numbersOf(port.get("uimin"));
+  const std::optional<std::vector<double>> most = numbersOf(port.get("uimax"));
+  if (least && most) {
+    range.lo = (*least)[0], range.hi = (*most)[0];
+    if (!std::all_of(value.begin(), all, [&](double x) { return range.contains(x); })) {
+      warning(input, "out-of-range", fmt::format("{} is {}", quote(input.name()), quote(input.get("value"))),
+              fmt::format("the range is {}, and the nearest number is taken", ir::rangeText(range)));
+      for (double& x : value) x = std::clamp(x, range.lo, range.hi);
+    }
+  }
+  const std::optional<std::vector<double>> removes = numbersOf(port.get(kRemoves));
+  for (const double number : removes.value_or(std::vector<double>())) {
+    if (std::all_of(value.begin(), all, [&](double x) { return x == number; }))
+      return Source{graph::Literal{wanted, value}, {}};
+  }
+  graph::Parameter& made = parameter(scope, element, input, wanted);
+  made.value = made.neutral = value;
+  made.range = range;
+  return Source{graph::ParameterRef{made.name}, {}};
+}
+
+/// What a model is given; what it is not given has the definition's numbers, which are no parameters.
+void Patterns::modelInputs(Scope& scope, const Element& element, const Element& interface,
+                           graph::Node& made) {
+  for (const Element& input : element.children) {
+    if (input.category != "input") continue;
+    const Element* port = interface.child("input", input.name());
+    if (port == nullptr) {
+      if (input.find(kOfVariant) == nullptr)
+        warning(input, "unknown-input",
+                fmt::format("{} has no input {}", quote(element.category), quote(input.name())),
+                maySuggest() ? lang::didYouMean(input.name(), inputsOf(interface)) : std::string());
+      continue;
+    }
+    const std::optional<ir::Type> wanted = typeOf(port->get("type"));
+    const std::optional<ir::Type> type = typeOf(input.get("type"));
+    std::optional<Source> source;
+    if (isConnected(input)) {
+      source = connected(scope, input);
+      if (source && type == ir::Type::Float && ir::isFloatVector(*wanted))
+        source = graph::widened(std::move(*source), *wanted);
+    } else if (input.find("value") != nullptr) {
+      source = modelNumber(scope, element, input, *port);
+    }
+    if (source) made.inputs.emplace_back(graphName(input.name()), std::move(*source));
+  }
+  for (const Element& port : interface.children) {
+    const std::optional<ir::Type> type = typeOf(port.get("type"));
+    if (port.category != "input" || !type || port.find("value") == nullptr) continue;
+    if (element.child("input", port.name()) != nullptr) continue;
+    const Result<ir::Components> value = valueOf(port, *type);
+    if (value)
+      made.inputs.emplace_back(
+          graphName(port.name()),
+          Source{graph::Literal{*type == ir::Type::Int ? ir::Type::Float : *type, *value}, {}});
+  }
 }
 
 /// Whether the two alphas of a closure are one, whatever its numbers become: it has no direction then.

@@ -7,6 +7,7 @@
 
 #include "materialx/element.h"
 #include "materialx/looks.h"
+#include "materialx/models.h"
 #include "materialx/surface.h"
 #include "support/text.h"
 
@@ -39,7 +40,9 @@ std::string texelOf(std::optional<ir::Type> type) {
 class MaterialsReader {
 public:
   MaterialsReader(Document& document, const lang::Library& library, PatternOptions options)
-      : document_(document), patterns_({&document.root}, library, std::move(options)) {}
+      : document_(document),
+        translates_(options.models == nullptr),
+        patterns_({&document.root}, library, std::move(options)) {}
 
   /// `said`: what was wrong with variants.
   Result<Materials> read(const VariantMaterials& variants, Diagnostics said);
@@ -47,6 +50,8 @@ public:
 private:
   struct Made {
     std::string name;
+    std::string surface;  ///< its category
+    double error = 0;     ///< of its translation
     std::string element;  ///< its element's name; of a pattern's output none
     Place place;
     Scope* scope = nullptr;
@@ -74,6 +79,7 @@ private:
   }
 
   Document& document_;
+  bool translates_;
   Patterns patterns_;
   Diagnostics wrong_;
   std::vector<Made> made_;
@@ -107,6 +113,7 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
   made.element = at.name();
   made.place = at.place;
   made.said = std::move(said);
+  if (found.shader != nullptr) made.surface = found.shader->category;
   const auto wrong = [&](const Element& where, std::string code, std::string message, std::string help) {
     made.said.push_back(
         {std::move(code), Severity::Error, where.place, std::move(message), std::move(help), {}});
@@ -119,9 +126,11 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
   } else {
     made.scope = &patterns_.body(*found.owner, fmt::format("{}_material", name));
     Surface surface(patterns_, *made.scope, *found.shader, made.said);
-    if (translate(surface, found.shader->category)) {
+    const bool modelled = !translates_ && patterns_.modelOf(*found.shader) != nullptr;
+    if (!modelled && translate(surface, found.shader->category)) {
       made.json = surface.finish(name, made_.size());
       made.outputs = surface.outputs();
+      made.error = translationError(made.surface);
     } else if (patterns_.givesClosure(*found.shader)) {
       closures(made, *found.shader);
     } else {
@@ -135,18 +144,24 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
 
 /// A surface of closures: what its group computes goes to the template's ports as it is.
 void MaterialsReader::closures(Made& made, const Element& shader) {
-  const bool opaque = patterns_.isOpaque(*made.scope, shader);
+  const Alpha alpha = patterns_.alphaOf(shader);
   for (const ClosurePart& part : closureParts("surfaceshader")) {
     const std::string port(part.name);
-    if (port == "alpha" && opaque) continue;
-    const std::optional<Source> source = patterns_.closure(*made.scope, shader, port);
+    if (port == "alpha" && alpha == Alpha::Opaque) continue;
+    std::optional<Source> source = patterns_.closure(*made.scope, shader, port);
     if (!source) continue;
-    made.scope->group().outputs.emplace_back(port, *source);
-    made.closures.emplace_back(port, port);
+    std::string name = port;
+    if (port == "alpha" && alpha == Alpha::Mask) {
+      name = "hidden";
+      source = patterns_.add(*made.scope, "hidden", "closure_hidden", {{"alpha", *source}});
+    }
+    made.scope->group().outputs.emplace_back(name, *source);
+    made.closures.emplace_back(name, name);
   }
   // MaterialX's closures are alike on both sides.
   made.json["doubleSided"] = true;
-  if (!opaque) made.json["alphaMode"] = "BLEND";
+  if (alpha == Alpha::Blend) made.json["alphaMode"] = "BLEND";
+  if (alpha == Alpha::Mask) made.json["alphaMode"] = "MASK";
 }
 
 /// What moves the vertices, of the material that was made last.
@@ -259,6 +274,7 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
     result.materials.push_back(std::move(made.json));
     result.of_materials.push_back(std::move(made.said));
     result.closures.push_back(std::move(made.closures));
+    result.surfaces.emplace_back(std::move(made.surface), made.error);
     const bool moved = !wrong && made.displacement != nullptr && !made.displacement->group().outputs.empty();
     result.displacements.push_back(moved ? made.displacement->group().name : std::string());
     result.procedurals.list.push_back(
@@ -278,7 +294,12 @@ Result<Materials> readMaterials(std::string_view text, const std::string& path, 
   const VariantMaterials variants = addVariants(document->root, said);
   addTangentSpace(document->root);
   return MaterialsReader(*document, library,
-                         {true, options.limits.nodes, {}, std::move(options.reserved), true})
+                         {true,
+                          options.limits.nodes,
+                          {},
+                          std::move(options.reserved),
+                          true,
+                          options.translate ? nullptr : &surfaceModels()})
       .read(variants, std::move(said));
 }
 

@@ -41,6 +41,8 @@ struct Materials {
   std::vector<Diagnostics> of_materials;  ///< of each, beside what reading `materials` finds
   /// Of each, where it is made of closures: ports of a template, and outputs of its procedural's group.
   std::vector<std::vector<std::pair<std::string, std::string>>> closures;
+  /// Of each the surface that it was, and how far it is from it where it was translated; empty for a pattern.
+  std::vector<std::pair<std::string, double>> surfaces;
   /// Of each the group, of procedurals.patterns, whose output moves the vertices; empty for none.
   std::vector<std::string> displacements;
   Procedurals procedurals;
@@ -60,12 +62,14 @@ struct MaterialOptions {
   const Limits& limits;
   Names reserved{};
   const IncludedTexts* included = nullptr;
+  /// Surfaces are translated to glTF's properties; else those that there is a model for are its closures.
+  bool translate = true;
 };
 
-/// Reads a document; `path` is where its included files are looked for. Surfaces are translated to glTF's
-/// properties, and numbers of patterns become parameters with other names than the reserved ones; without a
-/// material, and without a surface, each output of a pattern is an unlit material. Errors: those of
-/// readXml(), and "no-materials".
+/// Reads a document; `path` is where its included files are looked for. Surfaces are closures or, where asked
+/// for, translated to glTF's properties, and numbers of patterns become parameters with other names than the
+/// reserved ones; without a material, and without a surface, each output of a pattern is an unlit material.
+/// Errors: those of readXml(), and "no-materials".
 Result<Materials> readMaterials(std::string_view text, const std::string& path, const lang::Library& library,
                                 MaterialOptions options);
 

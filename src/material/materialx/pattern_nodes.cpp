@@ -310,7 +310,7 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
     return std::nullopt;
   }
   const bool number = type == ir::Type::Float || ir::isFloatVector(type);
-  if (!number || (!options_.editable && !isAnimated(input)))
+  if (!number || scope.model_ || (!options_.editable && !isAnimated(input)))
     return Source{graph::Literal{type == ir::Type::Int ? ir::Type::Float : type, *value}, {}};
   for (int i = 0; param.has_range && i < ir::componentCount(type); ++i) {
     const double x = (*value)[static_cast<size_t>(i)];

@@ -61,6 +61,7 @@ std::string NameSet::free(std::string name) {
 Patterns::Patterns(const std::vector<const Element*>& documents, const lang::Library& library,
                    PatternOptions options)
     : library_(library), options_(std::move(options)), documents_(documents) {
+  if (options_.models != nullptr) documents_.push_back(options_.models);
   for (const std::string& name : options_.reserved) parameter_names_.take(name);
   define();
   defineTokens();
@@ -102,7 +103,6 @@ void Patterns::warning(const Element& at, std::string code, std::string message,
 // -- definitions --
 
 void Patterns::define() {
-  std::unordered_map<std::string_view, const Element*> graphs;  // by the definition
   for (const Element* document : documents_) {
     for (const Element& child : document->children) {
       if (child.category == "nodegraph") nodegraphs_.emplace(child.name(), &child);
@@ -114,21 +114,23 @@ void Patterns::define() {
       const std::string_view nodedef = child.get("nodedef");
       if (nodedef.empty()) continue;
       const auto named = nodegraphs_.find(child.get("nodegraph"));
-      if (child.category == "nodegraph") graphs.emplace(nodedef, &child);
+      if (child.category == "nodegraph") bodies_.emplace(nodedef, &child);
       if (child.category == "implementation" && named != nodegraphs_.end())
-        graphs.emplace(nodedef, named->second);
+        bodies_.emplace(nodedef, named->second);
     }
   }
-  for (const Element* document : documents_) {
-    for (const Element& child : document->children) {
-      if (child.category != "nodedef" || child.get("node").empty()) continue;
-      const auto graph = graphs.find(child.name());
-      const Definition made{merged(child, 0), graph == graphs.end() ? nullptr : graph->second};
-      definitions_of_[made.nodedef->get("node")].push_back(definitions_.size());
-      by_nodedef_.emplace(made.nodedef, definitions_.size());
-      if (made.graph != nullptr) by_graph_.emplace(made.graph, definitions_.size());
-      definitions_.push_back(made);
-    }
+  for (const Element* document : documents_) defineFrom(*document, document == options_.models);
+}
+
+void Patterns::defineFrom(const Element& document, bool model) {
+  for (const Element& child : document.children) {
+    if (child.category != "nodedef" || child.get("node").empty()) continue;
+    const auto graph = bodies_.find(child.name());
+    const Definition made{merged(child, 0), graph == bodies_.end() ? nullptr : graph->second, model};
+    definitions_of_[made.nodedef->get("node")].push_back(definitions_.size());
+    by_nodedef_.emplace(made.nodedef, definitions_.size());
+    if (made.graph != nullptr) by_graph_.emplace(made.graph, definitions_.size());
+    definitions_.push_back(made);
   }
 }
 
@@ -169,6 +171,7 @@ const Element* Patterns::definitionOf(const Element& node) const {
   if (of == definitions_of_.end()) return nullptr;
   for (const size_t place : of->second) {
     const Element& nodedef = *definitions_[place].nodedef;
+    if (definitions_[place].model) continue;
     if (!node.get("nodedef").empty()) {
       if (nodedef.name() == node.get("nodedef")) return &nodedef;
       continue;
@@ -183,7 +186,7 @@ const Element* Patterns::definitionOf(const Element& node) const {
     if (!fits) continue;
     if (best == nullptr || nodedef.get("isdefaultversion") == "true") best = &nodedef;
   }
-  return best;
+  return best == nullptr ? modelOf(node) : best;
 }
 
 // -- bodies --
@@ -191,6 +194,8 @@ const Element* Patterns::definitionOf(const Element& node) const {
 void Patterns::prepare(Scope& scope, const Element& owner, const Element* inputs, std::string_view name) {
   scope.owner_ = &owner;
   scope.interface_ = inputs;
+  if (const auto of = by_graph_.find(&owner); of != by_graph_.end())
+    scope.model_ = definitions_[of->second].model;
   scope.group_.name = group_names_.free(graphName(name));
   scope.siblings_ = &siblingsOf(owner);
   for (const Element& child : inputs == nullptr ? owner.children : inputs->children) {
@@ -531,6 +536,8 @@ void Patterns::node(Scope& scope, const Element& element) {
 
 void Patterns::instance(Scope& scope, const Element& element, const Element& interface, graph::Node& made) {
   made.group = true;
+  const Definition* of = &element == &interface ? nullptr : definition(interface);
+  if (of != nullptr && of->model) return modelInputs(scope, element, interface, made);
   for (const Element& input : element.children) {
     if (input.category != "input") continue;
     const bool linked = isConnected(input);

@@ -25,6 +25,8 @@ struct PatternOptions {
   std::set<std::string, std::less<>> animated = {};  ///< JSON pointers of inputs whose numbers change
   std::set<std::string, std::less<>> reserved = {};  ///< names that no parameter may have
   bool has_attributes = false;  ///< primitives have what the documents read of them; else a file says it
+  /// Definitions that hold where the documents have none, and whose own numbers are no parameters; or null.
+  const Element* models = nullptr;
 };
 
 /// Names that are given once.
@@ -39,6 +41,8 @@ private:
   std::set<std::string, std::less<>> taken_;
   std::map<std::string, size_t, std::less<>> next_;  ///< the number to try
 };
+
+enum class Alpha : uint8_t { Opaque, Mask, Blend };
 
 using Siblings = std::unordered_map<std::string_view, const Element*>;
 
@@ -57,6 +61,7 @@ private:
   friend class Patterns;
   const Element* owner_ = nullptr;
   const Element* interface_ = nullptr;  ///< whose inputs the group has; null for none
+  bool model_ = false;                  ///< of PatternOptions::models
   graph::Group group_;
   const Siblings* siblings_ = nullptr;
   Siblings inputs_;                                      ///< of the interface
@@ -85,8 +90,10 @@ public:
   std::optional<graph::Source> closure(Scope& scope, const Element& node, std::string_view part);
   /// Whether a node is there that gives closures: of the library or of the document.
   bool givesClosure(const Element& node) const;
-  /// Whether a surface made of closures hides what is behind it, whatever its numbers become.
-  bool isOpaque(const Scope& scope, const Element& surface);
+  /// What a surface made of closures is to what is behind it, whatever its numbers become.
+  Alpha alphaOf(const Element& surface);
+  /// The model of a surface; null where the document has a definition, or there is none.
+  const Element* modelOf(const Element& surface) const;
   /// A node of the library in a body.
   graph::Source add(Scope& scope, std::string_view name, std::string type, graph::Inputs inputs);
   /// The node of that name among the children of an element; null for none.
@@ -111,6 +118,7 @@ private:
   struct Definition {
     const Element* nodedef = nullptr;
     const Element* graph = nullptr;  ///< null for code
+    bool model = false;              ///< of PatternOptions::models
   };
   struct Referred {
     const Element* element = nullptr;
@@ -119,6 +127,7 @@ private:
   };
 
   void define();
+  void defineFrom(const Element& document, bool model);
   const Element* merged(const Element& nodedef, size_t depth);
   void prepare(Scope& scope, const Element& owner, const Element* inputs, std::string_view name);
   void groupInputs(Scope& scope);
@@ -127,6 +136,9 @@ private:
   void output(Scope& scope, std::string_view name, const Element& at);
   void node(Scope& scope, const Element& element);
   void instance(Scope& scope, const Element& element, const Element& interface, graph::Node& node);
+  void modelInputs(Scope& scope, const Element& element, const Element& interface, graph::Node& node);
+  std::optional<graph::Source> modelNumber(Scope& scope, const Element& element, const Element& input,
+                                           const Element& port);
   void libraryNode(Scope& scope, const Element& element, graph::Node& node);
   void surroundings(Scope& scope, const Element& element, const lang::NodeDecl& form, graph::Node& node);
   bool hasOneRoughness(const Scope& scope, const Element& element) const;
@@ -177,8 +189,9 @@ private:
   std::deque<Scope> scopes_;
   std::unordered_map<const Element*, Scope*> groups_;  ///< looked up, never walked
   NameSet group_names_, parameter_names_, texture_names_;
-  std::unordered_map<const Element*, Siblings> siblings_;  ///< of owners
-  Siblings nodegraphs_, nodedefs_;                         ///< of the documents
+  std::unordered_map<const Element*, Siblings> siblings_;        ///< of owners
+  Siblings nodegraphs_, nodedefs_;                               ///< of the documents
+  std::unordered_map<std::string_view, const Element*> bodies_;  ///< by the definition
   std::map<std::string_view, std::string_view> geometry_tokens_;
   /// Looked up, never walked.
   std::unordered_map<std::string_view, std::vector<size_t>> definitions_of_;

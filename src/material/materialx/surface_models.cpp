@@ -409,13 +409,14 @@ void disneyPrincipled(Surface& s) {
 struct Row {
   std::string_view category;
   void (*translate)(Surface&);
+  double error;  ///< translationError()
 };
-constexpr Row kRows[] = {{"gltf_pbr", gltfPbr},
-                         {"open_pbr_surface", openPbr},
-                         {"standard_surface", standardSurface},
-                         {"UsdPreviewSurface", usdPreviewSurface},
-                         {"disney_principled", disneyPrincipled},
-                         {"surface_unlit", unlit}};
+constexpr Row kRows[] = {{"gltf_pbr", gltfPbr, 0.18},
+                         {"open_pbr_surface", openPbr, 0.33},
+                         {"standard_surface", standardSurface, 0.27},
+                         {"UsdPreviewSurface", usdPreviewSurface, 0.09},
+                         {"disney_principled", disneyPrincipled, 0.68},
+                         {"surface_unlit", unlit, 0}};
 
 }  // namespace
 
@@ -426,6 +427,13 @@ bool translate(Surface& surface, std::string_view category) {
     return true;
   }
   return false;
+}
+
+double translationError(std::string_view category) {
+  for (const Row& row : kRows) {
+    if (row.category == category) return row.error;
+  }
+  return 0;
 }
 
 std::vector<std::string_view> translated() {

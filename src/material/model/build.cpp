@@ -33,7 +33,7 @@ Place placeOf(const gltf::TextureInfo& info) {
 
 /// A texel: of a texture at a place, or of a group that computes it.
 struct Texel {
-  std::string_view group;
+  std::string group;
   int texture = -1;
   bool srgb = false;
   Place place{};
@@ -454,6 +454,7 @@ void Writer::run() {
     // Of properties a surface of closures has none but how it is shown.
     if (!material_.closures.empty() && port.param.name != "hidden" && port.param.name != "surface_normal")
       continue;
+    if (closurePort(port.param.name) != nullptr) continue;
     const Found value = resolver_.port(port.param.name);
     if (!value) continue;
     mark(value);

@@ -1,0 +1,17 @@
+// MaterialX's surfaces as definitions by closures: the documents of nodes/materialx/.
+#pragma once
+
+#include <string_view>
+
+#include "materialx/element.h"
+
+namespace lacquer::materialx {
+
+/// Of an input of such a definition: numbers with which a surface is another shader, as a
+/// weight of 0 is one without that layer. An input all of whose components are one of them is no parameter.
+inline constexpr std::string_view kRemoves = "removes";
+
+/// A document whose definitions are the surfaces that there is a model for.
+const Element& surfaceModels();
+
+}  // namespace lacquer::materialx
