@@ -107,7 +107,7 @@ struct Options {
   /// How the texts are read: a profile of the library (docs/accuracy.md), or "materialx" of a
   /// MaterialX document; empty for the default one.
   std::string profile;
-  /// What surfaces of MaterialX documents are: "materialx", closures by MaterialX's formulas; "gltf",
+  /// The formulas of surfaces in MaterialX documents: "materialx", closures by MaterialX's formulas; "gltf",
   /// materials of glTF, to which their inputs are translated (docs/materialx.md). Empty for glTF's, unless
   /// the profile is "materialx".
   std::string as;

@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "check/check.h"
+#include "lacquer/contract.h"
 #include "lacquer/generate.h"
 #include "lacquer/tools.h"
 #include "materialx/surface.h"
@@ -359,6 +360,68 @@ TEST_P(ModelsPeer, drawsAlike) {
                            most, off.back(), off.size());
   EXPECT_LE(median, 1e-5);
   EXPECT_LE(most, 1e-3);
+}
+
+/// What a model's inputs come to, without MaterialX: how it is blended, what is a parameter, what is said.
+TEST(Models, haveTheAlphaModesAndParametersOfTheirInputs) {
+  const std::string text = R"(<materialx version="1.39">
+  <gltf_pbr name="with_a_long_name_masked" type="surfaceshader">
+    <input name="alpha" type="float" value="0.25"/>
+    <input name="alpha_mode" type="integer" value="1"/>
+    <input name="metallic" type="float" value="0"/>
+    <input name="roughness" type="float" value="1.5"/>
+    <input name="metalic" type="float" value="1"/>
+  </gltf_pbr>
+  <standard_surface name="with_a_long_name_solid" type="surfaceshader">
+    <input name="coat" type="float" value="0"/>
+    <input name="sheen" type="float" value="0.5"/>
+    <input name="opacity" type="color3" value="1, 1, 1"/>
+    <input name="base_color" type="color3" value="0.5, 0.5, 0.5"/>
+  </standard_surface>
+  <open_pbr_surface name="with_a_long_name_blended" type="surfaceshader">
+    <input name="geometry_opacity" type="float" value="0.5"/>
+  </open_pbr_surface>
+  <standard_surface name="wrong" type="surfaceshader">
+    <input name="coat" type="color3" value="1, 0, 0"/>
+  </standard_surface>
+</materialx>)";
+  Messages messages;
+  Options options;
+  options.profile = "materialx";
+  options.targets = {Target::Glsl};
+  const Scene scene = Scene::fromMemory(text, "models.mtlx", options, messages);
+  ASSERT_TRUE(scene);
+  const Contract contract = lacquer::contract(scene, {}, options, messages);
+  ASSERT_EQ(contract.materials.size(), 4U);
+  EXPECT_EQ(contract.materials[0].state.alpha_mode, AlphaMode::Mask);
+  EXPECT_EQ(contract.materials[1].state.alpha_mode, AlphaMode::Opaque);
+  EXPECT_EQ(contract.materials[2].state.alpha_mode, AlphaMode::Blend);
+  EXPECT_EQ(contract.materials[1].profile, "materialx");
+  EXPECT_EQ(contract.materials[1].surface, "standard_surface");
+  EXPECT_EQ(contract.materials[1].translation_error, 0);
+  const auto parameters = [&](size_t material) {
+    std::vector<std::string> names;
+    const Graph graph = scene.graph(
+        material, scene.uses(material).empty() ? Attributes() : scene.uses(material)[0], options, messages);
+    for (const auto& one : graph.parameters()) names.push_back(one.name);
+    return names;
+  };
+  EXPECT_EQ(parameters(0),
+            (std::vector<std::string>{"with_a_long_name_masked_alpha", "with_a_long_name_masked_roughness"}));
+  EXPECT_EQ(parameters(1),
+            (std::vector<std::string>{"with_a_long_name_solid_sheen", "with_a_long_name_solid_base_color"}));
+  const auto said = [&](std::string_view code) {
+    return std::any_of(messages.begin(), messages.end(),
+                       [&](const Message& one) { return one.code == code; });
+  };
+  EXPECT_TRUE(said("out-of-range"));
+  EXPECT_TRUE(said("unknown-input"));
+  EXPECT_TRUE(said("wrong-type"));
+  EXPECT_FALSE(said("duplicate-name"));
+  const auto seen = evaluate(scene, 0, "[{\"n\": [0, 0, 1], \"v\": [0, 0, 1], \"l\": [0, 0, 1]}]",
+                             Engine::Float, {}, options, messages);
+  ASSERT_TRUE(seen);
+  EXPECT_TRUE(seen->discarded.at(0));
 }
 
 /// Without MaterialX: the same random surfaces as closures, and translated to glTF's properties.

@@ -90,7 +90,8 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
                   "a template of `lacquer nodes`; without it the default")
       ->check(kNotEmpty);
   verb.add_option("--profile", flags.options.profile,
-                  "the reading of the specification, one of `lacquer nodes`; without it the default")
+                  "the reading of the specification, one of `lacquer nodes`, or materialx of MaterialX "
+                  "documents; without it the default")
       ->check(kNotEmpty);
   verb.add_option("--as", flags.options.as,
                   "surfaces of MaterialX documents: gltf, by glTF's properties, which is the default, or "

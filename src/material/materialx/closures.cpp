@@ -111,8 +111,7 @@ Alpha alphaOfModel(const Element& surface) {
     return isAll(surface, "alpha_mode", 1) ? Alpha::Mask : Alpha::Blend;
   }
   if (surface.category == "UsdPreviewSurface") {
-    const Element* mode = surface.child("input", "opacityMode");
-    const bool presence = mode != nullptr && !isAll(surface, "opacityMode", 0);
+    const bool presence = !isAll(surface, "opacityMode", 0);
     if (!isAll(surface, "opacityThreshold", 0)) return Alpha::Mask;
     return presence && !isAll(surface, "opacity", 1) ? Alpha::Blend : Alpha::Opaque;
   }
@@ -146,15 +145,21 @@ Alpha Patterns::alphaOf(const Element& surface) {
 std::optional<Source> Patterns::modelNumber(Scope& scope, const Element& element, const Element& input,
                                             const Element& port) {
   const ir::Type wanted = *typeOf(port.get("type"));
-  ir::Type type = typeOf(input.get("type")).value_or(wanted);
+  const ir::Type type = typeOf(input.get("type")).value_or(wanted);
+  const bool spreads = type == ir::Type::Float && ir::isFloatVector(wanted);
+  if (type != wanted && !spreads) {
+    error(input, "wrong-type",
+          fmt::format("{} is of the type {}", quote(input.name()), quote(input.get("type"))),
+          fmt::format("it must be {}", quote(port.get("type"))));
+    return std::nullopt;
+  }
   const Result<ir::Components> read = valueOf(input, type);
   if (!read) {
     for (const Diagnostic& one : read.error()) error(input, one.code, one.message, one.help);
     return std::nullopt;
   }
   ir::Components value = *read;
-  if (type == ir::Type::Float && ir::isFloatVector(wanted)) value.fill(value[0]);
-  if (type == ir::Type::Float || wanted == ir::Type::Vec3) type = wanted;
+  if (spreads) value.fill(value[0]);
   if (wanted == ir::Type::Int || wanted == ir::Type::Bool)
     return Source{graph::Literal{wanted == ir::Type::Int ? ir::Type::Float : wanted, value}, {}};
   const auto all = value.begin() + ir::componentCount(wanted);
@@ -180,7 +185,7 @@ std::optional<Source> Patterns::modelNumber(Scope& scope, const Element& element
   return Source{graph::ParameterRef{made.name}, {}};
 }
 
-/// What a model is given; what it is not given has the definition's numbers, which are no parameters.
+/// The inputs of an instance of a model. Inputs that the document leaves out are the definition's constants.
 void Patterns::modelInputs(Scope& scope, const Element& element, const Element& interface,
                            graph::Node& made) {
   for (const Element& input : element.children) {
