@@ -1,5 +1,5 @@
-// docs/layering.md: its layer works, is sampled as it scatters, gains nothing, and its mistakes are told in
-// the words that stand there.
+// docs/layering.md: its layer works, is sampled as it scatters, gains nothing, and mistakes in it are told in
+// the words of mistakes.md.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -24,6 +24,7 @@ constexpr double kPi = 3.14159265358979323846;
 using Direction = std::array<double, 3>;
 
 std::filesystem::path pagePath() { return sourceFolder() / "docs/layering.md"; }
+std::filesystem::path mistakesPath() { return sourceFolder() / "tests/layering/mistakes.md"; }
 
 /// The page's file.
 std::string layer() {
@@ -75,7 +76,7 @@ Outcome outcomeOf(const std::string& text, const std::string& gltf, const std::s
   return {warnings, std::move(*module)};
 }
 
-/// A row of the page's table: its cells, and where the last one stands.
+/// A row of the table in mistakes.md: its cells, and where the last one stands.
 struct Mistake {
   std::string place, written, said;
   size_t begin = 0, length = 0;
@@ -110,7 +111,7 @@ std::vector<Mistake> mistakes(const std::string& page) {
 }
 
 TEST(Layering, MistakesAreToldInTheseWords) {
-  std::string page = readFile(pagePath());
+  std::string page = readFile(mistakesPath());
   const std::vector<Mistake> rows = mistakes(page);
   EXPECT_GE(rows.size(), 20U);
   const char* bless = std::getenv("LACQUER_BLESS");
@@ -134,7 +135,7 @@ TEST(Layering, MistakesAreToldInTheseWords) {
       EXPECT_EQ(row->said, said) << row->written << "\n`./dev bless` writes what is said";
     }
   }
-  if (blesses) std::ofstream(pagePath(), std::ios::binary) << page;
+  if (blesses) std::ofstream(mistakesPath(), std::ios::binary) << page;
 }
 
 TEST(Layering, ThePagesLayerIsRight) {
