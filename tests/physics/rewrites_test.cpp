@@ -1,5 +1,5 @@
 // What the algebra that makes the shaders faster does to the rounding: each rewrite in float32 beside the
-// text's form in float32, both against the text's form in double (docs/cost.md has the table).
+// text's form in float32, both against the text's form in double.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
