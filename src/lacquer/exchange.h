@@ -15,8 +15,10 @@ namespace lacquer {
 /// Materials of a .gltf, .glb or .mtlx file as a MaterialX document (docs/materialx.md): those of the names
 /// in `materials`, or all where that is empty. `surface` is "gltf_pbr", "open_pbr_surface", or empty for the
 /// one that says more of a material. What it has no input for is a warning, "not-said"; a material with an
-/// error is left out. Of the options, `permissive` and those of the node library. Empty on an error:
-/// "unknown-surface", "no-such-material", those of the file, or where no material is left.
+/// error is left out. A document that has surfaces by MaterialX's formulas (Options::as) is written as it was
+/// read where `surface` is empty. Of the options, `permissive`, `as`, `profile` and those of the node
+/// library. Empty on an error: "unknown-surface", "no-such-material", those of the file, or where no material
+/// is left.
 std::string toMaterialX(const std::string& file, const Strings& materials, const std::string& surface,
                         const Options& options, Messages& messages);
 
@@ -26,7 +28,8 @@ struct EditedGraph {
   const Graph* graph = nullptr;
 };
 /// The same of a scene. Of an edited graph what computes texels is written, with its numbers and images; its
-/// other terms are what the material's properties say, which is a note, "not-said".
+/// other terms are what the material's properties say, which is a note, "not-said". Where the surfaces have
+/// MaterialX's formulas its numbers are written, and its nodes are the document's.
 std::string toMaterialX(const Scene& scene, const Strings& materials, const std::string& surface,
                         const std::vector<EditedGraph>& edited, const Options& options, Messages& messages);
 

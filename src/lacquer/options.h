@@ -108,8 +108,8 @@ struct Options {
   /// MaterialX document; empty for the default one.
   std::string profile;
   /// The formulas of surfaces in MaterialX documents: "materialx", closures by MaterialX's formulas; "gltf",
-  /// materials of glTF, to which their inputs are translated (docs/materialx.md). Empty for glTF's, unless
-  /// the profile is "materialx".
+  /// materials of glTF, to which their inputs are translated (docs/materialx.md). Empty for MaterialX's,
+  /// unless a profile is named, which has glTF's.
   std::string as;
   /// What is left out of a material or made simpler, in words (docs/lod.md): "without:coat.absorption". Each
   /// concerns the materials that have it.

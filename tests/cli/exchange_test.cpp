@@ -71,8 +71,8 @@ constexpr const char* kPoints = R"([
 
 /// The largest difference of two files' colours, of all that eval prints for the points.
 double difference(const Workplace& place, const std::string& a, const std::string& b) {
-  const Outcome of_a = place.run({"eval", a, "--points", "points.json"});
-  const Outcome of_b = place.run({"eval", b, "--points", "points.json"});
+  const Outcome of_a = place.run({"eval", a, "--points", "points.json", "--as", "gltf"});
+  const Outcome of_b = place.run({"eval", b, "--points", "points.json", "--as", "gltf"});
   EXPECT_EQ(of_a.status, 0) << of_a.err;
   EXPECT_EQ(of_b.status, 0) << of_b.err;
   const Json first = Json::parse(of_a.out)["rgba"];
@@ -227,7 +227,7 @@ std::vector<int> texelOf(const std::string& ktx2, size_t level, size_t index) {
 TEST(Bake, ofAGraph) {
   const Workplace place;
   place.write("ramp.mtlx", kDocument);
-  place.write("ramp.json", place.run({"graph", "ramp.mtlx"}).out);
+  place.write("ramp.json", place.run({"graph", "ramp.mtlx", "--as", "gltf"}).out);
   const Outcome all = place.run({"bake", "ramp.json", "-o", "out/ramp.gltf", "--size", "8"});
   ASSERT_EQ(all.status, 0) << all.err;
   EXPECT_NE(all.out.find("base_color.png\n"), std::string::npos) << all.out;
@@ -318,7 +318,9 @@ bool has(const Messages& messages, std::string_view code) {
 /// Nothing where the file is wrong, or names images that are not there, or has what cannot be said.
 std::optional<double> differenceOfAll(const fs::path& file, const fs::path& back) {
   Messages messages;
-  const Scene scene = Scene::load(file.string(), {}, messages);
+  Options options;
+  options.as = "gltf";
+  const Scene scene = Scene::load(file.string(), options, messages);
   if (!scene || hasError(messages)) return std::nullopt;
   const std::string text = toGltf(file.string(), {}, 2, {}, messages);
   if (hasError(messages) || has(messages, "image-") || has(messages, "not-said")) return std::nullopt;
@@ -421,7 +423,7 @@ TEST(ToGltf, hasAFallback) {
     back["materials"][0]["pbrMetallicRoughness"][texture].erase("extensions");
   place.write("plain.gltf", back.dump());
   EXPECT_LT(difference(place, "ramp.mtlx", "plain.gltf"), 0.004);
-  place.write("ramp.json", place.run({"graph", "ramp.mtlx"}).out);
+  place.write("ramp.json", place.run({"graph", "ramp.mtlx", "--as", "gltf"}).out);
   const Json patterns = Json::parse(place.run({"graph", "ramp.json", "--format", "gltf"}).out);
   EXPECT_EQ(patterns["materials"].size(), 2U);
   EXPECT_EQ(patterns["extensions"]["KHR_texture_procedurals"]["procedurals"][0]["nodes"][0]["nodetype"],

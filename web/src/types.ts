@@ -35,7 +35,7 @@ export type Stage = 'vertex' | 'fragment';
 /** How shaders are made; what is absent is as on the command line. */
 export interface Options {
   profile?: string;
-  /** Surfaces of MaterialX documents: by its formulas, or translated to glTF's properties, which is the default. */
+  /** Surfaces of MaterialX documents: by its formulas, the default without another profile, or translated to glTF's properties. */
   as?: 'materialx' | 'gltf';
   simplify?: string[];
   template?: string;

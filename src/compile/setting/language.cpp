@@ -194,7 +194,14 @@ Diagnostics checkWatched(const Options& options, size_t materials) {
 }
 
 bool translates(const Options& options) {
-  return options.as.empty() ? options.profile != kMaterialX : options.as != kMaterialX;
+  if (!options.as.empty()) return options.as != kMaterialX;
+  return !options.profile.empty() && options.profile != kMaterialX;
+}
+
+Options translating(Options options) {
+  options.as = "gltf";
+  if (options.profile == kMaterialX) options.profile.clear();
+  return options;
 }
 
 Result<void> resolveNames(const lang::Library& library, Options& options) {

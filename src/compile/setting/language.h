@@ -49,6 +49,8 @@ std::optional<std::string_view> watchedPath(std::string_view live, std::optional
 inline constexpr std::string_view kMaterialX = "materialx";
 /// Whether surfaces of MaterialX documents are translated to glTF's properties (Options::as).
 bool translates(const Options& options);
+/// The options where glTF's properties are asked for.
+Options translating(Options options);
 
 /// Puts the library's defaults in where no template or no profile is named.
 Result<void> resolveNames(const lang::Library& library, Options& options);

@@ -1,5 +1,6 @@
 #include "exchange/exchange.h"
 #include "exchange/edited.h"
+#include "exchange/kept.h"
 #include "exchange/translation.h"
 
 #include <fmt/format.h>
@@ -36,6 +37,25 @@ void moveFiles(materialx::Element& element, const Moved& moved) {
   for (materialx::Element& child : element.children) moveFiles(child, moved);
 }
 
+/// A colour space that the document has as a whole is not said again.
+void takeColorSpaces(materialx::Element& element, const std::string& of_document) {
+  for (materialx::Element& child : element.children) {
+    std::erase_if(child.attributes,
+                  [&](const auto& one) { return one.first == "colorspace" && one.second == of_document; });
+    takeColorSpaces(child, of_document);
+  }
+}
+
+/// A document as it was read, in one file, for that folder: whole, or of some materials.
+std::string keptOf(materialx::Element root, const std::string& file, const std::string& folder,
+                   const Strings& materials) {
+  const std::string from = folderOf(file);
+  moveFiles(root, Moved(from, folder.empty() ? from : folder));
+  takeColorSpaces(root, std::string(root.get("colorspace")));
+  if (!materials.empty()) exchange::keepMaterials(root, materials);
+  return materialx::toXml(root);
+}
+
 /// A document whose surfaces are others, by MaterialX's own translation graphs. Nothing where there is none
 /// for a surface that it has.
 std::optional<std::string> translatedOf(const std::string& file, const std::string& folder,
@@ -50,9 +70,7 @@ std::optional<std::string> translatedOf(const std::string& file, const std::stri
   Diagnostics said;
   exchange::translateSurfaces(document->root, surface, said);
   report(said, file, messages);
-  const std::string from = folderOf(file);
-  moveFiles(document->root, Moved(from, folder.empty() ? from : folder));
-  return materialx::toXml(document->root);
+  return keptOf(std::move(document->root), file, folder, {});
 }
 
 /// Whether a material may be written as that surface; false, and a message, where not.
@@ -69,10 +87,9 @@ bool isSurface(const std::string& file, const std::string& surface, Messages& me
   return true;
 }
 
-/// The text of materials that were read: of the names, or all.
-std::string textOf(const material::Document& document, const material::Schema& schema,
-                   const std::string& folder, const Strings& materials, const std::string& surface,
-                   Messages& messages) {
+/// Materials of these names, or all, without those that are wrong. None, and messages, where there are none.
+std::vector<size_t> wantedOf(const material::Document& document, const Strings& materials,
+                             Messages& messages) {
   const std::string& file = document.path;
   std::vector<size_t> wanted;
   for (const std::string& name : materials) {
@@ -90,10 +107,53 @@ std::string textOf(const material::Document& document, const material::Schema& s
   }
   for (const size_t i : wanted) report(document.materials[i].diagnostics, file, messages);
   std::erase_if(wanted, [&](size_t i) { return lacquer::hasError(document.materials[i].diagnostics); });
+  return wanted;
+}
+
+/// The text of materials that were read: of the names, or all.
+std::string textOf(const material::Document& document, const material::Schema& schema,
+                   const std::string& folder, const Strings& materials, const std::string& surface,
+                   Messages& messages) {
+  const std::vector<size_t> wanted = wantedOf(document, materials, messages);
   if (wanted.empty()) return {};
   exchange::Written written = exchange::toMaterialX(document, wanted, schema, surface, folder);
-  report(written.said, file, messages);
+  report(written.said, document.path, messages);
   return std::move(written.text);
+}
+
+/// An edited graph of a material by its number.
+using EditedGraphs = std::vector<std::pair<size_t, const graph::Graph*>>;
+
+/// The text of a document whose surfaces are closures: what was read, with the graphs' numbers.
+std::string closuresOf(const SceneData& scene, const std::string& folder, const Strings& materials,
+                       const EditedGraphs& edited, Messages& messages) {
+  if (wantedOf(scene.document, materials, messages).empty()) return {};
+  const std::string& file = scene.document.path;
+  const Result<std::string> text = scene.text();
+  const Result<Limits> limits = limitsOf(scene.options);
+  if (!text || !limits) return report(text ? limits.error() : text.error(), file, messages), std::string();
+  Result<materialx::Document> read = materialx::readXml(*text, file, *limits, scene.included());
+  if (!read) return report(read.error(), file, messages), std::string();
+  for (const auto& [ignored, graph] : edited) exchange::putNumbers(read->root, *graph);
+  return keptOf(std::move(read->root), file, folder, materials);
+}
+
+/// A scene's text, for that folder.
+std::string writtenOf(const SceneData& scene, const std::string& folder, const Strings& materials,
+                      const std::string& surface, const EditedGraphs& edited, Messages& messages) {
+  const std::string& file = scene.document.path;
+  const bool closures = scene.hasClosures() && !translates(scene.options);
+  if (closures && surface.empty()) return closuresOf(scene, folder, materials, edited, messages);
+  if (closures) {
+    const std::optional<SceneData> translated = scene.translated(messages);
+    return translated ? writtenOf(*translated, folder, materials, surface, edited, messages) : std::string();
+  }
+  const Result<const material::Schema*> schema = scene.language->models.schema();
+  if (!schema) return report(schema.error(), file, messages), std::string();
+  if (edited.empty()) return textOf(scene.document, **schema, folder, materials, surface, messages);
+  material::Document document = scene.document;
+  exchange::putGraphs(document, edited, **schema);
+  return textOf(document, **schema, folder, materials, surface, messages);
 }
 
 /// The document's text, for that folder.
@@ -112,14 +172,9 @@ std::string documentOf(const std::string& file, const std::string& folder, const
     if (std::optional<std::string> text = translatedOf(file, folder, surface, options, messages))
       return std::move(*text);
   }
-  const Result<std::shared_ptr<const Language>> language = libraryFor(options);
-  if (!language) return report(language.error(), {}, messages), std::string();
-  const Result<const material::Schema*> schema = (*language)->models.schema();
-  if (!schema) return report(schema.error(), file, messages), std::string();
-  const Result<material::Document> document = readMaterials(file, **language, options);
-  if (!document) return report(document.error(), file, messages), std::string();
-  report(document->diagnostics, file, messages);
-  return textOf(*document, **schema, folder, materials, surface, messages);
+  const std::optional<SceneData> scene =
+      SceneData::load(file, surface.empty() ? options : translating(options), messages);
+  return scene ? writtenOf(*scene, folder, materials, surface, {}, messages) : std::string();
 }
 
 }  // namespace
@@ -134,9 +189,8 @@ std::string toMaterialX(const Scene& scene, const Strings& materials, const std:
   if (!filled(scene.impl_.get(), "scene", messages)) return {};
   const Scene::Impl& of = scene.impl();
   if (!isSurface(of.document.path, surface, messages)) return {};
-  const Result<const material::Schema*> schema = of.language->models.schema();
-  if (!schema) return report(schema.error(), of.document.path, messages), std::string();
-  std::vector<std::pair<size_t, const graph::Graph*>> graphs;
+  const bool closures = surface.empty() && of.hasClosures() && !translates(of.options);
+  EditedGraphs graphs;
   for (const EditedGraph& one : edited) {
     if (one.graph == nullptr || !filled(one.graph->impl_.get(), "graph", messages)) return {};
     if (of.material(one.material, messages) == nullptr) return {};
@@ -144,21 +198,25 @@ std::string toMaterialX(const Scene& scene, const Strings& materials, const std:
     report({{"not-said",
              Severity::Note,
              {{}, 0, 0, fmt::format("/materials/{}", one.material)},
-             "of the edited graph what computes texels is written",
-             "its other terms are what the material's properties say",
+             closures ? "of the edited graph the numbers are written"
+                      : "of the edited graph what computes texels is written",
+             closures ? "its nodes are the document's"
+                      : "its other terms are what the material's properties say",
              {}}},
            of.document.path, messages);
   }
-  if (graphs.empty()) return textOf(of.document, **schema, {}, materials, surface, messages);
-  material::Document document = of.document;
-  exchange::putGraphs(document, graphs, **schema);
-  return textOf(document, **schema, {}, materials, surface, messages);
+  return writtenOf(of, {}, materials, surface, graphs, messages);
 }
 
 std::string toGltf(const Scene& scene, const Strings& materials, uint32_t size, const Options& options,
                    Messages& messages) {
   if (!filled(scene.impl_.get(), "scene", messages)) return {};
-  const Scene::Impl& of = scene.impl();
+  std::optional<SceneData> translated;
+  if (scene.impl().hasClosures() && !translates(scene.impl().options)) {
+    translated = scene.impl().translated(messages);
+    if (!translated) return {};
+  }
+  const SceneData& of = translated ? *translated : static_cast<const SceneData&>(scene.impl());
   return gltfOf({of.document, of.language, of.bytes}, materials, size, options, messages);
 }
 
@@ -177,13 +235,17 @@ bool writeMaterialX(const std::string& output, const std::string& file, const St
 
 std::optional<Converted> convert(const Conversion& how, const std::string& file, const Strings& materials,
                                  const Options& options, Messages& messages) {
-  if (!writeMaterialX(how.output, file, materials, how.surface, options, messages)) return std::nullopt;
+  const Options translated = translating(options);
+  if (!writeMaterialX(how.output, file, materials, how.surface, translated, messages)) return std::nullopt;
   Converted converted;
   converted.output = how.output;
   if (!how.measured && how.picture.empty()) return converted;
   Result<std::vector<PreviewDifference>> differences;
   withJobs(options.jobs, [&] {
-    differences = preview::compareFiles(file, how.output, how.picture, how.size, options, messages);
+    // Of a document by the formulas of both surfaces; a glTF file's own are those that its surface is read
+    // by.
+    const Options& formulas = file.ends_with(".mtlx") ? options : translated;
+    differences = preview::compareFiles(file, how.output, how.picture, how.size, formulas, messages);
   });
   if (differences) {
     converted.differences = std::move(*differences);

@@ -55,10 +55,28 @@ struct Graph::Impl {
   Result<ir::Module> module(const Prepared& of, const Options& options, const AfterPass& after = {}) const;
 };
 
-struct Scene::Impl {
+/// A file's materials, and what they were read from.
+struct SceneData {
   material::Document document;
   std::shared_ptr<const Language> language;  ///< whose declarations the materials follow
   std::shared_ptr<const std::string> bytes;  ///< the file's, where it was read from memory
+  Options options;                           ///< that it was read with
+
+  /// Reads a file; nothing, and messages, on an error.
+  static std::optional<SceneData> load(const std::string& path, const Options& options, Messages& messages);
+
+  bool hasClosures() const;
+  /// The file's bytes.
+  Result<std::string> text() const;
+  /// Texts of the files that it includes; null where they are read.
+  const std::vector<std::pair<std::string, std::string>>* included() const;
+  /// The same with its surfaces as glTF's properties; a message where it cannot be read so.
+  std::optional<SceneData> translated(Messages& messages) const;
+};
+
+struct Scene::Impl : SceneData {
+  explicit Impl(SceneData data) : SceneData(std::move(data)) {}
+  Impl() = default;
 
   /// A material of that index; null, and "no-such-material", when there is none.
   const material::Material* material(size_t index, Messages& messages) const;

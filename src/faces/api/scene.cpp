@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "api/internal.h"
@@ -11,6 +12,7 @@
 #include "setting/options.h"
 #include "setting/watched.h"
 #include "shader/module.h"
+#include "support/file.h"
 
 namespace lacquer {
 
@@ -46,17 +48,51 @@ const material::Material* Scene::Impl::material(size_t index, Messages& messages
   return nullptr;
 }
 
+bool SceneData::hasClosures() const {
+  return std::any_of(document.materials.begin(), document.materials.end(),
+                     [](const material::Material& one) { return !one.closures.empty(); });
+}
+
+Result<std::string> SceneData::text() const {
+  if (bytes) return *bytes;
+  const Result<Limits> limits = limitsOf(options);
+  if (!limits) return tl::make_unexpected(limits.error());
+  return readFile(document.path, limits->file);
+}
+
+const std::vector<std::pair<std::string, std::string>>* SceneData::included() const {
+  return options.document_texts.empty() ? nullptr : &options.document_texts;
+}
+
+std::optional<SceneData> SceneData::translated(Messages& messages) const {
+  SceneData made{{}, language, bytes, translating(options)};
+  const Result<const material::Schema*> schema = language->models.schema();
+  const Result<Limits> limits = limitsOf(options);
+  if (!schema || !limits)
+    return report(schema ? limits.error() : schema.error(), document.path, messages), std::nullopt;
+  const Result<std::string> read = text();
+  if (!read) return report(read.error(), document.path, messages), std::nullopt;
+  Result<material::Document> translated =
+      material::readText(*read, document.path, **schema, {options.permissive, *limits, included(), true});
+  if (!translated) return report(translated.error(), document.path, messages), std::nullopt;
+  made.document = std::move(*translated);
+  return made;
+}
+
+std::optional<SceneData> SceneData::load(const std::string& path, const Options& options,
+                                         Messages& messages) {
+  const Result<SchemaOf> schema = schemaFor(options);
+  if (!schema) return report(schema.error(), path, messages), std::nullopt;
+  Result<material::Document> document = readMaterials(path, *schema->language, options);
+  if (!document) return report(document.error(), path, messages), std::nullopt;
+  report(document->diagnostics, path, messages);
+  return SceneData{std::move(*document), schema->language, {}, options};
+}
+
 Scene Scene::load(const std::string& path, const Options& options, Messages& messages) {
   Scene scene;
-  const Result<SchemaOf> schema = schemaFor(options);
-  if (!schema) return report(schema.error(), path, messages), scene;
-  Result<material::Document> document = readMaterials(path, *schema->language, options);
-  if (!document) {
-    report(document.error(), path, messages);
-    return scene;
-  }
-  report(document->diagnostics, path, messages);
-  scene.impl_ = std::make_shared<Impl>(Impl{std::move(*document), schema->language, {}});
+  std::optional<SceneData> data = SceneData::load(path, options, messages);
+  if (data) scene.impl_ = std::make_shared<Impl>(std::move(*data));
   return scene;
 }
 
@@ -78,7 +114,7 @@ Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const
     return report(wrong, name, messages), scene;
   report(document->diagnostics, name, messages);
   scene.impl_ = std::make_shared<Impl>(
-      Impl{std::move(*document), schema->language, std::make_shared<const std::string>(bytes)});
+      SceneData{std::move(*document), schema->language, std::make_shared<const std::string>(bytes), options});
   return scene;
 }
 

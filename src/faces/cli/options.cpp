@@ -93,9 +93,10 @@ void addMaterialFlags(CLI::App& verb, OptionFlags& flags) {
                   "the reading of the specification, one of `lacquer nodes`, or materialx of MaterialX "
                   "documents; without it the default")
       ->check(kNotEmpty);
-  verb.add_option("--as", flags.options.as,
-                  "surfaces of MaterialX documents: gltf, by glTF's properties, which is the default, or "
-                  "materialx, by MaterialX's formulas")
+  verb.add_option(
+          "--as", flags.options.as,
+          "surfaces of MaterialX documents: materialx, by MaterialX's formulas, which is the default without "
+          "another profile, or gltf, by glTF's properties")
       ->check(CLI::IsMember({"materialx", "gltf"}));
   verb.add_option("--params", flags.params,
                   "uniform: numbers stay editable; baked: they are constants; spec: they are specialization "

@@ -108,7 +108,7 @@ void withoutProcedurals(Json& json) {
 class Baking {
 public:
   Baking(const Bake& how, const Options& options, Messages& messages, const Progress& progress)
-      : how_(how), options_(options), messages_(messages), progress_(progress) {}
+      : how_(how), options_(translating(options)), messages_(messages), progress_(progress) {}
 
   Result<Baked> make(const std::string& file, const Strings& materials);
   /// The glTF file, with the images in it.
@@ -146,7 +146,7 @@ private:
   size_t textureOf(const std::string& uri, const Json& sampler = {});
 
   const Bake& how_;
-  const Options& options_;
+  const Options options_;  ///< translating()
   Messages& messages_;
   const Progress& progress_;
   std::shared_ptr<const Language> language_;

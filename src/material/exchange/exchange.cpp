@@ -41,12 +41,13 @@ Written toMaterialX(const material::Document& document, const std::vector<size_t
   for (const size_t i : materials) {
     const material::Material& made = document.materials[i];
     if (made.closures.empty()) continue;
-    written.said.push_back({"closures-not-written",
-                            Severity::Error,
-                            {document.path, 0, 0, {}},
-                            fmt::format("the material {} is made of closures", quote(made.name)),
-                            "a graph of closures is not written: the document has it already",
-                            {}});
+    written.said.push_back(
+        {"closures-not-written",
+         Severity::Error,
+         {document.path, 0, 0, {}},
+         fmt::format("the material {} is made of closures", quote(made.name)),
+         "no other surface says the same; without edits the document is written as it was read",
+         {}});
   }
   if (hasError(written.said)) return written;
   for (const size_t i : materials)

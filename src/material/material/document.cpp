@@ -159,8 +159,9 @@ Result<Document> readMaterialX(std::string_view text, const std::string& name, c
     material.patterns = read->procedurals.patterns;
     material.ports = std::move(read->closures[i]);
     if (!material.ports.empty()) material.closures = read->procedurals.list[i].group;
-    material.surface = std::move(read->surfaces[i].first);
-    material.translation_error = read->surfaces[i].second;
+    material.surface = std::move(read->surfaces[i].category);
+    material.translation_error = read->surfaces[i].error;
+    material.surface_pointer = std::move(read->surfaces[i].pointer);
     material.displacement = std::move(read->displacements[i]);
     Diagnostics& own = read->of_materials[i];
     own.insert(own.end(), material.diagnostics.begin(), material.diagnostics.end());

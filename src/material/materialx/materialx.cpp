@@ -51,6 +51,7 @@ private:
   struct Made {
     std::string name;
     std::string surface;  ///< its category
+    std::string pointer;  ///< of its surface of closures
     double error = 0;     ///< of its translation
     std::string element;  ///< its element's name; of a pattern's output none
     Place place;
@@ -67,8 +68,8 @@ private:
   };
 
   Found shaderOf(const Element& material);
+  void closures(Made& made, const Found& found);
   void material(const Element& at, std::string_view name, const Found& found, Diagnostics said);
-  void closures(Made& made, const Element& shader);
   void displacement(const Element& at);
   void patternsAlone();
   void pattern(const Element& owner, const Element& output, const std::string& name);
@@ -132,7 +133,7 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
       made.outputs = surface.outputs();
       made.error = translationError(made.surface);
     } else if (patterns_.givesClosure(*found.shader)) {
-      closures(made, *found.shader);
+      closures(made, found);
     } else {
       wrong(*found.shader, "unsupported-surface",
             fmt::format("the surface {} is not translated", quote(found.shader->category)),
@@ -143,7 +144,11 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
 }
 
 /// A surface of closures: what its group computes goes to the template's ports as it is.
-void MaterialsReader::closures(Made& made, const Element& shader) {
+void MaterialsReader::closures(Made& made, const Found& found) {
+  const Element& shader = *found.shader;
+  made.scope->nameSurface(shader);
+  if (found.owner->category == "nodegraph") made.pointer = fmt::format("/{}", found.owner->name());
+  made.pointer += fmt::format("/{}", shader.name());
   const Alpha alpha = patterns_.alphaOf(shader);
   for (const ClosurePart& part : closureParts("surfaceshader")) {
     const std::string port(part.name);
@@ -274,7 +279,7 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
     result.materials.push_back(std::move(made.json));
     result.of_materials.push_back(std::move(made.said));
     result.closures.push_back(std::move(made.closures));
-    result.surfaces.emplace_back(std::move(made.surface), made.error);
+    result.surfaces.push_back({std::move(made.surface), made.error, std::move(made.pointer)});
     const bool moved = !wrong && made.displacement != nullptr && !made.displacement->group().outputs.empty();
     result.displacements.push_back(moved ? made.displacement->group().name : std::string());
     result.procedurals.list.push_back(

@@ -41,8 +41,12 @@ struct Materials {
   std::vector<Diagnostics> of_materials;  ///< of each, beside what reading `materials` finds
   /// Of each, where it is made of closures: ports of a template, and outputs of its procedural's group.
   std::vector<std::vector<std::pair<std::string, std::string>>> closures;
-  /// Of each the surface that it was, and how far it is from it where it was translated; empty for a pattern.
-  std::vector<std::pair<std::string, double>> surfaces;
+  struct Surface {
+    std::string category;  ///< empty for a pattern
+    double error = 0;      ///< how far the material is from it, where it was translated
+    std::string pointer;   ///< of closures the element: "/paint", which pointers of its numbers begin with
+  };
+  std::vector<Surface> surfaces;
   /// Of each the group, of procedurals.patterns, whose output moves the vertices; empty for none.
   std::vector<std::string> displacements;
   Procedurals procedurals;

@@ -305,7 +305,8 @@ void Patterns::groupInputs(Scope& scope) {
 const std::string& Patterns::idOf(Scope& scope, const Element& element) {
   const auto [it, fresh] = scope.ids_.try_emplace(&element);
   if (fresh) {
-    it->second = scope.taken_.free(graphName(element.name().empty() ? element.category : element.name()));
+    const bool named = !element.name().empty() && &element != scope.surface_;
+    it->second = scope.taken_.free(graphName(named ? element.name() : element.category));
     if (scope.pending_.empty()) dirty_.push_back(&scope);
     scope.pending_.push_back(&element);
   }

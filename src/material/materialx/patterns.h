@@ -51,6 +51,8 @@ class Scope {
 public:
   const Element& owner() const { return *owner_; }
   graph::Group& group() { return group_; }
+  /// What the body is of: it is called as its category, so that materials alike have one shader.
+  void nameSurface(const Element& surface) { surface_ = &surface; }
   /// Of the interface; null where there is none of that name.
   const Element* input(std::string_view name) const {
     const auto it = inputs_.find(name);
@@ -61,7 +63,8 @@ private:
   friend class Patterns;
   const Element* owner_ = nullptr;
   const Element* interface_ = nullptr;  ///< whose inputs the group has; null for none
-  bool model_ = false;                  ///< of PatternOptions::models
+  const Element* surface_ = nullptr;
+  bool model_ = false;  ///< of PatternOptions::models
   graph::Group group_;
   const Siblings* siblings_ = nullptr;
   Siblings inputs_;                                      ///< of the interface

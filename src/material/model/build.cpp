@@ -475,6 +475,7 @@ void Writer::run() {
     graph_.outputs.emplace_back(port.param.name, computed(computed_by, "closures"));
   }
   if (!material_.displacement.empty()) displace();
+  if (!material_.surface_pointer.empty()) nameNumbers(graph_, material_.surface_pointer);
   // A line is a term, which the code tells, in the order of the layers.
   for (size_t i = 0; i < graph_.nodes.size(); ++i) {
     graph_.nodes[i].term = graph_.nodes[i].id;

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 
+#include "materialx/patterns.h"
 #include "support/text.h"
 
 namespace lacquer::model {
@@ -56,6 +59,39 @@ void placeSurroundings(graph::Group& group, const lang::TemplateDecl& template_d
       const auto* from = std::get_if<graph::NodeRef>(&input.second.from);
       return from != nullptr && gone.contains(from->node);
     });
+  }
+}
+
+void nameNumbers(graph::Graph& graph, std::string_view surface) {
+  std::map<std::string, std::string, std::less<>> names;
+  for (graph::Parameter& parameter : graph.parameters) {
+    const std::string_view pointer = parameter.pointer;
+    if (!pointer.starts_with(surface) || pointer.size() <= surface.size() + 1) continue;
+    std::string_view input = pointer.substr(surface.size());
+    if (input[0] != '/' || input.find('/', 1) != std::string_view::npos) continue;
+    std::string name = materialx::graphName(input.substr(1));
+    if (ir::isMatrix(parameter.type) || graph.findParameter(name)) continue;
+    names[parameter.name] = name;
+    parameter.name = std::move(name);
+  }
+  const auto rename = [&](Source& source) {
+    auto* ref = std::get_if<graph::ParameterRef>(&source.from);
+    const auto at = ref == nullptr ? names.end() : names.find(ref->name);
+    if (at != names.end()) ref->name = at->second;
+  };
+  const auto renameIn = [&](std::vector<graph::Node>& nodes) {
+    for (graph::Node& node : nodes) {
+      for (auto& [input, source] : node.inputs) rename(source);
+    }
+  };
+  renameIn(graph.nodes);
+  for (auto& [output, source] : graph.outputs) rename(source);
+  for (graph::Group& group : graph.groups) {
+    renameIn(group.nodes);
+    for (graph::GroupInput& input : group.inputs) {
+      if (input.by_default) rename(*input.by_default);
+    }
+    for (auto& [output, source] : group.outputs) rename(source);
   }
 }
 

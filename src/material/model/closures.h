@@ -19,6 +19,10 @@ Result<void> takesClosures(const lang::TemplateDecl& template_decl, const materi
 void placeSurroundings(graph::Group& group, const lang::TemplateDecl& template_decl,
                        const BuildOptions& options);
 
+/// Calls parameters for a surface's own numbers, whose pointers are below `surface`, as its inputs, so that
+/// materials with the same inputs have the same shader. A name that something else has stays as it was.
+void nameNumbers(graph::Graph& graph, std::string_view surface);
+
 /// Makes the normal that nodes of a flat graph take of the template a unit vector, by one node: that of the
 /// triangle where primitives have none. Without tangents they are not there either.
 void placeNormals(graph::Graph& graph, const gltf::VertexAttributes& attributes,

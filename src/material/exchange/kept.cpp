@@ -1,0 +1,147 @@
+#include "exchange/kept.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "exchange/pattern_out.h"
+#include "materialx/looks.h"
+#include "materialx/patterns.h"
+#include "materialx/values.h"
+
+namespace lacquer::exchange {
+
+using materialx::Element;
+
+namespace {
+
+constexpr std::array<std::string_view, 9> kOfGeometry = {
+    "collection", "geominfo",    "look",       "lookgroup",        "materialassign",
+    "property",   "propertyset", "variantset", "propertysetassign"};
+
+/// The elements beside it that an element names.
+void addTaken(const Element& element, std::vector<std::string_view>& taken) {
+  for (const std::string_view attribute : {"nodename", "nodegraph"}) {
+    if (const std::string_view name = element.get(attribute); !name.empty()) taken.push_back(name);
+  }
+  for (const Element& child : element.children) addTaken(child, taken);
+}
+
+/// Whether an element is a node, a nodegraph or a material, and no definition.
+bool isNode(const Element& element) {
+  if (element.category == "nodedef" || element.category == "typedef") return false;
+  if (element.category == "nodegraph") return element.get("nodedef").empty();
+  return !element.get("type").empty();
+}
+
+/// Names of materials with a variant's values have slashes, which MaterialX has not.
+void nameVariants(Element& root) {
+  materialx::NameSet taken;
+  std::map<std::string, std::string, std::less<>> names;
+  for (const Element& child : root.children) taken.take(std::string(child.name()));
+  for (const Element& child : root.children) {
+    const std::string name(child.name());
+    if (name.find('/') == std::string::npos || names.contains(name)) continue;
+    names[name] = taken.free(materialx::graphName(name));
+  }
+  const auto rename = [&](auto& self, Element& element) -> void {
+    std::erase_if(element.attributes, [](const auto& one) { return one.first == materialx::kOfVariant; });
+    for (auto& [attribute, value] : element.attributes) {
+      const auto at = names.find(value);
+      if (at == names.end()) continue;
+      if (attribute == "name" || attribute == "nodename" || attribute == "nodegraph") value = at->second;
+    }
+    for (Element& child : element.children) self(self, child);
+  };
+  if (names.empty()) return;
+  for (Element& child : root.children) {
+    const bool shown = child.category == "surfacematerial" && names.contains(child.name());
+    if (shown && child.get("uiname").empty()) child.set("uiname", std::string(child.name()));
+  }
+  rename(rename, root);
+}
+
+/// What a pointer such as /marble/noise/amplitude leads to; null for nothing.
+Element* elementAt(Element& root, std::string_view pointer) {
+  Element* found = &root;
+  while (!pointer.empty()) {
+    pointer.remove_prefix(1);
+    const std::string_view name = pointer.substr(0, pointer.find('/'));
+    pointer.remove_prefix(name.size());
+    const auto child = std::find_if(found->children.begin(), found->children.end(),
+                                    [&](const Element& one) { return one.name() == name; });
+    if (child == found->children.end()) return nullptr;
+    found = &*child;
+  }
+  return found;
+}
+
+void putNumber(Element& input, const graph::Parameter& parameter) {
+  const std::vector<double> numbers = parameter.numbers();
+  if (ir::isMatrix(parameter.type)) {
+    if (materialx::numbersOf(input.get("value")) != numbers)
+      input.set("value", fmt::format("{}", fmt::join(numbers, ", ")));
+    return;
+  }
+  const std::optional<ir::Type> type = materialx::typeOf(input.get("type"));
+  if (!type) return;
+  const auto count = static_cast<ptrdiff_t>(numbers.size());
+  const Result<ir::Components> read = materialx::valueOf(input, *type);
+  const bool spread = *type != parameter.type;  // one number for all components
+  const auto same = [&](double x) { return x == numbers[0]; };
+  const bool one = !spread || std::all_of(numbers.begin(), numbers.end(), same);
+  if (read && one && std::equal(numbers.begin(), numbers.begin() + (spread ? 1 : count), read->begin()))
+    return;
+  if (!one) input.set("type", parameter.type == ir::Type::Vec4 ? "color4" : "color3");
+  ir::Components value{};
+  std::copy(numbers.begin(), numbers.end(), value.begin());
+  std::erase_if(input.attributes,
+                [](const auto& had) { return had.first == "unit" || had.first == "unittype"; });
+  if (input.get("type").starts_with("color")) input.set("colorspace", "lin_rec709");
+  input.set("value", valueText(one ? *type : parameter.type, value));
+}
+
+}  // namespace
+
+void putNumbers(Element& root, const graph::Graph& edited) {
+  for (const graph::Parameter& parameter : edited.parameters) {
+    if (parameter.pointer.empty()) continue;
+    Element* input = elementAt(root, parameter.pointer);
+    if (input != nullptr && input->find("value") != nullptr) putNumber(*input, parameter);
+  }
+}
+
+void keepMaterials(Element& root, const Strings& names) {
+  Diagnostics said;
+  materialx::addVariants(root, said);
+  std::map<std::string_view, const Element*> nodes;
+  for (const Element& child : root.children) {
+    if (isNode(child)) nodes.emplace(child.name(), &child);
+  }
+  std::vector<std::string_view> pending;
+  for (const auto& [name, element] : nodes) {
+    const std::string_view shown = element->get("uiname");
+    if (std::find(names.begin(), names.end(), shown.empty() ? name : shown) != names.end())
+      pending.push_back(name);
+  }
+  std::set<std::string, std::less<>> kept;
+  while (!pending.empty()) {
+    const std::string_view name = pending.back();
+    pending.pop_back();
+    const auto at = nodes.find(name);
+    if (at == nodes.end() || !kept.emplace(name).second) continue;
+    addTaken(*at->second, pending);
+  }
+  std::erase_if(root.children, [&](const Element& child) {
+    if (isNode(child)) return !kept.contains(child.name());
+    return std::find(kOfGeometry.begin(), kOfGeometry.end(), child.category) != kOfGeometry.end();
+  });
+  nameVariants(root);
+}
+
+}  // namespace lacquer::exchange

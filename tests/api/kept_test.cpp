@@ -1,0 +1,151 @@
+// MaterialX documents whose surfaces have MaterialX's formulas: written as they were read.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "lacquer.h"
+#include "lacquer/exchange.h"
+
+namespace lacquer::test {
+namespace {
+
+constexpr const char* kDocument = R"(<materialx version="1.38" fileprefix="maps/">
+  <xi:include href="parts.mtlx"/>
+  <nodegraph name="NG">
+    <mix name="half" type="color3">
+      <input name="fg" type="color3" value="0.5, 0.25, 0.125" colorspace="srgb_texture"/>
+      <input name="bg" type="color3" value="1, 1, 1"/>
+      <input name="mix" type="float" value="0.5"/>
+    </mix>
+    <output name="out" type="color3" nodename="half"/>
+  </nodegraph>
+  <nodegraph name="unused">
+    <constant name="one" type="float"><input name="value" type="float" value="1"/></constant>
+    <output name="out" type="float" nodename="one"/>
+  </nodegraph>
+  <standard_surface name="paint" type="surfaceshader">
+    <input name="base_color" type="color3" nodegraph="NG" output="out"/>
+    <input name="specular_roughness" type="float" value="0.5"/>
+    <input name="thin_film_thickness" type="float" value="0.4" unit="micron" unittype="distance"/>
+    <input name="specular_color" type="float" value="0.5"/>
+  </standard_surface>
+  <surfacematerial name="Paint" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="paint"/>
+  </surfacematerial>
+  <look name="all"><materialassign name="m" material="Paint" geom="*"/></look>
+  <variantset name="wetness">
+    <variant name="wet"><input name="specular_roughness" type="float" value="0.125"/></variant>
+  </variantset>
+</materialx>
+)";
+
+constexpr const char* kParts = R"(<materialx version="1.39">
+  <gltf_pbr name="metal" type="surfaceshader">
+    <input name="metallic" type="float" value="1"/>
+  </gltf_pbr>
+  <surfacematerial name="m_1" type="material" uiname="Metal">
+    <input name="surfaceshader" type="surfaceshader" nodename="metal"/>
+  </surfacematerial>
+</materialx>
+)";
+
+class Kept : public ::testing::Test {
+protected:
+  Scene read(const std::string& text) {
+    Options options;
+    options.document_texts = {{"parts.mtlx", kParts}};
+    return Scene::fromMemory(text, "paint.mtlx", options, messages_);
+  }
+  std::string written(const Scene& scene, const Strings& materials = {}, const std::string& surface = {}) {
+    return toMaterialX(scene, materials, surface, {}, {}, messages_);
+  }
+  static bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+  std::string said() const {
+    std::string all;
+    for (const Message& one : messages_) all += one.code + ": " + one.text + "\n";
+    return all;
+  }
+  Messages messages_;
+};
+
+TEST_F(Kept, DocumentsAreWrittenAsTheyWereRead) {
+  const Scene scene = read(kDocument);
+  ASSERT_TRUE(scene);
+  const std::string text = written(scene);
+  EXPECT_TRUE(has(text, "<materialx version=\"1.38\"")) << text;
+  EXPECT_TRUE(has(text, "<standard_surface name=\"paint\"")) << text;
+  EXPECT_TRUE(has(text, "<gltf_pbr name=\"metal\"")) << text;
+  EXPECT_TRUE(has(text, "colorspace=\"srgb_texture\"")) << text;
+  EXPECT_TRUE(has(text, "<variant name=\"wet\"")) << text;
+  EXPECT_FALSE(has(text, "xi:include")) << text;
+  EXPECT_FALSE(has(text, "of_variant")) << text;
+  const Scene again = Scene::fromMemory(text, "paint.mtlx", {}, messages_);
+  EXPECT_EQ(again.materialCount(), scene.materialCount());
+  EXPECT_EQ(written(again), text);
+  EXPECT_EQ(said(), "");
+}
+
+TEST_F(Kept, SomeMaterialsAreWrittenWithWhatTheyTake) {
+  const Scene scene = read(kDocument);
+  ASSERT_TRUE(scene);
+  const std::string metal = written(scene, {"Metal"});
+  EXPECT_TRUE(has(metal, "<gltf_pbr name=\"metal\"")) << metal;
+  EXPECT_FALSE(has(metal, "paint")) << metal;
+  EXPECT_FALSE(has(metal, "nodegraph")) << metal;
+  EXPECT_FALSE(has(metal, "look")) << metal;
+  const std::string wet = written(scene, {"Paint/wetness/wet"});
+  EXPECT_TRUE(has(wet, "uiname=\"Paint/wetness/wet\"")) << wet;
+  EXPECT_TRUE(has(wet, "value=\"0.125\"")) << wet;
+  EXPECT_TRUE(has(wet, "<nodegraph name=\"NG\"")) << wet;
+  EXPECT_FALSE(has(wet, "unused")) << wet;
+  EXPECT_FALSE(has(wet, "of_variant")) << wet;
+  const Scene again = Scene::fromMemory(wet, "wet.mtlx", {}, messages_);
+  ASSERT_EQ(again.materialCount(), 1U);
+  EXPECT_EQ(again.materialName(0), "Paint/wetness/wet");
+  EXPECT_EQ(said(), "");
+}
+
+TEST_F(Kept, EditedNumbersAreWritten) {
+  const Scene scene = read(kDocument);
+  ASSERT_TRUE(scene);
+  Graph graph = scene.graph(1, kUnusedAttributes, {}, messages_);
+  ASSERT_TRUE(graph);
+  EXPECT_TRUE(graph.setParameter("NG_half_fg", {0.75, 0.5, 0.25}, messages_));
+  EXPECT_TRUE(graph.setParameter("specular_roughness", {0.625}, messages_));
+  EXPECT_TRUE(graph.setParameter("specular_color", {0.25, 0.5, 0.75}, messages_));
+  EXPECT_EQ(said(), "");
+  const std::string text = toMaterialX(scene, {}, {}, {{1, &graph}}, {}, messages_);
+  EXPECT_TRUE(has(text, "value=\"0.75, 0.5, 0.25\" colorspace=\"lin_rec709\"") ||
+              has(text, "colorspace=\"lin_rec709\" value=\"0.75, 0.5, 0.25\""))
+      << text;
+  EXPECT_TRUE(has(text, "name=\"specular_roughness\" type=\"float\" value=\"0.625\"")) << text;
+  EXPECT_TRUE(has(text, "name=\"specular_color\" type=\"color3\"")) << text;
+  EXPECT_TRUE(has(text, "value=\"0.25, 0.5, 0.75\"")) << text;
+  EXPECT_TRUE(has(text, "value=\"0.4\" unit=\"micron\"")) << text;  // nobody edited it
+  ASSERT_EQ(messages_.size(), 1U) << said();
+  EXPECT_EQ(messages_[0].code, "not-said");
+  const Scene again = Scene::fromMemory(text, "paint.mtlx", {}, messages_);
+  const Graph edited = again.graph(1, kUnusedAttributes, {}, messages_);
+  for (const Parameter& parameter : graph.parameters()) {
+    for (const Parameter& other : edited.parameters()) {
+      if (other.name != parameter.name) continue;
+      EXPECT_EQ(other.value, parameter.value) << other.name;
+    }
+  }
+}
+
+TEST_F(Kept, AnotherSurfaceIsTranslated) {
+  const Scene scene = read(kDocument);
+  ASSERT_TRUE(scene);
+  const std::string text = written(scene, {"Paint"}, "gltf_pbr");
+  EXPECT_TRUE(has(text, "<gltf_pbr")) << text;
+  EXPECT_FALSE(has(text, "<standard_surface")) << text;
+  EXPECT_TRUE(has(toGltf(scene, {}, 4, {}, messages_), "\"metallicFactor\"") ||
+              has(toGltf(scene, {}, 4, {}, messages_), "roughnessFactor"));
+  EXPECT_EQ(written(scene, {"nothing"}), "");
+}
+
+}  // namespace
+}  // namespace lacquer::test
