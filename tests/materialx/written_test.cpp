@@ -45,6 +45,22 @@ exchange::Written writtenOf(const material::Document& document) {
   return exchange::toMaterialX(document, all, builtInSchema());
 }
 
+/// The groups that move a material's vertices.
+std::string movedBy(const material::Material& material) {
+  graph::Graph moved;
+  std::vector<std::string> names{material.displacement};
+  for (size_t i = 0; i < names.size() && !names[i].empty(); ++i) {
+    for (const graph::Group& group : material.patterns->groups) {
+      if (group.name != names[i]) continue;
+      moved.groups.push_back(group);
+      for (const graph::Node& node : group.nodes) {
+        if (node.group) names.push_back(node.type);
+      }
+    }
+  }
+  return moved.groups.empty() ? std::string() : graph::toJson(moved);
+}
+
 std::string graphOf(const material::Document& document) {
   std::string text;
   for (const material::Material& material : document.materials) {
@@ -52,7 +68,7 @@ std::string graphOf(const material::Document& document) {
     const graph::Graph graph =
         buildGraph(material, {true, true, true, {true, true, false, false}}, BuildSetup{}, warnings);
     EXPECT_EQ(allOf(graph::check(graph, builtInLibrary())), "");
-    text += graph::toJson(graph);
+    text += graph::toJson(graph) + movedBy(material);
   }
   return text;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "exchange/displacement_out.h"
 #include "exchange/pattern_out.h"
 #include "exchange/surface_out.h"
 #include "support/plain_name.h"
@@ -52,6 +53,13 @@ Written toMaterialX(const material::Document& document, const std::vector<size_t
   if (hasError(written.said)) return written;
   for (const size_t i : materials)
     surfaces.push_back(surfaceOf(document, document.materials[i], schema, graph, surface, written.said));
+  // Behind the surfaces, in their order: what moves the vertices of some.
+  std::vector<std::optional<size_t>> displacements;
+  for (const size_t i : materials) {
+    const std::string& group = document.materials[i].displacement;
+    displacements.push_back(group.empty() ? std::nullopt : std::optional(surfaces.size()));
+    if (!group.empty()) surfaces.push_back(displacementOf(graph, group));
+  }
   for (size_t i = 0; i < surfaces.size(); ++i) {
     graph::Group body = surfaces[i].body;
     body.name = fmt::format("_surface_{}", i);
@@ -71,13 +79,6 @@ Written toMaterialX(const material::Document& document, const std::vector<size_t
   std::vector<Element> surface_materials;
   for (size_t i = 0; i < materials.size(); ++i) {
     const std::string& own = document.materials[materials[i]].name;
-    if (!document.materials[materials[i]].displacement.empty())
-      addBounded(written.said, {"not-said",
-                                Severity::Warning,
-                                {document.path, 0, 0, fmt::format("/materials/{}", materials[i])},
-                                "the material moves its vertices",
-                                "its displacement is left out",
-                                {}});
     const std::string material = patterns.free(own.empty() ? "material" : own);
     Element shader;
     shader.category = surfaces[i].category;
@@ -89,14 +90,18 @@ Written toMaterialX(const material::Document& document, const std::vector<size_t
     // MaterialX has letters, digits and underscores in names, and any text beside them.
     if (material != own && !own.empty() && isPlainText(own)) made.attributes.emplace_back("uiname", own);
     made.children.push_back(shaderInput(shader.name()));
+    if (displacements[i]) patterns.inputs(*displacements[i], made);
     shaders.push_back(std::move(shader));
     surface_materials.push_back(std::move(made));
   }
-  orderElements(root.children, shaders);
+  std::vector<Element> users = shaders;
+  users.insert(users.end(), surface_materials.begin(), surface_materials.end());
+  orderElements(root.children, users);
   for (size_t i = 0; i < shaders.size(); ++i) {
     root.children.push_back(std::move(shaders[i]));
     root.children.push_back(std::move(surface_materials[i]));
   }
+  nameDisplacements(root);
   written.text = materialx::toXml(root);
   return written;
 }
