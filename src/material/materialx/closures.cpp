@@ -50,27 +50,46 @@ std::string libraryName(const Element& element) {
   return fmt::format("{}_{}", element.category, medium ? "vdf" : type == "EDF" ? "edf" : "bsdf");
 }
 
-std::string_view refusedClosure(const Element& element) {
+std::string_view combines(const Element& element) {
+  const std::string_view type = element.get("type");
+  if (type != "BSDF" && type != "EDF") return {};
+  if (element.category == "layer") return "it is a BSDF, its top is one, and its base a BSDF or a VDF";
+  if (element.category == "mix") return "it is a BSDF or an EDF, and fg and bg are such, too";
+  if (element.category == "add") return "it is a BSDF or an EDF, and in1 and in2 are such, too";
+  if (element.category == "multiply")
+    return "it is a BSDF or an EDF, in1 is such, too, and in2 a number or a colour";
+  return {};
+}
+
+std::optional<Refusal> refused(const Element& element) {
   constexpr std::pair<std::string_view, std::string_view> kRefused[] = {
       {"chiang_hair_bsdf", "hair has curves, and these are surfaces"},
       {"chiang_hair_roughness", "it is for hair"},
       {"chiang_hair_absorption_from_color", "it is for hair"},
       {"deon_hair_absorption_from_melanin", "it is for hair"},
-      {"measured_edf", "a profile of a luminaire belongs to a light"},
-      {"volume", "volumes are not drawn"},
-      {"light", "lights are the application's"}};
+      {"measured_edf", "a profile of a luminaire belongs to a light"}};
   for (const auto& [name, why] : kRefused) {
-    if (element.category == name) return why;
+    if (element.category == name) return Refusal{std::string(why), "there are " + listOf(kClosures)};
   }
+  const std::string_view type = element.get("type");
+  if (type == "lightshader" || element.category == "light")
+    return Refusal{"lights are the application's",
+                   "a document's surfaces are drawn, with emission by an EDF"};
+  constexpr std::string_view kMedia =
+      "an absorption_vdf or an anisotropic_vdf may lie below the top of a layer";
+  if (type == "volumeshader" || element.category == "volume" || element.category == "volumematerial")
+    return Refusal{"volumes are surfaces' insides alone", std::string(kMedia)};
   const std::string name = libraryName(element);
-  if (name != element.category && name.ends_with("_vdf"))
-    return "media are combined with nothing but what lies on them";
-  return {};
+  if (name != element.category && name != "layer_vdf" && name.ends_with("_vdf"))
+    return Refusal{"media are not combined", std::string(kMedia)};
+  if (element.category == "layer" && type == "VDF")
+    return Refusal{"a medium has nothing on top that is a medium", std::string(kMedia)};
+  return std::nullopt;
 }
 
 bool Patterns::givesClosure(const Element& node) const {
   return definitionOf(node) != nullptr || node.category == "nodegraph" ||
-         !library_.forms(libraryName(node)).empty() || !refusedClosure(node).empty();
+         !library_.forms(libraryName(node)).empty() || refused(node).has_value();
 }
 
 const Element* Patterns::modelOf(const Element& surface) const {

@@ -1,6 +1,7 @@
 // Closures of MaterialX's physically based library: which there are, and what the library calls their nodes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,7 +33,15 @@ inline constexpr std::string_view kClosures[] = {"oren_nayar_diffuse_bsdf",
 /// What the library calls the node of an element: combinators have a name for each kind of closure.
 std::string libraryName(const Element& element);
 
-/// Why there is no such closure; empty for all others.
-std::string_view refusedClosure(const Element& element);
+/// What an element that combines closures takes and gives; empty for all others.
+std::string_view combines(const Element& element);
+
+/// Why an element is not drawn, and what is instead.
+struct Refusal {
+  std::string why, help;
+};
+
+/// Of hair, volumes, lights and what combines media; nothing for all others.
+std::optional<Refusal> refused(const Element& element);
 
 }  // namespace lacquer::materialx

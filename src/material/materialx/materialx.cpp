@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "materialx/closures.h"
 #include "materialx/element.h"
 #include "materialx/looks.h"
 #include "materialx/models.h"
@@ -71,6 +72,7 @@ private:
   void closures(Made& made, const Found& found);
   void material(const Element& at, std::string_view name, const Found& found, Diagnostics said);
   void displacement(const Element& at);
+  void refuse(const Element& at, std::string_view name);
   void patternsAlone();
   void pattern(const Element& owner, const Element& output, const std::string& name);
   static bool isSurface(const Element& element) {
@@ -179,6 +181,23 @@ void MaterialsReader::displacement(const Element& at) {
     scope.group().outputs.emplace_back("displacement", *source);
 }
 
+/// What is no surface: a material with an error.
+void MaterialsReader::refuse(const Element& at, std::string_view name) {
+  const std::optional<Refusal> why = refused(at);
+  if (!why) return;
+  Made made;
+  made.name = name;
+  made.element = at.name();
+  made.place = at.place;
+  made.said.push_back({"unsupported-closure",
+                       Severity::Error,
+                       at.place,
+                       fmt::format("{} is not drawn: {}", quote(at.category), why->why),
+                       why->help,
+                       {}});
+  made_.push_back(std::move(made));
+}
+
 /// A pattern's output, as a colour without light.
 void MaterialsReader::pattern(const Element& owner, const Element& output, const std::string& name) {
   const std::optional<ir::Type> type = typeOf(output.get("type"));
@@ -221,6 +240,9 @@ void MaterialsReader::patternsAlone() {
 Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagnostics said) {
   const Element& root = document_.root;
   for (const Element& child : root.children) {
+    const Element* volume = child.child("input", "volumeshader");
+    if (child.category == "volumematerial" && volume != nullptr && Patterns::isConnected(*volume))
+      refuse(child, child.name());
     if (child.category != "surfacematerial") continue;
     Diagnostics left_out;
     if (const Element* in = child.child("input", "backsurfaceshader");
@@ -243,6 +265,9 @@ Result<Materials> MaterialsReader::read(const VariantMaterials& variants, Diagno
     }
   }
   if (made_.empty()) patternsAlone();
+  for (size_t i = 0, any = made_.size(); any == 0 && i < root.children.size(); ++i) {
+    if (root.children[i].category != "nodedef") refuse(root.children[i], root.children[i].name());
+  }
   if (made_.empty())
     return fail("no-materials", root.place,
                 "the document has no material, no surface and no pattern's output",

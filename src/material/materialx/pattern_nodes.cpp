@@ -86,7 +86,7 @@ bool Patterns::takesTiles(std::string_view category) const {
 }
 
 void Patterns::unknownNode(const Element& element) {
-  if (const std::string_view why = refusedClosure(element); !why.empty())
+  if (const std::optional<Refusal> why = refused(element))
     return error(element, "unsupported-closure",
                  fmt::format("{} is not drawn: {}", quote(element.category), why),
                  "there are " + listOf(kClosures));
@@ -113,7 +113,7 @@ const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
         });
     std::erase_if(forms, [&](const lang::NodeDecl* form) { return isOfTiles(*form) != tiles; });
   }
-  if (forms.empty()) return unknownNode(element), nullptr;
+  if (forms.empty() || refused(element)) return unknownNode(element), nullptr;
   const lang::NodeDecl* found = nullptr;
   const lang::NodeDecl* near = nullptr;
   bool gives_any = false;
@@ -158,7 +158,8 @@ const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
     return nullptr;
   }
   error(element, "wrong-type",
-        fmt::format("the node {} takes no inputs of these types", quote(element.category)));
+        fmt::format("the node {} takes no inputs of these types", quote(element.category)),
+        std::string(combines(element)));
   return nullptr;
 }
 
