@@ -697,8 +697,9 @@ LACQUER_C lacquer_text* lacquer_scene_gltf(const lacquer_scene* scene, const cha
 
 /* Nodes, templates, profiles, extensions and their properties as JSON, as `lacquer nodes --json`. */
 LACQUER_C lacquer_text* lacquer_nodes(const lacquer_options* options, lacquer_messages* messages);
-/* Whether the options' own node files, "node_directories" and "node_texts", are good where they stand: 1 when
- * there is no error. All errors at once, and warnings of names that nobody uses and of ranges that are left.
+/* Whether the options' own node files, "node_directories" and "node_texts", and their MaterialX definitions
+ * are good where they stand: 1 when there is no error. All errors at once, and warnings of names that nobody
+ * uses and of ranges that are left.
  */
 LACQUER_C int lacquer_check_nodes(const lacquer_options* options, lacquer_messages* messages);
 /* The tables behind environment_dfg and environment_sheen (docs/bindings.md): `size` rows of `size` pairs,

@@ -559,7 +559,7 @@ def version() -> str:
 
 
 def check_nodes(options: Options) -> List[Message]:
-    """What is wrong with the options' own node files, "node_directories" and "node_texts", and worth knowing."""
+    """What is wrong with the options' own node files and MaterialX definitions, and worth knowing."""
     messages: List[Message] = []
     try:
         _calling(options, messages, lambda said, how: _lib.lacquer_check_nodes(how, said))

@@ -445,6 +445,14 @@ def test_scenes_as_texts_of_other_tools(tmp_path):
     with pytest.raises(lacquer.Error) as error:
         lacquer.Scene.read(main.encode(), "main.mtlx", {"document_texts": {"ramp.mtlx": text}})
     assert error.value.messages[0].code == "include-missing"
+    studio = """<materialx version="1.39"><nodedef name="ND" node="mine"><output name="out" type="surfaceshader"/></nodedef>
+      <nodegraph name="NG" nodedef="ND"><surface_unlit name="s" type="surfaceshader"/>
+      <output name="out" type="surfaceshader" nodename="s"/></nodegraph></materialx>"""
+    own = b"""<materialx version="1.39"><mine name="s" type="surfaceshader"/></materialx>"""
+    assert lacquer.Scene.read(own, "own.mtlx", {"materialx_texts": {"studio.mtlx": studio}}).materials == ["s"]
+    (tmp_path / "studio").mkdir()
+    (tmp_path / "studio" / "mine.mtlx").write_text(studio)
+    assert lacquer.Scene.read(own, "own.mtlx", {"materialx_directories": [str(tmp_path / "studio")]}).materials == ["s"]
 
 
 def test_handles_are_freed():

@@ -154,6 +154,11 @@ struct Options {
   /// More node files from memory, behind those: what messages call each, and its text. Not of plan(), whose
   /// commands read folders.
   std::vector<std::pair<std::string, std::string>> node_texts;
+  /// Folders, with those below them, whose `.mtlx` files have definitions that documents may use
+  /// (docs/materialx.md).
+  Strings materialx_directories;
+  /// More such documents from memory, behind those: what messages call each, and its text. Not of plan().
+  std::vector<std::pair<std::string, std::string>> materialx_texts;
   /// Of Scene::fromMemory(): what a MaterialX document includes, by the path as seen from the document, and
   /// its text. Without any it reads files beside the document's name.
   std::vector<std::pair<std::string, std::string>> document_texts;

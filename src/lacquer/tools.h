@@ -219,7 +219,8 @@ std::optional<EnvironmentMaps> writeEnvironment(const Environment& environment, 
 /// on an error.
 std::string nodesJson(const Options& options, Messages& messages);
 /// Whether the options' own node files, of `node_directories` and `node_texts`, are good where they stand:
-/// each declaration, and each part under every profile and with every lod, all errors at once. Of two parts
+/// each declaration, and each part under every profile and with every lod, all errors at once; and whether
+/// their MaterialX definitions are, as for a document that uses all of them. Of two parts
 /// over one place the order must be said ("unordered-parts"). Warnings: "unused-name" for what nobody uses,
 /// and "may-leave-range" for lines whose value may leave the range of what it goes to. True without an error.
 bool checkNodes(const Options& options, Messages& messages);

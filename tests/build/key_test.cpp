@@ -46,6 +46,11 @@ const std::vector<Row>& rows() {
        [](Options& o) {
          o.node_texts = {{"a.node", ""}};
        }},
+      {"materialx_directories", Decides::Run, [](Options& o) { o.materialx_directories = {"studio"}; }},
+      {"materialx_texts", Decides::Run,
+       [](Options& o) {
+         o.materialx_texts = {{"a.mtlx", ""}};
+       }},
       {"document_texts", Decides::Nothing,
        [](Options& o) {
          o.document_texts = {{"a.mtlx", ""}};

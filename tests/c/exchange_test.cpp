@@ -158,5 +158,23 @@ TEST_F(CExchange, IncludedTextsAreGiven) {
   EXPECT_EQ(c_messages_.takeCodes(), "include-missing, include-outside");
 }
 
+TEST_F(CExchange, DefinitionsAreGiven) {
+  const std::string main = R"(<materialx version="1.39"><mine name="s" type="surfaceshader"/></materialx>)";
+  const auto codes = [&](const std::string& definitions) {
+    const COptions options =
+        optionsFrom(R"({"materialx_texts": {"studio.mtlx": ")" + definitions + R"("}})", c_messages_);
+    const CScene scene(lacquer_scene_read(main.data(), main.size(), "main.mtlx", options.get(), c_messages_));
+    const size_t count = lacquer_scene_material_count(scene.get());
+    return std::to_string(count) + c_messages_.takeCodes();
+  };
+  const std::string good =
+      "<materialx version='1.39'><nodedef name='ND' node='mine'><output name='out' "
+      "type='surfaceshader'/></nodedef>"
+      "<nodegraph name='NG' nodedef='ND'><surface_unlit name='s' type='surfaceshader'/>"
+      "<output name='out' type='surfaceshader' nodename='s'/></nodegraph></materialx>";
+  EXPECT_EQ(codes(good), "1");
+  EXPECT_EQ(codes("<materialx version='1.39'><nodedef node='mine'/></materialx>"), "0no-name");
+}
+
 }  // namespace
 }  // namespace lacquer::test

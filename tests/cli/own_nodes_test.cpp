@@ -272,6 +272,79 @@ TEST(OwnNodes, CheckWarnsOfWhatAPropertyNeverIs) {
       << outcome.all();
 }
 
+constexpr const char* kDusty = R"(<materialx version="1.39">
+  <gltf_pbr name="s" type="surfaceshader">
+    <input name="roughness" type="float" nodename="dusty"/>
+  </gltf_pbr>
+  <dust name="dusty" type="float"/>
+  <surfacematerial name="M" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="s"/>
+  </surfacematerial>
+</materialx>)";
+constexpr const char* kDust = R"(<materialx version="1.39">
+  <nodedef name="ND_dust" node="dust">
+    <input name="amount" type="float" value="0.25"/>
+    <output name="out" type="float"/>
+  </nodedef>
+  <nodegraph name="NG_dust" nodedef="ND_dust">
+    <noise2d name="n" type="float"/>
+    <add name="sum" type="float">
+      <input name="in1" type="float" nodename="n"/>
+      <input name="in2" type="float" interfacename="amount"/>
+    </add>
+    <output name="out" type="float" nodename="sum"/>
+  </nodegraph>
+</materialx>)";
+
+/// Definitions of a studio, from a folder below the one that is named.
+TEST(OwnDefinitions, AreFound) {
+  const Workplace place;
+  place.write("dusty.mtlx", kDusty);
+  place.write("studio/patterns/dust.mtlx", kDust);
+  EXPECT_NE(place.run({"graph", "dusty.mtlx"}).err.find("there is no node \"dust\" [unknown-node]"),
+            std::string::npos);
+  Outcome outcome = place.run({"graph", "dusty.mtlx", "--materialx", "studio"});
+  EXPECT_EQ(outcome.status, 0) << outcome.all();
+  EXPECT_NE(outcome.out.find("NG_dust_amount"), std::string::npos);
+  const std::vector<std::string> gen = {
+      "gen",   "dusty.mtlx",    "--materialx", "studio",    "-o",       "out", "--cache",
+      "cache", "--no-validate", "--depfile",   "out/gen.d", "--target", "glsl"};
+  outcome = place.run(gen);
+  EXPECT_EQ(outcome.status, 0) << outcome.all();
+  EXPECT_NE(place.read("out/gen.d").find("studio/patterns/dust.mtlx"), std::string::npos);
+  const auto shader = [&] { return place.manifest("out")["shaders"][0]["id"].get<std::string>(); };
+  const std::string before = shader();
+  // A definition that has changed is read anew, whatever the cache has.
+  std::string changed = kDust;
+  changed.replace(changed.find("<add"), 4, "<multiply").replace(changed.find("</add"), 5, "</multiply");
+  place.write("studio/patterns/dust.mtlx", changed);
+  EXPECT_EQ(place.run(gen).status, 0);
+  EXPECT_NE(shader(), before);
+  // A picture replaces no definition.
+  outcome = place.run({"preview", "dusty.mtlx", "--materialx", "studio", "-o", "studio/patterns/dust.mtlx"});
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_EQ(place.read("studio/patterns/dust.mtlx"), changed);
+  EXPECT_NE(place.run({"gen", "dusty.mtlx", "--materialx", "nowhere", "-o", "out"})
+                .err.find("the folder of MaterialX definitions cannot be read"),
+            std::string::npos);
+}
+
+TEST(OwnDefinitions, AreChecked) {
+  const Workplace place;
+  place.write("studio/dust.mtlx", kDust);
+  Outcome outcome = place.run({"check", "--materialx", "studio"});
+  EXPECT_EQ(outcome.status, 0) << outcome.all();
+  EXPECT_EQ(outcome.out, "studio: good, 0 warnings\n");
+  std::string wrong = kDust;
+  place.write("studio/dust.mtlx", wrong.replace(wrong.find("noise2d"), 7, "noise2b"));
+  outcome = place.run({"check", "--materialx", "studio"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("studio/dust.mtlx:7:6: error: there is no node \"noise2b\" [unknown-node]"),
+            std::string::npos)
+      << outcome.all();
+  EXPECT_EQ(place.run({"check"}).status, 2);
+}
+
 /// What instances have of an application's own is dropped, and said once.
 TEST(OwnNodes, AttributesOfInstancesAreNamed) {
   const Workplace place;

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "graph/graph.h"
 #include "material/material.h"
+#include "materialx/materialx.h"
 #include "model/build.h"
 #include "support/cases.h"
 
@@ -18,8 +21,10 @@ std::string formatAll(const Diagnostics& diagnostics) {
 }
 
 struct CaseLibrary {
+  explicit CaseLibrary(materialx::Definitions definitions = {}) : models(library, std::move(definitions)) {}
+
   lang::Library library = withNodes();
-  model::Models models{library};
+  model::Models models;
 
   static lang::Library withNodes() {
     lang::Library library = lang::Library::embedded();
@@ -168,8 +173,32 @@ void buildAll(const material::Document& document, const CaseLibrary& with) {
   }
 }
 
+/// The files of a section, each below a line `## NAME`.
+std::vector<lang::SourceFile> filesOf(const std::string& section) {
+  std::vector<lang::SourceFile> files;
+  std::istringstream lines(section);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("## "))
+      files.push_back({line.substr(3), {}});
+    else
+      files.back().text += line + "\n";
+  }
+  return files;
+}
+
+void runWith(Case& c, const CaseLibrary& with, const std::string& name);
+
+/// With a library of definitions: what is wrong with it, or what comes of the document.
 void run(Case& c, const std::string& name) {
-  const CaseLibrary& with = caseLibrary();
+  if (!c.has("definitions")) return runWith(c, caseLibrary(), name);
+  const auto definitions = materialx::readDefinitions(filesOf(c.section("definitions")), Limits{});
+  if (!definitions) return c.expect("materials", formatAll(definitions.error()));
+  const CaseLibrary with(*definitions);
+  c.expect("checked", formatAll(materialx::checkDefinitions(*definitions, with.library, Limits{})));
+  runWith(c, with, name);
+}
+
+void runWith(Case& c, const CaseLibrary& with, const std::string& name) {
   const Result<const material::Schema*> schema = with.models.schema();
   ASSERT_TRUE(schema) << formatAll(schema.error());
   const auto document = material::readText(c.input(), name, **schema, {});

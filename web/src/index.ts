@@ -535,7 +535,7 @@ export class Lacquer {
   nodes(options?: Options): any {
     return JSON.parse(this.it.taken(calling(this.it, options, [], (said, how) => this.it.call.lacquer_nodes(how, said))));
   }
-  /** What is wrong with the options' own node files, `node_texts`, and worth knowing. */
+  /** What is wrong with the options' own node files and MaterialX definitions, `node_texts` and `materialx_texts`, and worth knowing. */
   checkNodes(options: Options): Message[] {
     const messages: Message[] = [];
     try {

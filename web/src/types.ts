@@ -52,6 +52,8 @@ export interface Options {
   live?: string[];
   /** More node files: their texts by the names that messages have of them. */
   node_texts?: Record<string, string>;
+  /** MaterialX definitions that documents may use: their texts by the names that messages have of them. */
+  materialx_texts?: Record<string, string>;
   /** What a MaterialX document includes, by its path as seen from the document. */
   document_texts?: Record<string, string>;
   limits?: string[];

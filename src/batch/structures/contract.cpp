@@ -113,18 +113,15 @@ MadeContract contractOf(const material::Document& document, const std::vector<st
 Key baseOf(const Options& options, std::vector<std::string>* node_files, bool* all_known) {
   KeyBuilder base;
   base.text(fingerprint()).text(check::toolVersions());
-  for (const std::string& folder : options.node_directories) {
-    const Result<std::vector<lang::SourceFile>> files = nodeFiles(folder);
-    if (!files && all_known != nullptr) *all_known = false;
-    // Whoever reads the library says why, or can read them again: they were as the base has them a moment
-    // ago.
-    if (!files) continue;
-    for (const lang::SourceFile& file : *files) {
-      base.text(file.name).text(file.text);
-      if (node_files != nullptr) node_files->push_back(file.name);
-    }
+  // Of a folder that cannot be read whoever reads the library says why, or can read it again: its files were
+  // as the base has them a moment ago.
+  for (const lang::SourceFile& file : filesOfFolders(options, all_known)) {
+    base.text(file.name).text(file.text);
+    if (node_files != nullptr) node_files->push_back(file.name);
   }
-  for (const auto& [name, text] : options.node_texts) base.text(name).text(text);
+  for (const auto* texts : {&options.node_texts, &options.materialx_texts}) {
+    for (const auto& [name, text] : *texts) base.text(name).text(text);
+  }
   return base.finish();
 }
 

@@ -71,15 +71,18 @@ Diagnostics Language::check() const {
   return all;
 }
 
-Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {
-  namespace fs = std::filesystem;
+/// The files of that extension that an iterator comes to, sorted by path.
+template <class Iterator>
+static Result<std::vector<lang::SourceFile>> filesOf(const std::string& folder, std::string_view extension,
+                                                     const char* what) {
   std::error_code error;
   std::vector<std::string> paths;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (it->path().extension() == ".node") paths.push_back(it->path().generic_string());
+  for (Iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() == extension) paths.push_back(it->path().generic_string());
   }
   if (error)
-    return fail("file-unreadable", {folder, 0, 0, {}}, "the folder of nodes cannot be read", error.message());
+    return fail("file-unreadable", {folder, 0, 0, {}}, fmt::format("the folder of {} cannot be read", what),
+                error.message());
   std::sort(paths.begin(), paths.end());
   std::vector<lang::SourceFile> files;
   for (const std::string& path : paths) {
@@ -88,6 +91,40 @@ Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {
     files.push_back({path, std::move(*text)});
   }
   return files;
+}
+
+Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder) {
+  return filesOf<std::filesystem::directory_iterator>(folder, ".node", "nodes");
+}
+
+Result<std::vector<lang::SourceFile>> definitionFiles(const std::string& folder) {
+  return filesOf<std::filesystem::recursive_directory_iterator>(folder, ".mtlx", "MaterialX definitions");
+}
+
+Result<materialx::Definitions> ownDefinitions(const Options& options) {
+  if (options.materialx_directories.empty() && options.materialx_texts.empty())
+    return materialx::Definitions();
+  const Result<Limits> limits = limitsOf(options);
+  if (!limits) return tl::make_unexpected(limits.error());
+  std::vector<lang::SourceFile> own;
+  for (const std::string& folder : options.materialx_directories) {
+    Result<std::vector<lang::SourceFile>> files = definitionFiles(folder);
+    if (!files) return tl::make_unexpected(std::move(files.error()));
+    std::move(files->begin(), files->end(), std::back_inserter(own));
+  }
+  for (const auto& [name, text] : options.materialx_texts) own.push_back({name, text});
+  return materialx::readDefinitions(own, *limits);
+}
+
+std::vector<lang::SourceFile> filesOfFolders(const Options& options, bool* all_known) {
+  std::vector<lang::SourceFile> all;
+  const auto add = [&](Result<std::vector<lang::SourceFile>> files) {
+    if (!files && all_known != nullptr) *all_known = false;
+    if (files) std::move(files->begin(), files->end(), std::back_inserter(all));
+  };
+  for (const std::string& folder : options.node_directories) add(nodeFiles(folder));
+  for (const std::string& folder : options.materialx_directories) add(definitionFiles(folder));
+  return all;
 }
 
 Result<std::vector<lang::SourceFile>> ownNodeFiles(const Options& options) {
@@ -113,7 +150,9 @@ static Result<std::shared_ptr<const Language>> libraryWith(const Options& option
   lang::Library library = lang::Library::embedded();
   if (Result<void> added = library.add(std::move(*own)); !added)
     return tl::make_unexpected(std::move(added.error()));
-  return std::make_shared<const Language>(std::move(library));
+  Result<materialx::Definitions> definitions = ownDefinitions(options);
+  if (!definitions) return tl::make_unexpected(std::move(definitions.error()));
+  return std::make_shared<const Language>(std::move(library), std::move(*definitions));
 }
 
 Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
@@ -121,23 +160,25 @@ Result<std::shared_ptr<const Language>> libraryFor(const Options& options) {
     return fail("stack-too-small", {}, "the thread has too little stack",
                 fmt::format("it takes {} KiB: `ulimit -s`, or the size that the thread is made with",
                             kStackNeeded / 1024));
-  if (options.node_directories.empty() && options.node_texts.empty()) {
+  const bool folders = !options.node_directories.empty() || !options.materialx_directories.empty();
+  if (!folders && options.node_texts.empty() && options.materialx_texts.empty()) {
     static const auto kBuiltIn = std::make_shared<const Language>(lang::Library::embedded());
     return kBuiltIn;
   }
   // Files of a folder may have changed.
-  if (!options.node_directories.empty()) return libraryWith(options);
+  if (folders) return libraryWith(options);
   static std::mutex mutex;
-  static std::vector<std::pair<std::string, std::string>> texts;
+  static std::vector<std::pair<std::string, std::string>> texts, documents;
   static std::shared_ptr<const Language> kept;
   {
     const std::lock_guard lock(mutex);
-    if (kept && texts == options.node_texts) return kept;
+    if (kept && texts == options.node_texts && documents == options.materialx_texts) return kept;
   }
   Result<std::shared_ptr<const Language>> made = libraryWith(options);
   if (!made) return made;
   const std::lock_guard lock(mutex);
   texts = options.node_texts;
+  documents = options.materialx_texts;
   kept = *made;
   return made;
 }

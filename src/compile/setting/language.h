@@ -16,7 +16,8 @@
 namespace lacquer {
 
 struct Language : lang::Library {
-  explicit Language(lang::Library&& library) : lang::Library(std::move(library)), models(*this) {}
+  explicit Language(lang::Library&& library, materialx::Definitions definitions = {})
+      : lang::Library(std::move(library)), models(*this, std::move(definitions)) {}
   Language(const Language&) = delete;
   Language& operator=(const Language&) = delete;
 
@@ -32,6 +33,16 @@ Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder);
 
 /// The options' own node files: those of its folders, then its texts.
 Result<std::vector<lang::SourceFile>> ownNodeFiles(const Options& options);
+
+/// The documents of a folder and those below it that MaterialX documents find definitions in, sorted by path.
+Result<std::vector<lang::SourceFile>> definitionFiles(const std::string& folder);
+
+/// The options' own definitions for MaterialX documents; null where they name none.
+Result<materialx::Definitions> ownDefinitions(const Options& options);
+
+/// All files of the options' folders that are there now: nodes, then definitions. `all_known` is false
+/// afterwards where a folder cannot be read.
+std::vector<lang::SourceFile> filesOfFolders(const Options& options, bool* all_known = nullptr);
 
 /// A file's materials by the library's declarations.
 Result<material::Document> readMaterials(const std::string& path, const Language& language,

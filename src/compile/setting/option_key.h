@@ -26,9 +26,9 @@ void eachOption(const Options& options, Each each) {
   const auto& [profile, as, simplify, template_name, targets, parameters, lights, switches, ibl,
                multiple_scattering, dfg_table, decode_srgb, permissive, validate, unused, properties,
                spirv_route, relaxed, optimize, optimize_error, optimize_for, debug, live, node_directories,
-               node_texts, document_texts, jobs, cache, cache_size, depfile, shard, limits, allow, cache_key,
-               argument_buffers, sync, programs, weights, programs_report, programs_model, pipelines] =
-      options;
+               node_texts, materialx_directories, materialx_texts, document_texts, jobs, cache, cache_size,
+               depfile, shard, limits, allow, cache_key, argument_buffers, sync, programs, weights,
+               programs_report, programs_model, pipelines] = options;
   each(Decides::Graph, profile);
   each(Decides::Graph, as);
   each(Decides::Graph, simplify);
@@ -55,6 +55,8 @@ void eachOption(const Options& options, Each each) {
   // What is in them goes into every key; the depfile has their names.
   each(Decides::Run, node_directories);
   each(Decides::Run, node_texts);
+  each(Decides::Run, materialx_directories);
+  each(Decides::Run, materialx_texts);
   each(Decides::Nothing, document_texts);
   each(Decides::Nothing, jobs);
   each(Decides::Nothing, cache);

@@ -272,6 +272,10 @@ bool checkNodes(const Options& options, Messages& messages) {
     if (one.code == "unordered-parts") one.severity = Severity::Error;
   }
   report(all, {}, messages);
+  const Result<Limits> limits = limitsOf(options);
+  const Result<const material::Schema*> schema = (*language)->models.schema();
+  if (limits && schema && (*schema)->definitions)
+    report(materialx::checkDefinitions((*schema)->definitions, **language, *limits), {}, messages);
   const OwnFiles files(**language, *own);
   report(files.unused(), {}, messages);
   Options named = options;

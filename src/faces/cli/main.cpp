@@ -191,8 +191,11 @@ void addNodes(CLI::App& verb, Flags& flags, std::string& name) {
 }
 
 void addCheck(CLI::App& verb, Flags& flags) {
-  verb.add_option("folders", flags.files, "folders of node files")->required()->check(kNotEmpty);
+  CLI::Option* folders = verb.add_option("folders", flags.files, "folders of node files")->check(kNotEmpty);
   lacquer::cli::addNodeFolders(verb, flags);
+  verb.callback([&verb, folders] {
+    if (folders->count() == 0 && verb.count("--materialx") == 0) throw CLI::RequiredError("folders");
+  });
 }
 
 void addMerge(CLI::App& verb, Flags& flags) {
@@ -335,7 +338,9 @@ int check(const Flags& flags) {
   const bool good = lacquer::checkNodes(options, messages);
   if (good) {
     std::string folders;
-    for (const std::string& folder : flags.files) folders += (folders.empty() ? "" : ", ") + folder;
+    lacquer::Strings all = flags.files;
+    all.insert(all.end(), options.materialx_directories.begin(), options.materialx_directories.end());
+    for (const std::string& folder : all) folders += (folders.empty() ? "" : ", ") + folder;
     fmt::print("{}: good, {}\n", lacquer::cli::printable(folders),
                lacquer::countOf(messages.size(), "warning"));
   }
@@ -401,7 +406,7 @@ std::vector<Verb> verbsOf(VerbFlags& all) {
        [&](CLI::App& verb) { addProve(verb, flags); }, [&] { return prove(flags); }},
       {"nodes", "the node library: contracts, ranges, sources, variants",
        [&](CLI::App& verb) { addNodes(verb, flags, all.node); }, [&] { return nodes(flags, all.node); }},
-      {"check", "whether folders of node files are good where they are to stand",
+      {"check", "whether folders of node files or MaterialX definitions are good where they are to stand",
        [&](CLI::App& verb) { addCheck(verb, flags); }, [&] { return check(flags); }},
       {"cost", "what SPIR-V fragment shaders cost on AMD GPUs, by Mesa's compiler",
        [&](CLI::App& verb) { addCost(verb, flags); }, [&] { return cost(flags); }},

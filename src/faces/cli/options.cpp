@@ -176,6 +176,10 @@ void addNodeFolders(CLI::App& verb, OptionFlags& flags) {
                   "a folder with more node files (may be repeated)")
       ->check(kNotEmpty)
       ->allow_extra_args(false);
+  verb.add_option("--materialx", flags.options.materialx_directories,
+                  "a folder with MaterialX definitions that documents may use (may be repeated)")
+      ->check(kNotEmpty)
+      ->allow_extra_args(false);
 }
 
 void addLimit(CLI::App& verb, OptionFlags& flags) {

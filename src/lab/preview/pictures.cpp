@@ -118,10 +118,7 @@ public:
       return tl::make_unexpected(std::move(read.error()));
     Strings inputs = files;
     if (!preview_.environment.empty()) inputs.push_back(preview_.environment);
-    for (const std::string& folder : options_.node_directories) {
-      const auto nodes = nodeFiles(folder);
-      for (size_t i = 0; nodes && i < nodes->size(); ++i) inputs.push_back((*nodes)[i].name);
-    }
+    for (const lang::SourceFile& file : filesOfFolders(options_)) inputs.push_back(file.name);
     if (Diagnostics wrong = clashes(inputs, {preview_.output}); !wrong.empty())
       return tl::make_unexpected(std::move(wrong));
     if (Result<void> fits = preview::mayLayOut(total_ * settings_.size(), preview_.size); !fits)

@@ -130,7 +130,7 @@ materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, con
   bool needed = false;
   for (size_t i = 0; required != nullptr && required->is_array() && i < required->size(); ++i)
     needed = needed || (*required)[i] == Json("KHR_texture_procedurals");
-  materialx::ProceduralOptions how{options.limits, needed, {}, namesOf(schema)};
+  materialx::ProceduralOptions how{options.limits, needed, {}, namesOf(schema), schema.definitions};
   // The extension's text leaves its own name out of the pointers.
   constexpr std::string_view kShort = "/extensions/procedurals/";
   for (const gltf::AnimatedPointer& pointer : document.animated)
@@ -145,7 +145,8 @@ materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, con
 Result<Document> readMaterialX(std::string_view text, const std::string& name, const Schema& schema,
                                const ReadOptions& options) {
   Result<materialx::Materials> read = materialx::readMaterials(
-      text, name, *schema.library, {options.limits, namesOf(schema), options.included, options.translate});
+      text, name, *schema.library,
+      {options.limits, namesOf(schema), options.included, options.translate, schema.definitions});
   if (!read) return tl::make_unexpected(read.error());
   Document document;
   document.path = name;

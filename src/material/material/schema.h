@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lang/library.h"
+#include "materialx/materialx.h"
 
 namespace lacquer::material {
 
@@ -33,6 +34,7 @@ struct Row {
 
 struct Schema {
   const lang::Library* library = nullptr;              ///< that it was collected from
+  materialx::Definitions definitions = {};             ///< beside those that MaterialX documents have
   std::vector<const lang::ExtensionDecl*> extensions;  ///< glTF's own first, then by name
   std::vector<Property> properties;
   /// By what parts call them: the properties that give it, in the order of the extensions. Where several

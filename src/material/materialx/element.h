@@ -44,6 +44,8 @@ struct Document {
 /// With `included` no file is read: what is included is there, by its path as seen from the document.
 Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits,
                          const std::vector<std::pair<std::string, std::string>>* included = nullptr);
+/// The same of a text that stands for itself: what it includes is left out.
+Result<Document> readXmlAlone(std::string_view text, const std::string& path, const Limits& limits);
 
 /// The `procedurals` of the extension KHR_texture_procedurals as elements: a `nodegraph` for each, in their
 /// order, and what is in `procedural_definitions` behind them. Places have JSON pointers. What is wrong with

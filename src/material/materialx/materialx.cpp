@@ -329,7 +329,8 @@ Result<Materials> readMaterials(std::string_view text, const std::string& path, 
                           {},
                           std::move(options.reserved),
                           true,
-                          options.translate ? nullptr : &surfaceModels()})
+                          options.translate ? nullptr : &surfaceModels(),
+                          options.definitions.get()})
       .read(variants, std::move(said));
 }
 
@@ -339,7 +340,9 @@ Procedurals readProcedurals(const Json& extension, const std::string& path, cons
   Element root;
   root.category = "materialx";
   root.children = readProcedurals(extension, path, options.limits, wrong);
-  Patterns patterns({&root}, library, {false, options.limits.nodes, options.animated, options.reserved});
+  Patterns patterns({&root}, library,
+                    {false, options.limits.nodes, options.animated, options.reserved, false, nullptr,
+                     options.definitions.get()});
   Procedurals made;
   std::vector<Scope*> scopes;
   for (const Element& graph : root.children) {

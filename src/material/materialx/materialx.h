@@ -59,6 +59,20 @@ struct Materials {
 using IncludedTexts = std::vector<std::pair<std::string, std::string>>;
 using Names = std::set<std::string, std::less<>>;
 
+struct Element;
+
+/// Definitions that every document may use: a library of nodedefs, and the nodegraphs that implement them.
+using Definitions = std::shared_ptr<const Element>;
+
+/// Reads such a library of files, in their order. All else in them counts for nothing, and so do includes:
+/// the files are all there. Errors: those of readXml(), and what is wrong whoever uses it: "no-name",
+/// "duplicate-definition", "no-such-definition", "inherit-cycle".
+Result<Definitions> readDefinitions(const std::vector<lang::SourceFile>& files, const Limits& limits);
+
+/// What is wrong within them, as a document that uses each of them would be told.
+Diagnostics checkDefinitions(const Definitions& definitions, const lang::Library& library,
+                             const Limits& limits);
+
 /// True for text that is XML and no JSON: its first character that is no space is `<`.
 bool isXml(std::string_view text);
 
@@ -68,6 +82,7 @@ struct MaterialOptions {
   const IncludedTexts* included = nullptr;
   /// Surfaces are translated to glTF's properties; else those that there is a model for are its closures.
   bool translate = true;
+  Definitions definitions = {};  ///< null for none
 };
 
 /// Reads a document; `path` is where its included files are looked for. Surfaces are closures or, where asked
@@ -82,6 +97,7 @@ struct ProceduralOptions {
   bool required = false;
   Names animated{};  ///< JSON pointers of what animations change
   Names reserved{};
+  Definitions definitions = {};
 };
 
 /// Of a glTF file's extension KHR_texture_procedurals: one for each entry of `procedurals`. What is wrong

@@ -88,8 +88,16 @@ bool Patterns::takesTiles(std::string_view category) const {
 void Patterns::unknownNode(const Element& element) {
   if (const std::optional<Refusal> why = refused(element))
     return error(element, "unsupported-closure",
-                 fmt::format("{} is not drawn: {}", quote(element.category), why),
-                 "there are " + listOf(kClosures));
+                 fmt::format("{} is not drawn: {}", quote(element.category), why->why), why->help);
+  if (const auto of = definitions_of_.find(element.category); of != definitions_of_.end()) {
+    const Definition& one = definitions_[of->second[0]];
+    return error(
+        element, "no-such-definition",
+        fmt::format("no definition of {} has this type, version and these inputs", quote(element.category)),
+        fmt::format("{}{} stands in {}:{}", quote(one.nodedef->name()),
+                    of->second.size() > 1 ? ", the first," : "", one.nodedef->place.file,
+                    one.nodedef->place.line));
+  }
   std::string help = "the library has no such node, and the document does not define it";
   if (maySuggest()) {
     std::vector<std::string_view> names;

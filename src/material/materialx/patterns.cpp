@@ -61,7 +61,8 @@ std::string NameSet::free(std::string name) {
 Patterns::Patterns(const std::vector<const Element*>& documents, const lang::Library& library,
                    PatternOptions options)
     : library_(library), options_(std::move(options)), documents_(documents) {
-  if (options_.models != nullptr) documents_.push_back(options_.models);
+  for (const Element* more : {options_.definitions, options_.models})
+    if (more != nullptr) documents_.push_back(more);
   for (const std::string& name : options_.reserved) parameter_names_.take(name);
   define();
   defineTokens();
@@ -119,13 +120,32 @@ void Patterns::define() {
         bodies_.emplace(nodedef, named->second);
     }
   }
-  for (const Element* document : documents_) defineFrom(*document, document == options_.models);
+  for (const Element* document : documents_) defineFrom(*document);
 }
 
-void Patterns::defineFrom(const Element& document, bool model) {
+/// Whether a definition of MaterialX's own, which is code there, is a node of the library, or is spoken of
+/// without one.
+bool Patterns::isKnown(const Element& nodedef) const {
+  Element node;
+  node.category = nodedef.get("node");
+  std::string_view type = nodedef.get("type");
+  for (const Element& port : nodedef.children) {
+    if (port.category == "output" && type.empty()) type = port.get("type");
+  }
+  node.set("type", std::string(type));
+  return type == "string" || type == "filename" || !library_.forms(libraryName(node)).empty() ||
+         refused(node).has_value();
+}
+
+void Patterns::defineFrom(const Element& document) {
+  const bool model = &document == options_.models;
   for (const Element& child : document.children) {
     if (child.category != "nodedef" || child.get("node").empty()) continue;
     const auto graph = bodies_.find(child.name());
+    if (&document == options_.definitions) {
+      if (nodedefs_.at(child.name()) != &child) continue;
+      if (graph == bodies_.end() && isKnown(child)) continue;
+    }
     const Definition made{merged(child, 0), graph == bodies_.end() ? nullptr : graph->second, model};
     definitions_of_[made.nodedef->get("node")].push_back(definitions_.size());
     by_nodedef_.emplace(made.nodedef, definitions_.size());
@@ -223,6 +243,15 @@ void Patterns::demand(const Element& nodegraph, std::string_view output, const E
   (void)group(nodegraph);
   Scope& scope = *groups_.at(&nodegraph);
   if (scope.demanded_.emplace(output).second) demands_.push_back({&scope, std::string(output), &at});
+}
+
+void Patterns::demandAll() {
+  for (const Definition& one : definitions_) {
+    if (one.model || one.graph == nullptr) continue;
+    for (const Element& port : one.nodedef->children) {
+      if (port.category == "output") demand(*one.graph, port.name(), *one.nodedef);
+    }
+  }
 }
 
 void Patterns::output(Scope& scope, std::string_view name, const Element& at) {

@@ -27,6 +27,8 @@ struct PatternOptions {
   bool has_attributes = false;  ///< primitives have what the documents read of them; else a file says it
   /// Definitions that hold where the documents have none, and whose own numbers are no parameters; or null.
   const Element* models = nullptr;
+  /// Definitions that hold as the documents' own where these have none of the name; or null.
+  const Element* definitions = nullptr;
 };
 
 /// Names that are given once.
@@ -109,6 +111,8 @@ public:
   std::optional<graph::Source> insert(Scope& scope, Element element);
   static bool isConnected(const Element& input);
 
+  /// Asks for every output of every definition of PatternOptions::definitions.
+  void demandAll();
   /// Makes the bodies of all groups that were asked for, and checks them. Afterwards wrong() is whole.
   void finish();
   const Diagnostics& wrong() const { return wrong_; }
@@ -130,7 +134,8 @@ private:
   };
 
   void define();
-  void defineFrom(const Element& document, bool model);
+  void defineFrom(const Element& document);
+  bool isKnown(const Element& nodedef) const;
   const Element* merged(const Element& nodedef, size_t depth);
   void prepare(Scope& scope, const Element& owner, const Element* inputs, std::string_view name);
   void groupInputs(Scope& scope);

@@ -33,8 +33,8 @@ struct Inherited {
 class XmlReader {
 public:
   using Texts = std::vector<std::pair<std::string, std::string>>;
-  XmlReader(const std::string& path, const Limits& limits, const Texts* included)
-      : top_(path), limits_(limits), included_(included) {}
+  XmlReader(const std::string& path, const Limits& limits, const Texts* included, bool includes = true)
+      : top_(path), limits_(limits), included_(included), includes_(includes) {}
 
   Result<Document> read(std::string_view text) {
     Document document;
@@ -80,6 +80,7 @@ private:
   const std::string& top_;
   const Limits& limits_;
   const Texts* included_;  ///< null: files are read
+  bool includes_;
   Diagnostics wrong_;
   std::vector<std::string> files_;
   std::vector<std::string> open_;  ///< files that are being read, to see a circle
@@ -198,7 +199,7 @@ void XmlReader::elements(pugi::xml_node parent, Element& into, const Inherited& 
     }
     const std::string_view name = node.name();
     if (name == "xi:include" || name == "include") {
-      include(node, into, around);
+      if (includes_) include(node, into, around);
       continue;
     }
     Element& element = into.children.emplace_back();
@@ -276,12 +277,23 @@ void XmlReader::include(pugi::xml_node node, Element& into, const Inherited& aro
 
 }  // namespace
 
+static Result<void> checkSize(std::string_view text, const std::string& path, const Limits& limits) {
+  if (text.size() <= limits.json) return {};
+  return fail("xml-too-large", {path, 0, 0, {}}, fmt::format("the file has more than {} bytes", limits.json),
+              raising("json"));
+}
+
 Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits,
                          const std::vector<std::pair<std::string, std::string>>* included) {
-  if (text.size() > limits.json)
-    return fail("xml-too-large", {path, 0, 0, {}},
-                fmt::format("the file has more than {} bytes", limits.json), raising("json"));
+  if (const Result<void> fits = checkSize(text, path, limits); !fits)
+    return tl::make_unexpected(fits.error());
   return XmlReader(path, limits, included).read(text);
+}
+
+Result<Document> readXmlAlone(std::string_view text, const std::string& path, const Limits& limits) {
+  if (const Result<void> fits = checkSize(text, path, limits); !fits)
+    return tl::make_unexpected(fits.error());
+  return XmlReader(path, limits, nullptr, false).read(text);
 }
 
 }  // namespace lacquer::materialx

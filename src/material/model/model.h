@@ -190,7 +190,7 @@ Result<std::vector<const lang::ProfileDecl*>> profiles(const lang::Library& libr
 /// What a library makes of materials, resolved once and kept. Lookups may run on several threads at once.
 class Models {
 public:
-  explicit Models(const lang::Library& library);
+  explicit Models(const lang::Library& library, materialx::Definitions definitions = {});
   ~Models();
   Result<const material::Schema*> schema() const;
   Result<const Model*> of(std::string_view profile,

@@ -9,17 +9,22 @@ namespace lacquer::model {
 
 struct Models::State {
   const lang::Library& library;
+  materialx::Definitions definitions;
   std::mutex mutex;
   std::optional<Result<material::Schema>> schema;
   std::map<std::string, Result<Model>, std::less<>> models;
 };
 
-Models::Models(const lang::Library& library) : state_(new State{library, {}, {}, {}}) {}
+Models::Models(const lang::Library& library, materialx::Definitions definitions)
+    : state_(new State{library, std::move(definitions), {}, {}, {}}) {}
 Models::~Models() = default;
 
 Result<const material::Schema*> Models::schema() const {
   const std::lock_guard lock(state_->mutex);
-  if (!state_->schema) state_->schema = material::schemaOf(state_->library);
+  if (!state_->schema) {
+    state_->schema = material::schemaOf(state_->library);
+    if (*state_->schema) (*state_->schema)->definitions = state_->definitions;
+  }
   if (!*state_->schema) return tl::make_unexpected(state_->schema->error());
   return &**state_->schema;
 }
