@@ -1,13 +1,18 @@
 #!/usr/bin/env python3
 """What MaterialX's materials cost here and in MaterialX's own shaders, by the same driver compiler.
 
-    bench/materialx.py build/release/lacquer MATERIALX FILE.mtlx... [--times] [--json FILE]
+    bench/materialx.py build/release/lacquer MATERIALX PATH... [--markdown FILE] [--json FILE]
 
-MATERIALX is a folder with MaterialX's WebAssembly module and a generate.mjs that runs its generators. Needs node.js,
-glslangValidator, spirv-opt and Mesa's RADV. Prints a table: inverse throughput of the fragment stage on navi21, one
-directional light and a prefiltered environment, and the bytes of both stages' SPIR-V. MaterialX's GLSL goes through glslang
-and `spirv-opt -O`. "Viewers" is its shader with all inputs editable, "baked" the one whose numbers are constants. Here "editable" has every number in a uniform block, "literal" none.
-With --times also milliseconds: of its way glslang and spirv-opt alone, of ours the whole process from the document to SPIR-V.
+MATERIALX is a folder with MaterialX's WebAssembly module and a generate.mjs that runs its generators; a PATH is a document, or
+a folder whose documents are taken with those below it. Needs node.js, glslangValidator, spirv-opt and Mesa's RADV. Prints a
+table, a row for each material: inverse throughput of the fragment stage on navi21, one directional light and a prefiltered
+environment; the bytes of both stages' SPIR-V; milliseconds of processor time.
+
+MaterialX's GLSL goes through glslang and `spirv-opt -O`. "sampled" is its default, 16 samples of the environment; "viewers" the
+same with a prefiltered one; both have all inputs editable. "baked" has their numbers as constants and its generator's options
+for least code. Here "editable" (--as materialx) has every number in a uniform block, "literal" none, and "gltf" (--as gltf) is
+editable, too. Time is that of glslang and spirv-opt alone of its way, and of the whole process from the document to SPIR-V of ours.
+--markdown writes the table and the sums into a block of FILE between `<!-- measured: materialx -->` and `<!-- :measured -->`.
 """
 
 import argparse
@@ -15,17 +20,31 @@ import glob
 import json
 import os
 import re
+import resource
 import subprocess
 import sys
 import tempfile
-import time
 import xml.etree.ElementTree
 
-COLUMNS = ("viewers", "baked", "editable", "literal")
+PEERS = ("sampled", "viewers", "baked")
+OURS = {"editable": ["--as", "materialx"], "literal": ["--as", "materialx", "--params", "baked"], "gltf": ["--as", "gltf"]}
+COLUMNS = (*PEERS, *OURS)
+# What is asked of each ratio of two columns: of the mean, and of each.
+GOALS = (("cost", "editable", "baked", 0.9, 1), ("cost", "literal", "baked", 0.8, None), ("cost", "editable", "viewers", 1 / 6, None),
+         ("cost", "editable", "sampled", 1 / 6, None), ("bytes", "editable", "viewers", 0.1, None), ("ms", "editable", "viewers", 0.01, None),
+         ("cost", "gltf", "editable", None, None))
 
 
 def run(*command, **options):
     return subprocess.run(command, capture_output=True, text=True, check=False, **options)
+
+
+def timed(*command):
+    """A process, and the seconds of processor time that it took."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = run(*command)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return done, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def cost(lacquer, what):
@@ -37,13 +56,10 @@ def cost(lacquer, what):
     return max(shader["gpus"]["navi21"]["inverse_throughput"] for shader in shaders)
 
 
-def ours(lacquer, document, name, folder, literal):
-    out = os.path.join(folder, "literal" if literal else "editable")
-    flags = ["--params", "baked"] if literal else []
-    begin = time.perf_counter()
-    done = run(lacquer, "gen", document, "--material", name, "-o", out, "--lights", "directional:1", "--target", "spirv",
-               "--no-validate", "-q", *flags)
-    spent = time.perf_counter() - begin
+def ours(lacquer, document, name, folder, how):
+    out = os.path.join(folder, "ours_" + how)
+    done, spent = timed(lacquer, "gen", document, "--material", name, "-o", out, "--lights", "directional:1", "--target", "spirv",
+                        "--no-validate", "-q", "--jobs", "1", *OURS[how])
     if done.returncode != 0:
         raise RuntimeError(done.stderr)
     files = glob.glob(os.path.join(out, "spirv", "*.spv"))
@@ -68,13 +84,14 @@ def baked(text, with_values):
 
 
 def theirs(lacquer, materialx, document, folder, how):
-    """By material, with the time of glslang and spirv-opt."""
+    """By surface, with the time of glslang and spirv-opt."""
     made = {}
     literal = how == "baked"
     out = os.path.join(folder, how)
+    options = {"sampled": "default", "viewers": "prefilter", "baked": "best"}[how]
     plain = {os.path.basename(pixel): pixel
-             for pixel in (generated(materialx, document, out + "_gl", "GlslShaderGenerator", "best") if literal else ())}
-    for pixel in generated(materialx, document, out, "VkShaderGenerator", "best" if literal else "prefilter"):
+             for pixel in (generated(materialx, document, out + "_gl", "GlslShaderGenerator", options) if literal else ())}
+    for pixel in generated(materialx, document, out, "VkShaderGenerator", options):
         base = pixel.removesuffix(".pixel")
         with open(pixel, encoding="utf-8") as file:
             text = file.read()
@@ -86,16 +103,15 @@ def theirs(lacquer, materialx, document, folder, how):
         with open(base + ".frag", "w", encoding="utf-8") as file:
             file.write(text)
         os.replace(base + ".vertex", base + ".vert")
-        begin = time.perf_counter()
         steps = []
         for stage in ("frag", "vert"):
-            steps.append(run("glslangValidator", "-V", "--target-env", "vulkan1.1", f"{base}.{stage}", "-o", f"{base}.{stage}.raw"))
-            steps.append(run("spirv-opt", "-O", f"{base}.{stage}.raw", "-o", f"{base}.{stage}.spv"))
-        if any(step.returncode for step in steps):
+            steps.append(timed("glslangValidator", "-V", "--target-env", "vulkan1.1", f"{base}.{stage}", "-o", f"{base}.{stage}.raw"))
+            steps.append(timed("spirv-opt", "-O", f"{base}.{stage}.raw", "-o", f"{base}.{stage}.spv"))
+        if any(step.returncode for step, spent in steps):
             continue
-        spent = time.perf_counter() - begin
         size = sum(os.path.getsize(f"{base}.{stage}.spv") for stage in ("frag", "vert"))
-        made[os.path.basename(base)] = {"cost": cost(lacquer, base + ".frag.spv"), "bytes": size, "ms": 1000 * spent}
+        made[os.path.basename(base)] = {"cost": cost(lacquer, base + ".frag.spv"), "bytes": size,
+                                        "ms": 1000 * sum(spent for step, spent in steps)}
     return made
 
 
@@ -109,14 +125,15 @@ def materials(document):
 def measured(lacquer, materialx, document):
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        peer = {how: theirs(lacquer, materialx, document, folder, how) for how in ("viewers", "baked")}
-        for name, surface in materials(document):
-            row = {"file": os.path.basename(document), "material": name}
-            for how in ("viewers", "baked"):
-                row[how] = peer[how].get(surface)
+        peer = {how: theirs(lacquer, materialx, document, folder, how) for how in PEERS}
+        found = list(materials(document))
+        for name, surface in found:
+            row = {"file": os.path.basename(document), "material": name, "alone": len(found) == 1}
+            for how in PEERS:
+                row[how] = peer[how].get(surface) or peer[how].get(name)
             try:
-                row["editable"] = ours(lacquer, document, name, folder, False)
-                row["literal"] = ours(lacquer, document, name, folder, True)
+                for how in OURS:
+                    row[how] = ours(lacquer, document, name, folder, how)
             except RuntimeError as error:
                 print(f"{document}: {name}: {error}", file=sys.stderr)
                 continue
@@ -127,33 +144,77 @@ def measured(lacquer, materialx, document):
     return rows
 
 
-def percent(rows, what, ours_is, of):
-    ratios = [100 * row[ours_is][what] / row[of][what] for row in rows]
-    return f"{sum(ratios) / len(ratios):.0f} % ({min(ratios):.0f} to {max(ratios):.0f})"
+def label(row):
+    """The document's name, and the material's where it has several."""
+    name = row["file"].removesuffix(".mtlx")
+    return name if row["alone"] else f"{name}: {row['material']}"
+
+
+def shown(row):
+    costs = " | ".join(str(row[how]["cost"]) for how in COLUMNS)
+    part = 100 * row["editable"]["cost"] / row["baked"]["cost"]
+    kilobytes = " | ".join(f"{row[how]['bytes'] / 1000:.1f}" for how in ("viewers", "editable"))
+    times = " | ".join(f"{row[how]['ms']:.0f}" for how in ("viewers", "editable"))
+    return f"| `{label(row)}` | {costs} | {part:.0f} % | {kilobytes} | {times} |"
+
+
+def sums(rows):
+    yield "| what | of | mean | least, most | asked of the mean | who is beyond |"
+    yield "|---|---|---|---|---|---|"
+    names = {"cost": "cost", "bytes": "bytes", "ms": "time"}
+    for what, mine, of, mean, each in GOALS:
+        values = [row[mine][what] / row[of][what] for row in rows]
+        bound = each or mean
+        beyond = [f"`{label(row)}`" for row, ratio in zip(rows, values) if bound and ratio > bound]
+        asked = "" if mean is None else f"{100 * mean:.0f} %" + (f", each {100 * each:.0f} %" if each else "")
+        who = "none" if bound and not beyond else ", ".join(beyond) if len(beyond) <= 6 else f"{len(beyond)} of {len(rows)}"
+        digits = 2 if what == "ms" else 0
+        yield (f"| {names[what]}, {mine} | {of} | {100 * sum(values) / len(values):.{digits}f} % | "
+               f"{100 * min(values):.{digits}f} % to {100 * max(values):.{digits}f} % | {asked} | {who} |")
+
+
+def documents_of(paths):
+    for path in paths:
+        if os.path.isdir(path):
+            yield from sorted(glob.glob(os.path.join(path, "**", "*.mtlx"), recursive=True))
+        else:
+            yield path
+
+
+def write_block(path, lines):
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    begin, end = "<!-- measured: materialx -->\n", "<!-- :measured -->"
+    head, rest = text.split(begin)
+    tail = rest.split(end, 1)[1]
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(head + begin + "\n".join(lines) + "\n" + end + tail)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("lacquer")
     parser.add_argument("materialx")
-    parser.add_argument("documents", nargs="+")
-    parser.add_argument("--times", action="store_true")
+    parser.add_argument("paths", nargs="+")
+    parser.add_argument("--markdown", help="the file that has the table")
     parser.add_argument("--json", help="the numbers as JSON")
     arguments = parser.parse_args()
     lacquer = os.path.abspath(arguments.lacquer)
-    print("| material | MaterialX in viewers | baked | here, editable | literal | editable, of baked |")
-    print("|---|---|---|---|---|---|")
+    lines = ["| material | sampled | viewers | baked | editable | literal | gltf | editable, of baked | kB, viewers | editable | ms, viewers | editable |",
+             "|" + "---|" * 12]
+    print("\n".join(lines), flush=True)
     rows = []
-    for document in arguments.documents:
+    for document in documents_of(arguments.paths):
         for row in measured(lacquer, arguments.materialx, document):
             rows.append(row)
-            cells = [str(row[how]["cost"]) for how in COLUMNS]
-            print(f"| `{row['material']}` | {' | '.join(cells)} | {100 * row['editable']['cost'] / row['baked']['cost']:.0f} % |", flush=True)
+            lines.append(shown(row))
+            print(lines[-1], flush=True)
     if not rows:
         sys.exit("no material that both draw")
-    for ours_is, of in (("editable", "viewers"), ("editable", "baked"), ("literal", "baked")):
-        print(f"\n{ours_is} of {of}: cost {percent(rows, 'cost', ours_is, of)}, bytes {percent(rows, 'bytes', ours_is, of)}", end="")
-        print(f", time {percent(rows, 'ms', ours_is, of)}" if arguments.times else "")
+    summed = list(sums(rows))
+    print("\n" + "\n".join(summed))
+    if arguments.markdown:
+        write_block(arguments.markdown, [*lines, "", *summed])
     if arguments.json:
         with open(arguments.json, "w", encoding="utf-8") as file:
             json.dump(rows, file, indent=1)
