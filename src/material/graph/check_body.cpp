@@ -121,11 +121,11 @@ void BodyCheck::noNode(size_t index, Connected& libraries) {
     findings_.error(spot, nodePointer(index, "node"), "unknown-node",
                     fmt::format("the library has no node {}", inQuotes(node.type)),
                     findings_.suggest(node.type, [&] { return library_.names(lang::DeclKind::Node); }));
-  } else if (std::string why = contracts_.whyNoForm(node, body_); !why.empty()) {
-    findings_.error(
-        spot, nodePointer(index, "node"), "no-form",
-        fmt::format("it is not clear which {} the node {} is", inQuotes(node.type), inQuotes(node.id)),
-        std::move(why));
+  } else if (std::optional<NoForm> why = contracts_.whyNoForm(node, body_); why && !why->broken.empty()) {
+    if (libraries.insert(why->broken)) findings_.forward(spot, library_.node(why->broken).error());
+  } else if (why) {
+    findings_.error(spot, nodePointer(index, "node"), "no-form", std::move(why->message),
+                    std::move(why->help));
   }
 }
 
@@ -153,19 +153,35 @@ void BodyCheck::input(size_t index, size_t input) {
   const Contract* contract = contracts_.of(body_.nodes()[index]);
   Sink sink{spotOf(Section::Nodes, index, input + 1), name,
             contract == nullptr ? nullptr : contract->param(name)};
-  if (contract != nullptr && sink.contract == nullptr) {
-    Names names;
-    for (const lang::Param& param : contract->params) names.push_back(param.name);
-    error(
-        sink, "unknown-input",
+  if (sink.contract == nullptr) unknownInput(node, contract, sink);
+  value(source, sink);
+}
+
+/// Of a node whose form is not known, an input that no form has is unknown.
+void BodyCheck::unknownInput(const Node& node, const Contract* contract, const Sink& sink) {
+  Names names;
+  const auto add = [&](std::span<const lang::Param> params) {
+    for (const lang::Param& param : params) {
+      if (std::find(names.begin(), names.end(), param.name) == names.end()) names.push_back(param.name);
+    }
+  };
+  if (contract != nullptr) {
+    add(contract->params);
+  } else {
+    if (node.group || library_.has(lang::DeclKind::Node, node.type)) return;
+    const std::vector<const lang::NodeDecl*> forms = library_.forms(node.type);
+    if (forms.empty()) return;
+    for (const lang::NodeDecl* form : forms) add(form->params);
+    if (std::find(names.begin(), names.end(), sink.name) != names.end()) return;
+  }
+  error(sink, "unknown-input",
         fmt::format("the {} {} has no input {}", node.group ? "group" : "node", inQuotes(node.type),
-                    inQuotes(name)),
-        samplersWord(name)
+                    inQuotes(sink.name)),
+        samplersWord(sink.name)
             ? std::string("how an image is looked up is the texture's: its \"wrap\" and \"filter\"")
             : findings_.suggest(
-                  name, [&] { return names; }, names.empty() ? "it has none" : "it has " + shortList(names)));
-  }
-  value(source, sink);
+                  sink.name, [&] { return names; },
+                  names.empty() ? "it has none" : "it has " + shortList(names)));
 }
 
 void BodyCheck::inputs(size_t index) {

@@ -141,6 +141,7 @@ private:
   /// Says why a node that is none of a group has no contract.
   void noNode(size_t index, Connected& libraries);
   void variant(size_t index, const lang::NodeDecl& decl);
+  void unknownInput(const Node& node, const Contract* contract, const Sink& sink);
   void inputs(size_t index);
   void outputs();
 

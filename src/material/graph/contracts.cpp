@@ -135,61 +135,6 @@ Contracts::Contracts(const Graph& graph, const lang::Library& library)
   chooseForms(main_);
 }
 
-namespace {
-
-/// How many types tell the form from others of its name.
-size_t typeCount(const lang::NodeDecl& form) {
-  return static_cast<size_t>(std::count(form.name.begin(), form.name.end(), ','));
-}
-
-/// How well a node's inputs fit a form: the number of those that are widened or converted; nothing where one
-/// does not fit.
-template <class OfferOf>
-std::optional<size_t> fitOf(const lang::NodeDecl& form, const Node& node, OfferOf offerOf) {
-  size_t inexact = 0;
-  for (const auto& [name, source] : node.inputs) {
-    const auto param = std::find_if(form.params.begin(), form.params.end(),
-                                    [&, &input = name](const lang::Param& p) { return p.name == input; });
-    if (param == form.params.end()) return std::nullopt;
-    if (const auto* choice = std::get_if<Choice>(&source.from)) {
-      const auto& known = param->choices;
-      if (std::find(known.begin(), known.end(), choice->name) == known.end()) return std::nullopt;
-      continue;
-    }
-    const std::optional<Offer> offer = offerOf(source);
-    if (!offer || offer->type == param->type) continue;  // nothing is known of what is wrong
-    const auto* literal = source.swizzle.empty() ? std::get_if<Literal>(&source.from) : nullptr;
-    if (literal != nullptr ? !fits(*literal, param->type) : !fits(offer->type, param->type))
-      return std::nullopt;
-    ++inexact;
-  }
-  for (const lang::Param& param : form.params) {
-    const bool given = std::any_of(node.inputs.begin(), node.inputs.end(),
-                                   [&](const auto& input) { return input.first == param.name; });
-    if (!given && !param.default_syntax && param.given.empty()) return std::nullopt;
-  }
-  return inexact;
-}
-
-}  // namespace
-
-/// Of a node's forms, those that fit best; of those that fit equally well, those with the fewest types in
-/// their names. So "floor" of a float is floor<float>, and not floor<float, int>, which a graph names.
-std::vector<const lang::NodeDecl*> Contracts::candidates(const Node& node, const Body& body) const {
-  std::vector<const lang::NodeDecl*> best;
-  std::pair<size_t, size_t> least{std::numeric_limits<size_t>::max(), 0};
-  for (const lang::NodeDecl* form : library_.forms(node.type)) {
-    const auto fit = fitOf(*form, node, [&](const Source& source) { return offer(source, body); });
-    if (!fit) continue;
-    const std::pair<size_t, size_t> worth{*fit, typeCount(*form)};
-    if (worth > least) continue;
-    if (worth < least) best.clear();
-    least = worth;
-    best.push_back(form);
-  }
-  return best;
-}
-
 /// Sources first, so that their types are known.
 void Contracts::chooseForms(const Body& body) {
   const auto several = [&](const Node& node) {
@@ -203,30 +148,6 @@ void Contracts::chooseForms(const Body& body) {
     if (forms.size() != 1) continue;
     if (const auto found = library_.node(forms[0]->name)) forms_.emplace(&node, *found);
   }
-}
-
-std::string Contracts::whyNoForm(const Node& node, const Body& body) const {
-  if (node.group || library_.has(lang::DeclKind::Node, node.type) || forms_.contains(&node)) return {};
-  const std::vector<const lang::NodeDecl*> all = library_.forms(node.type);
-  if (all.empty()) return {};
-  const std::vector<const lang::NodeDecl*> fitting = candidates(node, body);
-  if (fitting.size() == 1) return "the library's node is wrong";
-  constexpr size_t kShown = 8;
-  const std::vector<const lang::NodeDecl*>& shown = fitting.empty() ? all : fitting;
-  std::string text;
-  for (size_t i = 0; i < std::min(shown.size(), kShown); ++i) {
-    text += text.empty() ? "" : ", ";
-    text += shown[i]->name;
-    text += '(';
-    for (const lang::Param& param : shown[i]->params)
-      text += (text.back() == '(' ? "" : ", ") + std::string(ir::typeName(param.type)) + " " +
-              std::string(param.name);
-    text += ')';
-  }
-  if (shown.size() > kShown) text += " and " + std::to_string(shown.size() - kShown) + " more";
-  return (fitting.empty() ? "none of its forms takes what is connected: "
-                          : "several of its forms fit, name one: ") +
-         text;
 }
 
 void Contracts::orderGroups() {

@@ -61,6 +61,12 @@ struct Offer {
   ir::Range range{};
 };
 
+/// Why a graph means none of a node's forms.
+struct NoForm {
+  std::string message, help;
+  std::string_view broken;  ///< the form that it means, which is wrong itself; then the others are empty
+};
+
 /// Of a graph that stays as it is and may be wrong: then less is known of it. Not to be moved.
 class Contracts {
 public:
@@ -72,8 +78,9 @@ public:
   const lang::TemplateDecl* templateDecl() const { return template_; }
   /// Null where there is no such node or group, or the library's is wrong.
   const Contract* of(const Node& node) const;
-  /// Of a node with several forms, why none of them is meant; else empty.
-  std::string whyNoForm(const Node& node, const Body& body) const;
+  /// Of a node with several forms, why none of them is meant; nothing where one is, or where that follows
+  /// from what it is connected to.
+  std::optional<NoForm> whyNoForm(const Node& node, const Body& body) const;
   /// The same by name, of a group where `group`.
   const Contract* of(std::string_view type, bool group) const;
   const Body& main() const { return main_; }
@@ -102,6 +109,7 @@ private:
   const Contract* found(const Node& node) const;
   void orderGroups();
   void chooseForms(const Body& body);
+  std::string connectedText(const Node& node, const Body& body) const;
   std::vector<const lang::NodeDecl*> candidates(const Node& node, const Body& body) const;
   void close(size_t group);
 
