@@ -149,6 +149,7 @@ const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
           "it gives " + listOf(types, "or"));
     return nullptr;
   }
+  bool unknown = false;
   for (const Element& input : element.children) {
     if (input.category != "input") continue;
     std::vector<std::string_view> names;
@@ -163,8 +164,9 @@ const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
     error(input, "unknown-input",
           fmt::format("the node {} has no input {}", quote(element.category), quote(input.name())),
           lang::didYouMean(input.name(), names));
-    return nullptr;
+    unknown = true;
   }
+  if (unknown) return nullptr;
   error(element, "wrong-type",
         fmt::format("the node {} takes no inputs of these types", quote(element.category)),
         std::string(combines(element)));
@@ -213,6 +215,7 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
     }
     if (source) made.inputs.emplace_back(std::string(input.name()), std::move(*source));
   }
+  withoutFiles(scope, element, *form, made);
   if (ends != "none")
     made.inputs.emplace_back(std::string(kEnds), Source{graph::Choice{std::string(ends)}, {}});
   for (const lang::Param& param : form->params) {
@@ -242,6 +245,21 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
   for (graph::Node* node : {&made, &convert}) {
     scope.group_.nodes.push_back(std::move(*node));
     scope.elements_.push_back(&element);
+  }
+}
+
+/// Where no file is named the default colour stands for the image.
+void Patterns::withoutFiles(Scope& scope, const Element& element, const lang::NodeDecl& form,
+                            graph::Node& made) {
+  for (const lang::Param& param : form.params) {
+    if (!ir::isTexture(param.type) || element.child("input", param.name) != nullptr) continue;
+    Element& none = made_.emplace_back();
+    none.category = "input";
+    none.set("name", std::string(param.name));
+    none.set("type", "filename");
+    none.place = element.place;
+    if (std::optional<Source> source = image(scope, element, none, false))
+      made.inputs.emplace_back(std::string(param.name), std::move(*source));
   }
 }
 

@@ -639,6 +639,7 @@ void Patterns::finish() {
 void Patterns::checked() {
   const Result<std::string> name = library_.defaultTemplate();
   if (name) graph_.template_name = *name;
+  const std::set<std::string, std::less<>> unread = broken_;
   std::map<std::string_view, const Scope*> scopes;
   for (const Scope& scope : scopes_) scopes.emplace(scope.group_.name, &scope);
   for (Diagnostic& one : graph::check(graph_, library_)) {
@@ -667,8 +668,9 @@ void Patterns::checked() {
       }
     }
     if (one.severity == Severity::Error) {
-      // Of what is wrong already the rest says nothing new.
-      if (!broken_.insert(scope->second->group_.name).second) continue;
+      // Of what could not be read already the rest says nothing new.
+      if (unread.contains(scope->second->group_.name)) continue;
+      broken_.insert(scope->second->group_.name);
     }
     one.place = at->place;
     addBounded(wrong_, std::move(one));

@@ -148,6 +148,7 @@ private:
   std::optional<graph::Source> modelNumber(Scope& scope, const Element& element, const Element& input,
                                            const Element& port);
   void libraryNode(Scope& scope, const Element& element, graph::Node& node);
+  void withoutFiles(Scope& scope, const Element& element, const lang::NodeDecl& form, graph::Node& node);
   void surroundings(Scope& scope, const Element& element, const lang::NodeDecl& form, graph::Node& node);
   bool hasOneRoughness(const Scope& scope, const Element& element) const;
   std::optional<graph::Source> literal(Scope& scope, const Element& element, const Element& input,

@@ -255,6 +255,12 @@ std::string_view Patterns::endsOf(Scope& scope, const Element& element) {
   return u ? (v ? "both" : "u") : (v ? "v" : "none");
 }
 
+/// MaterialX's own, where a document says none.
+static ir::Components defaultColor(std::string_view category) {
+  if (category.ends_with("normalmap")) return {0.5, 0.5, 1, 1};
+  return {0, 0, 0, category == "UsdUVTexture" ? 1.0 : 0.0};
+}
+
 /// An image. `tiles`: what takes it has a place for an image of each tile.
 std::optional<Source> Patterns::image(Scope& scope, const Element& element, const Element& input,
                                       bool tiles) {
@@ -296,7 +302,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
   texture.nearest = filtered != nullptr && filtered->get("value") == "closest";
   const Element* fallback = element.child("input", "default");
   if (fallback == nullptr) fallback = element.child("input", "fallback");
-  ir::Components color_of{0, 0, 0, 0};
+  ir::Components color_of = defaultColor(element.category);
   if (fallback != nullptr && fallback->find("value") != nullptr) {
     const std::optional<ir::Type> of = typeOf(fallback->get("type"));
     const Result<ir::Components> value =
