@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "answer/answer.h"
 #include "inputs.h"
 
 namespace lacquer::test {
@@ -90,6 +91,37 @@ TEST(Whole, AreTheSameInEveryEngine) {
         ASSERT_TRUE(colors) << kind.type << errorsOf(messages);
         EXPECT_EQ(colors->rgba[0][0], kind.expected) << kind.type << " " << static_cast<int>(engine);
       }
+    }
+  }
+}
+
+/// What a node gives is looked at as it is, not as a float.
+TEST(Whole, OfANodeAreExact) {
+  const std::array kLooked = {Kind{"int", "16777217", "ivec4(x, -x, x - 33554433, 5)", 0},
+                              Kind{"uint", "4294967295", "uvec2(x, x - 16777216u)", 0}};
+  const std::array<std::array<double, 4>, 2> expected = {
+      std::array<double, 4>{16777217, -16777217, -16777216, 5},
+      std::array<double, 4>{4294967295, 4278190079, 0, 0}};
+  for (size_t i = 0; i < kLooked.size(); ++i) {
+    const Kind& kind = kLooked[i];
+    Options options = optionsOf(kind, Parameters::Uniform);
+    std::string& text = options.node_texts[0].second;
+    const std::string type = i == 0 ? "ivec4" : "uvec2";
+    text.replace(text.find("float {"), 5, type);
+    for (const Engine engine : {Engine::Double, Engine::Float, Engine::Vulkan, Engine::VulkanGlsl}) {
+      Messages messages;
+      std::string graph = graphOf(kind);
+      graph.replace(graph.find(R"("outputs")"), std::string::npos, R"("outputs": {"alpha": 1}})");
+      const Graph read = Graph::fromJson(graph, "whole.json", messages, options);
+      Trial trial;
+      trial.node = "n";
+      const auto colors = evaluate(read, "[{}]", engine, {}, options, messages, trial);
+      if (!colors && errorsOf(messages) == "vulkan-unavailable") continue;
+      ASSERT_TRUE(colors) << kind.type << errorsOf(messages);
+      EXPECT_EQ(colors->rgba[0], expected[i]) << kind.type << " " << static_cast<int>(engine);
+      EXPECT_NE(answerJson(*colors).find(i == 0 ? "[16777217, -16777217, " : "[4294967295, "),
+                std::string::npos)
+          << answerJson(*colors);
     }
   }
 }

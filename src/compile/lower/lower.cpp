@@ -14,6 +14,7 @@
 #include "lower/inline.h"
 #include "lower/light_fill.h"
 #include "lower/pack_outputs.h"
+#include "lower/shown.h"
 
 namespace lacquer::lower {
 
@@ -663,24 +664,13 @@ private:
   }
 
   void show(const graph::Source& source) {
-    const ir::ValueId value = swizzled(source);
-    const ir::Type type = dag()[value].type;
-    std::vector<ir::ValueId> parts;
-    for (int i = 0; i < 4; ++i) {
-      const bool there = i < ir::componentCount(type);
-      ir::ValueId part = !there                          ? dag().constant(0.0)
-                         : ir::componentCount(type) == 1 ? value
-                                                         : dag().component(value, i);
-      if (dag()[part].type == ir::Type::Bool)
-        part = dag().select(part, dag().constant(1.0), dag().constant(0.0));
-      if (dag()[part].type == ir::Type::UInt) part = dag().make(ir::Op::FromUInt, {part});
-      if (dag()[part].type == ir::Type::Int) part = dag().make(ir::Op::FromInt, {part});
-      parts.push_back(part);
+    uint32_t location = 0;
+    for (ir::ValueId shown : shownParts(dag(), swizzled(source), options_.shown_whole)) {
+      if (dag()[shown].rate == ir::Rate::Light) shown = inliner_.summed(shown);
+      if (dag()[shown].rate == ir::Rate::Vertex) shown = dag().make(ir::Op::Interpolate, {shown});
+      const std::string name = location == 0 ? "shown" : "shown_rest";
+      module_.outputs.push_back({ir::OutputKind::Color, ir::Stage::Fragment, name, location++, shown});
     }
-    ir::ValueId shown = dag().construct(ir::Type::Vec4, parts);
-    if (dag()[shown].rate == ir::Rate::Light) shown = inliner_.summed(shown);
-    if (dag()[shown].rate == ir::Rate::Vertex) shown = dag().make(ir::Op::Interpolate, {shown});
-    module_.outputs.push_back({ir::OutputKind::Color, ir::Stage::Fragment, "shown", 0, shown});
   }
 
   Diagnostics outputs() {

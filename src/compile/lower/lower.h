@@ -21,6 +21,7 @@ struct LowerOptions {
   /// A source of the graph, a number, bool or vector of them, that the only output beside the position has,
   /// in the first of its four components; the others are 0. Of light rate: summed over the lights.
   const graph::Source* shown = nullptr;
+  bool shown_whole = false;  ///< integers in two such outputs, whose sum they are exactly (lower/shown.h)
   OnCall on_call = {};  ///< when given, told of the graph's nodes and of what they and the template call
 };
 

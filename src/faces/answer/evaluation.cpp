@@ -24,15 +24,16 @@ std::string answerJson(const Evaluation& evaluation) {
     text += fmt::format("  \"node\": {},\n  \"type\": \"{}\",\n", json::quotedText(evaluation.node),
                         evaluation.type);
   const size_t count = componentsOf(evaluation);
+  const bool whole = evaluation.type.starts_with('i') || evaluation.type.starts_with('u');
   text += evaluation.node.empty() ? "  \"rgba\": [" : "  \"values\": [";
   for (const std::array<double, 4>& color : evaluation.rgba) {
     text += &color == evaluation.rgba.data() ? "\n    [" : ",\n    [";
     for (size_t i = 0; i < count; ++i) {
       const double x = color[i];
       if (i > 0) text += ", ";
-      text += !std::isfinite(x)                     ? "null"
-              : evaluation.engine == Engine::Double ? fmt::format("{:.17g}", x)
-                                                    : fmt::format("{:.9g}", static_cast<float>(x));
+      text += !std::isfinite(x)                              ? "null"
+              : evaluation.engine == Engine::Double || whole ? fmt::format("{:.17g}", x)
+                                                             : fmt::format("{:.9g}", static_cast<float>(x));
     }
     text += "]";
   }

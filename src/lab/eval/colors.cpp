@@ -166,6 +166,16 @@ void takeColors(const std::vector<T>& values, Colors& to) {
   for (size_t i = 0; i < values.size(); ++i) to.rgba[i / 4][i % 4] = static_cast<double>(values[i]);
 }
 
+/// The second output of integers that are looked at.
+bool isRest(const ir::Output& output) {
+  return output.kind == ir::OutputKind::Color && output.location == 1 && output.name == "shown_rest";
+}
+
+template <class T>
+void addRest(const std::vector<T>& values, Colors& to) {
+  for (size_t i = 0; i < values.size(); ++i) to.rgba[i / 4][i % 4] += static_cast<double>(values[i]);
+}
+
 FragmentRoute routeOf(Engine engine) {
   return engine == Engine::VulkanHlsl   ? FragmentRoute::Hlsl
          : engine == Engine::VulkanGlsl ? FragmentRoute::Glsl
@@ -225,19 +235,23 @@ template <class T>
 Result<Colors> colors(const ir::Module& module, const eval::Bindings& bindings, size_t points) {
   std::vector<ir::ValueId> roots;
   ir::ValueId color = ir::kNoValue;
+  ir::ValueId rest = ir::kNoValue;
   ir::ValueId dropped = ir::kNoValue;
   for (const ir::Output& output : module.outputs) {
     if (output.kind == ir::OutputKind::Color && output.location == 0) color = output.value;
+    if (isRest(output)) rest = output.value;
     if (output.kind == ir::OutputKind::Discard) dropped = output.value;
   }
   roots.push_back(color);
+  if (rest != ir::kNoValue) roots.push_back(rest);
   if (dropped != ir::kNoValue) roots.push_back(dropped);
   const auto values = eval::evaluate<T>(module, roots, bindings, points);
   if (!values) return tl::make_unexpected(values.error());
   Colors result;
   takeColors((*values)[0], result);
-  if (values->size() > 1) {
-    for (const T x : (*values)[1]) result.discarded.push_back(x != 0);
+  if (rest != ir::kNoValue) addRest((*values)[1], result);
+  if (dropped != ir::kNoValue) {
+    for (const T x : values->back()) result.discarded.push_back(x != 0);
   }
   return result;
 }
@@ -252,6 +266,7 @@ Result<Colors> colorsOnGpu(const ir::Module& module, const eval::Bindings& bindi
   if (!outcome) return tl::make_unexpected(std::move(outcome.error()));
   Colors result;
   takeColors(outcome->outputs[0], result);
+  if (std::any_of(module.outputs.begin(), module.outputs.end(), isRest)) addRest(outcome->outputs[1], result);
   result.device = device->name();
   const bool may_discard = std::any_of(module.outputs.begin(), module.outputs.end(),
                                        [](const auto& o) { return o.kind == ir::OutputKind::Discard; });
@@ -283,6 +298,7 @@ Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& lib
   if (Result<void> set = evaluated.setTexels(texels); !set)
     return tl::make_unexpected(std::move(set.error()));
   evaluated.setTrial(trial);
+  evaluated.showWhole();
   const bool on_device = engine != Engine::Double && engine != Engine::Float;
   for (const auto& [name, column] : points.parameters) {
     if (on_device && column.per_point)

@@ -292,6 +292,7 @@ Result<void> EvalMaterial::lower(const EvalSubject& subject, const Language& lib
     shown = look(graph, library, outputs);
     if (!shown) return tl::make_unexpected(std::move(shown.error()));
     how.shown = &*shown;
+    how.shown_whole = whole_;
   }
   Result<ir::Module> module = lower::lower(graph, library, how);
   if (!module) return tl::make_unexpected(std::move(module.error()));

@@ -112,6 +112,9 @@ public:
   /// It has these of the application's own, "_WETNESS", sorted.
   void setAttributes(Strings attributes) { attributes_ = std::move(attributes); }
 
+  /// Integers that are looked at come in two outputs, whose sum they are exactly.
+  void showWhole() { whole_ = true; }
+
   /// The module of the options' template, or of a graph's own, as lowered; of a material for a primitive with
   /// every attribute but what was left out: points are given all of them. Nodes that have the variant of that
   /// name use it. Errors: "unknown-texture", those of a graph and of EvalSubject::graph().
@@ -181,7 +184,7 @@ private:
   Trial trial_;
   std::map<std::string, eval::Column> columns_;
   bool anyway_ = false;
-  bool tangents_ = true;
+  bool tangents_ = true, whole_ = false;
   Strings attributes_;
   std::vector<graph::Texture> originals_;  ///< by the slot's texture: the file's
   ir::Module module_;
