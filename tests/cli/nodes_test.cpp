@@ -165,6 +165,12 @@ node moss_alone(float x in [0, 1]) -> float in [0, 1] {
     return x;
 }
 
+/// Of several types, and wanted by nobody.
+/// source: ACME
+node moss_forms<T in float, vec2, vec3>(T x in [0, 1]) -> T in [0, 1] {
+    return x;
+}
+
 /// Of a palette.
 /// source: ACME
 /// category: plants
@@ -175,10 +181,11 @@ node moss_palette(float x in [0, 1]) -> float in [0, 1] {
   place.write("mine/moss.node", text);
   const auto said = place.run({"check", "mine"});
   EXPECT_EQ(said.status, 0) << said.all();
-  for (const char* name : {"mossTexture", "moss.idle", "LONELY", "moss_alone"})
+  for (const char* name : {"mossTexture", "moss.idle", "LONELY", "moss_alone", "moss_forms"})
     EXPECT_NE(said.err.find("'" + std::string(name) + "'"), std::string::npos) << name << "\n" << said.err;
   EXPECT_EQ(said.err.find("moss_palette"), std::string::npos) << said.err;
   EXPECT_NE(said.err.find("[unused-name]"), std::string::npos);
+  EXPECT_EQ(said.err.find("moss_forms"), said.err.rfind("'moss_forms'") + 1) << "once for all its forms";
 }
 
 TEST(Check, OfLinesThatLeaveARange) {

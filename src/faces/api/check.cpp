@@ -89,7 +89,7 @@ public:
       // What has a category is for palettes.
       if (!decl || textOf((*decl)->origin.file) == nullptr || !(*decl)->category.empty()) continue;
       if (words_.count((*decl)->family) > language_.forms((*decl)->family).size()) continue;
-      say(**decl, (*decl)->span, fmt::format("nothing calls the node '{}'", name),
+      say(**decl, (*decl)->span, fmt::format("nothing calls the node '{}'", (*decl)->family),
           "say `category:` of a node that is for graphs alone", found);
     }
     for (const std::string_view name : language_.names(lang::DeclKind::Extension)) {
@@ -203,7 +203,8 @@ private:
     Diagnostic warning{"unused-name",      Severity::Warning, {std::string(decl.origin.file), 0, 0, {}},
                        std::move(message), std::move(help),   {}};
     locate(warning, *textOf(decl.origin.file), span.offset, span.length);
-    addBounded(found, std::move(warning));
+    // The forms of a node are one text.
+    if (std::find(found.begin(), found.end(), warning) == found.end()) addBounded(found, std::move(warning));
   }
 
   static void addTextures(const material::Schema& schema, material::Material& material) {

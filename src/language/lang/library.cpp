@@ -20,6 +20,7 @@
 #include "lang/scan.h"
 #include "lang/suggest.h"
 #include "lang/words.h"
+#include "support/say_once.h"
 
 namespace lacquer::lang {
 namespace {
@@ -491,7 +492,6 @@ std::string Library::Impl::cycle(std::string_view name) const {
 }
 
 tl::unexpected<Diagnostics> Library::Impl::missing(DeclKind kind, std::string_view name) {
-  const std::string_view what = kindName(kind);
   const auto& index = index_[spaceOf(kind)];
   const auto it = index.find(name);
   std::string help = it == index.end() ? didYouMean(name, names(kind))
@@ -501,8 +501,8 @@ tl::unexpected<Diagnostics> Library::Impl::missing(DeclKind kind, std::string_vi
     for (const Entry* entry : alike->second)
       help += fmt::format("{} '{}'", entry == alike->second[0] ? "" : " and", entry->name);
   }
-  return fail(fmt::format("unknown-{}", what), {}, fmt::format("there is no {} '{}'", what, name),
-              std::move(help));
+  return fail(fmt::format("unknown-{}", kindName(kind)), {},
+              fmt::format("there is no {} '{}'", kindName(kind), name), std::move(help));
 }
 
 void Library::Impl::check(Entry& entry, Reporter& reporter) {
@@ -636,7 +636,7 @@ void Library::Impl::parse(Entry& entry, Reporter& reporter) {
 
 void Library::Impl::collect(Entry& entry, std::unordered_set<const Entry*>& seen, Diagnostics& out) {
   if (!seen.insert(&entry).second) return;
-  out.insert(out.end(), entry.diagnostics.begin(), entry.diagnostics.end());
+  addOnce(out, entry.diagnostics);
   for (Entry* used : entry.uses) collect(*used, seen, out);
 }
 
@@ -792,7 +792,7 @@ Diagnostics Library::checkAll() const {
   Diagnostics all = impl_->scan_errors;
   for (Entry& entry : impl_->entries) {
     impl_->demand(entry);
-    all.insert(all.end(), entry.diagnostics.begin(), entry.diagnostics.end());
+    addOnce(all, entry.diagnostics);
   }
   return firstOf(std::move(all));
 }
