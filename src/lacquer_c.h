@@ -264,6 +264,7 @@ enum {
 typedef struct lacquer_file_texture {
   size_t image_count; /* the one to prefer first */
   int wrap_s, wrap_t, mag_filter, min_filter;
+  int swizzled; /* 1: shaders take the channels of the first image themselves (NV_texture_swizzle) */
 } lacquer_file_texture;
 typedef struct lacquer_image {
   const char* uri; /* relative to the file; else empty */
@@ -278,6 +279,10 @@ LACQUER_C int lacquer_contract_texture(const lacquer_contract* contract, size_t 
  * given that which names the image; empty for the texture's own. */
 LACQUER_C size_t lacquer_contract_texture_image(const lacquer_contract* contract, size_t texture,
                                                 size_t index, const char** extension);
+/* The channels of such an image that are the texture's red, green, blue and alpha, -1 where none is, and its
+ * layer, where they are not NULL. 0 where the image is the texture as it is. */
+LACQUER_C int lacquer_contract_texture_channels(const lacquer_contract* contract, size_t texture,
+                                                size_t index, int channels[4], int* layer);
 LACQUER_C size_t lacquer_contract_image_count(const lacquer_contract* contract);
 LACQUER_C int lacquer_contract_image(const lacquer_contract* contract, size_t index, lacquer_image* to,
                                      size_t size);

@@ -154,9 +154,15 @@ struct ContractPrimitive {
 struct TextureImage {
   size_t image = 0;       ///< index into Contract::images
   std::string extension;  ///< that gives it; empty for the texture's own, which everybody decodes
+  /// By NV_texture_swizzle: those that are the texture's red, green, blue and alpha; -1: none is.
+  std::vector<int> channels;
+  int layer = 0;  ///< of an image with layers
 };
 struct ContractTexture {
   std::vector<TextureImage> images;  ///< the one to prefer first; may be empty
+  /// Shaders take the channels of the first image themselves: it is bound as it is. Where it is false, what
+  /// is bound has red, green, blue and alpha in their places, whichever image it was made of.
+  bool swizzled = false;
   TextureSampler sampler;
 };
 /// Where an image's bytes are: one of three.

@@ -20,7 +20,8 @@ const char* const kFile = R"({"asset": {"version": "2.0"},
   {"componentType": 5126, "count": 3, "type": "VEC2"}],
 "images": [{"uri": "a.png"}, {"uri": "a.ktx2", "mimeType": "image/ktx2"}, {"uri": "data:image/png;base64,AAAA"}],
 "samplers": [{"wrapS": 33071, "minFilter": 9985}],
-"textures": [{"source": 0, "sampler": 0, "extensions": {"KHR_texture_basisu": {"source": 1}}}],
+"textures": [{"source": 0, "sampler": 0, "extensions": {"KHR_texture_basisu": {"source": 1}}},
+  {"extensions": {"NV_texture_swizzle": {"options": [{"source": 2, "channels": [2, 0]}]}}}],
 "meshes": [{"primitives": [
   {"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "material": 0,
    "extensions": {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [1]}]}}},
@@ -170,6 +171,14 @@ TEST(CContractValues, VariantsTexturesImages) {
   EXPECT_EQ(lacquer_contract_texture_image(contract.get(), 0, 0, &extension), 1U);
   EXPECT_STREQ(extension, "KHR_texture_basisu");
   EXPECT_EQ(lacquer_contract_texture_image(contract.get(), 0, 1, nullptr), 0U);
+  EXPECT_EQ(texture.swizzled, 0);
+  EXPECT_EQ(lacquer_contract_texture_channels(contract.get(), 0, 0, nullptr, nullptr), 0);
+  ASSERT_EQ(lacquer_contract_texture(contract.get(), 1, &texture, sizeof texture), 1);
+  EXPECT_EQ(texture.swizzled, 1);
+  int channels[4], layer = -1;
+  ASSERT_EQ(lacquer_contract_texture_channels(contract.get(), 1, 0, channels, &layer), 1);
+  EXPECT_EQ((std::vector<int>(channels, channels + 4)), (std::vector<int>{2, 0, -1, -1}));
+  EXPECT_EQ(layer, 0);
   lacquer_image image;
   ASSERT_EQ(lacquer_contract_image(contract.get(), 1, &image, sizeof image), 1);
   EXPECT_STREQ(image.uri, "a.ktx2");
@@ -207,6 +216,7 @@ TEST(CContractValues, WhatDoesNotExistIsEmpty) {
   EXPECT_EQ(lacquer_contract_use(nullptr, 0, 0, &use, sizeof use), 0);
   EXPECT_EQ(lacquer_contract_primitive(nullptr, 0, &primitive, sizeof primitive), 0);
   EXPECT_EQ(lacquer_contract_texture_image(nullptr, 0, 0, nullptr), LACQUER_NONE);
+  EXPECT_EQ(lacquer_contract_texture_channels(nullptr, 0, 0, nullptr, nullptr), 0);
   EXPECT_EQ(lacquer_contract_shader(nullptr, 0), nullptr);
   EXPECT_EQ(lacquer_contract_manifest(nullptr, "x"), nullptr);
   EXPECT_EQ(lacquer_contract_ok(nullptr), 0);

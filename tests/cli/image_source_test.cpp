@@ -65,5 +65,66 @@ TEST_F(ImageSource, WithoutAFallbackTheFormatIsNamed) {
   }
 }
 
+/// One pixel of (200, 128, 40, 90), and what its channels are in other orders.
+constexpr const char* kStored =
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAAEElEQVR4AQEFAPr/AMiAKFoFTwHL9AiRsgAAAABJRU5ErkJggg==";
+constexpr std::pair<const char*, const char*> kOrders[] = {
+    {"[2, 0, 1, 3]",
+     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAAEElEQVR4AQEFAPr/ACjIgFoEVwHLX/qJ4wAAAABJRU5ErkJggg=="},
+    {"[0, 3, 2, 1]",
+     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAAEElEQVR4AQEFAPr/AMhaKIAFAwHLQX7e5QAAAABJRU5ErkJggg=="},
+    {"[0, -1, 2]",
+     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAAEElEQVR4AQEFAPr/AMj/KP8HcQLvxT2WlQAAAABJRU5ErkJggg=="}};
+
+std::string storedIn(const std::string& uri, const std::string& texture) {
+  return R"({"asset": {"version": "2.0"}, "images": [{"uri": "data:image/png;base64,)" + uri +
+         R"("}], "textures": [)" + texture + R"(], "materials": [{"name": "T", "alphaMode": "BLEND",
+    "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.8, 0.7, 0.9], "baseColorTexture": {"index": 0},
+                             "metallicRoughnessTexture": {"index": 0}}}]})";
+}
+
+std::string optionOf(const std::string& channels) {
+  return R"({"extensions": {"NV_texture_swizzle": {"options": [{"source": 0, "channels": )" + channels +
+         "}]}}}";
+}
+
+TEST_F(ImageSource, ChannelsInAnotherOrderAreTaken) {
+  place_.write("points.json", kPoints);
+  for (const auto& [channels, ordered] : kOrders) {
+    place_.write("t.gltf", storedIn(kStored, optionOf(channels)));
+    const Outcome moved = eval();
+    ASSERT_EQ(moved.status, 0) << moved.all();
+    place_.write("t.gltf", storedIn(ordered, R"({"source": 0})"));
+    const Outcome plain = eval();
+    ASSERT_EQ(plain.status, 0) << plain.all();
+    const json a = json::parse(moved.out)["rgba"][0], b = json::parse(plain.out)["rgba"][0];
+    for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(a[c].get<double>(), b[c].get<double>(), 1e-12) << channels;
+  }
+}
+
+TEST_F(ImageSource, ChannelsThatNoPngHasAreSaid) {
+  place_.write("points.json", kPoints);
+  place_.write("t.gltf", storedIn(kStored, optionOf("[4, 5, 6]")));
+  const Outcome outcome = eval();
+  EXPECT_EQ(outcome.status, 1) << outcome.all();
+  EXPECT_NE(outcome.err.find("[image-channels]"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("images of four channels and one layer are decoded here"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(preview().status, 0);
+}
+
+TEST_F(ImageSource, TheManifestHasTheChannels) {
+  place_.write("t.gltf", storedIn(kStored, R"({"extensions": {"NV_texture_swizzle": {"options": [
+    {"source": 0, "channels": [4, 5], "arrayLayer": 3}, {"source": 0, "channels": [2, 1, 0]}]}}})"));
+  ASSERT_EQ(place_.run({"gen", "t.gltf", "-o", "out"}).status, 0);
+  const json made = json::parse(place_.read("out/manifest.json"))["files"][0]["textures"][0];
+  EXPECT_EQ(made["swizzled"], true);
+  EXPECT_EQ(
+      made["images"],
+      (json{
+          {{"image", 0}, {"extension", "NV_texture_swizzle"}, {"channels", {2, 1, 0, -1}}},
+          {{"image", 0}, {"extension", "NV_texture_swizzle"}, {"channels", {4, 5, -1, -1}}, {"layer", 3}}}));
+}
+
 }  // namespace
 }  // namespace lacquer::test

@@ -340,7 +340,9 @@ std::string extensionsTable() {
   return out +
          "| `KHR_texture_transform` | ratified | a textureInfo's extensions | `offset`, `rotation`, `scale`, "
          "`texCoord` "
-         "|\n";
+         "|\n"
+         "| `NV_texture_swizzle` | draft | a texture's extensions | `options`: `source`, `channels`, "
+         "`arrayLayer` |\n";
 }
 
 std::string limitsTable() {

@@ -38,6 +38,8 @@ std::string valueText(const lang::PropertyDecl& decl, const ir::Components& valu
 
 void dumpTexture(const lang::PropertyDecl& decl, const TextureInfo& info, Fields& fields) {
   std::string text = fmt::format("{} texture {}, image {}", decl.name, info.texture, info.image);
+  if (info.channels != gltf::kOwnChannels)
+    text += fmt::format(", channels {}", fmt::join(info.channels, " "));
   if (info.texCoord != 0) text += fmt::format(", texCoord {}", info.texCoord);
   for (size_t i = 0; i < decl.members.size(); ++i) {
     if (info.members.at(i) != (*decl.members[i].default_value)[0])
@@ -91,6 +93,10 @@ void dumpTexture(size_t index, const Texture& texture, Fields& fields) {
   std::string text;
   for (const Texture::Source& source : texture.sources)
     text += fmt::format(", image {} by {}", source.image, source.extension);
+  for (const Texture::Source& source : texture.swizzles) {
+    text += fmt::format(", channels {} of image {}", fmt::join(source.channels, " "), source.image);
+    if (source.layer != 0) text += fmt::format(" layer {}", source.layer);
+  }
   if (texture.wrapS != 10497 || texture.wrapT != 10497)
     text += fmt::format(", wrap {} {}", texture.wrapS, texture.wrapT);
   if (texture.magFilter != 0 || texture.minFilter != 0)

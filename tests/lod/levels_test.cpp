@@ -166,6 +166,45 @@ TEST_F(Levels, HaveTheDifferenceThatTheirWordsMake) {
   EXPECT_GT(seen.delta_e, 0);
 }
 
+/// What stands for a texture is the mean of the texels that it is made of, decoded before the mean is taken.
+TEST_F(Levels, MeansAreOfTheChannelsTaken) {
+  const std::string image =
+      "data:image/png;base64,"
+      "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAEUlEQVR4nGM40aARJcL1Sw4ADvsDAbdwf6QAAAAASUVORK5CYII=";
+  const auto textured = [&](const json& texture) {
+    const json gltf = {{"asset", {{"version", "2.0"}}},
+                       {"images", {{{"uri", image}}}},
+                       {"textures", {texture}},
+                       {"materials", {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}}}};
+    const std::string file = (folder_ / "textured.gltf").string();
+    std::ofstream(file) << gltf.dump();
+    Options named = quick();
+    const auto language = libraryFor(named);
+    EXPECT_TRUE(resolveNames(**language, named).has_value());
+    const auto document = readMaterials(file, **language, named);
+    FileImages images(file, named);
+    const Strings no_texels;
+    const preview::Mesh no_mesh;
+    const gltf::VertexAttributes attributes{true, false, false, {true, false, false, false}};
+    LodMaterial subject({document->materials[0], attributes, lightsOf(*document), images, **language, named,
+                         no_texels, no_mesh, 1},
+                        16);
+    Messages messages;
+    EXPECT_TRUE(subject.open(messages).has_value());
+    for (const std::string& word : subject.words()) {
+      if (word.starts_with("texel:baseColorTexture=")) return word.substr(word.find('=') + 1);
+    }
+    return std::string("no word");
+  };
+  const auto swizzled = [](std::vector<int> channels) {
+    return json{
+        {"extensions", {{"NV_texture_swizzle", {{"options", {{{"source", 0}, {"channels", channels}}}}}}}}};
+  };
+  EXPECT_EQ(textured({{"source", 0}}), "0.2923,0.1094,0.4886,0.2353");
+  EXPECT_EQ(textured(swizzled({2, 0, 1, 3})), "0.4886,0.2923,0.1094,0.2353");
+  EXPECT_EQ(textured(swizzled({0, 3, -1, 1})), "0.2923,0.05761,1,0.2706");
+}
+
 /// A coat that hardly is one can go.
 TEST_F(Levels, AWeakCoatCostsLess) {
   json gltf = json::parse(readFile(work("w1")));

@@ -191,11 +191,13 @@ export function bufferView(file: GltfFile, index: number): Uint8Array | null {
   return bytes.subarray(from, from + view.byteLength);
 }
 
-/** The image of a texture: its own, or one in another format that browsers decode. */
+/** The image of a texture: its own, one in another format that browsers decode, or one whose channels the shader takes. */
 export function sourceOf(texture: any): number {
-  const { EXT_texture_webp: webp, EXT_texture_avif: avif } = texture?.extensions ?? {};
-  return [texture?.source, webp?.source, avif?.source].find(isCount) ?? -1;
+  const { EXT_texture_webp: webp, EXT_texture_avif: avif, NV_texture_swizzle: swizzle } = texture?.extensions ?? {};
+  const own = [texture?.source, webp?.source, avif?.source].find(isCount);
+  return own ?? list(swizzle?.options).find(inOneImage)?.source ?? -1;
 }
+const inOneImage = (option: any): boolean => isCount(option?.source) && !option.arrayLayer && list(option.channels).every((c) => Number(c) < 4);
 
 /** An image as the browser decodes it, its numbers untouched; made smaller where a side has more than `most` pixels. null
  * where it is not there or no browser decodes it. */

@@ -341,7 +341,9 @@ export interface ContractPrimitive {
   variants?: { variants: number[]; material: number; use?: number }[];
 }
 export interface ContractTexture {
-  images: { image: number; extension?: string }[];
+  images: { image: number; extension?: string; channels?: number[]; layer?: number }[];
+  /** Shaders take the channels of the first image themselves. */
+  swizzled?: true;
   sampler: { wrap_s: string; wrap_t: string; mag_filter?: string; min_filter?: string };
 }
 /** The file's entry in manifest.json. */

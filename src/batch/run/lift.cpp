@@ -24,6 +24,7 @@ Key contentOf(const material::Material& material, const gltf::VertexAttributes& 
   key.number(material.textures.size());
   for (const auto& texture : material.textures) {
     key.number(texture.property).number(texture.info.texture).number(texture.info.texCoord);
+    for (const int channel : texture.info.channels) key.number(channel);
     if (!texture.info.group.empty()) {
       key.text(texture.info.group).text(texture.info.output);
       key.key(keyOf(graph::toJson(*material.patterns)));

@@ -284,12 +284,15 @@ void members(A& a, Of<A, TextureImage>& of) {
   a.is("the image");
   a("image", of.image);
   a.some("extension", of.extension);
+  a.some("channels", of.channels);
+  a.some("layer", of.layer);
 }
 
 template <class A>
 void members(A& a, Of<A, ContractTexture>& of) {
   a.is("the texture");
   a("images", of.images);
+  a.some("swizzled", of.swizzled);
   a("sampler", of.sampler);
 }
 

@@ -88,8 +88,15 @@ static std::vector<ContractTexture> texturesOf(const gltf::Scene& scene) {
   for (const gltf::Texture& from : scene.textures) {
     ContractTexture texture;
     for (const gltf::Texture::Source& source : from.sources)
-      texture.images.push_back({static_cast<size_t>(source.image), std::string(source.extension)});
-    if (from.source >= 0) texture.images.push_back({static_cast<size_t>(from.source), {}});
+      texture.images.push_back({static_cast<size_t>(source.image), std::string(source.extension), {}});
+    if (from.source >= 0) texture.images.push_back({static_cast<size_t>(from.source), {}, {}});
+    for (const gltf::Texture::Source& source : from.swizzles) {
+      texture.images.push_back({static_cast<size_t>(source.image),
+                                std::string(source.extension),
+                                {source.channels.begin(), source.channels.end()},
+                                source.layer});
+    }
+    texture.swizzled = from.swizzled() && gltf::sampled(from.swizzles[0]);
     texture.sampler = {wrapOf(from.wrapS), wrapOf(from.wrapT), filterOf(from.magFilter),
                        filterOf(from.minFilter)};
     all.push_back(std::move(texture));

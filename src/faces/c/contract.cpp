@@ -214,10 +214,21 @@ int lacquer_contract_texture(const lacquer_contract* contract, size_t index, lac
   const Contract& of = contractOf(contract);
   if (index >= of.textures.size()) return 0;
   const lacquer::TextureSampler& sampler = of.textures[index].sampler;
-  const lacquer_file_texture made = {of.textures[index].images.size(), static_cast<int>(sampler.wrap_s),
-                                     static_cast<int>(sampler.wrap_t), static_cast<int>(sampler.mag_filter),
-                                     static_cast<int>(sampler.min_filter)};
+  const lacquer_file_texture made = {
+      of.textures[index].images.size(),     static_cast<int>(sampler.wrap_s),
+      static_cast<int>(sampler.wrap_t),     static_cast<int>(sampler.mag_filter),
+      static_cast<int>(sampler.min_filter), of.textures[index].swizzled ? 1 : 0};
   return fillRow(made, to, size);
+}
+
+int lacquer_contract_texture_channels(const lacquer_contract* contract, size_t texture, size_t index,
+                                      int channels[4], int* layer) {
+  const Contract& of = contractOf(contract);
+  if (texture >= of.textures.size() || index >= of.textures[texture].images.size()) return 0;
+  const lacquer::TextureImage& image = of.textures[texture].images[index];
+  if (layer != nullptr) *layer = image.layer;
+  if (channels != nullptr) std::copy(image.channels.begin(), image.channels.end(), channels);
+  return image.channels.empty() ? 0 : 1;
 }
 
 size_t lacquer_contract_texture_image(const lacquer_contract* contract, size_t texture, size_t index,

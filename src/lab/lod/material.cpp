@@ -23,15 +23,42 @@ constexpr size_t kMostVaryings = 15;
 /// Pixels of the pictures that numbers are fitted to.
 constexpr uint32_t kFitSize = 32;
 
+/// How a texture's texel is made of an image's.
+struct Taken {
+  bool by_format = false, by_shader = false;  ///< who decodes sRGB, if anybody does
+  gltf::Channels channels = gltf::kOwnChannels;
+};
+
+Taken takenOf(const material::Material* material, const material::Schema& schema,
+              const ir::TextureSlot& slot) {
+  Taken taken{slot.srgb, false, gltf::kOwnChannels};
+  if (material == nullptr) return taken;
+  for (const material::Material::Texture& texture : material->textures) {
+    if (texture.info.pointer != slot.pointer) continue;
+    taken.channels = texture.info.channels;
+    taken.by_shader = schema.properties[texture.property].decl->srgb && !slot.srgb;
+  }
+  return taken;
+}
+
+std::array<double, 4> texelOf(const std::array<double, 4>& stored, const Taken& taken) {
+  std::array<double, 4> texel{};
+  for (size_t c = 0; c < 4; ++c) {
+    const int from = taken.channels[c];
+    const double x = from == gltf::kUnused ? 1 : stored[static_cast<size_t>(from)];
+    const bool decoded = (taken.by_format && from < 3) || (taken.by_shader && c < 3);
+    texel[c] = decoded && from != gltf::kUnused ? eval::decodeSrgb(x) : x;
+  }
+  return texel;
+}
+
 /// The mean over an image, linear.
-std::array<double, 4> meanOf(const eval::Image& image, bool srgb) {
+std::array<double, 4> meanOf(const eval::Image& image, const Taken& taken) {
   std::array<double, 4> sum{};
   for (size_t i = 0; i < image.size(); ++i) {
-    const std::array<float, 4> texel = image.at(i);
-    for (size_t c = 0; c < 4; ++c) {
-      const auto x = static_cast<double>(texel[c]);
-      sum[c] += srgb && c < 3 ? eval::decodeSrgb(x) : x;
-    }
+    const std::array<float, 4> stored = image.at(i);
+    const std::array<double, 4> texel = texelOf({stored[0], stored[1], stored[2], stored[3]}, taken);
+    for (size_t c = 0; c < 4; ++c) sum[c] += texel[c];
   }
   for (double& x : sum) x /= static_cast<double>(std::max<size_t>(image.size(), 1));
   return sum;
@@ -177,13 +204,18 @@ void LodMaterial::readTextures(EvalMaterial& evaluated) {
   };
   eval::Bindings ignored;
   if (!evaluated.bindTextures(absent, ignored)) return;
+  const Result<const material::Schema*> schema = given_.language.models.schema();
+  if (!schema) return;
   for (const ir::TextureSlot& slot : evaluated.module().textures) {
     const auto bound = evaluated.textures().find(slot.name);
     if (slot.environment || bound == evaluated.textures().end() || absent_.contains(propertyOf(slot)))
       continue;
     const BoundTexture& texture = bound->second;
+    Taken taken = takenOf(given_.subject.material(), **schema, slot);
+    // A constant is linear where a format would decode.
+    if (texture.constant) taken.by_format = false;
     const std::array<double, 4> mean =
-        texture.constant ? *texture.constant : meanOf(*texture.image, texture.lookup.srgb);
+        texture.constant ? texelOf(*texture.constant, taken) : meanOf(*texture.image, taken);
     means_.push_back(fmt::format("texel:{}={:.4g},{:.4g},{:.4g},{:.4g}", propertyOf(slot), mean[0], mean[1],
                                  mean[2], mean[3]));
   }

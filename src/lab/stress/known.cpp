@@ -50,6 +50,7 @@ constexpr Known kKnown[] = {
     {"heighttonormal", "swizzle < 0", "texture coordinates that turn over turn the field over"},
     {"height_normal", "swizzle < 0", "texture coordinates that turn over turn the field over"},
     {"bump", "swizzle < 0", "texture coordinates that turn over turn the field over"},
+    {"texel_channel", "", "a channel is one of four, or none"},
     {"density", "swizzle < 1e-30", "what is black at any distance is black at all of them"},
     {"extinction", "swizzle < 1e-30", "what is black at any distance is black at all of them"},
     {"light_", "layer < 0", "a light has a layer of a texture, or none"},

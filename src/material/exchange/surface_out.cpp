@@ -135,6 +135,7 @@ private:
 
   Source channel(const material::Material::Texture& texture, int channel);
   Source imageChannel(const material::Material::Texture& texture, int channel);
+  Source storedChannel(const material::Material::Texture& texture, int channel);
   Source packed(const Source& texel, int channel);
   const std::string& image(const material::Material::Texture& texture, std::string_view type);
   std::string import(const std::string& group);
@@ -270,24 +271,50 @@ const std::string& Translation::image(const material::Material::Texture& texture
   return it->second;
 }
 
+/// A channel of a texture that may have those of its image in another order (NV_texture_swizzle).
 Source Translation::imageChannel(const material::Material::Texture& texture, int channel) {
+  constexpr int kAlpha = 3;
+  constexpr int kColor = 4;
+  const gltf::Channels& stored = texture.info.channels;
+  const bool in_order = std::equal(stored.begin(), stored.begin() + kAlpha, gltf::kOwnChannels.begin());
+  if (channel == kColor && in_order) return storedChannel(texture, kColor);
+  if (channel == kColor) {
+    graph::Inputs inputs;
+    for (int c = 0; c < kAlpha; ++c)
+      inputs.emplace_back(fmt::format("in{}", c + 1), imageChannel(texture, c));
+    return add(schema_.properties[texture.property].parameter_name + "_channels", "combine3",
+               std::move(inputs));
+  }
+  const int from = stored[static_cast<size_t>(channel)];
+  if (from == gltf::kUnused) return {graph::Literal{ir::Type::Float, {1}}, {}};
+  if (schema_.properties[texture.property].decl->srgb && (from == kAlpha) != (channel == kAlpha)) {
+    addBounded(said_,
+               {"channel-encoding",
+                Severity::Warning,
+                {document_.path, 0, 0, texture.info.pointer},
+                fmt::format("channel {} of the image is alpha in one of both, a colour in the other", from),
+                "the document decodes colours alone: the channel is decoded otherwise than in glTF",
+                {}});
+  }
+  return storedChannel(texture, from);
+}
+
+Source Translation::storedChannel(const material::Material::Texture& texture, int channel) {
+  constexpr int kAlpha = 3;
+  constexpr int kColor = 4;
   const bool base = schema_.properties[texture.property].decl->channels.empty() &&
                     schema_.properties[texture.property].decl->srgb;
-  if (channel == 3 || base) {
-    const std::string& node = image(texture, "gltf_colorimage<sampler2D>");
-    const bool alpha = channel == 3;
-    return {graph::NodeRef{node, alpha ? "outa" : "outcolor"},
-            channel < 3 ? std::string(1, "xyz"[channel]) : std::string()};
-  }
-  const std::string& node = image(texture, "gltf_image<vec3>");
-  if (channel == 4) return {graph::NodeRef{node, {}}, {}};
+  const bool both = channel == kAlpha || base;
+  const std::string& node = image(texture, both ? "gltf_colorimage<sampler2D>" : "gltf_image<vec3>");
+  if (channel == kAlpha) return {graph::NodeRef{node, "outa"}, {}};
+  const Source color{graph::NodeRef{node, both ? "outcolor" : ""}, {}};
+  if (channel == kColor) return color;
   const graph::Literal index{ir::Type::Float, {static_cast<double>(channel)}};
   const std::string id = fmt::format("{}_{}", node, "rgb"[channel]);
   for (const graph::Node& own : out_.body.nodes) {
     if (own.id == id) return {graph::NodeRef{id, {}}, {}};
   }
-  return add(id, "extract<vec3>",
-             {{"in", Source{graph::NodeRef{node, {}}, {}}}, {"index", Source{index, {}}}});
+  return add(id, "extract<vec3>", {{"in", color}, {"index", Source{index, {}}}});
 }
 
 /// A channel, or the colour, of a node of a procedural's texel.
@@ -354,6 +381,8 @@ std::optional<Source> Translation::times(Source source, const Components& factor
   };
   if (all(0)) return std::nullopt;
   if (all(1)) return source;
+  if (const auto* one = std::get_if<graph::Literal>(&source.from); one != nullptr && size == 1)
+    return Source{graph::Literal{ir::Type::Float, {one->value[0] * factor[0]}}, {}};
   // A factor that is there already takes the new one.
   if (const graph::Node* node = nodeOf(source); node != nullptr && node->type.starts_with("texel_product")) {
     const auto* own = std::get_if<graph::Literal>(&node->inputs[1].second.from);

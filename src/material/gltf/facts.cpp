@@ -2,7 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lacquer::gltf {
+
+bool sampled(const Texture::Source& source) {
+  return source.layer == 0 &&
+         std::all_of(source.channels.begin(), source.channels.end(), [](int channel) { return channel < 4; });
+}
+
+Channels Texture::channels() const {
+  if (!swizzled()) return kOwnChannels;
+  Channels taken = swizzles[0].channels;
+  for (int c = 0; !sampled(swizzles[0]) && c < 4; ++c) {
+    if (taken[static_cast<size_t>(c)] != kUnused) taken[static_cast<size_t>(c)] = c;
+  }
+  return taken;
+}
 
 std::vector<std::string> VertexAttributes::names() const {
   std::vector<std::string> out;

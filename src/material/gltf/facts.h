@@ -22,10 +22,16 @@ struct TextureTransform {
   bool identity() const { return *this == TextureTransform{}; }
 };
 
+/// Which channels of an image are a texture's red, green, blue and alpha, counted from 0; kUnused: none is.
+using Channels = std::array<int, 4>;
+inline constexpr Channels kOwnChannels{0, 1, 2, 3};
+inline constexpr int kUnused = -1;
+
 /// A textureInfo: which texture, which UV set (after KHR_texture_transform's override), which transform.
 struct TextureInfo {
   int texture = -1;                           ///< index into the file's textures
   int image = -1;                             ///< index into the file's images; -1 when the texture has none
+  Channels channels = kOwnChannels;           ///< what shaders take of the image: Texture::channels()
   int texCoord = 0;                           ///< 0 to 3
   std::optional<TextureTransform> transform;  ///< present when the file has the extension, even if identity
   std::string pointer;                        ///< JSON pointer of this textureInfo
@@ -102,15 +108,31 @@ struct Texture {
   struct Source {
     std::string_view extension;  ///< "KHR_texture_basisu"
     int image = -1;
+    Channels channels = kOwnChannels;
+    int layer = 0;  ///< of an image that has several
   };
-  int source = -1;                   ///< index into the images; -1 when there is none
-  std::vector<Source> sources;       ///< by extensions, in the order of imageExtensions()
+  int source = -1;              ///< index into the images; -1 when there is none
+  std::vector<Source> sources;  ///< by extensions, in the order of imageExtensions()
+  /// By NV_texture_swizzle: channels of images, any of which may stand for the texture; those of the first
+  /// are what shaders take, if they can.
+  std::vector<Source> swizzles;
   int wrapS = 10497, wrapT = 10497;  ///< 33071 clamp, 33648 mirror, 10497 repeat
   int magFilter = 0,
       minFilter = 0;  ///< 9728 nearest, 9729 linear, and minFilter's mipmaps; 0: the file leaves it open
   /// What an engine shows that knows the extensions: their image first; -1 when there is none.
-  int image() const { return sources.empty() ? source : sources[0].image; }
+  int image() const {
+    if (!sources.empty()) return sources[0].image;
+    return source < 0 && !swizzles.empty() ? swizzles[0].image : source;
+  }
+  /// Whether no image is the texture as it is: the first of `swizzles` is.
+  bool swizzled() const { return sources.empty() && source < 0 && !swizzles.empty(); }
+  /// What shaders take of the image that is bound: of one with more than four channels, or with layers, the
+  /// application makes the texture, whose unused channels stay what they are.
+  Channels channels() const;
 };
+
+/// Whether a shader can take the channels of that image itself: they are the first four, of no layer.
+bool sampled(const Texture::Source& source);
 
 /// A property that an animation changes (KHR_animation_pointer).
 struct AnimatedPointer {

@@ -217,6 +217,12 @@ Result<TextureSource> TextureFile::texture(int index) const {
   const int image = source.texture.source >= 0 ? source.texture.source : source.texture.image();
   if (image < 0 || element(root_, "images", static_cast<size_t>(image)) == nullptr)
     return fail("image-missing", place, "the texture has no image");
+  if (source.texture.swizzled() && !sampled(source.texture.swizzles[0]))
+    return fail(
+        "image-missing", place,
+        fmt::format("the texture has other channels of image {} than the first four, or another layer",
+                    image),
+        "images of four channels and one layer are decoded here");
   source.image = static_cast<size_t>(image);
   source.place = {path_, 0, 0, fmt::format("/images/{}", image)};
   return source;

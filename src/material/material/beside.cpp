@@ -34,6 +34,7 @@ constexpr Beside kRows[] = {
     {"EXT_mesh_primitive_restart", kMeshes},
     {"FB_geometry_metadata", kMeshes},
     {"KHR_texture_basisu", kImages},
+    {"NV_texture_swizzle", "it is implemented, in textures"},
     {"EXT_texture_astc", kImages},
     {"EXT_texture_avif", kImages},
     {"EXT_texture_webp", kImages},

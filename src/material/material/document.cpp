@@ -141,6 +141,24 @@ materialx::Procedurals proceduralsOf(const Json& root, const Schema& schema, con
   return materialx::readProcedurals(*found, document.path, *schema.library, how, document.diagnostics);
 }
 
+/// Patterns look into images as they are, whatever a texture says of their channels.
+void checkSwizzles(const materialx::Procedurals& procedurals, Document& document) {
+  if (!procedurals.patterns) return;
+  for (const graph::Texture& slot : procedurals.patterns->textures) {
+    const auto number = static_cast<size_t>(slot.texture);
+    if (slot.texture < 0 || number >= document.textures.size()) continue;
+    if (document.textures[number].channels() == gltf::kOwnChannels) continue;
+    addBounded(
+        document.diagnostics,
+        {"swizzle-unread",
+         Severity::Warning,
+         {document.path, 0, 0, slot.pointer},
+         fmt::format("a procedural texture reads texture {}, whose channels are in another order", number),
+         "procedural textures read an image's channels as they are: `extract` and `combine3` order them",
+         {}});
+  }
+}
+
 /// A MaterialX document: its surfaces as materials of a glTF file without a scene.
 Result<Document> readMaterialX(std::string_view text, const std::string& name, const Schema& schema,
                                const ReadOptions& options) {
@@ -192,6 +210,7 @@ Result<Document> readDocument(std::string_view bytes, const std::string& name, c
   document.path = name;
   gltf::readScene(*root, document);
   const materialx::Procedurals procedurals = proceduralsOf(*root, schema, options, document);
+  checkSwizzles(procedurals, document);
   const FileFacts facts{name, document, options.permissive, procedurals.patterns ? &procedurals : nullptr};
   Report of_scene(name, document.diagnostics);
   checkExtensions(*root, schema, of_scene);

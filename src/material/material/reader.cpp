@@ -76,6 +76,7 @@ private:
   void number(const PropertyDecl& decl, std::string_view name, const Json& json, const Path& path,
               double& out);
   void texture(const PropertyDecl& decl, const Json& json, const Path& path, bool used);
+  void unusedChannels(const PropertyDecl& decl, const gltf::TextureInfo& info, const Path& path);
   void texCoord(std::string_view name, const Json& json, const Path& path, int& out);
   void transform(const Json& json, const Path& path);
   void procedural(const Json& json, const Path& path);
@@ -245,8 +246,30 @@ void MaterialReader::texture(const PropertyDecl& decl, const Json& json, const P
     report_.error("missing-property", path, fmt::format("{} has no \"index\"", decl.name),
                   "\"index\" is required");
   }
-  if (info.texture >= 0) info.image = file_.scene.textures[static_cast<size_t>(info.texture)].image();
+  if (info.texture >= 0) {
+    const gltf::Texture& of = file_.scene.textures[static_cast<size_t>(info.texture)];
+    info.image = of.image();
+    info.channels = of.channels();
+    unusedChannels(decl, info, path);
+  }
   if (used) material_.textures.push_back({schema_.indexOf(decl), std::move(info)});
+}
+
+/// Channels that the declaration reads and the texture leaves unused.
+void MaterialReader::unusedChannels(const PropertyDecl& decl, const gltf::TextureInfo& info,
+                                    const Path& path) {
+  constexpr std::string_view kLetters = "rgba";
+  constexpr std::string_view kNames[] = {"red", "green", "blue", "alpha"};
+  std::vector<std::string_view> unused;
+  for (size_t c = 0; c < kLetters.size(); ++c) {
+    const bool read = decl.channels.find(kLetters[c]) != std::string_view::npos;
+    if (read && info.channels[c] == gltf::kUnused) unused.push_back(kNames[c]);
+  }
+  if (unused.empty()) return;
+  report_.warning("unused-channel", path,
+                  fmt::format("{} reads {}, which texture {} leaves unused", decl.name, listOf(unused, "and"),
+                              info.texture),
+                  "1 is taken, as without a texture");
 }
 
 /// KHR_texture_transform belongs to glTF's structure: any textureInfo may have it.

@@ -63,6 +63,7 @@ public:
 
 private:
   void mark(const Found& value);
+  bool decodedByFormat(const gltf::TextureInfo& info) const;
   Texel texelOf(uint16_t property) const;
   void write(uint32_t id);
   void ask(const lang::Param& param);
@@ -99,6 +100,16 @@ private:
   std::vector<std::pair<Texel, uint16_t>> sharers_;
   std::vector<std::pair<Place, Source>> coordinates_;
 };
+
+/// Whether a colour's texture may have a format that decodes it: such a format leaves alpha as it is, which
+/// has to be what is alpha in the texture, too.
+bool Writer::decodedByFormat(const gltf::TextureInfo& info) const {
+  constexpr int kAlpha = 3;
+  const bool alpha_stays = info.channels[kAlpha] == kAlpha || info.channels[kAlpha] == gltf::kUnused;
+  return !options_.decode_srgb && alpha_stays &&
+         std::find(info.channels.begin(), info.channels.begin() + kAlpha, kAlpha) ==
+             info.channels.begin() + kAlpha;
+}
 
 /// Equal for properties whose texels are.
 Texel Writer::texelOf(uint16_t property) const {
@@ -264,7 +275,7 @@ Source Writer::image(uint16_t property) {
   if (!graph_.findTexture(name)) {
     graph::Texture texture;
     texture.name = name;
-    texture.srgb = row.decl->srgb && !options_.decode_srgb;
+    texture.srgb = row.decl->srgb && decodedByFormat(info);
     texture.texture = info.texture;
     texture.pointer = info.pointer;
     graph_.textures.push_back(texture);
@@ -292,7 +303,14 @@ Source Writer::texel(uint16_t wanted) {
   const Source uv = coordinate(property);
   graph_.add(slot + ".texel", "texture_sample", graph::Inputs{{"image", sampled}, {"uv", uv}});
   Source result{graph::NodeRef{slot + ".texel", {}}, {}};
-  if (row.decl->srgb && options_.decode_srgb) {
+  if (info.channels != gltf::kOwnChannels) {
+    graph::Literal channels{ir::Type::Vec4, {}};
+    std::copy(info.channels.begin(), info.channels.end(), channels.value.begin());
+    graph_.add(slot + ".channels", "texel_channels",
+               graph::Inputs{{"texel", result}, {"channels", Source{channels, {}}}});
+    result = {graph::NodeRef{slot + ".channels", {}}, {}};
+  }
+  if (row.decl->srgb && !decodedByFormat(info)) {
     graph_.add(slot + ".decoded", "srgb_decode", graph::Inputs{{"encoded", result}});
     result = {graph::NodeRef{slot + ".decoded", {}}, {}};
   }

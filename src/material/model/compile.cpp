@@ -665,7 +665,7 @@ void Compiler::checkNames() {
 void Compiler::checkWriterNames() {
   for (const material::Property& property : model_.schema->properties) {
     if (property.decl->kind != material::Kind::Texture) continue;
-    for (const std::string_view what : {"uv", "texel", "decoded"}) {
+    for (const std::string_view what : {"uv", "texel", "channels", "decoded"}) {
       const std::string name = fmt::format("{}.{}", property.parameter_name, what);
       if (what == "decoded" && !property.decl->srgb) continue;
       const lang::ExtensionDecl& extension = *model_.schema->extensions[property.extension];

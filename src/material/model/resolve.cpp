@@ -149,16 +149,20 @@ Found Resolver::image(Found texture, const gltf::TextureInfo& info) {
   texture.type = ir::Type::Texture2D;
   const lang::PropertyDecl& decl = *model_.schema->properties[texture.property].decl;
   const bool encoded = decl.srgb && options_.decode_srgb;
-  if ((info.group.empty() || info.texture >= 0) && !encoded) return texture;
+  const bool moved = info.channels != gltf::kOwnChannels;
+  if ((info.group.empty() || info.texture >= 0) && !encoded && !moved) return texture;
   if (told_.insert(texture.property).second) {
     warnings_.push_back(
         {"no-image",
          Severity::Warning,
          {{}, 0, 0, info.pointer},
          fmt::format("a part samples '{}' itself, which {}", decl.name,
-                     encoded ? "is encoded in this shader" : "nodes compute in place of an image"),
-         encoded ? "give it a format that decodes sRGB; what needs it is left out"
-                 : "give it an image beside the nodes, as `lacquer bake` does; what needs it is left out",
+                     moved     ? "has channels of its image in another order"
+                     : encoded ? "is encoded in this shader"
+                               : "nodes compute in place of an image"),
+         moved     ? "give it an image that has them in order; what needs it is left out"
+         : encoded ? "give it a format that decodes sRGB; what needs it is left out"
+                   : "give it an image beside the nodes, as `lacquer bake` does; what needs it is left out",
          {}});
   }
   return {};

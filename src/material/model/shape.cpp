@@ -115,6 +115,7 @@ std::string Shapes::keyOf(const Material& material, const gltf::VertexAttributes
     const gltf::TextureInfo& info = texture.info;
     addBytes(texture.property, key);
     addSize(static_cast<size_t>(info.texCoord), key);
+    for (const int channel : info.channels) key += static_cast<char>(channel);
     const auto first = [&](const auto& same) {
       return std::find_if(material.textures.begin(), material.textures.end(), same) -
              material.textures.begin();
