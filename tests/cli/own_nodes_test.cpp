@@ -312,7 +312,7 @@ TEST(OwnDefinitions, AreFound) {
   outcome = place.run(gen);
   EXPECT_EQ(outcome.status, 0) << outcome.all();
   EXPECT_NE(place.read("out/gen.d").find("studio/patterns/dust.mtlx"), std::string::npos);
-  const auto shader = [&] { return place.manifest("out")["shaders"][0]["id"].get<std::string>(); };
+  const auto shader = [&] { return place.manifest("out")["shaders"].begin().key(); };
   const std::string before = shader();
   // A definition that has changed is read anew, whatever the cache has.
   std::string changed = kDust;
@@ -334,7 +334,7 @@ TEST(OwnDefinitions, AreChecked) {
   place.write("studio/dust.mtlx", kDust);
   Outcome outcome = place.run({"check", "--materialx", "studio"});
   EXPECT_EQ(outcome.status, 0) << outcome.all();
-  EXPECT_EQ(outcome.out, "studio: good, 0 warnings\n");
+  EXPECT_EQ(outcome.out, "studio: good, no warnings\n");
   std::string wrong = kDust;
   place.write("studio/dust.mtlx", wrong.replace(wrong.find("noise2d"), 7, "noise2b"));
   outcome = place.run({"check", "--materialx", "studio"});
