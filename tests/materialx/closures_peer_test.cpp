@@ -362,6 +362,48 @@ TEST_P(ModelsPeer, drawsAlike) {
   EXPECT_LE(most, 1e-3);
 }
 
+/// Random surfaces of closures and of models, drawn by a Vulkan device, against the evaluator in double.
+TEST(ClosuresOnADevice, areThoseInDouble) {
+  if (device() == nullptr) GTEST_SKIP() << "NOT TESTED: there is no Vulkan device on this machine";
+  Random r(2027);
+  std::string document = "<?xml version=\"1.0\"?>\n<materialx version=\"1.39\">\n";
+  const std::vector<std::string> kinds = {"stack", "dielectric_RT", "conductor_film", "schlick", "zeltner"};
+  for (size_t i = 0; i < kinds.size(); ++i) {
+    const std::string name = fmt::format("b{}", i);
+    document +=
+        nodesOf(r, kinds[i], name) +
+        fmt::format("<surface name=\"s{}\" type=\"surfaceshader\">{}</surface>\n", i, link("bsdf", name));
+  }
+  for (const char* model : {"standard_surface", "open_pbr_surface", "gltf_pbr"})
+    document +=
+        fmt::format("<{0} name=\"of_{0}\" type=\"surfaceshader\">{1}</{0}>\n", model, randomInputs(r, model));
+  document += "</materialx>\n";
+  Messages messages;
+  Options options;
+  options.profile = "materialx";
+  const Scene scene = Scene::fromMemory(document, "random.mtlx", options, messages);
+  ASSERT_EQ(scene.materialCount(), kinds.size() + 3) << (messages.empty() ? "" : messages[0].text);
+  for (size_t i = 0; i < scene.materialCount(); ++i) {
+    const std::vector<At> points = somePoints(r);
+    std::vector<double> off;
+    for (const bool lit : {true, false}) {
+      const std::string text = pointsText(points, lit);
+      const auto exact = evaluate(scene, i, text, Engine::Double, {}, options, messages);
+      const auto drawn = evaluate(scene, i, text, Engine::Vulkan, {}, options, messages);
+      ASSERT_TRUE(exact && drawn) << (messages.empty() ? "" : messages.back().text) << document;
+      for (size_t p = 0; p < points.size() * 3; ++p) {
+        const double want = exact->rgba[p / 3][p % 3], is = drawn->rgba[p / 3][p % 3];
+        ASSERT_TRUE(std::isfinite(is)) << scene.materialName(i) << " at " << p / 3;
+        off.push_back(std::abs(is - want) / std::max(std::abs(want), 1e-3));
+      }
+    }
+    std::sort(off.begin(), off.end());
+    EXPECT_LT(off[off.size() / 2], 1e-5) << scene.materialName(i) << document;
+    EXPECT_LT(off[off.size() * 97 / 100], 1e-4) << scene.materialName(i) << document;
+    EXPECT_LT(off.back(), 1e-3) << scene.materialName(i) << document;
+  }
+}
+
 /// What a model's inputs come to, without MaterialX: how it is blended, what is a parameter, what is said.
 TEST(Models, haveTheAlphaModesAndParametersOfTheirInputs) {
   const std::string text = R"(<materialx version="1.39">
