@@ -48,6 +48,9 @@ std::string feedManifest(std::string_view bytes);
 std::string feedDocumentOut(std::string_view bytes);
 std::string feedProceduralsOut(std::string_view bytes);
 
+// definitions.cpp
+std::string feedDefinitions(std::string_view bytes);
+
 // entries.cpp
 std::string feedEntry(std::string_view bytes);
 

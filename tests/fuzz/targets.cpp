@@ -13,6 +13,7 @@ constexpr Target kTargets[] = {
     {"gltf-oracle", "gltf", Form::Gltf, judgeGltf},
     {"glb", "glb", Form::Glb, feedGltf},
     {"mtlx", "mtlx", Form::Bytes, feedGltf},
+    {"definitions", "mtlx", Form::Bytes, feedDefinitions},
     {"mtlx-out", "mtlx", Form::Bytes, feedDocumentOut},
     {"procedurals", "procedurals", Form::Gltf, feedGltf},
     {"procedurals-out", "procedurals", Form::Gltf, feedProceduralsOut},
