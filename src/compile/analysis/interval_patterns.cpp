@@ -89,6 +89,7 @@ void Intervals::pattern(ValueId id, int c, Range& range) const {
     exchangePattern(value.args[1], value.args[0], c, range);
   } else if (value.op == Op::Sub) {
     blendPattern(value.args[0], value.args[1], true, c, range);
+    fractionPattern(value.args[0], value.args[1], c, range);
   } else if (value.op == Op::Div) {
     ratioPattern(id, c, range);
   } else if (value.op == Op::Mul && facets_[id].root) {
@@ -97,6 +98,12 @@ void Intervals::pattern(ValueId id, int c, Range& range) const {
     smoothPattern(value.args[0], value.args[1], c, range);
     smoothPattern(value.args[1], value.args[0], c, range);
   }
+}
+
+/// x - floor(x): what lies above the whole number below; 1 where that is rounded.
+void Intervals::fractionPattern(ValueId x, ValueId below, int c, Range& range) const {
+  const ir::Value& whole = dag_[below];
+  if (whole.op == Op::Floor && whole.args[0] == x && at(x, c).finite()) range = meet(range, {0, 1, false});
 }
 
 /// t t (3 - 2 t), the end of smoothstep: rises from 0 to 1 while t does, which the product does not show.

@@ -111,6 +111,7 @@ private:
   // What operations show only together.
   bool overflows(ir::ValueId id, int c) const;
   void pattern(ir::ValueId id, int c, Range& range) const;
+  void fractionPattern(ir::ValueId x, ir::ValueId below, int c, Range& range) const;
   void smoothPattern(ir::ValueId squared, ir::ValueId slope, int c, Range& range) const;
   void blendPattern(ir::ValueId x, ir::ValueId rest, bool negative, int c, Range& range) const;
   void exchangePattern(ir::ValueId product, ir::ValueId difference, int c, Range& range) const;
