@@ -90,6 +90,8 @@ TEST(Tune, ANodesFrontFallsAsItsErrorGrows) {
   const Outcome table = place.run({"tune", "coat_absorption"}, kLong);
   EXPECT_NE(table.out.find("coat_absorption: "), std::string::npos) << table.all();
   EXPECT_EQ(place.run({"tune", "no_such_node"}).status, 2);
+  for (const char* file : {"absent.mtlx", "absent.gltf", "absent.json"})
+    EXPECT_NE(place.run({"tune", file}).err.find("[file-unreadable]"), std::string::npos) << file;
   EXPECT_NE(place.run({"tune", "coat_absorption.none"}).err.find("[no-such-variant]"), std::string::npos);
 }
 

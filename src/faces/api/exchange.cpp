@@ -1,5 +1,6 @@
 #include "exchange/exchange.h"
 #include "exchange/edited.h"
+#include "exchange/graph_out.h"
 #include "exchange/kept.h"
 #include "exchange/translation.h"
 
@@ -10,6 +11,7 @@
 
 #include "api/internal.h"
 #include "bake/bake.h"
+#include "eval/subject.h"
 #include "lacquer/exchange.h"
 #include "lacquer/graph.h"
 #include "materialx/element.h"
@@ -156,18 +158,33 @@ std::string writtenOf(const SceneData& scene, const std::string& folder, const S
   return textOf(document, **schema, folder, materials, surface, messages);
 }
 
+/// The patterns of a graph of one's own.
+std::string graphDocumentOf(const std::string& file, const std::string& folder, const std::string& surface,
+                            const Options& options, Messages& messages) {
+  if (!surface.empty()) {
+    report(fail("graph-is-built", {}, "a graph is written without a surface: its ports are not MaterialX's",
+                "name the material's file: .gltf, .glb or .mtlx")
+               .value(),
+           file, messages);
+    return {};
+  }
+  const Result<std::shared_ptr<const Language>> language = libraryFor(options);
+  if (!language) return report(language.error(), {}, messages), std::string();
+  const Result<graph::Graph> graph = readGraphFile(file, options);
+  if (!graph) return report(graph.error(), file, messages), std::string();
+  const Diagnostics wrong = graph::check(*graph, **language);
+  report(wrong, file, messages);
+  if (lacquer::hasError(wrong)) return {};
+  exchange::Written written = exchange::graphToMaterialX(*graph, **language, file, folder);
+  report(written.said, file, messages);
+  return std::move(written.text);
+}
+
 /// The document's text, for that folder.
 std::string documentOf(const std::string& file, const std::string& folder, const Strings& materials,
                        const std::string& surface, const Options& options, Messages& messages) {
   if (!isSurface(file, surface, messages)) return {};
-  if (isGraphFile(file)) {
-    report(
-        fail("graph-is-built", {}, "a graph is built of a material's terms, for which MaterialX has no nodes",
-             "name the material's file: .gltf, .glb or .mtlx")
-            .value(),
-        file, messages);
-    return {};
-  }
+  if (isGraphFile(file)) return graphDocumentOf(file, folder, surface, options, messages);
   if (materials.empty()) {
     if (std::optional<std::string> text = translatedOf(file, folder, surface, options, messages))
       return std::move(*text);
@@ -235,6 +252,14 @@ bool writeMaterialX(const std::string& output, const std::string& file, const St
 
 std::optional<Converted> convert(const Conversion& how, const std::string& file, const Strings& materials,
                                  const Options& options, Messages& messages) {
+  if (isGraphFile(file)) {
+    report(
+        fail("graph-is-built", {}, "a graph is built of a material's terms, for which MaterialX has no nodes",
+             "name the material's file: .gltf, .glb or .mtlx")
+            .value(),
+        file, messages);
+    return std::nullopt;
+  }
   const Options translated = translating(options);
   if (!writeMaterialX(how.output, file, materials, how.surface, translated, messages)) return std::nullopt;
   Converted converted;

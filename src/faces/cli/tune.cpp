@@ -15,7 +15,7 @@ namespace lacquer::cli {
 
 void addTune(CLI::App& verb, TuneFlags& flags, OptionFlags& options) {
   verb.add_option("subject", flags.subject,
-                  "a node, or NODE.VARIANT; a .gltf or .glb file, or a graph: .json")
+                  "a node, or NODE.VARIANT; a .gltf, .glb or .mtlx file, or a graph: .json")
       ->required()
       ->check(kNotEmpty);
   verb.add_option("--material", flags.material, "the material's name; not needed for a file with one");
@@ -59,7 +59,8 @@ void printJson(const Tuned& tuned) {
 }
 
 bool isFile(const std::string& subject) {
-  return isGraphFile(subject) || subject.ends_with(".gltf") || subject.ends_with(".glb");
+  return isGraphFile(subject) || subject.ends_with(".gltf") || subject.ends_with(".glb") ||
+         subject.ends_with(".mtlx");
 }
 
 std::optional<Tuned> find(const TuneFlags& flags, const Options& options, Messages& messages) {

@@ -193,6 +193,8 @@ PatternsOut::PatternsOut(const graph::Graph& graph, const lang::Library& library
   plan();
 }
 
+PatternsOut::~PatternsOut() = default;
+
 void PatternsOut::lost(std::string message, std::string help) {
   addBounded(said_, {"not-said", Severity::Warning, {}, std::move(message), std::move(help), {}});
 }

@@ -45,6 +45,9 @@ public:
   PatternsOut(const graph::Graph& graph, const lang::Library& library, const gltf::Scene& scene,
               const std::vector<SurfaceOut>& surfaces, const Moved& moved, Diagnostics& said,
               Number number = {});
+  ~PatternsOut();
+  PatternsOut(const PatternsOut&) = delete;
+  PatternsOut& operator=(const PatternsOut&) = delete;
   /// The nodegraphs, definitions, and the nodes of all bodies that their surfaces reach.
   void write(materialx::Element& root);
   /// The surface's inputs, connected to the nodes of its body.

@@ -154,6 +154,13 @@ Graph flattened(Graph graph, const lang::Library& library, FlatOutputs* told) {
   return graph;
 }
 
+/// Whether a node is named by the end of its name: of a document's node by its path there, "NG/rm".
+static bool endsLike(std::string name, std::string end) {
+  std::replace(name.begin(), name.end(), '/', '.');
+  std::replace(end.begin(), end.end(), '/', '.');
+  return name.ends_with("." + end);
+}
+
 Result<Source> outputAt(const FlatOutputs& outputs, const std::string& path) {
   const auto exact = outputs.find(path);
   if (exact != outputs.end() && exact->second.size() == 1) return exact->second[0].second;
@@ -176,6 +183,19 @@ Result<Source> outputAt(const FlatOutputs& outputs, const std::string& path) {
     return fail("unknown-output", {},
                 fmt::format("the node {} has no output {}", inQuotes(node->first), inQuotes(wanted)),
                 listed(node->second));
+  }
+  const size_t last = path.find_last_of("./");
+  for (const bool whole : {true, false}) {
+    if (!whole && last == std::string::npos) break;
+    for (const auto& [name, of] : outputs) {
+      if (endsLike(name, whole ? path : path.substr(0, last))) names.push_back(name);
+    }
+    if (names.size() > 1)
+      return fail("no-such-node", {},
+                  fmt::format("{} may be any of {} nodes", inQuotes(path), names.size()),
+                  "name one: " + shortList(names));
+    if (names.size() == 1)
+      return outputAt(outputs, std::string(names[0]) + (whole ? "" : "." + path.substr(last + 1)));
   }
   for (const auto& [name, of] : outputs) names.push_back(name);
   return fail("no-such-node", {}, fmt::format("there is no node {}", inQuotes(path)),

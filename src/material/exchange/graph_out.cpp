@@ -1,0 +1,167 @@
+#include "exchange/graph_out.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "exchange/pattern_out.h"
+#include "gltf/facts.h"
+#include "graph/contracts.h"
+#include "materialx/materialx.h"
+#include "support/relative.h"
+#include "support/text.h"
+
+namespace lacquer::exchange {
+
+namespace {
+
+using graph::Source;
+using materialx::Element;
+
+class GraphOut {
+public:
+  /// `flat` has no groups.
+  GraphOut(const graph::Graph& flat, const lang::Library& library, const std::string& path, Written& written)
+      : flat_(flat), library_(library), path_(path), written_(written), contracts_(flat, library) {}
+
+  void write(const std::string& folder) {
+    sort();
+    graph::Group group;
+    group.name = materialx::graphName(flat_.name.empty() ? "graph" : flat_.name);
+    for (const size_t place : contracts_.main().order().order) {
+      if (said_[place]) group.nodes.push_back(flat_.nodes[place]);
+    }
+    outputs(group);
+    if (group.outputs.empty()) {
+      written_.said.clear();
+      written_.said.push_back({"nothing-said",
+                               Severity::Error,
+                               {path_, 0, 0, {}},
+                               "the graph has no node of MaterialX's",
+                               "those of docs/standard-nodes.md are",
+                               {}});
+      return;
+    }
+    document(std::move(group), folder);
+  }
+
+private:
+  static bool isMaterialX(const graph::Contract* contract) {
+    return contract != nullptr && contract->decl != nullptr &&
+           contract->decl->source.starts_with("MaterialX") && !contract->decl->category.empty();
+  }
+
+  void notSaid(size_t place, std::string message) {
+    addBounded(written_.said, {"not-said",
+                               Severity::Warning,
+                               {path_, 0, 0, fmt::format("/nodes/{}", place)},
+                               std::move(message),
+                               {},
+                               {}});
+  }
+
+  /// Which nodes can be said: MaterialX's, of whose sources all can.
+  void sort() {
+    said_.assign(flat_.nodes.size(), false);
+    for (const size_t place : contracts_.main().order().order) {
+      const graph::Node& node = flat_.nodes[place];
+      if (!isMaterialX(contracts_.of(node))) {
+        notSaid(place, fmt::format("the node {}, {}, is none of MaterialX's", quote(node.id), node.type));
+        continue;
+      }
+      said_[place] = true;
+      for (size_t i = 0; i < node.inputs.size() && said_[place]; ++i) {
+        const std::optional<size_t> from = contracts_.main().source(place, i);
+        if (!from || said_[*from]) continue;
+        said_[place] = false;
+        notSaid(place, fmt::format("the node {} takes a value from {}, which is not said", quote(node.id),
+                                   quote(flat_.nodes[*from].id)));
+      }
+    }
+  }
+
+  const graph::NodeRef* saidOf(const Source& source) const {
+    const auto* ref = std::get_if<graph::NodeRef>(&source.from);
+    const std::optional<size_t> place = ref == nullptr ? std::nullopt : contracts_.main().find(ref->node);
+    return place && said_[*place] ? ref : nullptr;
+  }
+
+  /// What ports take, by their names, and what other nodes take, by those of the nodes that give it.
+  void outputs(graph::Group& group) {
+    materialx::NameSet names;
+    std::vector<Source> known;
+    const auto add = [&](std::string_view name, const Source& source) {
+      if (std::find(known.begin(), known.end(), source) != known.end()) return;
+      known.push_back(source);
+      group.outputs.emplace_back(names.free(materialx::graphName(name)), source);
+    };
+    for (const auto& [port, source] : flat_.outputs) {
+      if (saidOf(source) != nullptr) add(port, source);
+    }
+    for (size_t i = 0; i < flat_.nodes.size(); ++i) {
+      for (const auto& [input, source] : flat_.nodes[i].inputs) {
+        const graph::NodeRef* ref = said_[i] ? nullptr : saidOf(source);
+        if (ref != nullptr)
+          add((ref->output.empty() ? ref->node : ref->node + "." + ref->output) + "_out", source);
+      }
+    }
+  }
+
+  /// A direction is a vector there, and other values of three components are colours.
+  static bool isVector(std::string_view name) {
+    return name.find("normal") != name.npos || name.find("tangent") != name.npos ||
+           name.find("position") != name.npos;
+  }
+
+  void document(graph::Group group, const std::string& folder) {
+    constexpr std::string_view kBody = "_body";
+    graph::Graph graph = flat_;
+    graph.nodes.clear();
+    graph.outputs.clear();
+    graph::Group body;
+    body.name = kBody;
+    graph::Node& instance = body.nodes.emplace_back();
+    instance.id = "all";
+    instance.type = group.name;
+    instance.group = true;
+    std::vector<SurfaceOut> surfaces(1);
+    for (const auto& [name, source] : group.outputs) {
+      const std::optional<graph::Offer> offer = contracts_.offer(source, contracts_.main());
+      const ir::Type type = offer ? offer->type : ir::Type::Float;
+      const Source taken{graph::NodeRef{"all", name}, {}};
+      const bool color = type == ir::Type::Vec3 && !isVector(name);
+      body.outputs.emplace_back(name, taken);
+      surfaces[0].inputs.push_back({name, color ? "color3" : materialx::nameOf(type), {}, taken});
+    }
+    graph.groups = {group, body};
+    gltf::Scene scene;
+    scene.path = path_;
+    const std::string from = folderOf(path_);
+    const Moved moved(from, folder.empty() ? from : folder);
+    PatternsOut patterns(graph, library_, scene, surfaces, moved, written_.said);
+    Element root;
+    root.category = "materialx";
+    root.attributes = {{"version", "1.39"}, {"colorspace", "lin_rec709"}};
+    patterns.write(root);
+    written_.text = materialx::toXml(root);
+  }
+
+  const graph::Graph& flat_;
+  const lang::Library& library_;
+  const std::string& path_;
+  Written& written_;
+  const graph::Contracts contracts_;
+  std::vector<bool> said_;
+};
+
+}  // namespace
+
+Written graphToMaterialX(const graph::Graph& graph, const lang::Library& library, const std::string& path,
+                         const std::string& folder) {
+  Written written;
+  const graph::Graph flat = graph::flattened(graph, library);
+  GraphOut(flat, library, path, written).write(folder);
+  return written;
+}
+
+}  // namespace lacquer::exchange
