@@ -303,6 +303,8 @@ TEST(Usage, nodes) {
   const Outcome list = place.run({"nodes"});
   EXPECT_EQ(list.status, 0) << list.all();
   EXPECT_NE(list.out.find("coat_absorption"), std::string::npos);
+  for (const char* named : {"\ntemplates\n", "\nforward ", "\nprofiles\n", "\nopenpbr "})
+    EXPECT_NE(list.out.find(named), std::string::npos) << named;
   const Outcome all = place.run({"nodes", "--json"});
   EXPECT_EQ(all.status, 0);
   const auto json = nlohmann::json::parse(all.out, nullptr, false);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "docs/tables.h"
@@ -44,11 +45,28 @@ std::string joined(const std::vector<std::string>& parts) {
 
 }  // namespace
 
+namespace {
+
+/// Of texts that say the same up to a colon of their first sentence, and behind it each its own: without
+/// that.
+std::string proseOf(const std::string& first, const std::set<std::string>& all) {
+  const size_t colon = first.find(": ");
+  const size_t stop = first.find('.');
+  if (all.size() < 2 || colon == std::string::npos || stop < colon) return first;
+  const bool alike = std::all_of(all.begin(), all.end(), [&](const std::string& one) {
+    return one.compare(0, colon, first, 0, colon) == 0;
+  });
+  return alike ? first.substr(0, colon) + first.substr(stop) : first;
+}
+
+}  // namespace
+
 std::string standardNodes() {
   const lang::Library library = lang::Library::embedded();
   struct Family {
     const lang::NodeDecl* first = nullptr;
     std::vector<std::string> types;
+    std::set<std::string> docs;
   };
   std::map<std::string, std::map<std::string, Family>> categories;
   size_t forms = 0;
@@ -60,9 +78,10 @@ std::string standardNodes() {
     // One without a category is made for other texts.
     if (!node.origin.file.starts_with("nodes/standard/") || node.category.empty()) continue;
     Family& family = categories[std::string(node.category)][std::string(node.family)];
-    // The form with the shortest name says what the node is.
-    if (family.first == nullptr || node.name.size() < family.first->name.size()) family.first = &node;
+    // The text that is written first says what the node is.
+    if (family.first == nullptr || node.origin.line < family.first->origin.line) family.first = &node;
     family.types.push_back(typesOf(node));
+    family.docs.insert(node.doc);
     ++forms;
   }
   size_t families = 0;
@@ -70,7 +89,7 @@ std::string standardNodes() {
   for (const auto& [category, nodes] : categories) {
     out += fmt::format("\n### {}\n\n| node | inputs | forms | |\n|---|---|---|---|\n", category);
     for (const auto& [name, family] : nodes) {
-      std::string doc(family.first->doc);
+      std::string doc = proseOf(family.first->doc, family.docs);
       std::replace(doc.begin(), doc.end(), '\n', ' ');
       out +=
           fmt::format("| `{}` | {} | {} | {} |\n", name, inputsOf(*family.first), joined(family.types), doc);

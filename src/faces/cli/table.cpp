@@ -202,6 +202,18 @@ static bool printForms(const json::Json& nodes, const std::string& name, bool as
   return true;
 }
 
+/// What options name, each with the first sentence of its documentation.
+static void printNamed(const json::Json& all, const char* kind) {
+  fmt::print("\n{}\n", kind);
+  for (const auto& one : all[kind]) {
+    std::string doc = one.contains("doc") ? one["doc"].get<std::string>() : std::string();
+    std::replace(doc.begin(), doc.end(), '\n', ' ');
+    const size_t stop = doc.find(". ");
+    if (stop != std::string::npos) doc.resize(stop + 1);
+    fmt::print("{:<36} {}\n", one["name"].get<std::string>(), doc);
+  }
+}
+
 bool printNodes(const std::string& text, const std::string& name, bool as_json) {
   const json::Json all = json::reread(text);
   bool found = name.empty();
@@ -214,6 +226,9 @@ bool printNodes(const std::string& text, const std::string& name, bool as_json) 
     if (!name.empty() && !as_json) printNode(node);
   }
   if (name.empty() && as_json) fmt::print("{}\n", all.dump(2));
+  for (const char* kind : {"templates", "profiles"}) {
+    if (name.empty() && !as_json) printNamed(all, kind);
+  }
   if (found || printForms(all["nodes"], name, as_json)) return true;
   // What two vendors call alike has the vendor before it.
   std::vector<std::string> alike;
