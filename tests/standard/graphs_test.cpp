@@ -178,8 +178,7 @@ TEST(StandardNames, FindTheFormThatIsMeant) {
 
 TEST(StandardNames, WhatMayBeSeveralFormsMustBeNamed) {
   const std::string several = said("convert", R"("in": {"parameter": "f"})");
-  EXPECT_NE(several.find("several of its forms fit, name one: convert<vec2, float>"), std::string::npos)
-      << several;
+  EXPECT_NE(several.find("name one: convert<vec2, float>"), std::string::npos) << several;
   EXPECT_EQ(said("convert<vec3, float>", R"("in": {"parameter": "f"})"), "");
   const std::string none = said("crossproduct", R"("in1": {"parameter": "w"})");
   EXPECT_NE(none.find("wrong-type"), std::string::npos) << none;
