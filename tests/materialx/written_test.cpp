@@ -112,6 +112,33 @@ std::optional<std::string> peerSays(const std::map<std::string, std::string>& do
   return status == 0 && log.empty() ? std::string() : log + fmt::format("status {}\n", status);
 }
 
+/// A sixteenth of a bump's scale is what heights rise by over the coordinate. What is read again has no
+/// bumps.
+TEST(WrittenBump, isANodeOnTheNormalsOfTheMap) {
+  const exchange::Written written = writtenOf(documentOf(R"({
+    "asset": {"version": "2.0"}, "images": [{"uri": "heights.png"}, {"uri": "normals.png"}],
+    "textures": [{"source": 0}, {"source": 1}],
+    "materials": [
+      {"name": "on a map", "normalTexture": {"index": 1, "scale": 0.5},
+       "extensions": {"EXT_materials_bump": {"bumpFactor": 0.05, "bumpTexture": {"index": 0,
+         "extensions": {"KHR_texture_transform": {"scale": [2, 2]}}}}}},
+      {"name": "turned", "extensions": {"EXT_materials_bump": {"bumpTexture": {"index": 0,
+         "extensions": {"KHR_texture_transform": {"rotation": 1}}}}}},
+      {"name": "flat", "extensions": {"EXT_materials_bump": {"bumpFactor": 0, "bumpTexture": {"index": 0}}}}]})",
+                                                         "case.gltf"));
+  EXPECT_NE(written.text.find(R"(  <bump name="bump_2" type="vector3">
+    <input name="height" type="float" nodename="bump_r"/>
+    <input name="scale" type="float" value="0.4"/>
+    <input name="normal" type="vector3" nodename="normal_map"/>
+  </bump>
+)"),
+            std::string::npos)
+      << written.text;
+  EXPECT_EQ(written.text.find("bump", written.text.find("SR_flat")), std::string::npos) << written.text;
+  ASSERT_EQ(written.said.size(), 1U) << allOf(written.said);
+  EXPECT_EQ(written.said[0].place.pointer, "/materials/1/extensions/EXT_materials_bump/bumpTexture");
+}
+
 constexpr const char* kNoPeer = "NOT TESTED: there is no MaterialX (LACQUER_MATERIALX), or no node.js";
 
 TEST(WrittenPeer, takesTheCases) {

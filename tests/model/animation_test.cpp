@@ -113,8 +113,9 @@ void expectParameters(const std::vector<const char*>& templates) {
         return p.animated && p.pointer == "/materials/0/" + property.path;
       });
     });
-    // The scale of a normal texture needs the texture.
-    EXPECT_TRUE(found || property.path.ends_with("Texture/scale")) << property.path;
+    // The scale of a normal texture needs the texture, and so does the factor of heights.
+    const bool textured = property.path.ends_with("Texture/scale") || property.decl->name == "bumpFactor";
+    EXPECT_TRUE(found || textured) << property.path;
   }
 }
 

@@ -78,6 +78,8 @@ private:
       value = pool[below(static_cast<uint32_t>(pool.size()))];
     else
       std::generate_n(value.begin(), ir::componentCount(decl.type), [&] { return number(); });
+    // Thresholds hold one number in all components; what is read has none behind the type's.
+    std::fill(value.begin() + ir::componentCount(decl.type), value.end(), 0.0);
     if (value[0] == 0 && below(4) == 0) value[0] = -0.0;
     return value;
   }

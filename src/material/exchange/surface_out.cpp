@@ -150,7 +150,10 @@ private:
   }
   void row(const Row& row);
   void base(std::string_view color, std::string_view alpha);
+  std::optional<Source> mapped(std::string_view path);
   void normal(std::string_view input, std::string_view path);
+  double tiling(const material::Material::Texture& texture);
+  void bumped(std::string_view input);
   void occlusion();
   void film(std::string_view input, double scale);
   void emission();
@@ -436,16 +439,52 @@ void Translation::base(std::string_view color, std::string_view alpha) {
   if (!alpha.empty() && (a || value[3] != 1)) put(alpha, "float", {value[3]}, std::move(a));
 }
 
-void Translation::normal(std::string_view input, std::string_view path) {
+std::optional<Source> Translation::mapped(std::string_view path) {
   const auto* map = texture(path);
-  if (map == nullptr) return;
+  if (map == nullptr) return std::nullopt;
   graph::Inputs inputs{{"in", channel(*map, 4)}};
   const material::Property& property = schema_.properties[map->property];
   for (size_t i = 0; i < property.decl->members.size() && i < map->info.members.size(); ++i) {
     if (property.decl->members[i].name != "scale" || map->info.members[i] == 1) continue;
     inputs.emplace_back("scale", Source{graph::Literal{ir::Type::Float, {map->info.members[i]}}, {}});
   }
-  put(input, "vector3", {}, add(property.parameter_name + "_map", "normalmap<float>", std::move(inputs)));
+  return add(property.parameter_name + "_map", "normalmap<float>", std::move(inputs));
+}
+
+void Translation::normal(std::string_view input, std::string_view path) {
+  if (std::optional<Source> source = mapped(path)) put(input, "vector3", {}, std::move(source));
+}
+
+/// What the slope of a texture's heights grows by where it is taken over the first coordinate of the
+/// vertices, as MaterialX's bump does.
+double Translation::tiling(const material::Material::Texture& texture) {
+  const gltf::TextureTransform at = texture.info.transform.value_or(gltf::TextureTransform{});
+  const double by = at.scale[0];
+  if (texture.info.texCoord == 0 && at.rotation == 0 && by == at.scale[1] && by > 0) return by;
+  addBounded(said_,
+             {"not-said",
+              Severity::Warning,
+              {document_.path, 0, 0, texture.info.pointer},
+              "MaterialX's bump takes slopes over the first texture coordinate, neither turned nor stretched",
+              "the bumps are steeper or lower than in glTF, or lean elsewhere",
+              {}});
+  return 1;
+}
+
+/// The base's normal. MaterialX takes a sixteenth of the slope that heights have over the coordinate.
+void Translation::bumped(std::string_view input) {
+  constexpr double kSobel = 16;
+  const std::string at = "extensions/EXT_materials_bump/";
+  std::optional<Source> source = mapped("normalTexture");
+  const double factor = numberOr(at + "bumpFactor", 1);
+  if (const auto* map = texture(at + "bumpTexture"); map != nullptr && factor != 0) {
+    graph::Inputs inputs{
+        {"height", channel(*map, 0)},
+        {"scale", Source{graph::Literal{ir::Type::Float, {kSobel * factor / tiling(*map)}}, {}}}};
+    if (source) inputs.emplace_back("normal", *source);
+    source = add("bump", "bump", std::move(inputs));
+  }
+  if (source) put(input, "vector3", {}, std::move(source));
 }
 
 void Translation::occlusion() {
@@ -484,7 +523,7 @@ void Translation::gltfPbr() {
   for (const Row& one : kGltfRows) row(one);
   film("iridescence_thickness", 1);
   occlusion();
-  normal("normal", "normalTexture");
+  bumped("normal");
   if (speaksOf(EXT "clearcoat/")) {
     normal("clearcoat_normal", EXT "clearcoat/clearcoatNormalTexture");
   } else if (speaksOf(EXT "coat/")) {
@@ -510,7 +549,7 @@ void Translation::openPbr() {
     put("specular_roughness_anisotropy", "float", {numberOr(aniso + "anisotropyStrength", 0)});
   constexpr double kMicronsInNanometer = 1e-3;
   film("thin_film_thickness", kMicronsInNanometer);
-  normal("geometry_normal", "normalTexture");
+  bumped("geometry_normal");
   normal("geometry_coat_normal", EXT "coat/coatNormalTexture");
   if (speaksOf(EXT "clearcoat/") && !speaksOf(EXT "coat/")) {
     for (const Row& one : kClearcoatAsCoat) row(one);
