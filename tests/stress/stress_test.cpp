@@ -9,6 +9,7 @@
 #include <set>
 
 #include "lacquer.h"
+#include "stress/space.h"
 #include "support/answers.h"
 #include "support/cases.h"
 
@@ -92,6 +93,51 @@ TEST(Stress, AStepIsItsOwnComparisonsFault) {
 }
 
 TEST(Stress, NamesOfOtherTypesAreOrdinary) { EXPECT_EQ(found("odd_names"), json::array()); }
+
+/// What is known of a node's steps is known of it in a graph, whatever its term is called there.
+TEST(Stress, KnownStepsAreKnownInGraphs) {
+  const fs::path path = fs::path(testing::TempDir()) / "lacquer_stress_known.json";
+  std::ofstream(path) << R"({"lacquer_graph": 1, "name": "steps", "template": "forward",
+    "parameters": {"gamma": {"type": "float", "value": 2}},
+    "nodes": [
+      {"id": "corrected", "node": "colorcorrect<vec3>", "term": "my.colours",
+       "inputs": {"in": {"given": "normal"}, "gamma": {"parameter": "gamma"}, "hue": 0.2}},
+      {"id": "light", "node": "max", "inputs": {"in1": {"node": "corrected"}, "in2": 0}},
+      {"id": "kept", "node": "min", "inputs": {"in1": {"node": "light"}, "in2": 1000}}
+    ],
+    "outputs": {"emission": {"node": "kept"}}})";
+  const json answer = stressed({path.string()}, few(20000), Options());
+  ASSERT_FALSE(answer.is_null());
+  size_t steps = 0;
+  for (const json& finding : answer["subjects"][0]["findings"]) {
+    if (finding["fault"] != "jump") continue;
+    ++steps;
+    EXPECT_TRUE(finding.contains("known")) << finding.dump();
+  }
+  EXPECT_GT(steps, 0U);
+}
+
+TEST(Stress, AFamilyIsAllOfItsForms) {
+  const json answer = stressed({"noise2d"}, few(64), Options());
+  ASSERT_FALSE(answer.is_null());
+  EXPECT_EQ(answer["subjects"].size(), 8U) << "four forms, each with a filtered variant";
+}
+
+TEST(Stress, IntegersAreWhole) {
+  stress::Space space;
+  const ir::Interval range{-3.5, 9};
+  EXPECT_EQ(stress::natureOf(ir::Type::IVec2, "n", range), stress::Nature::Whole);
+  space.add("n", 2, range, stress::natureOf(ir::Type::IVec2, "n", range), 100);
+  std::set<double> drawn;
+  for (uint64_t seed = 0; seed < 1000; ++seed) {
+    std::vector<double> sample(space.width());
+    space.draw(seed, sample);
+    drawn.insert(sample.begin(), sample.end());
+  }
+  EXPECT_EQ(*drawn.begin(), -3);
+  EXPECT_EQ(*drawn.rbegin(), 9);
+  EXPECT_EQ(drawn.size(), 13U) << "whole numbers, and all of them";
+}
 
 TEST(Stress, VariantsAreAttackedToo) {
   const json answer = stressed({"faulty_variant"}, few(), faulty());

@@ -80,7 +80,9 @@ void printFinding(const StressFinding& finding, const StressSubject& subject) {
 void printFound(const StressReport& report, bool quiet) {
   for (const StressSubject& subject : report.subjects) {
     const bool nothing = subject.findings.empty();
-    if (nothing && (quiet || (!subject.energy && subject.skipped.empty()))) continue;
+    // Nodes and extensions are many; a file is what somebody asked for.
+    const bool named = !subject.graph.empty() || !subject.test.empty();
+    if (nothing && (quiet || (!named && !subject.energy && subject.skipped.empty()))) continue;
     fmt::print("{}\n", printable(titleOf(subject)));
     if (!subject.skipped.empty()) fmt::print("  not on the device: {}\n", printable(subject.skipped));
     if (subject.energy && !quiet) {

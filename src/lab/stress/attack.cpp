@@ -316,6 +316,7 @@ std::vector<double> plainer(const Variable& variable, double x) {
   std::erase_if(tries, [&](double y) {
     return !(y >= variable.range.lo && y <= variable.range.hi) || !std::isfinite(y) ||
            (variable.nature == Nature::Flag && y != 0 && y != 1) ||
+           (variable.nature == Nature::Whole && y != std::trunc(y)) ||
            (variable.nature == Nature::Index && y > 0 && y < 1);
   });
   // Only what is plainer than `x` itself comes into question, so that this ends.
@@ -395,7 +396,7 @@ Report attack(const Subject& subject, const Plan& plan) {
       valueAtHalf(subject, finding);
     else
       minimise(subject, finding);
-    if (finding.fault == Fault::Jump) finding.known = knownJump(subject.name, finding.what);
+    if (finding.fault == Fault::Jump) finding.known = knownJump(subject, finding.what);
     report.findings.push_back(std::move(finding));
   }
   // Without tangents it is the same light, four times as dear.

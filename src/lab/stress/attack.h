@@ -57,7 +57,7 @@ std::vector<double> plainer(const Variable& variable, double x);
 void measureLight(const Subject& subject, const Plan& plan, Report& report);
 
 /// Why a jump there is none of ours; empty when nothing is known of it.
-std::string_view knownJump(std::string_view subject, std::string_view condition);
+std::string_view knownJump(const Subject& subject, std::string_view condition);
 
 /// What a material gives back beyond its base because of the texts' own formulas.
 struct KnownSurplus {

@@ -6,7 +6,7 @@ namespace {
 
 /// Steps that the texts have, or that no formula can avoid. A test sees that each still occurs.
 struct Known {
-  std::string_view node;       ///< of the library; in a material, a part of the term's name
+  std::string_view node;       ///< of the library, or a part of its name; in a material of the term's, too
   std::string_view condition;  ///< as conditionName() writes it
   std::string_view why;
 };
@@ -38,6 +38,7 @@ constexpr Known kKnown[] = {
     {"_by_facet", "0 < cosine", "a direction on the wrong side of the facet is lost"},
     {"_by_facet", "0 < bent2", "nothing leaves beyond the critical angle"},
     {"layer_choice", "choice < share", "a choice"},
+    {"gltf_alpha", "alpha_cutoff <= alpha", "a choice"},
     {"worley", "d < first", "another point is the nearest"},
     {"worley", "d < first_before", "another point is the nearest"},
     {"unifiednoise", "d < first", "another point is the nearest"},
@@ -83,6 +84,7 @@ constexpr Known kKnown[] = {
     {"hexagon", "", "a shape has an edge"},
     {"line", "radius < length", "a shape has an edge"},
     {"grid", "", "a shape has an edge"},
+    {"standard_staggered", "0.5 < fract", "a shape has an edge"},
     {"crosshatch", "", "a shape has an edge"},
     {"texture_within", "", "an image has an edge"},
     {"texel_within", "", "an image has an edge"},
@@ -126,10 +128,17 @@ constexpr KnownSurplus kSurpluses[] = {
 
 std::span<const KnownSurplus> knownSurpluses() { return kSurpluses; }
 
-std::string_view knownJump(std::string_view subject, std::string_view condition) {
+std::string_view knownJump(const Subject& subject, std::string_view condition) {
+  const auto term = subject.terms.find(condition.substr(0, condition.find(": ")));
+  const auto says = [](std::string_view text, const Known& known) {
+    return text.find(known.node) != std::string_view::npos;
+  };
   for (const Known& known : kKnown) {
-    const bool here = subject.find(known.node) != std::string_view::npos ||
-                      condition.find(known.node) != std::string_view::npos;
+    bool here = says(subject.name, known) || says(condition, known);
+    if (!here && term != subject.terms.end()) {
+      // What is known of all that a node compares is not known of those that call it.
+      here = says(term->second.own, known) || (!known.condition.empty() && says(term->second.called, known));
+    }
     if (here && condition.ends_with(known.condition)) return known.why;
   }
   return {};

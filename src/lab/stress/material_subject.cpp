@@ -170,11 +170,10 @@ private:
     }
     for (const uint32_t index : ir::usedParameters(module_)) {
       const ir::Parameter& parameter = module_.parameters[index];
-      const ir::Type part = ir::partType(parameter.type);
       ir::Interval range = parameter.range;
-      if (part == ir::Type::UInt) range.lo = std::max(range.lo, 0.0);
+      if (ir::partType(parameter.type) == ir::Type::UInt) range.lo = std::max(range.lo, 0.0);
       space.add(parameter.name, ir::componentCount(parameter.type), range,
-                part == ir::Type::Bool ? Nature::Flag : natureOf(parameter.name, parameter.range), kLimit);
+                natureOf(parameter.type, parameter.name, parameter.range), kLimit);
     }
     for (const ir::TextureSlot& slot : module_.textures) {
       if (isTable(slot)) continue;
@@ -253,7 +252,9 @@ private:
     eval::bindPoints(module_, points, bindings);
     const size_t width = space.width();
     for (const Variable& variable : space.variables()) {
-      if (variable.nature != Nature::Number && variable.nature != Nature::Index) continue;
+      if (variable.nature != Nature::Number && variable.nature != Nature::Index &&
+          variable.nature != Nature::Whole)
+        continue;
       std::vector<double> values;
       values.reserve(count * static_cast<size_t>(variable.components));
       for (size_t i = 0; i < count; ++i) {
@@ -284,7 +285,8 @@ private:
       for (size_t i = 0; i < values.size(); ++i) {
         const ir::BlockField& field = block.fields[module_.preshader[i].field];
         std::vector<double> rounded = values[i];
-        for (double& x : rounded) x = static_cast<double>(static_cast<float>(x));
+        const bool whole = ir::isWhole(ir::partType(field.type));
+        for (double& x : rounded) x = whole ? x : static_cast<double>(static_cast<float>(x));
         bindings.columns[block.instance + "." + field.name] =
             Column::perPoint(ir::componentCount(field.type), std::move(rounded));
       }

@@ -145,15 +145,16 @@ private:
       if (isGeometry(parameter)) continue;
       const bool unit = parameter.range.lo == -1 && parameter.range.hi == 1;
       // A light is positional or not: what stands between has no meaning.
-      const bool flag = ir::partType(parameter.type) == ir::Type::Bool || isPositional(parameter);
+      const bool flag = isPositional(parameter);
       const bool texel = parameter.name == "texel" && parameter.range == ir::Interval{0, 1};
       const Nature nature = flag    ? Nature::Flag
                             : texel ? Nature::Texel
                             : unit && parameter.type == ir::Type::Vec3
                                 ? Nature::Direction
-                                : natureOf(parameter.name, parameter.range);
-      space.add(parameter.name, ir::componentCount(parameter.type), parameter.range, nature,
-                analysis::kSceneLimit);
+                                : natureOf(parameter.type, parameter.name, parameter.range);
+      ir::Interval range = parameter.range;
+      if (ir::partType(parameter.type) == ir::Type::UInt) range.lo = std::max(range.lo, 0.0);
+      space.add(parameter.name, ir::componentCount(parameter.type), range, nature, analysis::kSceneLimit);
     }
     for (const ir::TextureSlot& slot : module_.textures) {
       if (slot.type == ir::Type::TextureCube)

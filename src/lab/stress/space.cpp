@@ -88,6 +88,13 @@ double exact(double x, const ir::Interval& range) {
   return static_cast<double>(f);
 }
 
+/// The nearest whole number of the range; the number itself where there is none.
+double wholeOf(double x, const ir::Interval& range) {
+  const double least = std::ceil(range.lo);
+  const double most = std::floor(range.hi);
+  return least > most ? x : std::clamp(std::round(x), least, most);
+}
+
 /// Half of the numbers with the other sign, where the range has negative ones.
 double signedOf(double x, const ir::Interval& range, Random& random) {
   return range.lo < 0 && random.below(2) == 0 ? -x : x;
@@ -116,6 +123,12 @@ double drawNumber(Random& random, const ir::Interval& range) {
 Nature natureOf(std::string_view name, const ir::Interval& range) {
   // docs/specification.md, reading 5: other values below 1 are out of range.
   return name.ends_with("ior") && range.lo == 0 && range.hi > 1 ? Nature::Index : Nature::Number;
+}
+
+Nature natureOf(ir::Type type, std::string_view name, const ir::Interval& range) {
+  const ir::Type part = ir::partType(type);
+  if (part == ir::Type::Bool) return Nature::Flag;
+  return ir::isWhole(part) ? Nature::Whole : natureOf(name, range);
 }
 
 size_t Space::add(std::string name, int components, ir::Interval range, Nature nature, double limit) {
@@ -163,6 +176,8 @@ void Space::draw(uint64_t seed, std::span<double> sample) const {
         x = random.below(2);
       else if (variable.nature == Nature::Index)
         x = random.below(8) == 0 ? 0 : drawNumber(random, {1, variable.range.hi});
+      else if (variable.nature == Nature::Whole)
+        x = wholeOf(drawNumber(random, variable.range), variable.range);
       else if (variable.nature == Nature::Texel && random.below(4) != 0)
         x = exact(random.below(256) / 255.0, variable.range);
       else
@@ -184,7 +199,8 @@ void Space::between(std::span<const double> a, std::span<const double> b, double
     const bool opposite = variable.nature == Nature::Direction && along < -0.999;
     for (size_t i = variable.first; i < end; ++i) {
       const bool apart = variable.nature == Nature::Index && (a[i] == 0 || b[i] == 0);
-      sample[i] = variable.nature == Nature::Flag || apart || opposite ? a[i] : a[i] * (1 - t) + b[i] * t;
+      const bool step = variable.nature == Nature::Flag || variable.nature == Nature::Whole;
+      sample[i] = step || apart || opposite ? a[i] : a[i] * (1 - t) + b[i] * t;
     }
   }
 }

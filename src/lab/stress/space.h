@@ -19,6 +19,7 @@ enum class Nature : uint8_t {
   Flag,       ///< 0 or 1
   Texel,      ///< in [0, 1], mostly eight bits
   Index,      ///< of refraction: 0, which stands for an infinite one, or 1 and more
+  Whole,      ///< an integer: a whole number of the range
   Step,  ///< from a pixel to its neighbour, of few bits; often 0, along an axis, or along the step before it
 };
 
@@ -41,8 +42,8 @@ public:
 
   /// One sample, every number exact in float32, edges over-represented. A function of `seed`.
   void draw(uint64_t seed, std::span<double> sample) const;
-  /// From `a` at 0 to `b` at 1, in double. Flags, opposite directions, and an index where one of both is 0,
-  /// are those of `a`.
+  /// From `a` at 0 to `b` at 1, in double. Flags, whole numbers, opposite directions, and an index where one
+  /// of both is 0, are those of `a`.
   void between(std::span<const double> a, std::span<const double> b, double t,
                std::span<double> sample) const;
 
@@ -54,6 +55,9 @@ private:
 /// What a number is, by the name and the range of a parameter: an index of refraction that may be 0, or any
 /// number.
 Nature natureOf(std::string_view name, const ir::Interval& range);
+
+/// What a parameter of a type is: a truth, an integer, or a number.
+Nature natureOf(ir::Type type, std::string_view name, const ir::Interval& range);
 
 /// A number of the range, exact in float32.
 double drawNumber(Random& random, const ir::Interval& range);

@@ -12,6 +12,7 @@
 #include "setting/language.h"
 #include "setting/messages.h"
 #include "setting/options.h"
+#include "stress/called.h"
 #include "stress/forms.h"
 #include "stress/on_device.h"
 #include "support/contain.h"
@@ -42,6 +43,13 @@ NamedNumbers inputsOf(const Subject& subject, std::span<const double> sample) {
     inputs.emplace_back(variable.name, std::vector<double>(numbers.begin(), numbers.end()));
   }
   return inputs;
+}
+
+tl::unexpected<Diagnostics> inFile(Diagnostics wrong, const std::string& file) {
+  for (Diagnostic& one : wrong) {
+    if (one.place.file.empty()) one.place.file = file;
+  }
+  return tl::make_unexpected(std::move(wrong));
 }
 
 /// A finding that is no known one.
@@ -189,7 +197,15 @@ private:
     return stress::nodeSubject(std::move(source));
   }
 
+  /// Of a name with several forms all of them.
   Result<void> addNode(const std::string& name) {
+    if (!library_->has(lang::DeclKind::Node, name)) {
+      const std::vector<const lang::NodeDecl*> forms = library_->forms(name);
+      for (const lang::NodeDecl* form : forms) {
+        if (Result<void> added = addNode(std::string(form->name)); !added) return added;
+      }
+      if (!forms.empty()) return {};
+    }
     const Result<const lang::NodeDecl*> found = library_->node(name);
     std::vector<std::string> variants = {""};
     if (found) {
@@ -232,7 +248,11 @@ private:
       return tl::make_unexpected(std::move(resolved.error()));
     const Result<const model::Model*> model = library_->models.of(named.profile);
     if (!model) return tl::make_unexpected(model.error());
-    return stress::materialSubject(subject.name(), evaluated.module(), (*model)->layers());
+    Result<std::unique_ptr<Subject>> made =
+        stress::materialSubject(subject.name(), evaluated.module(), (*model)->layers());
+    if (!by_place_) by_place_.emplace(*library_);
+    if (made) by_place_->nameTerms(**made);
+    return made;
   }
 
   /// A graph, or a case of one input.
@@ -244,7 +264,7 @@ private:
       return {};
     }
     Result<std::unique_ptr<Subject>> subject = materialSubject(path, **graph);
-    if (!subject) return tl::make_unexpected(std::move(subject.error()));
+    if (!subject) return inFile(std::move(subject.error()), path);
     StressSubject about;
     about.graph = path;
     about.name = (*graph)->name;
@@ -279,7 +299,7 @@ private:
       report(material.diagnostics, file, messages_);
       if (lacquer::hasError(material.diagnostics)) continue;
       Result<std::unique_ptr<Subject>> subject = materialSubject(file, material);
-      if (!subject) return tl::make_unexpected(std::move(subject.error()));
+      if (!subject) return inFile(std::move(subject.error()), file);
       StressSubject about;
       about.file = file;
       about.material = static_cast<size_t>(material.index);
@@ -288,7 +308,7 @@ private:
       if (!device_ && !plan_.half) addForms(material, file, about);
       // Where frames come of derivatives it is another function.
       subject = materialSubject(file, material, false);
-      if (!subject) return tl::make_unexpected(std::move(subject.error()));
+      if (!subject) return inFile(std::move(subject.error()), file);
       if ((*subject)->lanes == 1) continue;
       about.tangents = false;
       (*subject)->name += " without tangents";
@@ -408,6 +428,7 @@ private:
   Engine engine_ = Engine::Float;
   std::optional<vulkan::Device> device_;
   std::shared_ptr<const Language> library_;
+  std::optional<stress::NodesByPlace> by_place_;
   std::vector<std::function<Result<StressSubject>()>> work_;
 };
 

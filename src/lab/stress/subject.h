@@ -1,6 +1,7 @@
 // What is attacked: a node by itself, or a whole material, as a function from a sample to values.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -50,6 +51,11 @@ public:
   size_t lanes = 1;
   /// Of a material: the parameters by which its layers vanish, and at which numbers they do.
   Layers layers;
+  /// Of a material, by the term that stands before a condition's name: the library's nodes that it is of.
+  struct OfTerm {
+    std::string own, called;  ///< their names, joined by spaces; those of all that they call
+  };
+  std::map<std::string, OfTerm, std::less<>> terms;
 
   /// `samples` are those of `count` points, side by side. Thread-safe.
   virtual Values evaluate(Arithmetic arithmetic, std::span<const double> samples, size_t count) const = 0;
