@@ -16,9 +16,10 @@ namespace lacquer {
 /// in `materials`, or all where that is empty. `surface` is "gltf_pbr", "open_pbr_surface", or empty for the
 /// one that says more of a material. What it has no input for is a warning, "not-said"; a material with an
 /// error is left out. A document that has surfaces by MaterialX's formulas (Options::as) is written as it was
-/// read where `surface` is empty. Of the options, `permissive`, `as`, `profile` and those of the node
-/// library. Empty on an error: "unknown-surface", "no-such-material", those of the file, or where no material
-/// is left.
+/// read where `surface` is empty. Of a graph (".json"), which takes no surface, the nodes that are
+/// MaterialX's; each of the others is a "not-said", and a graph without any of them an error, "nothing-said".
+/// Of the options, `permissive`, `as`, `profile` and those of the node library. Empty on an error:
+/// "unknown-surface", "no-such-material", those of the file, or where no material is left.
 std::string toMaterialX(const std::string& file, const Strings& materials, const std::string& surface,
                         const Options& options, Messages& messages);
 

@@ -23,10 +23,6 @@ size_t goodMaterials(const Scene& scene) {
   return count;
 }
 
-}  // namespace
-
-namespace {
-
 /// The document as `as` reads it, written and read again.
 std::string documentOut(std::string_view bytes, std::string_view as) {
   Messages said;

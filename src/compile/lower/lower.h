@@ -22,7 +22,7 @@ struct LowerOptions {
   /// in the first of its four components; the others are 0. Of light rate: summed over the lights.
   const graph::Source* shown = nullptr;
   bool shown_whole = false;  ///< integers in two such outputs, whose sum they are exactly (lower/shown.h)
-  OnCall on_call = {};  ///< when given, told of the graph's nodes and of what they and the template call
+  OnCall on_call = {};       ///< when given, told of the graph's nodes and of what they and the template call
 };
 
 /// The graph must have passed graph::check() with the same library (asserted where it shows) and be flat.

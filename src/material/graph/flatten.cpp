@@ -191,8 +191,7 @@ Result<Source> outputAt(const FlatOutputs& outputs, const std::string& path) {
       if (endsLike(name, whole ? path : path.substr(0, last))) names.push_back(name);
     }
     if (names.size() > 1)
-      return fail("no-such-node", {},
-                  fmt::format("{} may be any of {} nodes", inQuotes(path), names.size()),
+      return fail("no-such-node", {}, fmt::format("{} may be any of {} nodes", inQuotes(path), names.size()),
                   "name one: " + shortList(names));
     if (names.size() == 1)
       return outputAt(outputs, std::string(names[0]) + (whole ? "" : "." + path.substr(last + 1)));
