@@ -75,13 +75,12 @@ json inGlass(const lang::ExtensionDecl& but) {
   return material;
 }
 
-/// Those whose numbers are folded into others of the material's rate, or make it cheaper, or leave no light.
-const std::set<std::string> kCostNothing = {"ADOBE_materials_clearcoat_specular",
-                                            "EXT_materials_anisotropy_openpbr",
-                                            "KHR_materials_clearcoat_ior",
-                                            "KHR_materials_emissive_strength",
-                                            "KHR_materials_unlit",
-                                            "KHR_materials_volume_scatter"};
+/// Those whose numbers are folded into others of the material's rate, or do nothing without a texture, or
+/// make it cheaper, or leave no light.
+const std::set<std::string> kCostNothing = {
+    "ADOBE_materials_clearcoat_specular", "EXT_materials_anisotropy_openpbr", "EXT_materials_bump",
+    "KHR_materials_clearcoat_ior",        "KHR_materials_emissive_strength",  "KHR_materials_unlit",
+    "KHR_materials_volume_scatter"};
 
 struct Made {
   material::Material material;
