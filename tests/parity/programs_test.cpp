@@ -93,7 +93,21 @@ void tryPairsAndAll(const std::vector<NamedGraph>& graphs, const MaterialSetting
   EXPECT_GT(tried.choices, 10U);
 }
 
-TEST(ParityPrograms, ExamplesInPairsAndInOne) { tryPairsAndAll(exampleGraphs({}), {}, 128); }
+/// A texture of linear colours, as channels in another order are, and one that is decoded are of two
+/// programs.
+bool isLinear(const NamedGraph& of) {
+  return std::any_of(of.graph.textures.begin(), of.graph.textures.end(), [](const graph::Texture& texture) {
+    return texture.name == "base_color_texture" && !texture.srgb;
+  });
+}
+
+TEST(ParityPrograms, ExamplesInPairsAndInOne) {
+  std::vector<NamedGraph> graphs = exampleGraphs({});
+  const size_t all = graphs.size();
+  std::erase_if(graphs, isLinear);
+  EXPECT_EQ(graphs.size(), all - 1);
+  tryPairsAndAll(graphs, {}, 128);
+}
 
 TEST(ParityPrograms, RandomMaterials) { tryPairsAndAll(randomGraphs({}, 8), {}, 64); }
 
