@@ -3,7 +3,7 @@
 import { build } from 'esbuild';
 import { execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
@@ -18,7 +18,9 @@ const packed = gzipSync(readFileSync(wasm), { level: 9 }).toString('base64');
 function embedded(file) {
   const json = JSON.parse(readFileSync(file, 'utf8'));
   const uris = [...(json.buffers ?? []), ...(json.images ?? [])].map(({ uri }) => uri).filter((uri) => uri && !uri.startsWith('data:'));
-  const resources = [...new Set(uris)].map((uri) => ({ uri, bytes: readFileSync(join(dirname(file), decodeURIComponent(uri))).toString('base64') }));
+  // An image in a format that browsers do not read need not be there.
+  const there = [...new Set(uris)].filter((uri) => existsSync(join(dirname(file), decodeURIComponent(uri))));
+  const resources = there.map((uri) => ({ uri, bytes: readFileSync(join(dirname(file), decodeURIComponent(uri))).toString('base64') }));
   return { name: file.slice(file.lastIndexOf('/') + 1), bytes: readFileSync(file).toString('base64'), resources };
 }
 

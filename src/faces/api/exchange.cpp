@@ -267,10 +267,7 @@ std::optional<Converted> convert(const Conversion& how, const std::string& file,
   if (!how.measured && how.picture.empty()) return converted;
   Result<std::vector<PreviewDifference>> differences;
   withJobs(options.jobs, [&] {
-    // Of a document by the formulas of both surfaces; a glTF file's own are those that its surface is read
-    // by.
-    const Options& formulas = file.ends_with(".mtlx") ? options : translated;
-    differences = preview::compareFiles(file, how.output, how.picture, how.size, formulas, messages);
+    differences = preview::compareFiles(file, how.output, how.picture, how.size, options, messages);
   });
   if (differences) {
     converted.differences = std::move(*differences);

@@ -40,6 +40,7 @@ std::string libraryName(const Element& element) {
   if (type == "surfaceshader") {
     if (element.category == "surface") return "surface_of_closures";
     if (element.category == "surface_unlit") return "surface_without_light";
+    if (element.category == "mix") return "mix_surface";
   }
   constexpr std::string_view kCombinators[] = {"layer", "mix", "add", "multiply"};
   const bool combines =
@@ -198,8 +199,12 @@ std::optional<Source> Patterns::modelNumber(Scope& scope, const Element& element
     if (std::all_of(value.begin(), all, [&](double x) { return x == number; }))
       return Source{graph::Literal{wanted, value}, {}};
   }
+  // The default is the model's: that of a material would be in the shader of all.
+  const Result<ir::Components> by_default =
+      port.find("value") == nullptr ? Result<ir::Components>(value) : valueOf(port, wanted);
   graph::Parameter& made = parameter(scope, element, input, wanted);
-  made.value = made.neutral = value;
+  made.value = value;
+  made.neutral = by_default.value_or(value);
   made.range = range;
   return Source{graph::ParameterRef{made.name}, {}};
 }

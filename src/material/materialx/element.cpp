@@ -82,9 +82,15 @@ std::string_view trimmed(std::string_view text) {
 std::optional<std::vector<double>> numbersOf(std::string_view value) {
   constexpr size_t kMost = 16;  // of a matrix44
   std::vector<double> numbers;
+  value = trimmed(value);
   while (true) {
-    const size_t comma = value.find(',');
-    std::string_view one = trimmed(value.substr(0, comma));
+    // MaterialX's own reader takes spaces between numbers, too.
+    size_t comma = value.find_first_of(", \t\r\n");
+    std::string_view one = value.substr(0, comma);
+    if (comma != std::string_view::npos && value[comma] != ',') {
+      const size_t next = value.find_first_not_of(" \t\r\n", comma);
+      comma = value[next] == ',' ? next : next - 1;
+    }
     if (one.starts_with('+')) one.remove_prefix(1);
     double number = 0;
     const auto [end, error] = std::from_chars(one.data(), one.data() + one.size(), number);
@@ -93,6 +99,7 @@ std::optional<std::vector<double>> numbersOf(std::string_view value) {
     if (comma == std::string_view::npos) return numbers;
     if (numbers.size() == kMost) return std::nullopt;
     value.remove_prefix(comma + 1);
+    value.remove_prefix(std::min(value.find_first_not_of(" \t\r\n"), value.size()));
   }
 }
 

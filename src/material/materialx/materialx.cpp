@@ -40,9 +40,9 @@ std::string texelOf(std::optional<ir::Type> type) {
 
 class MaterialsReader {
 public:
-  MaterialsReader(Document& document, const lang::Library& library, PatternOptions options)
+  MaterialsReader(Document& document, const lang::Library& library, bool translates, PatternOptions options)
       : document_(document),
-        translates_(options.models == nullptr),
+        translates_(translates),
         patterns_({&document.root}, library, std::move(options)) {}
 
   /// `said`: what was wrong with variants.
@@ -323,13 +323,13 @@ Result<Materials> readMaterials(std::string_view text, const std::string& path, 
   Diagnostics said;
   const VariantMaterials variants = addVariants(document->root, said);
   addTangentSpace(document->root);
-  return MaterialsReader(*document, library,
+  return MaterialsReader(*document, library, options.translate,
                          {true,
                           options.limits.nodes,
                           {},
                           std::move(options.reserved),
                           true,
-                          options.translate ? nullptr : &surfaceModels(),
+                          &surfaceModels(),
                           options.definitions.get()})
       .read(variants, std::move(said));
 }

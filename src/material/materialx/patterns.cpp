@@ -10,6 +10,7 @@
 #include "graph/text.h"
 #include "lang/suggest.h"
 #include "materialx/closures.h"
+#include "materialx/looks.h"
 #include "support/plain_name.h"
 #include "support/text.h"
 
@@ -94,6 +95,10 @@ std::string Patterns::suggest(std::string_view name, const Element& owner, Wante
 
 void Patterns::error(const Element& at, std::string code, std::string message, std::string help) {
   if (now_ != nullptr) broken_.insert(now_->group_.name);
+  // The parts of a closure are looked for one by one.
+  const bool again = !wrong_.empty() && wrong_.back().code == code && wrong_.back().message == message &&
+                     wrong_.back().place.line == at.place.line && at.place.line != 0;
+  if (again) return;
   addBounded(wrong_, {std::move(code), Severity::Error, at.place, std::move(message), std::move(help), {}});
 }
 
@@ -200,7 +205,7 @@ const Element* Patterns::definitionOf(const Element& node) const {
     if (!node.get("version").empty() && nodedef.get("version") != node.get("version")) continue;
     const bool fits = std::all_of(node.children.begin(), node.children.end(), [&](const Element& input) {
       const Element* port = input.category == "input" ? nodedef.child("input", input.name()) : nullptr;
-      return input.category != "input" ||
+      return input.category != "input" || input.find(kOfVariant) != nullptr ||
              (port != nullptr && (input.get("type").empty() || port->get("type") == input.get("type")));
     });
     if (!fits) continue;
@@ -462,6 +467,19 @@ const Element* aliased(const Element& node) {
 
 }  // namespace
 
+/// Whether an input takes a closure of the kind that it is connected to.
+bool Patterns::isOfKind(const Element& input, const Referred& referred) {
+  const std::string_view given = referred.element->get("type");
+  const std::string_view wanted = input.get("type");
+  if (referred.part.empty() || referred.element->category == "nodegraph") return true;
+  if (given.empty() || wanted.empty() || given == wanted || given == "multioutput") return true;
+  error(input, "wrong-type",
+        fmt::format("{} is of the type {}, and {} is {}", quote(input.name()), quote(wanted),
+                    quote(referred.element->name()), quote(given)),
+        fmt::format("connect it to a node of the type {}", quote(wanted)));
+  return false;
+}
+
 std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referred referred, size_t depth) {
   const Element& element = *referred.element;
   if (depth == kMostAliases) {
@@ -501,6 +519,7 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
     }
     return behind(*in, swizzle);
   }
+  if (!isOfKind(input, referred)) return std::nullopt;
   const Element* interface = element.category == "nodegraph" ? &element : definitionFor(scope, element);
   std::string output;
   if (interface != nullptr) {
@@ -573,6 +592,7 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
     const bool linked = isConnected(input);
     if (&element == &interface && !linked) continue;  // its value is the group's default
     const Element* port = interface.child("input", input.name());
+    if (port == nullptr && input.find(kOfVariant) != nullptr) continue;
     if (port == nullptr) {
       error(input, "unknown-input",
             fmt::format("{} has no input {}", quote(element.category), quote(input.name())),

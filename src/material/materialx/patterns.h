@@ -165,6 +165,7 @@ private:
   bool isOfInstances(const Scope& scope, const Element& input) const;
   bool hasTiles(Scope& scope, const Element& input);
   bool goesToTiles(const Element& owner, std::string_view name) const;
+  bool isOfKind(const Element& input, const Referred& referred);
   std::optional<graph::Source> refer(Scope& scope, const Element& input, Referred referred, size_t depth);
   std::optional<Referred> find(const Scope& scope, const Element& input);
   const lang::NodeDecl* formOf(Scope& scope, const Element& element);
