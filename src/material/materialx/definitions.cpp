@@ -8,6 +8,7 @@
 #include "lang/suggest.h"
 #include "materialx/element.h"
 #include "materialx/materialx.h"
+#include "materialx/models.h"
 #include "materialx/patterns.h"
 #include "materialx/surface.h"
 #include "support/text.h"
@@ -136,7 +137,7 @@ Result<Definitions> readDefinitions(const std::vector<lang::SourceFile>& files, 
 
 Diagnostics checkDefinitions(const Definitions& definitions, const lang::Library& library,
                              const Limits& limits) {
-  Patterns patterns({}, library, {true, limits.nodes, {}, {}, true, nullptr, definitions.get()});
+  Patterns patterns({}, library, {true, limits.nodes, {}, {}, true, &surfaceModels(), definitions.get()});
   patterns.demandAll();
   patterns.finish();
   return patterns.wrong();

@@ -33,15 +33,6 @@ bool isNode(const Element& element) {
   return std::find(std::begin(kOthers), std::end(kOthers), element.category) == std::end(kOthers);
 }
 
-std::string_view givenOf(std::string_view geomprop) {
-  constexpr std::pair<std::string_view, std::string_view> kGiven[] = {
-      {"UV0", "uv0"}, {"UV1", "uv1"}, {"Pworld", "position"}, {"Nworld", "normal"}, {"Tworld", "tangent"}};
-  for (const auto& [name, given] : kGiven) {
-    if (name == geomprop) return given;
-  }
-  return {};
-}
-
 }  // namespace
 
 std::string graphName(std::string_view name) {
@@ -318,9 +309,10 @@ void Patterns::groupInputs(Scope& scope) {
     graph::GroupInput made;
     made.name = graphName(input.name());
     made.type = *type;
-    if (const std::string_view given = givenOf(input.get("defaultgeomprop")); !given.empty()) {
-      made.by_default = Source{graph::GivenRef{std::string(given)},
-                               *type == ir::Type::Vec3 && given == "tangent" ? "xyz" : ""};
+    const std::optional<OfGeometry> geometry = ofGeometry(input);
+    if (geometry && !geometry->given.empty()) {
+      made.by_default = Source{graph::GivenRef{geometry->given},
+                               *type == ir::Type::Vec3 && geometry->node == "tangent" ? "xyz" : ""};
     } else if (file) {
       const bool tiles = goesToTiles(*scope.owner_, input.name());
       made.by_default = image(scope, input, input, tiles);
@@ -624,8 +616,15 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
   }
   for (const Element& port : interface.children) {
     const std::optional<ir::Type> type = typeOf(port.get("type"));
-    if (port.category != "input" || &element == &interface || !type || !ir::isMatrix(*type)) continue;
+    if (port.category != "input" || &element == &interface || !type) continue;
     if (element.child("input", port.name()) != nullptr) continue;
+    if (const std::optional<OfGeometry> geometry = ofGeometry(port); geometry && geometry->given.empty()) {
+      const Source space{graph::Choice{geometry->space}, {}};
+      made.inputs.emplace_back(graphName(port.name()),
+                               add(scope, fmt::format("{}_{}", made.id, graphName(port.name())),
+                                   geometry->node, {{"space", space}}));
+    }
+    if (!ir::isMatrix(*type)) continue;
     if (std::optional<Source> source = matrix(scope, element, port, *type))
       made.inputs.emplace_back(graphName(port.name()), std::move(*source));
   }

@@ -166,6 +166,11 @@ private:
   bool hasTiles(Scope& scope, const Element& input);
   bool goesToTiles(const Element& owner, std::string_view name) const;
   bool isOfKind(const Element& input, const Referred& referred);
+  struct OfGeometry {
+    std::string node, space;
+    std::string given;  ///< what the template has for it; empty where the node computes it
+  };
+  std::optional<OfGeometry> ofGeometry(const Element& input);
   std::optional<graph::Source> refer(Scope& scope, const Element& input, Referred referred, size_t depth);
   std::optional<Referred> find(const Scope& scope, const Element& input);
   const lang::NodeDecl* formOf(Scope& scope, const Element& element);

@@ -328,4 +328,47 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
   return Source{graph::TextureRef{it->second}, {}};
 }
 
+/// What an input has of the geometry where nothing gives it: by a `geompropdef` of the documents, or one of
+/// MaterialX's own. Nothing, and an error, for a name that is neither.
+std::optional<Patterns::OfGeometry> Patterns::ofGeometry(const Element& input) {
+  const std::string_view name = input.get("defaultgeomprop");
+  if (name.empty()) return std::nullopt;
+  constexpr std::pair<std::string_view, std::string_view> kNodes[] = {
+      {"P", "position"}, {"N", "normal"}, {"T", "tangent"}, {"B", "bitangent"}, {"V", "viewdirection"}};
+  constexpr std::string_view kSpaces[] = {"object", "model", "world"};
+  OfGeometry made;
+  std::string_view index;
+  for (const Element* document : documents_) {
+    const Element* found = document->child("geompropdef", name);
+    if (found == nullptr) continue;
+    made.node = found->get("geomprop");
+    made.space = found->get("space").empty() ? std::string("object") : std::string(found->get("space"));
+    index = found->get("index");
+    break;
+  }
+  for (const auto& [letter, node] : kNodes) {
+    if (!made.node.empty() || !name.starts_with(letter)) continue;
+    const auto space = std::find(std::begin(kSpaces), std::end(kSpaces), name.substr(1));
+    if (space != std::end(kSpaces)) made.node = node, made.space = *space;
+  }
+  if (made.node.empty() && (name == "UV0" || name == "UV1")) made.node = "texcoord", index = name.substr(2);
+  const bool known = std::any_of(std::begin(kNodes), std::end(kNodes),
+                                 [&](const auto& one) { return one.second == made.node; }) &&
+                     std::find(std::begin(kSpaces), std::end(kSpaces), made.space) != std::end(kSpaces);
+  if (made.node == "texcoord") {
+    made.given = fmt::format("uv{}", index.empty() ? std::string_view("0") : index);
+    if (made.given.size() == 3 && made.given[2] >= '0' && made.given[2] <= '3') return made;
+  } else if (known) {
+    if (made.space == "world" && made.node != "bitangent" && made.node != "viewdirection")
+      made.given = made.node;
+    return made;
+  }
+  error(input, "unknown-geomprop", fmt::format("there is no geometric property {}", quote(name)),
+        "there are Pobject, Nobject, Tobject, Bobject, Pworld, Nworld, Tworld, Bworld, Vworld, UV0 and UV1, "
+        "and "
+        "what a geompropdef of the document makes of position, normal, tangent, bitangent, viewdirection or "
+        "texcoord");
+  return std::nullopt;
+}
+
 }  // namespace lacquer::materialx
