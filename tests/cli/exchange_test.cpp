@@ -433,6 +433,27 @@ TEST(ToGltf, hasAFallback) {
   EXPECT_NE(one.err.find("[whole-file]"), std::string::npos) << one.err;
 }
 
+/// A pattern in a group is not the group's output that is called like it.
+TEST(ToGltf, ofAGraphHasPatternsOfGroups) {
+  const Workplace place;
+  place.write("noise.json", R"({"lacquer_graph": 1, "name": "noise", "template": "forward",
+    "groups": {"g": {
+      "nodes": [{"id": "n", "node": "noise2d<vec3>"},
+                {"id": "size", "node": "absval<vec3>", "inputs": {"in": {"node": "n"}}}],
+      "outputs": {"size": {"node": "n"}, "there": {"node": "size"}}}},
+    "nodes": [{"id": "a", "group": "g"}, {"id": "a.size", "group": "g"}],
+    "outputs": {"emission": {"node": "a", "output": "there"}}})");
+  const Outcome written = place.run({"graph", "noise.json", "--format", "gltf"});
+  ASSERT_EQ(written.status, 0) << written.err;
+  const Json gltf = Json::parse(written.out);
+  ASSERT_EQ(gltf["materials"].size(), 1U);
+  EXPECT_EQ(gltf["materials"][0]["name"], "a/size");
+  const Json& procedurals = gltf["extensions"]["KHR_texture_procedurals"]["procedurals"];
+  ASSERT_EQ(procedurals.size(), 1U);
+  ASSERT_EQ(procedurals[0]["nodes"].size(), 2U);
+  EXPECT_EQ(procedurals[0]["nodes"][1]["nodetype"], "absval");
+}
+
 /// MaterialX has letters and digits in names; what a material is called stands beside them.
 TEST(Convert, keepsNamesOutsideOfAscii) {
   const Workplace place;

@@ -32,11 +32,35 @@ bool isOfMaterialX(const graph::Contract* contract) {
          contract->decl->source.starts_with("MaterialX") && !contract->decl->category.empty();
 }
 
+/// The path of what gives a value of a flat graph, before which instances of groups stand: "rust/mix" for the
+/// node "rust.mix" there. An instance that hands the value on is named where nothing else has it.
+std::string pathOf(const graph::FlatOutputs& outputs, const graph::NodeRef& ref) {
+  const Source wanted{ref, {}};
+  std::string found;
+  for (const auto& [path, of] : outputs) {
+    for (const auto& [output, source] : of) {
+      if (source != wanted) continue;
+      const std::string name = of.size() == 1 ? path : path + "." + output;
+      std::string id = path;
+      std::replace(id.begin(), id.end(), '/', '.');
+      if (id == ref.node) return name;
+      if (found.empty() || output == ref.output) found = name;
+    }
+  }
+  if (!found.empty()) return found;
+  return ref.output.empty() ? ref.node : ref.node + "." + ref.output;
+}
+
 /// Of a flat, checked graph.
 class Patterns {
 public:
-  Patterns(const graph::Graph& graph, const Language& library, bool materialx)
-      : graph_(graph), contracts_(graph, library), materialx_(materialx), of_(graph.nodes.size()) {
+  Patterns(const Nodes& nodes, const Language& library, bool materialx)
+      : graph_(nodes.flat),
+        outputs_(nodes.outputs),
+        contracts_(nodes.flat, library),
+        materialx_(materialx),
+        of_(nodes.flat.nodes.size()) {
+    const graph::Graph& graph = nodes.flat;
     for (const size_t place : contracts_.main().order().order) of_[place] = ofNode(graph.nodes[place]);
   }
 
@@ -48,7 +72,7 @@ public:
       if (!place || !of_[*place].varies || of_[*place].elsewhere) return;
       const std::optional<graph::Offer> offer = contracts_.base(source, contracts_.main());
       if (!offer || !fitsTexel(offer->type)) return;
-      std::string name = ref->output.empty() ? ref->node : ref->node + "." + ref->output;
+      std::string name = pathOf(outputs_, *ref);
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
     };
     for (size_t i = 0; i < graph_.nodes.size(); ++i) {
@@ -90,6 +114,7 @@ private:
   }
 
   const graph::Graph& graph_;
+  const graph::FlatOutputs& outputs_;
   const graph::Contracts contracts_;
   const bool materialx_;
   std::vector<Depends> of_;
@@ -123,7 +148,7 @@ Result<Nodes> nodesOf(const EvalSubject& subject, const Strings& wanted, bool ma
   if (!built) return tl::make_unexpected(built.error());
   nodes.flat = std::move(*built);
   if (wanted.empty()) {
-    nodes.names = Patterns(nodes.flat, library, materialx).names();
+    nodes.names = Patterns(nodes, library, materialx).names();
     return nodes;
   }
   Strings all;
