@@ -265,6 +265,43 @@ TEST_F(GraphFiles, areWrittenAsDocuments) {
   EXPECT_NE(again.out.find("noise2d<float>"), std::string::npos) << again.out;
 }
 
+/// Beyond an image's edge is the colour that the node has there, not the texture's.
+TEST_F(GraphFiles, areWrittenWithTheColorsBesideImages) {
+  const std::string u = "name=\"uaddressmode\" type=\"string\" value=\"constant\"";
+  const std::string v = "name=\"vaddressmode\" type=\"string\" value=\"constant\"";
+  const std::string of_node = "name=\"default\" type=\"color3\" value=\"0.5, 0.25, 0\"";
+  const std::string of_texture = "name=\"default\" type=\"color3\" value=\"0, 0, 1\"";
+  struct Written {
+    std::string ends;
+    std::vector<std::string> parts, others;
+    bool tiles = false;
+  };
+  const Written cases[] = {{R"(, "ends": "both")", {u, v, of_node}, {of_texture}},
+                           {R"(, "ends": 3)", {u, v, of_node}, {of_texture}},
+                           {R"(, "ends": {"parameter": "along"})", {v, of_node}, {u, of_texture}},
+                           {R"(, "ends": 0)", {of_texture}, {u, v, of_node}},
+                           {"", {of_node}, {u, v, of_texture}, true}};
+  for (const Written& one : cases) {
+    const std::string type = one.tiles ? "sampler2DArray" : "sampler2D";
+    place_.write("wood.json", R"({"lacquer_graph": 1, "name": "wood", "template": "forward",
+      "parameters": {"along": {"type": "int", "value": 2}},
+      "textures": {"wood": {"type": ")" +
+                                  type + R"(", "default": [0, 0, 1, 1], "file": ")" +
+                                  (one.tiles ? "wood.<UDIM>.png" : "wood.png") + R"("}},
+      "nodes": [{"id": "wood", "node": "image<vec3)" +
+                                  (one.tiles ? ", " + type : "") + R"(>", "inputs": {
+        "file": {"texture": "wood"}, "default": [0.5, 0.25, 0])" +
+                                  one.ends + R"(}}],
+      "outputs": {"emission": {"node": "wood"}}})");
+    const auto written = place_.run({"graph", "wood.json", "--format", "mtlx"});
+    EXPECT_EQ(written.status, 0) << written.err;
+    for (const std::string& part : one.parts)
+      EXPECT_NE(written.out.find(part), std::string::npos) << type << one.ends << "\n" << written.out;
+    for (const std::string& part : one.others)
+      EXPECT_EQ(written.out.find(part), std::string::npos) << type << one.ends << "\n" << written.out;
+  }
+}
+
 /// A document's node has the path that it has there.
 TEST_F(GraphFiles, ofDocumentsNameNodesByTheirPaths) {
   place_.write("stripes.mtlx", R"(<?xml version="1.0"?>

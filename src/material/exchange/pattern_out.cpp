@@ -147,27 +147,13 @@ Element valueOf(std::string_view name, std::string_view type, std::string value)
   return input;
 }
 
+/// The word of a choice that a number stands for.
+std::string_view wordOf(const lang::Param& param, double number) {
+  const auto chosen = static_cast<size_t>(std::max(number, 0.0));
+  return param.choices[std::min(chosen, param.choices.size() - 1)];
+}
+
 }  // namespace
-
-std::string typeName(Typed type) {
-  if (type.color && type.type == Type::Vec3) return "color3";
-  if (type.color && type.type == Type::Vec4) return "color4";
-  return std::string(materialx::nameOf(type.type));
-}
-
-std::optional<Typed> typedOf(std::string_view name) {
-  const std::optional<Type> type = materialx::typeOf(name);
-  if (!type) return std::nullopt;
-  return Typed{*type, name.starts_with("color")};
-}
-
-std::string valueText(Type type, const Components& value) {
-  if (type == Type::Bool) return value[0] != 0 ? "true" : "false";
-  std::string text;
-  for (int i = 0; i < ir::componentCount(type); ++i)
-    text += fmt::format("{}{}", i == 0 ? "" : ", ", value[static_cast<size_t>(i)]);
-  return text;
-}
 
 /// One body that is written: which elements its nodes are, and what stands between them.
 struct PatternsOut::Scope {
@@ -604,15 +590,23 @@ void PatternsOut::element(Scope& scope, size_t place) {
          "who reads the document needs a definition of it");
   std::string_view ends;
   for (const auto& [input, source] : node.inputs) {
+    const lang::Param* param = contract->param(input);
+    if (input != kEnds || param == nullptr || param->choices.empty()) continue;
     const auto* choice = std::get_if<graph::Choice>(&source.from);
-    if (input == kEnds && choice != nullptr && choice->name != "none") ends = choice->name;
+    const auto number = constant(source);
+    if (choice == nullptr && !number)
+      lost(fmt::format("MaterialX's {} has no input {}", family, input), "it is left out");
+    else
+      ends = choice != nullptr ? choice->name : wordOf(*param, number->second[0]);
   }
+  if (ends == "none") ends = {};
   for (const auto& [input, source] : node.inputs) {
     const lang::Param* param = contract->param(input);
     if (input == kEnds && param != nullptr) continue;
-    const bool of_texture = ends.empty() && contract->param(kEnds) != nullptr;
-    const bool fallback = input == "default" || input == "fallback";
-    if (fallback && (of_texture || made.child("input", input) != nullptr)) continue;
+    if (input == "default" || input == "fallback") {
+      if (ends.empty() && contract->param(kEnds) != nullptr) continue;  // the texture's alone
+      std::erase_if(made.children, [&](const Element& child) { return child.name() == input; });
+    }
     if (param == nullptr || (param->hints.advanced && !param->given.empty())) continue;
     const bool own =
         isOneOf(input, kOwnPorts) || (family == "gltf_normalmap" && isOneOf(input, kOwnOfNormalMaps));
@@ -649,9 +643,8 @@ void PatternsOut::element(Scope& scope, size_t place) {
       Element& last = made.children.back();
       const auto number = constant(source);
       if (param->choices.empty() || number_port || !number) continue;
-      const auto chosen = static_cast<size_t>(std::max(number->second[0], 0.0));
       last.set("type", "string");
-      last.set("value", std::string(param->choices[std::min(chosen, param->choices.size() - 1)]));
+      last.set("value", std::string(wordOf(*param, number->second[0])));
     }
   }
   scope.into->children.push_back(std::move(made));
