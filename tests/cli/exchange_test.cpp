@@ -454,6 +454,21 @@ TEST(ToGltf, ofAGraphHasPatternsOfGroups) {
   EXPECT_EQ(procedurals[0]["nodes"][1]["nodetype"], "absval");
 }
 
+/// Two patterns share the node, and one thing is said of it.
+TEST(ToGltf, saysOnceWhatPatternsShare) {
+  const Workplace place;
+  place.write("cells.json", R"({"lacquer_graph": 1, "name": "cells", "template": "forward",
+    "nodes": [{"id": "cells", "node": "worleynoise2d<vec3>", "inputs": {"metric": "manhattan"}},
+              {"id": "size", "node": "absval<vec3>", "inputs": {"in": {"node": "cells"}}}],
+    "outputs": {"emission": {"node": "size"}, "alpha": {"node": "cells", "swizzle": "x"}}})");
+  const Outcome written = place.run({"graph", "cells.json", "--format", "gltf"});
+  ASSERT_EQ(written.status, 0) << written.err;
+  EXPECT_EQ(Json::parse(written.out)["extensions"]["KHR_texture_procedurals"]["procedurals"].size(), 2U);
+  const size_t first = written.err.find("[not-said]");
+  ASSERT_NE(first, std::string::npos) << written.err;
+  EXPECT_EQ(written.err.find("[not-said]", first + 1), std::string::npos) << written.err;
+}
+
 /// MaterialX has letters and digits in names; what a material is called stands beside them.
 TEST(Convert, keepsNamesOutsideOfAscii) {
   const Workplace place;

@@ -1,6 +1,7 @@
 #include "support/say_once.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lacquer {
 
@@ -12,6 +13,11 @@ void addOnce(Diagnostics& to, const Diagnostics& more) {
     };
     if (std::none_of(to.begin(), to.begin() + before, same)) to.push_back(one);
   }
+}
+
+void addBoundedOnce(Diagnostics& to, Diagnostic one) {
+  if (hasRoom(to) && std::find(to.begin(), to.end(), one) != to.end()) return;
+  addBounded(to, std::move(one));
 }
 
 }  // namespace lacquer

@@ -24,6 +24,7 @@
 #include "support/jobs.h"
 #include "support/outputs.h"
 #include "support/plain_name.h"
+#include "support/say_once.h"
 #include "support/text.h"
 
 namespace lacquer {
@@ -363,13 +364,13 @@ std::optional<uint64_t> Baking::textureFor(const graph::Texture& texture) {
   if (texture.texture >= 0) return static_cast<uint64_t>(texture.texture);
   if (texture.file.empty()) return std::nullopt;
   if (!graph::tileToken(texture.file).empty()) {
-    addBounded(said_,
-               {"not-said",
-                Severity::Warning,
-                {document_.path, 0, 0, {}},
-                fmt::format("{} has an image for each tile, which glTF has no texture for", texture.name),
-                "the fallback image has them baked",
-                {}});
+    addBoundedOnce(said_,
+                   {"not-said",
+                    Severity::Warning,
+                    {document_.path, 0, 0, {}},
+                    fmt::format("{} has an image for each tile, which glTF has no texture for", texture.name),
+                    "the fallback image has them baked",
+                    {}});
     return std::nullopt;
   }
   constexpr int kModes[] = {10497, 33071, 33648};

@@ -10,6 +10,7 @@
 #include "graph/text.h"
 #include "ir/types.h"
 #include "materialx/values.h"
+#include "support/say_once.h"
 
 namespace lacquer::exchange {
 
@@ -182,7 +183,7 @@ PatternsOut::PatternsOut(const graph::Graph& graph, const lang::Library& library
 PatternsOut::~PatternsOut() = default;
 
 void PatternsOut::lost(std::string message, std::string help) {
-  addBounded(said_, {"not-said", Severity::Warning, {}, std::move(message), std::move(help), {}});
+  addBoundedOnce(said_, {"not-said", Severity::Warning, {}, std::move(message), std::move(help), {}});
 }
 
 // -- colours and vectors --
