@@ -606,7 +606,7 @@ void PatternsOut::element(Scope& scope, size_t place) {
     if (input == kEnds && param != nullptr) continue;
     if (input == "default" || input == "fallback") {
       if (ends.empty() && contract->param(kEnds) != nullptr) continue;  // the texture's alone
-      std::erase_if(made.children, [&](const Element& child) { return child.name() == input; });
+      std::erase_if(made.children, [&own = input](const Element& child) { return child.name() == own; });
     }
     if (param == nullptr || (param->hints.advanced && !param->given.empty())) continue;
     const bool own =
