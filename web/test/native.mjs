@@ -62,7 +62,10 @@ export function withImages(json, material) {
   const gltf = JSON.parse(json);
   const wanted = new Set();
   JSON.stringify(material === undefined ? gltf.materials : gltf.materials[material], (name, value) => {
-    if (/texture$/i.test(name) && value) wanted.add(gltf.images[gltf.textures[value.index].source]);
+    if (!/texture$/i.test(name) || !value) return value;
+    const texture = gltf.textures[value.index];
+    const swizzled = texture.extensions?.NV_texture_swizzle?.options.find(({ channels }) => channels.every((each) => each < 4));
+    wanted.add(gltf.images[texture.source ?? swizzled.source]);
     return value;
   });
   for (const each of wanted) {
