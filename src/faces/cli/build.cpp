@@ -30,7 +30,7 @@ Strings graphCommand(const std::string& program, const std::string& folder, cons
   if (!options.sync) add({"--no-sync"});
   for (const std::string& limit : options.limits) add({"--limit", limit});
   for (const std::string& nodes : options.node_directories) add({"--nodes", nodes});
-  for (const std::string& folder : options.materialx_directories) add({"--materialx", folder});
+  for (const std::string& definitions : options.materialx_directories) add({"--materialx", definitions});
   return words;
 }
 
