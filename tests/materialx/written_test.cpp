@@ -112,6 +112,21 @@ std::optional<std::string> peerSays(const std::map<std::string, std::string>& do
   return status == 0 && log.empty() ? std::string() : log + fmt::format("status {}\n", status);
 }
 
+/// OpenPBR's colour of the reflection acts at grazing angles, too, where glTF's does not.
+TEST(WrittenRims, areSaid) {
+  const auto saidOf = [](const char* color) {
+    const material::Document document =
+        documentOf(fmt::format(R"({{"asset": {{"version": "2.0"}}, "materials": [{{"extensions": {{
+                     "KHR_materials_coat": {{"coatFactor": 1}},
+                     "KHR_materials_specular": {{"specularColorFactor": {}}}}}}}]}})",
+                               color),
+                   "rim.gltf");
+    return allOf(writtenOf(document).said);
+  };
+  EXPECT_EQ(saidOf("[1, 0.5, 1]"), "");
+  EXPECT_NE(saidOf("[1, 1.5, 1]").find("specularColorFactor: warning"), std::string::npos);
+}
+
 /// A sixteenth of a bump's scale is what heights rise by over the coordinate. What is read again has no
 /// bumps.
 TEST(WrittenBump, isANodeOnTheNormalsOfTheMap) {

@@ -1,14 +1,14 @@
-// What is said once, however often it is found.
+// Diagnostics that are added once, however often they are found.
 #pragma once
 
 #include "support/diagnostic.h"
 
 namespace lacquer {
 
-/// Adds what is not said yet of a place of a text under the same code: several forms of it say the same.
+/// Adds those whose place and code are not there yet: the forms of one text have the same errors.
 void addOnce(Diagnostics& to, const Diagnostics& more);
 
-/// Adds one where there is room and none is like it in all its words.
+/// Adds one where there is room and none is equal to it.
 void addBoundedOnce(Diagnostics& to, Diagnostic one);
 
 }  // namespace lacquer

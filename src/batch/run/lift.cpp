@@ -120,7 +120,7 @@ graph::Graph lifted(const material::Material* material, const gltf::VertexAttrib
   Diagnostics unsaid;
   model::Origins found;
   Result<graph::Graph> graph = buildGraph(more, attributes, setting.library, options, unsaid, &found);
-  if (!graph || hasError(graph::check(*graph, setting.library))) return own;
+  if (!graph || hasError(graph::check(*graph, setting.library, setting.limits.nodes))) return own;
   if (origins != nullptr) *origins = std::move(found);
   return std::move(*graph);
 }

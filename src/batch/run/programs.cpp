@@ -38,7 +38,9 @@ std::vector<OwnProgram> ownPrograms(const std::vector<const Structure*>& structu
     for (const Structure* structure : list) {
       Result<graph::Graph> graph = graph::fromJson(structure->graph, shader, setting.limits);
       const Example* example = examples.of(structure->key);
-      if (!graph || hasError(graph::check(*graph, setting.library)) || example == nullptr) continue;
+      if (!graph || hasError(graph::check(*graph, setting.library, setting.limits.nodes)) ||
+          example == nullptr)
+        continue;
       one.examples.push_back(example);
       one.structures.push_back(structure);
       one.graphs.push_back(std::move(*graph));

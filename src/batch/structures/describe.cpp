@@ -161,7 +161,7 @@ void Describer::use(Traced own, const gltf::VertexAttributes& attributes, const 
 /// False, with errors, for a graph that is wrong.
 bool Describer::check(const Structure& structure, const Filling& filling, graph::Graph& graph) {
   if (!structure.shader.empty() && withinLimits(structure, filling)) return true;
-  const Diagnostics found = graph::check(graph, setting_.library);
+  const Diagnostics found = graph::check(graph, setting_.library, setting_.limits.nodes);
   add(found);
   return !hasError(found);
 }
@@ -233,7 +233,7 @@ Described Describer::finish() {
   values.terms = terms();
   values.ignored = material_.ignored;
   if (wanted_.material != nullptr) {
-    values.profile = material_.closures.empty() ? setting_.options.profile : std::string(kMaterialX);
+    values.profile = profileOf(material_, setting_.options);
     values.surface = material_.surface;
     values.translation_error = material_.translation_error;
     if (const Result<const material::Schema*> schema = setting_.library.models.schema()) {

@@ -220,7 +220,7 @@ std::optional<ir::Module> makeStructure(const graph::Graph& graph, const passes:
   graph::Graph plain = withoutMaterial(graph, structure.numbers, baked);
   {
     const StageTimer timer(setting.times, StageOfRun::Graph);
-    structure.diagnostics = graph::check(plain, setting.library);
+    structure.diagnostics = graph::check(plain, setting.library, setting.limits.nodes);
   }
   describe(plain, structure);
   structure.facts = std::make_shared<StructureFacts>(factsOf(plain, setting));
@@ -249,7 +249,8 @@ graph::Graph withoutMaterial(const graph::Graph& graph, const Setting& setting) 
 Result<ir::Module> moduleOf(const Structure& structure, const Setting& setting) {
   Result<graph::Graph> graph = graph::fromJson(structure.graph, structure.shader, setting.limits);
   if (!graph) return tl::make_unexpected(graph.error());
-  if (const Diagnostics found = graph::check(*graph, setting.library); hasError(found)) {
+  if (const Diagnostics found = graph::check(*graph, setting.library, setting.limits.nodes);
+      hasError(found)) {
     return tl::make_unexpected(found);
   }
   return modulate(*graph, structure.lights, setting);

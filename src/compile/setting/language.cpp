@@ -239,6 +239,11 @@ bool translates(const Options& options) {
   return !options.profile.empty() && options.profile != kMaterialX;
 }
 
+const std::string& profileOf(const material::Material& material, const Options& options) {
+  static const std::string kOwn(kMaterialX);
+  return material.closures.empty() ? options.profile : kOwn;
+}
+
 Options translating(Options options) {
   options.as = "gltf";
   if (options.profile == kMaterialX) options.profile.clear();

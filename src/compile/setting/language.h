@@ -60,6 +60,8 @@ std::optional<std::string_view> watchedPath(std::string_view live, std::optional
 inline constexpr std::string_view kMaterialX = "materialx";
 /// Whether surfaces of MaterialX documents are translated to glTF's properties (Options::as).
 bool translates(const Options& options);
+/// The profile that a material's graph follows: the options', or a document's own formulas.
+const std::string& profileOf(const material::Material& material, const Options& options);
 /// The options where glTF's properties are asked for.
 Options translating(Options options);
 

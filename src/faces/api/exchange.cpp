@@ -144,7 +144,7 @@ std::string closuresOf(const SceneData& scene, const std::string& folder, const 
 std::string writtenOf(const SceneData& scene, const std::string& folder, const Strings& materials,
                       const std::string& surface, const EditedGraphs& edited, Messages& messages) {
   const std::string& file = scene.document.path;
-  const bool closures = scene.hasClosures() && !translates(scene.options);
+  const bool closures = scene.hasOwnFormulas();
   if (closures && surface.empty()) return closuresOf(scene, folder, materials, edited, messages);
   if (closures) {
     const std::optional<SceneData> translated = scene.translated(messages);
@@ -172,7 +172,7 @@ std::string graphDocumentOf(const std::string& file, const std::string& folder, 
   if (!language) return report(language.error(), {}, messages), std::string();
   const Result<graph::Graph> graph = readGraphFile(file, options);
   if (!graph) return report(graph.error(), file, messages), std::string();
-  const Diagnostics wrong = graph::check(*graph, **language);
+  const Diagnostics wrong = graph::check(*graph, **language, limitsOf(options).value_or(Limits{}).nodes);
   report(wrong, file, messages);
   if (lacquer::hasError(wrong)) return {};
   exchange::Written written = exchange::graphToMaterialX(*graph, **language, file, folder);
@@ -206,7 +206,7 @@ std::string toMaterialX(const Scene& scene, const Strings& materials, const std:
   if (!filled(scene.impl_.get(), "scene", messages)) return {};
   const Scene::Impl& of = scene.impl();
   if (!isSurface(of.document.path, surface, messages)) return {};
-  const bool closures = surface.empty() && of.hasClosures() && !translates(of.options);
+  const bool closures = surface.empty() && of.hasOwnFormulas();
   EditedGraphs graphs;
   for (const EditedGraph& one : edited) {
     if (one.graph == nullptr || !filled(one.graph->impl_.get(), "graph", messages)) return {};
@@ -229,7 +229,7 @@ std::string toGltf(const Scene& scene, const Strings& materials, uint32_t size, 
                    Messages& messages) {
   if (!filled(scene.impl_.get(), "scene", messages)) return {};
   std::optional<SceneData> translated;
-  if (scene.impl().hasClosures() && !translates(scene.impl().options)) {
+  if (scene.impl().hasOwnFormulas()) {
     translated = scene.impl().translated(messages);
     if (!translated) return {};
   }

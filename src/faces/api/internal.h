@@ -65,7 +65,10 @@ struct SceneData {
   /// Reads a file; nothing, and messages, on an error.
   static std::optional<SceneData> load(const std::string& path, const Options& options, Messages& messages);
 
-  bool hasClosures() const;
+  /// Reads a file's bytes by the language and the options.
+  Result<void> read(const std::string& of, const std::string& name);
+  /// Whether surfaces of a MaterialX document are closures that glTF's properties may stand for.
+  bool hasOwnFormulas() const;
   /// The file's bytes.
   Result<std::string> text() const;
   /// Texts of the files that it includes; null where they are read.

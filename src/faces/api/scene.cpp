@@ -48,8 +48,9 @@ const material::Material* Scene::Impl::material(size_t index, Messages& messages
   return nullptr;
 }
 
-bool SceneData::hasClosures() const {
-  return std::any_of(document.materials.begin(), document.materials.end(),
+bool SceneData::hasOwnFormulas() const {
+  return !translates(options) &&
+         std::any_of(document.materials.begin(), document.materials.end(),
                      [](const material::Material& one) { return !one.closures.empty(); });
 }
 
@@ -64,19 +65,25 @@ const std::vector<std::pair<std::string, std::string>>* SceneData::included() co
   return options.document_texts.empty() ? nullptr : &options.document_texts;
 }
 
+Result<void> SceneData::read(const std::string& of, const std::string& name) {
+  const Result<const material::Schema*> schema = language->models.schema();
+  if (!schema) return tl::make_unexpected(schema.error());
+  const Result<Limits> limits = limitsOf(options);
+  if (!limits) return tl::make_unexpected(limits.error());
+  Result<material::Document> made =
+      material::readText(of, name, **schema, {options.permissive, *limits, included(), translates(options)});
+  if (!made) return tl::make_unexpected(std::move(made.error()));
+  document = std::move(*made);
+  return {};
+}
+
 std::optional<SceneData> SceneData::translated(Messages& messages) const {
   SceneData made{{}, language, bytes, translating(options)};
-  const Result<const material::Schema*> schema = language->models.schema();
-  const Result<Limits> limits = limitsOf(options);
-  if (!schema || !limits)
-    return report(schema ? limits.error() : schema.error(), document.path, messages), std::nullopt;
-  const Result<std::string> read = text();
-  if (!read) return report(read.error(), document.path, messages), std::nullopt;
-  Result<material::Document> translated =
-      material::readText(*read, document.path, **schema, {options.permissive, *limits, included(), true});
-  if (!translated) return report(translated.error(), document.path, messages), std::nullopt;
-  made.document = std::move(*translated);
-  return made;
+  const Result<std::string> of = text();
+  const Result<void> read = of ? made.read(*of, document.path) : tl::make_unexpected(of.error());
+  if (read) return made;
+  report(read.error(), document.path, messages);
+  return std::nullopt;
 }
 
 std::optional<SceneData> SceneData::load(const std::string& path, const Options& options,
@@ -100,21 +107,14 @@ Scene Scene::fromMemory(const std::string& bytes, const std::string& name, const
                         Messages& messages) {
   Scene scene;
   const Result<SchemaOf> schema = schemaFor(options);
-  const Result<Limits> limits = limitsOf(options);
-  if (!schema || !limits) return report(schema ? limits.error() : schema.error(), name, messages), scene;
-  Result<material::Document> document = material::readText(
-      bytes, name, *schema->schema,
-      {options.permissive, *limits, options.document_texts.empty() ? nullptr : &options.document_texts,
-       translates(options)});
-  if (!document) {
-    report(document.error(), name, messages);
-    return scene;
-  }
-  if (const Diagnostics wrong = checkWatched(options, document->materials.size()); !wrong.empty())
+  if (!schema) return report(schema.error(), name, messages), scene;
+  SceneData data{{}, schema->language, std::make_shared<const std::string>(bytes), options};
+  if (const Result<void> read = data.read(bytes, name); !read)
+    return report(read.error(), name, messages), scene;
+  if (const Diagnostics wrong = checkWatched(options, data.document.materials.size()); !wrong.empty())
     return report(wrong, name, messages), scene;
-  report(document->diagnostics, name, messages);
-  scene.impl_ = std::make_shared<Impl>(
-      SceneData{std::move(*document), schema->language, std::make_shared<const std::string>(bytes), options});
+  report(data.document.diagnostics, name, messages);
+  scene.impl_ = std::make_shared<Impl>(std::move(data));
   return scene;
 }
 

@@ -202,7 +202,7 @@ static bool printForms(const json::Json& nodes, const std::string& name, bool as
   return true;
 }
 
-/// What options name, each with the first sentence of its documentation.
+/// Templates or profiles, each with the first sentence of its documentation.
 static void printNamed(const json::Json& all, const char* kind) {
   fmt::print("\n{}\n", kind);
   for (const auto& one : all[kind]) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "exchange/graph_out.h"
 #include "graph/contracts.h"
 #include "support/text.h"
 
@@ -25,11 +26,6 @@ struct Depends {
 Depends ofGiven(std::string_view name) {
   const bool uv = name.starts_with("uv") || name.starts_with("TEXCOORD_");
   return {uv, !uv};
-}
-
-bool isOfMaterialX(const graph::Contract* contract) {
-  return contract != nullptr && contract->decl != nullptr &&
-         contract->decl->source.starts_with("MaterialX") && !contract->decl->category.empty();
 }
 
 /// The path of what gives a value of a flat graph, before which instances of groups stand: "rust/mix" for the
@@ -92,7 +88,7 @@ private:
     };
     for (const auto& [input, source] : node.inputs) add(ofSource(source));
     const graph::Contract* contract = contracts_.of(node);
-    if (materialx_ && !isOfMaterialX(contract)) all.elsewhere = true;
+    if (materialx_ && !exchange::isOfMaterialX(contract)) all.elsewhere = true;
     for (size_t i = 0; contract != nullptr && i < contract->params.size(); ++i) {
       const lang::Param& param = contract->params[i];
       const bool connected = std::any_of(node.inputs.begin(), node.inputs.end(),
@@ -188,7 +184,7 @@ bool isMaterialX(const graph::Graph& flat, const graph::Source& source, const La
   while (!open.empty()) {
     const graph::Node& node = flat.nodes[open.back()];
     open.pop_back();
-    if (!isOfMaterialX(contracts.of(node)) && !node.type.starts_with("texel_")) return false;
+    if (!exchange::isOfMaterialX(contracts.of(node)) && !node.type.starts_with("texel_")) return false;
     for (const auto& [input, from] : node.inputs) reach(from);
   }
   return true;

@@ -266,7 +266,7 @@ Result<void> EvalMaterial::lower(const EvalSubject& subject, const Language& lib
   Options options = options_;
   if (!subject.isGraph()) {
     if (Result<void> named = resolveNames(library, options); !named) return named;
-    profile_ = options.profile;
+    profile_ = profileOf(*subject.material(), options);
   }
   options.ibl = options.ibl && environment;
   options.decode_srgb = false;
@@ -283,7 +283,8 @@ Result<void> EvalMaterial::lower(const EvalSubject& subject, const Language& lib
     if (decl && !variant.empty() && (*decl)->find(variant) != nullptr) node.variant = variant;
   }
   if (Result<void> set = setParameters(library, graph); !set) return set;
-  if (Diagnostics wrong = graph::check(graph, library); lacquer::hasError(wrong)) {
+  if (Diagnostics wrong = graph::check(graph, library, limitsOf(options).value_or(Limits{}).nodes);
+      lacquer::hasError(wrong)) {
     return tl::make_unexpected(std::move(wrong));
   }
   lower::LowerOptions how = loweringOf(options, true);

@@ -101,7 +101,9 @@ Result<graph::Graph> LodMaterial::graphOf(const lod::Words& words) const {
   Result<graph::Graph> graph =
       given_.subject.built(given_.attributes, given_.language, optionsOf(words), warnings);
   if (!graph) return graph;
-  if (Diagnostics wrong = graph::check(*graph, given_.language); lacquer::hasError(wrong))
+  if (Diagnostics wrong =
+          graph::check(*graph, given_.language, limitsOf(given_.options).value_or(Limits{}).nodes);
+      lacquer::hasError(wrong))
     return tl::make_unexpected(std::move(wrong));
   return graph;
 }

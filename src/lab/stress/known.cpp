@@ -136,7 +136,7 @@ std::string_view knownJump(const Subject& subject, std::string_view condition) {
   for (const Known& known : kKnown) {
     bool here = says(subject.name, known) || says(condition, known);
     if (!here && term != subject.terms.end()) {
-      // What is known of all that a node compares is not known of those that call it.
+      // A row for all conditions of a node does not hold for the nodes that call it.
       here = says(term->second.own, known) || (!known.condition.empty() && says(term->second.called, known));
     }
     if (here && condition.ends_with(known.condition)) return known.why;

@@ -56,7 +56,7 @@ private:
 /// number.
 Nature natureOf(std::string_view name, const ir::Interval& range);
 
-/// What a parameter of a type is: a truth, an integer, or a number.
+/// The nature of a parameter by its type: a flag, a whole number, or one by its name and range.
 Nature natureOf(ir::Type type, std::string_view name, const ir::Interval& range);
 
 /// A number of the range, exact in float32.

@@ -1,4 +1,4 @@
-// What moves a material's vertices, as elements of a MaterialX document.
+// A material's displacement as elements of a MaterialX document.
 #pragma once
 
 #include <string>

@@ -13,6 +13,11 @@
 
 namespace lacquer::exchange {
 
+bool isOfMaterialX(const graph::Contract* contract) {
+  return contract != nullptr && contract->decl != nullptr &&
+         contract->decl->source.starts_with("MaterialX") && !contract->decl->category.empty();
+}
+
 namespace {
 
 using graph::Source;
@@ -46,11 +51,6 @@ public:
   }
 
 private:
-  static bool isMaterialX(const graph::Contract* contract) {
-    return contract != nullptr && contract->decl != nullptr &&
-           contract->decl->source.starts_with("MaterialX") && !contract->decl->category.empty();
-  }
-
   void notSaid(size_t place, std::string message) {
     addBounded(written_.said, {"not-said",
                                Severity::Warning,
@@ -65,7 +65,7 @@ private:
     said_.assign(flat_.nodes.size(), false);
     for (const size_t place : contracts_.main().order().order) {
       const graph::Node& node = flat_.nodes[place];
-      if (!isMaterialX(contracts_.of(node))) {
+      if (!isOfMaterialX(contracts_.of(node))) {
         notSaid(place, fmt::format("the node {}, {}, is none of MaterialX's", quote(node.id), node.type));
         continue;
       }
@@ -86,7 +86,8 @@ private:
     return place && said_[*place] ? ref : nullptr;
   }
 
-  /// What ports take, by their names, and what other nodes take, by those of the nodes that give it.
+  /// Outputs for values that ports take, by the ports' names, and for those that other nodes take, by the
+  /// names of the nodes that give them.
   void outputs(graph::Group& group) {
     materialx::NameSet names;
     std::vector<Source> known;

@@ -4,10 +4,14 @@
 #include <string>
 
 #include "exchange/exchange.h"
+#include "graph/contracts.h"
 #include "graph/graph.h"
 #include "lang/library.h"
 
 namespace lacquer::exchange {
+
+/// Whether a node is one of MaterialX's standard library; null is none.
+bool isOfMaterialX(const graph::Contract* contract);
 
 /// A nodegraph of the nodes of MaterialX's in a checked graph, with an output for each of their values that a
 /// port of the template or another node takes. Each node that cannot be said is a warning, "not-said". Images

@@ -66,7 +66,7 @@ void nameVariants(Element& root) {
   rename(rename, root);
 }
 
-/// What a pointer such as /marble/noise/amplitude leads to; null for nothing.
+/// The element that a pointer such as /marble/noise/amplitude leads to; null for none.
 Element* elementAt(Element& root, std::string_view pointer) {
   Element* found = &root;
   while (!pointer.empty()) {

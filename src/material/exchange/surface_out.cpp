@@ -156,6 +156,7 @@ private:
   void bumped(std::string_view input);
   void occlusion();
   void film(std::string_view input, double scale);
+  void brightRim();
   void emission();
   void gltfPbr();
   void openPbr();
@@ -536,12 +537,28 @@ void Translation::gltfPbr() {
     put("alpha_cutoff", "float", *cutoff);
 }
 
+/// glTF keeps a reflection straight on within 1 and its colour away from grazing angles; OpenPBR's colour
+/// tints all angles.
+void Translation::brightRim() {
+  const std::string path = EXT "specular/specularColorFactor";
+  const Components* color = number(path);
+  if (color == nullptr || std::none_of(color->begin(), color->begin() + 3, [](double x) { return x > 1; }))
+    return;
+  addBounded(said_, {"not-said",
+                     Severity::Warning,
+                     {document_.path, 0, 0, fmt::format("/materials/{}/{}", material_.index, path)},
+                     "OpenPBR's specular_color tints the reflection at grazing angles, too",
+                     "above 1 its rim is brighter than in glTF: gltf_pbr says the same as glTF",
+                     {}});
+}
+
 void Translation::openPbr() {
   out_.category = "open_pbr_surface";
   const bool covers = numberOr("alphaMode", 0) == 2;
   if (!covers) used_.erase("alphaMode");
   base("base_color", covers ? "geometry_opacity" : "");
   for (const Row& one : kOpenPbrRows) row(one);
+  brightRim();
   if (speaksOf("emissive"))
     put("emission_luminance", "float", {numberOr(EXT "emissive_strength/emissiveStrength", 1)});
   const std::string aniso = EXT "anisotropy/";

@@ -50,27 +50,7 @@ auto findNamed(List& list, std::string_view name) {
   return std::find_if(list.begin(), list.end(), [&](const auto& named) { return named.first == name; });
 }
 
-template <class Change>
-void eachOf(std::vector<Node>& nodes, Outputs& outputs, Change change) {
-  for (Node& node : nodes) {
-    for (auto& [name, source] : node.inputs) change(source);
-  }
-  for (auto& [name, source] : outputs) change(source);
-}
-
 }  // namespace
-
-/// All sources of the file.
-template <class Change>
-void Editor::eachSource(Change change) {
-  eachOf(graph_.nodes, graph_.outputs, change);
-  for (Group& group : graph_.groups) {
-    eachOf(group.nodes, group.outputs, change);
-    for (GroupInput& input : group.inputs) {
-      if (input.by_default) change(*input.by_default);
-    }
-  }
-}
 
 /// What a check says, where edits are checked.
 template <class Check>
@@ -85,7 +65,7 @@ Result<void> Editor::good(const Check& check) {
 template <class Ref>
 bool Editor::wanted(const std::string& name) {
   bool found = false;
-  eachSource([&](const Source& source) {
+  eachSource(graph_, [&](const Source& source) {
     const auto* ref = std::get_if<Ref>(&source.from);
     found = found || (ref != nullptr && ref->name == name);
   });
@@ -205,13 +185,13 @@ Result<void> Editor::renameNode(const std::string& id, const std::string& to) {
                 "an id is names joined by dots, such as coat.absorption");
   if (Result<void> free = freeId(*at.nodes, to); !free) return free;
   bool wanted = false;
-  eachOf(*at.nodes, *at.outputs, [&](const Source& source) {
+  eachSource(*at.nodes, *at.outputs, [&](const Source& source) {
     const auto* ref = std::get_if<NodeRef>(&source.from);
     wanted = wanted || (ref != nullptr && ref->node == to);
   });
   if (wanted) return nameWanted("node", to);
   (*at.nodes)[*found].id = to;
-  eachOf(*at.nodes, *at.outputs, [&](Source& source) {
+  eachSource(*at.nodes, *at.outputs, [&](Source& source) {
     auto* ref = std::get_if<NodeRef>(&source.from);
     if (ref != nullptr && ref->node == at.name) ref->node = to;
   });
@@ -361,7 +341,7 @@ Result<void> Editor::renameParameter(const std::string& name, const std::string&
     return free;
   if (to != name && wanted<ParameterRef>(to)) return nameWanted("parameter", to);
   graph_.parameters[*found].name = to;
-  eachSource([&](Source& source) {
+  eachSource(graph_, [&](Source& source) {
     auto* ref = std::get_if<ParameterRef>(&source.from);
     if (ref != nullptr && ref->name == name) ref->name = to;
   });
@@ -408,7 +388,7 @@ Result<void> Editor::renameTexture(const std::string& name, const std::string& t
     graph_.textures[*found].name = name;
     return fine;
   }
-  eachSource([&](Source& source) {
+  eachSource(graph_, [&](Source& source) {
     auto* ref = std::get_if<TextureRef>(&source.from);
     if (ref != nullptr && ref->name == name) ref->name = to;
   });
@@ -510,7 +490,7 @@ Result<void> Editor::renameInput(const std::string& path, const std::string& to)
   if (Result<void> free = freeName(to, "input", to != found->name && inputOf(*changed, to)); !free)
     return free;
   bool wanted = false;
-  eachOf(changed->nodes, changed->outputs, [&](const Source& source) {
+  eachSource(changed->nodes, changed->outputs, [&](const Source& source) {
     const auto* ref = std::get_if<InputRef>(&source.from);
     wanted = wanted || (ref != nullptr && ref->name == to);
   });
@@ -524,7 +504,7 @@ Result<void> Editor::renameInput(const std::string& path, const std::string& to)
                        [&](const Group& one) { return gives(one.nodes); });
   if (wanted && to != found->name) return nameWanted("input", to);
   changed->inputs[*at].name = to;
-  eachOf(changed->nodes, changed->outputs, [&](Source& source) {
+  eachSource(changed->nodes, changed->outputs, [&](Source& source) {
     auto* ref = std::get_if<InputRef>(&source.from);
     if (ref != nullptr && ref->name == found->name) ref->name = to;
   });

@@ -103,8 +103,6 @@ private:
   Result<void> goodGroups();
   template <class Ref>
   bool wanted(const std::string& name);
-  template <class Change>
-  void eachSource(Change change);
 
   Graph& graph_;
   const lang::Library& library_;

@@ -241,6 +241,27 @@ struct Graph {
   void skip(std::string_view term, std::string reason);
 };
 
+/// Calls with each source that nodes and outputs have.
+template <class Change>
+void eachSource(std::vector<Node>& nodes, Outputs& outputs, Change change) {
+  for (Node& node : nodes) {
+    for (auto& [input, source] : node.inputs) change(source);
+  }
+  for (auto& [output, source] : outputs) change(source);
+}
+
+/// Of a graph also those within its groups, and the defaults of their inputs.
+template <class Change>
+void eachSource(Graph& graph, Change change) {
+  eachSource(graph.nodes, graph.outputs, change);
+  for (Group& group : graph.groups) {
+    eachSource(group.nodes, group.outputs, change);
+    for (GroupInput& input : group.inputs) {
+      if (input.by_default) change(*input.by_default);
+    }
+  }
+}
+
 /// Everything lowering relies on: node types and variants exist, ids are unique, inputs exist, are connected
 /// once and have the right type, references resolve, swizzles fit, literals lie in the contract's range, no
 /// cycles, no group within itself, the template's ports without default are delivered with the right type,

@@ -89,7 +89,7 @@ std::optional<Refusal> refused(const Element& element) {
 }
 
 bool Patterns::givesClosure(const Element& node) const {
-  return definitionOf(node) != nullptr || node.category == "nodegraph" ||
+  return definitions_of_.contains(node.category) || node.category == "nodegraph" ||
          !library_.forms(libraryName(node)).empty() || refused(node).has_value();
 }
 

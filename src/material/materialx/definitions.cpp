@@ -1,6 +1,7 @@
 // A library of definitions for documents, such as a studio's own: nodedefs, and the nodegraphs behind them.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
@@ -50,9 +51,8 @@ private:
 /// Keeps what defines, of one file.
 void DefinitionsReader::take(Element& element) {
   const bool code = element.category == "implementation" && element.find("nodegraph") == nullptr;
-  if (code || (element.category != "nodedef" && element.category != "nodegraph" &&
-               element.category != "implementation"))
-    return;
+  constexpr std::string_view kKept[] = {"nodedef", "nodegraph", "implementation", "geompropdef"};
+  if (code || std::find(std::begin(kKept), std::end(kKept), element.category) == std::end(kKept)) return;
   if (element.name().empty())
     return error(element, "no-name", fmt::format("the {} has no name", quote(element.category)));
   if (element.category == "nodedef" && element.get("node").empty())
@@ -114,7 +114,7 @@ Result<Definitions> DefinitionsReader::read(const std::vector<lang::SourceFile>&
     for (Element& child : document->root.children) take(child);
   }
   for (const Element& child : root_.children) {
-    if (child.category == "implementation") continue;
+    if (child.category == "implementation" || child.category == "geompropdef") continue;
     auto& known = child.category == "nodedef" ? nodedefs_ : nodegraphs_;
     const auto [it, fresh] = known.try_emplace(child.name(), &child);
     if (!fresh)

@@ -12,6 +12,7 @@
 #include "materialx/closures.h"
 #include "materialx/looks.h"
 #include "support/plain_name.h"
+#include "support/say_once.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {
@@ -87,10 +88,8 @@ std::string Patterns::suggest(std::string_view name, const Element& owner, Wante
 void Patterns::error(const Element& at, std::string code, std::string message, std::string help) {
   if (now_ != nullptr) broken_.insert(now_->group_.name);
   // The parts of a closure are looked for one by one.
-  const bool again = !wrong_.empty() && wrong_.back().code == code && wrong_.back().message == message &&
-                     wrong_.back().place.line == at.place.line && at.place.line != 0;
-  if (again) return;
-  addBounded(wrong_, {std::move(code), Severity::Error, at.place, std::move(message), std::move(help), {}});
+  addBoundedOnce(wrong_,
+                 {std::move(code), Severity::Error, at.place, std::move(message), std::move(help), {}});
 }
 
 void Patterns::warning(const Element& at, std::string code, std::string message, std::string help) {
@@ -104,6 +103,7 @@ void Patterns::define() {
     for (const Element& child : document->children) {
       if (child.category == "nodegraph") nodegraphs_.emplace(child.name(), &child);
       if (child.category == "nodedef") nodedefs_.emplace(child.name(), &child);
+      if (child.category == "geompropdef") geomprops_.emplace(child.name(), &child);
     }
   }
   for (const Element* document : documents_) {
@@ -661,7 +661,7 @@ void Patterns::checked() {
   const std::set<std::string, std::less<>> unread = broken_;
   std::map<std::string_view, const Scope*> scopes;
   for (const Scope& scope : scopes_) scopes.emplace(scope.group_.name, &scope);
-  for (Diagnostic& one : graph::check(graph_, library_)) {
+  for (Diagnostic& one : graph::check(graph_, library_, options_.most)) {
     if (!one.place.pointer.starts_with("/groups/")) continue;
     const std::string rest = one.place.pointer.substr(std::string_view("/groups/").size());
     const size_t slash = rest.find('/');

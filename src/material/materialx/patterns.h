@@ -53,7 +53,8 @@ class Scope {
 public:
   const Element& owner() const { return *owner_; }
   graph::Group& group() { return group_; }
-  /// What the body is of: it is called as its category, so that materials alike have one shader.
+  /// The surface that the body is of: its node is called as its category, so that materials alike have one
+  /// shader.
   void nameSurface(const Element& surface) { surface_ = &surface; }
   /// Of the interface; null where there is none of that name.
   const Element* input(std::string_view name) const {
@@ -205,7 +206,7 @@ private:
   std::unordered_map<const Element*, Scope*> groups_;  ///< looked up, never walked
   NameSet group_names_, parameter_names_, texture_names_;
   std::unordered_map<const Element*, Siblings> siblings_;        ///< of owners
-  Siblings nodegraphs_, nodedefs_;                               ///< of the documents
+  Siblings nodegraphs_, nodedefs_, geomprops_;                   ///< of the documents
   std::unordered_map<std::string_view, const Element*> bodies_;  ///< by the definition
   std::map<std::string_view, std::string_view> geometry_tokens_;
   /// Looked up, never walked.

@@ -338,13 +338,11 @@ std::optional<Patterns::OfGeometry> Patterns::ofGeometry(const Element& input) {
   constexpr std::string_view kSpaces[] = {"object", "model", "world"};
   OfGeometry made;
   std::string_view index;
-  for (const Element* document : documents_) {
-    const Element* found = document->child("geompropdef", name);
-    if (found == nullptr) continue;
-    made.node = found->get("geomprop");
-    made.space = found->get("space").empty() ? std::string("object") : std::string(found->get("space"));
-    index = found->get("index");
-    break;
+  if (const auto found = geomprops_.find(name); found != geomprops_.end()) {
+    const std::string_view space = found->second->get("space");
+    made.node = found->second->get("geomprop");
+    made.space = space.empty() ? std::string_view("object") : space;
+    index = found->second->get("index");
   }
   for (const auto& [letter, node] : kNodes) {
     if (!made.node.empty() || !name.starts_with(letter)) continue;
@@ -364,10 +362,8 @@ std::optional<Patterns::OfGeometry> Patterns::ofGeometry(const Element& input) {
     return made;
   }
   error(input, "unknown-geomprop", fmt::format("there is no geometric property {}", quote(name)),
-        "there are Pobject, Nobject, Tobject, Bobject, Pworld, Nworld, Tworld, Bworld, Vworld, UV0 and UV1, "
-        "and "
-        "what a geompropdef of the document makes of position, normal, tangent, bitangent, viewdirection or "
-        "texcoord");
+        "it must be Pobject, Nobject, Tobject, Bobject, Pworld, Nworld, Tworld, Bworld, Vworld, UV0 or UV1, "
+        "or a geompropdef of position, normal, tangent, bitangent, viewdirection or texcoord");
   return std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 
 #include "model/attributes.h"
@@ -99,6 +100,9 @@ private:
   /// by that one, in whichever order parts ask for it.
   std::vector<std::pair<Texel, uint16_t>> sharers_;
   std::vector<std::pair<Place, Source>> coordinates_;
+  /// Of the file's patterns those that are not in the graph yet, by name: looked up, never walked.
+  std::unordered_map<std::string_view, size_t> pattern_parameters_;
+  bool brought_ = false;
 };
 
 /// Whether a colour's texture may have a format that decodes it: such a format leaves alpha as it is, which
@@ -226,11 +230,16 @@ void chooseAttributes(graph::Node& node, const gltf::VertexAttributes& attribute
 /// A group of the file's, with the groups, parameters and textures that it has.
 void Writer::bring(const std::string& group) {
   const Graph& patterns = *material_.patterns;
+  for (size_t i = 0; !brought_ && i < patterns.parameters.size(); ++i)
+    pattern_parameters_.emplace(patterns.parameters[i].name, i);
+  brought_ = true;
   std::vector<std::string> wanted{group};
   const auto take = [&](const Source& source) {
     if (const auto* parameter = std::get_if<graph::ParameterRef>(&source.from)) {
-      if (!graph_.findParameter(parameter->name))
-        graph_.parameters.push_back(patterns.parameters[*patterns.findParameter(parameter->name)]);
+      const auto own = pattern_parameters_.find(parameter->name);
+      if (own == pattern_parameters_.end()) return;
+      graph_.parameters.push_back(patterns.parameters[own->second]);
+      pattern_parameters_.erase(own);
     } else if (const auto* texture = std::get_if<graph::TextureRef>(&source.from)) {
       const auto own = patterns.findTexture(texture->name);  // else it is the template's
       if (own && !graph_.findTexture(texture->name)) graph_.textures.push_back(patterns.textures[*own]);

@@ -74,25 +74,11 @@ void nameNumbers(graph::Graph& graph, std::string_view surface) {
     names[parameter.name] = name;
     parameter.name = std::move(name);
   }
-  const auto rename = [&](Source& source) {
+  graph::eachSource(graph, [&](Source& source) {
     auto* ref = std::get_if<graph::ParameterRef>(&source.from);
     const auto at = ref == nullptr ? names.end() : names.find(ref->name);
     if (at != names.end()) ref->name = at->second;
-  };
-  const auto renameIn = [&](std::vector<graph::Node>& nodes) {
-    for (graph::Node& node : nodes) {
-      for (auto& [input, source] : node.inputs) rename(source);
-    }
-  };
-  renameIn(graph.nodes);
-  for (auto& [output, source] : graph.outputs) rename(source);
-  for (graph::Group& group : graph.groups) {
-    renameIn(group.nodes);
-    for (graph::GroupInput& input : group.inputs) {
-      if (input.by_default) rename(*input.by_default);
-    }
-    for (auto& [output, source] : group.outputs) rename(source);
-  }
+  });
 }
 
 void placeNormals(graph::Graph& graph, const gltf::VertexAttributes& attributes,
