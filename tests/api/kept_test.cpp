@@ -147,5 +147,43 @@ TEST_F(Kept, AnotherSurfaceIsTranslated) {
   EXPECT_EQ(written(scene, {"nothing"}), "");
 }
 
+TEST_F(Kept, AnEvaluationNamesTheFormulas) {
+  const Scene own = read(kDocument);
+  constexpr const char* kPoint = R"([{"v": [0, 0.6, 0.8], "l": [0.6, 0, 0.8], "uv0": [0, 0]}])";
+  const auto by_own = evaluate(own, 1, kPoint, Engine::Double, {}, {}, messages_);
+  ASSERT_TRUE(by_own) << said();
+  EXPECT_EQ(by_own->profile, "materialx");
+  Options options;
+  options.as = "gltf";
+  options.document_texts = {{"parts.mtlx", kParts}};
+  const Scene translated = Scene::fromMemory(kDocument, "paint.mtlx", options, messages_);
+  const auto by_gltf = evaluate(translated, 1, kPoint, Engine::Double, {}, options, messages_);
+  ASSERT_TRUE(by_gltf) << said();
+  EXPECT_NE(by_gltf->profile, "materialx");
+}
+
+/// A chain of additions that is longer than a graph may be without being asked.
+TEST(NodesOfDocuments, AreAsManyAsTheLimitSays) {
+  std::string text =
+      "<materialx version=\"1.39\"><nodegraph name=\"NG\"><constant name=\"n0\" type=\"color3\"/>";
+  constexpr int kNodes = 10100;
+  for (int i = 1; i < kNodes; ++i) {
+    const std::string name = "n" + std::to_string(i);
+    text += "<add name=\"" + name + "\" type=\"color3\"><input name=\"in1\" type=\"color3\" nodename=\"n" +
+            std::to_string(i - 1) + "\"/></add>";
+  }
+  text += "<output name=\"out\" type=\"color3\" nodename=\"n" + std::to_string(kNodes - 1) +
+          "\"/></nodegraph></materialx>";
+  for (const char* limit : {"nodes=10000", "nodes=20000"}) {
+    Options options;
+    options.limits = {limit};
+    Messages messages;
+    const Scene scene = Scene::fromMemory(text, "chain.mtlx", options, messages);
+    const Graph graph = scene ? scene.graph(0, kUnusedAttributes, options, messages) : Graph();
+    const bool good = graph && graph.check(messages, options) && !hasError(messages);
+    EXPECT_EQ(good, limit == std::string("nodes=20000")) << limit;
+  }
+}
+
 }  // namespace
 }  // namespace lacquer::test
