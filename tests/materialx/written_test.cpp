@@ -112,19 +112,33 @@ std::optional<std::string> peerSays(const std::map<std::string, std::string>& do
   return status == 0 && log.empty() ? std::string() : log + fmt::format("status {}\n", status);
 }
 
-/// OpenPBR's colour of the reflection acts at grazing angles, too, where glTF's does not.
-TEST(WrittenRims, areSaid) {
-  const auto saidOf = [](const char* color) {
-    const material::Document document =
-        documentOf(fmt::format(R"({{"asset": {{"version": "2.0"}}, "materials": [{{"extensions": {{
-                     "KHR_materials_coat": {{"coatFactor": 1}},
-                     "KHR_materials_specular": {{"specularColorFactor": {}}}}}}}]}})",
-                               color),
-                   "rim.gltf");
-    return allOf(writtenOf(document).said);
+/// glTF's factor is what is reflected at grazing angles, OpenPBR's weight counts straight on alone: both say
+/// the reflection of 0.8 (at the brightest) whose color straight on is 1.5 times as bright.
+TEST(WrittenSpecular, keepsBothReflections) {
+  const auto writtenAs = [](const char* metallic, const char* color) {
+    return writtenOf(documentOf(
+        fmt::format(R"({{"asset": {{"version": "2.0"}}, "materials": [{{
+                      "pbrMetallicRoughness": {{"metallicFactor": {}}}, "extensions": {{
+                      "KHR_materials_coat": {{"coatFactor": 1}},
+                      "KHR_materials_specular": {{"specularFactor": 0.8, "specularColorFactor": {}}}}}}}]}})",
+                    metallic, color),
+        "specular.gltf"));
   };
-  EXPECT_EQ(saidOf("[1, 0.5, 1]"), "");
-  EXPECT_NE(saidOf("[1, 1.5, 1]").find("specularColorFactor: warning"), std::string::npos);
+  const exchange::Written bright = writtenAs("0", "[0.75, 1.5, 0.375]");
+  EXPECT_EQ(allOf(bright.said), "");
+  const auto has = [](const std::string& text, std::string_view part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(has(bright.text, R"(name="specular_weight" type="float" value="1.5")")) << bright.text;
+  EXPECT_TRUE(has(bright.text, R"(name="specular_color" type="color3" value="0.4, 0.8, 0.2")")) << bright.text;
+  const material::Document again = documentOf(bright.text, "specular.mtlx");
+  EXPECT_EQ(allOf(writtenOf(again).said), "");
+  EXPECT_EQ(writtenOf(again).text, bright.text);
+
+  const exchange::Written metal = writtenAs("1", "[0.75, 1.5, 0.375]");
+  EXPECT_FALSE(has(metal.text, "specular_weight") || has(metal.text, "specular_color")) << metal.text;
+  EXPECT_EQ(allOf(metal.said), "");
+  EXPECT_TRUE(has(allOf(writtenAs("0.5", "[1, 1, 0.5]").said), "change metals, too"));
 }
 
 /// A sixteenth of a bump's scale is what heights rise by over the coordinate. What is read again has no

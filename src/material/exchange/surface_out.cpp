@@ -60,8 +60,6 @@ constexpr Row kOpenPbrRows[] = {
     {"specular_roughness", 1, "pbrMetallicRoughness/roughnessFactor", kMetallicRoughness, 1, 1, true},
     {"base_diffuse_roughness", 1, EXT "diffuse_roughness/diffuseRoughnessFactor",
      EXT "diffuse_roughness/diffuseRoughnessTexture", 0},
-    {"specular_weight", 1, EXT "specular/specularFactor", EXT "specular/specularTexture", 3, 1},
-    {"specular_color", 3, EXT "specular/specularColorFactor", EXT "specular/specularColorTexture", 4, 1},
     {"specular_ior", 1, EXT "ior/ior", {}, 0, 1.5},
     {"transmission_weight", 1, EXT "transmission/transmissionFactor", EXT "transmission/transmissionTexture",
      0},
@@ -156,7 +154,9 @@ private:
   void bumped(std::string_view input);
   void occlusion();
   void film(std::string_view input, double scale);
-  void brightRim();
+  void tintedSpecular();
+  Source brightestOf(const Source& color);
+  void brightMetal();
   void emission();
   void gltfPbr();
   void openPbr();
@@ -537,19 +537,64 @@ void Translation::gltfPbr() {
     put("alpha_cutoff", "float", *cutoff);
 }
 
-/// glTF keeps a reflection straight on within 1 and its colour away from grazing angles; OpenPBR's colour
-/// tints all angles.
-void Translation::brightRim() {
-  const std::string path = EXT "specular/specularColorFactor";
-  const Components* color = number(path);
-  if (color == nullptr || std::none_of(color->begin(), color->begin() + 3, [](double x) { return x > 1; }))
-    return;
-  addBounded(said_, {"not-said",
-                     Severity::Warning,
-                     {document_.path, 0, 0, fmt::format("/materials/{}/{}", material_.index, path)},
-                     "OpenPBR's specular_color tints the reflection at grazing angles, too",
-                     "above 1 its rim is brighter than in glTF: gltf_pbr says the same as glTF",
-                     {}});
+/// glTF's factor is the reflection at grazing angles, and its color straight on is a share of it. OpenPBR's
+/// color tints all angles, and its weight counts straight on: it takes the brightest of the color.
+void Translation::tintedSpecular() {
+  const Components* given_factor = number(EXT "specular/specularFactor");
+  const Components* given_color = number(EXT "specular/specularColorFactor");
+  const auto* factor_map = texture(EXT "specular/specularTexture");
+  const auto* color_map = texture(EXT "specular/specularColorTexture");
+  const Components factor = given_factor == nullptr ? Components{1} : *given_factor;
+  Components color = given_color == nullptr ? Components{1, 1, 1} : *given_color;
+  const bool neutral = factor[0] == 1 && color[0] == 1 && color[1] == 1 && color[2] == 1;
+  const double metallic = numberOr("pbrMetallicRoughness/metallicFactor", 1);
+  const bool is_metal = metallic == 1 && texture(kMetallicRoughness) == nullptr;
+  // glTF's metals do not take it.
+  if (is_metal || (neutral && factor_map == nullptr && color_map == nullptr)) return;
+  if (metallic > 0) brightMetal();
+  std::optional<Source> tint;
+  if (color_map != nullptr) tint = times(channel(*color_map, 4), color, 3);
+  if (tint) {
+    const Source brightest = brightestOf(*tint);
+    put("specular_weight", "float", {}, brightest);
+    tint = add("specular_tint", "divide<vec3>",
+               {{"in1", *tint}, {"in2", graph::widened(brightest, ir::Type::Vec3)}});
+    color = {factor[0], factor[0], factor[0]};
+  } else {
+    const double brightest = color_map != nullptr ? 0 : std::max({color[0], color[1], color[2]});
+    if (brightest != 1) put("specular_weight", "float", {brightest});
+    for (int i = 0; i < 3; ++i)
+      color[static_cast<size_t>(i)] *= brightest > 0 ? factor[0] / brightest : factor[0];
+  }
+  if (factor_map != nullptr) {
+    Source all = graph::widened(channel(*factor_map, 3), ir::Type::Vec3);
+    tint = tint ? add("specular_tint", "multiply<vec3>", {{"in1", *tint}, {"in2", all}}) : all;
+  }
+  if (tint) tint = times(*tint, color, 3);
+  put("specular_color", "color3", tint ? Components{} : color, std::move(tint));
+}
+
+/// The brightest channel of a color, and so much that one can divide by it.
+Source Translation::brightestOf(const Source& color) {
+  constexpr double kLeast = 1e-4;  // a reflection of it is none: under half of a level of 8 bits times 0.04
+  Source brightest{graph::Literal{ir::Type::Float, {kLeast}}, {}};
+  for (int c = 0; c < 3; ++c) {
+    const graph::Literal index{ir::Type::Float, {static_cast<double>(c)}};
+    const Source one =
+        add(fmt::format("specular_{}", "rgb"[c]), "extract<vec3>", {{"in", color}, {"index", Source{index, {}}}});
+    brightest = add("specular_brightest", "max<float>", {{"in1", one}, {"in2", brightest}});
+  }
+  return brightest;
+}
+
+void Translation::brightMetal() {
+  addBounded(said_,
+             {"not-said",
+              Severity::Warning,
+              {document_.path, 0, 0, fmt::format("/materials/{}/{}", material_.index, EXT "specular")},
+              "OpenPBR's specular_weight and specular_color change metals, too",
+              "where the metal shows, it is darker or brighter than in glTF: gltf_pbr says the same as glTF",
+              {}});
 }
 
 void Translation::openPbr() {
@@ -558,7 +603,7 @@ void Translation::openPbr() {
   if (!covers) used_.erase("alphaMode");
   base("base_color", covers ? "geometry_opacity" : "");
   for (const Row& one : kOpenPbrRows) row(one);
-  brightRim();
+  tintedSpecular();
   if (speaksOf("emissive"))
     put("emission_luminance", "float", {numberOr(EXT "emissive_strength/emissiveStrength", 1)});
   const std::string aniso = EXT "anisotropy/";

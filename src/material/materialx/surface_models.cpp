@@ -18,6 +18,11 @@ constexpr double kTurn = 6.283185307179586;
 
 Value constant(double x) { return {1, {x}, {}}; }
 
+Value atMost(Value value, double most) {
+  if (!value.source) value.constant[0] = std::min(value.constant[0], most);
+  return value;
+}
+
 Json jsonOf(const Color& color) {
   Json numbers = Json::array();
   for (const double x : color) numbers.push_back(std::clamp(x, 0.0, 1.0));
@@ -34,6 +39,20 @@ void specular(Surface& s, const Value& weight, const Value& color) {
   const std::string at = "extensions/KHR_materials_specular/";
   s.scalar(at + "specularFactor", at + "specularTexture", 'a', s.product({weight}));
   s.color(at + "specularColorFactor", at + "specularColorTexture", s.product({color}), true);
+}
+
+/// A dielectric's reflection whose colour tints all angles, and whose `weight` counts straight on alone, or
+/// at all angles (`rim`). glTF's factor is the reflection at grazing angles: the brightest of the color.
+void tintedSpecular(Surface& s, const Value& weight, const Value& rim, const Value& tint) {
+  const auto& c = tint.constant;
+  const double brightest = tint.source ? 1 : std::clamp(std::max({c[0], c[1], c[2]}), 0.0, 1.0);
+  const std::string at = "extensions/KHR_materials_specular/";
+  const Value factor = constant(brightest);
+  if (!weight.isConstant(1) || !rim.isConstant(1) || !tint.isConstant(1)) {
+    s.scalar(at + "specularFactor", at + "specularTexture", 'a', s.product({rim, factor}));
+    const Value color = brightest == 0 ? Value{3, {1, 1, 1}, {}} : s.scaled(tint, 1 / brightest);
+    s.color(at + "specularColorFactor", at + "specularColorTexture", s.product({weight, color}), true);
+  }
 }
 
 void metallicRoughness(Surface& s, const Value& metallic, const Product& roughness) {
@@ -249,7 +268,7 @@ void standardSurface(Surface& s) {
   metallicRoughness(s, s.get("metalness", 0),
                     s.product({constant(wideningOf(stretch)), s.get("specular_roughness", 0.2)}));
   anisotropy(s, stretch, s.number("specular_rotation", 0));
-  specular(s, s.get("specular", 1), s.get("specular_color", kWhite));
+  tintedSpecular(s, constant(1), s.get("specular", 1), s.get("specular_color", kWhite));
   refraction(s, s.number("specular_IOR", 1.5));
   const Value sheen_weight = s.get("sheen", 0);
   const Value sheen_color = s.get("sheen_color", kWhite);
@@ -289,12 +308,15 @@ void openPbr(Surface& s) {
   if (passes.weight.there()) s.leave("transmission_scatter", kBlack);
   s.pass("transmission_scatter");
   s.pass("transmission_scatter_anisotropy");
-  coverage(s, s.product({passes.weight.there() ? constant(1) : base_weight, base}),
+  const Value metalness = s.get("base_metalness", 0);
+  const Value weight = s.get("specular_weight", 1);
+  const Value of_metal = metalness.isConstant(1) ? atMost(weight, 1) : constant(1);
+  coverage(s, s.product({passes.weight.there() ? constant(1) : base_weight, of_metal, base}),
            s.get("geometry_opacity", 1));
   diffuseRoughness(s, s.get("base_diffuse_roughness", 0));
-  metallicRoughness(s, s.get("base_metalness", 0), s.product({s.get("specular_roughness", 0.3)}));
+  metallicRoughness(s, metalness, s.product({s.get("specular_roughness", 0.3)}));
   anisotropy(s, s.number("specular_roughness_anisotropy", 0), 0);
-  specular(s, s.get("specular_weight", 1), s.get("specular_color", kWhite));
+  tintedSpecular(s, weight, constant(1), s.get("specular_color", kWhite));
   refraction(s, s.number("specular_ior", 1.5));
   const Value fuzz = s.get("fuzz_weight", 0);
   const Value fuzz_color = s.get("fuzz_color", kWhite);
