@@ -224,4 +224,8 @@ Contract contract(const Scene& scene, const Strings& materials, const Options& o
 /// shaders' files, which it names, are where generate() would put them.
 std::string manifestJson(const Contract& contract, const std::string& source);
 
+/// The contract and its shaders as one file of records, which an engine reads in place (lacquer/packed.h).
+/// Empty on an error: "too-large".
+std::string packedManifest(const Contract& contract, Messages& messages);
+
 }  // namespace lacquer

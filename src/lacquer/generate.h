@@ -193,5 +193,10 @@ Report plan(const Plan& plan, const Strings& files, const Strings& materials, co
 /// Merges manifests and shards into `folder`/manifest.json: files in the order given, shaders by id. False on
 /// an error, such as a shader that two of them describe differently.
 bool merge(const Strings& shards, const std::string& folder, Messages& messages);
+/// Packs `folder`/manifest.json and the shaders that it names, of some targets or of all that there are, into
+/// one file, which an engine reads in place (lacquer/packed.h). Of the options, `limits` and `sync`. False on
+/// an error, such as "no-such-target" for one that the folder was not made with.
+bool pack(const std::string& folder, const std::vector<Target>& targets, const std::string& file,
+          const Options& options, Messages& messages);
 
 }  // namespace lacquer

@@ -237,6 +237,10 @@ TEST(Looks, SayWhichMaterialIsForWhichGeometry) {
   json merged = place.manifest("merged")["files"][0];
   merged["source"] = file["source"];
   EXPECT_EQ(merged, file);
+  ASSERT_EQ(place.run({"pack", "out", "-o", "out.lqpm", "--target", "glsl"}).status, 0);
+  EXPECT_EQ(place.read("out.lqpm").substr(0, 4), "LQPM");
+  EXPECT_NE(place.run({"pack", "out", "-o", "none.lqpm", "--target", "hlsl"}).err.find("no-such-target"),
+            std::string::npos);
   // What is left out keeps its number.
   ASSERT_EQ(
       place.run({"gen", "chair.mtlx", "-o", "one", "--target", "glsl", "--material", "paint/wetness/wet"})

@@ -12,6 +12,7 @@
 #include "eval/points_file.h"
 #include "feeds.h"
 #include "gltf/geometry.h"
+#include "support/packed_walk.h"
 #include "vulkan/passthrough.h"
 
 namespace lacquer::fuzz {
@@ -161,6 +162,13 @@ std::string feedSpirv(std::string_view bytes) {
   const bool sound = counted % 8 == 0 && check::validate(words, false, "fuzz.spv").empty();
   if (sound && !vertex && !fragment) return "a valid module has no stage that is read";
   return {};
+}
+
+/// Two walks read the same: what is outside of the bytes would differ between their copies.
+std::string feedPacked(std::string_view bytes) {
+  const test::PackedFile one(bytes);
+  const test::PackedFile other(bytes);
+  return test::PackedWalk(one).sum() == test::PackedWalk(other).sum() ? "" : "two walks read something else";
 }
 
 }  // namespace lacquer::fuzz

@@ -38,6 +38,7 @@ std::string feedPanorama(std::string_view bytes);
 std::string feedGeometry(std::string_view bytes);
 std::string feedPoints(std::string_view bytes);
 std::string feedSpirv(std::string_view bytes);
+std::string feedPacked(std::string_view bytes);
 
 // files.cpp
 std::string feedTexture(std::string_view bytes);

@@ -32,6 +32,7 @@ constexpr Target kTargets[] = {
     {"points", "points", Form::Json, feedPoints},
     {"case", "case", Form::Json, feedCase},
     {"manifest", "manifest", Form::Json, feedManifest},
+    {"packed", "packed", Form::Bytes, feedPacked},
     {"cache", "cache", Form::Bytes, feedEntry},
     {"spirv", "spirv", Form::Bytes, feedSpirv},
 };

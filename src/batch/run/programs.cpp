@@ -54,14 +54,16 @@ std::vector<OwnProgram> ownPrograms(const std::vector<const Structure*>& structu
 /// beside its material, such as a skin.
 using Domain = std::pair<std::map<std::string, int>, std::vector<std::string>>;
 
-std::map<std::string, int> lightsOf(const OwnProgram& program) {
+std::map<std::string, int> lightsOfProgram(const OwnProgram& program) {
   const passes::LightFacts& lights = program.structures[0]->lights;
   std::map<std::string, int> counts(lights.counts.begin(), lights.counts.end());
   counts[""] = lights.any ? 1 : 0;
   return counts;
 }
 
-Domain domainOf(const OwnProgram& program) { return {lightsOf(program), program.graphs[0].attributes}; }
+Domain domainOf(const OwnProgram& program) {
+  return {lightsOfProgram(program), program.graphs[0].attributes};
+}
 
 std::vector<Item> itemsOf(const std::vector<OwnProgram>& all, const std::vector<ProgramUse>& uses,
                           ProgramCosts& costs) {
@@ -135,7 +137,7 @@ Programs::Programs(const std::vector<const Structure*>& structures, const Exampl
   std::set<std::map<std::string, int>> lights;
   std::set<std::vector<std::string>> vertices;
   for (const OwnProgram& one : all) {
-    lights.insert(lightsOf(one));
+    lights.insert(lightsOfProgram(one));
     vertices.insert(one.graphs[0].attributes);
   }
   light_sets_ = lights.size();

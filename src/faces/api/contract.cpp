@@ -6,6 +6,7 @@
 #include "cache/cache.h"
 #include "interface/interface.h"
 #include "manifest/text.h"
+#include "run/packed.h"
 #include "run/programs.h"
 #include "setting/messages.h"
 #include "setting/options.h"
@@ -174,6 +175,27 @@ std::string manifestJson(const Contract& contract, const std::string& source) {
   }
   manifest.finish();
   return text;
+}
+
+std::string packedManifest(const Contract& contract, Messages& messages) {
+  std::vector<PackedShader> shaders;
+  std::vector<std::string> ids;
+  for (const ContractShader& one : contract.shaders) {
+    PackedShader& shader = shaders.emplace_back();
+    shader.id = one.shader.id();
+    shader.reflection = &one.shader.reflection();
+    shader.argument_buffers = ShaderMaker::argumentBuffers(one.shader);
+    for (const auto& [target, validated] : one.validated) {
+      for (int stage = one.shader.hasVertexStage() ? 0 : 1; stage < 2; ++stage)
+        shader.codes.push_back({std::string(targetName(target)), std::string(fileKind(target, stage)),
+                                ShaderMaker::code(one.shader, target, stage), validated});
+    }
+  }
+  const FileContract* const files[] = {&contract};
+  const Result<std::string> bytes = packedBytes(files, shaders);
+  if (bytes) return *bytes;
+  report(bytes.error(), {}, messages);
+  return {};
 }
 
 }  // namespace lacquer

@@ -99,6 +99,8 @@ struct ShaderMaker {
   /// A shader of what was printed. `schema`: whose prose says what the parameters are; may be null.
   static Shader make(ShaderData data, const material::Schema* schema, const Options& options);
   static bool argumentBuffers(const Shader& shader) { return shader.impl().argument_buffers; }
+  /// The bytes of a stage's file.
+  static std::string_view code(const Shader& shader, Target target, int stage);
 };
 
 /// "empty-handle" where there is nothing behind a handle.

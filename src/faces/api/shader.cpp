@@ -60,6 +60,12 @@ static const std::string& textOf(const Shader& shader, Target target, int stage)
 const std::string& Shader::vertexText(Target target) const { return textOf(*this, target, 0); }
 const std::string& Shader::fragmentText(Target target) const { return textOf(*this, target, 1); }
 
+std::string_view ShaderMaker::code(const Shader& shader, Target target, int stage) {
+  const std::vector<uint32_t>& words = shader.impl().spirv[stage];
+  if (target == Target::Spirv) return {reinterpret_cast<const char*>(words.data()), words.size() * 4};
+  return shader.fileText(target, stage);
+}
+
 size_t Shader::uniformSize() const {
   for (const ir::Block& block : impl().module.blocks) {
     if (block.role == ir::BlockRole::Material) return block.size;

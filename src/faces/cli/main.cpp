@@ -203,6 +203,20 @@ void addMerge(CLI::App& verb, Flags& flags) {
   verb.add_option("-o,--output", flags.output, "the folder to write to")->required()->check(kNotEmpty);
 }
 
+void addPack(CLI::App& verb, Flags& flags) {
+  verb.add_option("folder", flags.files, "that gen or merge wrote")
+      ->required()
+      ->expected(1)
+      ->check(kNotEmpty);
+  verb.add_option("-o,--output", flags.output, "the file to write")->required()->check(kNotEmpty);
+  verb.add_option("--target", flags.targets,
+                  "only shaders of these targets (may be repeated); all that there are when absent")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  lacquer::cli::addLimit(verb, flags);
+  lacquer::cli::addSyncFlag(verb, flags);
+}
+
 void addCost(CLI::App& verb, Flags& flags) {
   verb.add_option("paths", flags.files,
                   "folders that gen wrote, .spv files, .gltf, .glb or .mtlx files, graphs: .json")
@@ -277,6 +291,15 @@ int merge(const Flags& flags) {
   const bool merged = lacquer::merge(flags.files, flags.output, messages);
   print(messages);
   return merged ? kGood : kFailed;
+}
+
+int pack(const Flags& flags) {
+  Messages messages;
+  const bool packed = lacquer::pack(
+      flags.files[0], flags.targets.empty() ? std::vector<lacquer::Target>() : flags.options.targets,
+      flags.output, flags.options, messages);
+  print(messages);
+  return packed ? kGood : kFailed;
 }
 
 lacquer::Graph onlyGraph(const Flags& flags, Messages& messages) {
@@ -398,6 +421,8 @@ std::vector<Verb> verbsOf(VerbFlags& all) {
        [&](CLI::App& verb) { addPlan(verb, flags); }, [&] { return plan(flags); }},
       {"merge", "manifest.json from the manifests or shards of several runs",
        [&](CLI::App& verb) { addMerge(verb, flags); }, [&] { return merge(flags); }},
+      {"pack", "manifest.json and its shaders as one file, which an engine maps into memory",
+       [&](CLI::App& verb) { addPack(verb, flags); }, [&] { return pack(flags); }},
       {"graph", "the node graph of a material", [&](CLI::App& verb) { addGraph(verb, flags); },
        [&] { return graph(flags); }},
       {"dump", "the DAG of a material, with the rate of every value",

@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <deque>
+
+#include "lacquer/manifest.h"
+#include "run/packed.h"
+#include "setting/messages.h"
+#include "setting/options.h"
+#include "shader/print.h"
+#include "support/file.h"
+#include "support/outputs.h"
+
+namespace lacquer {
+
+namespace {
+
+/// Reads the code that a manifest names.
+class Packing {
+public:
+  Packing(const std::string& folder, const std::vector<Target>& targets)
+      : folder_(folder), targets_(targets) {}
+
+  Result<void> read(const Manifest& manifest);
+  const std::vector<PackedShader>& shaders() const { return shaders_; }
+  const Strings& paths() const { return paths_; }
+
+private:
+  bool isWanted(Target target) const {
+    return isShader(target) &&
+           (targets_.empty() || std::find(targets_.begin(), targets_.end(), target) != targets_.end());
+  }
+  Result<void> readCode(const ManifestCode& code, PackedShader& shader);
+
+  const std::string& folder_;
+  const std::vector<Target>& targets_;
+  std::vector<PackedShader> shaders_;
+  std::deque<std::string> texts_;  ///< which the shaders' codes are in
+  Strings paths_;
+};
+
+Result<void> Packing::readCode(const ManifestCode& code, PackedShader& shader) {
+  for (const auto& [stage, path] : code.files) {
+    paths_.push_back(folder_ + "/" + path);
+    Result<std::string> bytes = readFile(paths_.back());
+    if (!bytes) return tl::make_unexpected(std::move(bytes.error()));
+    texts_.push_back(std::move(*bytes));
+    shader.codes.push_back(
+        {std::string(targetName(code.target)), stage, texts_.back(), code.validated.value_or(false)});
+  }
+  return {};
+}
+
+Result<void> Packing::read(const Manifest& manifest) {
+  for (const ManifestShader& from : manifest.shaders) {
+    PackedShader& shader =
+        shaders_.emplace_back(PackedShader{from.id, &from.reflection, from.argument_buffers, {}});
+    for (const ManifestCode& code : from.targets) {
+      if (!isWanted(code.target)) continue;
+      if (Result<void> read = readCode(code, shader); !read) return read;
+    }
+    for (const Target target : targets_) {
+      const bool there = std::any_of(from.targets.begin(), from.targets.end(),
+                                     [&](const ManifestCode& one) { return one.target == target; });
+      if (!there || !isShader(target))
+        return fail("no-such-target", {folder_ + "/manifest.json", 0, 0, "/shaders/" + from.id + "/files"},
+                    "there is no shader of the target " + quote(targetName(target)),
+                    "name targets that the folder was made with");
+    }
+  }
+  return {};
+}
+
+Result<bool> packInto(const std::string& folder, const std::vector<Target>& targets, const std::string& file,
+                      const Options& options, Messages& messages) {
+  Result<void> good = hasPath("the folder", folder);
+  if (good) good = hasPath("the output", file);
+  if (!good) return tl::make_unexpected(std::move(good.error()));
+  const std::string path = folder + "/manifest.json";
+  const std::optional<Manifest> manifest = readManifest(path, options, messages);
+  if (!manifest) return false;
+  if (!manifest->levels.empty())
+    return fail("unknown-property", {path, 0, 0, "/levels"}, "levels of detail are not packed",
+                "pack what `lacquer gen` wrote");
+  Packing packing(folder, targets);
+  good = packing.read(*manifest);
+  if (!good) return tl::make_unexpected(std::move(good.error()));
+  Strings inputs = packing.paths();
+  inputs.push_back(path);
+  if (Diagnostics wrong = clashes(inputs, {file}); !wrong.empty())
+    return tl::make_unexpected(std::move(wrong));
+  std::vector<const FileContract*> files;
+  for (const FileContract& one : manifest->files) files.push_back(&one);
+  const Result<std::string> bytes = packedBytes(files, packing.shaders());
+  if (!bytes) return tl::make_unexpected(bytes.error());
+  return writeFile(file, *bytes, {nullptr, options.sync});
+}
+
+}  // namespace
+
+bool pack(const std::string& folder, const std::vector<Target>& targets, const std::string& file,
+          const Options& options, Messages& messages) {
+  const Result<bool> written = packInto(folder, targets, file, options, messages);
+  if (!written) report(written.error(), {}, messages);
+  return written.has_value() && !hasError(messages);
+}
+
+}  // namespace lacquer
