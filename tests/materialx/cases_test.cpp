@@ -54,6 +54,7 @@ std::string shown(const graph::Source& source) {
   const auto* given = std::get_if<graph::GivenRef>(&source.from);
   const auto* input = std::get_if<graph::InputRef>(&source.from);
   const auto* choice = std::get_if<graph::Choice>(&source.from);
+  const auto* attribute = std::get_if<graph::AttributeRef>(&source.from);
   const auto* literal = std::get_if<graph::Literal>(&source.from);
   std::string text = node        ? node->node + (node->output.empty() ? "" : "." + node->output)
                      : parameter ? "$" + parameter->name
@@ -61,6 +62,7 @@ std::string shown(const graph::Source& source) {
                      : given     ? "given " + given->name
                      : input     ? "input " + input->name
                      : choice    ? '"' + choice->name + '"'
+                     : attribute ? "attribute " + attribute->name
                                  : numbers(literal->value, ir::componentCount(literal->type));
   return source.swizzle.empty() ? text : text + "." + source.swizzle;
 }

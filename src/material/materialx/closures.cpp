@@ -68,6 +68,8 @@ std::optional<Refusal> refused(const Element& element) {
       {"chiang_hair_roughness", "it is for hair"},
       {"chiang_hair_absorption_from_color", "it is for hair"},
       {"deon_hair_absorption_from_melanin", "it is for hair"},
+      {"thin_film_bsdf",
+       "since MaterialX 1.39 a film is thinfilm_thickness and thinfilm_ior of what it lies on"},
       {"measured_edf", "a profile of a luminaire belongs to a light"}};
   for (const auto& [name, why] : kRefused) {
     if (element.category == name) return Refusal{std::string(why), "there are " + listOf(kClosures)};

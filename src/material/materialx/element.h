@@ -35,9 +35,11 @@ struct Element {
 struct Document {
   Element root;
   std::vector<std::string> files;  ///< included ones, in their order
+  Diagnostics said;                ///< warnings
 };
 
-/// Reads the XML of a `.mtlx` file: no entities but XML's own, no document type, UTF-8. Included files
+/// Reads the XML of a `.mtlx` file: no entities but XML's own, no document type, UTF-8. What older versions
+/// say otherwise has been brought to 1.39. Included files
 /// (`xi:include`) lie in the file's folder or below it. `colorspace`, `fileprefix` and `geomprefix` of the
 /// elements around have been handed down to what they are for. Errors: "xml-syntax", "xml-too-deep",
 /// "xml-too-many", "not-materialx", "unsupported-version", "include-…".

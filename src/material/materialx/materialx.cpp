@@ -320,7 +320,7 @@ Result<Materials> readMaterials(std::string_view text, const std::string& path, 
                                 MaterialOptions options) {
   Result<Document> document = readXml(text, path, options.limits, options.included);
   if (!document) return tl::make_unexpected(document.error());
-  Diagnostics said;
+  Diagnostics said = std::move(document->said);
   const VariantMaterials variants = addVariants(document->root, said);
   addTangentSpace(document->root);
   return MaterialsReader(*document, library, options.translate,

@@ -10,6 +10,7 @@
 
 #include "materialx/element.h"
 #include "materialx/looks.h"
+#include "materialx/upgrade.h"
 #include "support/contain.h"
 #include "support/file.h"
 #include "support/text.h"
@@ -42,6 +43,7 @@ public:
     file(text, top_, document.root, {});
     if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
     document.files = std::move(files_);
+    document.said = std::move(wrong_);
     return document;
   }
 
@@ -52,7 +54,7 @@ private:
   std::optional<std::string> inMemory(const std::string& folder, const std::string& href) const;
   Result<std::string> textInMemory(const std::string& path) const;
   void handDown(Element& element, const Inherited& around) const;
-  void version(Element& root);
+  int version(const Element& root);
 
   Diagnostic& error(std::string code, ptrdiff_t offset, std::string message, std::string help = {}) {
     Diagnostic& one = wrong_.emplace_back();
@@ -118,7 +120,7 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
     Element own;
     own.place = placeOf(root.offset_debug());
     for (const pugi::xml_attribute& a : root.attributes()) own.attributes.emplace_back(a.name(), a.value());
-    version(own);
+    const int minor = version(own);
     Inherited inside = around;
     if (const std::string* space = own.find("colorspace")) inside.colorspace = *space;
     if (const std::string* prefix = own.find("fileprefix")) inside.fileprefix = *prefix;
@@ -128,8 +130,13 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
       into.place = own.place;
     }
     open_.push_back(path);
+    const size_t first = into.children.size();
     if (!hasError(wrong_)) elements(root, into, inside, 1);
     open_.pop_back();
+    if (!hasError(wrong_) && minor < kPresentMinor) {
+      upgrade(into, first, minor, wrong_);
+      into.set("version", fmt::format("1.{}", kPresentMinor));
+    }
   }
   path_ = outer_path;
   text_ = outer_text;
@@ -138,7 +145,8 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
   line_ = outer_line;
 }
 
-void XmlReader::version(Element& root) {
+/// The second number of the version; what is too old is said.
+int XmlReader::version(const Element& root) {
   const std::string_view text = root.get("version");
   const size_t dot = text.find('.');
   const auto number = [](std::string_view digits) {
@@ -149,16 +157,18 @@ void XmlReader::version(Element& root) {
   };
   const int major = number(text.substr(0, dot));
   const int minor = dot == std::string_view::npos ? -1 : number(text.substr(dot + 1));
-  constexpr int kLeast = 38;
-  if (major == 1 && minor >= kLeast) return;
+  if (major == 1 && minor >= kLeastMinor) return minor;
   Diagnostic one{
       "unsupported-version",
       Severity::Error,
       root.place,
       text.empty() ? "the document has no version" : fmt::format("the version is {}", quote(text)),
-      "Lacquer reads MaterialX 1.38 and later; MaterialX's own library brings older documents to it",
+      fmt::format(
+          "Lacquer reads MaterialX 1.{} and later; MaterialX's own library brings older documents to it",
+          kLeastMinor),
       {}};
   wrong_.push_back(std::move(one));
+  return minor;
 }
 
 /// Colours, files and geometry are said on the way down what space and folder they are of.
