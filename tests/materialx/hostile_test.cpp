@@ -44,6 +44,35 @@ TEST(MaterialXHostile, elementsLieTooDeep) {
   EXPECT_EQ(codesOf(inDocument(deep)), "xml-too-deep");
 }
 
+/// UTF-8 alone is read, with its mark or without; of others the message names the encoding.
+TEST(MaterialXHostile, encodings) {
+  const std::string body = inDocument("<gltf_pbr name=\"s\" type=\"surfaceshader\"/>");
+  const auto said = [](const std::string& text) {
+    const auto document = materialsOf(text, "encoded.mtlx");
+    return document ? std::string() : document.error()[0].code + ": " + document.error()[0].message;
+  };
+  const auto wide = [&](size_t bytes, bool big) {
+    std::string text;
+    for (const char c : "\x01" + body) {  // the first stands for the mark
+      std::string unit(bytes, '\0');
+      unit[big ? bytes - 1 : 0] = c == '\x01' ? '\xFF' : c;
+      if (c == '\x01') unit[big ? bytes - 2 : 1] = '\xFE';
+      text += unit;
+    }
+    return text;
+  };
+  EXPECT_EQ(said("\xEF\xBB\xBF" + body), "");
+  EXPECT_EQ(said("<?xml version='1.0' encoding='utf-8'?>" + body), "");
+  for (const bool big : {false, true}) {
+    EXPECT_EQ(said(wide(2, big)), "xml-encoding: the document is in the encoding \"UTF-16\"");
+    EXPECT_EQ(said(wide(2, big).substr(2)), "xml-encoding: the document is in the encoding \"UTF-16\"");
+    EXPECT_EQ(said(wide(4, big).substr(4)), "xml-encoding: the document is in the encoding \"UTF-32\"");
+  }
+  EXPECT_EQ(said(wide(4, false)), "xml-encoding: the document is in the encoding \"UTF-32\"");
+  EXPECT_EQ(said("<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>" + body),
+            "xml-encoding: the document is in the encoding \"ISO-8859-1\"");
+}
+
 TEST(MaterialXHostile, halfAFile) {
   const std::string whole = inDocument(
       "<gltf_pbr name=\"s\" type=\"surfaceshader\"><input name=\"metallic\" type=\"float\" "

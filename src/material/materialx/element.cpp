@@ -34,6 +34,23 @@ const Element* Element::child(std::string_view of, std::string_view named) const
   return nullptr;
 }
 
+bool isNodeElement(const Element& element) {
+  constexpr std::string_view kOthers[] = {
+      "input",     "output",         "token",       "nodedef",      "implementation", "comment",   "typedef",
+      "unitdef",   "unittypedef",    "geompropdef", "attributedef", "targetdef",      "backdrop",  "look",
+      "lookgroup", "materialassign", "propertyset", "collection",   "geominfo",       "variantset"};
+  return std::find(std::begin(kOthers), std::end(kOthers), element.category) == std::end(kOthers);
+}
+
+std::string_view wideEncoding(std::string_view text) {
+  using namespace std::string_view_literals;
+  for (const std::string_view start : {"\xFF\xFE\0\0"sv, "\0\0\xFE\xFF"sv, "<\0\0\0"sv, "\0\0\0<"sv})
+    if (text.starts_with(start)) return "UTF-32";
+  for (const std::string_view start : {"\xFF\xFE"sv, "\xFE\xFF"sv, "<\0"sv, "\0<"sv})
+    if (text.starts_with(start)) return "UTF-16";
+  return {};
+}
+
 namespace {
 
 void writeValue(std::string_view value, std::string& text) {

@@ -31,6 +31,13 @@ struct Element {
   const Element* child(std::string_view category, std::string_view name) const;
 };
 
+/// Whether an element beside others may be a node: it is no port, no definition and nothing of geometry.
+bool isNodeElement(const Element& element);
+
+/// "UTF-16" or "UTF-32" for a text that begins like XML in it; empty for all others.
+std::string_view wideEncoding(std::string_view text);
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  ///< of UTF-8
+
 /// A document, and what it was made of.
 struct Document {
   Element root;
@@ -41,8 +48,8 @@ struct Document {
 /// Reads the XML of a `.mtlx` file: no entities but XML's own, no document type, UTF-8. What older versions
 /// say otherwise has been brought to 1.39. Included files
 /// (`xi:include`) lie in the file's folder or below it. `colorspace`, `fileprefix` and `geomprefix` of the
-/// elements around have been handed down to what they are for. Errors: "xml-syntax", "xml-too-deep",
-/// "xml-too-many", "not-materialx", "unsupported-version", "include-…".
+/// elements around have been handed down to what they are for. Errors: "xml-syntax", "xml-encoding",
+/// "duplicate-name", "xml-too-deep", "xml-too-many", "not-materialx", "unsupported-version", "include-…".
 /// With `included` no file is read: what is included is there, by its path as seen from the document.
 Result<Document> readXml(std::string_view text, const std::string& path, const Limits& limits,
                          const std::vector<std::pair<std::string, std::string>>* included = nullptr);

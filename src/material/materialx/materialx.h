@@ -73,7 +73,7 @@ Result<Definitions> readDefinitions(const std::vector<lang::SourceFile>& files, 
 Diagnostics checkDefinitions(const Definitions& definitions, const lang::Library& library,
                              const Limits& limits);
 
-/// True for text that is XML and no JSON: its first character that is no space is `<`.
+/// True for text that is XML and no JSON: its first character that is no space is `<`, in any encoding.
 bool isXml(std::string_view text);
 
 struct MaterialOptions {

@@ -25,15 +25,6 @@ namespace {
 constexpr size_t kMostAliases = 64;
 constexpr size_t kDeepestInheritance = 16;
 
-/// Elements of a body that are no nodes.
-bool isNode(const Element& element) {
-  constexpr std::string_view kOthers[] = {
-      "input",     "output",         "token",       "nodedef",      "implementation", "comment",   "typedef",
-      "unitdef",   "unittypedef",    "geompropdef", "attributedef", "targetdef",      "backdrop",  "look",
-      "lookgroup", "materialassign", "propertyset", "collection",   "geominfo",       "variantset"};
-  return std::find(std::begin(kOthers), std::end(kOthers), element.category) == std::end(kOthers);
-}
-
 }  // namespace
 
 std::string graphName(std::string_view name) {
@@ -64,7 +55,7 @@ Patterns::Patterns(const std::vector<const Element*>& documents, const lang::Lib
 const Siblings& Patterns::siblingsOf(const Element& owner) {
   const auto [it, fresh] = siblings_.try_emplace(&owner);
   for (const Element& child : owner.children) {
-    if (fresh && isNode(child) && !child.name().empty()) it->second.emplace(child.name(), &child);
+    if (fresh && isNodeElement(child) && !child.name().empty()) it->second.emplace(child.name(), &child);
   }
   return it->second;
 }
@@ -377,7 +368,7 @@ std::optional<Patterns::Referred> Patterns::find(const Scope& scope, const Eleme
   const std::string wanted = name != nullptr ? *name : std::string(input.get("output"));
   error(input, "no-such-node",
         fmt::format("{} is connected to {}, which is not there", quote(input.name()), quote(wanted)),
-        suggest(wanted, *scope.owner_, isNode));
+        suggest(wanted, *scope.owner_, isNodeElement));
   return std::nullopt;
 }
 

@@ -26,6 +26,22 @@ constexpr uint64_t kMostElements = uint64_t{1} << 20;
 /// Files that a file includes, theirs included.
 constexpr size_t kMostFiles = 256;
 
+/// The encoding that a text shows or declares; empty for UTF-8 and ASCII.
+std::string foreignEncoding(std::string_view text) {
+  if (const std::string_view wide = wideEncoding(text); !wide.empty()) return std::string(wide);
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (!text.starts_with("<?xml")) return {};
+  text = text.substr(0, text.find("?>"));
+  const size_t at = text.find("encoding");
+  const size_t quoted = at == std::string_view::npos ? at : text.find_first_of("\"'", at);
+  if (quoted == std::string_view::npos) return {};
+  const std::string declared(text.substr(quoted + 1, text.find(text[quoted], quoted + 1) - quoted - 1));
+  std::string low = declared;
+  for (char& c : low) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  const bool known = low == "utf-8" || low == "utf8" || low == "us-ascii" || low == "ascii";
+  return known ? std::string() : declared;
+}
+
 /// What inputs have of the elements around them.
 struct Inherited {
   std::string colorspace, fileprefix, geomprefix;
@@ -41,6 +57,7 @@ public:
     Document document;
     document.root.category = "materialx";
     file(text, top_, document.root, {});
+    if (!hasError(wrong_)) namesAlike(document.root, true);
     if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
     document.files = std::move(files_);
     document.said = std::move(wrong_);
@@ -49,6 +66,7 @@ public:
 
 private:
   void file(std::string_view text, const std::string& path, Element& into, const Inherited& around);
+  void namesAlike(Element& scope, bool top);
   void elements(pugi::xml_node parent, Element& into, const Inherited& around, size_t depth);
   void include(pugi::xml_node node, Element& into, const Inherited& around);
   std::optional<std::string> inMemory(const std::string& folder, const std::string& href) const;
@@ -100,6 +118,7 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
   const size_t outer_counted = std::exchange(counted_, 0);
   const size_t outer_start = std::exchange(start_, 0);
   const uint32_t outer_line = std::exchange(line_, 1);
+  const std::string encoding = foreignEncoding(text);
   pugi::xml_document xml;
   // No entities beyond XML's own five are known to the parser, and a document type is an error below.
   constexpr unsigned kFlags = pugi::parse_cdata | pugi::parse_escapes | pugi::parse_eol |
@@ -107,7 +126,10 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
   const pugi::xml_parse_result parsed =
       xml.load_buffer(text.data(), text.size(), kFlags, pugi::encoding_utf8);
   const pugi::xml_node root = xml.document_element();
-  if (!parsed) {
+  if (!encoding.empty()) {
+    error("xml-encoding", 0, fmt::format("the document is in the encoding {}", quote(encoding)),
+          "a document is UTF-8: convert it, or take the declaration away if it is UTF-8 nonetheless");
+  } else if (!parsed) {
     error("xml-syntax", parsed.offset, fmt::format("this is no XML: {}", parsed.description()));
   } else if (const pugi::xml_node type =
                  xml.find_child([](pugi::xml_node n) { return n.type() == pugi::node_doctype; })) {
@@ -190,6 +212,32 @@ void XmlReader::handDown(Element& element, const Inherited& around) const {
       prefixed += (prefixed.empty() ? "" : ", ") + around.geomprefix + name;
     element.set(attribute, std::move(prefixed));
   }
+}
+
+/// Elements of one kind and one name in one scope: the second of them is an error, but for a file that is
+/// included twice, of which the first counts. `top`: definitions are compared by who reads them alone.
+void XmlReader::namesAlike(Element& scope, bool top) {
+  std::map<std::pair<std::string_view, std::string_view>, const Element*> known;
+  std::vector<bool> again(scope.children.size());
+  for (size_t i = 0; i < scope.children.size(); ++i) {
+    Element& child = scope.children[i];
+    if (!child.children.empty()) namesAlike(child, false);
+    if (child.name().empty() || (top && !includes_)) continue;
+    const std::string_view kind = isNodeElement(child) ? std::string_view("node") : child.category;
+    const auto [it, fresh] = known.try_emplace({kind, child.name()}, &child);
+    if (fresh) continue;
+    again[i] = it->second->place == child.place;
+    if (again[i]) continue;
+    addBounded(wrong_, {"duplicate-name",
+                        Severity::Error,
+                        child.place,
+                        fmt::format("the {} {} is there already", it->second->category, quote(child.name())),
+                        fmt::format("it stands in {}:{}: names are given once", it->second->place.file,
+                                    it->second->place.line),
+                        {}});
+  }
+  size_t i = 0;
+  std::erase_if(scope.children, [&](const Element&) { return again[i++]; });
 }
 
 void XmlReader::elements(pugi::xml_node parent, Element& into, const Inherited& around, size_t depth) {
