@@ -25,6 +25,12 @@ namespace {
 constexpr size_t kMostAliases = 64;
 constexpr size_t kDeepestInheritance = 16;
 
+/// Whether two types are said and are one in a graph: a color3 is a vector3.
+bool isOneHere(std::string_view a, std::string_view b) {
+  if (a == b || a.empty() || b.empty()) return true;
+  return typeOf(a) && typeOf(a) == typeOf(b);
+}
+
 }  // namespace
 
 std::string graphName(std::string_view name) {
@@ -233,12 +239,71 @@ void Patterns::demand(const Element& nodegraph, std::string_view output, const E
 }
 
 void Patterns::demandAll() {
-  for (const Definition& one : definitions_) {
-    if (one.model || one.graph == nullptr) continue;
-    for (const Element& port : one.nodedef->children) {
-      if (port.category == "output") demand(*one.graph, port.name(), *one.nodedef);
+  std::set<std::string_view> bases;
+  for (const Element* document : documents_) {
+    for (const Element& child : document->children) {
+      if (child.category == "nodedef") bases.insert(child.get("inherit"));
     }
   }
+  for (const Definition& one : definitions_) {
+    if (one.model) continue;
+    if (one.graph == nullptr) {
+      if (!bases.contains(one.nodedef->name())) withoutGraph(*one.nodedef, *one.nodedef);
+      continue;
+    }
+    for (const Element& port : one.nodedef->children) {
+      if (port.category != "output") continue;
+      checkDeclared(*one.nodedef, *one.graph, port.name());
+      demand(*one.graph, port.name(), *one.nodedef);
+    }
+  }
+}
+
+void Patterns::withoutGraph(const Element& at, const Element& nodedef) {
+  error(at, "no-graph", fmt::format("the definition {} has no nodegraph", quote(nodedef.name())),
+        "code in a shading language is not read: give it a nodegraph, or a node file by --nodes");
+}
+
+/// Whether an output of a definition's nodegraph is of the type that the definition says.
+void Patterns::checkDeclared(const Element& nodedef, const Element& graph, std::string_view name) {
+  const Element* port = nodedef.child("output", name);
+  const Element* output = graph.child("output", name);
+  if (port == nullptr || output == nullptr || isOneHere(port->get("type"), output->get("type"))) return;
+  error(*output, "wrong-type",
+        fmt::format("the output {} is of the type {}", quote(name), quote(output->get("type"))),
+        fmt::format("its definition {} in {}:{} says {}", quote(nodedef.name()), port->place.file,
+                    port->place.line, quote(port->get("type"))));
+}
+
+/// The type of what a port is connected to; empty where that is not said.
+std::string_view Patterns::givenType(const Scope& scope, const Element& port) const {
+  if (const std::string* interface = port.find("interfacename")) {
+    const Element* input = scope.input(*interface);
+    return input == nullptr ? std::string_view() : input->get("type");
+  }
+  const Element* node = upstream(scope, port);
+  const Element* gives = nodegraph(scope, port);
+  if (gives == nullptr && node != nullptr) gives = definitionOf(*node);
+  if (gives == nullptr) {
+    const std::string_view type = node == nullptr ? std::string_view() : node->get("type");
+    return type == "multioutput" ? std::string_view() : type;
+  }
+  for (const Element& output : gives->children) {
+    const bool wanted = port.get("output").empty() || output.name() == port.get("output");
+    if (output.category == "output" && wanted) return output.get("type");
+  }
+  return {};
+}
+
+/// Whether an output is of the type of what it is connected to.
+void Patterns::checkOutput(const Scope& scope, const Element& output) {
+  if (output.category != "output" || !output.get("channels").empty()) return;
+  const std::string_view given = givenType(scope, output);
+  if (isOneHere(output.get("type"), given)) return;
+  error(output, "wrong-type",
+        fmt::format("the output {} is of the type {}, and what it is connected to is {}",
+                    quote(output.name()), quote(output.get("type")), quote(given)),
+        "a node \"convert\" or \"extract\" between them makes one of the other");
 }
 
 void Patterns::output(Scope& scope, std::string_view name, const Element& at) {
@@ -404,6 +469,7 @@ std::optional<Source> Patterns::closure(Scope& scope, const Element& node, std::
 std::optional<Source> Patterns::connected(Scope& scope, const Element& input, std::string_view part) {
   Scope* const outer = std::exchange(now_, &scope);
   std::optional<Source> source;
+  checkOutput(scope, input);
   if (const std::string* name = input.find("interfacename")) {
     // Beside the graphs an input may stand, too.
     const Element* beside = scope.interface_ == nullptr ? scope.owner_->child("input", *name) : nullptr;
@@ -471,6 +537,7 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
   }
   const auto behind = [&](const Element& next, std::string swizzle) -> std::optional<Source> {
     std::optional<Source> source;
+    checkOutput(scope, next);
     if (next.find("interfacename") != nullptr) {
       source = connected(scope, next, referred.part);
     } else if (isConnected(next)) {
@@ -514,6 +581,7 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
     output = graphName(only);
     if (!referred.part.empty()) output += "_" + referred.part;
     const Element* graph = interface == &element ? &element : definition(*interface)->graph;
+    if (graph != nullptr && graph != interface) checkDeclared(*interface, *graph, only);
     if (graph != nullptr) demand(*graph, only, input);
   } else {
     const std::vector<const lang::NodeDecl*> forms = library_.forms(libraryName(element));
@@ -553,10 +621,7 @@ void Patterns::node(Scope& scope, const Element& element) {
     instance(scope, element, element, made);
   } else if (const Element* nodedef = definitionFor(scope, element)) {
     const Element* graph = definition(*nodedef)->graph;
-    if (graph == nullptr)
-      return error(element, "no-graph",
-                   fmt::format("the definition {} has no nodegraph", quote(nodedef->name())),
-                   "code in a shading language is not read: give it a nodegraph, or a node file by --nodes");
+    if (graph == nullptr) return withoutGraph(element, *nodedef);
     made.type = group(*graph);
     instance(scope, element, *nodedef, made);
   } else {

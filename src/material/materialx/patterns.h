@@ -166,6 +166,10 @@ private:
   bool isOfInstances(const Scope& scope, const Element& input) const;
   bool hasTiles(Scope& scope, const Element& input);
   bool goesToTiles(const Element& owner, std::string_view name) const;
+  void withoutGraph(const Element& at, const Element& nodedef);
+  void checkDeclared(const Element& nodedef, const Element& graph, std::string_view name);
+  std::string_view givenType(const Scope& scope, const Element& port) const;
+  void checkOutput(const Scope& scope, const Element& output);
   bool isOfKind(const Element& input, const Referred& referred);
   struct OfGeometry {
     std::string node, space;
