@@ -82,8 +82,8 @@ void runWritten(Case& c, const std::string& name) {
   const exchange::Written second = writtenOf(again);
   EXPECT_EQ(second.text, first.text);
   EXPECT_EQ(allOf(second.said), "");
-  // glTF's own images are nodes of the document.
-  if (!name.ends_with(".mtlx")) return;
+  // glTF's own images are nodes of the document, and an output of a nodegraph has a surface once written.
+  if (!name.ends_with(".mtlx") || c.input().find("surfaceshader") == std::string::npos) return;
   EXPECT_EQ(graphOf(again), graphOf(document));
 }
 

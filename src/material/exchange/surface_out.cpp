@@ -356,11 +356,17 @@ Source Translation::packed(const Source& texel, int channel) {
     if (color) return channel == 4 ? value : component(value);
     return channel == 4 ? graph::widened(value, ir::Type::Vec3) : value;
   }
-  if (node != nullptr && node->type == "texel_of<vec4>") {
-    Source value = *input("value");
-    if (channel < 4) return component(value);
-    value.swizzle = graph::swizzleBehind(value.swizzle, "xyz");
-    return value;
+  constexpr std::string_view kOf = "texel_of<";
+  if (node != nullptr && node->type.starts_with(kOf)) {
+    // MaterialX has a node for it, which keeps the value's type where the document is read again.
+    const std::string type = node->type.substr(kOf.size(), node->type.size() - kOf.size() - 1);
+    const Source value = *input("value");
+    const std::string id = node->id;
+    const bool vector = type == "vec2" || type == "vec4";
+    if (channel == 4) return add(id, fmt::format("convert<vec3, {}>", type), {{"in", value}});
+    if (channel == 3 && type != "vec4") return one;
+    if (channel == 2 && type == "vec2") return {graph::Literal{ir::Type::Float, {0}}, {}};
+    return vector ? component(value) : add(id, fmt::format("convert<float, {}>", type), {{"in", value}});
   }
   Source value = texel;
   value.swizzle = graph::swizzleBehind(value.swizzle, channel == 4 ? "xyz" : std::string(1, "xyzw"[channel]));
