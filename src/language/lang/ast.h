@@ -65,8 +65,9 @@ struct Expr {
   uint32_t slot = 0;
   Span span;
   double number = 0;
-  std::string_view name;     ///< Name, Member, Call, Operation and Construct: as written
-  std::string_view variant;  ///< Call: empty for the reference body
+  std::string_view name;         ///< Name, Member, Call, Operation and Construct: as written
+  std::string_view variant;      ///< Call: empty for the reference body
+  std::vector<ir::Type> form{};  ///< Call: the types behind the name, which tell a form from others
   const Builtin* builtin = nullptr;
   const NodeDecl* node = nullptr;
   const ConstDecl* constant = nullptr;

@@ -7,6 +7,7 @@
 #include "lang/builtins.h"
 #include "lang/checker.h"
 #include "lang/composites.h"
+#include "lang/forms.h"
 #include "lang/parser.h"
 #include "lang/suggest.h"
 
@@ -544,9 +545,14 @@ bool Checker::function(Expr& expr) {
 }
 
 bool Checker::call(Expr& expr) {
-  // What is built in is meant in bodies; a node of such a name is for graphs.
-  if (findFunction(expr.name) != nullptr) return function(expr);
+  // What is built in is meant in bodies; a node of such a name is for graphs, and meant where types stand
+  // behind it.
+  if (expr.form.empty() && findFunction(expr.name) != nullptr) return function(expr);
   const auto found = around_.find(expr.name, true);
+  if (!expr.form.empty() && !(found && found->family)) {
+    for (ExprPtr& arg : expr.args) expression(arg);
+    return noForm(expr);
+  }
   if (!found || found->kind != DeclKind::Node) {
     for (ExprPtr& arg : expr.args) expression(arg);
     if (found || find(expr.name) != nullptr) {
@@ -622,8 +628,22 @@ std::optional<size_t> fitOf(const NodeDecl& form, const Expr& call) {
   return integers;
 }
 
+/// Those of a node's forms that the call fits best.
+std::vector<const NodeDecl*> fitting(const std::vector<const NodeDecl*>& forms, const Expr& call) {
+  std::vector<const NodeDecl*> best;
+  size_t least = SIZE_MAX;
+  for (const NodeDecl* form : forms) {
+    const std::optional<size_t> integers = fitOf(*form, call);
+    if (!integers || *integers > least) continue;
+    if (*integers < least) best.clear();
+    least = *integers;
+    best.push_back(form);
+  }
+  return best;
+}
+
 std::string signatureOf(const NodeDecl& form) {
-  std::string text = std::string(form.family) + "(";
+  std::string text = std::string(form.name) + "(";
   for (const Param& param : form.params)
     text += fmt::format("{}{} {}", text.back() == '(' ? "" : ", ", typeName(param.type), param.name);
   return text + ")";
@@ -631,22 +651,30 @@ std::string signatureOf(const NodeDecl& form) {
 
 }  // namespace
 
+/// Types stand behind a name that has no form of these, and perhaps none at all.
+bool Checker::noForm(const Expr& expr) {
+  const std::string called = formName(expr.name, expr.form);
+  std::vector<std::string_view> candidates = around_.names(DeclKind::Node);
+  for (const Builtin& builtin : builtins()) {
+    if (!builtin.is_operator) candidates.push_back(builtin.name);
+  }
+  std::sort(candidates.begin(), candidates.end());
+  reporter_.error("unknown-function", spanOf(expr.name), fmt::format("there is no function '{}'", called),
+                  didYouMean(called, candidates));
+  return false;
+}
+
 /// Of the nodes of one name, the one whose parameters have the types of the arguments.
 bool Checker::callForm(Expr& expr) {
   if (!checkAll(expr.args)) return false;
   for (const ExprPtr& arg : expr.args) {
     if (arg->kind == Expr::Kind::Call && !fits(*arg, arg->type, "an argument")) return false;
   }
-  const std::vector<const NodeDecl*> forms = around_.forms(expr.name);
-  std::vector<const NodeDecl*> best;
-  size_t least = SIZE_MAX;
-  for (const NodeDecl* form : forms) {
-    const std::optional<size_t> integers = fitOf(*form, expr);
-    if (!integers || *integers > least) continue;
-    if (*integers < least) best.clear();
-    least = *integers;
-    best.push_back(form);
-  }
+  const std::string called = formName(expr.name, expr.form);
+  const std::vector<const NodeDecl*> forms = around_.forms(called);
+  if (forms.empty() && !expr.form.empty()) return noForm(expr);
+  const std::vector<const NodeDecl*> best =
+      forms.size() == 1 && !expr.form.empty() ? forms : fitting(forms, expr);
   if (best.size() != 1) {
     constexpr size_t kShown = 6;
     const std::vector<const NodeDecl*>& candidates = best.empty() ? forms : best;
@@ -654,11 +682,12 @@ bool Checker::callForm(Expr& expr) {
     for (size_t i = 0; i < std::min(candidates.size(), kShown); ++i)
       all += (i == 0 ? "" : ", ") + signatureOf(*candidates[i]);
     if (candidates.size() > kShown) all += fmt::format(" and {} more", candidates.size() - kShown);
-    reporter_.error(
-        best.empty() ? "wrong-type" : "ambiguous-call", expr.span,
-        fmt::format("{} of '{}' takes {}", best.empty() ? "no form" : "more than one form", expr.name,
-                    expr.args.empty() ? "nothing" : list(expr.args)),
-        all.empty() ? "" : fmt::format("there {} {}", candidates.size() == 1 ? "is" : "are", all));
+    reporter_.error(best.empty() ? "wrong-type" : "ambiguous-call", expr.span,
+                    fmt::format("{} of '{}' takes {}", best.empty() ? "no form" : "more than one form",
+                                called, expr.args.empty() ? "nothing" : list(expr.args)),
+                    all.empty()    ? ""
+                    : best.empty() ? fmt::format("there {} {}", candidates.size() == 1 ? "is" : "are", all)
+                                   : "name one: " + all);
     return false;
   }
   const Surroundings::Found found = around_.form(best[0]->name);

@@ -178,6 +178,7 @@ private:
   bool call(Expr& expr);
   bool function(Expr& expr);
   bool callForm(Expr& expr);
+  bool noForm(const Expr& expr);
   bool callNode(Expr& expr, const Surroundings::Found& found);
   bool arguments(Expr& expr, bool checked);
   bool checkAll(std::vector<ExprPtr>& args);

@@ -109,4 +109,17 @@ std::vector<Form> formsOf(Reporter& reporter, std::string_view name, uint32_t af
   return forms;
 }
 
+std::string formName(std::string_view name, const std::vector<ir::Type>& types) {
+  std::string text(name);
+  for (size_t i = 0; i < types.size(); ++i)
+    text += fmt::format("{}{}", i == 0 ? "<" : ", ", ir::typeName(types[i]));
+  return types.empty() ? text : text + ">";
+}
+
+bool beginsForm(std::string_view form, std::string_view beginning) {
+  if (!beginning.ends_with('>')) return false;
+  beginning.remove_suffix(1);
+  return form.size() > beginning.size() && form.starts_with(beginning) && form[beginning.size()] == ',';
+}
+
 }  // namespace lacquer::lang

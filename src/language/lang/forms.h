@@ -24,4 +24,9 @@ struct Form {
 /// `after_name`: where the name ends. Errors go to the reporter.
 std::vector<Form> formsOf(Reporter& reporter, std::string_view name, uint32_t after_name, uint32_t end);
 
+/// "convert<vec3, float>": a node's name with types, or the first of them, behind it.
+std::string formName(std::string_view name, const std::vector<ir::Type>& types);
+/// Whether the types of one name are the first of those of a form: "convert<vec3>" of "convert<vec3, float>".
+bool beginsForm(std::string_view form, std::string_view beginning);
+
 }  // namespace lacquer::lang

@@ -29,19 +29,6 @@ namespace {
 constexpr size_t kLongestChain = 256;
 constexpr size_t kLargestFile = size_t{64} << 20U;
 
-std::string_view kindName(DeclKind kind) {
-  return std::find_if(std::begin(kDeclWords), std::end(kDeclWords),
-                      [&](const DeclWord& row) { return row.kind == kind; })
-      ->name;
-}
-
-/// "a node", "an extension".
-std::string aKind(DeclKind kind) {
-  const std::string_view name = kindName(kind);
-  const bool vowel = std::string_view("aeiou").find(name[0]) != std::string_view::npos;
-  return fmt::format("{} {}", vowel ? "an" : "a", name);
-}
-
 /// Constants, nodes and templates share one namespace; each other kind has its own.
 size_t spaceOf(DeclKind kind) {
   return kind <= DeclKind::Template ? 0 : static_cast<size_t>(kind) - static_cast<size_t>(DeclKind::Template);
@@ -393,12 +380,16 @@ bool Library::Impl::indexForms(const ScannedDecl& decl, std::vector<Form> forms,
 }
 
 std::vector<const NodeDecl*> Library::Impl::forms(std::string_view family) {
-  wake(family, false);
   std::vector<Entry*> all;
-  if (const auto found = families_.find(family); found != families_.end())
-    all = found->second;
-  else if (Entry* one = find(DeclKind::Node, family))
+  if (Entry* one = find(DeclKind::Node, family, here())) {
     all = {one};
+  } else if (const auto found = families_.find(family.substr(0, family.find('<')));
+             found != families_.end()) {
+    for (Entry* entry : found->second) {
+      const std::string_view form = entry->plain.empty() ? entry->key : entry->plain;
+      if (family == entry->said || family == form || beginsForm(form, family)) all.push_back(entry);
+    }
+  }
   std::vector<const NodeDecl*> heads;
   for (Entry* entry : all) {
     // A form that another vendor has as well is its vendor's alone.

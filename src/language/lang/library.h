@@ -43,10 +43,11 @@ public:
   // name, it means to each its own, and to all others "EXTENSION.name". `vendor`: in whose file it is said,
   // as Origin has it.
   Result<const ConstDecl*> constant(std::string_view name, std::string_view vendor = {}) const;
-  /// A node, of several under one name by its types: "add<vec3>".
+  /// A node, of several under one name by all of its types: "add<vec3>".
   Result<const NodeDecl*> node(std::string_view name, std::string_view vendor = {}) const;
   /// The nodes of a name: one, or its forms, or none. Each has its parameters and results with their types
   /// and whether there is a default (`default_syntax`); all else is there once node() has checked it.
+  /// Behind the name may stand the first of the types that tell its forms apart: "convert<vec3>".
   std::vector<const NodeDecl*> forms(std::string_view family) const;
   Result<const TemplateDecl*> template_(std::string_view name) const;
   /// As they are written, also where something in them is wrong: for the names that others may use. Null

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lang/parser.h"
+#include "lang/suggest.h"
 #include "lang/words.h"
 
 namespace lacquer::lang {
@@ -175,15 +176,46 @@ ExprPtr Parser::primary() {
   }
   if (isValueName()) {
     ++at_;
+    std::vector<ir::Type> types;
+    if (!form(types)) return nullptr;
     if (is("(") || is("::")) {
       names_called_.push_back(first.text);
-      return call(first.text, Expr::Kind::Call);
+      ExprPtr called = call(first.text, Expr::Kind::Call);
+      if (called) {
+        called->span = since(begin);
+        called->form = std::move(types);
+      }
+      return called;
     }
     names_read_.push_back(first.text);
     return make(Expr::Kind::Name, begin, first.text);
   }
   syntax("expected an expression", first.is("inf") ? "'inf' is a bound of a range, not a number" : "");
   return nullptr;
+}
+
+/// Behind a name: whether types in angle brackets follow that name a form of a node, and no comparison.
+bool Parser::namesForm() const {
+  if (!is("<")) return false;
+  bool typed = false;
+  size_t at = 1;
+  for (;; at += 2) {
+    if (token(at).kind != Token::Kind::Name) return false;
+    typed = typed || typeOf(token(at).text);
+    if (token(at + 1).is(">")) break;
+    if (!token(at + 1).is(",")) return false;
+  }
+  if (!token(at + 2).is("(") && !token(at + 2).is("::")) return false;
+  return typed || (at == 1 && !typeElsewhere(token(at).text).empty());
+}
+
+bool Parser::form(std::vector<ir::Type>& types) {
+  if (!namesForm()) return true;
+  do {
+    ++at_;  // '<' or ','
+    if (!type(types.emplace_back(), "a type")) return false;
+  } while (is(","));
+  return expect(">", "the types");
 }
 
 ExprPtr Parser::call(std::string_view name, Expr::Kind kind) {

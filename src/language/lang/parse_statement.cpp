@@ -77,8 +77,8 @@ bool Parser::statement(std::vector<Statement>& statements) {
 bool Parser::local(Statement& out) {
   out.kind = Statement::Kind::Let;
   out.inferred = accept("let");
-  if (!out.inferred && !type(out.type, "a type")) return false;
-  if (!name(out.name, out.name_span, "a name for the local")) return false;
+  if (!out.inferred && !(type(out.type, "a type") && single())) return false;
+  if (!name(out.name, out.name_span, "a name for the local") || !single()) return false;
   if (!is("=")) {
     return syntax(fmt::format("expected '=' and the value of '{}'", out.name),
                   "every local has a value from the start");

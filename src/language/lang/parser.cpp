@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "lang/suggest.h"
 #include "lang/words.h"
 
 namespace lacquer::lang {
@@ -123,6 +124,15 @@ bool Parser::syntax(std::string message, std::string help) {
   return false;
 }
 
+/// False, and an error, where a name or a type is followed by the number of an array's elements.
+bool Parser::single() {
+  if (!is("[")) return true;
+  return syntax(
+      "there are no arrays",
+      "take a vector or a matrix, whose parts are `v[i]` and `m[i]`, or a name for each value and `?:`; "
+      "a loop carries locals from round to round");
+}
+
 bool Parser::tooDeep() {
   if (!aborted_) {
     reporter_.error("too-deep", token().span, fmt::format("this nests deeper than {} levels", kDeepest),
@@ -172,10 +182,13 @@ bool Parser::type(ir::Type& out, std::string_view what) {
   if (!isType()) {
     const bool unknown = token().kind == Token::Kind::Name && !isReserved(token().text);
     if (unknown) {
-      reporter_.error(
-          "unknown-type", token().span, fmt::format("there is no type '{}'", token().text),
-          "types are bool, int, uint and float, their vectors (bvec2, ivec2, uvec2, vec2 and so on), mat3, "
-          "mat4, sampler2D, samplerCube, sampler2DShadow, sampler2DArray and sampler3D");
+      const std::string_view here = typeElsewhere(token().text);
+      reporter_.error("unknown-type", token().span, fmt::format("there is no type '{}'", token().text),
+                      !here.empty()
+                          ? fmt::format("it is called {} here", here)
+                          : "types are bool, int, uint and float, their vectors (bvec2, ivec2, uvec2, vec2 "
+                            "and so on), mat3, "
+                            "mat4, sampler2D, samplerCube, sampler2DShadow, sampler2DArray and sampler3D");
       return false;
     }
     return syntax(fmt::format("expected {}", what));
@@ -217,7 +230,8 @@ ConstDecl Parser::constant() {
   ConstDecl decl;
   docs(decl.doc, nullptr);
   accept("const");
-  if (!type(decl.type, "the constant's type") || !name(decl.name, decl.span, "the constant's name"))
+  if (!type(decl.type, "the constant's type") || !single() ||
+      !name(decl.name, decl.span, "the constant's name") || !single())
     return decl;
   if (!expect("=", "the constant's name")) return decl;
   decl.syntax = expression();
@@ -264,9 +278,10 @@ RangeSyntax Parser::range() {
 Param Parser::param(bool named) {
   Param param;
   const uint32_t begin = token().span.offset;
-  if (!type(param.type, "a type")) return param;
+  if (!type(param.type, "a type") || !single()) return param;
   param.span = since(begin);
   if (named && !name(param.name, param.span, "a name")) return param;
+  if (!single()) param.name = {};
   if (is("in")) {
     param.range_syntax = range();
     if (!param.range_syntax) param.name = {};

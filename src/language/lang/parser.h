@@ -103,6 +103,8 @@ private:
   ExprPtr postfix();
   ExprPtr primary();
   ExprPtr call(std::string_view name, Expr::Kind kind);
+  bool namesForm() const;
+  bool form(std::vector<ir::Type>& types);
   ExprPtr make(Expr::Kind kind, uint32_t begin, std::string_view name, std::vector<ExprPtr> args = {});
 
   // tokens
@@ -121,6 +123,7 @@ private:
   /// From a token's offset to the last token consumed.
   Span since(uint32_t begin) const;
   bool syntax(std::string message, std::string help = {});
+  bool single();
   bool tooDeep();
   bool unclosed(Span open);
   bool abort();

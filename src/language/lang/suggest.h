@@ -10,8 +10,12 @@ namespace lacquer::lang {
 /// The nearest candidate, the first of several; empty when none is near enough to be meant.
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates);
 
-/// "did you mean 'x'?", or `otherwise`.
+/// "did you mean 'x'?", or `otherwise`. Of a name with types, "add<vec4>", it has the forms among the
+/// candidates.
 std::string didYouMean(std::string_view name, std::span<const std::string_view> candidates,
                        std::string otherwise = {});
+
+/// What a type of MaterialX, OSL or HLSL is called here: "vec3" for "color3". Empty for other words.
+std::string_view typeElsewhere(std::string_view name);
 
 }  // namespace lacquer::lang

@@ -1,6 +1,7 @@
 // The words of the language, in one place.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "lang/library.h"
@@ -21,6 +22,20 @@ inline constexpr DeclWord kDeclWords[] = {
     {"profile", DeclKind::Profile, "profile"},       {"lod", DeclKind::Lod, "lod"},
     {"layers", DeclKind::Layers, "order of layers"}, {"switch", DeclKind::Switch, "switch"},
 };
+
+/// "node", "extension".
+constexpr std::string_view kindName(DeclKind kind) {
+  for (const DeclWord& row : kDeclWords) {
+    if (row.kind == kind) return row.name;
+  }
+  return {};
+}
+/// "a node", "an extension".
+inline std::string aKind(DeclKind kind) {
+  const std::string_view name = kindName(kind);
+  const bool vowel = std::string_view("aeiou").find(name[0]) != std::string_view::npos;
+  return std::string(vowel ? "an " : "a ") + std::string(name);
+}
 
 /// Values, which cannot be names. The words of statements and declarations can, where only a name can stand.
 inline constexpr std::string_view kValueWords[] = {"true", "false", "inf"};

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lang/checker.h"
+#include "lang/forms.h"
 #include "lang/parser.h"
 #include "lang/reporter.h"
 #include "lang/suggest.h"
@@ -434,13 +435,14 @@ Value Compiler::reference(const Expr& expr) {
 Value Compiler::call(const Expr& expr) {
   Value out;
   out.kind = Value::Kind::Call;
-  const Result<const lang::NodeDecl*> node = library_.node(expr.name, names_.vendor());
+  const std::string name = lang::formName(expr.name, expr.form);
+  const Result<const lang::NodeDecl*> node = library_.node(name, names_.vendor());
   if (!node) {
-    if (library_.has(lang::DeclKind::Node, expr.name, names_.vendor())) {
+    if (library_.has(lang::DeclKind::Node, name, names_.vendor())) {
       wrong_.insert(wrong_.end(), node.error().begin(), node.error().end());
     } else {
-      error(expr.span, "unknown-node", fmt::format("there is no node '{}'", expr.name),
-            lang::didYouMean(expr.name, library_.names(lang::DeclKind::Node)));
+      error(expr.span, "unknown-node", fmt::format("there is no node '{}'", name),
+            lang::didYouMean(name, library_.names(lang::DeclKind::Node)));
     }
     return {};
   }
