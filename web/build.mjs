@@ -24,6 +24,19 @@ function embedded(file) {
   return { name: file.slice(file.lastIndexOf('/') + 1), bytes: readFileSync(file).toString('base64'), resources };
 }
 
+/** An example as it stands in the package: it depends on the version that it is of. */
+function copyExample(example, place) {
+  mkdirSync(place, { recursive: true });
+  const from = join(here, 'examples', example);
+  const { name, version } = JSON.parse(readFileSync(join(here, 'package/package.json'), 'utf8'));
+  for (const entry of readdirSync(from, { withFileTypes: true })) {
+    if (entry.isFile() && entry.name !== 'package-lock.json') copyFileSync(join(from, entry.name), join(place, entry.name));
+  }
+  const description = JSON.parse(readFileSync(join(from, 'package.json'), 'utf8'));
+  description.dependencies[name] = `^${version}`;
+  writeFileSync(join(place, 'package.json'), `${JSON.stringify(description, null, 2)}\n`);
+}
+
 async function makePackage() {
   const folder = join(output, 'package');
   mkdirSync(folder, { recursive: true });
@@ -38,6 +51,7 @@ async function makePackage() {
   copyFileSync(wasm, join(folder, 'lacquer.wasm'));
   writeFileSync(join(folder, 'packed.js'), `export default '${packed}';\n`);
   for (const file of ['package.json', 'README.md']) copyFileSync(join(here, 'package', file), join(folder, file));
+  for (const example of ['webgl2', 'webgpu']) copyExample(example, join(folder, 'examples', example));
   copyFileSync(join(here, '../LICENSE'), join(folder, 'LICENSE'));
 }
 

@@ -27,7 +27,7 @@ function installed(example, name = example) {
   rmSync(place, { recursive: true, force: true });
   cpSync(join(root, 'web/examples', example), place, { recursive: true, filter: (name) => !name.includes('node_modules') });
   const description = JSON.parse(readFileSync(join(place, 'package.json'), 'utf8'));
-  description.dependencies.lacquer = `file:${join(output, 'package')}`;
+  description.dependencies['@lacquer-shaders/lacquer'] = `file:${join(output, 'package')}`;
   writeFileSync(join(place, 'package.json'), JSON.stringify(description));
   execFileSync('npm', ['install', '--offline', '--no-audit', '--no-fund', '--install-links'], { cwd: place, stdio: 'pipe' });
   return place;
@@ -233,11 +233,22 @@ test('in a Vite project its WebGPU example draws, served and built', async (t) =
   await withWebGpu(t, place, (how) => inVite(vite, place, async (page) => assertPicture(await keptColors(page)), how));
 });
 
+test('its tarball has a README, examples of this version and the module once', () => {
+  const listed = JSON.parse(execFileSync('npm', ['pack', '--dry-run', '--json', '--offline'], { cwd: join(output, 'package'), encoding: 'utf8' }));
+  const [{ name, version, files }] = listed;
+  const paths = files.map(({ path }) => path);
+  assert.equal(name, '@lacquer-shaders/lacquer');
+  assert.deepEqual(paths.filter((path) => path.endsWith('.wasm')), ['lacquer.wasm']);
+  for (const path of ['README.md', 'LICENSE', 'index.d.ts', 'examples/webgl2/index.html', 'examples/webgpu/main.js']) assert.ok(paths.includes(path), path);
+  const example = JSON.parse(readFileSync(join(output, 'package/examples/webgl2/package.json'), 'utf8'));
+  assert.deepEqual(example.dependencies, { [name]: `^${version}` });
+});
+
 test('its types hold what a program in TypeScript says with them', () => {
   const place = installed('webgl2', 'typed');
   const program = (last) => `
-    import { load, LacquerError, type Message, type Shader } from 'lacquer';
-    import { geometry, openGltf, type Drawable } from 'lacquer/gltf';
+    import { load, LacquerError, type Message, type Shader } from '@lacquer-shaders/lacquer';
+    import { geometry, openGltf, type Drawable } from '@lacquer-shaders/lacquer/gltf';
     const said: Message[] = [];
     export async function paint(bytes: Uint8Array): Promise<Shader> {
       const lacquer = await load();

@@ -1,7 +1,7 @@
 // A glTF file in WebGL 2 with shaders that are made in the page: `npm install`, then any static server, then
 // index.html?file.glb. What has a material is drawn with it, seen from +z, under one lamp.
-import { load } from 'lacquer';
-import { bounds, fetchGltf, geometry, image, sourceOf } from 'lacquer/gltf';
+import { load } from '@lacquer-shaders/lacquer';
+import { bounds, fetchGltf, geometry, image, sourceOf } from '@lacquer-shaders/lacquer/gltf';
 
 const canvas = document.querySelector('canvas');
 const gl = canvas.getContext('webgl2');
