@@ -81,7 +81,17 @@ Element* elementAt(Element& root, std::string_view pointer) {
   return found;
 }
 
-void putNumber(Element& input, const graph::Parameter& parameter) {
+/// The unit of the document that a number has, where the definition of its node says one.
+std::string_view unitAt(const Element& root, const Element& node, std::string_view input) {
+  for (const Element& child : root.children) {
+    if (child.category != "nodedef" || child.get("node") != node.category) continue;
+    const Element* port = child.child("input", input);
+    if (port != nullptr && !port->get("unit").empty()) return materialx::baseUnit(port->get("unittype"));
+  }
+  return {};
+}
+
+void putNumber(Element& input, const graph::Parameter& parameter, std::string_view unit) {
   const std::vector<double> numbers = parameter.numbers();
   if (ir::isMatrix(parameter.type)) {
     if (materialx::numbersOf(input.get("value")) != numbers)
@@ -102,6 +112,7 @@ void putNumber(Element& input, const graph::Parameter& parameter) {
   std::copy(numbers.begin(), numbers.end(), value.begin());
   std::erase_if(input.attributes,
                 [](const auto& had) { return had.first == "unit" || had.first == "unittype"; });
+  if (!unit.empty()) input.set("unit", std::string(unit));
   if (input.get("type").starts_with("color")) input.set("colorspace", "lin_rec709");
   input.set("value", valueText(one ? *type : parameter.type, value));
 }
@@ -112,7 +123,9 @@ void putNumbers(Element& root, const graph::Graph& edited) {
   for (const graph::Parameter& parameter : edited.parameters) {
     if (parameter.pointer.empty()) continue;
     Element* input = elementAt(root, parameter.pointer);
-    if (input != nullptr && input->find("value") != nullptr) putNumber(*input, parameter);
+    if (input == nullptr || input->find("value") == nullptr) continue;
+    const Element* node = elementAt(root, parameter.pointer.substr(0, parameter.pointer.rfind('/')));
+    putNumber(*input, parameter, node == nullptr ? std::string_view() : unitAt(root, *node, input->name()));
   }
 }
 

@@ -108,6 +108,12 @@ const Element* Patterns::modelOf(const Element& surface) const {
   return best;
 }
 
+std::string_view Patterns::unitOf(const Element& surface, std::string_view input) const {
+  const Element* model = modelOf(surface);
+  const Element* port = model == nullptr ? nullptr : model->child("input", input);
+  return port == nullptr ? std::string_view() : port->get("unit");
+}
+
 namespace {
 
 /// Whether an input is not there, or a number that is the same in all components.
@@ -175,7 +181,7 @@ std::optional<Source> Patterns::modelNumber(Scope& scope, const Element& element
           fmt::format("it must be {}", quote(port.get("type"))));
     return std::nullopt;
   }
-  const Result<ir::Components> read = valueOf(input, type);
+  const Result<ir::Components> read = valueOf(input, type, port.get("unit"));
   if (!read) {
     for (const Diagnostic& one : read.error()) error(input, one.code, one.message, one.help);
     return std::nullopt;
@@ -203,7 +209,7 @@ std::optional<Source> Patterns::modelNumber(Scope& scope, const Element& element
   }
   // The default is the model's: that of a material would be in the shader of all.
   const Result<ir::Components> by_default =
-      port.find("value") == nullptr ? Result<ir::Components>(value) : valueOf(port, wanted);
+      port.find("value") == nullptr ? Result<ir::Components>(value) : valueOf(port, wanted, port.get("unit"));
   graph::Parameter& made = parameter(scope, element, input, wanted);
   made.value = value;
   made.neutral = by_default.value_or(value);
@@ -240,7 +246,7 @@ void Patterns::modelInputs(Scope& scope, const Element& element, const Element& 
     const std::optional<ir::Type> type = typeOf(port.get("type"));
     if (port.category != "input" || !type || port.find("value") == nullptr) continue;
     if (element.child("input", port.name()) != nullptr) continue;
-    const Result<ir::Components> value = valueOf(port, *type);
+    const Result<ir::Components> value = valueOf(port, *type, port.get("unit"));
     if (value)
       made.inputs.emplace_back(
           graphName(port.name()),

@@ -198,7 +198,7 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
       continue;  // the texture's alone
     } else if (isFallback(input.name()) && samplesFile(element) && !isConnected(input)) {
       // The texture's, too, and so no parameter.
-      const Result<ir::Components> value = valueOf(input, param->type);
+      const Result<ir::Components> value = valueOf(input, param->type, param->hints.unit);
       if (value) source = Source{graph::Literal{param->type, *value}, {}};
     } else if (input.get("type") == "string") {
       // MaterialX's own default is an empty text.
@@ -331,7 +331,7 @@ std::optional<Source> Patterns::literal(Scope& scope, const Element& element, co
   }
   const ir::Type type = typeOf(input.get("type")).value_or(param.type);
   if (ir::isMatrix(type)) return matrix(scope, element, input, type);
-  const Result<ir::Components> value = valueOf(input, type);
+  const Result<ir::Components> value = valueOf(input, type, param.hints.unit);
   if (!value) {
     for (const Diagnostic& one : value.error()) error(input, one.code, one.message, one.help);
     return std::nullopt;

@@ -376,6 +376,7 @@ void Patterns::groupInputs(Scope& scope) {
     } else if (input.find("value") != nullptr) {
       lang::Param param;
       param.type = *type;
+      if (scope.model_) param.hints.unit = input.get("unit");
       made.by_default = literal(scope, *scope.owner_, input, param);
     } else {
       made.by_default = Source{graph::Literal{*type == ir::Type::Int ? ir::Type::Float : *type, {}}, {}};
@@ -666,7 +667,11 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
     } else if (type) {
       lang::Param param;
       param.type = *type;
-      source = literal(scope, element, input, param);
+      // A number without a unit is in the definition's.
+      const bool own = port->get("unit").empty() || !input.get("unit").empty();
+      const Element* said = own ? &input : &made_.emplace_back(input);
+      if (!own) made_.back().set("unit", std::string(port->get("unit")));
+      source = literal(scope, element, *said, param);
     }
     if (source) made.inputs.emplace_back(graphName(input.name()), std::move(*source));
   }

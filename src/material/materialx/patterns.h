@@ -100,6 +100,8 @@ public:
   Alpha alphaOf(const Element& surface);
   /// The model of a surface; null where the document has a definition, or there is none.
   const Element* modelOf(const Element& surface) const;
+  /// The unit of an input of a surface that there is a model for; empty where it says none.
+  std::string_view unitOf(const Element& surface, std::string_view input) const;
   /// A node of the library in a body.
   graph::Source add(Scope& scope, std::string_view name, std::string type, graph::Inputs inputs);
   /// The node of that name among the children of an element; null for none.

@@ -115,7 +115,7 @@ Value Surface::value(std::string_view name, int size, ir::Components by_default,
   }
   if (in->find("value") == nullptr) return value;
   const ir::Type type = typeOf(in->get("type")).value_or(wanted);
-  const Result<ir::Components> read = valueOf(*in, type);
+  const Result<ir::Components> read = valueOf(*in, type, patterns_.unitOf(shader_, name));
   if (!read) {
     said_.insert(said_.end(), read.error().begin(), read.error().end());
     return value;

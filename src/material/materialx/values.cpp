@@ -91,6 +91,7 @@ struct Unit {
 /// MaterialX 1.39, "Units": of distances in metres, of angles in degrees, of times in seconds.
 constexpr Unit kUnits[] = {{"distance", "nanometer", 1e-9},
                            {"distance", "micron", 1e-6},
+                           {"distance", "micrometer", 1e-6},  // as nodes of the library say it
                            {"distance", "millimeter", 1e-3},
                            {"distance", "centimeter", 1e-2},
                            {"distance", "inch", 0.0254},
@@ -104,6 +105,13 @@ constexpr Unit kUnits[] = {{"distance", "nanometer", 1e-9},
                            {"time", "second", 1},
                            {"time", "minute", 60},
                            {"time", "hour", 3600}};
+
+const Unit* unitOf(std::string_view unittype, std::string_view unit) {
+  for (const Unit& row : kUnits) {
+    if (row.name == unit && (unittype.empty() || row.type == unittype)) return &row;
+  }
+  return nullptr;
+}
 
 }  // namespace
 
@@ -141,14 +149,14 @@ ir::Components toLinear(std::string_view name, ir::Components color) {
   return color;
 }
 
-std::optional<double> unitScale(std::string_view unittype, std::string_view unit) {
+std::string_view baseUnit(std::string_view unittype) {
   for (const Unit& row : kUnits) {
-    if (row.name == unit && (unittype.empty() || row.type == unittype)) return row.scale;
+    if (row.type == unittype && row.scale == 1) return row.name;
   }
-  return std::nullopt;
+  return {};
 }
 
-Result<ir::Components> valueOf(const Element& input, ir::Type type) {
+Result<ir::Components> valueOf(const Element& input, ir::Type type, std::string_view port_unit) {
   const std::string_view value = trimmed(input.get("value"));
   const auto wrong = [&](std::string message, std::string help) {
     return fail("wrong-value", input.place, std::move(message), std::move(help));
@@ -174,11 +182,16 @@ Result<ir::Components> valueOf(const Element& input, ir::Type type) {
   if (type == ir::Type::Int && components[0] != std::trunc(components[0]))
     return wrong(what(), "an integer is a whole number");
   if (const std::string* unit = input.find("unit"); unit != nullptr && !unit->empty()) {
-    const std::optional<double> scale = unitScale(input.get("unittype"), *unit);
-    if (!scale)
+    const Unit* given = unitOf(input.get("unittype"), *unit);
+    const Unit* wanted = unitOf({}, port_unit);
+    if (given == nullptr)
       return fail("unknown-unit", input.place, fmt::format("{} is in {}", quote(input.name()), quote(*unit)),
                   "units are those of MaterialX's unit types \"distance\", \"angle\" and \"time\"");
-    for (size_t i = 0; i < count; ++i) components[i] *= *scale;
+    if (wanted != nullptr && wanted->type != given->type)
+      return fail("unknown-unit", input.place, fmt::format("{} is in {}", quote(input.name()), quote(*unit)),
+                  fmt::format("it is a number of {}s", port_unit));
+    const double scale = wanted == nullptr ? given->scale : given->scale / wanted->scale;
+    for (size_t i = 0; i < count && given != wanted; ++i) components[i] *= scale;
   }
   const std::string_view written = input.get("type");
   const std::string_view space = input.get("colorspace");

@@ -37,12 +37,12 @@ bool isLinear(std::string_view space);
 /// MaterialX's `cmlib`.
 ir::Components toLinear(std::string_view space, ir::Components color);
 
-/// How many of the units in which a scene is (metres, degrees, seconds) one of `unit` is; nothing for no
-/// unit.
-std::optional<double> unitScale(std::string_view unittype, std::string_view unit);
+/// The unit in which a scene is, of a unit type: metres, degrees, seconds; empty for another type.
+std::string_view baseUnit(std::string_view unittype);
 
-/// Reads the `value` of an input of a type of typeOf() but a matrix, in the graph's units and colours. An
-/// error with the input's place for what is none.
-Result<ir::Components> valueOf(const Element& input, ir::Type type);
+/// Reads the `value` of an input of a type of typeOf() but a matrix, in the graph's colours and in the unit
+/// that the port says, or the scene's where it says none. A number without a unit is as it is. An error with
+/// the input's place for what is none.
+Result<ir::Components> valueOf(const Element& input, ir::Type type, std::string_view port_unit = {});
 
 }  // namespace lacquer::materialx
