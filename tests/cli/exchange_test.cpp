@@ -208,6 +208,29 @@ TEST(Convert, takesNoGraph) {
   EXPECT_EQ(outcome.err.find("asset"), std::string::npos) << outcome.err;
 }
 
+/// Numbers of a matrix stand in a graph, column by column, and in a document as MaterialX's rows.
+TEST(Convert, matricesOfAGraph) {
+  const Workplace place;
+  place.write("moved.json", R"({"lacquer_graph": 1, "name": "moved", "template": "forward", "nodes": [
+    {"id": "at", "node": "transformmatrix",
+     "inputs": {"in": {"given": "uv0"}, "mat": [0.5, 0, 0, 0, 2, 0, 0.25, 0.125, 1]}},
+    {"id": "seen", "node": "convert<vec3>", "inputs": {"in": {"node": "at", "swizzle": "y"}}}],
+    "outputs": {"emission": {"node": "seen"}}})");
+  place.write("points.json", R"([{"uv0": [0.5, 0.75]}])");
+  for (const char* const engine : {"double", "float"}) {
+    const Outcome outcome =
+        place.run({"eval", "moved.json", "--points", "points.json", "--node", "at", "--engine", engine});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(Json::parse(outcome.out)["values"], Json::parse("[[0.5, 1.625]]")) << engine;
+  }
+  EXPECT_NE(place.run({"graph", "moved.json"}).out.find("[0.5, 0, 0, 0, 2, 0, 0.25, 0.125, 1]"),
+            std::string::npos);
+  const std::string document = place.run({"graph", "moved.json", "--format", "mtlx"}).out;
+  EXPECT_NE(document.find(R"(type="matrix33" value="0.5, 0, 0, 0, 2, 0, 0.25, 0.125, 1")"), std::string::npos)
+      << document;
+  EXPECT_EQ(document.find("creatematrix"), std::string::npos) << document;
+}
+
 uint64_t wordAt(const std::string& bytes, size_t at, size_t count) {
   uint64_t word = 0;
   for (size_t i = 0; i < count; ++i) word |= uint64_t{static_cast<uint8_t>(bytes.at(at + i))} << (8 * i);
@@ -244,6 +267,10 @@ TEST(Bake, ofAGraph) {
   const Outcome none = place.run({"bake", "ramp.json", "--node", "NG.acros", "-o", "one.png"});
   EXPECT_EQ(none.status, 1);
   EXPECT_NE(none.err.find("[no-such-node]"), std::string::npos) << none.err;
+  const Outcome linear =
+      place.run({"bake", "ramp.json", "--node", "NG.across", "-o", "one.ktx2", "--bits", "16", "--srgb"});
+  EXPECT_EQ(linear.status, 1);
+  EXPECT_NE(linear.err.find("only an image of 8 bits is encoded by sRGB"), std::string::npos) << linear.err;
   const Outcome lit = place.run({"bake", "ramp.json", "--node", "base.direct", "-o", "one.png"});
   EXPECT_EQ(lit.status, 0) << lit.err;
   EXPECT_NE(lit.err.find("[depends-on-view]"), std::string::npos) << lit.err;

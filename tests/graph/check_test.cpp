@@ -41,10 +41,11 @@ TEST(GraphCheck, literalsAreFiniteFloatsVectorsAndBools) {
   graph.outputs[0].second = number(std::numeric_limits<double>::infinity());
   EXPECT_EQ(checked(graph),
             "/nodes/0/inputs/ior: error: the value written for 'ior' of the node 'a' is an int [wrong-type]\n"
-            "  help: floats, vectors and bools can be written into a graph\n"
+            "  help: floats, vectors, bools and matrices can be written into a graph\n"
             "/nodes/1/inputs/ior: error: the value written for 'ior' of the node 'b' is nan [not-finite]\n"
-            "/nodes/2/inputs/ior: error: the value written for 'ior' of the node 'c' is a mat4 [wrong-type]\n"
-            "  help: floats, vectors and bools can be written into a graph\n"
+            "/nodes/2/inputs/ior: error: the matrix written for 'ior' of the node 'c' has no numbers "
+            "[wrong-count]\n"
+            "  help: a mat4 has 16, column by column\n"
             "/outputs/alpha: error: the value written for the port 'alpha' is inf [not-finite]\n");
 }
 

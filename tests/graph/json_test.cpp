@@ -154,13 +154,13 @@ TEST(GraphJson, wrongSourcesAlone) {
   };
   EXPECT_EQ(errors("null"),
             "error: the source is null [wrong-type]\n  help: it must be a number, true, false, the name of a "
-            "value, an array of 2 to 4 numbers or an object such as {\"given\": \"uv0\"}\n");
+            "value, an array of 2 to 4, 9 or 16 numbers or an object such as {\"given\": \"uv0\"}\n");
   EXPECT_EQ(errors(R"({"given": "view", "output": "L"})"),
             "/output: error: a given has no \"output\" [wrong-source]\n"
             "  help: write the result behind a dot: {\"given\": \"light_sample.L\"}\n");
   EXPECT_EQ(errors(R"({"value": {"given": "view"}})"),
             "/value: error: value is an object [wrong-type]\n"
-            "  help: it must be a number, true, false or an array of 2 to 4 numbers\n");
+            "  help: it must be a number, true, false or an array of 2 to 4, 9 or 16 numbers\n");
   EXPECT_NE(errors("1e999"), "");
   EXPECT_NE(errors(""), "");
 }

@@ -19,8 +19,7 @@ namespace {
 struct Text {
   std::string operator()(const Literal& l) const {
     std::string text = fmt::format("={}", static_cast<int>(l.type));
-    for (int i = 0; i < ir::componentCount(l.type); ++i)
-      text += fmt::format(",{}", l.value[static_cast<size_t>(i)]);
+    for (int i = 0; i < ir::componentCount(l.type); ++i) text += fmt::format(",{}", l.number(i));
     return text;
   }
   std::string operator()(const graph::ParameterRef& ref) const { return "p" + ref.name; }

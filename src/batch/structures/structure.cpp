@@ -30,6 +30,7 @@ public:
   void operator()(const graph::Literal& literal) {
     key_.number('l').number(literal.type);
     for (const double x : literal.value) key_.number(x);
+    for (const double x : literal.matrix) key_.number(x);
   }
   void operator()(const graph::ParameterRef& ref) { key_.number('p').text(ref.name); }
   void operator()(const graph::TextureRef& ref) { key_.number('t').text(ref.name); }

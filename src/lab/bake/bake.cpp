@@ -428,6 +428,9 @@ Result<void> Baking::checkHow() {
   std::vector<Texels> forms = how_.also;
   forms.push_back(alone_.value_or(Texels::Png));
   const auto has = [&](Texels one) { return std::find(forms.begin(), forms.end(), one) != forms.end(); };
+  if (how_.srgb && alone_ && (*alone_ == Texels::Exr || how_.bits > 8))
+    return fail("unknown-format", {how_.output, 0, 0, {}}, "only an image of 8 bits is encoded by sRGB",
+                "write .png, or .ktx2 with 8 bits, or leave `srgb` away: other images are linear");
   const uint32_t bits = how_.bits;
   const bool fits = bits == 0 || (bits == 8 && !has(Texels::Exr)) ||
                     (bits == 16 && (has(Texels::Ktx2) || has(Texels::Exr))) ||

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include "exchange/pattern_out.h"
 #include "gltf/facts.h"
@@ -155,12 +159,49 @@ private:
   std::vector<bool> said_;
 };
 
+/// The matrix that a node of a flat graph makes of numbers alone; nothing of another node.
+std::optional<graph::Literal> matrixBy(const graph::Node& node) {
+  constexpr std::pair<std::string_view, ir::Type> kForms[] = {{"creatematrix<mat3>", ir::Type::Mat3},
+                                                              {"creatematrix<vec4, mat4>", ir::Type::Mat4}};
+  const auto form = std::find_if(std::begin(kForms), std::end(kForms),
+                                 [&](const auto& one) { return one.first == node.type; });
+  if (form == std::end(kForms)) return std::nullopt;
+  graph::Literal matrix{form->second, {}};
+  const int side = ir::componentCount(ir::partType(matrix.type));
+  for (int column = 1; column <= side; ++column) {
+    const auto input = std::find_if(node.inputs.begin(), node.inputs.end(), [&](const auto& one) {
+      return one.first == fmt::format("in{}", column);
+    });
+    const auto* numbers =
+        input == node.inputs.end() ? nullptr : std::get_if<graph::Literal>(&input->second.from);
+    if (numbers == nullptr || !input->second.swizzle.empty() || numbers->type != ir::partType(matrix.type))
+      return std::nullopt;
+    for (int i = 0; i < side; ++i) matrix.matrix.push_back(numbers->number(i));
+  }
+  return matrix;
+}
+
+/// A document has matrices of numbers as values: nodes that make them are not needed.
+void writeMatrices(graph::Graph& flat) {
+  std::map<std::string, graph::Literal, std::less<>> made;
+  for (const graph::Node& node : flat.nodes) {
+    if (auto matrix = matrixBy(node)) made.emplace(node.id, std::move(*matrix));
+  }
+  std::erase_if(flat.nodes, [&](const graph::Node& node) { return made.contains(node.id); });
+  graph::eachSource(flat, [&](graph::Source& source) {
+    const auto* ref = std::get_if<graph::NodeRef>(&source.from);
+    const auto found = ref == nullptr ? made.end() : made.find(ref->node);
+    if (found != made.end()) source.from = found->second;
+  });
+}
+
 }  // namespace
 
 Written graphToMaterialX(const graph::Graph& graph, const lang::Library& library, const std::string& path,
                          const std::string& folder) {
   Written written;
-  const graph::Graph flat = graph::flattened(graph, library);
+  graph::Graph flat = graph::flattened(graph, library);
+  writeMatrices(flat);
   GraphOut(flat, library, path, written).write(folder);
   return written;
 }

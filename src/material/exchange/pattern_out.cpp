@@ -434,11 +434,13 @@ PatternsOut::Link PatternsOut::link(Scope& scope, const Source& source) {
   return source.swizzle.empty() ? made : swizzled(scope, std::move(made), source.swizzle);
 }
 
-/// A matrix of the graph's parameters; else null.
-const graph::Parameter* PatternsOut::matrixOf(const Source& source) const {
+/// The numbers of a matrix that is written or a parameter, column by column; none of others.
+std::vector<double> PatternsOut::matrixOf(const Source& source) const {
+  if (const auto* literal = std::get_if<graph::Literal>(&source.from)) return literal->matrix;
   const auto* ref = std::get_if<graph::ParameterRef>(&source.from);
   const std::optional<size_t> place = ref == nullptr ? std::nullopt : graph_.findParameter(ref->name);
-  return place && ir::isMatrix(graph_.parameters[*place].type) ? &graph_.parameters[*place] : nullptr;
+  if (!place || !ir::isMatrix(graph_.parameters[*place].type)) return {};
+  return graph_.parameters[*place].numbers();
 }
 
 /// A number that is written; nothing for what is computed.
@@ -446,6 +448,7 @@ std::optional<std::pair<Typed, Components>> PatternsOut::constant(const Source& 
   Type type = Type::Float;
   Components value{};
   if (const auto* literal = std::get_if<graph::Literal>(&source.from)) {
+    if (ir::isMatrix(literal->type)) return std::nullopt;
     type = literal->type;
     value = literal->value;
   } else if (const auto* ref = std::get_if<graph::ParameterRef>(&source.from)) {
@@ -467,10 +470,8 @@ std::optional<std::pair<Typed, Components>> PatternsOut::constant(const Source& 
 void PatternsOut::give(Scope& scope, Element& element, std::string_view name, const Source& source,
                        Typed wanted) {
   Element input = inputOf(name, typeName(wanted));
-  if (const graph::Parameter* matrix = matrixOf(source)) {
-    std::string text;
-    for (const double x : matrix->numbers()) text += fmt::format("{}{}", text.empty() ? "" : ", ", x);
-    input.set("value", text);
+  if (const std::vector<double> matrix = matrixOf(source); !matrix.empty()) {
+    input.set("value", fmt::format("{}", fmt::join(matrix, ", ")));
   } else if (const auto number = constant(source)) {
     Components value = number->second;
     if (ir::componentCount(number->first.type) == 1) value.fill(value[0]);

@@ -84,7 +84,7 @@ private:
               std::vector<materialx::Element> inputs);
   void texture(materialx::Element& input, const graph::Texture& texture);
   std::string fileOf(const graph::Texture& texture);
-  const graph::Parameter* matrixOf(const graph::Source& source) const;
+  std::vector<double> matrixOf(const graph::Source& source) const;
   std::optional<std::pair<Typed, ir::Components>> constant(const graph::Source& source) const;
   void lost(std::string message, std::string help = {});
 

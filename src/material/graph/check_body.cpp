@@ -327,6 +327,8 @@ std::string BodyCheck::conversion(const Source& source, Type from, Type to) cons
   if (is_literal && ir::isWhole(ir::partType(to)))
     return ir::componentCount(to) == 1 ? "write a whole number"
                                        : fmt::format("write {} whole numbers", ir::componentCount(to));
+  if (is_literal && ir::isMatrix(to))
+    return fmt::format("write {} numbers, column by column", ir::componentCount(to));
   if (is_literal && to == Type::Float) return "write a single number";
   if (is_literal && ir::isFloatVector(to)) return fmt::format("write {} numbers", ir::componentCount(to));
   if (ir::isFloatVector(from) && ir::isFloating(to) && source.swizzle.empty() &&
@@ -380,8 +382,7 @@ void BodyCheck::range(const Source& source, const Sink& sink) {
   std::string picked = swizzleComponents(source.swizzle);
   for (int i = 0; source.swizzle.empty() && i < ir::componentCount(type); ++i) picked += static_cast<char>(i);
   for (const char component : picked) {
-    const double x =
-        literal != nullptr ? literal->value[static_cast<size_t>(component)] : parameter->number(component);
+    const double x = literal != nullptr ? literal->number(component) : parameter->number(component);
     if (sink.contract->range.contains(x)) continue;
     const std::string what =
         ref != nullptr ? fmt::format("the parameter {} has the value", inQuotes(ref->name)) : "the value";
@@ -393,14 +394,22 @@ void BodyCheck::range(const Source& source, const Sink& sink) {
 }
 
 bool BodyCheck::literal(const Literal& literal, const Sink& sink) {
-  if (literal.type != Type::Bool && !ir::isFloating(literal.type)) {
+  if (literal.type != Type::Bool && !ir::isFloating(literal.type) && !ir::isMatrix(literal.type)) {
     error(sink, "wrong-type",
           fmt::format("the value written for {} is {}", textOf(sink), article(literal.type)),
-          "floats, vectors and bools can be written into a graph");
+          "floats, vectors, bools and matrices can be written into a graph");
+    return false;
+  }
+  const auto count = static_cast<size_t>(ir::componentCount(literal.type));
+  if (ir::isMatrix(literal.type) && literal.matrix.size() != count) {
+    error(sink, "wrong-count",
+          fmt::format("the matrix written for {} has {}", textOf(sink),
+                      countOf(literal.matrix.size(), "number")),
+          fmt::format("{} has {}, column by column", article(literal.type), count));
     return false;
   }
   for (int i = 0; i < ir::componentCount(literal.type); ++i) {
-    const double x = literal.value[static_cast<size_t>(i)];
+    const double x = literal.number(i);
     if (fitsFloat(x)) continue;
     const bool finite = std::isfinite(x);
     error(sink, finite ? "out-of-range" : "not-finite",

@@ -198,6 +198,7 @@ private:
   void from(const Literal& literal) {
     word(ir::typeName(literal.type));
     bits(literal.value);
+    for (const double x : literal.matrix) bits(x);
   }
   void from(const ParameterRef& ref) {
     word(ref.name);

@@ -108,9 +108,9 @@ void index(const List& list, NameMap<size_t>& places) {
 Offer ofParam(const lang::Param& param) { return {param.type, param.has_range, param.range}; }
 
 Offer ofLiteral(const Literal& literal) {
-  Offer offer{literal.type, true, {{literal.value[0], literal.value[0]}, 0}};
+  Offer offer{literal.type, true, {{literal.number(0), literal.number(0)}, 0}};
   for (int i = 1; i < ir::componentCount(literal.type); ++i) {
-    const double x = literal.value[static_cast<size_t>(i)];
+    const double x = literal.number(i);
     offer.range.lo = std::min(offer.range.lo, x);
     offer.range.hi = std::max(offer.range.hi, x);
   }

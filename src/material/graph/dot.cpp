@@ -44,6 +44,11 @@ std::string components(ir::Type type, const ir::Components& value) {
   return count == 1 ? text : "(" + text + ")";
 }
 
+std::string written(const Literal& literal) {
+  if (!ir::isMatrix(literal.type)) return components(literal.type, literal.value);
+  return fmt::format("({})", fmt::join(literal.matrix, ", "));
+}
+
 class DotWriter {
 public:
   explicit DotWriter(const Graph& graph) : graph_(graph) {}
@@ -124,7 +129,7 @@ private:
       const auto& [name, source] = inputs[i];
       std::string row = html(name);
       if (const auto* literal = std::get_if<Literal>(&source.from)) {
-        row += " = " + components(literal->type, literal->value);
+        row += " = " + written(*literal);
         if (!source.swizzle.empty()) row += "." + html(source.swizzle);
       } else {
         edge(source, fmt::format("{}:i{}", id, i));

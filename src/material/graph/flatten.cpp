@@ -198,7 +198,7 @@ Result<Source> outputAt(const FlatOutputs& outputs, const std::string& path) {
   }
   for (const auto& [name, of] : outputs) names.push_back(name);
   return fail("no-such-node", {}, fmt::format("there is no node {}", inQuotes(path)),
-              lang::didYouMean(path, names));
+              lang::didYouMean(path, names, names.empty() ? std::string() : "there are " + shortList(names)));
 }
 
 }  // namespace lacquer::graph

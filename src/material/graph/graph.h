@@ -21,10 +21,17 @@
 
 namespace lacquer::graph {
 
-/// A value written into the graph: a Float, a vector, a Bool.
+/// A value written into the graph: a Float, a vector, a Bool, a matrix.
 struct Literal {
   ir::Type type = ir::Type::Float;
   ir::Components value{};
+  /// Of a matrix its numbers, column by column; `value` says nothing then.
+  std::vector<double> matrix{};
+
+  double number(int component) const {
+    const auto i = static_cast<size_t>(component);
+    return !ir::isMatrix(type) ? value[i] : i < matrix.size() ? matrix[i] : 0;
+  }
   bool operator==(const Literal&) const = default;
 };
 

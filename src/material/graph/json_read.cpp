@@ -184,17 +184,24 @@ std::optional<Source> Reader::source(const Json& json, const Path& path) {
   if (json.is_string()) return Source{Choice{std::string(textOf(json, path, "the value"))}, {}};
   if (json.is_object()) return reference(json, path);
   if (!json.is_array()) {
-    report_.wrongType(
-        path, "the source", json,
-        "a number, true, false, the name of a value, an array of 2 to 4 numbers or an object such as "
-        "{\"given\": \"uv0\"}");
+    report_.wrongType(path, "the source", json,
+                      "a number, true, false, the name of a value, an array of 2 to 4, 9 or 16 numbers or an "
+                      "object such as "
+                      "{\"given\": \"uv0\"}");
     return std::nullopt;
   }
+  constexpr size_t kMat3 = 9, kMat4 = 16;
+  if (json.size() == kMat3 || json.size() == kMat4) {
+    Literal matrix{
+        json.size() == kMat3 ? ir::Type::Mat3 : ir::Type::Mat4, {}, std::vector<double>(json.size())};
+    if (!numbers(json, path, matrix.matrix)) return std::nullopt;
+    return Source{std::move(matrix), {}};
+  }
   if (json.size() < 2 || json.size() > 4) {
-    report_.error(
-        "wrong-count", path, fmt::format("a vector cannot have {}", countOf(json.size(), "component")),
-        json.size() == 9 || json.size() == 16 ? "a matrix is a parameter, or made by the node creatematrix"
-                                              : "it has 2 to 4; a single number stands without brackets");
+    report_.error("wrong-count", path,
+                  fmt::format("a vector cannot have {}", countOf(json.size(), "component")),
+                  "it has 2 to 4, and a matrix 9 or 16, column by column; a single number stands without "
+                  "brackets");
     return std::nullopt;
   }
   Literal literal{ir::floatType(static_cast<int>(json.size())), {}};
@@ -225,7 +232,7 @@ std::optional<Source> Reader::reference(const Json& json, const Path& path) {
     const Json& value = *json::member(json, kind);
     const Path here(path, kind);
     if (value.is_object()) {
-      report_.wrongType(here, kind, value, "a number, true, false or an array of 2 to 4 numbers");
+      report_.wrongType(here, kind, value, "a number, true, false or an array of 2 to 4, 9 or 16 numbers");
       return std::nullopt;
     }
     const std::optional<Source> literal = source(value, here);

@@ -37,11 +37,13 @@ std::string value(ir::Type type, const ir::Components& components) {
   return valueOf(type, [&](int i) { return components[static_cast<size_t>(i)]; });
 }
 
+std::string value(const Literal& literal) {
+  return valueOf(literal.type, [&](int i) { return literal.number(i); });
+}
+
 std::string source(const Source& source) {
   struct Members {
-    std::string operator()(const Literal& literal) const {
-      return "\"value\": " + value(literal.type, literal.value);
-    }
+    std::string operator()(const Literal& literal) const { return "\"value\": " + value(literal); }
     std::string operator()(const ParameterRef& ref) const {
       return "\"parameter\": " + json::quotedText(ref.name);
     }
@@ -64,7 +66,7 @@ std::string source(const Source& source) {
   };
   if (const auto* literal = std::get_if<Literal>(&source.from);
       literal != nullptr && source.swizzle.empty()) {
-    return value(literal->type, literal->value);
+    return value(*literal);
   }
   if (const auto* choice = std::get_if<Choice>(&source.from)) return json::quotedText(choice->name);
   std::string text = "{" + std::visit(Members{}, source.from);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
+#include <map>
 #include <set>
 
 #include "graph/text.h"
@@ -68,8 +70,15 @@ void Parameter::setNeutralNumbers(std::span<const double> all) { scatter(*this, 
 std::string columnName(std::string_view matrix, int column) { return fmt::format("{}_{}", matrix, column); }
 
 bool hasMatrices(const Graph& graph) {
+  const auto written = [](const auto& named) {
+    const auto* literal = std::get_if<Literal>(&named.second.from);
+    return literal != nullptr && ir::isMatrix(literal->type);
+  };
   return std::any_of(graph.parameters.begin(), graph.parameters.end(),
-                     [](const Parameter& p) { return ir::isMatrix(p.type); });
+                     [](const Parameter& p) { return ir::isMatrix(p.type); }) ||
+         std::any_of(graph.nodes.begin(), graph.nodes.end(), [&](const Node& node) {
+           return std::any_of(node.inputs.begin(), node.inputs.end(), written);
+         });
 }
 
 std::vector<Parameter> columnsOf(const Parameter& parameter) {
@@ -90,43 +99,76 @@ std::vector<Parameter> columnsOf(const Parameter& parameter) {
   return columns;
 }
 
-void takeColumns(Graph& graph, const lang::Library& library, FlatOutputs* told) {
-  std::set<std::string> ids;
-  for (const Node& node : graph.nodes) ids.insert(node.id);
-  std::vector<std::pair<std::string, std::string>> made;  // the matrix, its node
-  std::vector<Parameter> parameters;
+namespace {
+
+/// The nodes that make matrices of columns, before all others of a graph.
+class Columns {
+public:
+  Columns(const Graph& graph, const lang::Library& library) : library_(library) {
+    for (const Node& node : graph.nodes) ids_.insert(node.id);
+  }
+
+  /// The id of a node, `name` or one like it, that makes a matrix.
+  template <class ColumnOf>
+  std::string make(const std::string& name, ir::Type matrix, ColumnOf columnOf) {
+    Node& node = nodes.emplace_back();
+    node.id = name;
+    for (int i = 2; !ids_.insert(node.id).second; ++i) node.id = fmt::format("{}_{}", name, i);
+    node.type = formFor(matrix, library_);
+    for (size_t c = 0; c < columnCount(matrix); ++c)
+      node.inputs.emplace_back(fmt::format("in{}", c + 1), Source{columnOf(c), {}});
+    return node.id;
+  }
+
   std::vector<Node> nodes;
+
+private:
+  const lang::Library& library_;
+  std::set<std::string> ids_;
+};
+
+Literal columnOf(const Literal& matrix, size_t column) {
+  const size_t count = columnCount(matrix.type);
+  Literal made{ir::partType(matrix.type), {}};
+  for (size_t i = 0; i < count; ++i) made.value[i] = matrix.number(static_cast<int>(column * count + i));
+  return made;
+}
+
+}  // namespace
+
+void takeColumns(Graph& graph, const lang::Library& library, FlatOutputs* told) {
+  Columns made(graph, library);
+  std::map<std::string, std::string, std::less<>> by_parameter;
+  std::vector<Parameter> parameters;
   for (const Parameter& parameter : graph.parameters) {
     const std::vector<Parameter> columns = columnsOf(parameter);
     parameters.insert(parameters.end(), columns.begin(), columns.end());
     if (!ir::isMatrix(parameter.type)) continue;
-    Node& node = nodes.emplace_back();
-    node.id = parameter.name;
-    for (int i = 2; !ids.insert(node.id).second; ++i) node.id = fmt::format("{}_{}", parameter.name, i);
-    node.type = formFor(parameter.type, library);
-    for (size_t c = 0; c < columns.size(); ++c)
-      node.inputs.emplace_back(fmt::format("in{}", c + 1), Source{ParameterRef{columns[c].name}, {}});
-    made.emplace_back(parameter.name, node.id);
+    by_parameter[parameter.name] =
+        made.make(parameter.name, parameter.type, [&](size_t c) { return ParameterRef{columns[c].name}; });
   }
-  const auto take = [&](Source& source) {
-    const auto* ref = std::get_if<ParameterRef>(&source.from);
-    if (ref == nullptr) return;
-    const auto it =
-        std::find_if(made.begin(), made.end(), [&](const auto& m) { return m.first == ref->name; });
-    if (it != made.end()) source.from = NodeRef{it->second, {}};
+  const auto take = [&](Source& source, const std::string& name) {
+    if (const auto* ref = std::get_if<ParameterRef>(&source.from)) {
+      const auto it = by_parameter.find(ref->name);
+      if (it != by_parameter.end()) source.from = NodeRef{it->second, {}};
+    } else if (const auto* literal = std::get_if<Literal>(&source.from);
+               literal != nullptr && ir::isMatrix(literal->type)) {
+      const Literal matrix = *literal;
+      source.from = NodeRef{made.make(name, matrix.type, [&](size_t c) { return columnOf(matrix, c); }), {}};
+    }
   };
   for (Node& node : graph.nodes) {
-    for (auto& [name, source] : node.inputs) take(source);
+    for (auto& [name, source] : node.inputs) take(source, fmt::format("{}.{}", node.id, name));
   }
-  for (auto& [port, source] : graph.outputs) take(source);
+  for (auto& [port, source] : graph.outputs) take(source, port);
   if (told != nullptr) {
     for (auto& [path, outputs] : *told) {
-      for (auto& [name, source] : outputs) take(source);
+      for (auto& [name, source] : outputs) take(source, name.empty() ? std::string("matrix") : name);
     }
   }
-  nodes.insert(nodes.end(), std::make_move_iterator(graph.nodes.begin()),
-               std::make_move_iterator(graph.nodes.end()));
-  graph.nodes = std::move(nodes);
+  made.nodes.insert(made.nodes.end(), std::make_move_iterator(graph.nodes.begin()),
+                    std::make_move_iterator(graph.nodes.end()));
+  graph.nodes = std::move(made.nodes);
   graph.parameters = std::move(parameters);
 }
 
