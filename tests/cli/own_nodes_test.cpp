@@ -343,6 +343,12 @@ TEST(OwnDefinitions, AreChecked) {
             std::string::npos)
       << outcome.all();
   EXPECT_EQ(place.run({"check"}).status, 2);
+  place.write("empty/within/some.node", "");
+  for (const char* const option : {"--", "--materialx"}) {
+    outcome = place.run({"check", option, "empty"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("[nothing-to-check]"), std::string::npos) << outcome.err;
+  }
 }
 
 /// What instances have of an application's own is dropped, and said once.

@@ -143,6 +143,26 @@ Result<std::vector<lang::SourceFile>> ownNodeFiles(const Options& options) {
   return own;
 }
 
+Diagnostics emptyFolders(const Options& options) {
+  Diagnostics all;
+  const auto look = [&](const std::string& folder, auto filesThere, std::string_view what,
+                        std::string_view help) {
+    const Result<std::vector<lang::SourceFile>> files = filesThere(folder);
+    if (!files || !files->empty()) return;
+    all.push_back({"nothing-to-check",
+                   Severity::Error,
+                   {folder, 0, 0, {}},
+                   fmt::format("there is no file {} in this folder", what),
+                   std::string(help),
+                   {}});
+  };
+  for (const std::string& folder : options.node_directories)
+    look(folder, nodeFiles, "NAME.node", "name the folder itself: those within it are not looked at");
+  for (const std::string& folder : options.materialx_directories)
+    look(folder, definitionFiles, "NAME.mtlx", "name the folder of the definitions");
+  return all;
+}
+
 /// The built-in library and the options' own files.
 static Result<std::shared_ptr<const Language>> libraryWith(const Options& options) {
   Result<std::vector<lang::SourceFile>> own = ownNodeFiles(options);

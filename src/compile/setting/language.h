@@ -34,6 +34,9 @@ Result<std::vector<lang::SourceFile>> nodeFiles(const std::string& folder);
 /// The options' own node files: those of its folders, then its texts.
 Result<std::vector<lang::SourceFile>> ownNodeFiles(const Options& options);
 
+/// An error for each of their folders in which there is nothing to read.
+Diagnostics emptyFolders(const Options& options);
+
 /// The documents of a folder and those below it that MaterialX documents find definitions in, sorted by path.
 Result<std::vector<lang::SourceFile>> definitionFiles(const std::string& folder);
 

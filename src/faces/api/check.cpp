@@ -267,6 +267,7 @@ bool checkNodes(const Options& options, Messages& messages) {
   if (!language) return report(language.error(), {}, messages), false;
   const Result<std::vector<lang::SourceFile>> own = ownNodeFiles(options);
   if (!own) return report(own.error(), {}, messages), false;
+  if (Diagnostics empty = emptyFolders(options); !empty.empty()) return report(empty, {}, messages), false;
   Diagnostics all = (*language)->check();
   // In a folder that is to be good an order is said: what the names order today another part may turn over.
   for (Diagnostic& one : all) {
