@@ -87,6 +87,31 @@ TEST(StressDevice, TextsAreAttackedAsTheDirectSpirvIs) {
     expectNone(stressed({"normal_map", "ggx_distribution", "coat_absorption"}, 1024, engine));
 }
 
+/// More numbers than a device puts out at once come in several runs.
+TEST(StressDevice, ANodeMayHaveManyResults) {
+  NEEDS_DEVICE();
+  Stress stress;
+  stress.samples = 512;
+  stress.engine = Engine::Vulkan;
+  Options options;
+  options.node_texts = {{"wide.node", R"(
+/// Many results, the last of which is wrong.
+/// source: the tests
+/// category: tests
+node wide(vec4 a in [0, 1], int n in [0, 9])
+  -> (vec4 b, vec4 c, vec4 d, vec4 e, vec4 f, mat4 g, int h, float last in [0, 1]) {
+    return (a, a * 2, a + 1, a * a, -a, mat4(a, a, a, a), n + 1, 2 + a.x);
+}
+)"}};
+  Messages messages;
+  const json answer = json::parse(jsonOf(stressNodes(stress, {"wide"}, options, messages)));
+  for (const Message& message : messages) ADD_FAILURE() << message.text;
+  const json& subject = answer["subjects"][0];
+  EXPECT_FALSE(subject.contains("skipped")) << subject;
+  ASSERT_EQ(subject["findings"].size(), 1U) << subject;
+  EXPECT_EQ(subject["findings"][0]["what"], "last");
+}
+
 TEST(StressDevice, SaysWhatItCannotDo) {
   Stress stress;
   stress.engine = Engine::Double;

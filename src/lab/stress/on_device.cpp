@@ -121,11 +121,29 @@ void addNumbers(ir::Dag& dag, ValueId value, std::vector<ValueId>& to) {
   }
 }
 
-/// The results' numbers, four in a colour.
-void setColors(Ready& ready) {
+/// A device writes so many numbers at least, four in each of eight colours.
+constexpr size_t kMostNumbers = 32;
+
+/// How many floats a value's numbers are for addNumbers().
+size_t floatsOf(ir::Type type) {
+  return static_cast<size_t>(ir::componentCount(type)) * (ir::isWhole(ir::partType(type)) ? 2 : 1);
+}
+
+/// From a result on, those that one run can put out: behind the last one.
+size_t lastOfRun(const ir::Module& module, size_t first) {
+  size_t numbers = 0, r = first;
+  for (; r < module.outputs.size(); ++r) {
+    numbers += floatsOf(module.dag[module.outputs[r].value].type);
+    if (numbers > kMostNumbers) break;
+  }
+  return r;
+}
+
+/// The numbers of the results from `first` to before `last`, four in a colour.
+void setColors(Ready& ready, size_t first_result, size_t last_result) {
   ir::Dag& dag = ready.module.dag;
   std::vector<ValueId> parts;
-  for (size_t r = 0; r < ready.module.outputs.size(); ++r) {
+  for (size_t r = first_result; r < last_result; ++r) {
     const ValueId value = ready.module.outputs[r].value;
     const ir::Type part = ir::partType(dag[value].type);
     const size_t first = parts.size();
@@ -142,8 +160,9 @@ void setColors(Ready& ready) {
   }
 }
 
-/// A node by itself: its parameters are the fragment's inputs.
-Ready readyNode(const Subject& subject) {
+/// A node by itself: its parameters are the fragment's inputs. Of its results those from `first` to before
+/// `last`.
+Ready readyNode(const Subject& subject, size_t first, size_t last) {
   Ready ready{subject.module(), {}};
   ready.module.template_name = "node";
   passes::Rewriter(ready.module).run([](passes::Rewriter& r, ValueId id, std::span<const ValueId> operands) {
@@ -153,9 +172,20 @@ Ready readyNode(const Subject& subject) {
     return stays ? r.copy(id, operands) : parameterOf(r, input);
   });
   ready.module.parameters.clear();
-  setColors(ready);
+  setColors(ready, first, last);
   passes::runPipeline(ready.module, {});
   return ready;
+}
+
+/// All results of a node, in as many runs as it takes.
+std::vector<Ready> readyNodes(const Subject& subject) {
+  std::vector<Ready> runs;
+  for (size_t first = 0; first < subject.module().outputs.size();) {
+    const size_t last = lastOfRun(subject.module(), first);
+    runs.push_back(readyNode(subject, first, last));
+    first = last;
+  }
+  return runs;
 }
 
 Ready readyMaterial(const Subject& subject) {
@@ -254,17 +284,18 @@ eval::Bindings inputsOf(const Subject& subject, std::span<const double> samples,
   return inputs;
 }
 
-Result<Shown> shown(const Subject& subject, const Ready& ready, const vulkan::Device& device,
-                    FragmentRoute route, std::span<const double> samples, size_t count) {
+/// Adds what one run gives to the answer.
+Result<void> run(const Subject& subject, const Ready& ready, const vulkan::Device& device,
+                 FragmentRoute route, std::span<const double> samples, size_t count, Shown& answer) {
   Result<vulkan::Work> work =
       gpuWork(ready.module, inputsOf(subject, samples, count),
               texturesOf(subject, ready.module, samples, count), count * subject.lanes, route);
   if (!work) return tl::make_unexpected(std::move(work.error()));
   const Result<vulkan::Outcome> outcome = device.run(*work);
   if (!outcome) return tl::make_unexpected(outcome.error());
-  Shown answer;
-  answer.values.resize(subject.roots.size());
-  for (size_t i = 0; i < count; ++i) answer.dropped.push_back(outcome->discarded[i * subject.lanes]);
+  if (answer.dropped.empty()) {
+    for (size_t i = 0; i < count; ++i) answer.dropped.push_back(outcome->discarded[i * subject.lanes]);
+  }
   for (const At& place : ready.places) {
     std::vector<double>& values = answer.values[place.root];
     for (size_t i = 0; i < count; ++i) {
@@ -284,6 +315,17 @@ Result<Shown> shown(const Subject& subject, const Ready& ready, const vulkan::De
       }
     }
   }
+  return {};
+}
+
+Result<Shown> shown(const Subject& subject, std::span<const Ready> runs, const vulkan::Device& device,
+                    FragmentRoute route, std::span<const double> samples, size_t count) {
+  Shown answer;
+  answer.values.resize(subject.roots.size());
+  for (const Ready& ready : runs) {
+    if (Result<void> done = run(subject, ready, device, route, samples, count, answer); !done)
+      return tl::make_unexpected(std::move(done.error()));
+  }
   return answer;
 }
 
@@ -301,15 +343,17 @@ std::string whyNot(const Subject& subject) {
 
 DeviceSubject deviceSubject(const Subject& subject, const vulkan::Device& device, FragmentRoute route) {
   if (std::string why = whyNot(subject); !why.empty()) return {{}, std::move(why)};
-  const auto ready =
-      std::make_shared<const Ready>(subject.is_node ? readyNode(subject) : readyMaterial(subject));
-  if (ready->module.varyings.size() > device.mostInputs()) {
+  auto made = subject.is_node ? readyNodes(subject) : std::vector<Ready>{};
+  if (!subject.is_node) made.push_back(readyMaterial(subject));
+  for (const Ready& ready : made) {
+    if (ready.module.varyings.size() <= device.mostInputs()) continue;
     return {{},
             fmt::format("the device takes {} inputs of a fragment stage, and it has {}", device.mostInputs(),
-                        ready->module.varyings.size())};
+                        ready.module.varyings.size())};
   }
-  return {[&subject, ready, &device, route](std::span<const double> samples, size_t count) {
-            return shown(subject, *ready, device, route, samples, count);
+  const auto runs = std::make_shared<const std::vector<Ready>>(std::move(made));
+  return {[&subject, runs, &device, route](std::span<const double> samples, size_t count) {
+            return shown(subject, *runs, device, route, samples, count);
           },
           {}};
 }
