@@ -251,6 +251,21 @@ TEST(Nodes, ShowWhatInputsAreByDefault) {
 }
 
 /// The plain name of a node that two vendors have names neither; who says it is told of both.
+/// A name of none is answered with one that is near, or with those that are about it.
+TEST(Nodes, AreFoundByWhatIsMeant) {
+  const Workplace place;
+  const auto said = [&](const char* name) {
+    const Outcome outcome = place.run({"nodes", name});
+    EXPECT_EQ(outcome.status, 1);
+    return outcome.err;
+  };
+  EXPECT_NE(said("fractl2d").find("did you mean 'fractal2d'?"), std::string::npos) << said("fractl2d");
+  EXPECT_NE(said("perlin").find("'noise2d'"), std::string::npos) << said("perlin");
+  EXPECT_NE(said("perlin").find("are about perlin"), std::string::npos) << said("perlin");
+  EXPECT_NE(said("noise2d<color3>").find("`lacquer nodes noise2d` lists its forms"), std::string::npos);
+  EXPECT_NE(said("qwertyuiop").find("`lacquer nodes` lists them"), std::string::npos);
+}
+
 TEST(Nodes, OfTwoVendorsAreNamedBoth) {
   const Workplace place;
   place.write("nodes/acme.node", kMoss);

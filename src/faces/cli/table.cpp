@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <deque>
 #include <map>
 
 #include "json/json.h"
+#include "support/search.h"
 #include "support/text.h"
 
 #if defined(__unix__) || defined(__APPLE__)
@@ -214,6 +216,30 @@ static void printNamed(const json::Json& all, const char* kind) {
   }
 }
 
+/// What a name of no node may have meant.
+static std::string nodeInstead(const json::Json& nodes, const std::string& name) {
+  const std::string family = name.substr(0, name.find('<'));
+  std::vector<Described> offered, all;
+  std::deque<std::string> texts;
+  const auto text = [&](const json::Json& node, const char* key) -> const std::string& {
+    return texts.emplace_back(node[key].get<std::string>());
+  };
+  std::string alike;  // what two vendors call alike has the vendor before it
+  for (const auto& node : nodes) {
+    const std::string& own = text(node, "name");
+    const std::string& called = text(node, "family");
+    if (own.ends_with("." + name)) alike += fmt::format("{}'{}'", alike.empty() ? "" : " and ", own);
+    if (called == family) return fmt::format("`lacquer nodes {}` lists its forms", family);
+    all.push_back({called, {}});
+    if (!text(node, "category").empty()) offered.push_back({called, text(node, "doc")});
+  }
+  if (!alike.empty()) return "several extensions have one: " + alike;
+  for (const auto& some : {offered, all}) {
+    if (std::string help = nearOrAbout(family, some); !help.empty()) return help;
+  }
+  return "`lacquer nodes` lists them";
+}
+
 bool printNodes(const std::string& text, const std::string& name, bool as_json) {
   const json::Json all = json::reread(text);
   bool found = name.empty();
@@ -230,15 +256,8 @@ bool printNodes(const std::string& text, const std::string& name, bool as_json) 
     if (name.empty() && !as_json) printNamed(all, kind);
   }
   if (found || printForms(all["nodes"], name, as_json)) return true;
-  // What two vendors call alike has the vendor before it.
-  std::vector<std::string> alike;
-  for (const auto& node : all["nodes"]) {
-    if (node["name"].get<std::string>().ends_with("." + name))
-      alike.push_back(node["name"].get<std::string>());
-  }
   say("lacquer: error: there is no node '{}'; {} [unknown-node]\n", printable(name),
-      alike.empty() ? "`lacquer nodes` lists them"
-                    : fmt::format("several extensions have one: '{}'", fmt::join(alike, "' and '")));
+      nodeInstead(all["nodes"], name));
   return false;
 }
 

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "graph/text.h"
 #include "json/path.h"
+#include "lang/suggest.h"
+#include "support/search.h"
 #include "support/text.h"
 
 namespace lacquer::graph {
@@ -120,13 +123,31 @@ void BodyCheck::noNode(size_t index, Connected& libraries) {
   } else if (library_.forms(node.type).empty()) {
     findings_.error(spot, nodePointer(index, "node"), "unknown-node",
                     fmt::format("the library has no node {}", inQuotes(node.type)),
-                    findings_.suggest(node.type, [&] { return library_.names(lang::DeclKind::Node); }));
+                    findings_.maySuggest() ? nodeInstead(node.type) : std::string());
   } else if (std::optional<NoForm> why = contracts_.whyNoForm(node, body_); why && !why->broken.empty()) {
     if (libraries.insert(why->broken)) findings_.forward(spot, library_.node(why->broken).error());
   } else if (why) {
     findings_.error(spot, nodePointer(index, "node"), "no-form", std::move(why->message),
                     std::move(why->help));
   }
+}
+
+/// A node that a name of none may mean: one of a palette, or else any.
+std::string BodyCheck::nodeInstead(const std::string& name) const {
+  const Names all = library_.names(lang::DeclKind::Node);
+  if (name.find('<') == std::string::npos) {
+    std::vector<Described> offered;
+    std::string_view last;
+    for (const std::string_view one : all) {
+      const std::string_view family = one.substr(0, one.find('<'));
+      if (std::exchange(last, family) == family) continue;
+      for (const lang::NodeDecl* form : library_.forms(family)) {
+        if (!form->category.empty()) offered.push_back({family, form->doc});
+      }
+    }
+    if (std::string help = nearOrAbout(name, offered); !help.empty()) return help;
+  }
+  return lang::didYouMean(name, all);
 }
 
 void BodyCheck::variant(size_t index, const lang::NodeDecl& decl) {

@@ -57,6 +57,8 @@ public:
   std::string suggest(std::string_view name, Candidates candidates, std::string otherwise = {}) {
     return maySuggest() ? nearestOf(name, candidates(), std::move(otherwise)) : otherwise;
   }
+  /// Whether there may be one more suggestion: each looks at every candidate.
+  bool maySuggest();
   bool empty() const { return found_.empty(); }
   /// Each step finds the first in the file first, as many as anybody reads.
   void nextStep() { before_ = found_.size(); }
@@ -67,7 +69,6 @@ private:
     Spot spot;
     Diagnostic diagnostic;
   };
-  bool maySuggest();
   static std::string nearestOf(std::string_view name, const Names& names, std::string otherwise);
 
   std::vector<Found> found_;
@@ -140,6 +141,7 @@ private:
 
   /// Says why a node that is none of a group has no contract.
   void noNode(size_t index, Connected& libraries);
+  std::string nodeInstead(const std::string& name) const;
   void variant(size_t index, const lang::NodeDecl& decl);
   void unknownInput(const Node& node, const Contract* contract, const Sink& sink);
   void inputs(size_t index);
