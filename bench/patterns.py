@@ -46,6 +46,8 @@ ROWS = [
     ("triplanarprojection<vec3>", "vec3", f'"filex":{MAP},"filey":{MAP},"filez":{MAP},{PLACE[3]},"normal":{{"given":"normal"}}',
      "triplanarprojection", "color3", ""),
 ]
+# ours alone, which have a variant that is filtered
+TILINGS = [("checkerboard", "vec3", PLACE[2]), ("grid", "vec3", PLACE[2])]
 SOURCES = {
     "float": '"factor":1,"strength":{"node":"n"}',
     "rand": '"factor":1,"strength":{"node":"n","output":"rand"}',
@@ -137,6 +139,8 @@ def main():
     lacquer = os.path.abspath(arguments.lacquer)
     only = set(arguments.rows)
     rows = [row for row in ROWS if not only or row[0] in only]
+    filtered_rows = [row for row in rows if row[0].startswith(("noise", "fractal")) and row[1] == "float"]
+    filtered_rows += [row for row in TILINGS if not only or row[0] in only]
     print("| node | here | MaterialX | here, of it | written out: here | MaterialX | here, of it |")
     print("|---|---|---|---|---|---|---|")
     ratios = ([], [])
@@ -147,13 +151,13 @@ def main():
                 all_ratios.append(mine[1] / peer[1])
                 cells += [f"{mine[0]} / {mine[1]}", f"{peer[0]} / {peer[1]}", f"{100 * all_ratios[-1]:.0f} %"]
             print("| " + " | ".join(cells) + " |", flush=True)
-        means = [100 * sum(r) / len(r) for r in ratios]
-        print(f"| mean | | | {means[0]:.0f} % | | | {means[1]:.0f} % |")
+        if rows:
+            means = [100 * sum(r) / len(r) for r in ratios]
+            print(f"| mean | | | {means[0]:.0f} % | | | {means[1]:.0f} % |")
         print("\n| node | plain | `filtered` |\n|---|---|---|")
-        for row in rows:
-            if row[0].startswith(("noise", "fractal")) and row[1] == "float":
-                plain, filtered = ours(lacquer, folder, row)[0], ours(lacquer, folder, row, "filtered")[0]
-                print(f"| `{row[0]}` | {plain[0]} / {plain[1]} | {filtered[0]} / {filtered[1]} |", flush=True)
+        for row in filtered_rows:
+            plain, filtered = ours(lacquer, folder, row)[0], ours(lacquer, folder, row, "filtered")[0]
+            print(f"| `{row[0]}` | {plain[0]} / {plain[1]} | {filtered[0]} / {filtered[1]} |", flush=True)
 
 
 if __name__ == "__main__":
