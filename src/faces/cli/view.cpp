@@ -41,7 +41,7 @@ std::vector<ShaderCost> costsOf(const ViewFlags& flags, const Options& options) 
 }  // namespace
 
 void addView(CLI::App& verb, ViewFlags& flags, OptionFlags& options) {
-  verb.add_option("files", flags.files, ".gltf or .glb files")->check(kNotEmpty);
+  verb.add_option("files", flags.files, ".gltf, .glb or .mtlx files")->check(kNotEmpty);
   verb.add_option("-o,--output", flags.view.output, "the HTML file to write")->required()->check(kNotEmpty);
   verb.add_option("--page", flags.view.page, "the page without files, in place of the one that is installed");
   verb.add_flag("--no-cost", flags.no_cost,
