@@ -546,9 +546,9 @@ private:
   ir::ValueId from(const graph::ParameterRef& reference) {
     const auto known = parameters_.find(reference.name);
     if (known != parameters_.end()) return known->second;
-    const auto it = std::find_if(graph_.parameters.begin(), graph_.parameters.end(),
-                                 [&](const ir::Parameter& p) { return p.name == reference.name; });
-    assert(it != graph_.parameters.end());
+    for (size_t i = of_graph_.size(); i < graph_.parameters.size(); ++i)
+      of_graph_.emplace(graph_.parameters[i].name, &graph_.parameters[i]);
+    const ir::Parameter* it = of_graph_.at(reference.name);
     if (options_.parameters == ParameterMode::Baked && !it->animated)
       return dag().constant(it->type, it->value);
     const ir::ValueId value = dag().input({ir::InputKind::Parameter, it->name, it->type, ir::Rate::Material,
@@ -775,6 +775,7 @@ private:
   Arena arena_;
   NameMap<Lowered> results_{&arena_};  ///< of the graph's nodes
   NameMap<ir::ValueId> textures_{&arena_}, parameters_{&arena_};
+  NameMap<const ir::Parameter*> of_graph_{&arena_};
   NameMap<std::optional<lang::GivenResult>> givens_{&arena_};
 };
 

@@ -201,8 +201,10 @@ std::string Names::pick(std::string_view wanted, std::string_view layer) {
     base = cleaned(std::string(layer) + '_' + base);
     if (grab(base)) return base;
   }
-  for (int k = 2;; ++k) {
-    std::string name = base + '_' + std::to_string(k);
+  // Numbers below have been tried, and no name becomes free again.
+  uint32_t& number = next_.try_emplace(hashOf(base), 2).first->second;
+  while (true) {
+    std::string name = base + '_' + std::to_string(number++);
     if (grab(name)) return name;
   }
 }

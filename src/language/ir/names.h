@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace lacquer::ir {
@@ -30,6 +31,7 @@ private:
   /// bits would cost the second a number behind it, nothing else.
   std::vector<uint64_t> taken_ = std::vector<uint64_t>(256, 0);
   size_t count_ = 0;
+  std::unordered_map<uint64_t, uint32_t> next_;  ///< by the hash of a taken name: the number to try behind it
 };
 
 /// The name of a light loop's index variable, the InputKind::LightIndex.

@@ -438,9 +438,9 @@ PatternsOut::Link PatternsOut::link(Scope& scope, const Source& source) {
 std::vector<double> PatternsOut::matrixOf(const Source& source) const {
   if (const auto* literal = std::get_if<graph::Literal>(&source.from)) return literal->matrix;
   const auto* ref = std::get_if<graph::ParameterRef>(&source.from);
-  const std::optional<size_t> place = ref == nullptr ? std::nullopt : graph_.findParameter(ref->name);
-  if (!place || !ir::isMatrix(graph_.parameters[*place].type)) return {};
-  return graph_.parameters[*place].numbers();
+  const graph::Parameter* parameter = ref == nullptr ? nullptr : contracts_.parameter(ref->name);
+  if (parameter == nullptr || !ir::isMatrix(parameter->type)) return {};
+  return parameter->numbers();
 }
 
 /// A number that is written; nothing for what is computed.
@@ -452,10 +452,10 @@ std::optional<std::pair<Typed, Components>> PatternsOut::constant(const Source& 
     type = literal->type;
     value = literal->value;
   } else if (const auto* ref = std::get_if<graph::ParameterRef>(&source.from)) {
-    const std::optional<size_t> place = graph_.findParameter(ref->name);
-    if (!place || ir::isMatrix(graph_.parameters[*place].type)) return std::nullopt;
-    type = graph_.parameters[*place].type;
-    value = graph_.parameters[*place].value;
+    const graph::Parameter* parameter = contracts_.parameter(ref->name);
+    if (parameter == nullptr || ir::isMatrix(parameter->type)) return std::nullopt;
+    type = parameter->type;
+    value = parameter->value;
   } else {
     return std::nullopt;
   }
