@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <set>
+#include <unordered_map>
 
 #include "cost/choose.h"
 #include "cost/cost.h"
@@ -154,8 +155,12 @@ void describe(const ir::Module& module, const graph::Graph& graph, const Setting
         std::find_if(list.begin(), list.end(), [&](const auto& item) { return item.name == name; });
     return it == list.end() ? ~uint32_t{0} : static_cast<uint32_t>(it - list.begin());
   };
-  for (const ir::Parameter& p : module.parameters)
-    structure.parameters.push_back(place(graph.parameters, p.name));
+  std::unordered_map<std::string_view, uint32_t> numbers;
+  for (uint32_t i = 0; i < graph.parameters.size(); ++i) numbers.emplace(graph.parameters[i].name, i);
+  for (const ir::Parameter& p : module.parameters) {
+    const auto it = numbers.find(p.name);
+    structure.parameters.push_back(it == numbers.end() ? ~uint32_t{0} : it->second);
+  }
   // The shader may have another name for a texture; the DAG still has the graph's.
   std::vector<uint32_t> places(module.textures.size(), ~uint32_t{0});
   for (const ir::ValueId id : ir::reachable(module.dag, ir::roots(module))) {
