@@ -7,6 +7,7 @@
 #include "cli/answer.h"
 #include "cli/checks.h"
 #include "json/json.h"
+#include "support/text.h"
 
 namespace lacquer::cli {
 
@@ -93,8 +94,8 @@ void printFound(const StressReport& report, bool quiet) {
     }
     for (const StressFinding& finding : subject.findings) printFinding(finding, subject);
   }
-  fmt::print("{} subjects, {} samples each, seed {}: {} faults\n", report.subjects.size(), report.samples,
-             report.seed, report.faults);
+  fmt::print("{}, {} samples each, seed {}: {} faults\n", countOf(report.subjects.size(), "subject"),
+             report.samples, report.seed, report.faults);
 }
 
 }  // namespace

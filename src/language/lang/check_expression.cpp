@@ -559,6 +559,12 @@ bool Checker::call(Expr& expr) {
       reporter_.error("wrong-type", spanOf(expr.name), fmt::format("'{}' is not a function", expr.name));
       return false;
     }
+    if (const std::string_view here = functionElsewhere(expr.name); !here.empty()) {
+      reporter_.error("unknown-function", spanOf(expr.name),
+                      fmt::format("there is no function '{}'", expr.name),
+                      fmt::format("it is called {} here", here));
+      return false;
+    }
     std::vector<std::string_view> candidates = around_.names(DeclKind::Node);
     for (const Builtin& builtin : builtins()) {
       if (!builtin.is_operator) candidates.push_back(builtin.name);

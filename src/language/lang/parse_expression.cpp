@@ -190,7 +190,10 @@ ExprPtr Parser::primary() {
     names_read_.push_back(first.text);
     return make(Expr::Kind::Name, begin, first.text);
   }
-  syntax("expected an expression", first.is("inf") ? "'inf' is a bound of a range, not a number" : "");
+  syntax("expected an expression", first.is("inf") ? "'inf' is a bound of a range, not a number"
+                                   : first.is("{")
+                                       ? "a value is made of its parts by its type, `vec3(1, 2, 3)`"
+                                       : "");
   return nullptr;
 }
 

@@ -12,7 +12,8 @@ namespace lacquer::lang {
 bool Parser::body(std::vector<Statement>& statements) {
   if (nesting_ >= kDeepest) return tooDeep();
   const Span open = token().span;
-  if (!expect("{", "what comes before a body")) return false;
+  if (!is("{")) return syntax("expected '{'", "braces stand around a body of one statement, too");
+  accept("{");
   ++nesting_;
   while (!is("}")) {
     if (token().kind == Token::Kind::End) return unclosed(open);
@@ -87,6 +88,8 @@ bool Parser::local(Statement& out) {
   ExprPtr value = expression();
   if (!value) return false;
   out.values.push_back(std::move(value));
+  if (is(","))
+    return syntax("a statement declares one local", "end it by ';', and give the next one its own type");
   return expect(";", "the value");
 }
 
@@ -96,6 +99,9 @@ bool Parser::assignment(Statement& out) {
       return syntax(fmt::format("there is no '{}'", word),
                     "there are 'let', 'if', 'for', 'return' and 'assume'");
   }
+  if (is("const") && token(1).kind == Token::Kind::Name)
+    return syntax("there is no 'const' in a body",
+                  "a local that nothing assigns is one; constants of a file stand outside of nodes");
   out.kind = Statement::Kind::Assign;
   const Token target = token();
   ++at_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,20 @@ constexpr std::pair<std::string_view, std::string_view> kElsewhere[] = {
     {"bool2", "bvec2"}, {"bool3", "bvec3"},  {"bool4", "bvec4"},   {"color", "vec3"},    {"vector", "vec3"},
     {"matrix", "mat4"}, {"mat3x3", "mat3"},  {"mat4x4", "mat4"},
 };
+
+constexpr std::pair<std::string_view, std::string_view> kFunctionsElsewhere[] = {
+    {"lerp", "mix"}, {"frac", "fract"},    {"rsqrt", "inversesqrt"}, {"ddx", "dFdx"},
+    {"ddy", "dFdy"}, {"tex2D", "texture"}, {"texture2D", "texture"}, {"textureCube", "texture"},
+    {"fabs", "abs"},
+};
+
+/// The second of the row whose first it is.
+template <class Rows>
+std::string_view secondOf(const Rows& rows, std::string_view name) {
+  const auto found =
+      std::find_if(std::begin(rows), std::end(rows), [&](const auto& row) { return row.first == name; });
+  return found == std::end(rows) ? std::string_view{} : found->second;
+}
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -77,11 +92,8 @@ std::string formsInstead(std::string_view name, std::span<const std::string_view
 
 }  // namespace
 
-std::string_view typeElsewhere(std::string_view name) {
-  const auto found = std::find_if(std::begin(kElsewhere), std::end(kElsewhere),
-                                  [&](const auto& row) { return row.first == name; });
-  return found == std::end(kElsewhere) ? std::string_view{} : found->second;
-}
+std::string_view typeElsewhere(std::string_view name) { return secondOf(kElsewhere, name); }
+std::string_view functionElsewhere(std::string_view name) { return secondOf(kFunctionsElsewhere, name); }
 
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates) {
   return closest(name, candidates);

@@ -17,5 +17,7 @@ std::string didYouMean(std::string_view name, std::span<const std::string_view> 
 
 /// What a type of MaterialX, OSL or HLSL is called here: "vec3" for "color3". Empty for other words.
 std::string_view typeElsewhere(std::string_view name);
+/// What a function of HLSL or OSL is called here: "mix" for "lerp".
+std::string_view functionElsewhere(std::string_view name);
 
 }  // namespace lacquer::lang
