@@ -583,6 +583,11 @@ TEST(Convert, toEachSurface) {
   EXPECT_NE(gltf.err.find("KHR_materials_coat/coatDarkeningFactor has no counterpart in gltf_pbr"),
             std::string::npos)
       << gltf.err;
+  // What is of the kind already stays.
+  const Outcome same =
+      place.run({"convert", "open.mtlx", "-o", "same.mtlx", "--as", "open_pbr_surface", "-q"});
+  EXPECT_EQ(same.err, "");
+  EXPECT_EQ(place.read("same.mtlx"), place.read("open.mtlx"));
   const Outcome over = place.run({"convert", "ramp.mtlx", "-o", "ramp.mtlx"});
   EXPECT_EQ(over.status, 1);
   EXPECT_NE(over.err.find("[output-clash]"), std::string::npos) << over.err;

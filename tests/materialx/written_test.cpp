@@ -116,13 +116,12 @@ std::optional<std::string> peerSays(const std::map<std::string, std::string>& do
 /// the reflection of 0.8 (at the brightest) whose color straight on is 1.5 times as bright.
 TEST(WrittenSpecular, keepsBothReflections) {
   const auto writtenAs = [](const char* metallic, const char* color) {
-    return writtenOf(documentOf(
-        fmt::format(R"({{"asset": {{"version": "2.0"}}, "materials": [{{
+    return writtenOf(documentOf(fmt::format(R"({{"asset": {{"version": "2.0"}}, "materials": [{{
                       "pbrMetallicRoughness": {{"metallicFactor": {}}}, "extensions": {{
                       "KHR_materials_coat": {{"coatFactor": 1}},
                       "KHR_materials_specular": {{"specularFactor": 0.8, "specularColorFactor": {}}}}}}}]}})",
-                    metallic, color),
-        "specular.gltf"));
+                                            metallic, color),
+                                "specular.gltf"));
   };
   const exchange::Written bright = writtenAs("0", "[0.75, 1.5, 0.375]");
   EXPECT_EQ(allOf(bright.said), "");
@@ -130,7 +129,8 @@ TEST(WrittenSpecular, keepsBothReflections) {
     return text.find(part) != std::string::npos;
   };
   EXPECT_TRUE(has(bright.text, R"(name="specular_weight" type="float" value="1.5")")) << bright.text;
-  EXPECT_TRUE(has(bright.text, R"(name="specular_color" type="color3" value="0.4, 0.8, 0.2")")) << bright.text;
+  EXPECT_TRUE(has(bright.text, R"(name="specular_color" type="color3" value="0.4, 0.8, 0.2")"))
+      << bright.text;
   const material::Document again = documentOf(bright.text, "specular.mtlx");
   EXPECT_EQ(allOf(writtenOf(again).said), "");
   EXPECT_EQ(writtenOf(again).text, bright.text);
@@ -139,6 +139,30 @@ TEST(WrittenSpecular, keepsBothReflections) {
   EXPECT_FALSE(has(metal.text, "specular_weight") || has(metal.text, "specular_color")) << metal.text;
   EXPECT_EQ(allOf(metal.said), "");
   EXPECT_TRUE(has(allOf(writtenAs("0.5", "[1, 1, 0.5]").said), "change metals, too"));
+
+  // Without a reflection the weight is 0, which takes nothing from the base, and is read as factor 0.
+  const exchange::Written none = writtenOf(documentOf(R"({"asset": {"version": "2.0"}, "materials": [{
+      "pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": {
+      "KHR_materials_coat": {"coatFactor": 1}, "KHR_materials_specular": {"specularFactor": 0}}}]})",
+                                                      "none.gltf"));
+  EXPECT_TRUE(has(none.text, R"(name="specular_weight" type="float" value="0")")) << none.text;
+  EXPECT_FALSE(has(none.text, "specular_color")) << none.text;
+  EXPECT_EQ(writtenOf(documentOf(none.text, "none.mtlx")).text, none.text);
+}
+
+/// The base has its weight however little passes through.
+TEST(WrittenSpecular, leavesTheWeightOfABaseThatLightPasses) {
+  const exchange::Written written = writtenOf(documentOf(R"(<?xml version="1.0"?><materialx version="1.39">
+      <standard_surface name="s" type="surfaceshader"><input name="base" type="float" value="0.5"/>
+      <input name="base_color" type="color3" value="0.8, 0.4, 0.2"/>
+      <input name="transmission" type="float" value="0.5"/><input name="transmission_color" type="color3" value="1, 1, 1"/>
+      </standard_surface><surfacematerial name="m" type="material">
+      <input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial></materialx>)",
+                                                         "weight.mtlx"));
+  // mix(base * color, transmission_color, transmission^2)
+  EXPECT_NE(written.text.find(R"(name="base_color" type="color3" value="0.55, 0.4, 0.325")"),
+            std::string::npos)
+      << written.text;
 }
 
 /// A sixteenth of a bump's scale is what heights rise by over the coordinate. What is read again has no

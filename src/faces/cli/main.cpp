@@ -204,10 +204,7 @@ void addMerge(CLI::App& verb, Flags& flags) {
 }
 
 void addPack(CLI::App& verb, Flags& flags) {
-  verb.add_option("folder", flags.files, "that gen or merge wrote")
-      ->required()
-      ->expected(1)
-      ->check(kNotEmpty);
+  verb.add_option("folder", flags.files, "that gen or merge wrote")->required()->expected(1);
   verb.add_option("-o,--output", flags.output, "the file to write")->required()->check(kNotEmpty);
   verb.add_option("--target", flags.targets,
                   "only shaders of these targets (may be repeated); all that there are when absent")

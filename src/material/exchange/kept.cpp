@@ -11,6 +11,7 @@
 
 #include "exchange/pattern_out.h"
 #include "materialx/looks.h"
+#include "materialx/models.h"
 #include "materialx/patterns.h"
 #include "materialx/values.h"
 
@@ -81,14 +82,20 @@ Element* elementAt(Element& root, std::string_view pointer) {
   return found;
 }
 
-/// The unit of the document that a number has, where the definition of its node says one.
+/// The unit that a parameter has which was read of an input: that of a model's port, or the first of a kind
+/// where a definition of the document has another.
 std::string_view unitAt(const Element& root, const Element& node, std::string_view input) {
-  for (const Element& child : root.children) {
-    if (child.category != "nodedef" || child.get("node") != node.category) continue;
-    const Element* port = child.child("input", input);
-    if (port != nullptr && !port->get("unit").empty()) return materialx::baseUnit(port->get("unittype"));
-  }
-  return {};
+  const auto portIn = [&](const Element& definitions) -> const Element* {
+    for (const Element& child : definitions.children) {
+      if (child.category != "nodedef" || child.get("node") != node.category) continue;
+      const Element* port = child.child("input", input);
+      if (port != nullptr && !port->get("unit").empty()) return port;
+    }
+    return nullptr;
+  };
+  if (const Element* port = portIn(root)) return materialx::baseUnit(port->get("unittype"));
+  const Element* port = portIn(materialx::surfaceModels());
+  return port == nullptr ? std::string_view() : port->get("unit");
 }
 
 void putNumber(Element& input, const graph::Parameter& parameter, std::string_view unit) {
@@ -101,7 +108,7 @@ void putNumber(Element& input, const graph::Parameter& parameter, std::string_vi
   const std::optional<ir::Type> type = materialx::typeOf(input.get("type"));
   if (!type) return;
   const auto count = static_cast<ptrdiff_t>(numbers.size());
-  const Result<ir::Components> read = materialx::valueOf(input, *type);
+  const Result<ir::Components> read = materialx::valueOf(input, *type, unit);
   const bool spread = *type != parameter.type;  // one number for all components
   const auto same = [&](double x) { return x == numbers[0]; };
   const bool one = !spread || std::all_of(numbers.begin(), numbers.end(), same);

@@ -553,11 +553,19 @@ void Translation::tintedSpecular() {
   const Components factor = given_factor == nullptr ? Components{1} : *given_factor;
   Components color = given_color == nullptr ? Components{1, 1, 1} : *given_color;
   const bool neutral = factor[0] == 1 && color[0] == 1 && color[1] == 1 && color[2] == 1;
-  const double metallic = numberOr("pbrMetallicRoughness/metallicFactor", 1);
-  const bool is_metal = metallic == 1 && texture(kMetallicRoughness) == nullptr;
+  const auto metalness = std::find_if(out_.inputs.begin(), out_.inputs.end(),
+                                      [](const auto& one) { return one.name == "base_metalness"; });
+  const auto isMetal = [&](double by) {
+    if (metalness == out_.inputs.end()) return false;
+    const auto* number = metalness->source ? std::get_if<graph::Literal>(&metalness->source->from) : nullptr;
+    if (metalness->source && number == nullptr) return false;
+    return (number == nullptr ? metalness->value : number->value)[0] == by;
+  };
   // glTF's metals do not take it.
-  if (is_metal || (neutral && factor_map == nullptr && color_map == nullptr)) return;
-  if (metallic > 0) brightMetal();
+  if (isMetal(1) || (neutral && factor_map == nullptr && color_map == nullptr)) return;
+  if (!isMetal(0)) brightMetal();
+  // Nothing is reflected, and nothing taken from what lies below.
+  if (factor[0] == 0) return put("specular_weight", "float", {0});
   std::optional<Source> tint;
   if (color_map != nullptr) tint = times(channel(*color_map, 4), color, 3);
   if (tint) {
@@ -586,8 +594,8 @@ Source Translation::brightestOf(const Source& color) {
   Source brightest{graph::Literal{ir::Type::Float, {kLeast}}, {}};
   for (int c = 0; c < 3; ++c) {
     const graph::Literal index{ir::Type::Float, {static_cast<double>(c)}};
-    const Source one =
-        add(fmt::format("specular_{}", "rgb"[c]), "extract<vec3>", {{"in", color}, {"index", Source{index, {}}}});
+    const Source one = add(fmt::format("specular_{}", "rgb"[c]), "extract<vec3>",
+                           {{"in", color}, {"index", Source{index, {}}}});
     brightest = add("specular_brightest", "max<float>", {{"in1", one}, {"in2", brightest}});
   }
   return brightest;

@@ -461,12 +461,13 @@ size_t translateIn(Element& owner, std::string_view as, Diagnostics& said) {
   return count;
 }
 
+/// `ours`: that there are formulas for, or that are of the kind already.
 void countSurfaces(const Element& owner, std::string_view as, size_t& ours, size_t& others) {
   constexpr std::string_view kOthers[] = {"gltf_pbr",          "open_pbr_surface", "UsdPreviewSurface",
                                           "disney_principled", "surface_unlit",    "surface"};
   for (const Element& child : owner.children) {
     if (child.category == "nodegraph") countSurfaces(child, as, ours, others);
-    if (child.category == kFrom) ++ours;
+    if (child.category == kFrom || child.category == as) ++ours;
     if (child.category != as &&
         std::find(std::begin(kOthers), std::end(kOthers), child.category) != std::end(kOthers))
       ++others;

@@ -45,13 +45,17 @@ void specular(Surface& s, const Value& weight, const Value& color) {
 /// at all angles (`rim`). glTF's factor is the reflection at grazing angles: the brightest of the color.
 void tintedSpecular(Surface& s, const Value& weight, const Value& rim, const Value& tint) {
   const auto& c = tint.constant;
-  const double brightest = tint.source ? 1 : std::clamp(std::max({c[0], c[1], c[2]}), 0.0, 1.0);
+  // Without a weight the boundary is none, and reflects nothing at grazing angles, too.
+  const double brightest = weight.isConstant(0) ? 0
+                           : tint.source        ? 1
+                                                : std::clamp(std::max({c[0], c[1], c[2]}), 0.0, 1.0);
   const std::string at = "extensions/KHR_materials_specular/";
   const Value factor = constant(brightest);
   if (!weight.isConstant(1) || !rim.isConstant(1) || !tint.isConstant(1)) {
     s.scalar(at + "specularFactor", at + "specularTexture", 'a', s.product({rim, factor}));
-    const Value color = brightest == 0 ? Value{3, {1, 1, 1}, {}} : s.scaled(tint, 1 / brightest);
-    s.color(at + "specularColorFactor", at + "specularColorTexture", s.product({weight, color}), true);
+    if (brightest == 0) return;
+    s.color(at + "specularColorFactor", at + "specularColorTexture",
+            s.product({weight, s.scaled(tint, 1 / brightest)}), true);
   }
 }
 
@@ -112,6 +116,13 @@ Value transmission(Surface& s, const Transmission& t, const Value& base) {
   for (size_t i = 0; i < 3; ++i)
     mixed.constant[i] += (std::clamp(t.depth > 0 ? 1.0 : t.color[i], 0.0, 1.0) - base.constant[i]) * w;
   return mixed;
+}
+
+/// The base's color times its weight, where both are numbers: the weight is then 1. What passes has none.
+void weigh(Surface& s, Value& base, Value& weight) {
+  if (base.source || weight.source) return;
+  base = s.scaled(base, weight.constant[0]);
+  weight = constant(1);
 }
 
 /// What scatters below the surface is taken for its colour.
@@ -237,7 +248,7 @@ double wideningOf(double stretch) {
 
 void standardSurface(Surface& s) {
   Value base = s.get("base_color", {0.8, 0.8, 0.8});
-  const Value base_weight = s.get("base", 1);
+  Value base_weight = s.get("base", 1);
   base = scattered(s, "subsurface", s.get("subsurface", 0), s.get("subsurface_color", kWhite), base);
   s.pass("subsurface_radius");
   s.pass("subsurface_scale");
@@ -246,6 +257,7 @@ void standardSurface(Surface& s) {
   const bool thin = s.flag("thin_walled", false);
   const Transmission passes{s.get("transmission", 0), s.color("transmission_color", kWhite),
                             s.number("transmission_depth", 0), abbe > 0 ? 20 / abbe : 0, thin};
+  weigh(s, base, base_weight);
   base = transmission(s, passes, base);
   if (passes.weight.there()) {
     s.leave("transmission_scatter", kBlack);
@@ -261,8 +273,7 @@ void standardSurface(Surface& s) {
   } else {
     opacity = s.luminance(opacity);
   }
-  const bool passing = passes.weight.there();
-  coverage(s, s.product({passing ? constant(1) : base_weight, base}), opacity);
+  coverage(s, s.product({base_weight, base}), opacity);
   diffuseRoughness(s, s.get("diffuse_roughness", 0));
   const double stretch = std::clamp(s.number("specular_anisotropy", 0), 0.0, 0.98);
   metallicRoughness(s, s.get("metalness", 0),
@@ -293,7 +304,7 @@ void standardSurface(Surface& s) {
 
 void openPbr(Surface& s) {
   Value base = s.get("base_color", {0.8, 0.8, 0.8});
-  const Value base_weight = s.get("base_weight", 1);
+  Value base_weight = s.get("base_weight", 1);
   base = scattered(s, "subsurface_weight", s.get("subsurface_weight", 0),
                    s.get("subsurface_color", {0.8, 0.8, 0.8}), base);
   s.pass("subsurface_radius");
@@ -304,6 +315,7 @@ void openPbr(Surface& s) {
   const bool thin = s.flag("geometry_thin_walled", false);
   const Transmission passes{s.get("transmission_weight", 0), s.color("transmission_color", kWhite),
                             s.number("transmission_depth", 0), abbe > 0 ? 20 * scale / abbe : 0, thin};
+  weigh(s, base, base_weight);
   base = transmission(s, passes, base);
   if (passes.weight.there()) s.leave("transmission_scatter", kBlack);
   s.pass("transmission_scatter");
@@ -311,8 +323,7 @@ void openPbr(Surface& s) {
   const Value metalness = s.get("base_metalness", 0);
   const Value weight = s.get("specular_weight", 1);
   const Value of_metal = metalness.isConstant(1) ? atMost(weight, 1) : constant(1);
-  coverage(s, s.product({passes.weight.there() ? constant(1) : base_weight, of_metal, base}),
-           s.get("geometry_opacity", 1));
+  coverage(s, s.product({base_weight, of_metal, base}), s.get("geometry_opacity", 1));
   diffuseRoughness(s, s.get("base_diffuse_roughness", 0));
   metallicRoughness(s, metalness, s.product({s.get("specular_roughness", 0.3)}));
   anisotropy(s, s.number("specular_roughness_anisotropy", 0), 0);
