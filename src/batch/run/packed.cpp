@@ -102,10 +102,11 @@ Whole wholeOf(double number) {
 /// The Material block of a use: each number of a field where the reflection has it.
 std::vector<unsigned char> blockOf(const ContractUse& use, const UniformBlock& block) {
   std::vector<unsigned char> bytes(block.size);
-  for (const auto& [name, numbers] : use.uniforms) {
+  for (const auto& uniform : use.uniforms) {
     const auto field = std::find_if(block.fields.begin(), block.fields.end(),
-                                    [&](const BlockField& one) { return one.name == name; });
+                                    [&](const BlockField& one) { return one.name == uniform.first; });
     if (field == block.fields.end()) continue;
+    const std::vector<double>& numbers = uniform.second;
     for (size_t i = 0; i < numbers.size(); ++i) {
       const size_t at = field->offset + 4 * i;
       if (at + 4 > bytes.size()) break;
