@@ -90,7 +90,8 @@ void Patterns::error(const Element& at, std::string code, std::string message, s
 }
 
 void Patterns::warning(const Element& at, std::string code, std::string message, std::string help) {
-  addBounded(wrong_, {std::move(code), Severity::Warning, at.place, std::move(message), std::move(help), {}});
+  addBoundedOnce(wrong_,
+                 {std::move(code), Severity::Warning, at.place, std::move(message), std::move(help), {}});
 }
 
 // -- definitions --

@@ -187,6 +187,7 @@ private:
                               ir::Type type);
   bool isAnimated(const Element& input) const;
   std::string fileOf(const Scope& scope, const Element& input) const;
+  void checkTokens(const Element& input, std::string_view file);
   void defineTokens();
   std::string withGeometryTokens(std::string_view file) const;
   void unknownNode(const Element& element);

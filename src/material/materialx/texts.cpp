@@ -113,14 +113,16 @@ const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
   const Element* nodedef = definitionOf(element);
   if (nodedef == nullptr) return nullptr;
   std::string key = fmt::format("{} {}", nodedef->get("node"), nodedef->name());
-  std::vector<std::pair<std::string, std::string>> texts;
+  std::vector<std::pair<const Element*, std::string>> texts;
   for (const Element& input : element.children) {
-    const Element* port = input.category == "input" ? nodedef->child("input", input.name()) : nullptr;
-    if (port == nullptr || port->get("type") != "string") continue;
-    const Element* said = text(scope, input);
+    const bool token = input.category == "token";
+    const Element* port =
+        token || input.category == "input" ? nodedef->child(input.category, input.name()) : nullptr;
+    if (port == nullptr || (!token && port->get("type") != "string")) continue;
+    const Element* said = token ? &input : text(scope, input);
     if (said == nullptr || said->get("value") == port->get("value")) continue;
-    texts.emplace_back(port->name(), said->get("value"));
-    key += fmt::format("\n{}\n{}", port->name(), said->get("value"));
+    texts.emplace_back(port, said->get("value"));
+    key += fmt::format("\n{} {}\n{}", port->category, port->name(), said->get("value"));
   }
   const Element* graph = definition(*nodedef)->graph;
   if (texts.empty() || graph == nullptr) return nodedef;
@@ -128,8 +130,8 @@ const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
   if (!fresh) return it->second;
   Element& made = made_.emplace_back(*nodedef);
   for (Element& port : made.children) {
-    for (const auto& [name, value] : texts) {
-      if (port.category == "input" && port.name() == name) port.set("value", value);
+    for (const auto& [of, value] : texts) {
+      if (port.category == of->category && port.name() == of->name()) port.set("value", value);
     }
   }
   const Element& body = made_.emplace_back(*graph);
@@ -194,6 +196,9 @@ std::string Patterns::withGeometryTokens(std::string_view file) const {
 std::string Patterns::fileOf(const Scope& scope, const Element& input) const {
   std::string file(trimmed(input.get("value")));
   std::vector<const Element*> owners{scope.owner_};
+  // A definition's tokens, as its instances say them.
+  if (scope.interface_ != nullptr && scope.interface_ != scope.owner_)
+    owners.insert(owners.begin(), scope.interface_);
   owners.insert(owners.end(), documents_.begin(), documents_.end());
   for (const Element* owner : owners) {
     for (const Element& token : owner->children) {
@@ -208,6 +213,18 @@ std::string Patterns::fileOf(const Scope& scope, const Element& input) const {
   for (size_t at = file.find('%'); at != std::string::npos; at = file.find('%', at + 3))
     file.replace(at, 1, "%25");
   return file;
+}
+
+/// Says which names of tokens are left in a file's name.
+void Patterns::checkTokens(const Element& input, std::string_view file) {
+  for (size_t at = 0; (at = file.find_first_of("[<", at)) != std::string_view::npos; ++at) {
+    const size_t end = file.find(file[at] == '[' ? ']' : '>', at);
+    const std::string_view name = file.substr(at, end - at + 1);
+    if (end == std::string_view::npos || name == graph::tileToken(file)) continue;
+    warning(input, "unknown-token", fmt::format("there is no token {}", quote(name)),
+            name[0] == '[' ? "its name stays: a \"token\" of the nodegraph or of its definition says it"
+                           : "its name stays: a \"token\" of a geominfo or a \"tokendefault\" says it");
+  }
 }
 
 /// Whether a group's interface, and not the node itself, says which image an input of type filename has.
@@ -277,6 +294,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
     texture.texture = index && (*index)[0] >= 0 && (*index)[0] < 1e9 ? static_cast<int>((*index)[0]) : -1;
   } else {
     texture.file = fileOf(scope, *from);
+    checkTokens(*from, texture.file);
   }
   const bool tiled = !graph::tileToken(texture.file).empty();
   if (tiled && tiles) {
