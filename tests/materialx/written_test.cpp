@@ -12,8 +12,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "exchange/exchange.h"
+#include "exchange/procedurals_out.h"
 #include "graph/graph.h"
 #include "material/material.h"
 #include "support/cases.h"
@@ -163,6 +165,42 @@ TEST(WrittenSpecular, leavesTheWeightOfABaseThatLightPasses) {
   EXPECT_NE(written.text.find(R"(name="base_color" type="color3" value="0.55, 0.4, 0.325")"),
             std::string::npos)
       << written.text;
+}
+
+/// Images of tiles have no texture in glTF: an output that takes one is left to its baked image.
+TEST(WrittenProcedurals, areOfWholeOutputsAlone) {
+  const material::Document document = documentOf(R"(<materialx version="1.39">
+  <nodegraph name="NG">
+    <image name="tiles" type="color3">
+      <input name="file" type="filename" value="wood_&lt;UDIM&gt;.png"/>
+    </image>
+    <image name="one" type="float">
+      <input name="file" type="filename" value="rough.png"/>
+    </image>
+    <output name="color" type="color3" nodename="tiles"/>
+    <output name="rough" type="float" nodename="one"/>
+  </nodegraph>
+  <gltf_pbr name="shader" type="surfaceshader">
+    <input name="base_color" type="color3" nodegraph="NG" output="color"/>
+    <input name="roughness" type="float" nodegraph="NG" output="rough"/>
+  </gltf_pbr>
+  <surfacematerial name="m" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shader"/>
+  </surfacematerial>
+</materialx>
+)",
+                                                 "tiles.mtlx");
+  const material::Material& material = document.materials.at(0);
+  ASSERT_EQ(material.textures.size(), 2U);
+  Diagnostics said;
+  exchange::ProceduralsOut out(
+      builtInSchema(), document, [](const graph::Texture&) { return std::optional<uint64_t>(0); }, said);
+  const auto written = out.ofGroup(*material.patterns, material.textures[0].info.group);
+  EXPECT_EQ(written.outputs, (std::set<std::string, std::less<>>{"metallicRoughnessTexture"}));
+  EXPECT_EQ(allOf(said),
+            "tiles.mtlx:4:8: warning: tiles_image has an image for each tile, which glTF has no texture for "
+            "[not-said]\n  help: there is no procedural of it: the texture is the baked image\n");
+  EXPECT_EQ(out.extension().dump().find("baseColorTexture"), std::string::npos);
 }
 
 /// A sixteenth of a bump's scale is what heights rise by over the coordinate. What is read again has no

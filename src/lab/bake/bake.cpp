@@ -363,16 +363,6 @@ size_t Baking::textureOf(const std::string& uri, const Json& sampler) {
 std::optional<uint64_t> Baking::textureFor(const graph::Texture& texture) {
   if (texture.texture >= 0) return static_cast<uint64_t>(texture.texture);
   if (texture.file.empty()) return std::nullopt;
-  if (!graph::tileToken(texture.file).empty()) {
-    addBoundedOnce(said_,
-                   {"not-said",
-                    Severity::Warning,
-                    {document_.path, 0, 0, {}},
-                    fmt::format("{} has an image for each tile, which glTF has no texture for", texture.name),
-                    "the fallback image has them baked",
-                    {}});
-    return std::nullopt;
-  }
   constexpr int kModes[] = {10497, 33071, 33648};
   constexpr int kNearest = 9728;
   constexpr int kLinear = 9729;
@@ -519,9 +509,10 @@ Result<void> Baking::planNodes(const std::string& file, const Strings& materials
     const Result<graph::Source> source = graph::outputAt(nodes->outputs, node);
     if (source && baking::isMaterialX(nodes->flat, *source, *language_)) {
       const std::string port = "out";
-      info["extensions"][kProcedurals] = Json{
-          {"index", static_cast<uint64_t>(procedurals_->ofSources(nodes->flat, node, {{port, *source}}))},
-          {"output", port}};
+      const auto written = procedurals_->ofSources(nodes->flat, node, {{port, *source}});
+      if (written.outputs.contains(port))
+        info["extensions"][kProcedurals] =
+            Json{{"index", static_cast<uint64_t>(written.number)}, {"output", port}};
     }
     gltf_["materials"].push_back(std::move(made));
     ++baked_.textures;
@@ -544,7 +535,7 @@ Result<void> Baking::planTextures(const std::string& file) {
                                      }));
   if (rewritten && !own && !alone_ && gltf_.contains("materials")) withoutProcedurals(gltf_["materials"]);
   std::map<std::string, size_t> names;  // of items by what they show
-  std::map<std::string, size_t> groups;
+  std::map<std::string, exchange::ProceduralsOut::Written> groups;
   std::set<std::string> taken;
   const std::string before = alone_ ? fs::path(how_.output).stem().string() + "_" : std::string();
   for (size_t k = 0; k < wanted_.size(); ++k) {
@@ -570,14 +561,14 @@ Result<void> Baking::planTextures(const std::string& file) {
       Item& item = items_[it->second];
       const size_t number = textureOf(item.stem + ".png");  // may move what is in the file
       item.image = static_cast<size_t>(gltf_["textures"][number]["source"].get<uint64_t>());
-      const auto [group, unknown] = groups.try_emplace(texture.info.group, 0);
+      const auto [group, unknown] = groups.try_emplace(texture.info.group);
       if (unknown && rewritten) group->second = procedurals_->ofGroup(*material.patterns, texture.info.group);
       Json& info = own ? at(gltf_["materials"].begin()[k], property.path)
                        : at(gltf_, std::string_view(texture.info.pointer).substr(1));
       info["index"] = static_cast<uint64_t>(number);
-      if (rewritten)
+      if (rewritten && group->second.outputs.contains(texture.info.output))
         info["extensions"][kProcedurals] =
-            Json{{"index", static_cast<uint64_t>(group->second)}, {"output", texture.info.output}};
+            Json{{"index", static_cast<uint64_t>(group->second.number)}, {"output", texture.info.output}};
       for (size_t m = 0; own && m < property.decl->members.size() && m < texture.info.members.size(); ++m)
         info[property.decl->members[m].name] = texture.info.members[m];
       ++baked_.textures;

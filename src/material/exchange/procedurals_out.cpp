@@ -11,6 +11,7 @@
 #include "graph/text.h"
 #include "materialx/values.h"
 #include "support/plain_name.h"
+#include "support/say_once.h"
 
 namespace lacquer::exchange {
 
@@ -173,7 +174,7 @@ Json nodeOf(const Element& element, const Taken& taken) {
 
 }  // namespace
 
-size_t ProceduralsOut::ofGroup(const graph::Graph& patterns, std::string_view group) {
+ProceduralsOut::Written ProceduralsOut::ofGroup(const graph::Graph& patterns, std::string_view group) {
   constexpr std::string_view kInstance = "p";
   graph::Graph graph = patterns;
   graph::Node& node = graph.nodes.emplace_back();
@@ -196,31 +197,56 @@ size_t ProceduralsOut::ofGroup(const graph::Graph& patterns, std::string_view gr
   return write(std::move(graph), group, std::move(outputs));
 }
 
-size_t ProceduralsOut::ofSources(const graph::Graph& flat, std::string_view name,
-                                 const graph::Outputs& sources) {
+ProceduralsOut::Written ProceduralsOut::ofSources(const graph::Graph& flat, std::string_view name,
+                                                  const graph::Outputs& sources) {
   return write(flat, name, sources);
 }
 
-size_t ProceduralsOut::write(graph::Graph flat, std::string_view name, graph::Outputs outputs) {
+/// Whether the extension has all that an output is computed from; what it lacks is said.
+bool ProceduralsOut::isWhole(const graph::Graph& flat, const std::pair<std::string, Source>& output,
+                             std::string_view type) {
+  std::vector<SurfaceOut> surfaces(1);
+  graph::Graph alone = flat;
+  alone.groups[0].outputs = {output};
+  surfaces[0].body = alone.groups[0];
+  surfaces[0].inputs.push_back({output.first, type, {}, output.second});
+  Diagnostics lacks;
+  const auto number = [&](const graph::Texture& texture) -> std::optional<uint64_t> {
+    if (graph::tileToken(texture.file).empty()) return 0;
+    addBoundedOnce(lacks,
+                   {"not-said",
+                    Severity::Warning,
+                    texture.place,
+                    fmt::format("{} has an image for each tile, which glTF has no texture for", texture.name),
+                    "there is no procedural of it: the texture is the baked image",
+                    {}});
+    return std::nullopt;
+  };
+  const Moved stays(".", ".");
+  PatternsOut patterns(alone, *schema_.library, scene_, surfaces, stays, lacks, number);
+  Element root, shader;
+  patterns.write(root);
+  patterns.inputs(0, shader);
+  for (Diagnostic& one : lacks) addBoundedOnce(said_, std::move(one));
+  return lacks.empty();
+}
+
+ProceduralsOut::Written ProceduralsOut::write(graph::Graph flat, std::string_view name,
+                                              graph::Outputs outputs) {
   Texels texels(flat.nodes);
   for (auto& [port, source] : outputs) source = texels.value(source);
   texels.rewrite();
   graph::Group body;
   body.name = "_procedural";
   body.nodes = std::move(flat.nodes);
+  body.outputs = outputs;
   flat.nodes.clear();
   flat.outputs.clear();
-  std::vector<SurfaceOut> surfaces(1);
-  std::vector<std::string> names;
-  for (auto& [port, source] : outputs) {
-    body.outputs.emplace_back(port, source);
-    names.push_back(port);
-  }
   flat.groups = {body};
   std::vector<std::string_view> types;
   {
     const graph::Contracts contracts(flat, *schema_.library);
-    for (const auto& [port, source] : body.outputs) {
+    for (const auto& [port, source] : outputs) {
       const std::optional<graph::Offer> offer = contracts.offer(source, contracts.body(0));
       const ir::Type type = offer ? offer->type : ir::Type::Float;
       types.push_back(type == ir::Type::Vec3   ? "color3"
@@ -228,9 +254,18 @@ size_t ProceduralsOut::write(graph::Graph flat, std::string_view name, graph::Ou
                                                : materialx::nameOf(type));
     }
   }
+  Written written{list_.size(), {}};
+  std::vector<SurfaceOut> surfaces(1);
+  body.outputs.clear();
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    if (!isWhole(flat, outputs[i], types[i])) continue;
+    written.outputs.insert(outputs[i].first);
+    body.outputs.push_back(outputs[i]);
+    surfaces[0].inputs.push_back({outputs[i].first, types[i], {}, outputs[i].second});
+  }
+  if (written.outputs.empty()) return written;
+  flat.groups = {body};
   surfaces[0].body = body;
-  for (size_t i = 0; i < names.size(); ++i)
-    surfaces[0].inputs.push_back({names[i], types[i], {}, body.outputs[i].second});
   const Moved stays(".", ".");
   PatternsOut patterns(flat, *schema_.library, scene_, surfaces, stays, said_, number_);
   Element root;
@@ -244,7 +279,7 @@ size_t ProceduralsOut::write(graph::Graph flat, std::string_view name, graph::Ou
   Json made = Json::object();
   made["name"] = name;
   made["nodetype"] = "nodegraph";
-  made["type"] = types.size() == 1 ? types[0] : "multioutput";
+  made["type"] = surfaces[0].inputs.size() == 1 ? surfaces[0].inputs[0].type : "multioutput";
   made["inputs"] = Json::object();
   Json nodes = Json::array();
   for (const Element& element : root.children) nodes.push_back(nodeOf(element, taken));
@@ -256,7 +291,7 @@ size_t ProceduralsOut::write(graph::Graph flat, std::string_view name, graph::Ou
   }
   made["outputs"] = std::move(ports);
   list_.push_back(std::move(made));
-  return list_.size() - 1;
+  return written;
 }
 
 Json ProceduralsOut::extension() const {

@@ -194,6 +194,7 @@ struct Texture : ir::TextureSlot {
   /// Beside `pointer` the textureInfos of other properties that have the same texel, in order.
   std::vector<std::string> also{};
   std::string ui{};
+  Place place{};  ///< of a document's file name; no part of the graph's text
 };
 
 /// Why a term that the material could have is not in the graph.

@@ -709,6 +709,8 @@ void Patterns::finish() {
   }
   if (count_ <= options_.most) checked();
   spread();
+  // Nobody takes them, and what works with the whole graph would stop at them.
+  std::erase_if(graph_.groups, [&](const graph::Group& group) { return isWrong(group.name); });
   // In the order of the files, whatever came to what is wrong first.
   std::stable_sort(wrong_.begin(), wrong_.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tie(a.place.file, a.place.line, a.place.column) <

@@ -330,6 +330,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
     if (of == ir::Type::Vec3) color_of[3] = 1;
   }
   if (texture.texture < 0) texture.color = color_of;
+  texture.place = from->place;
   texture.pointer = from->place.pointer.empty() ? fmt::format("/{}/{}", scope.group_.name, element.name())
                                                 : from->place.pointer;
   std::string key = fmt::format(
