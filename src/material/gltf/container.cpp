@@ -45,7 +45,10 @@ Result<std::string_view> jsonText(std::string_view bytes, const std::string& fil
   const auto truncated = [&](std::string message) {
     return fail("truncated-glb", place, std::move(message));
   };
-  if (bytes.empty()) return fail("empty-file", place, "the file is empty", "a .gltf holds a JSON object");
+  if (bytes.empty())
+    return fail("empty-file", place, "the file is empty",
+                place.file.ends_with(".mtlx") ? "a .mtlx holds an element <materialx>"
+                                              : "a .gltf holds a JSON object");
   if (!bytes.starts_with(kMagic)) return bytes;
 
   if (bytes.size() < kHeader) {

@@ -2,12 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <set>
 #include <utility>
 
-#include "lang/suggest.h"
 #include "materialx/element.h"
+#include "materialx/flaws.h"
 #include "materialx/materialx.h"
 #include "materialx/models.h"
 #include "materialx/patterns.h"
@@ -24,27 +22,12 @@ public:
 
 private:
   void take(Element& element);
-  void checkBodies();
-  void checkInheritance();
   void error(const Element& at, const char* code, std::string message, std::string help = {}) {
     addBounded(wrong_, {code, Severity::Error, at.place, std::move(message), std::move(help), {}});
   }
-  void missing(const Element& at, std::string_view name) {
-    constexpr size_t kMostSuggestions = 20;  // each looks at every name that there is
-    std::string close;
-    if (++suggestions_ <= kMostSuggestions) {
-      std::vector<std::string_view> names;
-      for (const auto& [known, element] : nodedefs_) names.push_back(known);
-      close = lang::didYouMean(name, names);
-    }
-    error(at, "no-such-definition",
-          fmt::format("{} names the nodedef {}, which is not there", quote(at.name()), quote(name)),
-          close.empty() ? "it stands in one of the files, or in one of MaterialX's own beside them" : close);
-  }
 
   Element root_;
-  std::map<std::string_view, const Element*> nodedefs_, nodegraphs_;  ///< of root_, once it is whole
-  size_t suggestions_ = 0;
+  Siblings nodedefs_, nodegraphs_;  ///< of root_, once whole
   Diagnostics wrong_;
 };
 
@@ -62,46 +45,6 @@ void DefinitionsReader::take(Element& element) {
   root_.children.push_back(std::move(element));
 }
 
-void DefinitionsReader::checkBodies() {
-  std::map<std::pair<std::string_view, std::string_view>, const Element*> bodies;
-  for (const Element& child : root_.children) {
-    if (child.category == "nodedef" || child.get("nodedef").empty()) continue;
-    if (!nodedefs_.contains(child.get("nodedef"))) missing(child, child.get("nodedef"));
-    if (child.category == "implementation" && !nodegraphs_.contains(child.get("nodegraph")))
-      error(child, "no-such-definition",
-            fmt::format("{} names the nodegraph {}, which is not there", quote(child.name()),
-                        quote(child.get("nodegraph"))));
-    const auto [it, fresh] = bodies.try_emplace({child.get("nodedef"), child.get("target")}, &child);
-    if (!fresh)
-      error(child, "duplicate-definition",
-            fmt::format("{} is implemented a second time", quote(child.get("nodedef"))),
-            fmt::format("{} in {}:{} does so", quote(it->second->name()), it->second->place.file,
-                        it->second->place.line));
-  }
-}
-
-void DefinitionsReader::checkInheritance() {
-  std::set<const Element*> good;
-  for (const Element& child : root_.children) {
-    std::set<const Element*> seen;
-    for (const Element* at = &child; at->category == "nodedef" && !good.contains(at);) {
-      if (!seen.insert(at).second) {
-        error(child, "inherit-cycle", fmt::format("{} inherits from itself", quote(child.name())));
-        break;
-      }
-      const std::string_view base = at->get("inherit");
-      const auto found = nodedefs_.find(base);
-      if (base.empty()) break;
-      if (found == nodedefs_.end()) {
-        missing(*at, base);
-        break;
-      }
-      at = found->second;
-    }
-    good.insert(seen.begin(), seen.end());
-  }
-}
-
 Result<Definitions> DefinitionsReader::read(const std::vector<lang::SourceFile>& files,
                                             const Limits& limits) {
   root_.category = "materialx";
@@ -112,9 +55,15 @@ Result<Definitions> DefinitionsReader::read(const std::vector<lang::SourceFile>&
       continue;
     }
     for (Element& child : document->root.children) take(child);
+    for (const Diagnostic& one : document->said) {
+      Element& warning = root_.children.emplace_back();
+      warning.category = kWarning;
+      warning.place = one.place;
+      warning.attributes = {{"code", one.code}, {"message", one.message}, {"help", one.help}};
+    }
   }
   for (const Element& child : root_.children) {
-    if (child.category == "implementation" || child.category == "geompropdef") continue;
+    if (child.category != "nodedef" && child.category != "nodegraph") continue;
     auto& known = child.category == "nodedef" ? nodedefs_ : nodegraphs_;
     const auto [it, fresh] = known.try_emplace(child.name(), &child);
     if (!fresh)
@@ -122,8 +71,7 @@ Result<Definitions> DefinitionsReader::read(const std::vector<lang::SourceFile>&
             fmt::format("there is a {} {} already", child.category, quote(child.name())),
             fmt::format("it stands in {}:{}", it->second->place.file, it->second->place.line));
   }
-  checkBodies();
-  checkInheritance();
+  for (Flaw& flaw : flawsOf(root_, nodedefs_, nodegraphs_)) addBounded(wrong_, std::move(flaw.said));
   if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
   addTangentSpace(root_);
   return std::make_shared<const Element>(std::move(root_));

@@ -127,6 +127,13 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
   if (found.shader == nullptr) {
     wrong(at, "no-such-node", fmt::format("the material {} has no surface", quote(name)),
           "its input surfaceshader names one");
+  } else if (const std::string_view type = found.shader->get("type");
+             type != "surfaceshader" && (typeOf(type) || !closureParts(type).empty())) {
+    const Element* in = at.child("input", "surfaceshader");
+    wrong(in == nullptr ? at : *in, "wrong-type",
+          fmt::format("the input \"surfaceshader\" is of the type \"surfaceshader\", and {} is {}",
+                      quote(found.shader->name()), quote(type)),
+          "a node \"surface\" makes a surfaceshader of a BSDF and an EDF");
   } else {
     made.scope = &patterns_.body(*found.owner, fmt::format("{}_material", name));
     Surface surface(patterns_, *made.scope, *found.shader, made.said);

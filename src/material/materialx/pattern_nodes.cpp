@@ -174,6 +174,7 @@ const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
 }
 
 void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& made) {
+  if (!hasType(element)) return;
   const lang::NodeDecl* form = formOf(scope, element);
   if (form == nullptr) return;
   made.type = form->name;

@@ -25,12 +25,6 @@ namespace {
 constexpr size_t kMostAliases = 64;
 constexpr size_t kDeepestInheritance = 16;
 
-/// Whether two types are said and are one in a graph: a color3 is a vector3.
-bool isOneHere(std::string_view a, std::string_view b) {
-  if (a == b || a.empty() || b.empty()) return true;
-  return typeOf(a) && typeOf(a) == typeOf(b);
-}
-
 }  // namespace
 
 std::string graphName(std::string_view name) {
@@ -108,13 +102,14 @@ void Patterns::define() {
     for (const Element& child : document->children) {
       const std::string_view nodedef = child.get("nodedef");
       if (nodedef.empty()) continue;
-      const auto named = nodegraphs_.find(child.get("nodegraph"));
-      if (child.category == "nodegraph") bodies_.emplace(nodedef, &child);
-      if (child.category == "implementation" && named != nodegraphs_.end())
-        bodies_.emplace(nodedef, named->second);
+      const Element* graph = child.category == "nodegraph" ? &child : nullptr;
+      if (child.category == "implementation") graph = findNamed(nodegraphs_, child.get("nodegraph"));
+      const Element* of = findNamed(nodedefs_, nodedef);
+      if (graph != nullptr) bodies_.emplace(of == nullptr ? nodedef : of->name(), graph);
     }
   }
   for (const Element* document : documents_) defineFrom(*document);
+  if (options_.editable) findFlaws();
 }
 
 /// Whether a definition of MaterialX's own, which is code there, is a node of the library, or is spoken of
@@ -158,8 +153,7 @@ const Element* Patterns::merged(const Element& nodedef, size_t depth) {
   const std::string_view inherits = nodedef.get("inherit");
   if (inherits.empty() || depth == kDeepestInheritance) return &nodedef;
   if (const auto known = merges_.find(&nodedef); known != merges_.end()) return known->second;
-  const auto found = nodedefs_.find(inherits);
-  const Element* base = found == nodedefs_.end() ? nullptr : found->second;
+  const Element* base = findNamed(nodedefs_, inherits);
   if (base == nullptr || base == &nodedef) return &nodedef;
   Element& whole = merged_.emplace_back(nodedef);
   for (const Element& port : merged(*base, depth + 1)->children) {
@@ -181,13 +175,18 @@ const Element* Patterns::definitionOf(const Element& node) const {
     }
     return type;
   };
-  const auto of = definitions_of_.find(node.category);
+  const std::string_view category = node.category;
+  const size_t colon = category.rfind(':');  // behind a namespace
+  const std::string_view space =
+      colon == std::string_view::npos ? std::string_view() : category.substr(0, colon);
+  const auto of = definitions_of_.find(space.empty() ? category : category.substr(colon + 1));
   if (of == definitions_of_.end()) return nullptr;
   for (const size_t place : of->second) {
     const Element& nodedef = *definitions_[place].nodedef;
-    if (definitions_[place].model) continue;
-    if (!node.get("nodedef").empty()) {
-      if (nodedef.name() == node.get("nodedef")) return &nodedef;
+    if (definitions_[place].model || (!space.empty() && nodedef.get("namespace") != space)) continue;
+    if (const std::string_view wanted = node.get("nodedef"); !wanted.empty()) {
+      const Element* found = findNamed(nodedefs_, wanted);
+      if (nodedef.name() == (found == nullptr ? wanted : found->name())) return &nodedef;
       continue;
     }
     if (!node.get("type").empty() && outputOf(nodedef) != node.get("type")) continue;
@@ -248,6 +247,7 @@ void Patterns::demandAll() {
   }
   for (const Definition& one : definitions_) {
     if (one.model) continue;
+    checkDefinition(*one.nodedef);
     if (one.graph == nullptr) {
       if (!bases.contains(one.nodedef->name())) withoutGraph(*one.nodedef, *one.nodedef);
       continue;
@@ -263,48 +263,6 @@ void Patterns::demandAll() {
 void Patterns::withoutGraph(const Element& at, const Element& nodedef) {
   error(at, "no-graph", fmt::format("the definition {} has no nodegraph", quote(nodedef.name())),
         "code in a shading language is not read: give it a nodegraph, or a node file by --nodes");
-}
-
-/// Whether an output of a definition's nodegraph is of the type that the definition says.
-void Patterns::checkDeclared(const Element& nodedef, const Element& graph, std::string_view name) {
-  const Element* port = nodedef.child("output", name);
-  const Element* output = graph.child("output", name);
-  if (port == nullptr || output == nullptr || isOneHere(port->get("type"), output->get("type"))) return;
-  error(*output, "wrong-type",
-        fmt::format("the output {} is of the type {}", quote(name), quote(output->get("type"))),
-        fmt::format("its definition {} in {}:{} says {}", quote(nodedef.name()), port->place.file,
-                    port->place.line, quote(port->get("type"))));
-}
-
-/// The type of what a port is connected to; empty where that is not said.
-std::string_view Patterns::givenType(const Scope& scope, const Element& port) const {
-  if (const std::string* interface = port.find("interfacename")) {
-    const Element* input = scope.input(*interface);
-    return input == nullptr ? std::string_view() : input->get("type");
-  }
-  const Element* node = upstream(scope, port);
-  const Element* gives = nodegraph(scope, port);
-  if (gives == nullptr && node != nullptr) gives = definitionOf(*node);
-  if (gives == nullptr) {
-    const std::string_view type = node == nullptr ? std::string_view() : node->get("type");
-    return type == "multioutput" ? std::string_view() : type;
-  }
-  for (const Element& output : gives->children) {
-    const bool wanted = port.get("output").empty() || output.name() == port.get("output");
-    if (output.category == "output" && wanted) return output.get("type");
-  }
-  return {};
-}
-
-/// Whether an output is of the type of what it is connected to.
-void Patterns::checkOutput(const Scope& scope, const Element& output) {
-  if (output.category != "output" || !output.get("channels").empty()) return;
-  const std::string_view given = givenType(scope, output);
-  if (isOneHere(output.get("type"), given)) return;
-  error(output, "wrong-type",
-        fmt::format("the output {} is of the type {}, and what it is connected to is {}",
-                    quote(output.name()), quote(output.get("type")), quote(given)),
-        "a node \"convert\" or \"extract\" between them makes one of the other");
 }
 
 void Patterns::output(Scope& scope, std::string_view name, const Element& at) {
@@ -471,7 +429,7 @@ std::optional<Source> Patterns::closure(Scope& scope, const Element& node, std::
 std::optional<Source> Patterns::connected(Scope& scope, const Element& input, std::string_view part) {
   Scope* const outer = std::exchange(now_, &scope);
   std::optional<Source> source;
-  checkOutput(scope, input);
+  checkPort(scope, input);
   if (const std::string* name = input.find("interfacename")) {
     // Beside the graphs an input may stand, too.
     const Element* beside = scope.interface_ == nullptr ? scope.owner_->child("input", *name) : nullptr;
@@ -539,7 +497,7 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
   }
   const auto behind = [&](const Element& next, std::string swizzle) -> std::optional<Source> {
     std::optional<Source> source;
-    checkOutput(scope, next);
+    checkPort(scope, next);
     if (next.find("interfacename") != nullptr) {
       source = connected(scope, next, referred.part);
     } else if (isConnected(next)) {
@@ -709,6 +667,7 @@ void Patterns::finish() {
   }
   if (count_ <= options_.most) checked();
   spread();
+  tellWarnings();
   // Nobody takes them, and what works with the whole graph would stop at them.
   std::erase_if(graph_.groups, [&](const graph::Group& group) { return isWrong(group.name); });
   // In the order of the files, whatever came to what is wrong first.
@@ -722,6 +681,7 @@ void Patterns::finish() {
 void Patterns::checked() {
   const Result<std::string> name = library_.defaultTemplate();
   if (name) graph_.template_name = *name;
+  spread();
   const std::set<std::string, std::less<>> unread = broken_;
   std::map<std::string_view, const Scope*> scopes;
   for (const Scope& scope : scopes_) scopes.emplace(scope.group_.name, &scope);

@@ -15,6 +15,7 @@
 #include "graph/graph.h"
 #include "lang/library.h"
 #include "materialx/element.h"
+#include "materialx/flaws.h"
 #include "materialx/values.h"
 
 namespace lacquer::materialx {
@@ -31,6 +32,10 @@ struct PatternOptions {
   const Element* definitions = nullptr;
 };
 
+/// Among the elements of PatternOptions::definitions: a warning of one of its files, which is told where
+/// something of the file is used.
+inline constexpr std::string_view kWarning = "said:warning";
+
 /// Names that are given once.
 class NameSet {
 public:
@@ -45,8 +50,6 @@ private:
 };
 
 enum class Alpha : uint8_t { Opaque, Mask, Blend };
-
-using Siblings = std::unordered_map<std::string_view, const Element*>;
 
 /// The nodes of one body while it is made: of a group, whose elements stand beside each other.
 class Scope {
@@ -138,6 +141,9 @@ private:
 
   void define();
   void defineFrom(const Element& document);
+  void findFlaws();
+  void checkDefinition(const Element& nodedef);
+  void tellWarnings();
   bool isKnown(const Element& nodedef) const;
   const Element* merged(const Element& nodedef, size_t depth);
   void prepare(Scope& scope, const Element& owner, const Element* inputs, std::string_view name);
@@ -171,7 +177,8 @@ private:
   void withoutGraph(const Element& at, const Element& nodedef);
   void checkDeclared(const Element& nodedef, const Element& graph, std::string_view name);
   std::string_view givenType(const Scope& scope, const Element& port) const;
-  void checkOutput(const Scope& scope, const Element& output);
+  void checkPort(const Scope& scope, const Element& port);
+  bool hasType(const Element& element);
   bool isOfKind(const Element& input, const Referred& referred);
   struct OfGeometry {
     std::string node, space;
@@ -219,6 +226,10 @@ private:
   /// Looked up, never walked.
   std::unordered_map<std::string_view, std::vector<size_t>> definitions_of_;
   std::unordered_map<const Element*, size_t> by_nodedef_, by_graph_;
+  std::vector<Flaw> flaws_;
+  std::unordered_map<std::string_view, std::vector<size_t>> flaws_of_;  ///< by the nodedef
+  std::set<size_t> told_;                                               ///< flaws of what is used
+  std::set<std::string, std::less<>> used_files_;                       ///< of definitions
   size_t suggestions_ = 0;
   std::map<std::string, const Element*> with_texts_;  ///< definitions, by their names and their texts
   std::map<std::string, std::string> textures_;       ///< by all that is said of one

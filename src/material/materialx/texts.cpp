@@ -112,6 +112,7 @@ const Element* Patterns::text(Scope& within, const Element& input) {
 const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
   const Element* nodedef = definitionOf(element);
   if (nodedef == nullptr) return nullptr;
+  checkDefinition(*nodedef);
   std::string key = fmt::format("{} {}", nodedef->get("node"), nodedef->name());
   std::vector<std::pair<const Element*, std::string>> texts;
   for (const Element& input : element.children) {

@@ -81,7 +81,7 @@ private:
     one.message = std::move(message);
     one.help = std::move(help);
     const auto at = static_cast<size_t>(std::max<ptrdiff_t>(offset, 0));
-    if (at <= text_.size()) locate(one, text_, at);
+    locate(one, text_, std::min(at, text_.size()));
     return one;
   }
 
@@ -155,6 +155,12 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
     const size_t first = into.children.size();
     if (!hasError(wrong_)) elements(root, into, inside, 1);
     open_.pop_back();
+    if (const std::string* space = own.find("namespace"))
+      for (size_t i = first; i < into.children.size(); ++i) {
+        Element& child = into.children[i];
+        const bool names = child.category == "nodedef" || child.category == "nodegraph";
+        if (names && child.find("namespace") == nullptr) child.set("namespace", *space);
+      }
     if (!hasError(wrong_) && minor < kPresentMinor) {
       upgrade(into, first, minor, wrong_);
       into.set("version", fmt::format("1.{}", kPresentMinor));

@@ -1,0 +1,134 @@
+// What is wrong with a document before anything is computed: types that do not fit, definitions with flaws.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "lang/suggest.h"
+#include "materialx/patterns.h"
+#include "support/say_once.h"
+#include "support/text.h"
+
+namespace lacquer::materialx {
+
+namespace {
+
+/// Whether two types are said and are one in a graph: a color3 is a vector3.
+bool isOneHere(std::string_view a, std::string_view b) {
+  if (a == b || a.empty() || b.empty()) return true;
+  return typeOf(a) && typeOf(a) == typeOf(b);
+}
+
+const std::vector<std::string_view> kTypes{
+    "float",         "integer",      "boolean",      "color3",      "color4",
+    "vector2",       "vector3",      "vector4",      "matrix33",    "matrix44",
+    "string",        "filename",     "BSDF",         "EDF",         "VDF",
+    "surfaceshader", "material",     "volumeshader", "lightshader", "displacementshader",
+    "multioutput",   "integerarray", "floatarray",   "color3array", "color4array",
+    "vector2array",  "vector3array", "vector4array", "stringarray", "geomnamearray",
+    "geomname",      "none"};
+
+bool isTypeName(std::string_view type) {
+  return type.empty() || std::find(kTypes.begin(), kTypes.end(), type) != kTypes.end();
+}
+
+}  // namespace
+
+/// What is wrong with the documents' own definitions; a library's has been said.
+void Patterns::findFlaws() {
+  for (const Element* document : documents_) {
+    if (document == options_.definitions || document == options_.models) continue;
+    for (Flaw& flaw : flawsOf(*document, nodedefs_, nodegraphs_)) {
+      for (const std::string_view nodedef : flaw.nodedefs) flaws_of_[nodedef].push_back(flaws_.size());
+      flaws_.push_back(std::move(flaw));
+    }
+  }
+}
+
+/// Something is a node of a definition: what is wrong with that is an error.
+void Patterns::checkDefinition(const Element& nodedef) {
+  const Definition* made = options_.definitions == nullptr ? nullptr : definition(nodedef);
+  if (made != nullptr) used_files_.insert(nodedef.place.file);
+  if (made != nullptr && made->graph != nullptr) used_files_.insert(made->graph->place.file);
+  const auto of = flaws_of_.find(nodedef.name());
+  if (of == flaws_of_.end()) return;
+  if (now_ != nullptr) broken_.insert(now_->group_.name);
+  for (const size_t flaw : of->second) {
+    told_.insert(flaw);
+    addBoundedOnce(wrong_, flaws_[flaw].said);
+  }
+}
+
+/// Flaws of what nothing uses, and what a library's files say that are used.
+void Patterns::tellWarnings() {
+  for (size_t i = 0; i < flaws_.size(); ++i) {
+    Diagnostic unused = flaws_[i].said;
+    unused.severity = Severity::Warning;
+    if (!told_.contains(i)) addBounded(wrong_, std::move(unused));
+  }
+  if (options_.definitions == nullptr) return;
+  for (const Element& one : options_.definitions->children) {
+    if (one.category == kWarning && used_files_.contains(one.place.file))
+      warning(one, std::string(one.get("code")), std::string(one.get("message")),
+              std::string(one.get("help")));
+  }
+}
+
+/// Whether an output of a definition's nodegraph is of the type that the definition says.
+void Patterns::checkDeclared(const Element& nodedef, const Element& graph, std::string_view name) {
+  const Element* port = nodedef.child("output", name);
+  const Element* output = graph.child("output", name);
+  if (port == nullptr || output == nullptr || isOneHere(port->get("type"), output->get("type"))) return;
+  error(*output, "wrong-type",
+        fmt::format("the output {} is of the type {}", quote(name), quote(output->get("type"))),
+        fmt::format("its definition {} in {}:{} says {}", quote(nodedef.name()), port->place.file,
+                    port->place.line, quote(port->get("type"))));
+}
+
+/// The type of what a port is connected to; empty where that is not said.
+std::string_view Patterns::givenType(const Scope& scope, const Element& port) const {
+  if (const std::string* interface = port.find("interfacename")) {
+    const Element* input = scope.input(*interface);
+    return input == nullptr ? std::string_view() : input->get("type");
+  }
+  const Element* node = upstream(scope, port);
+  const Element* gives = nodegraph(scope, port);
+  if (gives == nullptr && node != nullptr) gives = definitionOf(*node);
+  if (gives == nullptr) {
+    const std::string_view type = node == nullptr ? std::string_view() : node->get("type");
+    return type == "multioutput" ? std::string_view() : type;
+  }
+  for (const Element& output : gives->children) {
+    const bool wanted = port.get("output").empty() || output.name() == port.get("output");
+    if (output.category == "output" && wanted) return output.get("type");
+  }
+  return {};
+}
+
+/// Whether an output or an input is of the type of what it is connected to.
+void Patterns::checkPort(const Scope& scope, const Element& port) {
+  const bool output = port.category == "output";
+  const std::string_view type = port.get("type");
+  if ((!output && (port.category != "input" || !typeOf(type))) || !port.get("channels").empty()) return;
+  const std::string_view given = givenType(scope, port);
+  if (isOneHere(type, given) || !isTypeName(given)) return;
+  error(port, "wrong-type",
+        fmt::format("the {} {} is of the type {}, and what it is connected to is {}", port.category,
+                    quote(port.name()), quote(type), quote(given)),
+        "a node \"convert\" or \"extract\" between them makes one of the other");
+}
+
+/// Whether a node's type is one of MaterialX's, or of a `typedef` of the documents.
+bool Patterns::hasType(const Element& element) {
+  const std::string_view type = element.get("type");
+  if (isTypeName(type)) return true;
+  for (const Element* document : documents_) {
+    if (document->child("typedef", type) != nullptr) return true;
+  }
+  error(element, "wrong-type", fmt::format("there is no type {}", quote(type)),
+        lang::didYouMean(type, kTypes, "MaterialX has " + listOf(kTypes)));
+  return false;
+}
+
+}  // namespace lacquer::materialx
