@@ -21,7 +21,7 @@ static_assert(std::endian::native == std::endian::little, "records are written a
 
 using List = lacquer_packed_list;
 constexpr uint32_t kMostOfBlock = 1 << 20;  ///< bytes; devices take 64 KiB
-constexpr size_t kOfCode = 16;  ///< what the bytes of a code and of a block lie at a multiple of
+constexpr size_t kOfCode = 16;              ///< what the bytes of a code and of a block lie at a multiple of
 
 /// Appends lists; one with the same bytes is there once.
 class Bytes {
