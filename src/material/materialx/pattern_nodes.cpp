@@ -117,7 +117,8 @@ const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
     // Those for images of tiles take such, and no others.
     const bool tiles =
         std::any_of(element.children.begin(), element.children.end(), [&](const Element& input) {
-          return input.category == "input" && input.get("type") == "filename" && hasTiles(scope, input);
+          return input.category == "input" && input.get("type") == "filename" &&
+                 hasTiles(scope, element, input);
         });
     std::erase_if(forms, [&](const lang::NodeDecl* form) { return isOfTiles(*form) != tiles; });
   }

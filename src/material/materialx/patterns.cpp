@@ -331,7 +331,7 @@ void Patterns::groupInputs(Scope& scope) {
     } else if (file) {
       const bool tiles = goesToTiles(*scope.owner_, input.name());
       made.by_default = image(scope, input, input, tiles);
-      if (tiles && hasTiles(scope, input)) made.type = ir::Type::Texture2DArray;
+      if (tiles && hasTiles(scope, input, input)) made.type = ir::Type::Texture2DArray;
     } else if (input.find("value") != nullptr) {
       lang::Param param;
       param.type = *type;

@@ -172,7 +172,7 @@ private:
   const Element* definitionFor(Scope& scope, const Element& element);
   bool takesTiles(std::string_view category) const;
   bool isOfInstances(const Scope& scope, const Element& input) const;
-  bool hasTiles(Scope& scope, const Element& input);
+  bool hasTiles(Scope& scope, const Element& node, const Element& input);
   bool goesToTiles(const Element& owner, std::string_view name) const;
   void withoutGraph(const Element& at, const Element& nodedef);
   void checkDeclared(const Element& nodedef, const Element& graph, std::string_view name);
@@ -193,7 +193,7 @@ private:
   graph::Parameter& parameter(const Scope& scope, const Element& element, const Element& input,
                               ir::Type type);
   bool isAnimated(const Element& input) const;
-  std::string fileOf(const Scope& scope, const Element& input) const;
+  std::string fileOf(const Scope& scope, const Element& node, const Element& input) const;
   void checkTokens(const Element& input, std::string_view file);
   void defineTokens();
   std::string withGeometryTokens(std::string_view file) const;

@@ -193,13 +193,14 @@ std::string Patterns::withGeometryTokens(std::string_view file) const {
   }
 }
 
-/// The file's name with the document's tokens in place of their names.
-std::string Patterns::fileOf(const Scope& scope, const Element& input) const {
+/// The file's name with tokens in place of their names: of the node that takes it, and of what that is in.
+std::string Patterns::fileOf(const Scope& scope, const Element& node, const Element& input) const {
   std::string file(trimmed(input.get("value")));
   std::vector<const Element*> owners{scope.owner_};
   // A definition's tokens, as its instances say them.
   if (scope.interface_ != nullptr && scope.interface_ != scope.owner_)
     owners.insert(owners.begin(), scope.interface_);
+  owners.insert(owners.begin(), &node);
   owners.insert(owners.end(), documents_.begin(), documents_.end());
   for (const Element* owner : owners) {
     for (const Element& token : owner->children) {
@@ -236,7 +237,7 @@ bool Patterns::isOfInstances(const Scope& scope, const Element& input) const {
 }
 
 /// Whether an input of type filename is an image for each tile.
-bool Patterns::hasTiles(Scope& scope, const Element& input) {
+bool Patterns::hasTiles(Scope& scope, const Element& node, const Element& input) {
   if (isOfInstances(scope, input)) {
     const std::string name = graphName(input.get("interfacename"));
     const auto& inputs = scope.group_.inputs;
@@ -246,7 +247,7 @@ bool Patterns::hasTiles(Scope& scope, const Element& input) {
   }
   const Element* from = text(scope, input);
   return from != nullptr && from->find("texture") == nullptr &&
-         !graph::tileToken(fileOf(scope, *from)).empty();
+         !graph::tileToken(fileOf(scope, node, *from)).empty();
 }
 
 /// Whether all that an interface's input goes to takes images of tiles.
@@ -294,7 +295,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
     const std::optional<std::vector<double>> index = numbersOf(*number);
     texture.texture = index && (*index)[0] >= 0 && (*index)[0] < 1e9 ? static_cast<int>((*index)[0]) : -1;
   } else {
-    texture.file = fileOf(scope, *from);
+    texture.file = fileOf(scope, element, *from);
     checkTokens(*from, texture.file);
   }
   const bool tiled = !graph::tileToken(texture.file).empty();
