@@ -18,6 +18,7 @@
 #include "exchange/procedurals_out.h"
 #include "graph/graph.h"
 #include "material/material.h"
+#include "materialx/element.h"
 #include "support/cases.h"
 #include "support/materials.h"
 
@@ -165,6 +166,22 @@ TEST(WrittenSpecular, leavesTheWeightOfABaseThatLightPasses) {
   EXPECT_NE(written.text.find(R"(name="base_color" type="color3" value="0.55, 0.4, 0.325")"),
             std::string::npos)
       << written.text;
+}
+
+/// Definitions are read with their file's namespace, and are written without the document's.
+TEST(WrittenNamespaces, areSaidOnce) {
+  materialx::Element root, own, other;
+  root.category = "materialx";
+  own.category = other.category = "nodedef";
+  for (materialx::Element* one : {&root, &own}) one->set("namespace", "studio");
+  other.set("namespace", "included");
+  root.children = {own, other};
+  EXPECT_EQ(materialx::toXml(root), R"(<?xml version="1.0"?>
+<materialx namespace="studio">
+  <nodedef/>
+  <nodedef namespace="included"/>
+</materialx>
+)");
 }
 
 /// Images of tiles have no texture in glTF: an output that takes one is left to its baked image.

@@ -68,16 +68,18 @@ void writeValue(std::string_view value, std::string& text) {
   }
 }
 
-void writeElement(const Element& element, size_t depth, std::string& text) {
+/// `space`: the document's namespace, which its definitions have without saying it.
+void writeElement(const Element& element, size_t depth, std::string_view space, std::string& text) {
   text.append(2 * depth, ' ').append("<").append(element.category);
   for (const auto& [name, value] : element.attributes) {
+    if (depth == 1 && name == "namespace" && value == space) continue;
     text.append(" ").append(name).append("=\"");
     writeValue(value, text);
     text += '"';
   }
   if (element.children.empty()) return void(text += "/>\n");
   text += ">\n";
-  for (const Element& child : element.children) writeElement(child, depth + 1, text);
+  for (const Element& child : element.children) writeElement(child, depth + 1, space, text);
   text.append(2 * depth, ' ').append("</").append(element.category).append(">\n");
 }
 
@@ -85,7 +87,7 @@ void writeElement(const Element& element, size_t depth, std::string& text) {
 
 std::string toXml(const Element& root) {
   std::string text = "<?xml version=\"1.0\"?>\n";
-  writeElement(root, 0, text);
+  writeElement(root, 0, root.get("namespace"), text);
   return text;
 }
 
