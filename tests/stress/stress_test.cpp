@@ -1,5 +1,6 @@
 // Seeded faults are found, made small and shown again; the library's nodes and the examples have none; cases/
 // holds inputs that once failed, or that are known to be hard.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -115,6 +116,22 @@ TEST(Stress, KnownStepsAreKnownInGraphs) {
     EXPECT_TRUE(finding.contains("known")) << finding.dump();
   }
   EXPECT_GT(steps, 0U);
+}
+
+/// A sample has the tangent as "t" and the view as "v".
+TEST(Stress, TexturesMayBeCalledAsASamplesDirections) {
+  for (const char* name : {"t", "n", "light"}) {
+    const fs::path path = fs::path(testing::TempDir()) / "lacquer_stress_texture.json";
+    std::ofstream(path) << fmt::format(R"({{"lacquer_graph": 1, "name": "texture", "template": "bsdf",
+      "textures": {{"{0}": {{"type": "sampler2D"}}}},
+      "nodes": [{{"id": "looked", "node": "image<vec3>", "inputs": {{"file": {{"texture": "{0}"}}}}}},
+                {{"id": "glow", "node": "emission", "inputs": {{"factor": {{"node": "looked"}}, "strength": 1}}}}],
+      "outputs": {{"emission": {{"node": "glow"}}}}}})",
+                                       name);
+    const json answer = stressed({path.string()}, few(200), Options());
+    ASSERT_FALSE(answer.is_null()) << name;
+    EXPECT_EQ(answer["subjects"][0]["findings"], json::array()) << name;
+  }
 }
 
 TEST(Stress, AFamilyIsAllOfItsForms) {

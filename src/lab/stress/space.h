@@ -52,6 +52,10 @@ private:
   size_t width_ = 0;
 };
 
+/// The variable of a texture's texels: its name, or where a sample has that itself ("t", the tangent), the
+/// name with "_texel" behind it.
+std::string textureVariable(std::string_view texture);
+
 /// What a number is, by the name and the range of a parameter: an index of refraction that may be 0, or any
 /// number.
 Nature natureOf(std::string_view name, const ir::Interval& range);

@@ -29,9 +29,12 @@ using materialx::Element;
 
 class GraphOut {
 public:
-  /// `flat` has no groups.
-  GraphOut(const graph::Graph& flat, const lang::Library& library, const std::string& path, Written& written)
-      : flat_(flat), library_(library), path_(path), written_(written), contracts_(flat, library) {}
+  /// `flat` is what `of` is without its groups.
+  GraphOut(const graph::Graph& of, const graph::Graph& flat, const lang::Library& library,
+           const std::string& path, Written& written)
+      : flat_(flat), library_(library), path_(path), written_(written), contracts_(flat, library) {
+    for (size_t i = 0; i < of.nodes.size(); ++i) places_.emplace(of.nodes[i].id, i);
+  }
 
   void write(const std::string& folder) {
     sort();
@@ -55,13 +58,16 @@ public:
   }
 
 private:
+  /// A node within a group has no place of its own among the graph's.
   void notSaid(size_t place, std::string message) {
-    addBounded(written_.said, {"not-said",
-                               Severity::Warning,
-                               {path_, 0, 0, fmt::format("/nodes/{}", place)},
-                               std::move(message),
-                               {},
-                               {}});
+    const auto own = places_.find(flat_.nodes[place].id);
+    addBounded(written_.said,
+               {"not-said",
+                Severity::Warning,
+                {path_, 0, 0, own == places_.end() ? "" : fmt::format("/nodes/{}", own->second)},
+                std::move(message),
+                {},
+                {}});
   }
 
   /// Which nodes can be said: MaterialX's, of whose sources all can.
@@ -157,6 +163,7 @@ private:
   Written& written_;
   const graph::Contracts contracts_;
   std::vector<bool> said_;
+  std::map<std::string_view, size_t> places_;  ///< in the graph, by id
 };
 
 /// The matrix that a node of a flat graph makes of numbers alone; nothing of another node.
@@ -202,7 +209,7 @@ Written graphToMaterialX(const graph::Graph& graph, const lang::Library& library
   Written written;
   graph::Graph flat = graph::flattened(graph, library);
   writeMatrices(flat);
-  GraphOut(flat, library, path, written).write(folder);
+  GraphOut(graph, flat, library, path, written).write(folder);
   return written;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "graph/text.h"
@@ -363,10 +364,11 @@ std::string BodyCheck::conversion(const Source& source, Type from, Type to) cons
   return converter(from, to);
 }
 
-/// Nodes of the library that make the one of the other: those that want the least beside it.
+/// Nodes of the library that make the one of the other: those that want the least beside it, and those in a
+/// palette before what other nodes are made of.
 std::string BodyCheck::converter(Type from, Type to) const {
   constexpr size_t kMost = 3;
-  std::vector<std::pair<size_t, std::string_view>> found;
+  std::vector<std::tuple<bool, size_t, std::string_view>> found;
   for (const std::string_view name : library_.names(lang::DeclKind::Node)) {
     const Result<const lang::NodeDecl*> decl = library_.node(name);
     if (!decl || (*decl)->results.size() != 1) continue;
@@ -381,11 +383,13 @@ std::string BodyCheck::converter(Type from, Type to) const {
     }
     // More than a place to look it up at is another node's business.
     const size_t most = ir::isTexture(from) ? 2 : 1;
-    if (takes && required <= most) found.emplace_back(required, name);
+    if (takes && required <= most) found.emplace_back((*decl)->category.empty(), required, name);
   }
   std::sort(found.begin(), found.end());
   Names names;
-  for (size_t i = 0; i < std::min(kMost, found.size()); ++i) names.push_back(found[i].second);
+  for (const auto& [helps, required, name] : found) {
+    if (names.size() < kMost && helps == std::get<0>(found[0])) names.push_back(name);
+  }
   if (names.empty()) return {};
   return fmt::format("put a node between that makes {} of {}: {}", article(to), article(from),
                      shortList(names));
