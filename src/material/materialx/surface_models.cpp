@@ -445,8 +445,8 @@ struct Row {
   double error;  ///< translationError()
 };
 constexpr Row kRows[] = {{"gltf_pbr", gltfPbr, 0.18},
-                         {"open_pbr_surface", openPbr, 0.33},
-                         {"standard_surface", standardSurface, 0.27},
+                         {"open_pbr_surface", openPbr, 0.30},
+                         {"standard_surface", standardSurface, 0.24},
                          {"UsdPreviewSurface", usdPreviewSurface, 0.09},
                          {"disney_principled", disneyPrincipled, 0.68},
                          {"surface_unlit", unlit, 0}};
