@@ -11,7 +11,6 @@
 #include "graph/text.h"
 #include "json/path.h"
 #include "lang/suggest.h"
-#include "support/search.h"
 #include "support/text.h"
 
 namespace lacquer::graph {
@@ -133,20 +132,16 @@ void BodyCheck::noNode(size_t index, Connected& libraries) {
   }
 }
 
-/// A node that a name of none may mean: one of a palette, or else any.
+/// A node that a name of none may mean: a family without its types before a form with them.
 std::string BodyCheck::nodeInstead(const std::string& name) const {
   const Names all = library_.names(lang::DeclKind::Node);
   if (name.find('<') == std::string::npos) {
-    std::vector<Described> offered;
-    std::string_view last;
+    Names families;
     for (const std::string_view one : all) {
       const std::string_view family = one.substr(0, one.find('<'));
-      if (std::exchange(last, family) == family) continue;
-      for (const lang::NodeDecl* form : library_.forms(family)) {
-        if (!form->category.empty()) offered.push_back({family, form->doc});
-      }
+      if (families.empty() || families.back() != family) families.push_back(family);
     }
-    if (std::string help = nearOrAbout(name, offered); !help.empty()) return help;
+    if (std::string help = lang::didYouMean(name, families); !help.empty()) return help;
   }
   return lang::didYouMean(name, all);
 }
