@@ -7,7 +7,7 @@
  *   const lacquer_packed_shader* one = LACQUER_PACKED_AT(&file, top->shaders, lacquer_packed_shader, 0);
  *   puts(lacquer_packed_string(&file, one->id));
  *
- * Whatever the bytes are, nothing outside of them is read: a list that leaves the file has no elements, a
+ * The reader stays within the bytes, whatever they are: a list that leaves the file has no elements, a
  * text that does is "". Numbers are little-endian, floats IEEE 754 binary32. A file of another version is
  * refused; in one of this version nothing moves. */
 #ifndef LACQUER_PACKED_H

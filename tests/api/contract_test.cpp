@@ -11,13 +11,6 @@
 namespace lacquer::test {
 namespace {
 
-std::string textOf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 std::string bytesOf(const std::vector<uint32_t>& words) {
   std::string bytes;
   for (const uint32_t word : words) {
@@ -65,15 +58,14 @@ void compare(const std::string& file, const Options& options) {
   const Scene scene = Scene::load(file, options, in_memory);
   ASSERT_TRUE(scene);
   const Contract made = contract(scene, {}, options, in_memory);
-  const std::string manifest = textOf(folder / "manifest.json");
-  const size_t at = manifest.find("\"source\": \"") + std::strlen("\"source\": \"");
-  EXPECT_EQ(manifestJson(made, manifest.substr(at, manifest.find('"', at) - at)), manifest);
+  const std::string manifest = readBytes(folder / "manifest.json");
+  EXPECT_EQ(manifestJson(made, sourceIn(manifest)), manifest);
   compareRead(folder / "manifest.json", manifest, made);
   for (const ContractShader& one : made.shaders) {
     const std::string stem = one.shader.id();
-    EXPECT_EQ(one.shader.fragmentText(Target::Glsl), textOf(folder / "glsl" / (stem + ".frag.glsl")));
-    EXPECT_EQ(bytesOf(one.shader.fragmentSpirv()), textOf(folder / "spirv" / (stem + ".frag.spv")));
-    EXPECT_EQ(bytesOf(one.shader.vertexSpirv()), textOf(folder / "spirv" / (stem + ".vert.spv")));
+    EXPECT_EQ(one.shader.fragmentText(Target::Glsl), readBytes(folder / "glsl" / (stem + ".frag.glsl")));
+    EXPECT_EQ(bytesOf(one.shader.fragmentSpirv()), readBytes(folder / "spirv" / (stem + ".frag.spv")));
+    EXPECT_EQ(bytesOf(one.shader.vertexSpirv()), readBytes(folder / "spirv" / (stem + ".vert.spv")));
   }
   const auto codes = [](const Messages& of) {
     std::multiset<std::string> all;

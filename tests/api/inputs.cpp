@@ -1,5 +1,9 @@
 #include "inputs.h"
 
+#include <sstream>
+
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "support/cases.h"
@@ -70,6 +74,19 @@ std::filesystem::path emptyFolder() {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
+}
+
+std::string readBytes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string sourceIn(const std::string& manifest) {
+  constexpr std::string_view kKey = "\"source\": \"";
+  const size_t at = manifest.find(kKey) + kKey.size();
+  return manifest.substr(at, manifest.find('"', at) - at);
 }
 
 }  // namespace lacquer::test

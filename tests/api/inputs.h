@@ -23,6 +23,11 @@ Options quick();
 /// The examples' files.
 Strings examples();
 
+/// The bytes of a file; empty where there is none.
+std::string readBytes(const std::filesystem::path& path);
+/// How a manifest of one file names it.
+std::string sourceIn(const std::string& manifest);
+
 /// A folder of the test that runs, empty at first.
 std::filesystem::path emptyFolder();
 

@@ -4,20 +4,12 @@
 
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "inputs.h"
 #include "support/packed_walk.h"
 
 namespace lacquer::test {
 namespace {
-
-std::string readBytes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 void compareTextures(const PackedFile& packed, const lacquer_packed_use& use, const ContractUse& made,
                      const lacquer_packed_shader& shader) {
@@ -144,8 +136,7 @@ Contract contractIn(const std::string& file, const Options& options, const std::
   Messages messages;
   const Scene scene = Scene::load(file, options, messages);
   Contract made = contract(scene, {}, options, messages);
-  const size_t at = manifest.find("\"source\": \"") + std::strlen("\"source\": \"");
-  made.source = manifest.substr(at, manifest.find('"', at) - at);
+  made.source = sourceIn(manifest);
   return made;
 }
 

@@ -197,4 +197,11 @@ std::string countOf(size_t count, std::string_view noun) {
   return fmt::format("{} {}", count, count == 1 ? std::string(noun) : pluralOf(noun));
 }
 
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpaces = " \t\r\n";
+  const size_t first = text.find_first_not_of(kSpaces);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpaces) - first + 1);
+}
+
 }  // namespace lacquer

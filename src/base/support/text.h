@@ -28,4 +28,7 @@ std::string pluralOf(std::string_view noun);
 /// "1 texture", "3 textures", "no textures".
 std::string countOf(size_t count, std::string_view noun);
 
+/// A text without the spaces, tabs and line ends around it.
+std::string_view trimmed(std::string_view text);
+
 }  // namespace lacquer

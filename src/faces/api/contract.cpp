@@ -179,7 +179,6 @@ std::string manifestJson(const Contract& contract, const std::string& source) {
 
 std::string packedManifest(const Contract& contract, Messages& messages) {
   std::vector<PackedShader> shaders;
-  std::vector<std::string> ids;
   for (const ContractShader& one : contract.shaders) {
     PackedShader& shader = shaders.emplace_back();
     shader.id = one.shader.id();

@@ -1,4 +1,5 @@
 #include "cli/table.h"
+#include "cli/search.h"
 #include "cli/streams.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 #include <map>
 
 #include "json/json.h"
-#include "support/search.h"
 #include "support/text.h"
 
 #if defined(__unix__) || defined(__APPLE__)
@@ -216,7 +216,7 @@ static void printNamed(const json::Json& all, const char* kind) {
   }
 }
 
-/// What a name of no node may have meant.
+/// Advice on a name that no node has.
 static std::string nodeInstead(const json::Json& nodes, const std::string& name) {
   const std::string family = name.substr(0, name.find('<'));
   std::vector<Described> offered, all;

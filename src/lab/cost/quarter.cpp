@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "support/text.h"
+
 namespace lacquer::cost {
 
 namespace {
@@ -13,12 +15,6 @@ constexpr std::string_view kSlow[] = {"v_rcp_", "v_rsq_", "v_sqrt_", "v_exp_", "
 constexpr uint64_t kCycles = 6;
 constexpr uint64_t kRounds = 8;
 constexpr int kDeepest = 4;
-
-std::string_view trimmed(std::string_view line) {
-  const size_t begin = line.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
-}
 
 /// "BB3" of "BB3:"; empty for what is no label.
 std::string_view labelOf(std::string_view line) {

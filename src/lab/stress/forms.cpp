@@ -231,7 +231,7 @@ private:
   /// one along the surface, makes steps of its own, which jumps are looked for by.
   void placeTexels(const Subject& subject, std::vector<double>& samples) const {
     for (const ir::TextureSlot& slot : subject.module().textures) {
-      const stress::Variable* variable = subject.space.find(stress::textureVariable(slot.name));
+      const stress::Variable* variable = subject.space.texel(slot.name);
       if (slot.environment || variable == nullptr) continue;
       for (size_t i = 0; i < kSamples; ++i) {
         Random random(mixed(mixed(seed_, slot.name), i));

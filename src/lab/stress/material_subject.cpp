@@ -178,9 +178,9 @@ private:
     for (const ir::TextureSlot& slot : module_.textures) {
       if (isTable(slot)) continue;
       if (slot.environment)
-        space.add(textureVariable(slot.name), 3, {0, 65504}, Nature::Number, kLimit);
+        space.addTexel(slot.name, 3, {0, 65504}, Nature::Number, kLimit);
       else
-        space.add(textureVariable(slot.name), 4, {0, 1}, Nature::Texel, 1);
+        space.addTexel(slot.name, 4, {0, 1}, Nature::Texel, 1);
     }
   }
 
@@ -268,7 +268,7 @@ private:
         bindings.textures[slot.name] = eval::environmentSampler(slot.name);
         continue;
       }
-      const Variable& texel = *space.find(textureVariable(slot.name));
+      const Variable& texel = *space.texel(slot.name);
       bindings.textures[slot.name] = [samples, width, &texel, this](size_t point, const Vec3&, double) {
         const double* from = samples.data() + point / lanes * width + texel.first;
         return std::array<double, 4>{from[0], from[1], from[2], texel.components > 3 ? from[3] : 1.0};

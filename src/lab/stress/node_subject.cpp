@@ -158,9 +158,9 @@ private:
     }
     for (const ir::TextureSlot& slot : module_.textures) {
       if (slot.type == ir::Type::TextureCube)
-        space.add(textureVariable(slot.name), 4, {0, 65504}, Nature::Number, analysis::kSceneLimit);
+        space.addTexel(slot.name, 4, {0, 65504}, Nature::Number, analysis::kSceneLimit);
       else
-        space.add(textureVariable(slot.name), 4, {0, 1}, Nature::Texel, 1);
+        space.addTexel(slot.name, 4, {0, 1}, Nature::Texel, 1);
     }
   }
 
@@ -225,7 +225,7 @@ private:
     }
     keepPairs<T>(count, bindings);
     for (const ir::TextureSlot& slot : module_.textures) {
-      const size_t first = space.find(textureVariable(slot.name))->first;
+      const size_t first = space.texel(slot.name)->first;
       bindings.textures[slot.name] = [samples, width, first](size_t point, const std::array<double, 3>&,
                                                              double) {
         const double* texel = samples.data() + point * width + first;

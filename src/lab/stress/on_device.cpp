@@ -215,7 +215,7 @@ vulkan::Texture tableOf(const eval::Image& table) {
 /// One texel for each point: what the samples say.
 vulkan::Texture textureOf(const Subject& subject, const ir::TextureSlot& slot,
                           std::span<const double> samples, size_t count) {
-  const stress::Variable& variable = *subject.space.find(stress::textureVariable(slot.name));
+  const stress::Variable& variable = *subject.space.texel(slot.name);
   std::vector<vulkan::Texel> texels;
   texels.reserve(count * subject.lanes);
   for (size_t i = 0; i < count; ++i) {
@@ -238,7 +238,7 @@ GpuTextures texturesOf(const Subject& subject, const ir::Module& module, std::sp
   for (size_t i = 0; i < module.textures.size(); ++i) {
     // The passes may have given it another name.
     const ir::TextureSlot& slot = subject.module().textures[i];
-    const bool given = subject.space.find(stress::textureVariable(slot.name)) != nullptr;
+    const bool given = subject.space.texel(slot.name) != nullptr;
     textures[module.textures[i].name] =
         given ? textureOf(subject, slot, samples, count) : tableOf(*eval::environmentTable(slot.name));
   }

@@ -131,26 +131,6 @@ Nature natureOf(ir::Type type, std::string_view name, const ir::Interval& range)
   return ir::isWhole(part) ? Nature::Whole : natureOf(name, range);
 }
 
-std::string textureVariable(std::string_view texture) {
-  constexpr std::string_view kOwn[] = {"n",
-                                       "v",
-                                       "l",
-                                       "t",
-                                       "n_length",
-                                       "t_length",
-                                       "interpolated",
-                                       "t_sign",
-                                       "front_facing",
-                                       "color0",
-                                       "light",
-                                       "position_dx",
-                                       "position_dy",
-                                       "uv_dx",
-                                       "uv_dy"};
-  const bool taken = std::find(std::begin(kOwn), std::end(kOwn), texture) != std::end(kOwn);
-  return std::string(texture) + (taken ? "_texel" : "");
-}
-
 size_t Space::add(std::string name, int components, ir::Interval range, Nature nature, double limit) {
   const size_t first = width_;
   if (nature == Nature::Direction || nature == Nature::Step) range = {-1, 1};
@@ -160,6 +140,19 @@ size_t Space::add(std::string name, int components, ir::Interval range, Nature n
   variables_.push_back({std::move(name), components, range, nature, first});
   width_ += static_cast<size_t>(components);
   return first;
+}
+
+size_t Space::addTexel(std::string_view texture, int components, ir::Interval range, Nature nature,
+                       double limit) {
+  std::string name(texture);
+  while (find(name) != nullptr) name += "_texel";
+  texels_.emplace(texture, variables_.size());
+  return add(std::move(name), components, range, nature, limit);
+}
+
+const Variable* Space::texel(std::string_view texture) const {
+  const auto it = texels_.find(texture);
+  return it == texels_.end() ? nullptr : &variables_[it->second];
 }
 
 const Variable* Space::find(std::string_view name) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +37,12 @@ public:
   /// Open ends of a range are cut at `limit`. Returns the place of the first component.
   size_t add(std::string name, int components, ir::Interval range, Nature nature, double limit);
 
+  /// A texture's texels. Where a variable has the texture's name, theirs has "_texel" behind it. They come
+  /// after all others.
+  size_t addTexel(std::string_view texture, int components, ir::Interval range, Nature nature, double limit);
+  /// Those of a texture; null for none.
+  const Variable* texel(std::string_view texture) const;
+
   std::span<const Variable> variables() const { return variables_; }
   const Variable* find(std::string_view name) const;
   size_t width() const { return width_; }  ///< numbers of a sample
@@ -49,12 +56,9 @@ public:
 
 private:
   std::vector<Variable> variables_;
+  std::map<std::string, size_t, std::less<>> texels_;  ///< their variables, by texture
   size_t width_ = 0;
 };
-
-/// The variable of a texture's texels: its name, or where a sample has that itself ("t", the tangent), the
-/// name with "_texel" behind it.
-std::string textureVariable(std::string_view texture);
 
 /// What a number is, by the name and the range of a parameter: an index of refraction that may be 0, or any
 /// number.

@@ -545,8 +545,8 @@ bool Checker::function(Expr& expr) {
 }
 
 bool Checker::call(Expr& expr) {
-  // What is built in is meant in bodies; a node of such a name is for graphs, and meant where types stand
-  // behind it.
+  // In bodies a name is the built-in function's before a node's, which graphs reach; types behind the name
+  // make it the node's.
   if (expr.form.empty() && findFunction(expr.name) != nullptr) return function(expr);
   const auto found = around_.find(expr.name, true);
   if (!expr.form.empty() && !(found && found->family)) {

@@ -39,12 +39,6 @@ std::string_view secondOf(const Rows& rows, std::string_view name) {
   return found == std::end(rows) ? std::string_view{} : found->second;
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
 /// "add<vec3, float>" for "add<color3,float>". `told` gets what each foreign type is called.
 std::string inOwnTypes(std::string_view name, std::string& told) {
   const size_t open = name.find('<');
@@ -63,7 +57,7 @@ std::string inOwnTypes(std::string_view name, std::string& told) {
   }
 }
 
-/// What is right in place of a name with types that no form has; empty where there is no such node.
+/// The forms to write in place of a name with types that no form has; empty where no node has the name.
 std::string formsInstead(std::string_view name, std::span<const std::string_view> candidates) {
   const std::string_view family = name.substr(0, name.find('<') + 1);
   std::vector<std::string> forms;

@@ -15,9 +15,9 @@ std::string_view nearest(std::string_view name, std::span<const std::string_view
 std::string didYouMean(std::string_view name, std::span<const std::string_view> candidates,
                        std::string otherwise = {});
 
-/// What a type of MaterialX, OSL or HLSL is called here: "vec3" for "color3". Empty for other words.
+/// The name here of a type of MaterialX, OSL or HLSL: "vec3" for "color3". Empty for other words.
 std::string_view typeElsewhere(std::string_view name);
-/// What a function of HLSL or OSL is called here: "mix" for "lerp".
+/// The name here of a function of HLSL or OSL: "mix" for "lerp".
 std::string_view functionElsewhere(std::string_view name);
 
 }  // namespace lacquer::lang

@@ -91,13 +91,6 @@ std::string toXml(const Element& root) {
   return text;
 }
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpaces = " \t\r\n";
-  const size_t first = text.find_first_not_of(kSpaces);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpaces) - first + 1);
-}
-
 std::optional<std::vector<double>> numbersOf(std::string_view value) {
   constexpr size_t kMost = 16;  // of a matrix44
   std::vector<double> numbers;

@@ -68,7 +68,5 @@ std::string toXml(const Element& root);
 
 /// The numbers of a value such as "1, 0.5": without a locale. Nothing for what is no list of finite numbers.
 std::optional<std::vector<double>> numbersOf(std::string_view value);
-/// A text without the spaces around it.
-std::string_view trimmed(std::string_view text);
 
 }  // namespace lacquer::materialx

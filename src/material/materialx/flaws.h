@@ -1,4 +1,4 @@
-// What is wrong with the definitions of a document or of a library, whoever uses them.
+// Errors in the definitions of a document or of a library, whoever uses them.
 #pragma once
 
 #include <string>

@@ -1,11 +1,11 @@
-// What a name that nothing has may have meant: a name near to it, or something that is about it.
+// Advice on a name that nothing has: a name near to it, or texts that have the word.
 #pragma once
 
 #include <span>
 #include <string>
 #include <string_view>
 
-namespace lacquer {
+namespace lacquer::cli {
 
 /// A name with a text about it.
 struct Described {
@@ -17,4 +17,4 @@ struct Described {
 /// that have the word in their names or texts; empty where there are none. Of equal names the first counts.
 std::string nearOrAbout(std::string_view word, std::span<const Described> all);
 
-}  // namespace lacquer
+}  // namespace lacquer::cli

@@ -1,4 +1,4 @@
-#include "support/search.h"
+#include "cli/search.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "support/text.h"
 
-namespace lacquer {
+namespace lacquer::cli {
 
 namespace {
 
@@ -42,4 +42,4 @@ std::string nearOrAbout(std::string_view word, std::span<const Described> all) {
   return fmt::format("{} {} about {}", listOf(listed), found.size() == 1 ? "is" : "are", printable(word));
 }
 
-}  // namespace lacquer
+}  // namespace lacquer::cli
