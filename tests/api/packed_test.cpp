@@ -233,6 +233,21 @@ TEST(Packed, isNotMadeOfASizeThatNoBlockHas) {
   EXPECT_EQ(errorsOf(messages), "too-large");
 }
 
+/// The folder may be anybody's, too: a link in it must not bring another file into the pack.
+TEST(Packed, takesNoCodeFromOutsideOfTheFolder) {
+  const std::filesystem::path folder = emptyFolder();
+  Messages messages;
+  generate({std::string(LACQUER_EXAMPLES) + "/coat.gltf"}, {}, (folder / "out").string(), forPacking(),
+           messages);
+  std::ofstream(folder / "secret") << "secret";
+  const std::filesystem::path code = std::filesystem::directory_iterator(folder / "out/glsl")->path();
+  std::filesystem::remove(code);
+  std::filesystem::create_symlink(folder / "secret", code);
+  messages.clear();
+  EXPECT_FALSE(pack((folder / "out").string(), {}, (folder / "all.lqpm").string(), {}, messages));
+  EXPECT_EQ(errorsOf(messages), "manifest-outside");
+}
+
 /// Small enough to damage each of its bytes.
 std::string smallBytes() {
   Options options = quick();

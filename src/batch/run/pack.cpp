@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <deque>
 
@@ -6,8 +8,10 @@
 #include "setting/messages.h"
 #include "setting/options.h"
 #include "shader/print.h"
+#include "support/contain.h"
 #include "support/file.h"
 #include "support/outputs.h"
+#include "support/text.h"
 
 namespace lacquer {
 
@@ -16,8 +20,8 @@ namespace {
 /// Reads the code that a manifest names.
 class Packing {
 public:
-  Packing(const std::string& folder, const std::vector<Target>& targets)
-      : folder_(folder), targets_(targets) {}
+  Packing(const std::string& folder, const std::vector<Target>& targets, const Limits& limits)
+      : folder_(folder), targets_(targets), limits_(limits) {}
 
   Result<void> read(const Manifest& manifest);
   const std::vector<PackedShader>& shaders() const { return shaders_; }
@@ -32,6 +36,7 @@ private:
 
   const std::string& folder_;
   const std::vector<Target>& targets_;
+  const Limits limits_;
   std::vector<PackedShader> shaders_;
   std::deque<std::string> texts_;  ///< which the shaders' codes are in
   Strings paths_;
@@ -39,8 +44,14 @@ private:
 
 Result<void> Packing::readCode(const ManifestCode& code, PackedShader& shader) {
   for (const auto& [stage, path] : code.files) {
-    paths_.push_back(folder_ + "/" + path);
-    Result<std::string> bytes = readFile(paths_.back());
+    // A link may lead out of the folder.
+    std::optional<std::string> file = resolveBelow(folder_, path, {});
+    if (!file)
+      return fail("manifest-outside",
+                  {folder_ + "/manifest.json", 0, 0, "/shaders/" + std::string(shader.id)},
+                  fmt::format("{} lies outside of the folder", quote(path)), "put the file itself there");
+    paths_.push_back(std::move(*file));
+    Result<std::string> bytes = readFile(paths_.back(), limits_.file, Links::None);
     if (!bytes) return tl::make_unexpected(std::move(bytes.error()));
     texts_.push_back(std::move(*bytes));
     shader.codes.push_back(
@@ -80,7 +91,7 @@ Result<bool> packInto(const std::string& folder, const std::vector<Target>& targ
   if (!manifest->levels.empty())
     return fail("unknown-property", {path, 0, 0, "/levels"}, "levels of detail are not packed",
                 "pack what `lacquer gen` wrote");
-  Packing packing(folder, targets);
+  Packing packing(folder, targets, limitsOf(options).value_or(Limits{}));
   good = packing.read(*manifest);
   if (!good) return tl::make_unexpected(std::move(good.error()));
   Strings inputs = packing.paths();
