@@ -732,7 +732,9 @@ void Patterns::spread() {
   while (!left.empty()) {
     const std::string name = std::move(left.back());
     left.pop_back();
-    for (const std::string_view user : users[name]) {
+    const auto found = users.find(name);  // a look-up that inserts would keep a view of a name that is gone
+    if (found == users.end()) continue;
+    for (const std::string_view user : found->second) {
       if (broken_.emplace(user).second) left.emplace_back(user);
     }
   }
