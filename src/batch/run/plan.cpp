@@ -12,6 +12,7 @@
 #include "setting/options.h"
 #include "shader/print.h"
 #include "support/jobs.h"
+#include "support/letters.h"
 #include "support/outputs.h"
 #include "support/text.h"
 
@@ -33,9 +34,8 @@ std::string escaped(const std::string& path) {
 
 /// One word for a POSIX shell.
 std::string shellWord(const std::string& text) {
-  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("_-./,:=+@%").find(static_cast<char>(c)) != std::string::npos;
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return isLetterOrDigit(c) || std::string_view("_-./,:=+@%").find(c) != std::string_view::npos;
   });
   if (plain) return text;
   std::string word = "'";

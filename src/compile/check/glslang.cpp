@@ -5,11 +5,11 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <optional>
 
 #include "check/check.h"
+#include "support/letters.h"
 #include "targets/target.h"
 
 namespace lacquer::check {
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kCode = "glslang";
 
-bool isWordByte(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool isWordByte(char c) { return isLetterOrDigit(c) || c == '_'; }
 
 std::string_view trim(std::string_view text) {
   const size_t begin = text.find_first_not_of(" \t\r");

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
+
+#include "support/letters.h"
 
 namespace lacquer::optimize {
 
@@ -97,7 +98,7 @@ private:
   }
   uint8_t factor() {
     if (take("-")) {
-      const bool literal = std::isdigit(static_cast<unsigned char>(peek())) != 0;
+      const bool literal = isDigit(peek());
       const uint8_t of = factor();
       if (!literal) return operation(Op::Neg, {of});
       pattern_.terms[of].number *= -1;
@@ -108,7 +109,7 @@ private:
       expect(')');
       return inner;
     }
-    if (std::isdigit(static_cast<unsigned char>(peek())) != 0) {
+    if (isDigit(peek())) {
       Term term;
       term.kind = Term::Kind::Number;
       term.number = number();
@@ -144,9 +145,7 @@ private:
   std::string_view word() {
     peek();
     const size_t begin = at_;
-    while (at_ < text_.size() &&
-           (std::isalnum(static_cast<unsigned char>(text_[at_])) != 0 || text_[at_] == '_'))
-      ++at_;
+    while (at_ < text_.size() && (isLetterOrDigit(text_[at_]) || text_[at_] == '_')) ++at_;
     if (at_ == begin) wrong(text_, "an expression is missing");
     return text_.substr(begin, at_ - begin);
   }
@@ -178,7 +177,7 @@ private:
     const bool at_least = !at_most && take(">=");
     const bool positive = !at_most && !at_least && take(">");
     if (!at_most && !at_least && !positive && !take("!=")) wrong(text_, "a relation is missing");
-    if (std::isalpha(static_cast<unsigned char>(peek())) != 0) {
+    if (isLetter(peek())) {
       result.other = letterOf(word());
       result.kind = at_most ? Kind::AtMost : Kind::AtLeast;
       if (!at_most && !at_least) wrong(text_, "letters are compared by <= and >=");

@@ -4,6 +4,7 @@
 
 #include "ir/names.h"
 #include "passes/passes.h"
+#include "support/letters.h"
 
 namespace lacquer::passes {
 
@@ -58,7 +59,7 @@ std::string nameFor(const ir::Dag& dag, ir::ValueId id) {
   if (value.op == ir::Op::Swizzle || value.op == ir::Op::Interpolate) return nameFor(dag, value.args[0]);
   std::string name = dag.terms()[dag.termOf(id)].name;
   std::replace_if(
-      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+      name.begin(), name.end(), [](char c) { return !isLetterOrDigit(c); }, '_');
   return name.empty() ? "value" : name;
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "ir/loops.h"
+#include "support/letters.h"
 
 namespace lacquer::targets {
 
@@ -27,7 +28,7 @@ constexpr int kSpacesPerIndent = 4;
 
 Precedence tighter(Precedence p) { return static_cast<Precedence>(static_cast<int>(p) + 1); }
 
-bool isSign(std::string_view spelling) { return !std::isalpha(static_cast<unsigned char>(spelling.front())); }
+bool isSign(std::string_view spelling) { return !isLetter(spelling.front()); }
 
 Precedence binaryPrecedence(std::string_view spelling) {
   if (spelling == "*" || spelling == "/") return Precedence::Multiplicative;
@@ -414,12 +415,6 @@ uint32_t hlslOffset(uint32_t cursor, Type type) {
   return cursor % 16 + byteSize(type) > 16 ? roundUp(cursor, 16) : cursor;
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
 }  // namespace
 
 std::string parenthesized(const Expression& expression, Precedence least) {
@@ -584,7 +579,7 @@ Passing passingOf(const ir::Dag& dag, ValueId user, size_t index) {
 }
 
 std::string attributeName(const ir::Attribute& attribute) {
-  return (attribute.name.starts_with('_') ? "in" : "in_") + lower(attribute.name);
+  return (attribute.name.starts_with('_') ? "in" : "in_") + lowered(attribute.name);
 }
 
 std::string varyingName(const ir::Varying& varying) {

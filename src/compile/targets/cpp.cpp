@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -14,6 +13,7 @@
 
 #include "ir/fold.h"
 #include "ir/names.h"
+#include "support/letters.h"
 #include "targets/clike.h"
 #include "targets/packer.h"
 
@@ -338,8 +338,7 @@ private:
 std::string identifier(std::string_view text, bool upper) {
   std::string result;
   for (const char c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    result += std::isalnum(u) == 0 ? '_' : upper ? static_cast<char>(std::toupper(u)) : c;
+    result += !isLetterOrDigit(c) ? '_' : upper ? upperCase(c) : c;
   }
   return result;
 }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "support/letters.h"
 
 namespace lacquer::targets {
 
@@ -19,9 +20,7 @@ std::string_view foldText(Op op) {
 
 bool isStandard(Op op) { return foldText(op).starts_with("std::"); }
 
-bool isOperator(Op op) {
-  return !ofWholes(op) && std::isalpha(static_cast<unsigned char>(ir::info(op).glsl.front())) == 0;
-}
+bool isOperator(Op op) { return !ofWholes(op) && !isLetter(ir::info(op).glsl.front()); }
 
 bool ofWholes(Op op) {
   const std::string_view fold = foldText(op);

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 
@@ -16,12 +15,13 @@
 #include "setting/options.h"
 #include "shader/module.h"
 #include "structures/describe.h"
+#include "support/letters.h"
 
 namespace lacquer {
 
 namespace {
 
-bool isWordLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
+bool isWordLetter(char c) { return isLetterOrDigit(c) || c == '_' || c == '.'; }
 
 /// How often each name stands in the files, outside of comments and texts in quotes. "coat.color.rgb" counts
 /// for "coat.color.rgb", "coat.color" and "coat", and for each of its parts.

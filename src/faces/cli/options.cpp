@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <sstream>
 
 #include "cli/checks.h"
 #include "lacquer/check.h"
+#include "support/letters.h"
 #include "support/shown.h"
 
 namespace lacquer::cli {
@@ -44,9 +44,8 @@ std::string parseLights(const std::string& text, Lights& lights) {
     const std::string number = colon == std::string::npos ? "1" : part.substr(colon + 1);
     const bool digits = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
     const unsigned long count = digits && number.size() < 5 ? std::stoul(number) : kMostLights + 1;
-    const bool name = !type.empty() && std::all_of(type.begin(), type.end(), [](char c) {
-      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-    });
+    const bool name = !type.empty() && std::all_of(type.begin(), type.end(),
+                                                   [](char c) { return isLetterOrDigit(c) || c == '_'; });
     if (!name || count > kMostLights) {
       return fmt::format("--lights: '{}' is not KIND:COUNT with a kind of the template's and up to {}",
                          shown(part), kMostLights);

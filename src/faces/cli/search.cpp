@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <vector>
 
+#include "support/letters.h"
 #include "support/text.h"
 
 namespace lacquer::cli {
@@ -14,7 +14,7 @@ namespace {
 
 /// Whether `word` stands in `text`, in capitals or not.
 bool speaksOf(std::string_view text, std::string_view word) {
-  const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+  const auto same = [](char a, char b) { return lowerCase(a) == lowerCase(b); };
   return std::search(text.begin(), text.end(), word.begin(), word.end(), same) != text.end();
 }
 

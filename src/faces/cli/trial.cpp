@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "cli/checks.h"
+#include "support/letters.h"
 
 namespace lacquer::cli {
 
@@ -21,7 +22,7 @@ bool readParameter(const std::string& text, NamedNumbers& to) {
   std::vector<double> numbers;
   do {
     double number = 0;
-    if (std::isalpha(stream.peek()) != 0) {
+    if (isLetter(static_cast<char>(stream.peek()))) {
       std::string word;
       std::getline(stream, word, ',');
       if (word != "true" && word != "false") return false;

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
 
 #include "check/reflect.h"
+#include "support/letters.h"
 #include "vulkan/state.h"
 
 namespace lacquer::cost {
@@ -200,12 +200,6 @@ VkResult Pipeline::create(const Spirv& vertex_words, const Spirv& fragment_words
   return result == VK_SUCCESS ? makePipeline(flags) : result;
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
 uint64_t valueOf(const VkPipelineExecutableStatisticKHR& statistic) {
   switch (statistic.format) {
     case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR: return statistic.value.b32;
@@ -260,7 +254,7 @@ void readStatistics(const Device& device, const VkPipelineExecutableInfoKHR& inf
       {"inverse throughput", &statistics.inverse_throughput}};
   for (const auto& [name, value] : wanted) {
     const auto row = std::find_if(rows.begin(), rows.end(), [&, wanted_name = name](const auto& statistic) {
-      return lower(statistic.name) == wanted_name;
+      return lowered(statistic.name) == wanted_name;
     });
     if (row == rows.end()) {
       outcome.problem = fmt::format("this version of RADV does not tell the '{}' of a shader", name);
@@ -275,7 +269,7 @@ void readVertexStage(const Device& device, VkPipelineExecutableInfoKHR info, Sta
   info.executableIndex = executableOf(device, info.pipeline, VK_SHADER_STAGE_VERTEX_BIT);
   if (info.executableIndex == UINT32_MAX) return;
   for (const VkPipelineExecutableStatisticKHR& row : rowsOf(device, info)) {
-    if (lower(row.name) == "inverse throughput") statistics.vertex_inverse_throughput = valueOf(row);
+    if (lowered(row.name) == "inverse throughput") statistics.vertex_inverse_throughput = valueOf(row);
   }
 }
 
@@ -287,7 +281,7 @@ void readDisassembly(const Device& device, const VkPipelineExecutableInfoKHR& in
   std::vector<VkPipelineExecutableInternalRepresentationKHR> rows(count, empty);
   device.vk.GetPipelineExecutableInternalRepresentationsKHR(device.handle, &info, &count, rows.data());
   for (VkPipelineExecutableInternalRepresentationKHR& row : rows) {
-    if (lower(row.name) != "assembly" || row.isText == VK_FALSE) continue;
+    if (lowered(row.name) != "assembly" || row.isText == VK_FALSE) continue;
     std::string text(row.dataSize, '\0');
     row.pData = text.data();
     // Once more for all, because only a call for all knows this row's index.

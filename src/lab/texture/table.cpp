@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
+#include "support/letters.h"
 #include "texture/container.h"
 #include "texture/png.h"
 
@@ -54,10 +54,9 @@ std::string png(uint32_t size, std::span<const float> values) {
 std::optional<Container> containerOf(std::string_view path) {
   constexpr std::array kEndings = {std::pair(".dds", Container::Dds), std::pair(".ktx2", Container::Ktx2),
                                    std::pair(".png", Container::Png)};
-  std::string lower;
-  for (const char c : path) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string name = lowered(path);
   for (const auto& [ending, container] : kEndings) {
-    if (lower.ends_with(ending)) return container;
+    if (name.ends_with(ending)) return container;
   }
   return std::nullopt;
 }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "ir/names.h"
 #include "lang/checker.h"
+#include "support/letters.h"
 
 namespace lacquer::lang {
 
@@ -72,9 +72,7 @@ constexpr std::string_view kDoubled = "GLSL keeps two underscores in a row, and 
 /// application-specific ones begin with, and are in small letters. In HLSL they are semantics besides, whose
 /// number has no underscore before it.
 void Checker::templateNames(const AttributeDecl& decl) {
-  std::string name(withoutUnderscore(decl.name));
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = lowered(withoutUnderscore(decl.name));
   const bool kept = name.starts_with("sv_");
   if (kept || doubled(name)) {
     reporter_.error("reserved-name", decl.span, fmt::format("'{}' is no name in every target", decl.name),

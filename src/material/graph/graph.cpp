@@ -4,6 +4,8 @@
 #include <functional>
 #include <utility>
 
+#include "support/letters.h"
+
 namespace lacquer::graph {
 
 size_t Graph::add(std::string id, std::string type) {
@@ -58,8 +60,6 @@ bool Graph::hasAttribute(std::string_view wanted) const {
 
 bool isAttributeName(std::string_view name) {
   constexpr size_t kLongest = 64;
-  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
-  const auto isLetter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
   for (const std::string_view set : {"COLOR_", "TEXCOORD_"}) {
     if (name.starts_with(set) && name.size() == set.size() + 1) return isDigit(name.back());
   }
@@ -68,7 +68,7 @@ bool isAttributeName(std::string_view name) {
   if (name.starts_with("_SV_") || name.starts_with("_sv_") || name.find("__") != std::string_view::npos)
     return false;
   return name.back() != '_' &&
-         std::all_of(name.begin(), name.end(), [&](char c) { return c == '_' || isDigit(c) || isLetter(c); });
+         std::all_of(name.begin(), name.end(), [](char c) { return c == '_' || isLetterOrDigit(c); });
 }
 
 std::string_view tileToken(std::string_view file) {

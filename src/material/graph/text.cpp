@@ -7,14 +7,15 @@
 #include <cmath>
 #include <limits>
 
+#include "support/letters.h"
+
 namespace lacquer::graph {
 
 namespace {
 
 using ir::Type;
 
-bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool isDigit(char c) { return c >= '0' && c <= '9'; }
+bool beginsName(char c) { return isLetter(c) || c == '_'; }
 
 std::optional<Type> oneOf(std::string_view name, std::initializer_list<Type> types) {
   const auto* const it =
@@ -49,14 +50,14 @@ std::string article(Type type) {
 }
 
 bool isName(std::string_view text) {
-  return !text.empty() && isLetter(text[0]) &&
-         std::all_of(text.begin(), text.end(), [](char c) { return isLetter(c) || isDigit(c); });
+  return !text.empty() && beginsName(text[0]) &&
+         std::all_of(text.begin(), text.end(), [](char c) { return beginsName(c) || isDigit(c); });
 }
 
 bool isDottedName(std::string_view text) {
   bool begins = true;
   for (const char c : text) {
-    if (c == '.' ? begins : !isLetter(c) && (begins || !isDigit(c))) return false;
+    if (c == '.' ? begins : !beginsName(c) && (begins || !isDigit(c))) return false;
     begins = c == '.';
   }
   return !begins;

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <set>
 #include <utility>
 
 #include "lang/suggest.h"
+#include "support/letters.h"
 
 namespace lacquer::material {
 
@@ -45,14 +45,6 @@ void addRows(std::vector<Row>& out, std::string_view object, std::span<const lan
 /// Without `as` the role is the name itself, in the same place of the text.
 bool isSaid(const lang::PropertyDecl& decl) { return decl.role.data() != decl.name.data(); }
 
-/// The name of an extension as one of a parameter has it.
-std::string lower(std::string_view name) {
-  std::string made(name);
-  std::transform(made.begin(), made.end(), made.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return made;
-}
-
 /// Which properties parts call by one name. To each vendor a name means its own property; what another
 /// property says by `as` is a property of its own text or of the library's, else the only one of that name.
 void addRoles(Schema& schema) {
@@ -78,7 +70,7 @@ void addRoles(Schema& schema) {
     const bool alone = owners[i].empty() || meant[role].size() == 1;
     property.role = alone ? std::string(role) : fmt::format("{}.{}", owners[i], role);
     property.parameter_name =
-        alone ? parameterName(role) : fmt::format("{}_{}", lower(owners[i]), parameterName(role));
+        alone ? parameterName(role) : fmt::format("{}_{}", lowered(owners[i]), parameterName(role));
     constexpr std::string_view kTexture = "_texture";
     std::string& name = property.parameter_name;
     if (property.decl->kind == Kind::Texture && name.ends_with(kTexture))
@@ -142,7 +134,7 @@ void distinguishParameterNames(Schema& schema) {
   for (Property& property : schema.properties) {
     if (shared.contains(property.role))
       property.parameter_name =
-          fmt::format("{}_{}", lower(schema.vendorOf(property)), property.parameter_name);
+          fmt::format("{}_{}", lowered(schema.vendorOf(property)), property.parameter_name);
   }
 }
 
@@ -213,9 +205,8 @@ void checkRelations(const Schema& schema, const lang::ExtensionDecl& decl, Diagn
 std::string parameterName(std::string_view property) {
   std::string name;
   for (const char c : property) {
-    const bool upper = std::isupper(static_cast<unsigned char>(c)) != 0;
-    if (upper && !name.empty()) name += '_';
-    name += upper ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : c;
+    if (isUpper(c) && !name.empty()) name += '_';
+    name += lowerCase(c);
   }
   return name;
 }
