@@ -108,6 +108,22 @@ TEST_F(Kept, SomeMaterialsAreWrittenWithWhatTheyTake) {
   EXPECT_EQ(said(), "");
 }
 
+TEST_F(Kept, PatternsAloneKeepTheirTypes) {
+  const std::string text = R"(<?xml version="1.0"?>
+<materialx version="1.39">
+  <nodegraph name="Heights">
+    <combine4 name="four" type="vector4">
+      <input name="in1" type="float" value="0.5"/>
+    </combine4>
+    <output name="out" type="vector4" nodename="four"/>
+  </nodegraph>
+</materialx>
+)";
+  const Scene scene = Scene::fromMemory(text, "patterns.mtlx", {}, messages_);
+  EXPECT_EQ(written(scene), text);
+  EXPECT_TRUE(messages_.empty());
+}
+
 TEST_F(Kept, EditedNumbersAreWritten) {
   const Scene scene = read(kDocument);
   ASSERT_TRUE(scene);

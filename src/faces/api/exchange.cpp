@@ -126,8 +126,8 @@ std::string textOf(const material::Document& document, const material::Schema& s
 /// An edited graph of a material by its number.
 using EditedGraphs = std::vector<std::pair<size_t, const graph::Graph*>>;
 
-/// The text of a document whose surfaces are closures: what was read, with the graphs' numbers.
-std::string closuresOf(const SceneData& scene, const std::string& folder, const Strings& materials,
+/// The text of a MaterialX document: what was read, with the graphs' numbers.
+std::string readOf(const SceneData& scene, const std::string& folder, const Strings& materials,
                        const EditedGraphs& edited, Messages& messages) {
   if (wantedOf(scene.document, materials, messages).empty()) return {};
   const std::string& file = scene.document.path;
@@ -140,13 +140,20 @@ std::string closuresOf(const SceneData& scene, const std::string& folder, const 
   return keptOf(std::move(read->root), file, folder, materials);
 }
 
+/// Nobody edited the nodes of a document that is read by MaterialX's own formulas.
+bool isAsRead(const SceneData& scene, const EditedGraphs& edited) {
+  if (scene.hasOwnFormulas()) return true;
+  if (!edited.empty() || translates(scene.options)) return false;
+  const Result<std::string> text = scene.text();
+  return text && materialx::isXml(*text);
+}
+
 /// A scene's text, for that folder.
 std::string writtenOf(const SceneData& scene, const std::string& folder, const Strings& materials,
                       const std::string& surface, const EditedGraphs& edited, Messages& messages) {
   const std::string& file = scene.document.path;
-  const bool closures = scene.hasOwnFormulas();
-  if (closures && surface.empty()) return closuresOf(scene, folder, materials, edited, messages);
-  if (closures) {
+  if (surface.empty() && isAsRead(scene, edited)) return readOf(scene, folder, materials, edited, messages);
+  if (scene.hasOwnFormulas()) {
     const std::optional<SceneData> translated = scene.translated(messages);
     return translated ? writtenOf(*translated, folder, materials, surface, edited, messages) : std::string();
   }
