@@ -20,8 +20,6 @@ namespace {
 
 constexpr std::string_view kTangentSpace = "_tangent_space";
 
-double clamped(double x, bool open) { return std::clamp(x, 0.0, open ? 3.4e38 : 1.0); }
-
 /// A number for each component of a colour.
 Source spread(Source source) { return graph::widened(std::move(source), ir::Type::Vec3); }
 
@@ -233,9 +231,19 @@ void Surface::set(const std::string& path, Json value) {
   *at = std::move(value);
 }
 
+double Surface::inRange(std::string_view property, double x, bool open) {
+  constexpr double kRounding = 1e-6;  // a color that is brought to its brightest part and back
+  const double most = open ? 3.4e38 : 1.0;
+  if ((x < -kRounding || x > most + kRounding) && clamped_.emplace(property).second) {
+    warn({}, fmt::format("{} of {} would be {}", property, quote(shader_.name()), x),
+         fmt::format("glTF has numbers from 0{}: the nearest one is taken", open ? "" : " to 1"));
+  }
+  return std::clamp(x, 0.0, most);
+}
+
 void Surface::scalar(const std::string& factor, const std::string& texture, char channel,
                      const Product& product, bool open) {
-  set(factor, clamped(product.factor[0], open));
+  set(factor, inRange(factor, product.factor[0], open));
   if (!product.texel) return;
   constexpr std::string_view kChannels = "rgba";
   texels_[texture].channels[kChannels.find(channel)] = *product.texel;
@@ -244,16 +252,17 @@ void Surface::scalar(const std::string& factor, const std::string& texture, char
 void Surface::color(const std::string& factor, const std::string& texture, const Product& product,
                     bool open) {
   Json numbers = Json::array();
-  for (size_t i = 0; i < 3; ++i) numbers.push_back(clamped(product.factor[i], open));
+  for (size_t i = 0; i < 3; ++i) numbers.push_back(inRange(factor, product.factor[i], open));
   set(factor, std::move(numbers));
   if (product.texel) texels_[texture].color = product.color ? *product.texel : spread(*product.texel);
 }
 
 void Surface::baseColor(const Product& color, const Product& alpha) {
+  const std::string factor = "pbrMetallicRoughness/baseColorFactor";
   Json numbers = Json::array();
-  for (size_t i = 0; i < 3; ++i) numbers.push_back(clamped(color.factor[i], false));
-  numbers.push_back(clamped(alpha.factor[0], false));
-  set("pbrMetallicRoughness/baseColorFactor", std::move(numbers));
+  for (size_t i = 0; i < 3; ++i) numbers.push_back(inRange(factor, color.factor[i], false));
+  numbers.push_back(inRange(factor, alpha.factor[0], false));
+  set(factor, std::move(numbers));
   const std::string texture = "pbrMetallicRoughness/baseColorTexture";
   if (color.texel) texels_[texture].color = color.color ? *color.texel : spread(*color.texel);
   if (alpha.texel) texels_[texture].channels[3] = *alpha.texel;
@@ -264,10 +273,12 @@ void Surface::emission(const Product& product, double strength) {
   if (most <= 0 || strength <= 0) return;
   const double scale = most > 1 ? most : 1;
   Json numbers = Json::array();
-  for (size_t i = 0; i < 3; ++i) numbers.push_back(clamped(product.factor[i] / scale, false));
+  for (size_t i = 0; i < 3; ++i)
+    numbers.push_back(inRange("emissiveFactor", product.factor[i] / scale, false));
   set("emissiveFactor", std::move(numbers));
   if (scale * strength != 1)
-    set("extensions/KHR_materials_emissive_strength/emissiveStrength", clamped(scale * strength, true));
+    set("extensions/KHR_materials_emissive_strength/emissiveStrength",
+        inRange("emissiveStrength", scale * strength, true));
   if (product.texel)
     texels_["emissiveTexture"].color = product.color ? *product.texel : spread(*product.texel);
 }

@@ -61,6 +61,8 @@ public:
 
   /// A property, by its path from the material on: "extensions/KHR_materials_ior/ior".
   void set(const std::string& path, json::Json value);
+  /// In [0, 1], or [0, inf) where `open`; a warning, once for a property, where it was not.
+  double inRange(std::string_view property, double x, bool open = false);
   /// A factor in [0, 1] (or [0, inf] where `open`) and one channel of a texture, "r" to "a".
   void scalar(const std::string& factor, const std::string& texture, char channel, const Product& product,
               bool open = false);
@@ -95,6 +97,7 @@ private:
   std::set<std::string, std::less<>> known_;
   json::Json material_ = json::Json::object();
   std::map<std::string, Texel> texels_;
+  std::set<std::string, std::less<>> clamped_;
   std::vector<std::pair<std::string, std::string>> outputs_;
   std::deque<Element> made_;
 };

@@ -23,10 +23,10 @@ Value atMost(Value value, double most) {
   return value;
 }
 
-Json jsonOf(const Color& color) {
+void setColor(Surface& s, const std::string& property, const Color& color) {
   Json numbers = Json::array();
-  for (const double x : color) numbers.push_back(std::clamp(x, 0.0, 1.0));
-  return numbers;
+  for (const double x : color) numbers.push_back(s.inRange(property, x));
+  s.set(property, std::move(numbers));
 }
 
 /// glTF has 0, for an infinite one, and 1 and more.
@@ -104,7 +104,7 @@ Value transmission(Surface& s, const Transmission& t, const Value& base) {
     s.set(volume + "thicknessFactor", 1.0);
     if (t.depth > 0) {
       s.set(volume + "attenuationDistance", t.depth);
-      s.set(volume + "attenuationColor", jsonOf(t.color));
+      setColor(s, volume + "attenuationColor", t.color);
     }
   }
   if (t.dispersion > 0) s.set("extensions/KHR_materials_dispersion/dispersion", t.dispersion);
@@ -226,7 +226,7 @@ void gltfPbr(Surface& s) {
     const std::string at = "extensions/KHR_materials_volume/";
     s.scalar(at + "thicknessFactor", at + "thicknessTexture", 'g', s.product({thickness}), true);
     if (distance > 0) s.set(at + "attenuationDistance", distance);
-    s.set(at + "attenuationColor", jsonOf(absorbed));
+    setColor(s, at + "attenuationColor", absorbed);
   }
   const double strength = s.number("anisotropy_strength", 0);
   const double rotation = s.number("anisotropy_rotation", 0);
