@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -166,6 +167,8 @@ private:
                                       ir::Type type);
   std::optional<graph::Source> attribute(Scope& scope, const Element& input, ir::Type type);
   std::optional<graph::Source> image(Scope& scope, const Element& element, const Element& input, bool tiles);
+  std::string_view choice(Scope& scope, const Element& element, std::string_view name,
+                          std::span<const std::string_view> words);
   std::string_view endsOf(Scope& scope, const Element& element);
   const Element* text(Scope& within, const Element& input);
   const Element* propertyOf(const Element& node, std::string_view name);

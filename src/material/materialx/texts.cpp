@@ -280,6 +280,18 @@ static ir::Components defaultColor(std::string_view category) {
   return {0, 0, 0, category == "UsdUVTexture" ? 1.0 : 0.0};
 }
 
+/// One of a few words, which an input says; empty where it says none.
+std::string_view Patterns::choice(Scope& scope, const Element& element, std::string_view name,
+                                  std::span<const std::string_view> words) {
+  const Element* input = element.child("input", name);
+  const Element* said = input == nullptr ? nullptr : text(scope, *input);
+  const std::string_view value = said == nullptr ? std::string_view() : said->get("value");
+  if (!value.empty() && std::find(words.begin(), words.end(), value) == words.end())
+    error(*said, "wrong-value", fmt::format("the value of {} is {}", quote(name), quote(value)),
+          "it must be " + listOf(words, "or"));
+  return value;
+}
+
 /// An image. `tiles`: what takes it has a place for an image of each tile.
 std::optional<Source> Patterns::image(Scope& scope, const Element& element, const Element& input,
                                       bool tiles) {
@@ -307,19 +319,18 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
     texture.file = graph::tileFile(texture.file, 0);
   }
   const auto wrapOf = [&](std::string_view name, std::string_view usd) {
-    const Element* mode = element.child("input", name);
-    if (mode == nullptr) mode = element.child("input", usd);
-    const Element* said = mode == nullptr ? nullptr : text(scope, *mode);
-    const std::string_view value = said == nullptr ? std::string_view() : said->get("value");
+    constexpr std::string_view kModes[] = {"periodic", "clamp", "mirror",     "constant",
+                                           "repeat",   "black", "useMetadata"};
+    const bool own = element.child("input", name) != nullptr;
+    const std::string_view value = choice(scope, element, own ? name : usd, kModes);
     if (texture.type == ir::Type::Texture2DArray) return graph::Wrap::Clamp;  // at the edges of tiles
     return value == "clamp" || value == "constant" || value == "black" ? graph::Wrap::Clamp
            : value == "mirror"                                         ? graph::Wrap::Mirror
                                                                        : graph::Wrap::Repeat;
   };
   texture.wrap = {wrapOf("uaddressmode", "wrapS"), wrapOf("vaddressmode", "wrapT")};
-  const Element* filter = element.child("input", "filtertype");
-  const Element* filtered = filter == nullptr ? nullptr : text(scope, *filter);
-  texture.nearest = filtered != nullptr && filtered->get("value") == "closest";
+  constexpr std::string_view kFilters[] = {"linear", "closest", "cubic"};
+  texture.nearest = choice(scope, element, "filtertype", kFilters) == "closest";
   const Element* fallback = element.child("input", "default");
   if (fallback == nullptr) fallback = element.child("input", "fallback");
   ir::Components color_of = defaultColor(element.category);

@@ -72,6 +72,7 @@ private:
   std::optional<std::string> inMemory(const std::string& folder, const std::string& href) const;
   Result<std::string> textInMemory(const std::string& path) const;
   void handDown(Element& element, const Inherited& around) const;
+  void attributes(const pugi::xml_node& from, Element& to);
   int version(const Element& root);
 
   Diagnostic& error(std::string code, ptrdiff_t offset, std::string message, std::string help = {}) {
@@ -141,7 +142,7 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
   } else {
     Element own;
     own.place = placeOf(root.offset_debug());
-    for (const pugi::xml_attribute& a : root.attributes()) own.attributes.emplace_back(a.name(), a.value());
+    attributes(root, own);
     const int minor = version(own);
     Inherited inside = around;
     if (const std::string* space = own.find("colorspace")) inside.colorspace = *space;
@@ -173,7 +174,18 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
   line_ = outer_line;
 }
 
-/// The second number of the version; what is too old is said.
+/// Takes over an element's attributes. The parser passes one that is there twice, which XML does not.
+void XmlReader::attributes(const pugi::xml_node& from, Element& to) {
+  for (const pugi::xml_attribute& a : from.attributes()) {
+    if (to.find(a.name()) != nullptr) {
+      error("xml-syntax", from.offset_debug(),
+            fmt::format("the attribute {} of {} is there twice", quote(a.name()), quote(from.name())));
+    }
+    to.attributes.emplace_back(a.name(), a.value());
+  }
+}
+
+/// The second number of the version; what Lacquer does not know is said.
 int XmlReader::version(const Element& root) {
   const std::string_view text = root.get("version");
   const size_t dot = text.find('.');
@@ -185,7 +197,18 @@ int XmlReader::version(const Element& root) {
   };
   const int major = number(text.substr(0, dot));
   const int minor = dot == std::string_view::npos ? -1 : number(text.substr(dot + 1));
-  if (major == 1 && minor >= kLeastMinor) return minor;
+  if (major == 1 && minor >= kLeastMinor) {
+    if (minor > kPresentMinor) {
+      wrong_.push_back(
+          {"unsupported-version",
+           Severity::Warning,
+           root.place,
+           fmt::format("the version is {}", quote(text)),
+           fmt::format("the document is read as one of 1.{}, the latest that Lacquer knows", kPresentMinor),
+           {}});
+    }
+    return minor;
+  }
   Diagnostic one{
       "unsupported-version",
       Severity::Error,
@@ -269,8 +292,7 @@ void XmlReader::elements(pugi::xml_node parent, Element& into, const Inherited& 
     Element& element = into.children.emplace_back();
     element.category = name;
     element.place = placeOf(node.offset_debug());
-    for (const pugi::xml_attribute& a : node.attributes())
-      element.attributes.emplace_back(a.name(), a.value());
+    attributes(node, element);
     Inherited inside = around;
     if (const std::string* space = element.find("colorspace")) inside.colorspace = *space;
     if (const std::string* prefix = element.find("fileprefix")) inside.fileprefix = *prefix;
