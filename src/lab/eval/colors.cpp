@@ -278,19 +278,57 @@ Result<Colors> colorsOnGpu(const ir::Module& module, const eval::Bindings& bindi
   return result;
 }
 
+/// As many points have the columns of the pages that those before them had: for the system to clear pages for
+/// all of a million takes longer than their colours. The neighbours of derivatives are in the same one.
+constexpr size_t kBatch = size_t{1} << 15;
+
 /// How to evaluate, beside the material.
 struct Setup {
   const EvalPoints& points;
   const std::string& points_file;
+  const PointArrays* arrays;  ///< that the points are the first of; null where they are all
   Engine engine;
   const Strings& texels;
   const Options& options;
   const Trial& trial;
 };
 
+Result<Colors> colorsOf(EvalMaterial& evaluated, const EvalPoints& points, const std::string& points_file,
+                        Engine engine) {
+  eval::Bindings bindings;
+  if (const Result<void> bound = bind(evaluated, points, points_file, bindings); !bound)
+    return tl::make_unexpected(bound.error());
+  const size_t count = points.points.count;
+  const ir::Module& module = evaluated.module();
+  if (engine == Engine::Double) return colors<double>(module, bindings, count);
+  if (engine == Engine::Float) return colors<float>(module, bindings, count);
+  return colorsOnGpu(module, bindings, gpuTextures(evaluated, points), count, routeOf(engine));
+}
+
+/// The colours of the points behind those that there are colours of.
+Result<void> addBatches(EvalMaterial& evaluated, const Setup& how, Messages& messages, Colors& to) {
+  const PointArrays& arrays = *how.arrays;
+  to.rgba.reserve(arrays.count);
+  while (to.rgba.size() < arrays.count) {
+    const size_t first = to.rgba.size();
+    Result<EvalPoints> points = pointsOf(arrays, first, std::min(kBatch, arrays.count - first));
+    if (!points) {
+      report(points.error(), how.points_file, messages);
+      return tl::make_unexpected(Diagnostics());  // reported
+    }
+    if (Result<void> fits = checkAttributes(evaluated.module(), *points, how.points_file); !fits) return fits;
+    if (Result<void> set = evaluated.replaceColumns(std::move(points->parameters)); !set) return set;
+    const Result<Colors> more = colorsOf(evaluated, *points, how.points_file, how.engine);
+    if (!more) return tl::make_unexpected(more.error());
+    to.rgba.insert(to.rgba.end(), more->rgba.begin(), more->rgba.end());
+    to.discarded.insert(to.discarded.end(), more->discarded.begin(), more->discarded.end());
+  }
+  return {};
+}
+
 Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& library, FileImages& images,
                                    const Setup& how, Messages& messages) {
-  const auto& [points, points_file, engine, texels, options, trial] = how;
+  const auto& [points, points_file, arrays, engine, texels, options, trial] = how;
   const std::string& file = images.file();
   report(found.diagnostics(), file, messages);
   if (lacquer::hasError(found.diagnostics())) return tl::make_unexpected(Diagnostics());  // reported
@@ -327,18 +365,13 @@ Result<Evaluation> evaluateSubject(const EvalSubject& found, const Language& lib
     evaluated.countLights(lights);
   else
     evaluated.place(lights);
-  eval::Bindings bindings;
-  const Result<void> bound = bind(evaluated, points, points_file, bindings);
+  Result<Colors> answer = colorsOf(evaluated, points, points_file, engine);
   report(images.takeNotes(), file, messages);
-  if (!bound) return tl::make_unexpected(bound.error());
-  const size_t count = points.points.count;
-  const ir::Module& module = evaluated.module();
-  Result<Colors> answer =
-      engine == Engine::Double ? colors<double>(module, bindings, count)
-      : engine == Engine::Float
-          ? colors<float>(module, bindings, count)
-          : colorsOnGpu(module, bindings, gpuTextures(evaluated, points), count, routeOf(engine));
   if (!answer) return answer;
+  if (arrays != nullptr) {
+    if (const Result<void> added = addBatches(evaluated, how, messages, *answer); !added)
+      return tl::make_unexpected(added.error());
+  }
   answer->material = found.name();
   answer->engine = engine;
   answer->profile = evaluated.profile();
@@ -416,8 +449,9 @@ std::optional<Evaluation> evaluate(const std::string& file, const std::string& m
   const Result<EvalPoints> read =
       text ? readPoints(*text, points_name, limits) : tl::make_unexpected(text.error());
   if (!read) return report(read.error(), points_name, messages), std::nullopt;
-  return valueOf(evaluateFile(file, material, {*read, points_name, engine, texels, options, trial}, messages),
-                 file, messages);
+  return valueOf(
+      evaluateFile(file, material, {*read, points_name, nullptr, engine, texels, options, trial}, messages),
+      file, messages);
 }
 
 std::optional<Evaluation> evaluateOf(const InMemory& of, const GivenPoints& points, Engine engine,
@@ -427,12 +461,15 @@ std::optional<Evaluation> evaluateOf(const InMemory& of, const GivenPoints& poin
   if (const Diagnostics wrong = checkEvaluation(engine, options); !wrong.empty())
     return report(wrong, {}, messages), std::nullopt;
   const auto* text = std::get_if<const std::string*>(&points);
-  const Result<EvalPoints> read = text != nullptr ? readPoints(**text, kPoints, *limitsOf(options))
-                                                  : pointsOf(*std::get<const PointArrays*>(points));
+  const PointArrays* arrays = text == nullptr ? std::get<const PointArrays*>(points) : nullptr;
+  const bool on_device = engine != Engine::Double && engine != Engine::Float;
+  const Result<EvalPoints> read =
+      text != nullptr ? readPoints(**text, kPoints, *limitsOf(options))
+                      : pointsOf(*arrays, 0, on_device ? arrays->count : std::min(kBatch, arrays->count));
   if (!read) return report(read.error(), kPoints, messages), std::nullopt;
   FileImages images = of.images(options);
   return valueOf(evaluateSubject(of.subject, of.language, images,
-                                 {*read, kPoints, engine, texels, options, trial}, messages),
+                                 {*read, kPoints, arrays, engine, texels, options, trial}, messages),
                  of.file, messages);
 }
 

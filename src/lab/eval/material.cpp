@@ -416,8 +416,18 @@ Result<void> EvalMaterial::checkColumns(const graph::Graph& graph, const std::ve
                   "the options' parameters must be uniforms");
     if (!by_name.emplace(found.name, std::move(column)).second)
       return fail("duplicate-name", {}, fmt::format("'{}' is given twice", printable(found.name)), {});
+    columns_of_.insert_or_assign(name, std::pair(found, limits[*place]));
   }
   columns_ = std::move(by_name);
+  return {};
+}
+
+Result<void> EvalMaterial::replaceColumns(std::map<std::string, eval::Column> columns) {
+  for (auto& [name, column] : columns) {
+    const auto& [parameter, limits] = columns_of_.find(name)->second;
+    if (Result<void> wrong = checkNumbers(parameter, limits, name, column.values); !wrong) return wrong;
+    columns_.insert_or_assign(parameter.name, std::move(column));
+  }
   return {};
 }
 

@@ -104,6 +104,8 @@ public:
 
   /// Before lower(): parameters whose values differ from those of today, and maybe from point to point.
   void setColumns(std::map<std::string, eval::Column> columns) { columns_ = std::move(columns); }
+  /// The columns of other points for the same parameters, after lower(). Errors: those of numbers.
+  Result<void> replaceColumns(std::map<std::string, eval::Column> columns);
   /// The same by the parameters' names, after lower().
   const std::map<std::string, eval::Column>& columns() const { return columns_; }
 
@@ -183,6 +185,8 @@ private:
   std::vector<Texel> texels_;
   Trial trial_;
   std::map<std::string, eval::Column> columns_;
+  /// What the columns are of, by the names that they were given with.
+  std::map<std::string, std::pair<graph::Parameter, ir::Range>, std::less<>> columns_of_;
   bool anyway_ = false;
   bool tangents_ = true, whole_ = false;
   Strings attributes_;

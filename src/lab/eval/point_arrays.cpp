@@ -46,7 +46,10 @@ constexpr Member kMembers[] = {{"n", 3, 3, Member::Kind::Normal},
 
 class ArrayReader {
 public:
-  explicit ArrayReader(const PointArrays& arrays) : arrays_(arrays) { points_.points.count = arrays.count; }
+  ArrayReader(const PointArrays& arrays, size_t first, size_t count)
+      : arrays_(arrays), first_(first), count_(count) {
+    points_.points.count = count;
+  }
 
   Result<EvalPoints> run() {
     for (const PointArray& array : arrays_.arrays) take(array);
@@ -59,7 +62,7 @@ private:
   void fail(const PointArray& array, std::optional<size_t> point, std::string code, std::string message,
             std::string help) {
     std::string pointer = "/" + array.name;
-    if (point) pointer += fmt::format("/{}", *point);
+    if (point) pointer += fmt::format("/{}", first_ + *point);
     wrong_.push_back({std::move(code),
                       Severity::Error,
                       {{}, 0, 0, std::move(pointer)},
@@ -98,12 +101,13 @@ private:
   }
 
   Column columnOf(const PointArray& array) {
-    const size_t rows = array.stride == 0 ? 1 : arrays_.count;
+    const size_t rows = array.stride == 0 ? 1 : count_;
     Column column{static_cast<int>(array.components), array.stride != 0, {}};
     column.values.resize(rows * array.components);
     const auto* from = static_cast<const unsigned char*>(array.numbers);
+    if (array.stride != 0 && from != nullptr) from += static_cast<ptrdiff_t>(first_) * array.stride;
     size_t said = 0;
-    for (size_t i = 0; i < rows && arrays_.count > 0; ++i, from += array.stride) {
+    for (size_t i = 0; i < rows && count_ > 0; ++i, from += array.stride) {
       double* to = &column.values[i * array.components];
       if (array.is_double) {
         std::memcpy(to, from, array.components * sizeof(double));
@@ -183,8 +187,8 @@ private:
       placeColumns(array, column);
     } else if (array.name == "env") {
       points_.has_environment = true;
-      points_.environment.resize(arrays_.count);
-      for (size_t i = 0; i < arrays_.count; ++i)
+      points_.environment.resize(count_);
+      for (size_t i = 0; i < count_; ++i)
         std::copy_n(&column.values[column.per_point ? 3 * i : 0], 3, points_.environment[i].begin());
     } else if (known || graph::isAttributeName(array.name)) {
       if (array.name == "color0" && column.components == 3) column = withAlpha(column);
@@ -201,7 +205,7 @@ private:
   }
 
   Column withAlpha(const Column& color) const {
-    return eval::combined(color, Column::constant({1}), arrays_.count, 4,
+    return eval::combined(color, Column::constant({1}), count_, 4,
                           [](const double* rgb, const double* alpha, double* to) {
                             std::copy_n(rgb, 3, to);
                             to[3] = *alpha;
@@ -211,22 +215,23 @@ private:
   /// What is not given is made of the normal.
   void addMissing() {
     eval::Columns& columns = points_.points.columns;
-    if (points_.environment.empty()) points_.environment.resize(arrays_.count);
+    if (points_.environment.empty()) points_.environment.resize(count_);
     const auto n = columns.find("n");
     if (n == columns.end()) return;
     for (const char* name : {"v", "l"}) {
       if (!columns.contains(name)) columns[name] = n->second;
     }
     if (columns.contains("t")) return;
-    columns["t"] = eval::combined(n->second, n->second, arrays_.count, 4,
-                                  [](const double* normal, const double*, double* to) {
-                                    const auto t = eval::across({normal[0], normal[1], normal[2]});
-                                    std::copy(t.begin(), t.end(), to);
-                                    to[3] = 1;
-                                  });
+    columns["t"] =
+        eval::combined(n->second, n->second, count_, 4, [](const double* normal, const double*, double* to) {
+          const auto t = eval::across({normal[0], normal[1], normal[2]});
+          std::copy(t.begin(), t.end(), to);
+          to[3] = 1;
+        });
   }
 
   const PointArrays& arrays_;
+  size_t first_, count_;
   EvalPoints points_;
   Diagnostics wrong_;
   std::vector<std::string> names_;
@@ -234,11 +239,11 @@ private:
 
 }  // namespace
 
-Result<EvalPoints> pointsOf(const PointArrays& arrays) {
+Result<EvalPoints> pointsOf(const PointArrays& arrays, size_t first, size_t count) {
   if (arrays.count > kMostPoints)
     return lacquer::fail("too-many-points", {}, fmt::format("there are {} points", arrays.count),
                          fmt::format("at most {} are evaluated at once", kMostPoints));
-  return ArrayReader(arrays).run();
+  return ArrayReader(arrays, first, count).run();
 }
 
 }  // namespace lacquer
