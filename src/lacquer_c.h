@@ -713,6 +713,19 @@ LACQUER_C int lacquer_environment_dfg(uint32_t size, float* pairs, size_t capaci
                                       lacquer_messages* messages);
 LACQUER_C int lacquer_environment_sheen(uint32_t size, float* pairs, size_t capacity,
                                         lacquer_messages* messages);
+/* The files of `lacquer environment` (docs/environments.md) from a picture's bytes, Radiance HDR or OpenEXR,
+ * which are called `name` in messages. `how` is a JSON object: "size", the texels of a face's edge, "samples",
+ * "dds" and "shared_exponents", as the members of lacquer::Environment. */
+typedef struct lacquer_environment lacquer_environment;
+LACQUER_C lacquer_environment* lacquer_environment_filter(const char* picture, size_t size, const char* name,
+                                                          const char* how, const lacquer_options* options,
+                                                          lacquer_messages* messages);
+LACQUER_C void lacquer_environment_free(lacquer_environment* environment);
+/* The text of environment.json, which says what the files are. */
+LACQUER_C const char* lacquer_environment_description(const lacquer_environment* environment, size_t* size);
+/* A file's bytes by the name of its texture, "environment_specular"; NULL where there is none. */
+LACQUER_C const char* lacquer_environment_file(const lacquer_environment* environment, const char* slot,
+                                               size_t* size);
 
 #ifdef __cplusplus
 }

@@ -22,7 +22,7 @@ from ._native import Array, Colors, Value, load
 
 __all__ = [
     "ATTRIBUTES", "Error", "Evaluation", "Graph", "Message", "Scene", "Shader", "bake", "check_nodes", "convert", "environment_dfg",
-    "environment_sheen", "nodes", "to_gltf", "to_materialx", "version",
+    "environment_sheen", "filter_environment", "nodes", "to_gltf", "to_materialx", "version",
 ]
 
 _lib = load()
@@ -641,3 +641,28 @@ def environment_dfg(size: int = 128) -> NDArray[np.float32]:
 def environment_sheen(size: int = 128) -> NDArray[np.float32]:
     """The table behind environment_sheen."""
     return _table(_lib.lacquer_environment_sheen, size)
+
+
+def filter_environment(picture: Union[bytes, str, Path], size: int = 256, samples: int = 1024, dds: bool = False,
+                       shared_exponents: bool = False, name: str = "environment.hdr",
+                       options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> Dict[str, Any]:
+    """The files of `lacquer environment` in memory, from a picture of the surroundings, a file or its bytes (Radiance HDR or
+    OpenEXR), which are called `name` in messages: what environment.json says, and as "files" the bytes by texture."""
+    if not isinstance(picture, bytes):
+        name = os.fspath(picture)
+        picture = Path(picture).read_bytes()
+    data = picture
+    how_text = _text(json.dumps({"size": _texels(size), "samples": _texels(samples), "dds": dds,
+                                 "shared_exponents": shared_exponents}))
+    at = _calling(options, messages, lambda said, how: _lib.lacquer_environment_filter(
+        data, len(data), _text(name), how_text, how, said))
+    try:
+        made = json.loads(_sized(_lib.lacquer_environment_description, at))
+        made["files"] = {}
+        for slot in made["textures"]:
+            count = c_size_t()
+            file = _lib.lacquer_environment_file(at, _text(slot), byref(count))
+            made["files"][slot] = ctypes.string_at(file, count.value)
+        return made
+    finally:
+        _lib.lacquer_environment_free(at)

@@ -115,6 +115,10 @@ _FUNCTIONS = {
     "nodes": (c_void_p, c_void_p, c_void_p),
     "environment_dfg": (c_int, c_uint32, POINTER(c_float), c_size_t, c_void_p),
     "environment_sheen": (c_int, c_uint32, POINTER(c_float), c_size_t, c_void_p),
+    "environment_filter": (c_void_p, c_char_p, c_size_t, c_char_p, c_char_p, c_void_p, c_void_p),
+    "environment_free": (None, c_void_p),
+    "environment_description": (c_void_p, c_void_p, _SIZE),
+    "environment_file": (c_void_p, c_void_p, c_char_p, _SIZE),
 }
 
 

@@ -390,6 +390,20 @@ def test_tables_and_nodes():
     assert lacquer.version().count(".") == 2
 
 
+def test_environments_are_filtered(tmp_path):
+    pixels = b"".join(bytes([16 * i - 1, 64, 32, 129]) for i in range(1, 9))
+    picture = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n" + pixels
+    made = lacquer.filter_environment(picture, size=32, samples=64)
+    assert made["environment_max_lod"] == 2 and made["textures"]["environment_specular"]["levels"] == 3
+    assert list(made["files"]) == list(made["textures"])
+    assert all(file.startswith(b"\xabKTX 20") for file in made["files"].values())
+    (tmp_path / "sky.hdr").write_bytes(picture)
+    assert lacquer.filter_environment(tmp_path / "sky.hdr", size=32, samples=64) == made
+    with pytest.raises(lacquer.Error) as error:
+        lacquer.filter_environment(picture[:-1], name="cut.hdr")
+    assert error.value.messages[0].file == "cut.hdr"
+
+
 def test_materials_of_other_tools(tmp_path):
     coat = ROOT / "examples/coat.gltf"
     text = lacquer.to_materialx(coat, ["Darkening"], "open_pbr_surface")

@@ -15,8 +15,8 @@ namespace lacquer {
 /// Materials of a .gltf, .glb or .mtlx file as a MaterialX document (docs/materialx.md): those of the names
 /// in `materials`, or all where that is empty. `surface` is "gltf_pbr", "open_pbr_surface", or empty for the
 /// one that says more of a material. What it has no input for is a warning, "not-said"; a material with an
-/// error is left out. A MaterialX document that is read by MaterialX's formulas (Options::as) is written as it
-/// was read where `surface` is empty. Of a graph (".json"), which takes no surface, the nodes that are
+/// error is left out. A MaterialX document that is read by MaterialX's formulas (Options::as) is written as
+/// it was read where `surface` is empty. Of a graph (".json"), which takes no surface, the nodes that are
 /// MaterialX's; each of the others is a "not-said", and a graph without any of them an error, "nothing-said".
 /// Of the options, `permissive`, `as`, `profile` and those of the node library. Empty on an error:
 /// "unknown-surface", "no-such-material", those of the file, or where no material is left.

@@ -228,5 +228,11 @@ struct EnvironmentMaps {
   uint32_t max_lod = 0;                                         ///< the value of environment_max_lod
   std::array<std::array<double, 3>, 9> irradiance_harmonics{};  ///< coefficients of the irradiance
 };
+/// The same in memory.
+struct EnvironmentFiles {
+  EnvironmentMaps maps;
+  Strings files;            ///< the bytes of each of `maps.textures`
+  std::string description;  ///< the text of environment.json
+};
 
 }  // namespace lacquer

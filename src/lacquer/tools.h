@@ -215,6 +215,11 @@ std::optional<EnvironmentMaps> writeEnvironment(const Environment& environment, 
                                                 const Options& options, Messages& messages,
                                                 const Progress& progress = {});
 
+/// The same in memory, of a picture's bytes, which are called `name` in messages; `output` says nothing.
+std::optional<EnvironmentFiles> filterEnvironment(const Environment& environment, const std::string& picture,
+                                                  const std::string& name, const Options& options,
+                                                  Messages& messages, const Progress& progress = {});
+
 /// The node library as JSON: contracts, ranges, sources, variants. Of the options, `node_directories`. Empty
 /// on an error.
 std::string nodesJson(const Options& options, Messages& messages);

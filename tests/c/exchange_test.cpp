@@ -176,5 +176,52 @@ TEST_F(CExchange, DefinitionsAreGiven) {
   EXPECT_EQ(codes("<materialx version='1.39'><nodedef node='mine'/></materialx>"), "0no-name");
 }
 
+/// A picture of four by two pixels, as Radiance has it without runs.
+std::string smallPicture() {
+  std::string picture = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
+  for (char i = 1; i <= 8; ++i) picture += {static_cast<char>(16 * i - 1), 64, 32, static_cast<char>(129)};
+  return picture;
+}
+
+TEST(CEnvironments, AreFilteredInMemory) {
+  const std::string picture = smallPicture();
+  Messages messages;
+  const auto expected = filterEnvironment({"", 32, 64, false, true}, picture, "sky.hdr", {}, messages);
+  ASSERT_TRUE(expected);
+  CMessages said;
+  const CEnvironment made(
+      lacquer_environment_filter(picture.data(), picture.size(), "sky.hdr",
+                                 R"({"size": 32, "samples": 64, "shared_exponents": true})", nullptr, said));
+  ASSERT_TRUE(made) << said.takeCodes();
+  size_t size = 0;
+  const char* text = lacquer_environment_description(made.get(), &size);
+  EXPECT_EQ(std::string(text, size), expected->description);
+  for (size_t i = 0; i < expected->files.size(); ++i) {
+    const char* file = lacquer_environment_file(made.get(), expected->maps.textures[i].slot.c_str(), &size);
+    ASSERT_NE(file, nullptr);
+    EXPECT_EQ(std::string(file, size), expected->files[i]);
+  }
+  EXPECT_EQ(lacquer_environment_file(made.get(), "environment_none", &size), nullptr);
+  EXPECT_EQ(size, 0U);
+}
+
+TEST(CEnvironments, WrongOnesAreSaid) {
+  CMessages said;
+  const std::string picture = smallPicture();
+  const auto filter = [&](const char* bytes, size_t size, const char* how) {
+    return CEnvironment(lacquer_environment_filter(bytes, size, "sky.hdr", how, nullptr, said));
+  };
+  EXPECT_FALSE(filter(picture.data(), picture.size(), R"({"faces": 32})"));
+  EXPECT_EQ(said.takeCodes(), "unknown-option");
+  EXPECT_FALSE(filter(picture.data(), picture.size(), R"({"size": 33})"));
+  EXPECT_EQ(said.takeCodes(), "out-of-range");
+  EXPECT_FALSE(filter(nullptr, 0, nullptr));
+  EXPECT_EQ(said.takeCodes(), "environment-unreadable");
+  EXPECT_FALSE(filter(picture.data(), picture.size() - 1, nullptr));
+  EXPECT_EQ(said.takeCodes(), "environment-unreadable");
+  EXPECT_EQ(lacquer_environment_file(nullptr, "environment_dfg", nullptr), nullptr);
+  lacquer_environment_free(nullptr);
+}
+
 }  // namespace
 }  // namespace lacquer::test

@@ -20,6 +20,7 @@ using CScene = std::unique_ptr<lacquer_scene, Freer<lacquer_scene_free>>;
 using CGraph = std::unique_ptr<lacquer_graph, Freer<lacquer_graph_free>>;
 using CShader = std::unique_ptr<lacquer_shader, Freer<lacquer_shader_free>>;
 using CContract = std::unique_ptr<lacquer_contract, Freer<lacquer_contract_free>>;
+using CEnvironment = std::unique_ptr<lacquer_environment, Freer<lacquer_environment_free>>;
 using CText = std::unique_ptr<lacquer_text, Freer<lacquer_text_free>>;
 
 inline std::string textOf(const CText& text) {

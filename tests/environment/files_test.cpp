@@ -56,6 +56,25 @@ protected:
   Panorama panorama_ = outdoors(128, 400);
 };
 
+TEST_F(Files, InMemoryAreTheSame) {
+  const json written = write(true, true);
+  Messages messages;
+  const auto made =
+      filterEnvironment({"", 64, 256, true, true}, readFile(picture()), "sky.hdr", {}, messages);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(json::parse(made->description), written);
+  ASSERT_EQ(made->files.size(), 5U);
+  for (size_t i = 0; i < 5; ++i)
+    EXPECT_EQ(made->files[i], readFile(out() + "/" + made->maps.textures[i].file)) << i;
+  EXPECT_TRUE(messages.empty());
+  EXPECT_FALSE(filterEnvironment({"", 48, 256}, readFile(picture()), "sky.hdr", {}, messages));
+  EXPECT_FALSE(filterEnvironment({"", 64, 256}, "no picture", "sky.hdr", {}, messages));
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_EQ(messages[0].code, "out-of-range");
+  EXPECT_EQ(messages[1].code, "environment-unreadable");
+  EXPECT_EQ(messages[1].file, "sky.hdr");
+}
+
 /// The numbers of a texel in a cube's file, from its bytes.
 Rgb texelAt(const std::string& bytes, size_t at, bool shared) {
   if (!shared) {

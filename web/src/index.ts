@@ -5,6 +5,8 @@ import {
   type Attribute,
   type BindGroupLayoutEntry,
   type Change,
+  type EnvironmentFiles,
+  type EnvironmentForm,
   type Evaluation,
   type EvaluationOptions,
   type GraphEdit,
@@ -552,6 +554,31 @@ export class Lacquer {
   /** The table behind environment_sheen. */
   environmentSheen(size: number): Float32Array {
     return this.table('lacquer_environment_sheen', size);
+  }
+
+  /** The files of `lacquer environment` from a picture of the surroundings, Radiance HDR; `name` stands for it in messages. */
+  environment(picture: Uint8Array, name: string, how: EnvironmentForm = {}, messages: Message[] = [], options?: Options): EnvironmentFiles {
+    const { call } = this.it;
+    const at = this.it.withBytes(picture, (data, size) =>
+      this.it.withTexts([name, JSON.stringify(how)], ([named, form]) =>
+        calling(this.it, options, messages, (said, opts) => call.lacquer_environment_filter(data, size, named, form, opts, said)),
+      ),
+    );
+    try {
+      const made = JSON.parse(this.it.sized('lacquer_environment_description', at)) as EnvironmentFiles;
+      made.files = {};
+      for (const slot of Object.keys(made.textures)) {
+        made.files[slot] = this.it.withText(slot, (named) =>
+          this.it.withBytes(4, (size) => {
+            const file = call.lacquer_environment_file(at, named, size);
+            return this.it.bytes(file, this.it.word(size)).slice();
+          }),
+        );
+      }
+      return made;
+    } finally {
+      call.lacquer_environment_free(at);
+    }
   }
 
   private table(name: string, size: number): Float32Array {

@@ -386,6 +386,26 @@ export interface Manifest {
   shaders: Record<string, Interface>;
 }
 
+/** How an environment is filtered (docs/environments.md). */
+export interface EnvironmentForm {
+  /** Texels of an edge of environment_specular's faces: a power of two from 32 to 1024; else 256. */
+  size?: number;
+  /** About how many parts of the picture each texel is made of, from 64 to 65536; else 1024. */
+  samples?: number;
+  /** Files are DDS; else KTX2. */
+  dds?: boolean;
+  /** Texels of cubes are RGB9E5; else half floats. */
+  shared_exponents?: boolean;
+}
+
+/** What environment.json says, and the files' bytes by their textures: "environment_specular". */
+export interface EnvironmentFiles {
+  environment_max_lod: number;
+  textures: Record<string, { file: string; type: string; format: string; size: number; levels: number }>;
+  irradiance_harmonics: number[][];
+  files: Record<string, Uint8Array>;
+}
+
 /** Numbers by the names of a block's fields. */
 export type Values = Record<string, number | ArrayLike<number>>;
 

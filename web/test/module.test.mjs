@@ -335,6 +335,19 @@ test('graphs are edited and checked', () => {
   assert.throws(() => graph.setRange(name, 1, 0), /wrong-range/);
 });
 
+test('an environment is filtered to the files of the native program', () => withFolder((folder) => {
+  const pixels = Array.from({ length: 8 }, (_, i) => [16 * i + 15, 64, 32, 129]).flat();
+  const picture = Buffer.concat([Buffer.from('#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n'), Buffer.from(pixels)]);
+  writeFileSync(join(folder, 'sky.hdr'), picture);
+  lacquer('environment', join(folder, 'sky.hdr'), '-o', join(folder, 'sky'), '--size', '32', '--samples', '64');
+  const { files, ...made } = library.environment(picture, 'sky.hdr', { size: 32, samples: 64 });
+  assert.deepEqual(made, JSON.parse(readFileSync(join(folder, 'sky/environment.json'), 'utf8')));
+  for (const [slot, { file }] of Object.entries(made.textures))
+    assert.ok(readFileSync(join(folder, 'sky', file)).equals(Buffer.from(files[slot])), slot);
+  assert.throws(() => library.environment(picture.subarray(0, -1), 'cut.hdr'), /cut\.hdr/);
+  assert.throws(() => library.environment(picture, 'sky.hdr', { size: 33 }), /out-of-range/);
+}));
+
 test('what is wrong is a message of the library', () => {
   const wrong = [
     [() => library.scene('{"asset": ', 'broken.gltf'), /broken\.gltf:1:/],
