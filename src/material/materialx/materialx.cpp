@@ -137,8 +137,8 @@ void MaterialsReader::material(const Element& at, std::string_view name, const F
   } else {
     made.scope = &patterns_.body(*found.owner, fmt::format("{}_material", name));
     Surface surface(patterns_, *made.scope, *found.shader, made.said);
-    const bool modelled = !translates_ && patterns_.modelOf(*found.shader) != nullptr;
-    if (!modelled && translate(surface, found.shader->category)) {
+    const bool own = patterns_.modelOf(*found.shader) != nullptr || patterns_.givesClosure(*found.shader);
+    if ((translates_ || !own) && translate(surface, found.shader->category)) {
       made.json = surface.finish(name, made_.size());
       made.outputs = surface.outputs();
       made.error = translationError(made.surface);
