@@ -194,7 +194,7 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
     if (param == nullptr) continue;  // a sampler's
     std::optional<Source> source;
     if (ir::isTexture(param->type)) {
-      source = image(scope, element, input, param->type == ir::Type::Texture2DArray);
+      source = image(scope, {&scope, &element}, input, param->type == ir::Type::Texture2DArray);
       space = input.get("colorspace");
     } else if (may_end && ends == "none" && isFallback(input.name())) {
       continue;  // the texture's alone
@@ -227,9 +227,7 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
   surroundings(scope, element, *form, made);
   const std::string_view type = element.get("type");
   const bool color = type == "color3" || type == "color4";
-  const bool decoded =
-      space.empty() || isLinear(space) || space == "srgb_texture" || space == "srgb_rec709_scene";
-  if (!color || decoded) {
+  if (!color || !isConverted(space)) {
     scope.group_.nodes.push_back(std::move(made));
     scope.elements_.push_back(&element);
     return;
@@ -260,7 +258,7 @@ void Patterns::withoutFiles(Scope& scope, const Element& element, const lang::No
     none.set("name", std::string(param.name));
     none.set("type", "filename");
     none.place = element.place;
-    if (std::optional<Source> source = image(scope, element, none, false))
+    if (std::optional<Source> source = image(scope, {&scope, &element}, none, false))
       made.inputs.emplace_back(std::string(param.name), std::move(*source));
   }
 }

@@ -330,7 +330,7 @@ void Patterns::groupInputs(Scope& scope) {
                                *type == ir::Type::Vec3 && geometry->node == "tangent" ? "xyz" : ""};
     } else if (file) {
       const bool tiles = goesToTiles(*scope.owner_, input.name());
-      made.by_default = image(scope, input, input, tiles);
+      made.by_default = image(scope, samplingOf(scope, input), input, tiles);
       if (tiles && hasTiles(scope, input, input)) made.type = ir::Type::Texture2DArray;
     } else if (input.find("value") != nullptr) {
       lang::Param param;
@@ -617,10 +617,12 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
       }
     } else if (type && ir::isTexture(*type)) {
       const Element* body = &element == &interface ? &element : definition(interface)->graph;
-      const auto& inputs = groups_.at(body)->group_.inputs;
-      source = image(scope, input, input, std::any_of(inputs.begin(), inputs.end(), [&](const auto& one) {
-                       return one.name == graphName(input.name()) && one.type == ir::Type::Texture2DArray;
-                     }));
+      Scope& inside = *groups_.at(body);
+      const bool tiles = std::any_of(
+          inside.group_.inputs.begin(), inside.group_.inputs.end(), [&](const graph::GroupInput& one) {
+            return one.name == graphName(input.name()) && one.type == ir::Type::Texture2DArray;
+          });
+      source = image(scope, samplingOf(inside, input), input, tiles);
     } else if (linked && type) {
       source = connected(scope, input);
     } else if (type) {

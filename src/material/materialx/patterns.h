@@ -166,7 +166,13 @@ private:
   std::optional<graph::Source> matrix(Scope& scope, const Element& element, const Element& input,
                                       ir::Type type);
   std::optional<graph::Source> attribute(Scope& scope, const Element& input, ir::Type type);
-  std::optional<graph::Source> image(Scope& scope, const Element& element, const Element& input, bool tiles);
+  /// A node that samples an image, and what it stands in.
+  struct Sampling {
+    Scope* scope;
+    const Element* node;
+  };
+  Sampling samplingOf(Scope& body, const Element& input) const;
+  std::optional<graph::Source> image(Scope& scope, const Sampling& by, const Element& input, bool tiles);
   std::string_view choice(Scope& scope, const Element& element, std::string_view name,
                           std::span<const std::string_view> words);
   std::string_view endsOf(Scope& scope, const Element& element);

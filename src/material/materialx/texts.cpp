@@ -115,18 +115,24 @@ const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
   checkDefinition(*nodedef);
   std::string key = fmt::format("{} {}", nodedef->get("node"), nodedef->name());
   std::vector<std::pair<const Element*, std::string>> texts;
+  std::vector<std::pair<std::string_view, std::string_view>> spaces;  ///< of files, which nodes convert
   for (const Element& input : element.children) {
     const bool token = input.category == "token";
     const Element* port =
         token || input.category == "input" ? nodedef->child(input.category, input.name()) : nullptr;
-    if (port == nullptr || (!token && port->get("type") != "string")) continue;
+    if (port == nullptr) continue;
+    if (port->get("type") == "filename" && isConverted(input.get("colorspace"))) {
+      spaces.emplace_back(port->name(), input.get("colorspace"));
+      key += fmt::format("\n{} {}", port->name(), input.get("colorspace"));
+    }
+    if (!token && port->get("type") != "string") continue;
     const Element* said = token ? &input : text(scope, input);
     if (said == nullptr || said->get("value") == port->get("value")) continue;
     texts.emplace_back(port, said->get("value"));
     key += fmt::format("\n{} {}\n{}", port->category, port->name(), said->get("value"));
   }
   const Element* graph = definition(*nodedef)->graph;
-  if (texts.empty() || graph == nullptr) return nodedef;
+  if ((texts.empty() && spaces.empty()) || graph == nullptr) return nodedef;
   const auto [it, fresh] = with_texts_.try_emplace(std::move(key));
   if (!fresh) return it->second;
   Element& made = made_.emplace_back(*nodedef);
@@ -135,7 +141,13 @@ const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
       if (port.category == of->category && port.name() == of->name()) port.set("value", value);
     }
   }
-  const Element& body = made_.emplace_back(*graph);
+  Element& body = made_.emplace_back(*graph);
+  for (Element& node : body.children) {
+    for (Element& input : node.children) {
+      for (const auto& [name, space] : spaces)
+        if (input.get("interfacename") == name) input.set("colorspace", std::string(space));
+    }
+  }
   by_nodedef_.emplace(&made, definitions_.size());
   by_graph_.emplace(&body, definitions_.size());
   definitions_.push_back({&made, &body});
@@ -292,9 +304,25 @@ std::string_view Patterns::choice(Scope& scope, const Element& element, std::str
   return value;
 }
 
+/// What samples the file of a body's input: the first node there, or the input itself where none does.
+Patterns::Sampling Patterns::samplingOf(Scope& body, const Element& input) const {
+  for (const Element& node : body.owner_->children) {
+    const auto takes = std::find_if(node.children.begin(), node.children.end(), [&](const Element& one) {
+      return one.category == "input" && one.get("interfacename") == input.name();
+    });
+    if (takes == node.children.end()) continue;
+    const Element* nodedef = definitionOf(node);
+    const Definition* inner = nodedef == nullptr ? nullptr : definition(*nodedef);
+    if (inner == nullptr || inner->graph == nullptr) return {&body, &node};
+    const auto scope = groups_.find(inner->graph);
+    if (scope != groups_.end()) return samplingOf(*scope->second, *takes);
+  }
+  return {&body, &input};
+}
+
 /// An image. `tiles`: what takes it has a place for an image of each tile.
-std::optional<Source> Patterns::image(Scope& scope, const Element& element, const Element& input,
-                                      bool tiles) {
+std::optional<Source> Patterns::image(Scope& scope, const Sampling& by, const Element& input, bool tiles) {
+  const Element& element = *by.node;
   if (isOfInstances(scope, input)) return connected(scope, input);
   const Element* from = text(scope, input);
   if (from == nullptr) return std::nullopt;
@@ -322,7 +350,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
     constexpr std::string_view kModes[] = {"periodic", "clamp", "mirror",     "constant",
                                            "repeat",   "black", "useMetadata"};
     const bool own = element.child("input", name) != nullptr;
-    const std::string_view value = choice(scope, element, own ? name : usd, kModes);
+    const std::string_view value = choice(*by.scope, element, own ? name : usd, kModes);
     if (texture.type == ir::Type::Texture2DArray) return graph::Wrap::Clamp;  // at the edges of tiles
     return value == "clamp" || value == "constant" || value == "black" ? graph::Wrap::Clamp
            : value == "mirror"                                         ? graph::Wrap::Mirror
@@ -330,7 +358,7 @@ std::optional<Source> Patterns::image(Scope& scope, const Element& element, cons
   };
   texture.wrap = {wrapOf("uaddressmode", "wrapS"), wrapOf("vaddressmode", "wrapT")};
   constexpr std::string_view kFilters[] = {"linear", "closest", "cubic"};
-  texture.nearest = choice(scope, element, "filtertype", kFilters) == "closest";
+  texture.nearest = choice(*by.scope, element, "filtertype", kFilters) == "closest";
   const Element* fallback = element.child("input", "default");
   if (fallback == nullptr) fallback = element.child("input", "fallback");
   ir::Components color_of = defaultColor(element.category);

@@ -136,6 +136,10 @@ bool isLinear(std::string_view space) {
   return found != nullptr && found->curve == Curve::None && found->matrix == nullptr;
 }
 
+bool isConverted(std::string_view space) {
+  return !space.empty() && !isLinear(space) && space != "srgb_texture" && space != "srgb_rec709_scene";
+}
+
 ir::Components toLinear(std::string_view name, ir::Components color) {
   const Space& space = *spaceOf(name);
   std::array<double, 3> in{};

@@ -33,6 +33,8 @@ std::span<const ClosurePart> closureParts(std::string_view type);
 bool isColorSpace(std::string_view space);
 /// Colours of these spaces are as they are: linear Rec. 709 and what says that it is no colour.
 bool isLinear(std::string_view space);
+/// A node converts an image of it: it is neither linear nor decoded by the texture's format.
+bool isConverted(std::string_view space);
 /// Brings the first three components from a space of isColorSpace() to linear Rec. 709, by the formulas of
 /// MaterialX's `cmlib`.
 ir::Components toLinear(std::string_view space, ir::Components color);
