@@ -82,8 +82,7 @@ Element* elementAt(Element& root, std::string_view pointer) {
   return found;
 }
 
-/// The unit that a parameter has which was read of an input: that of a model's port, or the first of a kind
-/// where a definition of the document has another.
+/// The unit that a parameter has which was read of an input: that of the port, if it has one.
 std::string_view unitAt(const Element& root, const Element& node, std::string_view input) {
   const auto portIn = [&](const Element& definitions) -> const Element* {
     for (const Element& child : definitions.children) {
@@ -93,8 +92,8 @@ std::string_view unitAt(const Element& root, const Element& node, std::string_vi
     }
     return nullptr;
   };
-  if (const Element* port = portIn(root)) return materialx::baseUnit(port->get("unittype"));
-  const Element* port = portIn(materialx::surfaceModels());
+  const Element* port = portIn(root);
+  if (port == nullptr) port = portIn(materialx::surfaceModels());
   return port == nullptr ? std::string_view() : port->get("unit");
 }
 

@@ -227,25 +227,55 @@ void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& ma
   surroundings(scope, element, *form, made);
   const std::string_view type = element.get("type");
   const bool color = type == "color3" || type == "color4";
-  if (!color || !isConverted(space)) {
-    scope.group_.nodes.push_back(std::move(made));
-    scope.elements_.push_back(&element);
-    return;
+  if (color && isConverted(space)) {
+    // What a texture's format does not decode.
+    std::string converter = fmt::format("{}_to_lin_rec709", space == "lin_ap1" ? "acescg" : space);
+    if (!isColorSpace(space) || library_.forms(converter).empty())
+      return error(element, "unknown-colorspace",
+                   fmt::format("the image is of the colour space {}", quote(space)),
+                   "those of MaterialX's library are known: lin_rec709, srgb_texture, acescg, g22_rec709, …");
+    putBehind(scope, element, made, std::move(converter), {{"in", {}}});
   }
-  // What a texture's format does not decode.
-  const std::string converter = fmt::format("{}_to_lin_rec709", space == "lin_ap1" ? "acescg" : space);
-  if (!isColorSpace(space) || library_.forms(converter).empty())
-    return error(element, "unknown-colorspace",
-                 fmt::format("the image is of the colour space {}", quote(space)),
-                 "those of MaterialX's library are known: lin_rec709, srgb_texture, acescg, g22_rec709, …");
-  graph::Node convert;
-  convert.id = std::exchange(made.id, scope.taken_.free(made.id + "_texel"));
-  convert.type = converter;
-  convert.inputs.emplace_back("in", Source{graph::NodeRef{made.id, {}}, {}});
-  for (graph::Node* node : {&made, &convert}) {
-    scope.group_.nodes.push_back(std::move(*node));
-    scope.elements_.push_back(&element);
+  const std::optional<ir::Type> number = typeOf(type);
+  if (const double scale = unitsOf(scope, element);
+      scale != 1 && number && (*number == ir::Type::Float || ir::isFloatVector(*number))) {
+    putBehind(scope, element, made, fmt::format("multiply<{}>", ir::typeName(*number)),
+              {{"in1", {}}, {"in2", Source{graph::Literal{*number, {scale, scale, scale, scale}}, {}}}});
   }
+  scope.group_.nodes.push_back(std::move(made));
+  scope.elements_.push_back(&element);
+}
+
+/// Another node in the place of one, whose first input that one is.
+void Patterns::putBehind(Scope& scope, const Element& element, graph::Node& made, std::string type,
+                         graph::Inputs inputs) {
+  graph::Node behind;
+  behind.id = std::exchange(made.id, scope.taken_.free(made.id + "_texel"));
+  behind.type = std::move(type);
+  behind.inputs = std::move(inputs);
+  behind.inputs[0].second = Source{graph::NodeRef{made.id, {}}, {}};
+  scope.group_.nodes.push_back(std::exchange(made, std::move(behind)));
+  scope.elements_.push_back(&element);
+}
+
+/// What brings the numbers of an image's file, or of a geometric property, from their unit to the scene's.
+double Patterns::unitsOf(Scope& scope, const Element& element) {
+  const auto scaleOf = [&](const Element& said) {
+    if (said.get("unit").empty()) return 1.0;
+    const std::optional<double> scale = unitScale(said.get("unittype"), said.get("unit"));
+    if (!scale)
+      error(said, "unknown-unit", fmt::format("{} is in {}", quote(said.name()), quote(said.get("unit"))),
+            "units are those of MaterialX's unit types \"distance\", \"angle\" and \"time\"");
+    return scale.value_or(1);
+  };
+  for (const Element& input : element.children) {
+    if (input.category == "input" && input.get("type") == "filename") return scaleOf(input);
+  }
+  const Element* property =
+      element.category == "geompropvalue" ? element.child("input", "geomprop") : nullptr;
+  const Element* name = property == nullptr ? nullptr : text(scope, *property);
+  const auto found = name == nullptr ? geomprops_.end() : geomprops_.find(name->get("value"));
+  return found == geomprops_.end() ? 1.0 : scaleOf(*found->second);
 }
 
 /// Where no file is named the default colour stands for the image.

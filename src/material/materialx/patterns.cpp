@@ -335,7 +335,7 @@ void Patterns::groupInputs(Scope& scope) {
     } else if (input.find("value") != nullptr) {
       lang::Param param;
       param.type = *type;
-      if (scope.model_) param.hints.unit = input.get("unit");
+      if (scope.interface_ != scope.owner_) param.hints.unit = input.get("unit");
       made.by_default = literal(scope, *scope.owner_, input, param);
     } else {
       made.by_default = Source{graph::Literal{*type == ir::Type::Int ? ir::Type::Float : *type, {}}, {}};
@@ -628,11 +628,14 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
     } else if (type) {
       lang::Param param;
       param.type = *type;
-      // A number without a unit is in the definition's.
-      const bool own = port->get("unit").empty() || !input.get("unit").empty();
-      const Element* said = own ? &input : &made_.emplace_back(input);
-      if (!own) made_.back().set("unit", std::string(port->get("unit")));
-      source = literal(scope, element, *said, param);
+      if (&element != &interface) param.hints.unit = port->get("unit");
+      const std::string_view unit = input.get("unit"), kind = port->get("unittype");
+      if (!unit.empty() && !kind.empty() && unitScale({}, unit) && !unitScale(kind, unit)) {
+        error(input, "unknown-unit", fmt::format("{} is in {}", quote(input.name()), quote(unit)),
+              fmt::format("its unit type is {}", quote(kind)));
+        continue;
+      }
+      source = literal(scope, element, input, param);
     }
     if (source) made.inputs.emplace_back(graphName(input.name()), std::move(*source));
   }

@@ -175,6 +175,9 @@ private:
   std::optional<graph::Source> image(Scope& scope, const Sampling& by, const Element& input, bool tiles);
   std::string_view choice(Scope& scope, const Element& element, std::string_view name,
                           std::span<const std::string_view> words);
+  double unitsOf(Scope& scope, const Element& element);
+  void putBehind(Scope& scope, const Element& element, graph::Node& made, std::string type,
+                 graph::Inputs inputs);
   std::string_view endsOf(Scope& scope, const Element& element);
   const Element* text(Scope& within, const Element& input);
   const Element* propertyOf(const Element& node, std::string_view name);

@@ -153,11 +153,9 @@ ir::Components toLinear(std::string_view name, ir::Components color) {
   return color;
 }
 
-std::string_view baseUnit(std::string_view unittype) {
-  for (const Unit& row : kUnits) {
-    if (row.type == unittype && row.scale == 1) return row.name;
-  }
-  return {};
+std::optional<double> unitScale(std::string_view unittype, std::string_view unit) {
+  const Unit* found = unitOf(unittype, unit);
+  return found == nullptr ? std::nullopt : std::optional(found->scale);
 }
 
 Result<ir::Components> valueOf(const Element& input, ir::Type type, std::string_view port_unit) {

@@ -39,8 +39,8 @@ bool isConverted(std::string_view space);
 /// MaterialX's `cmlib`.
 ir::Components toLinear(std::string_view space, ir::Components color);
 
-/// The unit in which a scene is, of a unit type: metres, degrees, seconds; empty for another type.
-std::string_view baseUnit(std::string_view unittype);
+/// What brings a number of a unit to the one in which a scene is; nothing for a unit that is not known.
+std::optional<double> unitScale(std::string_view unittype, std::string_view unit);
 
 /// Reads the `value` of an input of a type of typeOf() but a matrix, in the graph's colours and in the unit
 /// that the port says, or the scene's where it says none. A number without a unit is as it is. An error with
