@@ -136,6 +136,26 @@ node color_of_place(vec3 place) -> vec4 in [0, 1] {
   EXPECT_GT(top[1], bottom[1] + 20);
 }
 
+/// What comes from the vertices of an attribute has its name, and fewer components.
+TEST(Sheet, ATangentInTheObjectIsDrawn) {
+  const std::string file = (scratch() / "tangent.mtlx").string();
+  std::ofstream(file) << R"(<materialx version="1.39">
+  <nodegraph name="G">
+    <tangent name="t" type="vector3"/>
+    <absval name="a" type="vector3"><input name="in" type="vector3" nodename="t"/></absval>
+    <convert name="c" type="color3"><input name="in" type="vector3" nodename="a"/></convert>
+    <output name="out" type="color3" nodename="c"/>
+  </nodegraph>
+</materialx>)";
+  const Made made = make({file}, small());
+  ASSERT_FALSE(made.png.empty()) << (made.messages.empty() ? "" : made.messages[0].text);
+  // Straight ahead it points along x, at the sides more and more along z.
+  const auto middle = pixel(made.image, kFirst + 16, kTop + 16),
+             right = pixel(made.image, kFirst + 27, kTop + 16);
+  EXPECT_GT(middle[0], middle[2] + 50);
+  EXPECT_GT(right[2], middle[2] + 50);
+}
+
 TEST(Sheet, EdgesAreShadesBetweenBallAndBackground) {
   const std::string file =
       write("white.gltf", fileOf({{{"extensions", {{"KHR_materials_unlit", json::object()}}}}}));

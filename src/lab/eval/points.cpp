@@ -238,18 +238,19 @@ Result<void> bindVaryings(const ir::Module& module, size_t points, Bindings& bin
   }
   const auto values = evaluate<T>(module, roots, bindings, points);
   if (!values) return tl::make_unexpected(values.error());
+  std::vector<Column> columns;
   for (size_t i = 0; i < roots.size(); ++i) {
     const std::vector<T>& column = (*values)[i];
-    bindings.columns[varyings[i]->name] =
-        Column::perPoint(ir::componentCount(varyings[i]->type), {column.begin(), column.end()});
-  }
-  // Floats do not hold every integer.
-  for (size_t i = 0; i < roots.size(); ++i) {
+    columns.push_back(
+        Column::perPoint(ir::componentCount(varyings[i]->type), {column.begin(), column.end()}));
+    // Floats do not hold every integer.
     if (!ir::isWhole(ir::partType(varyings[i]->type))) continue;
     const auto exact = evaluate<double>(module, {&roots[i], 1}, bindings, points);
     if (!exact) return tl::make_unexpected(exact.error());
-    bindings.columns[varyings[i]->name].values = (*exact)[0];
+    columns[i].values = (*exact)[0];
   }
+  // A varying may have the name of an attribute that others are computed of.
+  for (size_t i = 0; i < roots.size(); ++i) bindings.columns[varyings[i]->name] = std::move(columns[i]);
   return {};
 }
 

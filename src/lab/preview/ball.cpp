@@ -162,8 +162,6 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
   shading.bind({&any, 1}, shading.base_);
   if (Result<void> block = eval::bindMaterialBlock(of.module, shading.base_); !block)
     return tl::make_unexpected(std::move(block.error()));
-  if (Result<void> varyings = eval::bindVaryings<float>(of.module, 1, shading.base_); !varyings)
-    return tl::make_unexpected(std::move(varyings.error()));
   std::vector<ir::ValueId> sources;
   for (const ir::Varying& varying : of.module.varyings) {
     if (varying.source == ir::kNoValue) continue;
@@ -178,6 +176,9 @@ Result<Shading> Shading::make(Look look, const Studio& studio) {
   }
   Result<eval::Program> vertex = eval::compile(of.module, sources, shading.base_, 1);
   if (!vertex) return tl::make_unexpected(std::move(vertex.error()));
+  // From here on a name that is an attribute's and a varying's is the varying's.
+  if (Result<void> varyings = eval::bindVaryings<float>(of.module, 1, shading.base_); !varyings)
+    return tl::make_unexpected(std::move(varyings.error()));
   Result<eval::Program> fragment = eval::compile(of.module, roots, shading.base_, 1);
   if (!fragment) return tl::make_unexpected(std::move(fragment.error()));
   shading.vertex_ = std::move(*vertex);
