@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <tuple>
 
 #include "materialx/closures.h"
@@ -87,6 +88,7 @@ private:
   Patterns patterns_;
   Diagnostics wrong_;
   std::vector<Made> made_;
+  std::deque<Element> uses_;  ///< inputs that take a nodegraph's output, for patterns
 };
 
 /// The surface of a material, and what it stands in.
@@ -212,10 +214,21 @@ void MaterialsReader::pattern(const Element& owner, const Element& output, const
   if (!type || ir::isMatrix(*type) || ir::isTexture(*type)) return;
   Made made;
   made.name = name;
-  made.scope = &patterns_.body(owner, fmt::format("{}_pattern", name));
+  // What stands beside a nodegraph reaches an instance of it alone.
+  const bool instance = std::any_of(owner.children.begin(), owner.children.end(), [](const Element& child) {
+    return child.category == "input" && Patterns::isConnected(child);
+  });
+  Element use{"input",
+              {{"name", std::string(output.name())}, {"type", std::string(output.get("type"))}},
+              {},
+              output.place};
+  use.set("nodegraph", std::string(owner.name()));
+  use.set("output", std::string(output.name()));
+  made.scope = &patterns_.body(instance ? document_.root : owner, fmt::format("{}_pattern", name));
   const std::string property = "baseColorTexture";
   made.place = output.place;
-  std::optional<Source> source = patterns_.connected(*made.scope, output);
+  const Element& from = instance ? uses_.emplace_back(std::move(use)) : output;
+  std::optional<Source> source = patterns_.connected(*made.scope, from);
   made.json = Json::object();
   made.json["name"] = name;
   made.json["extensions"]["KHR_materials_unlit"] = Json::object();
