@@ -124,6 +124,64 @@ TEST_F(Kept, PatternsAloneKeepTheirTypes) {
   EXPECT_TRUE(messages_.empty());
 }
 
+/// What a material needs beside nodes: bodies that an implementation names, properties and tokens of the
+/// geometry, outputs of the document.
+TEST_F(Kept, WhatStandsBesideTheNodesIsTaken) {
+  const std::string text = R"(<materialx version="1.39">
+  <geompropdef name="second" type="vector2" geomprop="texcoord" index="1"/>
+  <tokendefault name="id" type="string" value="oak"/>
+  <nodedef name="ND_two" node="two">
+    <input name="in" type="vector2" defaultgeomprop="second"/>
+    <output name="out" type="vector2"/>
+  </nodedef>
+  <nodegraph name="NG_two">
+    <dot name="d" type="vector2"><input name="in" type="vector2" interfacename="in"/></dot>
+    <output name="out" type="vector2" nodename="d"/>
+  </nodegraph>
+  <implementation name="IM_two" nodedef="ND_two" nodegraph="NG_two"/>
+  <two name="at" type="vector2"/>
+  <image name="map" type="color3">
+    <input name="file" type="filename" value="&lt;id&gt;.png"/>
+    <input name="texcoord" type="vector2" nodename="at"/>
+  </image>
+  <constant name="unused" type="float"><input name="value" type="float" value="1"/></constant>
+  <output name="mapped" type="color3" nodename="map"/>
+  <surface_unlit name="s" type="surfaceshader">
+    <input name="emission_color" type="color3" output="mapped"/>
+  </surface_unlit>
+  <surfacematerial name="Map" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="s"/>
+  </surfacematerial>
+</materialx>
+)";
+  const Scene scene = Scene::fromMemory(text, "map.mtlx", {}, messages_);
+  std::string expected = written(scene);
+  const std::string one = written(scene, {"Map"});
+  const size_t unused = expected.find("  <constant");
+  expected.erase(unused, expected.find("  <output", unused) - unused);
+  EXPECT_EQ(one, expected);
+  EXPECT_TRUE(messages_.empty()) << messages_[0].text;
+  const Scene again = Scene::fromMemory(one, "map.mtlx", {}, messages_);
+  EXPECT_EQ(again.graph(0, kUnusedAttributes, {}, messages_).toJson(),
+            scene.graph(0, kUnusedAttributes, {}, messages_).toJson());
+}
+
+/// A nodegraph with several outputs, of which each is a pattern of its own.
+TEST_F(Kept, APatternOfSeveralIsTaken) {
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">
+  <nodegraph name="G">
+    <constant name="c" type="color3"/>
+    <output name="a" type="color3" nodename="c"/>
+    <output name="b" type="color3" nodename="c"/>
+  </nodegraph>
+  <nodegraph name="H"><constant name="c" type="color3"/><output name="a" type="color3" nodename="c"/></nodegraph>
+</materialx>)",
+                                        "patterns.mtlx", {}, messages_);
+  const std::string one = written(scene, {"G/b"});
+  EXPECT_NE(one.find("<nodegraph name=\"G\">"), std::string::npos) << one;
+  EXPECT_EQ(one.find("\"H\""), std::string::npos) << one;
+}
+
 TEST_F(Kept, EditedNumbersAreWritten) {
   const Scene scene = read(kDocument);
   ASSERT_TRUE(scene);

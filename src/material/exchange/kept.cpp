@@ -21,22 +21,31 @@ using materialx::Element;
 
 namespace {
 
-constexpr std::array<std::string_view, 9> kOfGeometry = {
-    "collection", "geominfo",    "look",       "lookgroup",        "materialassign",
-    "property",   "propertyset", "variantset", "propertysetassign"};
+/// They may speak of materials that go.
+constexpr std::array<std::string_view, 7> kOfMaterials = {
+    "look", "lookgroup", "materialassign", "property", "propertyset", "variantset", "propertysetassign"};
+/// What has a type, and is neither a node nor an output.
+constexpr std::array<std::string_view, 4> kOfTypes = {"nodedef", "typedef", "geompropdef", "tokendefault"};
 
 /// The elements beside it that an element names.
 void addTaken(const Element& element, std::vector<std::string_view>& taken) {
-  for (const std::string_view attribute : {"nodename", "nodegraph"}) {
-    if (const std::string_view name = element.get(attribute); !name.empty()) taken.push_back(name);
+  bool connected = false;
+  for (const std::string_view attribute : {"nodename", "nodegraph", "output"}) {
+    const std::string_view name = element.get(attribute);
+    if (name.empty() || (connected && attribute == "output"))
+      continue;  // of what was named, and not beside it
+    taken.push_back(name);
+    connected = true;
   }
   for (const Element& child : element.children) addTaken(child, taken);
 }
 
-/// Whether an element is a node, a nodegraph or a material, and no definition.
-bool isNode(const Element& element) {
-  if (element.category == "nodedef" || element.category == "typedef") return false;
-  if (element.category == "nodegraph") return element.get("nodedef").empty();
+/// Whether an element is a node, a nodegraph, an output or a material, and no definition. `bodies`:
+/// nodegraphs that an implementation names.
+bool isNode(const Element& element, const std::set<std::string, std::less<>>& bodies) {
+  if (std::find(kOfTypes.begin(), kOfTypes.end(), element.category) != kOfTypes.end()) return false;
+  if (element.category == "nodegraph")
+    return element.get("nodedef").empty() && !bodies.contains(element.name());
   return !element.get("type").empty();
 }
 
@@ -138,15 +147,24 @@ void putNumbers(Element& root, const graph::Graph& edited) {
 void keepMaterials(Element& root, const Strings& names) {
   Diagnostics said;
   materialx::addVariants(root, said);
+  std::set<std::string, std::less<>> bodies;
+  for (const Element& child : root.children) {
+    if (child.category == "implementation") bodies.emplace(child.get("nodegraph"));
+  }
   std::map<std::string_view, const Element*> nodes;
   for (const Element& child : root.children) {
-    if (isNode(child)) nodes.emplace(child.name(), &child);
+    if (isNode(child, bodies)) nodes.emplace(child.name(), &child);
   }
   std::vector<std::string_view> pending;
   for (const auto& [name, element] : nodes) {
     const std::string_view shown = element->get("uiname");
-    if (std::find(names.begin(), names.end(), shown.empty() ? name : shown) != names.end())
-      pending.push_back(name);
+    // A nodegraph's output is a pattern of its own where it has several: marble/color.
+    const std::string outputs = fmt::format("{}/", name);
+    const bool wanted = std::any_of(names.begin(), names.end(), [&](const std::string& one) {
+      return one == (shown.empty() ? name : shown) ||
+             (element->category == "nodegraph" && one.starts_with(outputs));
+    });
+    if (wanted) pending.push_back(name);
   }
   std::set<std::string, std::less<>> kept;
   while (!pending.empty()) {
@@ -157,8 +175,8 @@ void keepMaterials(Element& root, const Strings& names) {
     addTaken(*at->second, pending);
   }
   std::erase_if(root.children, [&](const Element& child) {
-    if (isNode(child)) return !kept.contains(child.name());
-    return std::find(kOfGeometry.begin(), kOfGeometry.end(), child.category) != kOfGeometry.end();
+    if (isNode(child, bodies)) return !kept.contains(child.name());
+    return std::find(kOfMaterials.begin(), kOfMaterials.end(), child.category) != kOfMaterials.end();
   });
   nameVariants(root);
 }
