@@ -238,6 +238,37 @@ TEST_F(Kept, AnEvaluationNamesTheFormulas) {
 }
 
 /// A chain of additions that is longer than a graph may be without being asked.
+/// Of a file's materials those that glTF and other surfaces have no word for are left out, with an error
+/// each.
+TEST(MaterialsOfClosures, AreLeftOutAlone) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">
+  <nodegraph name="NG">
+    <ramplr name="r" type="color3"/>
+    <output name="out" type="color3" nodename="r"/>
+  </nodegraph>
+  <gltf_pbr name="a" type="surfaceshader">
+    <input name="base_color" type="color3" nodegraph="NG" output="out"/>
+  </gltf_pbr>
+  <surfacematerial name="A" type="material"><input name="surfaceshader" type="surfaceshader" nodename="a"/></surfacematerial>
+  <sheen_bsdf name="f" type="BSDF"/>
+  <surface name="b" type="surfaceshader"><input name="bsdf" type="BSDF" nodename="f"/></surface>
+  <surfacematerial name="B" type="material"><input name="surfaceshader" type="surfaceshader" nodename="b"/></surfacematerial>
+</materialx>)",
+                                        "both.mtlx", {}, messages);
+  ASSERT_TRUE(messages.empty()) << messages[0].text;
+  const std::string document = toMaterialX(scene, {}, "open_pbr_surface", {}, {}, messages);
+  EXPECT_NE(document.find("surfacematerial name=\"A\""), std::string::npos) << document;
+  EXPECT_EQ(document.find("surfacematerial name=\"B\""), std::string::npos) << document;
+  const std::string gltf = toGltf(scene, {}, 4, {}, messages);
+  EXPECT_NE(gltf.find(R"("name": "A")"), std::string::npos) << gltf;
+  EXPECT_EQ(gltf.find(R"("name": "B")"), std::string::npos) << gltf;
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_EQ(messages[0].code, "closures-not-written");
+  EXPECT_EQ(messages[1].code, "closures-not-baked");
+  EXPECT_EQ(toGltf(scene, {"B"}, 4, {}, messages), "");
+}
+
 TEST(NodesOfDocuments, AreAsManyAsTheLimitSays) {
   std::string text =
       "<materialx version=\"1.39\"><nodegraph name=\"NG\"><constant name=\"n0\" type=\"color3\"/>";

@@ -132,6 +132,7 @@ private:
   void warnOfView(const ir::Module& module, const std::string& node);
   Result<void> planNodes(const std::string& file, const Strings& materials);
   Result<void> planTextures(const std::string& file);
+  Result<void> leaveClosures(const std::string& file);
   std::vector<std::pair<Texels, Strings>> outputsOf(const Item& item) const;
   Result<void> plan(const std::string& file, const Strings& materials);
   Result<std::vector<baking::Image>> compute(const Item& item, size_t number, FileImages& sources,
@@ -520,7 +521,25 @@ Result<void> Baking::planNodes(const std::string& file, const Strings& materials
   return {};
 }
 
+/// Materials that glTF has no properties for are left out, with an error each.
+Result<void> Baking::leaveClosures(const std::string& file) {
+  const auto isOfClosures = [&](size_t i) {
+    const material::Material& material = document_.materials[i];
+    if (material.closures.empty()) return false;
+    report(fail("closures-not-baked", {file, 0, 0, {}},
+                fmt::format("the material {} is made of closures", quote(material.name)),
+                "glTF has no properties for them, and it is left out")
+               .value(),
+           file, messages_);
+    return true;
+  };
+  const bool left = std::erase_if(wanted_, isOfClosures) > 0;
+  if (left && wanted_.empty()) return tl::make_unexpected(Diagnostics());  // reported
+  return {};
+}
+
 Result<void> Baking::planTextures(const std::string& file) {
+  if (Result<void> left = leaveClosures(file); !left) return left;
   if (!alone_) {
     Result<Json> gltf = frame(file);
     if (!gltf) return tl::make_unexpected(gltf.error());
@@ -540,10 +559,6 @@ Result<void> Baking::planTextures(const std::string& file) {
   const std::string before = alone_ ? fs::path(how_.output).stem().string() + "_" : std::string();
   for (size_t k = 0; k < wanted_.size(); ++k) {
     const material::Material& material = document_.materials[wanted_[k]];
-    if (!material.closures.empty())
-      return fail("closures-not-baked", {file, 0, 0, {}},
-                  fmt::format("the material {} is made of closures", quote(material.name)),
-                  "glTF has no properties for them: name the materials that have by --material");
     for (const auto& texture : material.textures) {
       if (texture.info.group.empty()) continue;
       const material::Property& property = schema_->properties[texture.property];

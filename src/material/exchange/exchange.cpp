@@ -23,11 +23,26 @@ Element shaderInput(std::string_view shader) {
   return input;
 }
 
+/// Such a material is left out, with an error.
+bool isOfClosures(const material::Document& document, size_t material, Diagnostics& said) {
+  const material::Material& made = document.materials[material];
+  if (made.closures.empty()) return false;
+  said.push_back({"closures-not-written",
+                  Severity::Error,
+                  {document.path, 0, 0, {}},
+                  fmt::format("the material {} is made of closures", quote(made.name)),
+                  "no other surface says the same; without edits the document is written as it was read",
+                  {}});
+  return true;
+}
+
 }  // namespace
 
-Written toMaterialX(const material::Document& document, const std::vector<size_t>& materials,
+Written toMaterialX(const material::Document& document, std::vector<size_t> materials,
                     const material::Schema& schema, std::string_view surface, const std::string& folder) {
   Written written;
+  std::erase_if(materials, [&](size_t i) { return isOfClosures(document, i, written.said); });
+  if (materials.empty()) return written;
   graph::Graph graph;
   for (const size_t i : materials) {
     if (document.materials[i].patterns == nullptr) continue;
@@ -39,18 +54,6 @@ Written toMaterialX(const material::Document& document, const std::vector<size_t
   const Result<std::string> name = schema.library->defaultTemplate();
   if (name) graph.template_name = *name;
   std::vector<SurfaceOut> surfaces;
-  for (const size_t i : materials) {
-    const material::Material& made = document.materials[i];
-    if (made.closures.empty()) continue;
-    written.said.push_back(
-        {"closures-not-written",
-         Severity::Error,
-         {document.path, 0, 0, {}},
-         fmt::format("the material {} is made of closures", quote(made.name)),
-         "no other surface says the same; without edits the document is written as it was read",
-         {}});
-  }
-  if (hasError(written.said)) return written;
   for (const size_t i : materials)
     surfaces.push_back(surfaceOf(document, document.materials[i], schema, graph, surface, written.said));
   // Behind the surfaces, in their order: what moves the vertices of some.

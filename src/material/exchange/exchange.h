@@ -24,7 +24,7 @@ inline constexpr std::string_view kSurfaces[] = {"gltf_pbr", "open_pbr_surface"}
 /// `gltf_pbr`. Patterns are nodegraphs and nodes, glTF's textures `gltf_image` nodes. What is read of it has
 /// the same graph, where the surface has all that the material has; what it has not is a warning, "not-said",
 /// with the property's JSON pointer. Images are named as seen from the folder; without one as in the file.
-Written toMaterialX(const material::Document& document, const std::vector<size_t>& materials,
+Written toMaterialX(const material::Document& document, std::vector<size_t> materials,
                     const material::Schema& schema, std::string_view surface = {},
                     const std::string& folder = {});
 
