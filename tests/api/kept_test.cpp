@@ -269,6 +269,32 @@ TEST(MaterialsOfClosures, AreLeftOutAlone) {
   EXPECT_EQ(toGltf(scene, {"B"}, 4, {}, messages), "");
 }
 
+/// A procedural's output is a node's: of a nodegraph's own number there is one.
+TEST(Procedurals, HaveNodesOfNumbersAlone) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">
+  <nodegraph name="NG">
+    <input name="a" type="color3" value="0.2, 0.4, 0.6"/>
+    <output name="out" type="color3" interfacename="a"/>
+  </nodegraph>
+  <gltf_pbr name="s" type="surfaceshader">
+    <input name="base_color" type="color3" nodegraph="NG" output="out"/>
+  </gltf_pbr>
+  <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+</materialx>)",
+                                        "number.mtlx", {}, messages);
+  const Scene again = Scene::fromMemory(toGltf(scene, {}, 4, {}, messages), "number.gltf", {}, messages);
+  EXPECT_TRUE(messages.empty()) << messages[0].text;
+  const auto color = evaluate(again, 0, "[{}]", Engine::Double, {}, {}, messages);
+  Options as;
+  as.as = "gltf";
+  const Scene translated =
+      Scene::fromMemory(toMaterialX(scene, {}, "", {}, {}, messages), "number.mtlx", as, messages);
+  const auto expected = evaluate(translated, 0, "[{}]", Engine::Double, {}, as, messages);
+  ASSERT_TRUE(color && expected) << (messages.empty() ? "" : messages[0].text);
+  EXPECT_EQ(color->rgba, expected->rgba);
+}
+
 TEST(NodesOfDocuments, AreAsManyAsTheLimitSays) {
   std::string text =
       "<materialx version=\"1.39\"><nodegraph name=\"NG\"><constant name=\"n0\" type=\"color3\"/>";

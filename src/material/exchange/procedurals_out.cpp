@@ -231,6 +231,18 @@ bool ProceduralsOut::isWhole(const graph::Graph& flat, const std::pair<std::stri
   return lacks.empty();
 }
 
+/// An output of a procedural has no value of its own: a node gives it.
+static Element constantOf(Element& port, std::string name) {
+  Element value = port, node;
+  value.set("name", "value");
+  node.category = "constant";
+  node.attributes = {{"name", name}, {"type", std::string(port.get("type"))}};
+  node.children.push_back(std::move(value));
+  std::erase_if(port.attributes, [](const auto& one) { return one.first != "name" && one.first != "type"; });
+  port.set("nodename", std::move(name));
+  return node;
+}
+
 ProceduralsOut::Written ProceduralsOut::write(graph::Graph flat, std::string_view name,
                                               graph::Outputs outputs) {
   Texels texels(flat.nodes);
@@ -272,6 +284,9 @@ ProceduralsOut::Written ProceduralsOut::write(graph::Graph flat, std::string_vie
   patterns.write(root);
   Element shader;
   patterns.inputs(0, shader);
+  for (Element& port : shader.children) {
+    if (port.find("value") != nullptr) root.children.push_back(constantOf(port, patterns.free(port.name())));
+  }
   orderElements(root.children, {shader});
   Taken taken;
   for (const Element& element : root.children) takes(element, taken);
