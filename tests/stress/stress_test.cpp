@@ -266,6 +266,22 @@ TEST(Stress, HalfPrecisionRoundsToNearestEven) {
   EXPECT_EQ(stressed({"beyond_half"}, half, options)["subjects"][0]["findings"][0]["fault"], "infinity");
 }
 
+/// Light and eye may not be exchanged in MaterialX's closures, by their text.
+TEST(StressOfDocuments, ReciprocityIsNoFaultOfAClosure) {
+  const std::string file = (fs::path(testing::TempDir()) / "lacquer_stress_default.mtlx").string();
+  std::ofstream(file) << R"(<materialx version="1.39">
+  <standard_surface name="s" type="surfaceshader"/>
+  <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+</materialx>)";
+  const json answer = stressed({file}, few(2000), Options());
+  EXPECT_EQ(answer["faults"], 0) << answer.dump(2);
+  const auto& findings = answer["subjects"][0]["findings"];
+  const auto found = std::find_if(findings.begin(), findings.end(),
+                                  [](const json& one) { return one["fault"] == "reciprocity"; });
+  ASSERT_NE(found, findings.end()) << answer.dump(2);
+  EXPECT_NE((*found)["known"], "");
+}
+
 TEST(Stress, SaysWhatIsWrong) {
   const auto code = [](const std::string& subject) {
     Messages messages;

@@ -66,5 +66,7 @@ struct KnownSurplus {
   std::string_view why;
 };
 std::span<const KnownSurplus> knownSurpluses();
+/// Why light and eye may not be exchanged in a subject; empty where that is a fault.
+std::string_view knownAsymmetry(const Subject& subject);
 
 }  // namespace lacquer::stress

@@ -128,6 +128,13 @@ constexpr KnownSurplus kSurpluses[] = {
 
 std::span<const KnownSurplus> knownSurpluses() { return kSurpluses; }
 
+std::string_view knownAsymmetry(const Subject& subject) {
+  const bool closures = std::any_of(subject.terms.begin(), subject.terms.end(), [](const auto& term) {
+    return term.second.own.find("_bsdf") != std::string::npos;
+  });
+  return closures ? "a layer and the compensation of energy look at the eye's direction alone" : "";
+}
+
 std::string_view knownJump(const Subject& subject, std::string_view condition) {
   const auto term = subject.terms.find(condition.substr(0, condition.find(": ")));
   const auto says = [](std::string_view text, const Known& known) {

@@ -220,7 +220,7 @@ void measureLight(const Subject& subject, const Plan& plan, Report& report) {
     }
     Random random(seed);
     const double of_base = light.asymmetry(base, random);
-    if (!(of_base <= kReciprocal)) tell(Fault::Reciprocity, "base", of_base, base);
+    if (!(of_base <= kReciprocal)) tell(Fault::Reciprocity, "base", of_base, base, knownAsymmetry(subject));
     energy.asymmetry = std::max(energy.asymmetry, layered ? light.asymmetry(whole, random) : of_base);
   }
 }
