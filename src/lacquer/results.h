@@ -235,4 +235,29 @@ struct EnvironmentFiles {
   std::string description;  ///< the text of environment.json
 };
 
+// -- light profiles (docs/light-profiles.md)
+
+/// An IES file, and the table of it that light_profile reads.
+struct LightProfile {
+  std::string file;         ///< or the name that was given for it
+  int light = -1;           ///< of a glTF file: which of the lights of EXT_lights_ies
+  std::string standard;     ///< "LM-63-1995"
+  std::string photometry;   ///< "C", "B" or "A"
+  std::string symmetry;     ///< "round", "quadrants", "halves" or "none"
+  uint32_t vertical = 0;    ///< angles in the file
+  uint32_t horizontal = 0;  ///< the same
+  double peak = 0;          ///< candela, of which the table has parts
+  double lumens = 0;        ///< the integral over all directions
+  double error = 0;         ///< the largest of the table, as a part of the peak
+  double mean_error = 0;    ///< the same in the mean over all directions
+  uint32_t width = 0, height = 0;
+  std::vector<float> texels;  ///< row by row, in [0, 1]
+};
+/// The layers of light_profiles.
+struct LightProfiles {
+  std::string output;  ///< the file that was written; empty for none
+  std::string format;  ///< Vulkan's name without its prefix: "R16_SFLOAT"
+  std::vector<LightProfile> layers;
+};
+
 }  // namespace lacquer

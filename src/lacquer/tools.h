@@ -2,6 +2,7 @@
 /// says what holds for every declaration.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "lacquer/options.h"
@@ -219,6 +220,21 @@ std::optional<EnvironmentMaps> writeEnvironment(const Environment& environment, 
 std::optional<EnvironmentFiles> filterEnvironment(const Environment& environment, const std::string& picture,
                                                   const std::string& name, const Options& options,
                                                   Messages& messages, const Progress& progress = {});
+
+/// How tables of IES files are made (docs/light-profiles.md).
+struct ProfileTables {
+  std::string output;    ///< the file to write, .ktx2, .dds or of one profile .png; empty for none
+  uint32_t width = 256;  ///< texels in a row, from 2 to 2048
+  uint32_t height = 0;   ///< rows, at most 2048; 0 for one where all profiles are alike all round, else 128
+};
+/// Reads IES files, and glTF files for those of EXT_lights_ies in them, and makes their tables, the layers of
+/// light_profiles in the order of the files. Nothing on an error: "profile-unreadable", "profile-angles" and
+/// the like.
+std::optional<LightProfiles> lightProfiles(const ProfileTables& tables, const Strings& files,
+                                           const Options& options, Messages& messages);
+/// The same of an IES file's bytes; `name` stands for it in messages. Nothing is written.
+std::optional<LightProfile> lightProfile(std::string_view bytes, const std::string& name,
+                                         const ProfileTables& tables, Messages& messages);
 
 /// The node library as JSON: contracts, ranges, sources, variants. Of the options, `node_directories`. Empty
 /// on an error.

@@ -50,7 +50,8 @@ TEST(Cpp, everyFunctionOfTheHeadersCanBeLinked) {
       static_cast<std::vector<ShaderCost> (*)(const Strings&, bool, Messages&)>(&measureCost),
       static_cast<std::vector<ShaderCost> (*)(const std::vector<Shader>&, bool, Messages&)>(&measureCost),
       &environmentDfg, &writeEnvironmentDfg, &environmentSheen, &writeEnvironmentSheen, &writeEnvironment,
-      &filterEnvironment, &nodesJson, &checkNodes, &proveNodes, &engineName, &faultName);
+      &filterEnvironment, &lightProfiles, &lightProfile, &nodesJson, &checkNodes, &proveNodes, &engineName,
+      &faultName);
   for (const bool one : there) EXPECT_TRUE(one);
 }
 

@@ -24,5 +24,7 @@ std::string answerJson(const StressReport& report);
 std::string caseText(const StressFinding& finding, const StressSubject& subject);
 /// The text of environment.json.
 std::string answerJson(const EnvironmentMaps& maps);
+/// docs/light-profiles.md; without the texels.
+std::string answerJson(const LightProfiles& profiles);
 
 }  // namespace lacquer

@@ -186,4 +186,27 @@ std::string caseText(const StressFinding& finding, const StressSubject& subject)
 
 std::string answerJson(const EnvironmentMaps& maps) { return environmentJson(maps); }
 
+std::string answerJson(const LightProfiles& profiles) {
+  Json json = Json::object();
+  if (!profiles.output.empty()) json = {{"output", profiles.output}, {"format", profiles.format}};
+  Json& layers = json["profiles"] = Json::array();
+  for (const LightProfile& of : profiles.layers) {
+    Json one = {{"file", of.file}};
+    if (of.light >= 0) one["light"] = of.light;
+    one["standard"] = of.standard;
+    one["photometry"] = of.photometry;
+    one["symmetry"] = of.symmetry;
+    one["vertical"] = of.vertical;
+    one["horizontal"] = of.horizontal;
+    one["peak"] = of.peak;
+    one["lumens"] = of.lumens;
+    one["width"] = of.width;
+    one["height"] = of.height;
+    one["error"] = of.error;
+    one["mean_error"] = of.mean_error;
+    layers.push_back(std::move(one));
+  }
+  return json.dump(2) + "\n";
+}
+
 }  // namespace lacquer

@@ -20,6 +20,7 @@
 #include "cli/lod.h"
 #include "cli/options.h"
 #include "cli/preview.h"
+#include "cli/profile.h"
 #include "cli/prove.h"
 #include "cli/reserve.h"
 #include "cli/streams.h"
@@ -399,6 +400,7 @@ struct VerbFlags {
   lacquer::cli::DfgFlags dfg;
   lacquer::cli::ExchangeFlags exchange;
   lacquer::cli::EnvironmentFlags environment;
+  lacquer::cli::ProfileFlags profile;
   lacquer::cli::PreviewFlags preview;
   lacquer::cli::LodFlags lod;
   lacquer::cli::StressFlags stress;
@@ -439,6 +441,9 @@ std::vector<Verb> verbsOf(VerbFlags& all) {
       {"environment", "the cube maps and tables of image-based light, from a picture of the surroundings",
        [&](CLI::App& verb) { addEnvironment(verb, all.environment, flags); },
        [&] { return runEnvironment(all.environment, options); }},
+      {"profile", "the tables of lamps that shine unevenly, from IES files or EXT_lights_ies",
+       [&](CLI::App& verb) { addProfile(verb, all.profile, flags); },
+       [&] { return runProfile(all.profile, options); }},
       {"preview", "a picture with a lit ball for each material, computed on the CPU",
        [&](CLI::App& verb) { addPreview(verb, all.preview, flags); },
        [&] { return runPreview(all.preview, options); }},

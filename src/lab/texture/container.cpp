@@ -37,6 +37,8 @@ std::string descriptorOf(const TexelFormat& format) {
   return bytes;
 }
 
+uint32_t heightOf(const Levels& levels) { return levels.height == 0 ? levels.size : levels.height; }
+
 /// Cubes say nothing of an orientation: theirs is fixed.
 std::string keysOf(const Levels& levels) {
   std::string keys;
@@ -63,8 +65,8 @@ std::string ktx2File(const TexelFormat& format, const Levels& levels) {
   const std::string keys = keysOf(levels);
   const size_t count = levels.bytes.size();
   std::string bytes = "\xABKTX 20\xBB\r\n\x1A\n";
-  for (const uint32_t word : {format.vulkan, format.type_size, levels.size, levels.size, uint32_t{0},
-                              uint32_t{0}, levels.faces, static_cast<uint32_t>(count), uint32_t{0}})
+  for (const uint32_t word : {format.vulkan, format.type_size, levels.size, heightOf(levels), uint32_t{0},
+                              levels.layers, levels.faces, static_cast<uint32_t>(count), uint32_t{0}})
     append(bytes, word);
   const size_t behind = kHeader + kLevelIndex * count;
   append(bytes, behind);
@@ -113,7 +115,7 @@ std::string ddsFile(const TexelFormat& format, const Levels& levels) {
   const uint32_t caps = kTexture | (count > 1 ? kComplex | kMipMap : 0) | (cube ? kComplex : 0);
   std::string bytes = "DDS ";
   for (const uint32_t word :
-       {uint32_t{124}, flags, levels.size, levels.size, levels.size * format.bytes, uint32_t{0}, count})
+       {uint32_t{124}, flags, heightOf(levels), levels.size, levels.size * format.bytes, uint32_t{0}, count})
     append(bytes, word);
   for (int i = 0; i < 11; ++i) append(bytes, 0);
   for (const uint32_t word :
@@ -121,12 +123,13 @@ std::string ddsFile(const TexelFormat& format, const Levels& levels) {
     append(bytes, word);
   for (const uint32_t word : {caps, cube ? kCubeWithAllFaces : 0, uint32_t{0}, uint32_t{0}, uint32_t{0}})
     append(bytes, word);
-  for (const uint32_t word : {format.dxgi, kTexture2D, cube ? kTextureCube : 0, uint32_t{1}, uint32_t{0}})
+  const uint32_t layers = std::max(levels.layers, 1U), faces = layers * levels.faces;
+  for (const uint32_t word : {format.dxgi, kTexture2D, cube ? kTextureCube : 0, layers, uint32_t{0}})
     append(bytes, word);
-  // Face by face, each with its levels.
-  for (uint32_t face = 0; face < levels.faces; ++face) {
+  // Layer by layer and face by face, each with its levels.
+  for (uint32_t face = 0; face < faces; ++face) {
     for (const std::string& level : levels.bytes) {
-      const size_t part = level.size() / levels.faces;
+      const size_t part = level.size() / faces;
       bytes.append(level, face * part, part);
     }
   }

@@ -1,4 +1,5 @@
-// Containers of textures as bytes: KTX2 and DDS, of one texture or of a cube's six faces, with mip levels.
+// Containers of textures as bytes: KTX2 and DDS, of one texture, of an array's layers or of a cube's six
+// faces, with mip levels.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +32,8 @@ struct Levels {
   uint32_t size = 0;   ///< width and height of the largest; each next one has half of it
   uint32_t faces = 1;  ///< or 6
   std::vector<std::string> bytes;
+  uint32_t height = 0;  ///< where it is not the width
+  uint32_t layers = 0;  ///< of an array, which are one behind the other as faces are; 0 for none
 };
 
 /// Little-endian, `count` bytes of it.

@@ -187,22 +187,22 @@ Result<std::string> TextureFile::viewBytes(size_t index, const Place& place) con
   if (view == nullptr) return broken(fmt::format("there is no bufferView {}", index));
   const std::optional<size_t> buffer_index = wholeMember(*view, "buffer");
   if (element(root_, "buffers", buffer_index) == nullptr)
-    return broken("the image's bufferView has no buffer");
+    return broken("the bufferView has no buffer");
   const Result<std::shared_ptr<const std::string>> bytes = bufferBytes(*buffer_index, place);
   if (!bytes) return tl::make_unexpected(bytes.error());
   const std::optional<size_t> offset = wholeOr(*view, "byteOffset", 0);
   const size_t length = wholeMember(*view, "byteLength").value_or(0);
   if (length == 0 || !offset || *offset > (*bytes)->size() || length > (*bytes)->size() - *offset) {
-    return broken("the image's bufferView lies outside of its buffer");
+    return broken("the bufferView lies outside of its buffer");
   }
   return (*bytes)->substr(*offset, length);
 }
 
-Result<std::string> TextureFile::imageBytes(const Json& image, const Place& place) const {
-  const Json* uri = member(image, "uri");
+Result<std::string> TextureFile::bytesOf(const Json& owner, const Place& place) const {
+  const Json* uri = member(owner, "uri");
   if (uri != nullptr && uri->is_string()) return uriBytes(uri->get<std::string>(), place);
-  const std::optional<size_t> view = wholeMember(image, "bufferView");
-  if (!view) return fail("image-missing", place, "the image has neither a uri nor a bufferView");
+  const std::optional<size_t> view = wholeMember(owner, "bufferView");
+  if (!view) return fail("image-missing", place, "there is neither a uri nor a bufferView");
   return viewBytes(*view, place);
 }
 
@@ -244,7 +244,7 @@ std::vector<std::string> TextureFile::fileUris() const {
 }
 
 Result<std::string> TextureFile::image(const TextureSource& source) const {
-  return imageBytes(*element(root_, "images", source.image), source.place);
+  return bytesOf(*element(root_, "images", source.image), source.place);
 }
 
 }  // namespace lacquer::gltf

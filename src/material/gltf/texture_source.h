@@ -58,6 +58,9 @@ public:
     return uriBytes(uri, {path_, 0, 0, pointer});
   }
 
+  /// The bytes behind an object with a `uri` or a `bufferView`. Errors: those of image().
+  Result<std::string> bytesOf(const Json& owner, const Place& place) const;
+
   /// A whole buffer: a file, a data URI or the GLB's own chunk, which only the first buffer may be. Errors:
   /// those of image(), and "image-missing" where the buffers are together larger than a file may be. Each is
   /// read once, and held.
@@ -70,7 +73,6 @@ public:
 
 private:
   Result<std::string> uriBytes(const std::string& uri, const Place& place) const;
-  Result<std::string> imageBytes(const Json& image, const Place& place) const;
   Result<std::string> viewBytes(size_t index, const Place& place) const;
 
   std::string path_;
