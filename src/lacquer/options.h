@@ -88,7 +88,8 @@ enum class Precision : uint8_t {
 struct Lights {
   enum class Mode : uint8_t {
     Any,    ///< a run-time count of all types
-    Scene,  ///< as many as the file's KHR_lights_punctual; of a graph from JSON nothing is known: as Any
+    Scene,  ///< as many as the file's KHR_lights_punctual and, points, EXT_lights_ies; of a graph from JSON
+            ///< nothing is known: as Any
     Fixed,  ///< the counts below; at most as many as the template's light array holds
   };
   Mode mode = Mode::Any;

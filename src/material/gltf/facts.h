@@ -157,7 +157,8 @@ struct Scene {
   std::vector<std::vector<VertexAttributes>> uses;
   /// Attribute sets of primitives without a material (the default material); usually empty.
   std::vector<VertexAttributes> defaultUses;
-  /// Punctual lights that nodes refer to (KHR_lights_punctual), by type: how many instances.
+  /// Punctual lights that nodes refer to (KHR_lights_punctual), by type: how many instances. Those of
+  /// EXT_lights_ies are points.
   std::map<LightType, int> lights;
   std::vector<Image> images;
   std::vector<Texture> textures;

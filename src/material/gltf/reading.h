@@ -74,6 +74,12 @@ Texture readTexture(const Json& root, const Json& texture, const Path& path, Rep
 /// Says what is wrong with a sampler, once for all textures that have it.
 void checkSampler(const Json& sampler, const Path& path, Report& report);
 
+inline constexpr std::string_view kIesLights = "EXT_lights_ies";
+
+/// The light profiles of a file, and the profile that a node's object of the extension names, -1 for none.
+void checkIesLights(Reading& reading, const Json& extension, const Path& path);
+int iesLightOf(Reading& reading, const Json& extension, const Path& path);
+
 /// What the animations change by pointers.
 void readAnimations(Reading& reading, const Json& animations, const Path& path);
 

@@ -62,6 +62,7 @@ void collectUses(Scene& scene) {
 void collectLights(const Json& checked, Scene& scene) {
   const Json& lights = elements(extensionIn(checked, "KHR_lights_punctual"), "lights");
   for (const Json& node : elements(checked, "nodes")) {
+    if (indexOf(extensionIn(node, "EXT_lights_ies"), "light") >= 0) ++scene.lights[LightType::Point];
     const int light = indexOf(extensionIn(node, "KHR_lights_punctual"), "light");
     if (light < 0) continue;
     const std::string_view type = lights[static_cast<size_t>(light)]["type"].text();

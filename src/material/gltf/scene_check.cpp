@@ -114,6 +114,7 @@ void SceneChecker::required(const Json& names, const Path& path) {
 void SceneChecker::rootExtensions(const Json& extensions, const Path& path) {
   members(extensions, path, "extensions", [&](std::string_view name, const Json& value, const Path& here) {
     if (name == kVariants) return readVariants(reading_, value, here);
+    if (name == kIesLights) return checkIesLights(reading_, value, here);
     if (name != kLights) return;
     members(value, here, name, [&](std::string_view key, const Json& lights, const Path& p) {
       if (key != "lights") return;
@@ -189,11 +190,15 @@ Json SceneChecker::node(const Json& node, const Path& path) {
     if (name == "mesh") report_.index(here, "mesh", value, arraySize(root_, "meshes"), "mesh", mesh);
     if (name != "extensions") continue;
     members(value, here, "extensions", [&](std::string_view key, const Json& extension, const Path& p) {
-      if (key != kLights && key != kInstances) return;
+      if (key != kLights && key != kInstances && key != kIesLights) return;
       if (!extension.is_object()) return report_.wrongType(p, key, extension, "an object");
       if (key == kInstances) {
         out["extensions"][std::string(kInstances)] = Json::object();
         ofInstances(extension, p);
+        return;
+      }
+      if (key == kIesLights) {
+        out["extensions"][std::string(kIesLights)]["light"] = iesLightOf(reading_, extension, p);
         return;
       }
       const Json* light = member(extension, "light");

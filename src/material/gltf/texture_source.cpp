@@ -186,8 +186,7 @@ Result<std::string> TextureFile::viewBytes(size_t index, const Place& place) con
   const Json* view = element(root_, "bufferViews", index);
   if (view == nullptr) return broken(fmt::format("there is no bufferView {}", index));
   const std::optional<size_t> buffer_index = wholeMember(*view, "buffer");
-  if (element(root_, "buffers", buffer_index) == nullptr)
-    return broken("the bufferView has no buffer");
+  if (element(root_, "buffers", buffer_index) == nullptr) return broken("the bufferView has no buffer");
   const Result<std::shared_ptr<const std::string>> bytes = bufferBytes(*buffer_index, place);
   if (!bytes) return tl::make_unexpected(bytes.error());
   const std::optional<size_t> offset = wholeOr(*view, "byteOffset", 0);
