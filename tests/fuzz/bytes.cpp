@@ -12,6 +12,7 @@
 #include "eval/points_file.h"
 #include "feeds.h"
 #include "gltf/geometry.h"
+#include "photometry/distribution.h"
 #include "support/packed_walk.h"
 #include "vulkan/passthrough.h"
 
@@ -80,6 +81,29 @@ std::string feedPanorama(std::string_view bytes) {
     }
   }
   return {};
+}
+
+std::string feedIes(std::string_view bytes) {
+  Diagnostics warnings;
+  const auto measured = photometry::readLm63(bytes, {"fuzz.ies", 0, 0, {}}, warnings);
+  if (!measured) return measured.error().empty() ? "a profile is refused without an error" : "";
+  if (measured->candela.size() != measured->vertical.size() * measured->horizontal.size())
+    return "values are missing";
+  const photometry::Distribution distribution(*measured);
+  const double peak = distribution.peak(), lumens = distribution.lumens();
+  if (!(peak >= 0 && peak <= photometry::kMostCandela)) return "the peak is not in its range";
+  if (!(lumens >= -1e-6 * peak && lumens <= 4 * M_PI * 1.000001 * peak))
+    return "there is more light than the peak gives";
+  for (size_t i = 0; i < std::min<size_t>(distribution.nodes(), 1000); ++i) {
+    const double at = distribution.at(distribution.node(i));
+    if (!(at >= 0 && at <= peak * 1.000001)) return "the light is not between 0 and the peak";
+  }
+  const photometry::Table table = photometry::tableOf(distribution, 16, 8);
+  for (const float x : table.texels) {
+    if (!(x >= 0 && x <= 1)) return "a texel is not in [0, 1]";
+  }
+  const double error = photometry::errorsOf(table, distribution).most;
+  return error >= 0 && error <= 1.000001 ? "" : "the table's error is none";
 }
 
 std::string feedGeometry(std::string_view bytes) {

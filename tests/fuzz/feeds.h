@@ -35,6 +35,7 @@ std::string feedPart(std::string_view bytes);
 // bytes.cpp
 std::string feedImage(std::string_view bytes);
 std::string feedPanorama(std::string_view bytes);
+std::string feedIes(std::string_view bytes);
 std::string feedGeometry(std::string_view bytes);
 std::string feedPoints(std::string_view bytes);
 std::string feedSpirv(std::string_view bytes);

@@ -27,6 +27,7 @@ constexpr Target kTargets[] = {
     {"parts", "parts", Form::Bytes, feedPart},
     {"image", "image", Form::Bytes, feedImage},
     {"panorama", "panorama", Form::Bytes, feedPanorama},
+    {"ies", "ies", Form::Bytes, feedIes},
     {"texture", "texture", Form::Json, feedTexture},
     {"geometry", "geometry", Form::Json, feedGeometry},
     {"points", "points", Form::Json, feedPoints},

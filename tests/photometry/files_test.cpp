@@ -171,6 +171,10 @@ TEST_F(ProfileFiles, OfGltfLieBelowItsFolder) {
   }
   putGltf("neither.gltf", json::array({json::object()}));
   EXPECT_EQ(wrongWith({}, {path("neither.gltf")}), "profile-missing ");
+  putGltf("null.gltf", json::array({nullptr}));
+  EXPECT_EQ(wrongWith({}, {path("null.gltf")}), "profile-missing ");
+  putGltf("view.gltf", {{{"bufferView", 1}, {"mimeType", "application/x-ies-lm-63"}}});
+  EXPECT_EQ(wrongWith({}, {path("view.gltf")}), "profile-missing ");
   putGltf("wrong.gltf", {{{"uri", "lamps/wrong.ies"}}});
   put("lamps/wrong.ies", "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 two");
   EXPECT_EQ(wrongWith({}, {path("wrong.gltf")}), "profile-unreadable ");

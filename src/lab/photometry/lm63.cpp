@@ -21,6 +21,8 @@ constexpr std::string_view kTilt = "TILT=";
 constexpr std::string_view kSeparators = " ,\t\r\n\v\f";
 /// Beside factors that are multiplied: none is near it.
 constexpr double kMostNumber = 1e15;
+/// From an angle to the next, in degrees: what is left of it where angles are moved.
+constexpr double kLeastStep = 1e-6;
 constexpr const char kAllThere[] = "each number of the standard is there, in its order";
 
 std::string upper(std::string_view text) {
@@ -274,10 +276,10 @@ Result<void> Lm63Reader::angles(std::string_view which, size_t count, std::vecto
   for (size_t i = 0; i < count; ++i) {
     const Result<Number> read = number(fmt::format("{} angle {}", which, i + 1));
     if (!read) return tl::make_unexpected(read.error());
-    if (!to.empty() && read->value <= to.back()) {
+    if (!to.empty() && !(read->value - to.back() >= kLeastStep)) {
       return wrong("profile-angles", read->begin, read->length,
                    fmt::format("{} angle {} is {}, after {}", which, i + 1, read->value, to.back()),
-                   "angles ascend");
+                   fmt::format("angles ascend, by {} degrees at least", kLeastStep));
     }
     to.push_back(read->value);
   }
