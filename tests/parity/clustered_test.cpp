@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <set>
+
+#include "photometry/distribution.h"
 
 namespace lacquer::parity {
 namespace {
@@ -97,15 +101,19 @@ TEST(Clustered, WhatDimsALightDimsIt) {
   expectPart(dark("light_shadows", "light.shadow_strength", 0), 1, "no shadow");
 }
 
-/// A table of directions is looked up by the angle to the light's axis and by the turn about it, as its
-/// comment says.
-TEST(Clustered, AProfileHasTwoAngles) {
+using Way = std::array<double, 3>;
+
+/// Of one light with a profile, the colours with it, and those that `intensity` makes of the colours without:
+/// of the ways from the light along its profile_axis, cross(direction, profile_axis) and its direction.
+struct Profiled {
+  std::vector<double> bright, shaped, expected;
+};
+Profiled profiled(const std::function<double(double u, double v)>& table,
+                  const std::function<double(const Way&)>& intensity) {
   const ClusteredScene scene = thousandLightsInClusters(0, {{"light_profiles", true}});
   eval::Bindings bindings = scene.clustered.bindings;
-  const std::array<double, 3> from = {0.3, 2.5, 0.1};
-  const std::array<double, 3> direction = {0.6, 0, 0.8};
-  const std::array<double, 3> axis = {0, 1, 0};
-  const std::array<double, 3> across = {-0.8, 0, 0.6};  // cross(direction, axis)
+  const Way from = {0.3, 2.5, 0.1}, direction = {0.6, 0, 0.8}, axis = {0, 1, 0};
+  const Way across = {-0.8, 0, 0.6};  // cross(direction, axis)
   const auto set = [&](const char* field, std::vector<double> value) {
     for (eval::Columns& light : bindings.lights)
       light[std::string("light.") + field] = eval::Column::constant(value);
@@ -124,20 +132,16 @@ TEST(Clustered, AProfileHasTwoAngles) {
     set("profile", {profile});
     return firstColors(scene.clustered.module, bindings);
   };
-  const auto intensity = [](double u, double v) {
-    return 0.5 + 0.25 * u + 0.2 * std::sin(2 * M_PI * v + 0.4);
-  };
   bindings.textures["light_profiles"] = [&](size_t, const std::array<double, 3>& at, double) {
-    return std::array<double, 4>{intensity(at[0], at[1]), 0, 0, 1};
+    return std::array<double, 4>{table(at[0], at[1]), 0, 0, 1};
   };
-  const std::vector<double> bright = colors(-1);
-  const std::vector<double> shaped = colors(0);
+  Profiled made{colors(-1), colors(0), {}};
   set("radiance", {0, 0, 0});
-  std::vector<double> expected = colors(-1);
+  made.expected = colors(-1);
   const std::vector<double>& at = bindings.columns.at("position").values;
-  for (size_t i = 0; i < expected.size(); ++i) {
-    const size_t point = i / (expected.size() / kClusteredPoints);
-    std::array<double, 3> local = {0, 0, 0};  // along the axes above
+  for (size_t i = 0; i < made.expected.size(); ++i) {
+    const size_t point = i / (made.expected.size() / kClusteredPoints);
+    Way local = {0, 0, 0};
     double length = 0;
     for (size_t k = 0; k < 3; ++k) {
       const double way = at[3 * point + k] - from[k];
@@ -146,12 +150,42 @@ TEST(Clustered, AProfileHasTwoAngles) {
       local[2] += way * direction[k];
       length += way * way;
     }
-    const double u = std::acos(local[2] / std::sqrt(length)) / M_PI;
-    const double v = std::atan2(local[1], local[0]) / (2 * M_PI);
-    expected[i] += intensity(u, v) * (bright[i] - expected[i]);
+    for (double& part : local) part /= std::sqrt(length);
+    made.expected[i] += intensity(local) * (made.bright[i] - made.expected[i]);
   }
-  EXPECT_GT(apart(bright, expected, 1e-3), 100U) << "the profile changes nothing";
-  EXPECT_EQ(apart(shaped, expected, 1e-9), 0U);
+  return made;
+}
+
+/// A table of directions is looked up by the angle to the light's axis and by the turn about it, as its
+/// comment says.
+TEST(Clustered, AProfileHasTwoAngles) {
+  const auto intensity = [](double u, double v) {
+    return 0.5 + 0.25 * u + 0.2 * std::sin(2 * M_PI * v + 0.4);
+  };
+  const Profiled light = profiled(intensity, [&](const Way& local) {
+    return intensity(std::acos(local[2]) / M_PI, std::atan2(local[1], local[0]) / (2 * M_PI));
+  });
+  EXPECT_GT(apart(light.bright, light.expected, 1e-3), 100U) << "the profile changes nothing";
+  EXPECT_EQ(apart(light.shaped, light.expected, 1e-9), 0U);
+}
+
+/// The table of an IES file gives what the file says: profile_axis is the node's +x, its direction -z.
+TEST(Clustered, AProfileOfAFileShinesAsItSays) {
+  Diagnostics warnings;
+  const auto measured = photometry::readLm63(
+      "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 5 5 1 2 0 0 0\n1 1 10\n0 45 90 135 180\n0 90 180 270 360\n"
+      "80 70 60 60 50\n80 85 75 65 50\n80 95 90 70 50\n80 60 50 45 50\n80 70 60 60 50\n",
+      {}, warnings);
+  ASSERT_TRUE(measured);
+  const photometry::Distribution of(*measured);
+  const photometry::Table table = photometry::tableOf(of, 256, 128);
+  ASSERT_LT(photometry::errorsOf(table, of).most, 6e-3);
+  const Profiled light = profiled([&](double u, double v) { return photometry::lookUp(table, u, v); },
+                                  [&](const Way& local) {
+                                    return of.at({local[0], -local[1], -local[2]}) / of.peak();
+                                  });
+  EXPECT_GT(apart(light.bright, light.expected, 1e-2), 100U) << "the profile changes nothing";
+  EXPECT_EQ(apart(light.shaped, light.expected, 6e-3), 0U);
 }
 
 }  // namespace
