@@ -726,6 +726,13 @@ LACQUER_C const char* lacquer_environment_description(const lacquer_environment*
 /* A file's bytes by the name of its texture, "environment_specular"; NULL where there is none. */
 LACQUER_C const char* lacquer_environment_file(const lacquer_environment* environment, const char* slot,
                                                size_t* size);
+/* The tables of IES files, and of EXT_lights_ies in glTF files (docs/light-profiles.md): `width` and `height`
+ * of each, or 0 for those of `lacquer profile`. `output` is the .ktx2, .dds or .png file to write; NULL for
+ * none. What was found, as `lacquer profile --json`. */
+LACQUER_C_NATIVE lacquer_text* lacquer_light_profiles(const char* output, const char* const* files,
+                                                      size_t count, uint32_t width, uint32_t height,
+                                                      const lacquer_options* options,
+                                                      lacquer_messages* messages);
 
 #ifdef __cplusplus
 }

@@ -22,7 +22,7 @@ from ._native import Array, Colors, Value, load
 
 __all__ = [
     "ATTRIBUTES", "Error", "Evaluation", "Graph", "Message", "Scene", "Shader", "bake", "check_nodes", "convert", "environment_dfg",
-    "environment_sheen", "filter_environment", "nodes", "to_gltf", "to_materialx", "version",
+    "environment_sheen", "filter_environment", "light_profiles", "nodes", "to_gltf", "to_materialx", "version",
 ]
 
 _lib = load()
@@ -666,3 +666,12 @@ def filter_environment(picture: Union[bytes, str, Path], size: int = 256, sample
         return made
     finally:
         _lib.lacquer_environment_free(at)
+
+
+def light_profiles(files: Sequence[Union[str, Path]], output: Union[str, Path] = "", width: int = 0, height: int = 0,
+                   options: Optional[Options] = None, messages: Optional[List[Message]] = None) -> Dict[str, Any]:
+    """The tables of IES files, and of EXT_lights_ies in glTF files, as the layers of `output`, a .ktx2, .dds or .png file; none
+    is written without. What was found, as `lacquer profile --json`; sides of 0 are those of `lacquer profile`."""
+    to, sources, sides = _path(output), (c_char_p * len(files))(*map(_path, files)), (_texels(width), _texels(height))
+    return json.loads(_taken(_calling(options, messages, lambda said, of: _lib.lacquer_light_profiles(
+        to, sources, len(sources), *sides, of, said))))

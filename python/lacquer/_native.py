@@ -113,6 +113,7 @@ _FUNCTIONS = {
     "shader_pack": (c_int, c_void_p, POINTER(Value), c_size_t, c_void_p, c_size_t, c_void_p),
     "shader_pack_graph": (c_int, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p),
     "nodes": (c_void_p, c_void_p, c_void_p),
+    "light_profiles": (c_void_p, c_char_p, POINTER(c_char_p), c_size_t, c_uint32, c_uint32, c_void_p, c_void_p),
     "environment_dfg": (c_int, c_uint32, POINTER(c_float), c_size_t, c_void_p),
     "environment_sheen": (c_int, c_uint32, POINTER(c_float), c_size_t, c_void_p),
     "environment_filter": (c_void_p, c_char_p, c_size_t, c_char_p, c_char_p, c_void_p, c_void_p),

@@ -404,6 +404,17 @@ def test_environments_are_filtered(tmp_path):
     assert error.value.messages[0].file == "cut.hdr"
 
 
+def test_light_profiles(tmp_path):
+    lamp = tmp_path / "lamp.ies"
+    lamp.write_text("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n100 50\n")
+    found = lacquer.light_profiles([lamp], tmp_path / "lamp.ktx2", 16)
+    assert found["profiles"][0]["peak"] == 100 and found["profiles"][0]["height"] == 1
+    assert (tmp_path / "lamp.ktx2").stat().st_size > 16 * 2
+    assert "output" not in lacquer.light_profiles([lamp, lamp])
+    with pytest.raises(lacquer.Error):
+        lacquer.light_profiles([tmp_path / "none.ies"])
+
+
 def test_materials_of_other_tools(tmp_path):
     coat = ROOT / "examples/coat.gltf"
     text = lacquer.to_materialx(coat, ["Darkening"], "open_pbr_surface")

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "handle.h"
 #include "lacquer.h"
@@ -165,6 +166,23 @@ TEST_F(Findings, ofStressTestsRunAgain) {
   EXPECT_EQ(lacquer_stress_fault_count(replayed.get()), 1U) << c_messages_.takeCodes();
   EXPECT_EQ(lacquer_stress_run(subjects, 2, 2000, 1, LACQUER_DOUBLE, options.get(), c_messages_), nullptr);
   EXPECT_EQ(c_messages_.takeCodes(), "unknown-enumerator");
+}
+
+TEST_F(Findings, ofLightProfiles) {
+  const std::string lamp = (folder_ / "lamp.ies").string(), output = (folder_ / "lamp.dds").string();
+  std::ofstream(lamp) << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n100 50\n";
+  const char* files[] = {lamp.c_str(), lamp.c_str()};
+  const CText found(lacquer_light_profiles(output.c_str(), files, 2, 0, 4, nullptr, c_messages_));
+  ASSERT_NE(found, nullptr) << c_messages_.takeCodes();
+  const auto json = nlohmann::json::parse(textOf(found));
+  EXPECT_EQ(json["output"], output);
+  EXPECT_EQ(json["profiles"][1]["width"], 256);
+  EXPECT_EQ(json["profiles"][1]["height"], 4);
+  EXPECT_EQ(json["profiles"][1]["peak"], 100.0);
+  EXPECT_TRUE(fs::exists(output));
+  EXPECT_NE(CText(lacquer_light_profiles(nullptr, files, 1, 0, 0, nullptr, c_messages_)), nullptr);
+  EXPECT_EQ(CText(lacquer_light_profiles(nullptr, files, 1, 1, 0, nullptr, c_messages_)), nullptr);
+  EXPECT_EQ(c_messages_.takeCodes(), "out-of-range");
 }
 
 TEST_F(Findings, ofSheetsAndLevels) {

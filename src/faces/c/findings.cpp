@@ -351,3 +351,16 @@ int lacquer_sheet_difference(const lacquer_sheet* sheet, size_t index, lacquer_d
       lacquer_difference{of.file.c_str(), of.material.c_str(), of.largest, of.mean, of.root_mean_square}, to,
       size);
 }
+
+lacquer_text* lacquer_light_profiles(const char* output, const char* const* files, size_t count,
+                                     uint32_t width, uint32_t height, const lacquer_options* options,
+                                     lacquer_messages* messages) {
+  return guarded(messages, static_cast<lacquer_text*>(nullptr), [&](Messages& to) -> lacquer_text* {
+    lacquer::ProfileTables how;
+    how.output = textOf(output);
+    if (width != 0) how.width = width;
+    how.height = height;
+    const auto found = lacquer::lightProfiles(how, stringsOf(files, count), optionsOf(options).options, to);
+    return found ? textFrom(lacquer::answerJson(*found)) : nullptr;
+  });
+}
