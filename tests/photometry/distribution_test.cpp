@@ -183,6 +183,12 @@ TEST(ProfileTable, OfNothingIsDark) {
   EXPECT_EQ(photometry::errorsOf(table, of).most, 0);
 }
 
+TEST(ProfileTable, OfTheLeastLightIsThatOfAnyOther) {
+  const Distribution of(measured(Web::C, {0, 90}, {0}, [](double, double) { return 1e-310; }));
+  const Table table = photometry::tableOf(of, 4, 1);
+  EXPECT_EQ(table.texels, (std::vector<float>{1, 1, 0, 0}));
+}
+
 TEST(Lm63, LineEndsOfAllSystemsAndAMarkInFrontAreAlike) {
   const std::string unix_text =
       "IESNA:LM-63-1995\n[TEST] none\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n100 50\n";

@@ -180,10 +180,11 @@ Table tableOf(const Distribution& distribution, uint32_t width, uint32_t height)
   assert(width > 0 && height > 0);
   Table table{width, height, {}};
   table.texels.reserve(size_t{width} * height);
-  const double scale = distribution.peak() > 0 ? 1 / distribution.peak() : 0;
+  // What the light is divided by: of the least peak there is the inverse is no number.
+  const double whole = distribution.peak() > 0 ? distribution.peak() : 1;
   for (uint32_t y = 0; y < height; ++y) {
     for (uint32_t x = 0; x < width; ++x) {
-      const double part = scale * distribution.at(directionAt((x + 0.5) / width, (y + 0.5) / height));
+      const double part = distribution.at(directionAt((x + 0.5) / width, (y + 0.5) / height)) / whole;
       table.texels.push_back(static_cast<float>(std::clamp(part, 0.0, 1.0)));
     }
   }
