@@ -230,8 +230,21 @@ std::string clusterTables() {
   return out;
 }
 
+/// What an element of the lights has of an area, and its size with it.
+std::string areaTable() {
+  Options options;
+  options.template_name = "forward_area";
+  Json block = blockOf(make(readmeGltf(), options).interface, "lights");
+  const size_t others = blockOf(readmeExample().interface, "lights")["fields"].size();
+  Json added = Json::array();
+  for (size_t i = others; i < block["fields"].size(); ++i) added.push_back(block["fields"][i]);
+  block["fields"] = added;
+  return fieldTable(block) + fmt::format("\n{} bytes each.\n", block["stride"].get<int>());
+}
+
 std::string layoutTable(std::string_view of) {
   if (of == "clusters") return clusterTables();
+  if (of == "areas") return areaTable();
   const Json block = blockOf(readmeExample().interface, of);
   const std::string out = fieldTable(block);
   if (!block.contains("array")) return out + fmt::format("\n{} bytes.\n", block["size"].get<int>());

@@ -139,7 +139,7 @@ std::string dump(const Document& document) {
   }
   Fields fields(out, 0);
   if (!document.defaultUses.empty()) fields.line("default uses " + usesText(document.defaultUses));
-  constexpr std::string_view kTypes[] = {"directional", "point", "spot"};
+  constexpr std::string_view kTypes[] = {"directional", "point", "spot", "rect", "disk"};
   for (const auto& [type, count] : document.lights) {
     fields.line(fmt::format("{} lights {}", kTypes[static_cast<size_t>(type)], count));
   }

@@ -71,6 +71,17 @@ TEST(ParityMaterials, ForwardClustered) {
   expectAgreement(ofThose(setting, false), setting, 256, kSome, 0.35);
 }
 
+/// Rectangles and discs, and with any lights all that a light may be.
+TEST(ParityMaterials, ForwardArea) {
+  for (const passes::LightFacts& lights :
+       {passes::LightFacts{false, {{"rect", 1}, {"disk", 1}}}, passes::LightFacts{}}) {
+    MaterialSetting setting;
+    setting.lights = lights;
+    setting.template_name = "forward_area";
+    expectAgreement(ofThose(setting, false), setting, 256, kSome, 0.5);
+  }
+}
+
 TEST(ParityMaterials, ForwardOfExtensionsWithAnyLights) {
   MaterialSetting setting;
   setting.lights = {};

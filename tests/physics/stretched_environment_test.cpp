@@ -5,29 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <span>
 
-#include "cost/cost.h"
-#include "lacquer.h"
 #include "physics/cloth.h"
+#include "physics/documented.h"
+#include "physics/lobe.h"
 #include "physics/node_values.h"
-#include "support/file.h"
 
 namespace lacquer::physics {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kMaxLod = 8;
 constexpr double kInner = 6 * kPi / 180;  ///< the window's radius, where its soft edge begins
 constexpr double kOuter = 8 * kPi / 180;  ///< and where it ends
-const std::string kPage = std::string(LACQUER_SOURCE_FOLDER) + "/docs/error.md";
-
-Vec3 sum(const Vec3& a, const Vec3& b, double scale) {
-  return {a[0] + b[0] * scale, a[1] + b[1] * scale, a[2] + b[2] * scale};
-}
-Vec3 mirrored(const Vec3& v, const Vec3& h) { return sum({-v[0], -v[1], -v[2]}, h, 2 * dot(v, h)); }
 
 // -- environments: each is the same all around one axis --
 
@@ -106,51 +97,9 @@ const Prefiltered& prefiltered() {
   return kMap;
 }
 
-// -- the lobe --
-
-/// A lobe about z whose longer axis is x, and the view.
-struct Lobe {
-  double roughness = 0, strength = 0;
-  Vec3 v{0, 0, 1};
-  double alphaB() const { return std::max(roughness * roughness, 0.001); }
-  double alphaT() const { return alphaB() + (1 - alphaB()) * strength * strength; }
-};
-
-/// Smith's Lambda of the anisotropic lobe.
-double lambda(const Lobe& k, const Vec3& w) {
-  const double x = k.alphaT() * w[0] / w[2];
-  const double y = k.alphaB() * w[1] / w[2];
-  return (std::sqrt(1 + x * x + y * y) - 1) / 2;
+double seen(const Quadrature& quadrature, const Environment& e) {
+  return quadrature.mean([&](const Vec3& l) { return radiance(e, l); });
 }
-
-/// Directions of light that together are the lobe with its masking and the light's cosine, over facets that
-/// are seen (Heitz 2018; as a cap of the sphere, Dupuy and Benyoub 2023).
-struct Quadrature {
-  std::vector<Vec3> lights;
-  std::vector<double> weights;
-  double whole = 0;
-
-  explicit Quadrature(const Lobe& k) {
-    constexpr int kSteps = 64;
-    constexpr int kTurns = 96;
-    const Vec3 stretched = normalized({k.alphaT() * k.v[0], k.alphaB() * k.v[1], k.v[2]});
-    for (int i = 0; i < kSteps * kTurns; ++i) {
-      const int turn = i / kSteps;
-      const double z = 1 - (i % kSteps + 0.5) / kSteps * (1 + stretched[2]);
-      const Vec3 h = sum(tilted(z, 2 * kPi * (turn + 0.5) / kTurns), stretched, 1);
-      const Vec3 l = mirrored(k.v, normalized({k.alphaT() * h[0], k.alphaB() * h[1], std::max(h[2], 1e-12)}));
-      if (l[2] <= 0) continue;
-      lights.push_back(l);
-      weights.push_back((1 + lambda(k, k.v)) / (1 + lambda(k, k.v) + lambda(k, l)));
-      whole += weights.back();
-    }
-  }
-  double of(const Environment& e) const {
-    double seen = 0;
-    for (size_t i = 0; i < lights.size(); ++i) seen += weights[i] * radiance(e, lights[i]);
-    return seen / whole;
-  }
-};
 
 /// A lobe under an environment, what quadrature sees of it and what the lookups do.
 struct Query {
@@ -233,7 +182,7 @@ const std::vector<Query>& queries() {
           for (const double azimuth : {0.0, 0.8, 1.57}) {
             const Lobe lobe{roughness, strength, tilted(cosine, azimuth)};
             const Quadrature quadrature(lobe);
-            for (const Environment& e : environmentsOf(lobe)) all.push_back({lobe, e, quadrature.of(e)});
+            for (const Environment& e : environmentsOf(lobe)) all.push_back({lobe, e, seen(quadrature, e)});
           }
         }
       }
@@ -265,22 +214,10 @@ Errors errorsOf(double Query::*way, bool sky, const Which& which = {}) {
 
 // -- the table --
 
-/// A work of bench/works, one directional light.
 cost::Subject work(const std::string& name, bool stretched) {
-  Options options;
-  options.targets = {Target::Spirv};
-  options.lights.mode = Lights::Mode::Fixed;
-  options.lights.counts = {{"directional", 1}};
-  options.validate = false;
+  Options options = workOptions({{"directional", 1}});
   options.switches["stretched_environment"] = stretched;
-  Messages messages;
-  const Scene scene =
-      Scene::load(std::string(LACQUER_SOURCE_FOLDER) + "/bench/works/" + name, options, messages);
-  EXPECT_TRUE(scene) << name;
-  if (!scene) return {};
-  const Shader shader = scene.graph(0, scene.uses(0)[0], options, messages).generate(options, messages);
-  EXPECT_TRUE(shader) << name;
-  return {name, shader.vertexSpirv(), shader.fragmentSpirv()};
+  return workOf(name, options);
 }
 
 std::string row(const std::string& name, double Query::*way, const std::string& costs) {
@@ -357,7 +294,7 @@ TEST(StretchedEnvironment, TheYardsticksAreTheTextsIntegrals) {
     const Quadrature quadrature(lobe);
     for (const Environment& e : {Environment{mirrored(lobe.v, {0, 0, 1})}, Environment{{1, 0, 0}, true},
                                  Environment{{0, 0, 1}, true}}) {
-      EXPECT_NEAR(quadrature.of(e), meanOf(e, [&](const Vec3& l) { return weightOf(lobe, l); }), 0.002);
+      EXPECT_NEAR(seen(quadrature, e), meanOf(e, [&](const Vec3& l) { return weightOf(lobe, l); }), 0.002);
     }
     // A prefiltered map's: D N.L with V = N.
     const Lobe straight{lobe.roughness, 0};
@@ -501,29 +438,12 @@ TEST(StretchedEnvironment, IsFiniteAndNotNegativeWhateverTheFrame) {
 }
 
 TEST(StretchedEnvironment, TheTableIsTheDocumentations) {
-  constexpr std::string_view kBegin = "<!-- stretched: -->\n";
-  constexpr std::string_view kEnd = "<!-- :stretched -->\n";
   if (const std::string reason = cost::unavailable(); !reason.empty()) GTEST_SKIP() << reason;
   const cost::Measurement measured = cost::measure(
       {work("w3.gltf", false), work("c.gltf", false), work("w3.gltf", true), work("c.gltf", true)}, "navi21",
       false);
   for (const cost::Outcome& outcome : measured.outcomes) ASSERT_TRUE(outcome.statistics) << outcome.problem;
-  Result<std::string> page = readFile(kPage);
-  ASSERT_TRUE(page);
-  const size_t begin = page->find(kBegin);
-  const size_t end = page->find(kEnd);
-  ASSERT_TRUE(begin != std::string::npos && end != std::string::npos && begin < end);
-  const size_t first = begin + kBegin.size();
-  const std::string now = tables(measured);
-  if (std::getenv("LACQUER_BLESS") != nullptr) {
-    page->replace(first, end - first, now);
-    ASSERT_TRUE(writeFile(kPage, *page));
-    return;
-  }
-  const std::string shown = page->substr(first, end - first);
-  if (!shown.starts_with(measured.driver))
-    GTEST_SKIP() << "measured with another driver: " << measured.driver;
-  EXPECT_EQ(shown, now) << "LACQUER_BLESS=1 renews it";
+  expectOnPage("stretched", tables(measured), measured.driver);
 }
 
 }  // namespace

@@ -92,8 +92,7 @@ ValueId Inliner::value(const Expr& expr, std::span<const ValueId> slots) {
       std::array<ValueId, lang::kMostArgs> args{};
       assert(expr.args.size() <= args.size());
       for (size_t i = 0; i < expr.args.size(); ++i) args[i] = value(*expr.args[i], slots);
-      if (first_ != kNoValue && expr.kind == Expr::Kind::Operation && expr.builtin->op == Op::SumOverLights)
-        return summed(args[0]);
+      if (expr.kind == Expr::Kind::Operation && expr.builtin->op == Op::SumOverLights) return summed(args[0]);
       return lang::makeValue(dag_, expr, {args.data(), expr.args.size()});
     }
     case Expr::Kind::Name:

@@ -57,8 +57,12 @@ public:
     count_ = count;
   }
 
+  /// Sums over lights are the one light's value from now on: of a node by itself, which has no others.
+  void sumOverOne() { one_light_ = true; }
+
   /// The sum of a value over the lights.
   ir::ValueId summed(ir::ValueId value) {
+    if (one_light_) return value;
     return first_ == ir::kNoValue ? dag_.make(ir::Op::SumOverLights, {value})
                                   : dag_.make(ir::Op::SumOverLights, {value, first_, count_});
   }
@@ -129,6 +133,7 @@ private:
   /// What loops have made of their locals, by the loop and all that it was given: equal loops are one.
   std::map<std::vector<uint64_t>, std::vector<ir::ValueId>> loops_;
   ir::ValueId first_ = ir::kNoValue, count_ = ir::kNoValue;  ///< of a sum over listed lights
+  bool one_light_ = false;
   /// Above 0 while what is evaluated counts only under a condition that is not known: what a callee assumes
   /// then rests on arguments that may break its contract, so it is not stated.
   int conditional_ = 0;

@@ -21,7 +21,9 @@ passes::LightFacts lightsOf(const gltf::Scene& scene) {
   return {false,
           {{"directional", count(gltf::LightType::Directional)},
            {"point", count(gltf::LightType::Point)},
-           {"spot", count(gltf::LightType::Spot)}}};
+           {"spot", count(gltf::LightType::Spot)},
+           {"rect", count(gltf::LightType::Rect)},
+           {"disk", count(gltf::LightType::Disk)}}};
 }
 
 namespace {

@@ -98,6 +98,7 @@ NodeModule nodeModule(const lang::NodeDecl& node, std::string_view variant, ir::
   lower::Inliner inliner(result.module.dag, [&](const lang::NodeDecl& callee, std::span<const ValueId> args) {
     if (!std::exchange(outermost, false)) result.calls.push_back({&callee, {args.begin(), args.end()}});
   });
+  inliner.sumOverOne();
   const lower::Values results = inliner.call(node, variant, arguments);
   const auto put = [&](std::string name, ValueId value) {
     const auto place = static_cast<uint32_t>(result.module.outputs.size());

@@ -150,8 +150,25 @@ std::span<const LightProperty> lightProperties() {
       LightProperty{"outerConeAngle", Type::Float, "radians, of a spot"},
       LightProperty{"position", Type::Vec3, "of the light's node, world space"},
       LightProperty{"direction", Type::Vec3, "unit, where the light's node looks: its -Z axis, world space"},
+      LightProperty{"right", Type::Vec3, "unit, the X axis of the light's node, world space"},
+      LightProperty{"up", Type::Vec3, "unit, the Y axis of the light's node, world space"},
+      LightProperty{"size", Type::Float,
+                    "metres: the height of a rect, the diameter of a disk, times its node's largest scale"},
+      LightProperty{"aspect", Type::Float, "of a rect, its width by its height"},
   };
   return kProperties;
+}
+
+/// What extends a kind of light goes behind the fields that it has; the last value of a field counts.
+static void mergeKinds(std::vector<LightKindDecl>& kinds) {
+  for (LightKindDecl& more : kinds) {
+    if (!more.extends) continue;
+    const auto kind =
+        std::find_if(kinds.begin(), kinds.end(), [&](const LightKindDecl& k) { return k.name == more.name; });
+    if (kind->extends) continue;
+    for (LightFieldDecl& field : more.fields) kind->fields.push_back(std::move(field));
+  }
+  std::erase_if(kinds, [](const LightKindDecl& kind) { return kind.extends; });
 }
 
 void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) {
@@ -220,6 +237,7 @@ void Checker::templateDecl(TemplateDecl& decl, std::vector<TemplateDecl> bases) 
     }
   }
   merge(decl);
+  mergeKinds(decl.light_kinds);
   outputRules(decl);
 }
 
@@ -574,9 +592,15 @@ void Checker::lightKind(LightKindDecl& decl, uint32_t first_property) {
                     "declare them: `block lights Light light[16] count frame.light_count { ... }`");
     return;
   }
-  for (const LightKindDecl* other : light_kinds_) {
-    if (other->name != decl.name) continue;
-    reporter_.error("duplicate-name", decl.span, fmt::format("there are two kinds of light '{}'", decl.name));
+  const auto same = std::find_if(light_kinds_.begin(), light_kinds_.end(),
+                                 [&](const LightKindDecl* other) { return other->name == decl.name; });
+  if (decl.extends && same == light_kinds_.end()) {
+    std::vector<std::string_view> candidates;
+    for (const LightKindDecl* other : light_kinds_) candidates.push_back(other->name);
+    unknown(decl.name, "kind", std::move(candidates));
+  } else if (!decl.extends && same != light_kinds_.end()) {
+    reporter_.error("duplicate-name", decl.span, fmt::format("there are two kinds of light '{}'", decl.name),
+                    "to fill more fields of it, write `extend light kind`");
   }
   light_kinds_.push_back(&decl);
   const std::vector<Member> members = find((*lights)->instance)->members;
@@ -590,9 +614,14 @@ void Checker::lightKind(LightKindDecl& decl, uint32_t first_property) {
     LightFieldDecl& field = decl.fields[i];
     const auto member =
         std::find_if(members.begin(), members.end(), [&](const Member& m) { return m.name == field.name; });
-    const auto twice = std::find_if(decl.fields.begin(), decl.fields.begin() + static_cast<std::ptrdiff_t>(i),
-                                    [&](const LightFieldDecl& f) { return f.name == field.name; });
-    if (twice != decl.fields.begin() + static_cast<std::ptrdiff_t>(i)) {
+    const auto named = [&](const LightFieldDecl& other) { return other.name == field.name; };
+    const bool twice =
+        std::any_of(decl.fields.begin(), decl.fields.begin() + static_cast<std::ptrdiff_t>(i), named) ||
+        std::any_of(light_kinds_.begin(), light_kinds_.end(), [&](const LightKindDecl* other) {
+          return decl.extends && other != &decl && other->name == decl.name &&
+                 std::any_of(other->fields.begin(), other->fields.end(), named);
+        });
+    if (twice) {
       reporter_.error("duplicate-name", field.span, fmt::format("'{}' is given twice", field.name));
     } else if (member == members.end() || member->array != 0) {
       std::vector<std::string_view> candidates;

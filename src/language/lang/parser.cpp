@@ -453,6 +453,12 @@ bool Parser::templateItem(TemplateDecl& decl) {
   if (accept("output")) return output(decl);
   if (is("extend") && token(1).is("block")) return extendedBlock(decl);
   if (is("light") && token(1).is("kind")) return lightKind(decl);
+  if (is("extend") && token(1).is("light") && token(2).is("kind")) {
+    ++at_;
+    if (!lightKind(decl)) return false;
+    decl.light_kinds.back().extends = true;
+    return true;
+  }
   if (is("lights") && token(1).is("from")) return lightLists(decl);
   if (is("replace") && token(1).is("output")) {
     at_ += 2;

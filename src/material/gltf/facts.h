@@ -140,7 +140,7 @@ struct AnimatedPointer {
   std::string place;   ///< JSON pointer of the `pointer` that says so
 };
 
-enum class LightType : uint8_t { Directional, Point, Spot };
+enum class LightType : uint8_t { Directional, Point, Spot, Rect, Disk };
 
 struct Image {
   std::string uri;  ///< relative to the file; empty when it is in a buffer view or a data URI
@@ -157,7 +157,7 @@ struct Scene {
   std::vector<std::vector<VertexAttributes>> uses;
   /// Attribute sets of primitives without a material (the default material); usually empty.
   std::vector<VertexAttributes> defaultUses;
-  /// Punctual lights that nodes refer to (KHR_lights_punctual), by type: how many instances. Those of
+  /// Lights that nodes refer to (KHR_lights_punctual, EXT_lights_area), by type: how many instances. Those of
   /// EXT_lights_ies are points.
   std::map<LightType, int> lights;
   std::vector<Image> images;

@@ -80,6 +80,11 @@ inline constexpr std::string_view kIesLights = "EXT_lights_ies";
 void checkIesLights(Reading& reading, const Json& extension, const Path& path);
 int iesLightOf(Reading& reading, const Json& extension, const Path& path);
 
+inline constexpr std::string_view kAreaLights = "EXT_lights_area";
+
+/// What a light of EXT_lights_area comes to: its type, "unknown" where it cannot be used.
+Json readAreaLight(Report& report, const Json& light, const Path& path);
+
 /// What the animations change by pointers.
 void readAnimations(Reading& reading, const Json& animations, const Path& path);
 

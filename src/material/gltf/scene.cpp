@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "gltf/reading.h"
+
 namespace lacquer::gltf {
 
 namespace {
@@ -69,6 +71,14 @@ void collectLights(const Json& checked, Scene& scene) {
     if (type == "directional") ++scene.lights[LightType::Directional];
     if (type == "point") ++scene.lights[LightType::Point];
     if (type == "spot") ++scene.lights[LightType::Spot];
+  }
+  const Json& areas = elements(extensionIn(checked, kAreaLights), "lights");
+  for (const Json& node : elements(checked, "nodes")) {
+    const int light = indexOf(extensionIn(node, kAreaLights), "light");
+    if (light < 0) continue;
+    const std::string_view type = areas[static_cast<size_t>(light)]["type"].text();
+    if (type == "rect") ++scene.lights[LightType::Rect];
+    if (type == "disk") ++scene.lights[LightType::Disk];
   }
 }
 

@@ -30,6 +30,8 @@ public:
       : root_(root), report_(scene.path, scene.diagnostics), reading_{root, scene, report_} {
     const Json* lights = extensionOf(root, kLights);
     lightCount_ = lights == nullptr ? 0 : arraySize(*lights, "lights");
+    const Json* areas = extensionOf(root, kAreaLights);
+    areaLightCount_ = areas == nullptr ? 0 : arraySize(*areas, "lights");
     const Json* variants = extensionOf(root, kVariants);
     reading_.variants = variants == nullptr ? 0 : arraySize(*variants, "variants");
     const Json* used = member(root, "extensionsUsed");
@@ -61,7 +63,7 @@ private:
   const Path rootPath_;
   Report report_;
   Reading reading_;
-  size_t lightCount_ = 0;
+  size_t lightCount_ = 0, areaLightCount_ = 0;
   Json out_;
 };
 
@@ -115,11 +117,13 @@ void SceneChecker::rootExtensions(const Json& extensions, const Path& path) {
   members(extensions, path, "extensions", [&](std::string_view name, const Json& value, const Path& here) {
     if (name == kVariants) return readVariants(reading_, value, here);
     if (name == kIesLights) return checkIesLights(reading_, value, here);
-    if (name != kLights) return;
+    const bool area = name == kAreaLights;
+    if (name != kLights && !area) return;
     members(value, here, name, [&](std::string_view key, const Json& lights, const Path& p) {
       if (key != "lights") return;
-      out_["extensions"][std::string(kLights)]["lights"] =
-          elements(lights, p, "light", [&](const Json& l, const Path& q) { return light(l, q); });
+      out_["extensions"][std::string(name)]["lights"] = elements(
+          lights, p, "light",
+          [&](const Json& l, const Path& q) { return area ? readAreaLight(report_, l, q) : light(l, q); });
     });
   });
 }
@@ -190,7 +194,7 @@ Json SceneChecker::node(const Json& node, const Path& path) {
     if (name == "mesh") report_.index(here, "mesh", value, arraySize(root_, "meshes"), "mesh", mesh);
     if (name != "extensions") continue;
     members(value, here, "extensions", [&](std::string_view key, const Json& extension, const Path& p) {
-      if (key != kLights && key != kInstances && key != kIesLights) return;
+      if (key != kLights && key != kAreaLights && key != kInstances && key != kIesLights) return;
       if (!extension.is_object()) return report_.wrongType(p, key, extension, "an object");
       if (key == kInstances) {
         out["extensions"][std::string(kInstances)] = Json::object();
@@ -204,8 +208,9 @@ Json SceneChecker::node(const Json& node, const Path& path) {
       const Json* light = member(extension, "light");
       if (light == nullptr) {
         report_.error("missing-property", p, fmt::format("{} has no \"light\"", key), "it must name a light");
-      } else if (report_.index(Path(p, "light"), "light", *light, lightCount_, "light", index)) {
-        out["extensions"][std::string(kLights)]["light"] = index;
+      } else if (report_.index(Path(p, "light"), "light", *light,
+                               key == kLights ? lightCount_ : areaLightCount_, "light", index)) {
+        out["extensions"][std::string(key)]["light"] = index;
       }
     });
   }

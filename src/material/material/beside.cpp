@@ -44,6 +44,7 @@ constexpr Beside kRows[] = {
     {"KHR_texture_procedurals", "it is implemented, in textureInfos"},
     {"EXT_texture_procedurals_mx_1_39", "which nodes the procedural textures have"},
     {"KHR_lights_punctual", kLights},
+    {"EXT_lights_area", kLights},
     {"EXT_lights_ies", "which lights there are; `lacquer profile` makes their tables"},
     {"EXT_lights_image_based", kLights},
     {"KHR_animation_pointer", "what animations change; it is implemented for materials"},
