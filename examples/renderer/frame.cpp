@@ -112,14 +112,19 @@ void Renderer::fillFrame(Stage& stage, const View& view, const Matrix& view_proj
   stage.frame = allocate(stage.frame_layout, stage.bindings, vk::kFrameSet);
   vk::SetWrites writes;
   std::set<uint32_t> done;
-  const auto lights = moment_.lights.size();
+  const size_t punctual = moment_.lights.size();
+  const size_t lights = punctual + moment_.areas.size();
   const float up = view.half_width > 0 ? 0 : std::tan(view.yfov / 2);
   const float aspect = static_cast<float>(settings_.width) / static_cast<float>(settings_.height);
   const auto fill = [&](const lacquer::UniformBlock& block) {
     vk::BlockBytes bytes(block, lights);
     for (size_t i = 0; i < lights; ++i) {
-      if (block.role == lacquer::BlockRole::Lights && (block.array == 0 || i < block.array))
-        vk::setLight(bytes, i, moment_.lights[i]);
+      if (block.role == lacquer::BlockRole::Lights && (block.array == 0 || i < block.array)) {
+        if (i < punctual)
+          vk::setLight(bytes, i, moment_.lights[i]);
+        else
+          vk::setLight(bytes, i, moment_.areas[i - punctual]);
+      }
       if (block.role == lacquer::BlockRole::Lights && shadowed_ == i)
         vk::setShadow(bytes, i, light_projection_);
       if (block.name == "ClusterLights") bytes.set("light", static_cast<int32_t>(i), i);

@@ -74,7 +74,9 @@ Renderer::Renderer(Device& device, const std::string& file, const Settings& sett
   const lacquer::Scene materials = lacquer::Scene::load(file, {}, messages);
   for (const lacquer::Message& message : messages) complain(message.text);
   if (!materials) throw std::runtime_error("the materials cannot be read");
-  makeStage(color_, materials, settings.shown.empty() ? "forward_clustered" : settings.shown);
+  // Lights that have an area come in no lists, and cast no shadows.
+  const char* const lit = scene_.hasAreas() ? "forward_area" : "forward_clustered";
+  makeStage(color_, materials, settings.shown.empty() ? lit : settings.shown);
   makeStage(shadow_, materials, "shadow");
   makeStage(depth_, materials, "depth");
   const char* const nothing = R"({"asset": {"version": "2.0"}, "materials": [{"doubleSided": true}]})";

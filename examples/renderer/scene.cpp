@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 namespace renderer {
@@ -70,6 +71,35 @@ void load(const std::string& path, tinygltf::Model& model) {
 template <size_t N>
 void take(const std::vector<double>& from, std::array<float, N>& to) {
   for (size_t i = 0; i < N && from.size() == N; ++i) to[i] = static_cast<float>(from[i]);
+}
+
+/// A node's light of EXT_lights_area.
+std::optional<lacquer::vk::AreaLight> areaOf(const tinygltf::Model& model, const tinygltf::Node& node,
+                                             const Matrix& world) {
+  const auto all = model.extensions.find("EXT_lights_area");
+  const auto named = node.extensions.find("EXT_lights_area");
+  if (all == model.extensions.end() || named == node.extensions.end() || !named->second.Has("light"))
+    return {};
+  const int number = named->second.Get("light").GetNumberAsInt();
+  const tinygltf::Value& lights = all->second.Get("lights");
+  if (number < 0 || static_cast<size_t>(number) >= lights.ArrayLen()) return {};
+  const tinygltf::Value& light = lights.Get(number);
+  const auto numberOf = [](const tinygltf::Value& owner, const char* name, float otherwise) {
+    return owner.Has(name) ? static_cast<float>(owner.Get(name).GetNumberAsDouble()) : otherwise;
+  };
+  lacquer::vk::AreaLight made;
+  made.disk =
+      light.Has("type") && light.Get("type").IsString() && light.Get("type").Get<std::string>() == "disk";
+  made.position = axis(world, 3);
+  made.right = unit(axis(world, 0));
+  made.up = unit(axis(world, 1));
+  for (size_t c = 0; c < 3 && light.Has("color") && light.Get("color").ArrayLen() == 3; ++c)
+    made.color[c] = static_cast<float>(light.Get("color").Get(static_cast<int>(c)).GetNumberAsDouble());
+  made.intensity = numberOf(light, "intensity", made.intensity);
+  const float scale = std::max({length(axis(world, 0)), length(axis(world, 1)), length(axis(world, 2))});
+  made.size = numberOf(light, "size", made.size) * scale;
+  if (light.Has("rect")) made.aspect = numberOf(light.Get("rect"), "aspect", made.aspect);
+  return made;
 }
 
 /// A sampler's value at a time: `width` numbers.
@@ -473,6 +503,7 @@ Moment Scene::at(float seconds, const lacquer::Contract& contract) {
                 static_cast<float>(camera.orthographic.ymag)};
       moment.cameras.push_back(view);
     }
+    if (const auto area = areaOf(model_, from, node.world)) moment.areas.push_back(*area);
     const auto lit = from.extensions.find("KHR_lights_punctual");
     const int number = lit != from.extensions.end() && lit->second.Has("light")
                            ? lit->second.Get("light").GetNumberAsInt()

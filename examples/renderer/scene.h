@@ -55,6 +55,7 @@ using Pointers = std::map<std::string, std::vector<float>, std::less<>>;
 struct Moment {
   std::vector<Draw> draws;
   std::vector<lacquer::vk::PunctualLight> lights;
+  std::vector<lacquer::vk::AreaLight> areas;
   std::vector<View> cameras;
   std::vector<std::vector<Matrix>> joints;  ///< by skin
   Pointers pointers;
@@ -67,6 +68,8 @@ public:
   /// Reads the primitives that can be drawn, in the contract's order; an empty mesh for one that cannot.
   std::vector<Mesh> meshes(const lacquer::Contract& contract) const;
   Moment at(float seconds, const lacquer::Contract& contract);
+  /// Whether the file has lights of EXT_lights_area.
+  bool hasAreas() const { return model_.extensions.find("EXT_lights_area") != model_.extensions.end(); }
   /// One in the node's own place where they cannot be read.
   Instances instances(int node) const;
   const tinygltf::Model& model() const { return model_; }

@@ -222,6 +222,33 @@ inline void setLight(BlockBytes& lights, size_t element, const PunctualLight& li
   lights.set("mask", -1.0F, element);
 }
 
+/// A light of EXT_lights_area, for the template forward_area.
+struct AreaLight {
+  bool disk = false;                ///< else a rectangle
+  std::array<float, 3> position{};  ///< of its middle, world space
+  std::array<float, 3> right{1, 0, 0},
+      up{0, 1, 0};  ///< unit, world space: it shines against their cross product
+  std::array<float, 3> color{1, 1, 1};
+  float intensity = 1000;  ///< nits
+  float size = 1,
+        aspect = 1;  ///< metres in world space: a disc's diameter, a rectangle's height; width by height
+};
+
+/// Fills an element of the lights, as the light kinds of templates/forward_area.node say.
+inline void setLight(BlockBytes& lights, size_t element, const AreaLight& light) {
+  const auto scaled = [](const std::array<float, 3>& v, float s) {
+    return std::array<float, 3>{v[0] * s, v[1] * s, v[2] * s};
+  };
+  lights.set("position", light.position, element);
+  lights.set("positional", 1.0F, element);
+  lights.set("radiance", std::array<float, 3>{}, element);
+  lights.set("spot_offset", 1.0F, element);
+  lights.set("area_x", scaled(light.right, light.size * 0.5F * (light.disk ? 1 : light.aspect)), element);
+  lights.set("area_y", scaled(light.up, light.size * 0.5F), element);
+  lights.set("area_radiance", scaled(light.color, light.intensity), element);
+  lights.set("disk", light.disk ? 1.0F : 0.0F, element);
+}
+
 /// A matrix, column by column.
 using Matrix = std::array<float, 16>;
 

@@ -78,7 +78,7 @@ TEST(ParityMaterials, ForwardArea) {
     MaterialSetting setting;
     setting.lights = lights;
     setting.template_name = "forward_area";
-    expectAgreement(ofThose(setting, false), setting, 256, kSome, 0.5);
+    expectAgreement(ofThose(setting, false), setting, 128, kSome, 0.5);
   }
 }
 

@@ -480,6 +480,26 @@ void addLights(eval::Bindings& bindings, size_t points, Random& random) {
   bindings.columns["frame.light_count"] = eval::Column::constant({3});
 }
 
+/// A rectangle and a disc, beside the other lights or in their place.
+void addAreas(const ir::Module& module, eval::Bindings& bindings, size_t points, Random& random, bool alone) {
+  if (alone) bindings.lights.clear();
+  for (const char* kind : {"rect", "disk"}) {
+    std::vector<double> positions;
+    for (size_t i = 0; i < 3 * points; ++i) positions.push_back(random.between(-4, 4));
+    bindings.lights.push_back(eval::lightOf(module, kind,
+                                            {{"position", eval::Column::perPoint(3, std::move(positions))},
+                                             {"right", eval::Column::constant({0.6, 0, 0.8})},
+                                             {"up", eval::Column::constant({0.48, 0.8, -0.36})},
+                                             {"color", eval::Column::constant({1, 0.5, 0.25})},
+                                             {"intensity", eval::Column::constant({3})},
+                                             {"size", eval::Column::constant({2})},
+                                             {"aspect", eval::Column::constant({1.5})}},
+                                            points));
+  }
+  bindings.columns["frame.light_count"] =
+      eval::Column::constant({static_cast<double>(bindings.lights.size())});
+}
+
 }  // namespace
 
 Subject materialSubject(const NamedGraph& graph, const MaterialSetting& setting, size_t points,
@@ -503,6 +523,8 @@ Subject materialSubject(const NamedGraph& graph, const MaterialSetting& setting,
   bindings.quads = setting.quads;
   bindings.columns["frame.environment_intensity"] = eval::Column::constant({1.25});
   if (setting.lights.any) addLights(bindings, points, random);
+  if (setting.template_name == "forward_area")
+    addAreas(subject.module, bindings, points, random, !setting.lights.any);
   roundAll(bindings.columns);
   for (eval::Columns& light : bindings.lights) roundAll(light);
   for (const ir::TextureSlot& slot : subject.module.textures) addTexture(subject, slot, random);

@@ -36,6 +36,7 @@ void placeSurroundings(graph::Group& group, const lang::TemplateDecl& template_d
   };
   const bool lit = on("ibl", true);
   const bool turned = on("turned_environment", false);
+  const bool areas = template_decl.find("area_sample.centre").has_value();
   const auto has = [&](std::string_view name) {
     return lit && std::any_of(template_decl.environments.begin(), template_decl.environments.end(),
                               [&](const lang::EnvironmentDecl& one) { return one.name == name; });
@@ -49,6 +50,7 @@ void placeSurroundings(graph::Group& group, const lang::TemplateDecl& template_d
       reads = true;
       if (!has(texture->name)) gone.insert(node.id);
     }
+    if (reads && areas) node.type += "_among_lights";
     if (reads && turned)
       node.inputs.emplace_back("environment_rotation", Source{graph::GivenRef{"environment_rotation"}, {}});
   }
