@@ -90,6 +90,7 @@ void Flaws::bodies() {
 void Flaws::inheritance() {
   std::set<const Element*> good;
   for (const Element& child : root_.children) {
+    if (!child.get("target").empty()) continue;  // of other renderers
     std::set<const Element*> seen;
     std::vector<std::string_view> names;
     for (const Element* at = &child; at->category == "nodedef" && !good.contains(at);) {

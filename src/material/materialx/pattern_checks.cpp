@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lang/suggest.h"
+#include "materialx/closures.h"
 #include "materialx/patterns.h"
 #include "support/say_once.h"
 #include "support/text.h"
@@ -73,6 +74,52 @@ void Patterns::tellWarnings() {
       warning(one, std::string(one.get("code")), std::string(one.get("message")),
               std::string(one.get("help")));
   }
+}
+
+/// Whether a definition is for other renderers alone (`target`): its node has none here.
+bool Patterns::isOfTarget(const Element& nodedef) {
+  if (nodedef.get("target").empty()) return false;
+  of_targets_.try_emplace(nodedef.get("node"), &nodedef);
+  for (const Element& port : nodedef.children) {
+    if (port.category == "input") inputs_of_targets_.emplace(nodedef.get("node"), port.name());
+  }
+  return true;
+}
+
+/// Whether an input is one that other renderers' definitions of the node have: others leave it out.
+bool Patterns::isOfTarget(const Element& node, const Element& input) const {
+  return inputs_of_targets_.contains({node.category, input.name()});
+}
+
+/// A node of the library without such inputs.
+const Element& Patterns::withoutTargets(const Element& node) {
+  const std::vector<const lang::NodeDecl*> forms = library_.forms(libraryName(node));
+  const auto is = [&](const Element& input) {
+    return input.category == "input" && isOfTarget(node, input) &&
+           std::none_of(forms.begin(), forms.end(), [&](const lang::NodeDecl* form) {
+             return std::any_of(form->params.begin(), form->params.end(),
+                                [&](const lang::Param& param) { return param.name == input.name(); });
+           });
+  };
+  if (std::none_of(node.children.begin(), node.children.end(), is)) return node;
+  Element& own = made_.emplace_back(node);
+  std::erase_if(own.children, is);
+  return own;
+}
+
+void Patterns::withoutGraph(const Element& at, const Element& nodedef) {
+  std::string help = "code in a shading language is not read: give it a nodegraph, or a node file by --nodes";
+  for (const Element* document : documents_) {
+    for (const Element& body : document->children) {
+      if (body.category != "nodegraph" && body.find("nodegraph") == nullptr) continue;
+      const Element* of = body.get("nodedef").empty() ? nullptr : findNamed(nodedefs_, body.get("nodedef"));
+      if (of != nullptr && of->name() == nodedef.name())
+        help = fmt::format("{} is for the target {} alone: one without a target counts here",
+                           quote(body.name()), quote(body.get("target")));
+    }
+  }
+  error(at, "no-graph", fmt::format("the definition {} has no nodegraph", quote(nodedef.name())),
+        std::move(help));
 }
 
 /// Whether an output of a definition's nodegraph is of the type that the definition says.

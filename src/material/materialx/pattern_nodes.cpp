@@ -98,6 +98,11 @@ void Patterns::unknownNode(const Element& element) {
                     of->second.size() > 1 ? ", the first," : "", one.nodedef->place.file,
                     one.nodedef->place.line));
   }
+  if (const auto of = of_targets_.find(element.category); of != of_targets_.end())
+    return error(element, "unknown-node", fmt::format("there is no node {}", quote(element.category)),
+                 fmt::format("{} in {}:{} is for the target {} alone: one without a target counts here",
+                             quote(of->second->name()), of->second->place.file, of->second->place.line,
+                             quote(of->second->get("target"))));
   std::string help = "the library has no such node, and the document does not define it";
   if (maySuggest()) {
     std::vector<std::string_view> names;
@@ -176,7 +181,7 @@ const lang::NodeDecl* Patterns::formOf(Scope& scope, const Element& element) {
 
 void Patterns::libraryNode(Scope& scope, const Element& element, graph::Node& made) {
   if (!hasType(element)) return;
-  const lang::NodeDecl* form = formOf(scope, element);
+  const lang::NodeDecl* form = formOf(scope, withoutTargets(element));
   if (form == nullptr) return;
   made.type = form->name;
   std::string_view space;

@@ -101,7 +101,7 @@ void Patterns::define() {
   for (const Element* document : documents_) {
     for (const Element& child : document->children) {
       const std::string_view nodedef = child.get("nodedef");
-      if (nodedef.empty()) continue;
+      if (nodedef.empty() || !child.get("target").empty()) continue;
       const Element* graph = child.category == "nodegraph" ? &child : nullptr;
       if (child.category == "implementation") graph = findNamed(nodegraphs_, child.get("nodegraph"));
       const Element* of = findNamed(nodedefs_, nodedef);
@@ -130,6 +130,7 @@ void Patterns::defineFrom(const Element& document) {
   const bool model = &document == options_.models;
   for (const Element& child : document.children) {
     if (child.category != "nodedef" || child.get("node").empty()) continue;
+    if (isOfTarget(child)) continue;
     const auto graph = bodies_.find(child.name());
     if (&document == options_.definitions) {
       if (nodedefs_.at(child.name()) != &child) continue;
@@ -194,7 +195,8 @@ const Element* Patterns::definitionOf(const Element& node) const {
     const bool fits = std::all_of(node.children.begin(), node.children.end(), [&](const Element& input) {
       const Element* port = input.category == "input" ? nodedef.child("input", input.name()) : nullptr;
       return input.category != "input" || input.find(kOfVariant) != nullptr ||
-             (port != nullptr && (input.get("type").empty() || port->get("type") == input.get("type")));
+             (port == nullptr ? isOfTarget(node, input)
+                              : input.get("type").empty() || port->get("type") == input.get("type"));
     });
     if (!fits) continue;
     if (best == nullptr || nodedef.get("isdefaultversion") == "true") best = &nodedef;
@@ -258,11 +260,6 @@ void Patterns::demandAll() {
       demand(*one.graph, port.name(), *one.nodedef);
     }
   }
-}
-
-void Patterns::withoutGraph(const Element& at, const Element& nodedef) {
-  error(at, "no-graph", fmt::format("the definition {} has no nodegraph", quote(nodedef.name())),
-        "code in a shading language is not read: give it a nodegraph, or a node file by --nodes");
 }
 
 void Patterns::output(Scope& scope, std::string_view name, const Element& at) {
@@ -600,7 +597,7 @@ void Patterns::instance(Scope& scope, const Element& element, const Element& int
     const bool linked = isConnected(input);
     if (&element == &interface && !linked) continue;  // its value is the group's default
     const Element* port = interface.child("input", input.name());
-    if (port == nullptr && input.find(kOfVariant) != nullptr) continue;
+    if (port == nullptr && (input.find(kOfVariant) != nullptr || isOfTarget(element, input))) continue;
     if (port == nullptr) {
       error(input, "unknown-input",
             fmt::format("{} has no input {}", quote(element.category), quote(input.name())),

@@ -145,6 +145,9 @@ private:
   void findFlaws();
   void checkDefinition(const Element& nodedef);
   void tellWarnings();
+  bool isOfTarget(const Element& nodedef);
+  bool isOfTarget(const Element& node, const Element& input) const;
+  const Element& withoutTargets(const Element& node);
   bool isKnown(const Element& nodedef) const;
   const Element* merged(const Element& nodedef, size_t depth);
   void prepare(Scope& scope, const Element& owner, const Element* inputs, std::string_view name);
@@ -235,6 +238,9 @@ private:
   Siblings nodegraphs_, nodedefs_, geomprops_;                   ///< of the documents
   std::unordered_map<std::string_view, const Element*> bodies_;  ///< by the definition
   std::map<std::string_view, std::string_view> geometry_tokens_;
+  std::map<std::string_view, const Element*> of_targets_;  ///< definitions for a target, by their nodes
+  /// Nodes and inputs that these have.
+  std::set<std::pair<std::string_view, std::string_view>> inputs_of_targets_;
   /// Looked up, never walked.
   std::unordered_map<std::string_view, std::vector<size_t>> definitions_of_;
   std::unordered_map<const Element*, size_t> by_nodedef_, by_graph_;
