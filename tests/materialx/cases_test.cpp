@@ -203,7 +203,13 @@ void run(Case& c, const std::string& name) {
 void runWith(Case& c, const CaseLibrary& with, const std::string& name) {
   const Result<const material::Schema*> schema = with.models.schema();
   ASSERT_TRUE(schema) << formatAll(schema.error());
-  const auto document = material::readText(c.input(), name, **schema, {});
+  std::vector<std::pair<std::string, std::string>> included;  // files beside the document
+  if (c.has("included"))
+    for (const lang::SourceFile& file : filesOf(c.section("included")))
+      included.emplace_back(file.name, file.text);
+  material::ReadOptions options;
+  options.included = &included;
+  const auto document = material::readText(c.input(), name, **schema, options);
   if (!document) return c.expect("materials", formatAll(document.error()));
   std::string text = formatAll(document->diagnostics);
   text += shown(document->looks);

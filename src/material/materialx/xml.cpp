@@ -10,6 +10,7 @@
 
 #include "materialx/element.h"
 #include "materialx/looks.h"
+#include "materialx/namespaces.h"
 #include "materialx/upgrade.h"
 #include "support/contain.h"
 #include "support/file.h"
@@ -57,6 +58,7 @@ public:
     Document document;
     document.root.category = "materialx";
     file(text, top_, document.root, {});
+    if (!hasError(wrong_) && includes_) qualifyNames(document.root);
     if (!hasError(wrong_)) namesAlike(document.root, true);
     if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
     document.files = std::move(files_);
@@ -156,16 +158,16 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
     const size_t first = into.children.size();
     if (!hasError(wrong_)) elements(root, into, inside, 1);
     open_.pop_back();
-    if (const std::string* space = own.find("namespace"))
-      for (size_t i = first; i < into.children.size(); ++i) {
-        Element& child = into.children[i];
-        const bool names = child.category == "nodedef" || child.category == "nodegraph";
-        if (names && child.find("namespace") == nullptr) child.set("namespace", *space);
-      }
     if (!hasError(wrong_) && minor < kPresentMinor) {
       upgrade(into, first, minor, wrong_);
       into.set("version", fmt::format("1.{}", kPresentMinor));
     }
+    if (const std::string* space = own.find("namespace"))
+      for (size_t i = first; i < into.children.size(); ++i) {
+        Element& child = into.children[i];
+        const bool may = includes_ || child.category == "nodedef" || child.category == "nodegraph";
+        if (may && child.get("namespace").empty()) child.set("namespace", *space);
+      }
   }
   path_ = outer_path;
   text_ = outer_text;
