@@ -9,6 +9,7 @@
 #include <pugixml.hpp>
 
 #include "materialx/element.h"
+#include "materialx/inheritance.h"
 #include "materialx/looks.h"
 #include "materialx/namespaces.h"
 #include "materialx/upgrade.h"
@@ -60,6 +61,7 @@ public:
     file(text, top_, document.root, {});
     if (!hasError(wrong_) && includes_) qualifyNames(document.root);
     if (!hasError(wrong_)) namesAlike(document.root, true);
+    if (!hasError(wrong_) && includes_) inheritNodes(document.root, wrong_);
     if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
     document.files = std::move(files_);
     document.said = std::move(wrong_);
