@@ -20,6 +20,14 @@ const Element* findNamed(const Siblings& all, std::string_view name) {
   return there ? found->second : nullptr;
 }
 
+bool isOneVersion(std::string_view a, std::string_view b) {
+  const auto short_of = [](std::string_view version) {
+    version = trimmed(version);
+    return version.ends_with(".0") ? version.substr(0, version.size() - 2) : version;
+  };
+  return short_of(a) == short_of(b);
+}
+
 namespace {
 
 class Flaws {

@@ -16,6 +16,9 @@ using Siblings = std::unordered_map<std::string_view, const Element*>;
 /// The element of that name, which may begin with the element's namespace: "studio:ND_dust". Null for none.
 const Element* findNamed(const Siblings& all, std::string_view name);
 
+/// Whether two versions are one: "1" is "1.0".
+bool isOneVersion(std::string_view a, std::string_view b);
+
 struct Flaw {
   Diagnostic said;
   std::vector<std::string_view> nodedefs;  ///< by their names: those that cannot be taken

@@ -107,6 +107,29 @@ const Element& Patterns::withoutTargets(const Element& node) {
   return own;
 }
 
+/// Whether one version of a definition is the default of a node that asks for none.
+void Patterns::checkVersion(const Element& node) {
+  const std::vector<const Element*> all = definitionsOf(node);
+  std::vector<const Element*> versions, defaults;
+  for (const Element* one : all) {
+    const std::string_view version = one->get("version");
+    const bool known = std::any_of(versions.begin(), versions.end(), [&](const Element* other) {
+      return isOneVersion(other->get("version"), version);
+    });
+    if (!known) versions.push_back(one);
+    if (one->get("isdefaultversion") == "true") defaults.push_back(one);
+  }
+  if (!node.get("version").empty() || versions.size() < 2 || defaults.size() == 1) return;
+  const Element& taken = *definitionOf(node);
+  warning(node, "no-default-version",
+          fmt::format("{} has {} versions, and {}", quote(node.category), versions.size(),
+                      defaults.empty() ? "none is the default"
+                                       : fmt::format("{} are the default", defaults.size())),
+          fmt::format("{} in {}:{} is taken: \"version\" says which one is meant, and \"isdefaultversion\" "
+                      "of one definition which is the default",
+                      quote(taken.name()), taken.place.file, taken.place.line));
+}
+
 void Patterns::withoutGraph(const Element& at, const Element& nodedef) {
   std::string help = "code in a shading language is not read: give it a nodegraph, or a node file by --nodes";
   for (const Element* document : documents_) {

@@ -164,8 +164,9 @@ const Element* Patterns::merged(const Element& nodedef, size_t depth) {
   return &whole;
 }
 
-const Element* Patterns::definitionOf(const Element& node) const {
-  const Element* best = nullptr;
+/// The definitions that fit a node: of its namespace, types and version.
+std::vector<const Element*> Patterns::definitionsOf(const Element& node) const {
+  std::vector<const Element*> found;
   const auto outputOf = [](const Element& nodedef) -> std::string_view {
     if (!nodedef.get("type").empty()) return nodedef.get("type");
     std::string_view type;
@@ -181,27 +182,36 @@ const Element* Patterns::definitionOf(const Element& node) const {
   const std::string_view space =
       colon == std::string_view::npos ? std::string_view() : category.substr(0, colon);
   const auto of = definitions_of_.find(space.empty() ? category : category.substr(colon + 1));
-  if (of == definitions_of_.end()) return nullptr;
+  if (of == definitions_of_.end()) return found;
   for (const size_t place : of->second) {
     const Element& nodedef = *definitions_[place].nodedef;
     if (definitions_[place].model || (!space.empty() && nodedef.get("namespace") != space)) continue;
     if (const std::string_view wanted = node.get("nodedef"); !wanted.empty()) {
-      const Element* found = findNamed(nodedefs_, wanted);
-      if (nodedef.name() == (found == nullptr ? wanted : found->name())) return &nodedef;
+      const Element* named = findNamed(nodedefs_, wanted);
+      if (nodedef.name() == (named == nullptr ? wanted : named->name())) return {&nodedef};
       continue;
     }
     if (!node.get("type").empty() && outputOf(nodedef) != node.get("type")) continue;
-    if (!node.get("version").empty() && nodedef.get("version") != node.get("version")) continue;
+    if (!node.get("version").empty() && !isOneVersion(nodedef.get("version"), node.get("version"))) continue;
     const bool fits = std::all_of(node.children.begin(), node.children.end(), [&](const Element& input) {
       const Element* port = input.category == "input" ? nodedef.child("input", input.name()) : nullptr;
       return input.category != "input" || input.find(kOfVariant) != nullptr ||
              (port == nullptr ? isOfTarget(node, input)
                               : input.get("type").empty() || port->get("type") == input.get("type"));
     });
-    if (!fits) continue;
-    if (best == nullptr || nodedef.get("isdefaultversion") == "true") best = &nodedef;
+    if (fits) found.push_back(&nodedef);
   }
-  return best == nullptr ? modelOf(node) : best;
+  return found;
+}
+
+const Element* Patterns::definitionOf(const Element& node) const {
+  const std::vector<const Element*> all = definitionsOf(node);
+  if (all.empty()) return modelOf(node);
+  // Of several default versions the last one counts, and without one the first definition.
+  const auto best = std::find_if(all.rbegin(), all.rend(), [](const Element* nodedef) {
+    return nodedef->get("isdefaultversion") == "true";
+  });
+  return best == all.rend() ? all[0] : *best;
 }
 
 // -- bodies --
@@ -578,6 +588,7 @@ void Patterns::node(Scope& scope, const Element& element) {
     instance(scope, element, element, made);
   } else if (const Element* nodedef = definitionFor(scope, element)) {
     const Element* graph = definition(*nodedef)->graph;
+    checkVersion(element);
     if (graph == nullptr) return withoutGraph(element, *nodedef);
     made.type = group(*graph);
     instance(scope, element, *nodedef, made);

@@ -145,6 +145,8 @@ private:
   void findFlaws();
   void checkDefinition(const Element& nodedef);
   void tellWarnings();
+  std::vector<const Element*> definitionsOf(const Element& node) const;
+  void checkVersion(const Element& node);
   bool isOfTarget(const Element& nodedef);
   bool isOfTarget(const Element& node, const Element& input) const;
   const Element& withoutTargets(const Element& node);
