@@ -122,9 +122,9 @@ void Patterns::checkVersion(const Element& node) {
   if (!node.get("version").empty() || versions.size() < 2 || defaults.size() == 1) return;
   const Element& taken = *definitionOf(node);
   warning(node, "no-default-version",
-          fmt::format("{} has {} versions, and {}", quote(node.category), versions.size(),
-                      defaults.empty() ? "none is the default"
-                                       : fmt::format("{} are the default", defaults.size())),
+          fmt::format(
+              "{} has {} versions, and {}", quote(node.category), versions.size(),
+              defaults.empty() ? "none is the default" : fmt::format("{} are the default", defaults.size())),
           fmt::format("{} in {}:{} is taken: \"version\" says which one is meant, and \"isdefaultversion\" "
                       "of one definition which is the default",
                       quote(taken.name()), taken.place.file, taken.place.line));
@@ -156,6 +156,18 @@ void Patterns::checkDeclared(const Element& nodedef, const Element& graph, std::
                     port->place.line, quote(port->get("type"))));
 }
 
+/// The name of the output of a nodegraph or a definition that is meant: of one output that, whatever it is
+/// called.
+std::string_view Patterns::outputNameOf(const Element& interface, std::string_view name) {
+  const Element* first = nullptr;
+  size_t count = 0;
+  for (const Element& port : interface.children) {
+    if (port.category == "output" && ++count == 1) first = &port;
+  }
+  if (count == 1 || (count > 1 && name.empty())) return first->name();
+  return name.empty() ? std::string_view("out") : name;
+}
+
 /// The type of what a port is connected to; empty where that is not said.
 std::string_view Patterns::givenType(const Scope& scope, const Element& port) const {
   if (const std::string* interface = port.find("interfacename")) {
@@ -169,11 +181,8 @@ std::string_view Patterns::givenType(const Scope& scope, const Element& port) co
     const std::string_view type = node == nullptr ? std::string_view() : node->get("type");
     return type == "multioutput" ? std::string_view() : type;
   }
-  for (const Element& output : gives->children) {
-    const bool wanted = port.get("output").empty() || output.name() == port.get("output");
-    if (output.category == "output" && wanted) return output.get("type");
-  }
-  return {};
+  const Element* output = gives->child("output", outputNameOf(*gives, port.get("output")));
+  return output == nullptr ? std::string_view() : output->get("type");
 }
 
 /// Whether an output or an input is of the type of what it is connected to.

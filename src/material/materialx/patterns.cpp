@@ -540,11 +540,7 @@ std::optional<Source> Patterns::refer(Scope& scope, const Element& input, Referr
   const Element* interface = element.category == "nodegraph" ? &element : definitionFor(scope, element);
   std::string output;
   if (interface != nullptr) {
-    std::string_view only = referred.output;
-    for (const Element& port : interface->children) {
-      if (port.category == "output" && only.empty()) only = port.name();
-    }
-    if (only.empty()) only = "out";
+    const std::string_view only = outputNameOf(*interface, referred.output);
     output = graphName(only);
     if (!referred.part.empty()) output += "_" + referred.part;
     const Element* graph = interface == &element ? &element : definition(*interface)->graph;

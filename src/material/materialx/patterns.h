@@ -193,6 +193,7 @@ private:
   bool goesToTiles(const Element& owner, std::string_view name) const;
   void withoutGraph(const Element& at, const Element& nodedef);
   void checkDeclared(const Element& nodedef, const Element& graph, std::string_view name);
+  static std::string_view outputNameOf(const Element& interface, std::string_view name);
   std::string_view givenType(const Scope& scope, const Element& port) const;
   void checkPort(const Scope& scope, const Element& port);
   bool hasType(const Element& element);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 #include <pugixml.hpp>
 
@@ -44,6 +45,36 @@ std::string foreignEncoding(std::string_view text) {
   return known ? std::string() : declared;
 }
 
+/// The output of a nodegraph or a definition that has one alone; null for others.
+const Element* onlyOutput(const Element& owner) {
+  const Element* only = nullptr;
+  for (const Element& child : owner.children) {
+    if (child.category != "output") continue;
+    if (only != nullptr) return nullptr;
+    only = &child;
+  }
+  return only;
+}
+
+/// A connection to a nodegraph of one output takes that, whatever it calls it.
+void nameOnlyOutputs(Element& root) {
+  std::unordered_map<std::string_view, const Element*> graphs;
+  for (const Element& child : root.children)
+    if (child.category == "nodegraph") graphs.try_emplace(child.name(), onlyOutput(child));
+  const auto connect = [&](Element& port) {
+    const std::string* name =
+        port.find("nodegraph") != nullptr ? port.find("nodegraph") : port.find("nodename");
+    if (name == nullptr || port.find("output") == nullptr) return;
+    const auto graph = graphs.find(*name);
+    if (graph != graphs.end() && graph->second != nullptr)
+      port.set("output", std::string(graph->second->name()));
+  };
+  for (Element& child : root.children) {
+    connect(child);
+    for (Element& port : child.children) connect(port);
+  }
+}
+
 /// What inputs have of the elements around them.
 struct Inherited {
   std::string colorspace, fileprefix, geomprefix;
@@ -63,6 +94,7 @@ public:
     if (!hasError(wrong_)) namesAlike(document.root, true);
     if (!hasError(wrong_) && includes_) inheritNodes(document.root, wrong_);
     if (hasError(wrong_)) return tl::make_unexpected(std::move(wrong_));
+    nameOnlyOutputs(document.root);
     document.files = std::move(files_);
     document.said = std::move(wrong_);
     return document;
