@@ -245,7 +245,11 @@ void MaterialsReader::pattern(const Element& owner, const Element& output, const
 
 void MaterialsReader::patternsAlone() {
   const Element& root = document_.root;
+  std::set<std::string_view> bodies;  // of definitions
+  for (const Element& child : root.children)
+    if (child.category == "implementation") bodies.insert(child.get("nodegraph"));
   for (const Element& child : root.children) {
+    if (bodies.contains(child.name()) && child.category == "nodegraph") continue;
     if (child.category == "output") pattern(root, child, std::string(child.name()));
     if (child.category != "nodegraph" || !child.get("nodedef").empty()) continue;
     const auto outputs = std::count_if(child.children.begin(), child.children.end(),
