@@ -211,7 +211,8 @@ private:
   graph::Parameter& parameter(const Scope& scope, const Element& element, const Element& input,
                               ir::Type type);
   bool isAnimated(const Element& input) const;
-  std::string fileOf(const Scope& scope, const Element& node, const Element& input) const;
+  std::string fileOf(const Scope& scope, const Element& node, const Element& input);
+  const Element* tokenOf(const Scope& scope, const Element& token);
   void checkTokens(const Element& input, std::string_view file);
   void defineTokens();
   std::string withGeometryTokens(std::string_view file) const;

@@ -107,6 +107,18 @@ const Element* Patterns::text(Scope& within, const Element& input) {
   return nullptr;
 }
 
+/// The element that has the value of a token: itself, or that of the interface. Null, and an error, where the
+/// interface has none of the name.
+const Element* Patterns::tokenOf(const Scope& scope, const Element& token) {
+  const std::string* name = token.find("interfacename");
+  if (name == nullptr) return &token;
+  const Element& interface = scope.interface_ == nullptr ? *scope.owner_ : *scope.interface_;
+  const Element* found = interface.child("token", *name);
+  if (found != nullptr && found->find("interfacename") == nullptr) return found;
+  error(token, "unknown-token", fmt::format("there is no interface token {}", quote(*name)));
+  return nullptr;
+}
+
 /// The definition of a node that the document defines, with the texts that this one is given: they decide
 /// what the graph is, so that each choice of them is a definition of its own. Null for other nodes.
 const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
@@ -126,7 +138,7 @@ const Element* Patterns::definitionFor(Scope& scope, const Element& element) {
       key += fmt::format("\n{} {}", port->name(), input.get("colorspace"));
     }
     if (!token && port->get("type") != "string") continue;
-    const Element* said = token ? &input : text(scope, input);
+    const Element* said = token ? tokenOf(scope, input) : text(scope, input);
     if (said == nullptr || said->get("value") == port->get("value")) continue;
     texts.emplace_back(port, said->get("value"));
     key += fmt::format("\n{} {}\n{}", port->category, port->name(), said->get("value"));
@@ -206,7 +218,7 @@ std::string Patterns::withGeometryTokens(std::string_view file) const {
 }
 
 /// The file's name with tokens in place of their names: of the node that takes it, and of what that is in.
-std::string Patterns::fileOf(const Scope& scope, const Element& node, const Element& input) const {
+std::string Patterns::fileOf(const Scope& scope, const Element& node, const Element& input) {
   std::string file(trimmed(input.get("value")));
   std::vector<const Element*> owners{scope.owner_};
   // A definition's tokens, as its instances say them.
@@ -219,7 +231,8 @@ std::string Patterns::fileOf(const Scope& scope, const Element& node, const Elem
       if (token.category != "token") continue;
       const std::string name = fmt::format("[{}]", token.name());
       const size_t at = file.find(name);
-      if (at != std::string::npos) file.replace(at, name.size(), token.get("value"));
+      const Element* said = at == std::string::npos ? nullptr : tokenOf(scope, token);
+      if (said != nullptr) file.replace(at, name.size(), said->get("value"));
     }
   }
   file = withGeometryTokens(file);

@@ -68,6 +68,7 @@ private:
   Element& document_;
   Said say_;
   ByName nodes_, nodedefs_, looks_;
+  std::multimap<std::string_view, std::string_view> tokens_;  ///< of definitions, by their nodes
   std::vector<Subject> subjects_;
   std::map<std::string_view, const Subject*> by_name_;
   std::vector<Set> sets_;
@@ -91,6 +92,9 @@ Variants::Variants(Element& document, Diagnostics& said)
   for (const Element& one : document.children) {
     if (std::find(std::begin(kOthers), std::end(kOthers), one.category) == std::end(kOthers))
       nodes_.try_emplace(one.name(), &one);
+    for (const Element& port : one.children)
+      if (one.category == "nodedef" && port.category == "token")
+        tokens_.emplace(one.get("node"), port.name());
     if (one.category == "variantset")
       sets_.push_back({&one, geometryNames(one.get("node")), geometryNames(one.get("nodedef")), false});
   }
@@ -142,6 +146,9 @@ void Variants::subject(const Element& material) {
       if (one.category == "input" || one.category == "token") made.names.emplace(one.category, one.name());
     }
   }
+  // Tokens of its definition, which it need not say.
+  const auto [first, last] = tokens_.equal_range(made.shader->category);
+  for (auto it = first; it != last; ++it) made.names.emplace("token", it->second);
 }
 
 /// Whether a variantset is for a surface: it may name nodes, or definitions of such.
@@ -157,8 +164,8 @@ bool Variants::isFor(const Set& set, const Element& shader) const {
   });
 }
 
-/// Gives inputs and tokens the values of the variants; true where there was one. A surface has inputs that
-/// it does not list.
+/// Gives inputs and tokens the values of the variants; true where there was one. A surface has inputs and
+/// tokens that it does not list.
 bool Variants::apply(const std::vector<Chosen>& all, Element& to, bool surface) {
   bool any = false;
   for (const Chosen& chosen : all) {
@@ -171,7 +178,7 @@ bool Variants::apply(const std::vector<Chosen>& all, Element& to, bool surface) 
       any = any || own != to.children.end();
       if (own != to.children.end()) {
         *own = value;
-      } else if (surface && value.category == "input") {
+      } else if (surface) {
         to.children.push_back(value);
         to.children.back().set(kOfVariant, chosen.name());
       }
