@@ -14,6 +14,7 @@
 #include "materialx/looks.h"
 #include "materialx/namespaces.h"
 #include "materialx/upgrade.h"
+#include "materialx/well_formed.h"
 #include "support/contain.h"
 #include "support/file.h"
 #include "support/text.h"
@@ -43,6 +44,15 @@ std::string foreignEncoding(std::string_view text) {
   for (char& c : low) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
   const bool known = low == "utf-8" || low == "utf8" || low == "us-ascii" || low == "ascii";
   return known ? std::string() : declared;
+}
+
+/// A second element beside the root, or text there; null for none.
+pugi::xml_node besideRoot(const pugi::xml_document& xml) {
+  for (const pugi::xml_node& node : xml.children()) {
+    const bool text = node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata;
+    if (text || (node.type() == pugi::node_element && node != xml.document_element())) return node;
+  }
+  return {};
 }
 
 /// The output of a nodegraph or a definition that has one alone; null for others.
@@ -159,7 +169,7 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
   pugi::xml_document xml;
   // No entities beyond XML's own five are known to the parser, and a document type is an error below.
   constexpr unsigned kFlags = pugi::parse_cdata | pugi::parse_escapes | pugi::parse_eol |
-                              pugi::parse_doctype | pugi::parse_wconv_attribute;
+                              pugi::parse_doctype | pugi::parse_wconv_attribute | pugi::parse_fragment;
   const pugi::xml_parse_result parsed =
       xml.load_buffer(text.data(), text.size(), kFlags, pugi::encoding_utf8);
   const pugi::xml_node root = xml.document_element();
@@ -172,6 +182,13 @@ void XmlReader::file(std::string_view text, const std::string& path, Element& in
                  xml.find_child([](pugi::xml_node n) { return n.type() == pugi::node_doctype; })) {
     error("xml-syntax", 0, "the file has a document type",
           "MaterialX has none, and entities are not read: take the line away");
+  } else if (const std::optional<Malformed> bad = malformed(text)) {
+    error("xml-syntax", static_cast<ptrdiff_t>(bad->at), "this is no XML: " + bad->what, bad->help);
+  } else if (const pugi::xml_node more = besideRoot(xml)) {
+    error("xml-syntax", more.offset_debug(), "this is no XML: it stands beside the root element",
+          "a document has one element, which has all others");
+  } else if (!root) {
+    error("xml-syntax", 0, "this is no XML: No document element found");
   } else if (std::strcmp(root.name(), "materialx") != 0) {
     error("not-materialx", root.offset_debug(), fmt::format("the root element is {}", quote(root.name())),
           "a MaterialX document has <materialx version=\"1.39\">");
