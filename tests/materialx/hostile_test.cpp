@@ -37,6 +37,18 @@ TEST(MaterialXHostile, entitiesAreOff) {
   EXPECT_EQ(codesOf(bomb), "xml-syntax");
 }
 
+TEST(MaterialXHostile, bytesAreNoUtf8) {
+  const auto with = [](std::string bytes) {
+    return codesOf("<materialx version=\"1.39\"><!-- " + std::move(bytes) +
+                   " --><output name=\"o\" type=\"float\" value=\"1\"/></materialx>");
+  };
+  for (const char* bad :
+       {"\xE9", "\xC0\x80", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xE2\x82", "\x01", "\xEF\xBF\xBF"})
+    EXPECT_EQ(with(bad), "xml-syntax") << bad;
+  for (const char* good : {"\xC3\xA9", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "& < \""})
+    EXPECT_NE(with(good), "xml-syntax") << good;
+}
+
 TEST(MaterialXHostile, elementsLieTooDeep) {
   std::string deep;
   for (int i = 0; i < 100'000; ++i) deep += "<a>";
