@@ -665,6 +665,62 @@ TEST(Convert, byTranslationGraphs) {
   EXPECT_EQ(inputOf(as_gltf, "metallic"), "0");
 }
 
+/// Variants change what the surface has become, by the same formulas.
+TEST(Convert, translatesVariants) {
+  const Workplace place;
+  place.write("all.mtlx", R"(<materialx version="1.39">
+  <image name="rust" type="float"><input name="file" type="filename" value="rust.png"/></image>
+  <standard_surface name="shader" type="surfaceshader">
+    <input name="base" type="float" value="0.5"/>
+    <input name="base_color" type="color3" value="0.8, 0.8, 0.8"/>
+    <input name="sheen" type="float" nodename="rust"/>
+    <input name="coat" type="float" value="0"/>
+  </standard_surface>
+  <surfacematerial name="M" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shader"/>
+  </surfacematerial>
+  <variantset name="any">
+    <variant name="red"><input name="base_color" type="color3" value="0.8, 0, 0"/></variant>
+    <variant name="coated">
+      <input name="coat" type="float" value="1"/>
+      <input name="coat_roughness" type="float" value="0.25"/>
+    </variant>
+    <variant name="dusty"><input name="sheen_color" type="color3" value="0.5, 0.5, 0.5"/>
+      <input name="base" type="float" value="1"/></variant>
+  </variantset>
+  <variantset name="named" node="standard_surface" nodedef="ND_standard_surface_surfaceshader">
+    <variant name="glow">
+      <input name="emission" type="float" value="2"/>
+      <input name="emission_color" type="color3" value="1, 0.5, 0"/>
+      <token name="kept" type="string" value="a"/>
+    </variant>
+  </variantset></materialx>)");
+  const Outcome gltf = place.run({"convert", "all.mtlx", "-o", "gltf.mtlx", "--as", "gltf_pbr", "-q"});
+  EXPECT_EQ(gltf.status, 0) << gltf.err;
+  const std::string document = place.read("gltf.mtlx");
+  const auto variant = [&](const std::string& name) {
+    const size_t at = document.find("<variant name=\"" + name);
+    return "_pbr" + document.substr(at, document.find("</variant>", at) - at);
+  };
+  EXPECT_EQ(inputOf(variant("red"), "base_color"), "0.4, 0, 0");
+  EXPECT_EQ(inputOf(variant("coated"), "clearcoat"), "1");
+  EXPECT_EQ(inputOf(variant("coated"), "clearcoat_roughness"), "0.25");
+  EXPECT_EQ(inputOf(variant("dusty"), "base_color"), "0.8, 0.8, 0.8");
+  EXPECT_NE(gltf.err.find("all.mtlx:18:6: warning: the variant \"dusty\" has no value for sheen_color of "
+                          "gltf_pbr [not-said]"),
+            std::string::npos)
+      << gltf.err;
+  EXPECT_EQ(inputOf(variant("glow"), "emissive_strength"), "2");
+  EXPECT_EQ(inputOf(variant("glow"), "emissive"), "1, 0.5, 0");
+  EXPECT_NE(variant("glow").find("kept"), std::string::npos) << document;
+  EXPECT_NE(document.find("node=\"gltf_pbr\" nodedef=\"ND_gltf_pbr_surfaceshader\""), std::string::npos)
+      << document;
+  for (const char* name : {"M/any/red", "M/any/coated", "M/named/glow"}) {
+    const Outcome made = place.run({"gen", "gltf.mtlx", "-o", "out", "--material", name});
+    EXPECT_EQ(made.status, 0) << made.err;
+  }
+}
+
 TEST(Convert, measuresAndShows) {
   const Workplace place;
   place.write("ramp.mtlx", kDocument);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
+#include "materialx/looks.h"
 #include "materialx/patterns.h"
 #include "materialx/values.h"
 #include "support/text.h"
@@ -174,11 +176,17 @@ public:
   }
 
   void put(std::string_view name, const Term& term, const std::optional<Term>& by_default = {}) {
+    if (by_default) defaults_.emplace(name, inputOf(name, *by_default));
     if (by_default && term.known() && by_default->value == term.value) return;
     made_.push_back(inputOf(name, term));
   }
   void put(std::string_view name, const Term& term, double by_default) {
     put(name, term, term.type == "color3" ? grey(by_default) : number(by_default));
+  }
+  /// An input as it is where nothing is said of it; null where that is not known.
+  const Element* byDefault(std::string_view name) const {
+    const auto found = defaults_.find(name);
+    return found == defaults_.end() ? nullptr : &found->second;
   }
   /// A normal or a tangent, where it is connected.
   void pass(std::string_view name, std::string_view as) {
@@ -277,6 +285,7 @@ private:
   Diagnostics& said_;
   std::set<std::string_view> used_;
   std::vector<Element> made_;
+  std::map<std::string_view, Element> defaults_;
 };
 
 /// MaterialX's standard_surface_to_open_pbr_surface.
@@ -431,29 +440,216 @@ void toGltfPbr(Formulas& f) {
   f.pass("tangent", "tangent");
 }
 
-size_t translateIn(Element& owner, std::string_view as, Diagnostics& said) {
+void translateBy(Formulas& formulas, std::string_view as) {
+  if (as == "gltf_pbr")
+    toGltfPbr(formulas);
+  else
+    toOpenPbr(formulas);
+}
+
+bool isAlike(const Element& a, const Element& b) {
+  return a.category == b.category && a.attributes == b.attributes &&
+         std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(), isAlike);
+}
+
+const Element* named(const std::vector<Element>& list, std::string_view name) {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const Element& one) { return one.name() == name; });
+  return found == list.end() ? nullptr : &*found;
+}
+
+/// Whether two inputs are the same, with what they take of the nodes beside each.
+bool isSame(const Element& a, const std::vector<Element>& beside_a, const Element& b,
+            const std::vector<Element>& beside_b) {
+  const Element* from_a = named(beside_a, a.get("nodename"));
+  const Element* from_b = named(beside_b, b.get("nodename"));
+  if (a.category != b.category || a.attributes != b.attributes || !from_a != !from_b) return false;
+  if (from_a == nullptr) return true;
+  return from_a->category == from_b->category &&
+         std::equal(from_a->children.begin(), from_a->children.end(), from_b->children.begin(),
+                    from_b->children.end(), [&](const Element& one, const Element& other) {
+                      return isSame(one, beside_a, other, beside_b);
+                    });
+}
+
+/// What variants change of the surfaces, as changes of what these become: each is translated with their
+/// values.
+class VariantTranslation {
+public:
+  VariantTranslation(const Element& root, std::string_view as, Diagnostics& said) : as_(as), said_(said) {
+    for (const Element& child : root.children)
+      if (child.category == "variantset") sets_.push_back(child);
+    for (const Element& set : sets_)
+      for (const Element& variant : set.children)
+        if (variant.category == "variant") changed_.try_emplace(&variant);
+  }
+  bool any() const { return !sets_.empty(); }
+
+  /// `to`, made by `formulas` with the nodes beside it; `names` are those before that.
+  void surface(const Element& from, Element& to, const Formulas& formulas, const std::vector<Element>& beside,
+               const materialx::NameSet& names);
+  void finish(Element& root) const;
+
+private:
+  struct Changed {
+    std::optional<std::string> surface;  ///< the first that it changes
+    std::vector<Element> inputs;
+  };
+
+  static bool isInput(const Element& value) {
+    const auto is = [&](const Given& one) { return one.name == value.name(); };
+    return value.category == "input" && value.find("value") != nullptr &&
+           std::any_of(std::begin(kInputs), std::end(kInputs), is);
+  }
+  static bool namesSurfaces(const Element& set) {
+    return !set.get("node").empty() || !set.get("nodedef").empty();
+  }
+  static bool isFor(const Element& set, const Element& variant, const Element& surface);
+  void lost(const Element& at, std::string_view name) {
+    addBounded(said_, {"not-said",
+                       Severity::Warning,
+                       at.place,
+                       fmt::format("the variant {} has no value for {} of {}", quote(at.name()), name, as_),
+                       "what it changes there is lost",
+                       {}});
+  }
+
+  std::string_view as_;
+  Diagnostics& said_;
+  std::vector<Element> sets_;
+  std::map<const Element*, Changed> changed_;  ///< looked up, never walked
+};
+
+bool VariantTranslation::isFor(const Element& set, const Element& variant, const Element& surface) {
+  const auto& values = variant.children;
+  if (std::none_of(values.begin(), values.end(), isInput)) return false;
+  if (!namesSurfaces(set))
+    return std::any_of(values.begin(), values.end(), [&](const Element& value) {
+      return isInput(value) && surface.child("input", value.name()) != nullptr;
+    });
+  for (const std::string& node : materialx::geometryNames(set.get("node")))
+    if (node == surface.name() || node == kFrom) return true;
+  for (const std::string& nodedef : materialx::geometryNames(set.get("nodedef")))
+    if (nodedef == surface.get("nodedef") || nodedef.starts_with("ND_standard_surface_surfaceshader"))
+      return true;
+  return false;
+}
+
+void VariantTranslation::surface(const Element& from, Element& to, const Formulas& formulas,
+                                 const std::vector<Element>& beside, const materialx::NameSet& names) {
+  std::vector<Element> more;
+  for (const Element& set : sets_) {
+    for (const Element& variant : set.children) {
+      if (variant.category != "variant" || !isFor(set, variant, from)) continue;
+      Element varied = from;
+      for (const Element& value : variant.children) {
+        if (!isInput(value)) continue;
+        std::erase_if(varied.children, [&](const Element& one) { return one.name() == value.name(); });
+        varied.children.push_back(value);
+      }
+      materialx::NameSet own_names = names;
+      std::vector<Element> own_beside, inputs;
+      Diagnostics own_said;
+      Formulas own(varied, own_names, own_beside, own_said);
+      translateBy(own, as_);
+      const std::vector<Element> made = own.finish(as_);
+      for (Diagnostic& one : own_said) {
+        const bool of_variant = std::any_of(variant.children.begin(), variant.children.end(),
+                                            [&](const Element& value) { return value.place == one.place; });
+        if (of_variant) addBounded(said_, std::move(one));
+      }
+      for (const Element& input : made) {
+        const Element* before = named(to.children, input.name());
+        const bool linked = input.find("value") == nullptr;
+        if (before != nullptr && isSame(*before, beside, input, own_beside)) continue;
+        if (linked)
+          lost(variant, input.name());
+        else
+          inputs.push_back(input);
+      }
+      for (const Element& before : to.children) {
+        const bool kept = std::any_of(made.begin(), made.end(),
+                                      [&](const Element& one) { return one.name() == before.name(); });
+        const Element* by_default = formulas.byDefault(before.name());
+        if (kept || (by_default != nullptr && isAlike(*by_default, before))) continue;
+        if (by_default != nullptr)
+          inputs.push_back(*by_default);
+        else
+          lost(variant, before.name());
+      }
+      // Without it the variant would not be for this surface.
+      for (const Element& input : inputs) {
+        const Element* by_default = own.byDefault(input.name());
+        const bool known =
+            named(to.children, input.name()) != nullptr || named(more, input.name()) != nullptr;
+        if (!namesSurfaces(set) && !known && by_default != nullptr) more.push_back(*by_default);
+      }
+      Changed& changed = changed_.at(&variant);
+      if (!changed.surface) {
+        changed = {std::string(from.name()), std::move(inputs)};
+      } else if (!std::equal(inputs.begin(), inputs.end(), changed.inputs.begin(), changed.inputs.end(),
+                             isAlike)) {
+        addBounded(said_, {"not-said",
+                           Severity::Warning,
+                           variant.place,
+                           fmt::format("the variant {} makes other changes of {} than of {}",
+                                       quote(variant.name()), quote(from.name()), quote(*changed.surface)),
+                           "those of the latter are written",
+                           {}});
+      }
+    }
+  }
+  std::move(more.begin(), more.end(), std::back_inserter(to.children));
+}
+
+void VariantTranslation::finish(Element& root) const {
+  size_t next = 0;
+  for (Element& set : root.children) {
+    if (set.category != "variantset") continue;
+    const Element& read = sets_[next++];
+    bool any = false;
+    for (size_t i = 0; i < read.children.size(); ++i) {
+      const auto changed = changed_.find(&read.children[i]);
+      if (changed == changed_.end() || !changed->second.surface) continue;
+      any = true;
+      std::erase_if(set.children[i].children, isInput);
+      for (const Element& input : changed->second.inputs) set.children[i].children.push_back(input);
+    }
+    for (const std::string_view attribute : {"node", "nodedef"}) {
+      if (!any || set.find(attribute) == nullptr) continue;
+      std::string list;
+      for (const std::string& name : materialx::geometryNames(set.get(attribute))) {
+        const bool kind = name == kFrom || name.starts_with("ND_standard_surface_surfaceshader");
+        list += list.empty() ? "" : ", ";
+        list += !kind ? name : name == kFrom ? std::string(as_) : fmt::format("ND_{}_surfaceshader", as_);
+      }
+      set.set(attribute, list);
+    }
+  }
+}
+
+size_t translateIn(Element& owner, std::string_view as, VariantTranslation& variants, Diagnostics& said) {
   size_t count = 0;
   materialx::NameSet names;
   for (const Element& child : owner.children) names.take(std::string(child.name()));
   std::vector<Element> children;
   for (Element& child : owner.children) {
-    if (child.category == "nodegraph") count += translateIn(child, as, said);
+    if (child.category == "nodegraph") count += translateIn(child, as, variants, said);
     if (child.category != kFrom) {
       children.push_back(std::move(child));
       continue;
     }
     ++count;
     std::vector<Element> beside;
+    const materialx::NameSet before = variants.any() ? names : materialx::NameSet();
     Formulas formulas(child, names, beside, said);
-    if (as == "gltf_pbr")
-      toGltfPbr(formulas);
-    else
-      toOpenPbr(formulas);
+    translateBy(formulas, as);
     Element made;
     made.category = as;
     made.place = child.place;
     made.attributes = {{"name", std::string(child.name())}, {"type", "surfaceshader"}};
     made.children = formulas.finish(as);
+    variants.surface(child, made, formulas, beside, before);
     std::move(beside.begin(), beside.end(), std::back_inserter(children));
     children.push_back(std::move(made));
   }
@@ -484,7 +680,10 @@ bool canTranslate(const Element& root, std::string_view as) {
 }
 
 size_t translateSurfaces(Element& root, std::string_view as, Diagnostics& said) {
-  return translateIn(root, as, said);
+  VariantTranslation variants(root, as, said);
+  const size_t count = translateIn(root, as, variants, said);
+  variants.finish(root);
+  return count;
 }
 
 }  // namespace lacquer::exchange
