@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "materialx/looks.h"
 
@@ -58,7 +60,9 @@ std::string NameQualifier::meant(std::string_view name, std::string_view space) 
 
 /// `graph`: the nodegraph that the element stands in, whose nodes are meant first; null for none.
 void NameQualifier::references(Element& element, const Element* graph, std::string_view space) const {
-  for (auto& [attribute, value] : element.attributes) {
+  for (auto& pair : element.attributes) {
+    const std::string& attribute = pair.first;
+    std::string& value = pair.second;
     const bool set = element.category == "variantset";
     if (isOneOf(attribute, kSeveral) && (set || (attribute != "node" && attribute != "nodedef"))) {
       std::string list;
