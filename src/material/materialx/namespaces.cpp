@@ -14,7 +14,7 @@ namespace lacquer::materialx {
 
 namespace {
 
-using QualifiedNames = std::set<std::string, std::less<>>;
+using KnownNames = std::set<std::string, std::less<>>;
 
 /// Attributes that name what stands beside the nodegraphs, one or several.
 constexpr std::string_view kOne[] = {"nodename",    "nodegraph",       "nodedef",          "inherit",
@@ -41,11 +41,11 @@ public:
 
 private:
   std::string meant(std::string_view name, std::string_view space) const;
-  void references(Element& element, const Element* graph, std::string_view space) const;
+  void references(Element& element, const KnownNames* graph, std::string_view space) const;
 
   Element& root_;
   const std::string top_;
-  QualifiedNames known_;
+  KnownNames known_;
 };
 
 /// The name of what a reference within a namespace names.
@@ -58,8 +58,8 @@ std::string NameQualifier::meant(std::string_view name, std::string_view space) 
   return !space.empty() && known_.contains(whole) ? whole : std::string(name);
 }
 
-/// `graph`: the nodegraph that the element stands in, whose nodes are meant first; null for none.
-void NameQualifier::references(Element& element, const Element* graph, std::string_view space) const {
+/// `graph`: nodes of the nodegraph that the element stands in, which are meant first; null for none.
+void NameQualifier::references(Element& element, const KnownNames* graph, std::string_view space) const {
   for (auto& pair : element.attributes) {
     const std::string& attribute = pair.first;
     std::string& value = pair.second;
@@ -71,9 +71,7 @@ void NameQualifier::references(Element& element, const Element* graph, std::stri
       if (!list.empty()) value = list;
     } else if (isOneOf(attribute, kOne)) {
       const bool within =
-          graph != nullptr && (attribute == "nodename" || attribute == "nodegraph") &&
-          std::any_of(graph->children.begin(), graph->children.end(),
-                      [&](const Element& node) { return isNodeElement(node) && node.name() == value; });
+          graph != nullptr && (attribute == "nodename" || attribute == "nodegraph") && graph->contains(value);
       if (!within) value = meant(value, space);
     } else if (graph == nullptr && (attribute == "output" || attribute == "interfacename") &&
                element.find("nodename") == nullptr && element.find("nodegraph") == nullptr) {
@@ -81,10 +79,13 @@ void NameQualifier::references(Element& element, const Element* graph, std::stri
     }
   }
   const bool own = element.category == "nodegraph" && graph == nullptr;
+  KnownNames nodes;
+  for (const Element& child : element.children)
+    if (own && isNodeElement(child)) nodes.emplace(child.name());
   for (Element& child : element.children) {
     // What a nodegraph itself takes stands beside it.
     const bool beside = own && child.category == "input";
-    references(child, beside ? nullptr : own ? &element : graph, space);
+    references(child, beside ? nullptr : own ? &nodes : graph, space);
   }
 }
 

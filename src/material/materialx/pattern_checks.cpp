@@ -133,6 +133,7 @@ void Patterns::checkVersion(const Element& node) {
 void Patterns::withoutGraph(const Element& at, const Element& nodedef) {
   std::string help = "code in a shading language is not read: give it a nodegraph, or a node file by --nodes";
   for (const Element* document : documents_) {
+    if (!maySuggest()) break;
     for (const Element& body : document->children) {
       if (body.category != "nodegraph" && body.find("nodegraph") == nullptr) continue;
       const Element* of = body.get("nodedef").empty() ? nullptr : findNamed(nodedefs_, body.get("nodedef"));
