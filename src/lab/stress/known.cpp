@@ -56,6 +56,10 @@ constexpr Known kKnown[] = {
     {"extinction", "swizzle < 1e-30", "what is black at any distance is black at all of them"},
     {"light_", "layer < 0", "a light has a layer of a texture, or none"},
     {"scaled_normal", "mul < 0", "a scale that mirrors turns the surface over"},
+    {"area_", "", "a light has an edge: from its own plane, and at a corner, it is seen or not"},
+    {"_among_lights", "", "a light has an edge: from its own plane, and at a corner, it is seen or not"},
+    {"_covers", "", "a light has an edge: from its own plane, and at a corner, it is seen or not"},
+    {"edge_above", "", "an edge that ends at the horizon goes below it or does not"},
     {"film", " < 0", "a film's wave turns over where the base becomes the thinner medium"},
     // Of nodes/standard/, whose texts ask for steps.
     {"ifgreater", "value1", "a comparison"},
