@@ -128,7 +128,7 @@ using EditedGraphs = std::vector<std::pair<size_t, const graph::Graph*>>;
 
 /// The text of a MaterialX document: what was read, with the graphs' numbers.
 std::string readOf(const SceneData& scene, const std::string& folder, const Strings& materials,
-                       const EditedGraphs& edited, Messages& messages) {
+                   const EditedGraphs& edited, Messages& messages) {
   if (wantedOf(scene.document, materials, messages).empty()) return {};
   const std::string& file = scene.document.path;
   const Result<std::string> text = scene.text();

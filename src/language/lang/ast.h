@@ -278,7 +278,8 @@ struct LightKindDecl {
   std::vector<LightFieldDecl> fields;
   std::string_view prose;
   Span span;
-  bool extends = false;  ///< `extend light kind`: more fields of one that a template has which this one extends
+  bool extends =
+      false;  ///< `extend light kind`: more fields of one that a template has which this one extends
 };
 
 /// `lights from RANGES[EXPR] through NUMBERS;`: the lights that count are those whose numbers stand in a
