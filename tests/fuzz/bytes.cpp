@@ -167,7 +167,7 @@ std::string feedPoints(std::string_view bytes) {
     const size_t fits = array.stride == 0 ? room : (room - kMost) / static_cast<size_t>(array.stride) + 1;
     arrays.count = arrays.count == 0 ? fits : std::min(arrays.count, fits);
   }
-  return checkPoints(pointsOf(arrays));
+  return checkPoints(pointsOf(arrays, 0, arrays.count));
 }
 
 /// What `cost` does with a module before a driver, in a process of its own, is given it.
