@@ -13,13 +13,14 @@
 namespace pugi {
 
 enum xml_encoding { encoding_utf8 };
-enum xml_node_type { node_null, node_document, node_element, node_doctype };
+enum xml_node_type { node_null, node_document, node_element, node_pcdata, node_cdata, node_doctype };
 // Not to be chosen here: all of them hold.
 constexpr unsigned parse_cdata = 1;
 constexpr unsigned parse_escapes = 2;
 constexpr unsigned parse_eol = 4;
 constexpr unsigned parse_doctype = 8;
 constexpr unsigned parse_wconv_attribute = 16;
+constexpr unsigned parse_fragment = 32;
 
 struct xml_parse_result {
   const char* problem = nullptr;
@@ -52,6 +53,7 @@ public:
   xml_node() = default;
   explicit xml_node(const Data* data) : data_(data) {}
   explicit operator bool() const { return data_ != nullptr; }
+  bool operator==(const xml_node& other) const { return data_ == other.data_; }
   xml_node_type type() const { return data_ == nullptr ? node_null : data_->type; }
   const char* name() const { return data_ == nullptr ? "" : data_->name.c_str(); }
   std::ptrdiff_t offset_debug() const { return data_ == nullptr ? -1 : data_->offset; }
@@ -86,9 +88,10 @@ public:
   xml_node document_element() const {
     return find_child([](const xml_node& node) { return node.type() == node_element; });
   }
+  const std::vector<xml_node>& children() const { return top_->children; }
   template <class Predicate>
   xml_node find_child(Predicate fits) const {
-    for (const xml_node& node : xml_node(top_).children()) {
+    for (const xml_node& node : children()) {
       if (fits(node)) return node;
     }
     return {};
@@ -138,6 +141,7 @@ private:
   xml_parse_result parse() {
     while (true) {
       const std::size_t next = text_.find('<', at_);
+      besideElements(text_.substr(at_, next == std::string_view::npos ? next : next - at_));
       if (next == std::string_view::npos) break;
       at_ = next + 1;
       if (first(now())) {
@@ -150,6 +154,7 @@ private:
         at_ += 3;
         if (!skipTo("-->")) return wrong("Error parsing comment");
       } else if (starts("![CDATA[")) {
+        if (open_.size() == 1) add(node_cdata, at_ + 8);
         if (!skipTo("]]>")) return wrong("Error parsing CDATA section");
       } else if (starts("!DOCTYPE")) {
         if (open_.size() > 1 || !doctype()) return wrong("Error parsing document type declaration");
@@ -161,6 +166,13 @@ private:
     if (open_.size() > 1) return wrong("Start-end tags mismatch");
     if (!document_element()) return {"No document element found", 0};
     return {};
+  }
+
+  /// Text in the document itself, but for white space.
+  void besideElements(std::string_view text) {
+    bool said = false;
+    for (const char c : text) said = said || !space(c);
+    if (said && open_.size() == 1) add(node_pcdata, at_);
   }
 
   xml_parse_result element() {

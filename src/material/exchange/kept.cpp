@@ -159,10 +159,10 @@ void keepMaterials(Element& root, const Strings& names) {
   for (const auto& [name, element] : nodes) {
     const std::string_view shown = element->get("uiname");
     // A nodegraph's output is a pattern of its own where it has several: marble/color.
-    const std::string outputs = fmt::format("{}/", name);
+    const std::string_view material = shown.empty() ? name : shown;
+    const std::string outputs = element->category == "nodegraph" ? fmt::format("{}/", name) : std::string();
     const bool wanted = std::any_of(names.begin(), names.end(), [&](const std::string& one) {
-      return one == (shown.empty() ? name : shown) ||
-             (element->category == "nodegraph" && one.starts_with(outputs));
+      return one == material || (!outputs.empty() && one.starts_with(outputs));
     });
     if (wanted) pending.push_back(name);
   }
