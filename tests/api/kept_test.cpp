@@ -1,6 +1,7 @@
 // MaterialX documents whose surfaces have MaterialX's formulas: written as they were read.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 
 #include "lacquer.h"
@@ -267,6 +268,26 @@ TEST(MaterialsOfClosures, AreLeftOutAlone) {
   EXPECT_EQ(messages[0].code, "closures-not-written");
   EXPECT_EQ(messages[1].code, "closures-not-baked");
   EXPECT_EQ(toGltf(scene, {"B"}, 4, {}, messages), "");
+}
+
+/// An unlit surface is its own formula: beyond 1, and transparent by its transmission.
+TEST(UnlitSurfaces, AreWhatTheirFormulaSays) {
+  Messages messages;
+  const Scene scene = Scene::fromMemory(R"(<materialx version="1.39">
+  <surface_unlit name="s" type="surfaceshader">
+    <input name="emission" type="float" value="5"/>
+    <input name="emission_color" type="color3" value="2, 3, 4"/>
+    <input name="transmission" type="float" value="0.25"/>
+  </surface_unlit>
+  <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+</materialx>)",
+                                        "unlit.mtlx", {}, messages);
+  const auto color = evaluate(scene, 0, "[{}]", Engine::Double, {}, {}, messages);
+  ASSERT_TRUE(color) << (messages.empty() ? "" : messages[0].text);
+  EXPECT_TRUE(messages.empty());
+  EXPECT_EQ(color->profile, "materialx");
+  const std::array<double, 4> expected = {10, 15, 20, 0.75};
+  for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(color->rgba[0][c], expected[c], 1e-12);
 }
 
 /// A procedural's output is a node's: of a nodegraph's own number there is one.
