@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "materialx/element.h"
 #include "support/text.h"
 
 namespace lacquer::materialx {
@@ -49,6 +50,24 @@ bool isReference(std::string_view text) {
   return error == std::errc{} && end == digits.data() + digits.size() && isXmlCharacter(number);
 }
 
+/// What is wrong with a comment that begins there, or with a declaration, which stands first alone.
+std::optional<Malformed> malformedBeside(std::string_view text, size_t at) {
+  constexpr std::string_view kComment = "<!--", kDeclaration = "<?xml";
+  const std::string_view rest = text.substr(at);
+  if (rest.starts_with(kComment)) {
+    const size_t dashes = text.find("--", at + kComment.size());
+    if (dashes == std::string_view::npos || text.substr(dashes).starts_with("-->")) return std::nullopt;
+    return Malformed{dashes, "a comment has \"--\"", "it has single hyphens alone, and none at its end"};
+  }
+  const size_t behind = kDeclaration.size();
+  const bool declares = rest.starts_with(kDeclaration) && rest.size() > behind &&
+                        std::string_view(" \t\r\n?").find(rest[behind]) != std::string_view::npos;
+  const size_t first = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  if (!declares || at == first) return std::nullopt;
+  return Malformed{at, "the declaration <?xml … ?> is not the first in the file",
+                   "it stands there, or is left out"};
+}
+
 }  // namespace
 
 std::optional<Malformed> malformed(std::string_view text) {
@@ -63,10 +82,13 @@ std::optional<Malformed> malformed(std::string_view text) {
     const char c = text[i];
     for (const auto& [open, close] : kPassed) {
       if (i < passed || tag || c != '<' || !text.substr(i).starts_with(open)) continue;
+      if (std::optional<Malformed> bad = malformedBeside(text, i)) return bad;
       const size_t end = text.find(close, i + open.size());
       passed = end == std::string_view::npos ? text.size() : end + close.size();
     }
     if (i >= passed) {
+      if (!tag && c == ']' && text.substr(i).starts_with("]]>"))
+        return Malformed{i, "a text has \"]]>\"", "it is written \"]]&gt;\" there"};
       if (quote_open != 0 && c == '<')
         return Malformed{i, "an attribute has a \"<\"", "it is written \"&lt;\" there"};
       if (c == '&' && !isReference(text.substr(i, 16)))
