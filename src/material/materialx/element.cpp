@@ -42,6 +42,12 @@ bool isNodeElement(const Element& element) {
   return std::find(std::begin(kOthers), std::end(kOthers), element.category) == std::end(kOthers);
 }
 
+size_t countOfElements(const Element& element) {
+  size_t count = 1;
+  for (const Element& child : element.children) count += countOfElements(child);
+  return count;
+}
+
 std::string_view wideEncoding(std::string_view text) {
   using namespace std::string_view_literals;
   for (const std::string_view start : {"\xFF\xFE\0\0"sv, "\0\0\xFE\xFF"sv, "<\0\0\0"sv, "\0\0\0<"sv})

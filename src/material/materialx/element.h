@@ -34,6 +34,12 @@ struct Element {
 /// Whether an element beside others may be a node: it is no port, no definition and nothing of geometry.
 bool isNodeElement(const Element& element);
 
+/// A name without the namespaces in front of it.
+inline std::string_view withoutNamespace(std::string_view name) { return name.substr(name.rfind(':') + 1); }
+
+/// How many elements there are: this one, its children, theirs and so on.
+size_t countOfElements(const Element& element);
+
 /// "UTF-16" or "UTF-32" for a text that begins like XML in it; empty for all others.
 std::string_view wideEncoding(std::string_view text);
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  ///< of UTF-8

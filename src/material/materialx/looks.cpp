@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "lang/suggest.h"
 #include "materialx/said.h"
@@ -14,7 +15,6 @@ namespace lacquer::materialx {
 
 namespace {
 
-constexpr size_t kDeepestLook = 32;           ///< looks that inherit from each other
 constexpr size_t kMostAssignments = 1 << 16;  ///< of a document's looks, with what they inherit
 
 /// Whether an expression ends within brackets or braces, or closes what is not open.
@@ -38,7 +38,7 @@ class LooksReader {
 public:
   LooksReader(const Element& document, const std::vector<std::string>& materials,
               const VariantMaterials& variants, Diagnostics& said)
-      : document_(document), variants_(variants), say_(said), looks_(namesOf(document, "look")) {
+      : document_(document), variants_(variants), say_(said), chains_(document) {
     for (size_t i = 0; i < materials.size(); ++i) numbers_.try_emplace(materials[i], static_cast<int>(i));
     for (const Element& one : document.children) {
       if (!one.name().empty()) by_name_.try_emplace({one.category, one.name()}, &one);
@@ -69,7 +69,7 @@ private:
   const Element& document_;
   const VariantMaterials& variants_;
   Said say_;
-  ByName looks_;
+  LookChains chains_;
   std::map<std::string_view, int> numbers_;  ///< of materials
   std::set<std::string_view> others_;        ///< names of what may be a material elsewhere
   std::map<std::pair<std::string_view, std::string_view>, const Element*> by_name_;
@@ -82,6 +82,7 @@ private:
 
 Looks LooksReader::read() {
   circles();
+  chains_.tell(say_);
   for (const Element& one : document_.children) {
     if (one.category == "collection") collection(one);
     if (one.category == "geominfo") info(one);
@@ -223,7 +224,7 @@ void LooksReader::group(const Element& at) {
     for (const std::string& name : geometryNames(one.get("looks"))) {
       if (isTooMuch(at)) return;
       const Element* within = find("lookgroup", name);
-      if (const auto known = looks_.find(name); known != looks_.end()) {
+      if (const auto known = chains_.looks().find(name); known != chains_.looks().end()) {
         if (met.insert(known->first).second) made.looks.push_back(name);
       } else if (within == &at) {
         say_(at, Severity::Error, "look-cycle", fmt::format("the group {} is in itself", quote(name)));
@@ -250,7 +251,9 @@ void LooksReader::look(const Element& at) {
   Look made;
   made.name = at.name();
   size_t materials = 0;
-  for (const Element* one : chainOf(at, looks_, &document_, &say_)) {
+  const std::vector<const Element*> chain =
+      first_too_many_ == nullptr ? chains_.of(at) : std::vector<const Element*>();
+  for (const Element* one : chain) {
     // What is wrong in another look is said there.
     Diagnostics elsewhere;
     Diagnostics* own = one == &at ? nullptr : say_.to(&elsewhere);
@@ -373,28 +376,46 @@ std::string Said::meant(const Element& of, std::string_view category, std::strin
   return lang::didYouMean(name, names);
 }
 
-std::vector<const Element*> chainOf(const Element& look, const ByName& looks, const Element* document,
-                                    Said* said) {
-  std::vector<const Element*> chain{&look};
-  while (!chain.back()->get("inherit").empty()) {
-    const std::string_view name = chain.back()->get("inherit");
-    const auto from = looks.find(name);
-    if (from == looks.end()) {
-      if (said != nullptr && chain.size() == 1)
-        (*said)(look, Severity::Error, "no-such-look",
-                fmt::format("{} inherits from {}, which is not there", quote(look.name()), quote(name)),
-                said->meant(*document, "look", name));
-      break;
+LookChains::LookChains(const Element& document) : document_(document), looks_(namesOf(document, "look")) {
+  std::set<const Element*> done;
+  for (const Element& first : document.children) {
+    if (first.category != "look") continue;
+    std::vector<const Element*> path;
+    std::set<const Element*> open;
+    const Element* end = nullptr;  // what the last of the path inherits from
+    for (const Element* at = &first; at != nullptr && !done.contains(at);) {
+      path.push_back(at);
+      open.insert(at);
+      const std::string_view name = at->get("inherit");
+      const auto base = looks_.find(name);
+      if (base == looks_.end() && !name.empty()) missing_.push_back(at);
+      end = base == looks_.end() ? nullptr : base->second;
+      if (open.contains(end)) circles_.push_back(std::exchange(end, nullptr));
+      at = end;
     }
-    if (chain.size() == kDeepestLook || std::find(chain.begin(), chain.end(), from->second) != chain.end()) {
-      if (said != nullptr)
-        (*said)(look, Severity::Error, "look-cycle",
-                fmt::format("the look {} inherits from itself, or through more than {} others",
-                            quote(look.name()), kDeepestLook));
-      break;
+    for (; !path.empty(); path.pop_back()) {
+      const Element* look = path.back();
+      done.insert(look);
+      bases_[look] = end == nullptr || !end->children.empty() ? end : bases_[end];
+      end = look;
     }
-    chain.push_back(from->second);
   }
+}
+
+void LookChains::tell(Said& said) const {
+  for (const Element* look : circles_)
+    said(*look, Severity::Error, "look-cycle",
+         fmt::format("the look {} inherits from itself", quote(look->name())));
+  for (const Element* look : missing_)
+    said(*look, Severity::Error, "no-such-look",
+         fmt::format("{} inherits from {}, which is not there", quote(look->name()),
+                     quote(look->get("inherit"))),
+         said.meant(document_, "look", look->get("inherit")));
+}
+
+std::vector<const Element*> LookChains::of(const Element& look) const {
+  std::vector<const Element*> chain{&look};
+  for (const Element* at = bases_.at(&look); at != nullptr; at = bases_.at(at)) chain.push_back(at);
   std::reverse(chain.begin(), chain.end());
   return chain;
 }

@@ -31,8 +31,21 @@ private:
 using ByName = std::map<std::string_view, const Element*>;
 /// The children of a category; of a name the first one.
 ByName namesOf(const Element& document, std::string_view category);
-/// A look and what it inherits from, the eldest first. What is wrong is said where `said` is given.
-std::vector<const Element*> chainOf(const Element& look, const ByName& looks, const Element* document,
-                                    Said* said);
+/// The looks of a document, and what they inherit from.
+class LookChains {
+public:
+  explicit LookChains(const Element& document);
+  /// Says which looks inherit from themselves, each circle once, and from what is not there.
+  void tell(Said& said) const;
+  /// A look and what it inherits from, the eldest first; of these none that is empty.
+  std::vector<const Element*> of(const Element& look) const;
+  const ByName& looks() const { return looks_; }
+
+private:
+  const Element& document_;
+  ByName looks_;
+  std::map<const Element*, const Element*> bases_;  ///< the next that has something; looked up, never walked
+  std::vector<const Element*> circles_, missing_;   ///< one look of each circle; looks without their base
+};
 
 }  // namespace lacquer::materialx

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
 #include "materialx/looks.h"
+#include "materialx/models.h"
 #include "materialx/said.h"
 #include "support/text.h"
 
@@ -14,12 +16,6 @@ namespace {
 constexpr size_t kMostVariants = 4096;           ///< materials of a document that variants make
 constexpr size_t kMostCopied = size_t{1} << 18;  ///< elements of these
 constexpr size_t kMostPairs = size_t{1} << 20;   ///< variants and materials that are looked at
-
-size_t countOfElements(const Element& element) {
-  size_t count = 1;
-  for (const Element& child : element.children) count += countOfElements(child);
-  return count;
-}
 
 /// Makes the materials that variants ask for.
 class Variants {
@@ -60,15 +56,18 @@ private:
   void ofSets();
   std::string want(const Element& at, const Subject& subject, const std::vector<Chosen>& chosen);
   bool isFor(const Set& set, const Element& shader) const;
-  bool hasSomething(const Subject& subject, const Chosen& chosen) const;
+  bool hasSomething(const Subject& subject, const Chosen& chosen, bool defaults) const;
+  void portsOf(const Element& definitions);
   const Element* named(std::string_view name) const;
   void add(const Wanted& wanted);
   static bool apply(const std::vector<Chosen>& chosen, Element& to, bool surface);
 
   Element& document_;
   Said say_;
-  ByName nodes_, nodedefs_, looks_;
+  ByName nodes_, nodedefs_;
   std::multimap<std::string_view, std::string_view> tokens_;  ///< of definitions, by their nodes
+  /// Inputs of definitions, by their nodes.
+  std::map<std::string_view, std::set<std::string_view>> ports_;
   std::vector<Subject> subjects_;
   std::map<std::string_view, const Subject*> by_name_;
   std::vector<Set> sets_;
@@ -82,10 +81,7 @@ private:
 };
 
 Variants::Variants(Element& document, Diagnostics& said)
-    : document_(document),
-      say_(said),
-      nodedefs_(namesOf(document, "nodedef")),
-      looks_(namesOf(document, "look")) {
+    : document_(document), say_(said), nodedefs_(namesOf(document, "nodedef")) {
   constexpr std::string_view kOthers[] = {"input",          "output",     "token",    "nodedef",
                                           "look",           "collection", "geominfo", "variantset",
                                           "implementation", "lookgroup"};
@@ -94,11 +90,14 @@ Variants::Variants(Element& document, Diagnostics& said)
       nodes_.try_emplace(one.name(), &one);
     for (const Element& port : one.children)
       if (one.category == "nodedef" && port.category == "token")
-        tokens_.emplace(one.get("node"), port.name());
+        tokens_.emplace(withoutNamespace(one.get("node")), port.name());
     if (one.category == "variantset")
       sets_.push_back({&one, geometryNames(one.get("node")), geometryNames(one.get("nodedef")), false});
   }
   if (sets_.empty()) return;
+  portsOf(document);
+  portsOf(surfaceModels());
+  ports_["surface_unlit"] = {"emission", "emission_color", "transmission", "transmission_color", "opacity"};
   for (Set& set : sets_) sets_by_name_.try_emplace(set.element->name(), &set);
   for (const Element& one : document.children) {
     if (one.category == "surfacematerial") subject(one);
@@ -147,20 +146,33 @@ void Variants::subject(const Element& material) {
     }
   }
   // Tokens of its definition, which it need not say.
-  const auto [first, last] = tokens_.equal_range(made.shader->category);
+  const auto [first, last] = tokens_.equal_range(withoutNamespace(made.shader->category));
   for (auto it = first; it != last; ++it) made.names.emplace("token", it->second);
+}
+
+/// Takes the inputs of definitions, which their nodes need not say.
+void Variants::portsOf(const Element& definitions) {
+  for (const Element& one : definitions.children) {
+    if (one.category != "nodedef") continue;
+    std::set<std::string_view>& ports = ports_[withoutNamespace(one.get("node"))];
+    for (const Element& port : one.children)
+      if (port.category == "input") ports.insert(port.name());
+  }
 }
 
 /// Whether a variantset is for a surface: it may name nodes, or definitions of such.
 bool Variants::isFor(const Set& set, const Element& shader) const {
   if (set.nodes.empty() && set.definitions.empty()) return true;
-  const auto is = [&](std::string_view node) { return node == shader.name() || node == shader.category; };
+  const std::string_view kind = withoutNamespace(shader.category);
+  const auto is = [&](std::string_view node) {
+    return node == shader.name() || node == shader.category || node == kind;
+  };
   if (std::any_of(set.nodes.begin(), set.nodes.end(), is)) return true;
   return std::any_of(set.definitions.begin(), set.definitions.end(), [&](const std::string& name) {
     if (name == shader.get("nodedef") || name.starts_with("ND_" + shader.category + "_surfaceshader"))
       return true;
     const auto nodedef = nodedefs_.find(name);
-    return nodedef != nodedefs_.end() && nodedef->second->get("node") == shader.category;
+    return nodedef != nodedefs_.end() && withoutNamespace(nodedef->second->get("node")) == kind;
   });
 }
 
@@ -187,14 +199,18 @@ bool Variants::apply(const std::vector<Chosen>& all, Element& to, bool surface) 
   return any;
 }
 
-/// Whether a material has an input or a token of a variant's names.
-bool Variants::hasSomething(const Subject& subject, const Chosen& chosen) const {
+/// Whether a material has an input or a token of a variant's names. `defaults`: or leaves one at its default.
+bool Variants::hasSomething(const Subject& subject, const Chosen& chosen, bool defaults) const {
   if (subject.shader == nullptr || !isFor(*chosen.set, *subject.shader)) return false;
   if (!chosen.set->nodes.empty() || !chosen.set->definitions.empty()) return true;
-  return std::any_of(
-      chosen.variant->children.begin(), chosen.variant->children.end(), [&](const Element& value) {
-        return value.find("value") != nullptr && subject.names.contains({value.category, value.name()});
-      });
+  const auto ports = ports_.find(withoutNamespace(subject.shader->category));
+  const std::vector<Element>& values = chosen.variant->children;
+  return std::any_of(values.begin(), values.end(), [&](const Element& value) {
+    if (value.find("value") == nullptr) return false;
+    return subject.names.contains({value.category, value.name()}) ||
+           (defaults && value.category == "input" && ports != ports_.end() &&
+            ports->second.contains(value.name()));
+  });
 }
 
 void Variants::check(const Element& set) {
@@ -280,9 +296,10 @@ std::string Variants::want(const Element& at, const Subject& subject, const std:
 /// What looks assign.
 void Variants::ofLooks() {
   size_t pairs = 0;
+  const LookChains chains(document_);
   for (const Element& look : document_.children) {
     if (look.category != "look") continue;
-    const std::vector<const Element*> chain = chainOf(look, looks_, nullptr, nullptr);
+    const std::vector<const Element*> chain = chains.of(look);
     std::vector<Chosen> of_all;
     for (const Element* one : chain) assigned(*one, one == &look, of_all);
     size_t place = 0;
@@ -310,15 +327,19 @@ void Variants::ofSets() {
     for (const Element& variant : sets_[i].element->children) {
       if (variant.category != "variant") continue;
       bool any = false;
-      for (const Subject& subject : subjects_) {
-        if (++pairs > kMostPairs)
-          return say_(variant, Severity::Error, "too-many",
-                      fmt::format("there are more than {} pairs of a variant and a material", kMostPairs));
-        const Chosen chosen{&sets_[i], &variant};
-        if (!hasSomething(subject, chosen)) continue;
-        any = true;
-        (void)want(variant, subject, {chosen});
-        if (too_many_) return;
+      // Materials that say what it changes are meant, and without one those that leave it at its default.
+      for (const bool defaults : {false, true}) {
+        for (const Subject& subject :
+             any ? std::span<const Subject>() : std::span<const Subject>(subjects_)) {
+          if (++pairs > kMostPairs)
+            return say_(variant, Severity::Error, "too-many",
+                        fmt::format("there are more than {} pairs of a variant and a material", kMostPairs));
+          const Chosen chosen{&sets_[i], &variant};
+          if (!hasSomething(subject, chosen, defaults)) continue;
+          any = true;
+          (void)want(variant, subject, {chosen});
+          if (too_many_) return;
+        }
       }
       if (!any)
         say_(variant, Severity::Warning, "unused-variant",
